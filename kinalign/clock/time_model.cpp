@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/time_model.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+const TimeModelPiece& piece_at(const TimeModel& model, Time stamp) {
+  assert(!model.pieces.empty());
+  const auto behind =
+      std::upper_bound(model.pieces.begin(), model.pieces.end(), stamp,
+                       [](Time t, const TimeModelPiece& piece) { return t < piece.begin; });
+  return behind == model.pieces.begin() ? model.pieces.front() : *(behind - 1);
+}
+
+}  // namespace
+
+TimeModel shared_clock() {
+  TimeModel model;
+  model.pieces.front().half_width = Duration{0};
+  return model;
+}
+
+Time take_time(const TimeModel& model, Time stamp) {
+  const TimeModelPiece& piece = piece_at(model, stamp);
+  Duration drifted{};
+  if (piece.drift_ppm != 0.0) {
+    const auto since = static_cast<double>((stamp - piece.begin).count());
+    drifted = Duration{std::llround(piece.drift_ppm * 1e-6 * since)};
+  }
+  return stamp + piece.offset + drifted;
+}
+
+std::optional<Duration> half_width(const TimeModel& model, Time stamp) {
+  return piece_at(model, stamp).half_width;
+}
+
+}  // namespace kinalign

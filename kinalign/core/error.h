@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors are values with a place. A function that can fail returns Result<T>; a reader that can go
+// on in spite of a fault collects Findings.
+#pragma once
+
+#include <tl/expected.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace kinalign {
+
+/// What went wrong, said for the person who has to mend the file.
+struct Error {
+  std::string file;       // as the user named it; empty where there is none
+  std::int64_t line = 0;  // from 1; 0 for binary files, whose byte offset stands in `found`
+  std::string expected;   // "three numbers after OFFSET"
+  std::string found;      // "two", or the text that stood there, see shown()
+};
+
+/// "walk.bvh:12: expected 2 frames, found 1"
+std::string to_string(const Error& error);
+
+/// Text of a file as a message may show it: at most 40 bytes, control characters replaced by '?'.
+std::string shown(std::string_view text);
+
+enum class Severity { note, warning, error };
+
+/// Something found in an input that was read all the same.
+struct Finding {
+  Severity severity = Severity::warning;
+  Error what;
+  std::string meaning;  // for the result: "the last frame was dropped"
+  std::string repair;   // what the user can do; empty where nothing need be done
+};
+
+using Findings = std::vector<Finding>;
+
+/// "warning" as people and JSON read it.
+std::string_view to_string(Severity severity);
+
+template <class T>
+using Result = tl::expected<T, Error>;  // std::expected one day: changed here
+using Failure = tl::unexpected<Error>;
+
+template <class T>
+T unwrap(Result<T>&& result) {
+  if constexpr (!std::is_void_v<T>) return *std::move(result);
+}
+
+}  // namespace kinalign
+
+/// The value of a Result, or the calling function ends with its error.
+#define KA_TRY(expression)                                                    \
+  __extension__({                                                             \
+    auto ka_result = (expression);                                            \
+    if (!ka_result) return ::kinalign::Failure(std::move(ka_result).error()); \
+    ::kinalign::unwrap(std::move(ka_result));                                 \
+  })

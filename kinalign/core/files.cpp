@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/core/files.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace kinalign {
+
+namespace {
+
+Failure failed(const std::string& path, std::string expected, int code) {
+  return Failure(Error{path, 0, std::move(expected), std::strerror(code)});
+}
+
+std::string kind_of(mode_t mode) {
+  if (S_ISDIR(mode)) return "a directory";
+  if (S_ISFIFO(mode)) return "a pipe; save it to a file first";
+  if (S_ISSOCK(mode)) return "a socket";
+  return "a device";
+}
+
+}  // namespace
+
+int PosixFiles::open(const char* path, int flags, mode_t mode) {
+  return ::open(path, flags | O_CLOEXEC, mode);
+}
+ssize_t PosixFiles::read(int fd, void* data, std::size_t size) { return ::read(fd, data, size); }
+ssize_t PosixFiles::write(int fd, const void* data, std::size_t size) {
+  return ::write(fd, data, size);
+}
+int PosixFiles::sync(int fd) { return ::fsync(fd); }
+int PosixFiles::link(const char* from, const char* to) {
+  return ::linkat(AT_FDCWD, from, AT_FDCWD, to, AT_SYMLINK_FOLLOW);
+}
+int PosixFiles::rename(const char* from, const char* to) { return std::rename(from, to); }
+int PosixFiles::remove(const char* path) { return ::unlink(path); }
+int PosixFiles::close(int fd) { return ::close(fd); }
+
+Result<InputFile> InputFile::open(FileSystem& files, std::string path) {
+  // O_NONBLOCK: opening a pipe without a writer would wait for ever; regular files ignore it.
+  const int fd = files.open(path.c_str(), O_RDONLY | O_NONBLOCK, 0);
+  if (fd < 0) return failed(path, "a readable file", errno);
+  struct stat status {};
+  if (::fstat(fd, &status) != 0) {
+    const int code = errno;
+    files.close(fd);
+    return failed(path, "a readable file", code);
+  }
+  if (!S_ISREG(status.st_mode)) {
+    files.close(fd);
+    return Failure(Error{path, 0, "a regular file", kind_of(status.st_mode)});
+  }
+  return InputFile(files, std::move(path), fd, static_cast<std::uint64_t>(status.st_size));
+}
+
+InputFile::InputFile(FileSystem& files, std::string path, int fd, std::uint64_t size)
+    : files_(&files), path_(std::move(path)), fd_(fd), size_(size), buffer_(piece_size) {}
+
+InputFile::InputFile(InputFile&& other) noexcept
+    : files_(other.files_),
+      path_(std::move(other.path_)),
+      fd_(std::exchange(other.fd_, -1)),
+      size_(other.size_),
+      buffer_(std::move(other.buffer_)) {}
+
+InputFile& InputFile::operator=(InputFile&& other) noexcept {
+  std::swap(files_, other.files_);
+  std::swap(path_, other.path_);
+  std::swap(fd_, other.fd_);
+  std::swap(size_, other.size_);
+  std::swap(buffer_, other.buffer_);
+  return *this;
+}
+
+InputFile::~InputFile() {
+  if (fd_ >= 0) files_->close(fd_);
+}
+
+Result<std::string_view> InputFile::next() {
+  for (;;) {
+    const ssize_t got = files_->read(fd_, buffer_.data(), buffer_.size());
+    if (got >= 0) return std::string_view(buffer_.data(), static_cast<std::size_t>(got));
+    if (errno != EINTR) return failed(path_, "a readable file", errno);
+  }
+}
+
+Result<std::string> read_whole(FileSystem& files, const std::string& path, std::size_t most) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  std::string text;
+  for (;;) {
+    const std::string_view piece = KA_TRY(file.next());
+    if (piece.empty()) return text;
+    if (text.size() + piece.size() > most) {
+      return Failure(Error{path, 0, "at most " + std::to_string(most) + " bytes", "more"});
+    }
+    text += piece;
+  }
+}
+
+Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overwrite overwrite) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) == 0) {
+    if (overwrite == Overwrite::no) {
+      return Failure(Error{path, 0, "no file of that name (--force overwrites)", "one"});
+    }
+    if (!S_ISREG(status.st_mode)) {
+      return Failure(Error{path, 0, "a regular file to overwrite", kind_of(status.st_mode)});
+    }
+  }
+  OutputFile file(files, std::move(path), overwrite);
+  const std::string place = folder(file.path_).empty() ? "." : std::string(folder(file.path_));
+  file.fd_ = files.open(place.c_str(), O_TMPFILE | O_RDWR, 0644);
+  if (file.fd_ >= 0) {
+    file.unfinished_ = "/proc/self/fd/" + std::to_string(file.fd_);
+    return file;
+  }
+  if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) {
+    return failed(file.path_, "a folder that can be written", errno);
+  }
+  file.beside_ = std::string(folder(file.path_)) + "." + std::string(file_name(file.path_)) + "." +
+                 std::to_string(::getpid()) + ".part";
+  file.unfinished_ = file.beside_;
+  file.fd_ = files.open(file.beside_.c_str(), O_RDWR | O_CREAT | O_EXCL, 0644);
+  if (file.fd_ < 0) {
+    const int code = errno;
+    file.beside_.clear();
+    return failed(file.path_, "a folder that can be written", code);
+  }
+  return file;
+}
+
+OutputFile::OutputFile(FileSystem& files, std::string path, Overwrite overwrite)
+    : files_(&files), path_(std::move(path)), overwrite_(overwrite) {}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : files_(other.files_),
+      path_(std::move(other.path_)),
+      overwrite_(other.overwrite_),
+      fd_(std::exchange(other.fd_, -1)),
+      unfinished_(std::move(other.unfinished_)),
+      beside_(std::exchange(other.beside_, {})) {}
+
+OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
+  std::swap(files_, other.files_);
+  std::swap(path_, other.path_);
+  std::swap(overwrite_, other.overwrite_);
+  std::swap(fd_, other.fd_);
+  std::swap(unfinished_, other.unfinished_);
+  std::swap(beside_, other.beside_);
+  return *this;
+}
+
+OutputFile::~OutputFile() { discard(); }
+
+void OutputFile::discard() {
+  if (fd_ >= 0) files_->close(fd_);
+  if (!beside_.empty()) files_->remove(beside_.c_str());
+  fd_ = -1;
+  beside_.clear();
+}
+
+Result<void> OutputFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t put = files_->write(fd_, bytes.data(), bytes.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) return failed(path_, "room to write", errno);
+    bytes.remove_prefix(static_cast<std::size_t>(put));
+  }
+  return {};
+}
+
+Result<void> OutputFile::place() {
+  if (beside_.empty() && overwrite_ == Overwrite::yes) {
+    // A nameless file can only be linked to a free name: take one, then rename over the old file.
+    beside_ = std::string(folder(path_)) + "." + std::string(file_name(path_)) + "." +
+              std::to_string(::getpid()) + ".part";
+    if (files_->link(unfinished_.c_str(), beside_.c_str()) != 0) {
+      const int code = errno;
+      beside_.clear();
+      return failed(path_, "a folder that can be written", code);
+    }
+  }
+  if (overwrite_ == Overwrite::yes) {
+    if (files_->rename(beside_.c_str(), path_.c_str()) != 0) {
+      return failed(path_, "a file that can be replaced", errno);
+    }
+    beside_.clear();
+    return {};
+  }
+  // link, not rename: it refuses a name that another program took in the meantime.
+  const char* from = beside_.empty() ? unfinished_.c_str() : beside_.c_str();
+  if (files_->link(from, path_.c_str()) != 0) {
+    return failed(path_, "no file of that name (--force overwrites)", errno);
+  }
+  return {};
+}
+
+Result<void> OutputFile::commit() {
+  if (files_->sync(fd_) != 0) return failed(path_, "data that reach the disk", errno);
+  KA_TRY(place());
+  const std::string place = folder(path_).empty() ? "." : std::string(folder(path_));
+  const int directory = files_->open(place.c_str(), O_RDONLY | O_DIRECTORY, 0);
+  if (directory >= 0) {
+    // The name reaches the disk with the folder. Some file systems can't sync one; the data are
+    // safe.
+    files_->sync(directory);
+    files_->close(directory);
+  }
+  discard();
+  return {};
+}
+
+std::string_view file_name(std::string_view path) {
+  const auto slash = path.rfind('/');
+  return slash == std::string_view::npos ? path : path.substr(slash + 1);
+}
+
+std::string_view folder(std::string_view path) {
+  const auto slash = path.rfind('/');
+  return slash == std::string_view::npos ? std::string_view{} : path.substr(0, slash + 1);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SHA-256 (FIPS 180-4) of bytes that come in pieces.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+class Sha256 {
+ public:
+  Sha256();
+  Sha256(Sha256&&) noexcept;
+  Sha256& operator=(Sha256&&) noexcept;
+  Sha256(const Sha256&) = delete;
+  Sha256& operator=(const Sha256&) = delete;
+  ~Sha256();
+
+  void update(std::string_view bytes);
+  /// 64 lower-case hexadecimal digits; ends the hash.
+  std::string hex();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace kinalign

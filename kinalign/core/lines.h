@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines of a text that comes in pieces cut anywhere.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+class LineSplitter {
+ public:
+  static constexpr std::size_t longest = std::size_t{1} << 20;
+
+  /// Calls `use(line)` -> Result<void> for each line that `piece` completes, without its "\n" or
+  /// "\r\n"; number() is then the line's number, from 1. The character behind the line can be read
+  /// and is no part of a number. Fails with the first failing use, and on a line above `longest`.
+  template <class Use>
+  Result<void> feed(std::string_view piece, Use&& use) {
+    while (!piece.empty()) {
+      const auto end = piece.find('\n');
+      const bool whole = end != std::string_view::npos;
+      const std::string_view part = piece.substr(0, end);
+      piece.remove_prefix(whole ? end + 1 : piece.size());
+      if (carry_.size() + part.size() > longest) return too_long();
+      if (whole && carry_.empty()) {
+        KA_TRY(emit(part, use));
+        continue;
+      }
+      carry_ += part;
+      if (!whole) return {};
+      KA_TRY(emit(carry_, use));
+      carry_.clear();
+    }
+    return {};
+  }
+
+  /// The text has ended: a last line without a line end is a line too.
+  template <class Use>
+  Result<void> finish(Use&& use) {
+    if (carry_.empty()) return {};
+    KA_TRY(emit(carry_, use));
+    carry_.clear();
+    return {};
+  }
+
+  std::int64_t number() const { return number_; }
+
+ private:
+  template <class Use>
+  Result<void> emit(std::string_view line, Use&& use) {
+    ++number_;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return use(line);
+  }
+
+  Result<void> too_long() const {
+    return Failure(Error{"", number_ + 1, "a line of at most " + std::to_string(longest) + " bytes",
+                         "a longer one"});
+  }
+
+  std::string carry_;
+  std::int64_t number_ = 0;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/core/numbers.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace kinalign {
+
+namespace {
+
+// Powers of ten that a double holds exactly.
+constexpr std::array<double, 16> ten{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                     1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+
+constexpr std::array<char, 200> digit_pairs = [] {
+  std::array<char, 200> pairs{};
+  for (std::size_t i = 0; i < 100; ++i) {
+    pairs[2 * i] = static_cast<char>('0' + i / 10);
+    pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+  }
+  return pairs;
+}();
+
+bool is_digit(char c) { return static_cast<unsigned>(c - '0') < 10; }
+
+/// Of a number that no double holds: 1e-999 (nothing, to a double), not 1e999.
+bool too_small(std::string_view number) {
+  const auto exponent = number.find_first_of("eE");
+  if (exponent != std::string_view::npos) return number.substr(exponent + 1).starts_with('-');
+  const auto digit = number.find_first_not_of("-0");
+  return digit == std::string_view::npos || number[digit] == '.';
+}
+
+const char* parse_any(const char* at, const char* end, double& value) {
+  const char* digits = at + (*at == '-' ? 1 : 0);
+  if (digits == end || (!is_digit(*digits) && *digits != '.'))
+    return nullptr;  // no "inf", no "nan"
+  const auto [behind, fault] = std::from_chars(at, end, value);
+  if (fault == std::errc::result_out_of_range) {
+    const std::string_view text(at, static_cast<std::size_t>(behind - at));
+    if (!too_small(text)) return nullptr;
+    value = *at == '-' ? -0.0 : 0.0;
+    return behind;
+  }
+  return fault == std::errc{} ? behind : nullptr;
+}
+
+}  // namespace
+
+const char* parse_number(const char* at, const char* end, double& value) {
+  if (at != end && *at == '+') {
+    ++at;
+    if (at != end && *at == '-') return nullptr;
+  }
+  const char* p = at;
+  const bool minus = *p == '-';
+  p += minus ? 1 : 0;
+  std::uint64_t whole = 0;
+  const char* digits = p;
+  while (is_digit(*p)) whole = whole * 10 + static_cast<unsigned>(*p++ - '0');
+  auto count = p - digits;
+  std::ptrdiff_t after = 0;
+  if (*p == '.') {
+    const char* fraction = ++p;
+    while (is_digit(*p)) whole = whole * 10 + static_cast<unsigned>(*p++ - '0');
+    after = p - fraction;
+    count += after;
+  }
+  if (count == 0 || count > 15 || (*p | 32) == 'e') return parse_any(at, end, value);
+  const double magnitude = static_cast<double>(whole) / ten[static_cast<std::size_t>(after)];
+  value = minus ? -magnitude : magnitude;
+  return p;
+}
+
+bool parse_number(std::string_view text, double& value) {
+  if (text.empty() || text.size() > 400) return false;
+  std::array<char, 401> copy{};  // ends in the character that can't belong to a number
+  std::memcpy(copy.data(), text.data(), text.size());
+  const char* end = copy.data() + text.size();
+  return parse_number(copy.data(), end, value) == end;
+}
+
+int decimals_of(std::string_view number) {
+  const auto point = number.find('.');
+  if (point == std::string_view::npos) return 0;
+  if (number.find_first_of("eE") != std::string_view::npos) return 0;
+  return static_cast<int>(number.size() - point - 1);
+}
+
+char* put_number(char* at, double value, int decimals) {
+  const double scale = ten[static_cast<std::size_t>(decimals)];
+  const double scaled = std::nearbyint(std::abs(value) * scale);
+  if (!(scaled < 9e15) || scaled / scale != std::abs(value)) {
+    return std::to_chars(at, at + number_room, value).ptr;
+  }
+  if (std::signbit(value)) *at++ = '-';
+  const auto all = static_cast<std::uint64_t>(scaled);
+  const auto power = static_cast<std::uint64_t>(scale);
+  std::uint64_t whole = all / power;
+  std::uint64_t fraction = all - whole * power;
+  at = std::to_chars(at, at + 20, whole).ptr;
+  if (decimals == 0) return at;
+  *at++ = '.';
+  int left = decimals;
+  if (left % 2 != 0) {
+    at[left - 1] = static_cast<char>('0' + fraction % 10);
+    fraction /= 10;
+    --left;
+  }
+  for (; left > 0; left -= 2) {
+    std::memcpy(at + left - 2, &digit_pairs[2 * (fraction % 100)], 2);
+    fraction /= 100;
+  }
+  return at + decimals;
+}
+
+}  // namespace kinalign

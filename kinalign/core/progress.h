@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far a long job is, told to whoever asked; and whether it should stop.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+namespace kinalign {
+
+/// Called now and then with what is being done, and how much of how much (bytes, frames).
+/// False: stop, the user wants no more. An empty Progress is silence.
+using Progress =
+    std::function<bool(std::string_view what, std::uint64_t done, std::uint64_t total)>;
+
+inline bool go_on(const Progress& progress, std::string_view what, std::uint64_t done,
+                  std::uint64_t total) {
+  return !progress || progress(what, done, total);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only code that knows how vectors and rotations lie in arrays: x,y,z and w,x,y,z.
+// `auto` is right for these three (they are views) and for no other Eigen expression.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cstddef>
+#include <span>
+
+namespace kinalign {
+
+using Vec3 = Eigen::Vector3d;
+using Quat = Eigen::Quaterniond;
+
+/// The i-th vector of an array of x,y,z triples, as a place to read and write.
+inline Eigen::Map<Vec3> vec3(std::span<double> array, std::size_t i) {
+  return Eigen::Map<Vec3>(&array[3 * i]);
+}
+inline Eigen::Map<const Vec3> vec3(std::span<const double> array, std::size_t i) {
+  return Eigen::Map<const Vec3>(&array[3 * i]);
+}
+
+/// The i-th rotation of an array of w,x,y,z quadruples.
+inline Quat quat(std::span<const double> array, std::size_t i) {
+  return {array[4 * i], array[4 * i + 1], array[4 * i + 2], array[4 * i + 3]};
+}
+inline void put_quat(std::span<double> array, std::size_t i, const Quat& q) {
+  array[4 * i] = q.w();
+  array[4 * i + 1] = q.x();
+  array[4 * i + 2] = q.y();
+  array[4 * i + 3] = q.z();
+}
+
+}  // namespace kinalign

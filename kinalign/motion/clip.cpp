@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/motion/clip.h"
+
+#include <set>
+
+namespace kinalign {
+
+Result<void> validate(const Skeleton& skeleton) {
+  const std::size_t joints = skeleton.joints();
+  if (skeleton.joint_names.size() != joints || skeleton.rest_offsets.size() != joints) {
+    return Failure(
+        Error{"", 0, "a name, a parent and an offset for each joint", "different numbers"});
+  }
+  std::set<std::string_view> names;
+  for (std::size_t j = 0; j < joints; ++j) {
+    const int parent = skeleton.parents[j];
+    if (parent < -1 || parent >= static_cast<int>(j)) {
+      return Failure(Error{"", 0, "each parent before its children",
+                           "joint '" + shown(skeleton.joint_names[j]) + "'"});
+    }
+    if (!names.insert(skeleton.joint_names[j]).second) {
+      return Failure(Error{"", 0, "joint names that differ",
+                           "'" + shown(skeleton.joint_names[j]) + "' twice"});
+    }
+  }
+  return {};
+}
+
+}  // namespace kinalign

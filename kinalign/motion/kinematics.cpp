@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loops over 16 frames at a time, structure of arrays inside the block, which the compiler turns
+// into vector code: 0.4 of the time of Eigen joint by joint (bench/kinematics_bench.cpp).
+#include "kinalign/motion/kinematics.h"
+
+#include "kinalign/motion/targets.h"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <vector>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t block = 16;
+using Lane = std::array<double, block>;
+
+// sin and cos of half an angle in degrees, through a quarter of it: reduced to +-180 degrees, the
+// quarter lies within +-45, where Taylor's series of degree 15 and 16 is exact to 5e-17.
+inline __attribute__((always_inline)) void half_angle(double degrees, double& sine,
+                                                      double& cosine) {
+  constexpr double to_integer =
+      0x1.8p52;  // adding and subtracting it rounds to the nearest integer
+  const double turns = (degrees * (1.0 / 360.0) + to_integer) - to_integer;
+  const double x = (degrees - 360.0 * turns) * (std::numbers::pi / 720.0);
+  const double x2 = x * x;
+  double s = -1.0 / 1307674368000.0;
+  s = s * x2 + 1.0 / 6227020800.0;
+  s = s * x2 - 1.0 / 39916800.0;
+  s = s * x2 + 1.0 / 362880.0;
+  s = s * x2 - 1.0 / 5040.0;
+  s = s * x2 + 1.0 / 120.0;
+  s = s * x2 - 1.0 / 6.0;
+  s = s * x2 * x + x;
+  double c = 1.0 / 20922789888000.0;
+  c = c * x2 - 1.0 / 87178291200.0;
+  c = c * x2 + 1.0 / 479001600.0;
+  c = c * x2 - 1.0 / 3628800.0;
+  c = c * x2 + 1.0 / 40320.0;
+  c = c * x2 - 1.0 / 720.0;
+  c = c * x2 + 1.0 / 24.0;
+  c = c * x2 * x2 - 0.5 * x2 + 1.0;
+  sine = 2.0 * s * c;
+  cosine = 1.0 - 2.0 * s * s;
+}
+
+/// +1 where a, b, c are an even permutation of x, y, z, else -1.
+double parity(int a, int b) { return (b - a + 3) % 3 == 1 ? 1.0 : -1.0; }
+
+struct Rotations {
+  std::array<Lane, 4> part;  // w, x, y, z
+};
+
+// q = q_a q_b q_c of three elementary rotations about different axes, multiplied out. `sign` is the
+// permutation's parity; the parts come out on the axes a, b, c.
+KA_EVERY_PROCESSOR
+void compose(const std::array<Lane, 3>& degrees, double sign, Rotations& q) {
+  for (std::size_t i = 0; i < block; ++i) {
+    double sa, ca, sb, cb, sc, cc;
+    half_angle(degrees[0][i], sa, ca);
+    half_angle(degrees[1][i], sb, cb);
+    half_angle(degrees[2][i], sc, cc);
+    const double cacb = ca * cb, sasb = sa * sb, sacb = sa * cb, casb = ca * sb;
+    q.part[0][i] = cacb * cc - sign * (sasb * sc);
+    q.part[1][i] = sacb * cc + sign * (casb * sc);
+    q.part[2][i] = casb * cc - sign * (sacb * sc);
+    q.part[3][i] = cacb * sc + sign * (sasb * cc);
+  }
+}
+
+// One joint of the chain over a block of frames: turned = parent's * local, at = parent's + turned
+// offset. `global` parts: 0..3 rotation, 4..6 position.
+using Pose = std::array<Lane, 7>;
+
+KA_EVERY_PROCESSOR
+void follow(const Pose& parent, const Pose& local, Pose& global) {
+  for (std::size_t i = 0; i < block; ++i) {
+    const double w = parent[0][i], x = parent[1][i], y = parent[2][i], z = parent[3][i];
+    const double lw = local[0][i], lx = local[1][i], ly = local[2][i], lz = local[3][i];
+    global[0][i] = w * lw - x * lx - y * ly - z * lz;
+    global[1][i] = w * lx + x * lw + y * lz - z * ly;
+    global[2][i] = w * ly - x * lz + y * lw + z * lx;
+    global[3][i] = w * lz + x * ly - y * lx + z * lw;
+    const double px = local[4][i], py = local[5][i], pz = local[6][i];
+    // v + 2 w (u x v) + 2 u x (u x v) with u the vector part
+    const double tx = 2.0 * (y * pz - z * py), ty = 2.0 * (z * px - x * pz),
+                 tz = 2.0 * (x * py - y * px);
+    global[4][i] = parent[4][i] + px + w * tx + (y * tz - z * ty);
+    global[5][i] = parent[5][i] + py + w * ty + (z * tx - x * tz);
+    global[6][i] = parent[6][i] + pz + w * tz + (x * ty - y * tx);
+  }
+}
+
+/// Frames first.. of joint j as lanes; lanes beyond the last frame repeat it.
+void load(const ClipFrames& frames, std::size_t joints, std::size_t first, std::size_t j,
+          Pose& pose) {
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::size_t row = std::min(first + i, frames.size() - 1) * joints + j;
+    for (std::size_t k = 0; k < 4; ++k) pose[k][i] = frames.local_rotations[4 * row + k];
+    for (std::size_t k = 0; k < 3; ++k) pose[4 + k][i] = frames.local_positions[3 * row + k];
+  }
+}
+
+/// Writes parts [from, from + width) of the chain's poses to `out` [T,J,width].
+void run_chain(const Skeleton& skeleton, const ClipFrames& frames, std::size_t from,
+               std::size_t width, std::span<double> out) {
+  const std::size_t joints = skeleton.joints();
+  std::vector<Pose> global(joints);
+  Pose local;
+  for (std::size_t first = 0; first < frames.size(); first += block) {
+    const std::size_t lanes = std::min(block, frames.size() - first);
+    for (std::size_t j = 0; j < joints; ++j) {
+      const int parent = skeleton.parents[j];
+      if (parent < 0) {
+        load(frames, joints, first, j, global[j]);
+      } else {
+        load(frames, joints, first, j, local);
+        follow(global[static_cast<std::size_t>(parent)], local, global[j]);
+      }
+      double* to = &out[(first * joints + j) * width];
+      for (std::size_t i = 0; i < lanes; ++i, to += joints * width) {
+        for (std::size_t k = 0; k < width; ++k) to[k] = global[j][from + k][i];
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void rotations_from_euler(const EulerOrder& order, const EulerColumns& columns,
+                          std::size_t frames) {
+  const double sign = parity(order.first, order.second);
+  std::array<Lane, 3> degrees{};
+  Rotations q{};
+  for (std::size_t first = 0; first < frames; first += block) {
+    const std::size_t lanes = std::min(block, frames - first);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (columns.angles[k] == nullptr) continue;
+      const double* from = columns.angles[k] + first * columns.stride;
+      for (std::size_t i = 0; i < lanes; ++i, from += columns.stride) degrees[k][i] = *from;
+    }
+    compose(degrees, sign, q);
+    double* to = columns.rotations + first * columns.rotation_stride;
+    for (std::size_t i = 0; i < lanes; ++i, to += columns.rotation_stride) {
+      to[0] = q.part[0][i];
+      to[1 + order.first] = q.part[1][i];
+      to[1 + order.second] = q.part[2][i];
+      to[1 + order.third] = q.part[3][i];
+    }
+  }
+}
+
+void forward_kinematics(const Skeleton& skeleton, const ClipFrames& frames,
+                        std::span<double> global) {
+  run_chain(skeleton, frames, 4, 3, global);
+}
+
+void global_rotations(const Skeleton& skeleton, const ClipFrames& frames,
+                      std::span<double> global) {
+  run_chain(skeleton, frames, 0, 4, global);
+}
+
+}  // namespace kinalign

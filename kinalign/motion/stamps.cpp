@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/motion/stamps.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+// Class of a step > 0: the six bits behind its leading one, below the number of that bit.
+std::size_t class_of(std::uint64_t step) {
+  const auto bits = static_cast<unsigned>(std::bit_width(step)) - 1;
+  const std::uint64_t fraction = bits >= 6 ? step >> (bits - 6) : step << (6 - bits);
+  return (std::size_t{bits} << 6) + (fraction & 63);
+}
+
+/// The middle of a class, ns.
+double middle_of(std::size_t number) {
+  const auto bits = static_cast<int>(number >> 6);
+  return std::ldexp(1.0 + (static_cast<double>(number & 63) + 0.5) / 64.0, bits);
+}
+
+}  // namespace
+
+void StampSurveyor::add(std::span<const Time> stamps) {
+  for (const Time stamp : stamps) {
+    const bool first = survey_.samples++ == 0;
+    if (first) {
+      survey_.first = survey_.last = stamp;
+      continue;
+    }
+    if (stamp == survey_.last) {
+      ++survey_.duplicates;
+    } else if (stamp < survey_.last) {
+      ++survey_.backward;
+      survey_.largest_step_back_ns =
+          std::max(survey_.largest_step_back_ns, (survey_.last - stamp).count());
+    } else {
+      ++steps_[class_of(static_cast<std::uint64_t>((stamp - survey_.last).count()))];
+      survey_.last = stamp;
+    }
+  }
+}
+
+StampSurvey StampSurveyor::result() const {
+  StampSurvey survey = survey_;
+  std::uint64_t all = 0;
+  for (const auto n : steps_) all += n;
+  std::uint64_t below = 0;
+  for (std::size_t i = 0; i < classes && all > 0; ++i) {
+    below += steps_[i];
+    if (2 * below >= all) {
+      survey.median_step_ns = std::llround(middle_of(i));
+      break;
+    }
+  }
+  return survey;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/take/manifest.h"
+
+namespace kinalign {
+
+namespace {
+constexpr double any = 1e308;
+constexpr double day_ms = 86'400'000.0;
+}  // namespace
+
+Fields describe(AlignOptions& o) {
+  return {
+      {"reference", "stream whose stamps are the take's grid (default: the first)", &o.reference},
+      {"gap_ms", "longest stretch without samples to interpolate over, ms; 0: three median steps",
+       &o.gap_ms, 0.0, day_ms},
+      {"rotations",
+       "between samples: spline (no jump in angular acceleration) or slerp",
+       &o.rotations,
+       -any,
+       any,
+       {"spline", "slerp"}},
+      {"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double},
+  };
+}
+
+Fields describe(StreamOptions& o) {
+  return {
+      {"layout", "name or path of a declared layout (default: by the file's content)", &o.layout},
+      {"metres_per_unit", "length of the file's unit, m; 0: the format's own (BVH: 0.01)",
+       &o.metres_per_unit, 0.0, 1000.0},
+      {"up", "the file's up axis (BVH: y)", &o.up, -any, any, {"", "y", "z"}},
+      {"rate_hz", "sampling rate of a file without stamps", &o.rate_hz, 0.0, 1e6},
+      {"start_ns", "stamp of the first frame (BVH: of the click on record), ns", &o.start_ns, -4e18,
+       4e18},
+      {"end_ns", "stamp of the click on stop, ns", &o.end_ns, -4e18, 4e18},
+      {"click_latency_ms", "delay from a click to its effect, ms", &o.click_latency_ms, -day_ms,
+       day_ms},
+      {"clock",
+       "shared: stamps are exact on the reference's clock; unknown",
+       &o.clock,
+       -any,
+       any,
+       {"shared", "unknown"}},
+      {"offset_ms", "added to the stream's stamps, ms", &o.offset_ms, -1e12, 1e12},
+      {"drift_ppm", "rate added to the stream's stamps from the first one on, ppm", &o.drift_ppm,
+       -1e5, 1e5},
+      {"interval_ms", "half-width of the interval that holds a stamp's true time, ms",
+       &o.interval_ms, 0.0, day_ms},
+      {"root_node", "node into whose space all nodes are brought (default: the world's)",
+       &o.root_node},
+  };
+}
+
+Fields describe(SpaceOptions& o) {
+  return {
+      {"method",
+       "none; paper: equations (1) and (2), root onto root in each frame; fit: one rigid "
+       "transform by least squares; given",
+       &o.method,
+       -any,
+       any,
+       {"none", "paper", "fit", "given"}},
+      {"onto", "stream that gives the space (default: the reference)", &o.onto},
+      {"rotation_y_deg", "paper: turn about the y axis, counter-clockwise seen from above, degrees",
+       &o.rotation_y_deg, -360.0, 360.0},
+      {"magnification", "paper: m, a ratio of sizes", &o.magnification, 1e-6, 1e6},
+      {"root", "paper: this stream's root joint", &o.root},
+      {"onto_root", "paper: the other stream's root joint", &o.onto_root},
+  };
+}
+
+}  // namespace kinalign

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a user says of a recording and of how it shall be aligned: recording.toml, the flags of
+// `kinalign align`, and the parameters that a take remembers are these structures.
+// Documented for users in docs/formats/recording_toml.md.
+#pragma once
+
+#include "kinalign/core/options.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// One file of a stream, or one node's file of a stream of nodes.
+struct StreamFile {
+  std::string path;  // as the user named it, relative to the manifest
+  std::string node;  // the node worn at this place; empty where the file names its own
+};
+
+/// How to read a stream and what is known of its clock.
+struct StreamOptions {
+  std::string name;  // "mocap", "kinect", "imu": the take's group
+  std::vector<StreamFile> files;
+
+  std::string layout;  // name or path of a declared layout; empty: by the file's content
+  std::map<std::string, std::string> select;  // rows of a table to take: column -> value
+
+  double metres_per_unit = 0.0;  // 0: the format's own (BVH: 0.01)
+  std::string up;                // "y" or "z"; empty: the format's own (BVH: y)
+  double rate_hz = 0.0;          // of a file without stamps
+
+  std::optional<std::int64_t> start_ns;  // stamp of the first frame; BVH: the click on record
+  std::optional<std::int64_t> end_ns;    // BVH: the click on stop
+  double click_latency_ms = 0.0;         // lambda: from a click to its effect
+
+  std::string clock = "unknown";      // "shared": with the reference, no doubt; "unknown"
+  double offset_ms = 0.0;             // added to the device's stamps
+  double drift_ppm = 0.0;             // and this rate, from the first stamp on
+  std::optional<double> interval_ms;  // half-width that holds the truth, where known
+
+  std::string root_node;  // of nodes: all are brought into this one's space; empty: the world's
+};
+
+/// How a stream of points is brought into the reference's space.
+struct SpaceOptions {
+  std::string method = "none";      // none, paper, fit, given
+  std::string onto;                 // the stream that gives the truth; empty: the reference
+  double rotation_y_deg = 60.0;     // paper: A_rot, counter-clockwise seen from +y
+  double magnification = 1.0;       // paper: m
+  std::vector<double> rotation;     // given: w,x,y,z
+  std::vector<double> translation;  // given: m
+  std::map<std::string, std::string>
+      joints;  // this stream's joint -> the other's; first: the roots
+  std::string root = "SpineBase", onto_root = "Hips";  // paper: the joints that are put together
+};
+
+struct AlignOptions {
+  std::string reference;             // whose stamps are the grid; empty: the first stream
+  double gap_ms = 0.0;               // longest stretch to interpolate over; 0: three median steps
+  std::string rotations = "spline";  // spline: twice continuously differentiable; slerp
+  bool store_double = false;         // in the take; float otherwise
+};
+
+struct Manifest {
+  std::string subject, action;
+  std::vector<StreamOptions> streams;
+  std::map<std::string, SpaceOptions> spaces;  // by stream
+  AlignOptions align;
+};
+
+/// Names, meanings and ranges of the scalar options, for flags, TOML, JSON and --help.
+Fields describe(AlignOptions& options);
+Fields describe(StreamOptions& options);
+Fields describe(SpaceOptions& options);
+
+}  // namespace kinalign

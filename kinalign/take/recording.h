@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording: what several devices said of one motion, stream by stream, each readable from its
+// front in blocks as often as needed, so that no stream has to fit into memory.
+#pragma once
+
+#include "kinalign/clock/time_model.h"
+#include "kinalign/core/error.h"
+#include "kinalign/motion/clip.h"
+#include "kinalign/motion/stamps.h"
+#include "kinalign/motion/streams.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace kinalign {
+
+/// One pass over a stream: each call fills the next block (replacing what it held); false at the
+/// end. Blocks are of the reader's size, never empty.
+template <class Frames>
+using Pass = std::function<Result<bool>(Frames&)>;
+
+/// Starts a new pass from the front.
+template <class Frames>
+using Passes = std::function<Result<Pass<Frames>>()>;
+
+struct ClipInput {
+  Skeleton skeleton;
+  Passes<ClipFrames> passes;
+};
+
+struct PointInput {
+  std::vector<std::string> joint_names;
+  Passes<PointFrames> passes;
+};
+
+struct ImuInput {
+  std::vector<std::string> node_names;
+  ImuContent content;
+  Passes<ImuSamples> passes;
+};
+
+/// A file that a stream came from, as a take remembers it.
+struct InputFacts {
+  std::string name;    // without its folder
+  std::string sha256;  // 64 hexadecimal digits
+  std::uint64_t bytes = 0;
+};
+
+struct RecordedStream {
+  std::string name;  // the take's group: "mocap", "kinect"; streams of nodes may share one, "imu"
+  std::variant<ClipInput, PointInput, ImuInput> data;
+  StampSurvey survey;  // of the device's stamps
+  TimeModel clock;     // from those to the take's axis
+  std::vector<InputFacts> files;
+  Findings findings;  // of the reader
+};
+
+struct Recording {
+  std::string subject, action;  // empty where nothing is known
+  std::vector<RecordedStream> streams;
+};
+
+/// Streams that lie in memory: surveyed here, for tests and small jobs.
+RecordedStream recorded(std::string name, Clip clip);
+RecordedStream recorded(std::string name, PointStream points);
+RecordedStream recorded(std::string name, ImuStream imu);
+
+}  // namespace kinalign

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Three axes of time that can't be subtracted from, compared with or stored as one another: a
+// TimeModel (kinalign/clock) turns NodeTime into HostTime, logged pairs turn HostTime into Time.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace kinalign {
+
+using Duration = std::chrono::nanoseconds;
+
+struct UtcClock {};   // since 1970-01-01 UTC, leap seconds not counted (POSIX); ends in 2262
+struct HostClock {};  // CLOCK_MONOTONIC_RAW of one run of one host: never stepped, never slewed
+struct NodeClock {};  // since the node booted; meaningful only together with its boot id
+
+using Time = std::chrono::time_point<UtcClock, Duration>;
+using HostTime = std::chrono::time_point<HostClock, Duration>;
+using NodeTime = std::chrono::time_point<NodeClock, Duration>;
+
+/// For files and packets: the integer that stands there, and back.
+constexpr std::int64_t to_ns(Time t) { return t.time_since_epoch().count(); }
+constexpr Time utc_time(std::int64_t ns) { return Time{Duration{ns}}; }
+
+/// For arithmetic: seconds from a nearby origin, never from 1970 (a double keeps 0.24 us there).
+constexpr double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
+
+}  // namespace kinalign
