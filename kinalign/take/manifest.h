@@ -41,6 +41,7 @@ struct StreamOptions {
   double drift_ppm = 0.0;             // and this rate, from the first stamp on
   std::optional<double> interval_ms;  // half-width that holds the truth, where known
 
+  std::map<std::string, std::vector<double>> mounting;  // of nodes: sensor_from_bone, w,x,y,z
   std::string root_node;  // of nodes: all are brought into this one's space; empty: the world's
 };
 

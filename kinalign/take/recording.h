@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -53,6 +54,8 @@ struct RecordedStream {
   std::string name;  // the take's group: "mocap", "kinect"; streams of nodes may share one, "imu"
   std::variant<ClipInput, PointInput, ImuInput> data;
   StampSurvey survey;  // of the device's stamps
+  /// Of a file that states a fixed step instead of stamps: frame k is at first + k * step, rounded.
+  std::optional<double> step_ns;
   TimeModel clock;     // from those to the take's axis
   std::vector<InputFacts> files;
   Findings findings;  // of the reader
