@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/align.h"
+
+#include "kinalign/align/plan.h"
+#include "kinalign/align/slabs.h"
+#include "kinalign/align/space.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+Failure cancelled() { return Failure(Error{"", 0, "the end of the job", "an interruption"}); }
+
+/// The groups that fits need: their own and the ones they are fitted onto.
+std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size_t groups) {
+  std::vector<bool> out(groups, false);
+  for (const SpacePlan& space : spaces) {
+    if (space.options.method == "fit") out[space.group] = out[space.onto] = true;
+  }
+  return out;
+}
+
+/// A pass over the streams concerned that finds the transforms to be fitted.
+Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
+                        std::vector<SpacePlan>& spaces, const Progress& progress) {
+  const auto groups = groups_of_fits(spaces, plan.header.groups.size());
+  if (std::find(groups.begin(), groups.end(), true) == groups.end()) return {};
+  SlabMaker slabs = KA_TRY(SlabMaker::start(recording, plan, groups));
+  std::vector<PairMoments> moments(spaces.size());
+  TakeSlab slab;
+  while (KA_TRY(slabs.next(slab))) {
+    for (std::size_t k = 0; k < spaces.size(); ++k) {
+      if (spaces[k].options.method == "fit") add_pairs(spaces[k], slab, moments[k]);
+    }
+    if (!go_on(progress, "fitting", slab.first, plan.header.frames)) return cancelled();
+  }
+  for (std::size_t k = 0; k < spaces.size(); ++k) {
+    if (spaces[k].options.method != "fit") continue;
+    auto fitted = fit_rigid(moments[k]);
+    if (!fitted) {
+      fitted.error().file = plan.header.groups[spaces[k].group].name;
+      return Failure(std::move(fitted).error());
+    }
+    spaces[k].transform = *fitted;
+  }
+  return {};
+}
+
+StreamReport report_stream(const Recording& recording, const AlignPlan& plan, std::size_t i,
+                           const SlabMaker& slabs) {
+  const ResampleCount count = slabs.count(i);
+  const GapCount gaps = slabs.gaps(i);
+  const RecordedStream& s = recording.streams[i];
+  StreamReport out;
+  out.stream = s.name;
+  if (const auto* imu = std::get_if<ImuInput>(&s.data)) {
+    for (const std::string& node : imu->node_names) {
+      out.node += (out.node.empty() ? "" : ", ") + node;
+    }
+  }
+  out.survey = s.survey;
+  const ResampleRule& rule = plan.streams[i].rule;
+  out.rate_hz = rule.step_ns > 0 ? 1e9 / static_cast<double>(rule.step_ns) : 0.0;
+  out.gap_ns = rule.gap_ns;
+  out.gaps = gaps.gaps;
+  out.gap_time_ns = gaps.time_ns;
+  out.samples = count.samples;
+  out.invalid = count.invalid;
+  out.inferred = count.inferred;
+  out.bridged = count.bridged;
+  out.worst_nearest_ns = count.worst_nearest_ns;
+  for (const TimeModelPiece& piece : s.clock.pieces) {
+    if (!piece.half_width) continue;
+    out.worst_interval_ns = std::max(out.worst_interval_ns.value_or(0), piece.half_width->count());
+  }
+  return out;
+}
+
+Findings judge_stamps(const RecordedStream& s) {
+  Findings out;
+  const std::string file = s.files.empty() ? s.name : s.files.front().name;
+  if (s.survey.duplicates > 0) {
+    out.push_back({Severity::note,
+                   Error{file, 0, "stamps that rise",
+                         fmt::format("{} that repeat the one before", s.survey.duplicates)},
+                   "these samples were left out", ""});
+  }
+  if (s.survey.backward > 0) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "stamps that rise",
+                         fmt::format("{} that step back, by up to {:.3f} s", s.survey.backward,
+                                     1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
+                   "these samples were left out", "look at the device's clock if there are many"});
+  }
+  return out;
+}
+
+AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) {
+  AlignmentReport report;
+  report.frames = plan.header.frames;
+  report.reference = recording.streams[plan.reference].name;
+  const ResampleRule& grid = plan.streams[plan.reference].rule;
+  report.rate_hz = grid.step_ns > 0 ? 1e9 / static_cast<double>(grid.step_ns) : 0.0;
+  for (const RecordedStream& s : recording.streams) {
+    report.findings.insert(report.findings.end(), s.findings.begin(), s.findings.end());
+    const Findings stamps = judge_stamps(s);
+    report.findings.insert(report.findings.end(), stamps.begin(), stamps.end());
+  }
+  return report;
+}
+
+void finish_report(const Recording& recording, const AlignPlan& plan, const SlabMaker& slabs,
+                   AlignmentReport& report) {
+  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
+    report.streams.push_back(report_stream(recording, plan, i, slabs));
+  }
+  std::stable_sort(report.findings.begin(), report.findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+}
+
+}  // namespace
+
+Result<AlignmentReport> align(const Recording& recording, const Manifest& manifest,
+                              const TakeSink& sink, const Progress& progress) {
+  const AlignPlan plan = KA_TRY(plan_alignment(recording, manifest));
+  const std::size_t reference_group = plan.streams[plan.reference].group;
+  auto spaces = KA_TRY(plan_spaces(plan.header, manifest, reference_group));
+  KA_TRY(fit_spaces(recording, plan, spaces, progress));
+
+  AlignmentReport report = begin_report(recording, plan);
+  std::vector<ResidualSums> residuals;
+  for (const SpacePlan& space : spaces) residuals.emplace_back(space.pairs.size());
+  KA_TRY(sink.begin(plan.header));
+  SlabMaker slabs =
+      KA_TRY(SlabMaker::start(recording, plan, std::vector<bool>(plan.header.groups.size(), true)));
+  TakeSlab slab;
+  std::uint64_t done = 0;
+  while (KA_TRY(slabs.next(slab))) {
+    for (std::size_t k = 0; k < spaces.size(); ++k) residuals[k].transform(spaces[k], slab);
+    if (done == 0) report.begin = slab.stamps.front();
+    report.end = slab.stamps.back();
+    done += slab.stamps.size();
+    if (done > plan.header.frames) break;
+    KA_TRY(sink.rows(slab));
+    if (!go_on(progress, "aligning", done, plan.header.frames)) return cancelled();
+  }
+  if (done != plan.header.frames) {
+    return Failure(Error{report.reference, 0,
+                         fmt::format("{} frames, as in the first reading", plan.header.frames),
+                         fmt::format("{}", done)});
+  }
+  finish_report(recording, plan, slabs, report);
+  for (std::size_t k = 0; k < spaces.size(); ++k) {
+    report.spaces.push_back(residuals[k].report(spaces[k], plan.header));
+  }
+  return report;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a recording to a take (paper sections 3.1 and 3.2): one grid, one space, slab by slab.
+#pragma once
+
+#include "kinalign/core/progress.h"
+#include "kinalign/take/take.h"
+
+#include <functional>
+
+namespace kinalign {
+
+/// Where a take goes: the header first, then slabs in order.
+struct TakeSink {
+  std::function<Result<void>(const TakeHeader&)> begin;
+  std::function<Result<void>(const TakeSlab&)> rows;
+};
+
+/// Aligns in at most two passes over each stream (the first one only where a transform is fitted)
+/// and memory for some thousand rows. Returns the report, whose figures belong to what was handed
+/// to the sink. Fails where streams do not overlap in time or a stream can't be read again.
+Result<AlignmentReport> align(const Recording& recording, const Manifest& manifest,
+                              const TakeSink& sink, const Progress& progress = {});
+
+/// The same, into memory.
+Result<Take> align(const Recording& recording, const Manifest& manifest);
+
+}  // namespace kinalign

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/nodes.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+/// Values of `width` a node: columns of the stream's rows into the group's.
+template <class T>
+void put_columns(const std::vector<T>& from, std::size_t width, std::size_t rows,
+                 const NodeColumns& columns, std::vector<T>& to) {
+  if (from.empty() || rows == 0) return;
+  const std::size_t take = from.size() / rows;
+  const std::size_t stride = columns.all * width, first = columns.first * width;
+  to.resize(rows * stride);
+  for (std::size_t r = 0; r < rows; ++r) {
+    std::copy_n(&from[r * take], take, &to[r * stride + first]);
+  }
+}
+
+}  // namespace
+
+void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns, ImuRows& to) {
+  put_columns(from.orientation, 4, rows, columns, to.orientation);
+  put_columns(from.acceleration, 3, rows, columns, to.acceleration);
+  put_columns(from.angular_velocity, 3, rows, columns, to.angular_velocity);
+  put_columns(from.valid, 1, rows, columns, to.valid);
+  put_columns(from.distance.nearest_raw_ns, 1, rows, columns, to.distance.nearest_raw_ns);
+  put_columns(from.distance.time_interval_ns, 1, rows, columns, to.distance.time_interval_ns);
+}
+
+void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& rows) {
+  const std::size_t nodes = group.node_names.size();
+  for (std::size_t s = 0; s < nodes; ++s) {
+    const auto worn = mounting.find(group.node_names[s]);
+    if (worn == mounting.end()) continue;
+    const Quat sensor_from_bone = quat(worn->second, 0).normalized();
+    const Quat back = sensor_from_bone.conjugate();
+    const bool in_world = !group.root_node.empty();
+    for (std::size_t i = s; i < rows.valid.size(); i += nodes) {
+      if (rows.valid[i] == 0) continue;
+      if (group.content.orientation) {
+        put_quat(rows.orientation, i, quat(rows.orientation, i) * sensor_from_bone);
+      }
+      if (in_world) continue;
+      if (group.content.acceleration) {
+        auto a = vec3(std::span(rows.acceleration), i);
+        a = (back * a).eval();
+      }
+      if (group.content.angular_velocity) {
+        auto w = vec3(std::span(rows.angular_velocity), i);
+        w = (back * w).eval();
+      }
+    }
+  }
+}
+
+namespace {
+
+void clear_row(const ImuGroup& group, std::size_t first, ImuRows& rows) {
+  const std::size_t nodes = group.node_names.size();
+  const auto zero = [first, nodes](std::vector<double>& values, std::size_t width) {
+    if (values.empty()) return;
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first * width);
+    std::fill(begin, begin + static_cast<std::ptrdiff_t>(nodes * width), 0.0);
+  };
+  zero(rows.orientation, 4);
+  zero(rows.acceleration, 3);
+  zero(rows.angular_velocity, 3);
+  const auto valid = rows.valid.begin() + static_cast<std::ptrdiff_t>(first);
+  std::fill(valid, valid + static_cast<std::ptrdiff_t>(nodes), std::uint8_t{0});
+}
+
+}  // namespace
+
+void bring_to_root(const ImuGroup& group, ImuRows& rows) {
+  const std::size_t nodes = group.node_names.size();
+  const auto root = static_cast<std::size_t>(
+      std::find(group.node_names.begin(), group.node_names.end(), group.root_node) -
+      group.node_names.begin());
+  for (std::size_t first = 0; first < rows.valid.size(); first += nodes) {
+    if (rows.valid[first + root] == 0) {
+      clear_row(group, first, rows);
+      continue;
+    }
+    const Quat to_root = quat(rows.orientation, first + root).conjugate();
+    const Vec3 root_acceleration = group.content.acceleration
+                                       ? Vec3(vec3(std::span(rows.acceleration), first + root))
+                                       : Vec3(Vec3::Zero());
+    for (std::size_t i = first; i < first + nodes; ++i) {
+      if (rows.valid[i] == 0) continue;
+      const bool is_root = i == first + root;
+      if (!is_root) put_quat(rows.orientation, i, to_root * quat(rows.orientation, i));
+      if (group.content.acceleration) {
+        auto a = vec3(std::span(rows.acceleration), i);
+        a = (to_root * (is_root ? Vec3(a) : Vec3(a - root_acceleration))).eval();
+      }
+      if (group.content.angular_velocity) {
+        auto w = vec3(std::span(rows.angular_velocity), i);
+        w = (to_root * w).eval();
+      }
+    }
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+Time first_of(const RecordedStream& s) { return take_time(s.clock, s.survey.first); }
+Time last_of(const RecordedStream& s) { return take_time(s.clock, s.survey.last); }
+
+Result<std::size_t> find_reference(const Recording& recording, const Manifest& manifest) {
+  const std::string& wanted = manifest.align.reference;
+  if (wanted.empty()) return std::size_t{0};
+  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
+    if (recording.streams[i].name == wanted) return i;
+  }
+  return Failure(
+      Error{"", 0, "a stream named as the reference", "'" + wanted + "', which is none"});
+}
+
+std::string spans(const Recording& recording) {
+  std::string text;
+  for (const RecordedStream& s : recording.streams) {
+    if (!text.empty()) text += ", ";
+    text +=
+        fmt::format("{} {:.3f} to {:.3f} s", s.name, 1e-9 * static_cast<double>(to_ns(first_of(s))),
+                    1e-9 * static_cast<double>(to_ns(last_of(s))));
+  }
+  return text;
+}
+
+Result<void> find_span(const Recording& recording, AlignPlan& plan) {
+  plan.begin = Time::min();
+  plan.end = Time::max();
+  for (const RecordedStream& s : recording.streams) {
+    if (s.survey.kept() == 0) {
+      return Failure(Error{"", 0, "at least one sample in stream '" + s.name + "'", "none"});
+    }
+    plan.begin = std::max(plan.begin, first_of(s));
+    plan.end = std::min(plan.end, last_of(s));
+  }
+  if (plan.begin > plan.end) {
+    return Failure(Error{"", 0, "streams that overlap in time (see start_ns and offset_ms)",
+                         spans(recording)});
+  }
+  return {};
+}
+
+/// First of the frames 0..count-1 of a fixed step whose take time does not lie before `bound`
+/// (after it, for `behind`).
+std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, bool behind) {
+  std::uint64_t low = 0, high = s.survey.samples;
+  while (low < high) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    const Time stamp =
+        s.survey.first + Duration{std::llround(static_cast<double>(middle) * step_ns)};
+    const Time t = take_time(s.clock, stamp);
+    if (t < bound || (behind && t == bound)) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+/// Rows of the grid: by arithmetic for a fixed step, else by a pass over the reference's stamps.
+Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPlan& plan) {
+  if (reference.step_ns) {
+    return first_frame(reference, *reference.step_ns, plan.end, true) -
+           first_frame(reference, *reference.step_ns, plan.begin, false);
+  }
+  return std::visit(
+      [&](const auto& input) -> Result<std::uint64_t> {
+        auto pass = KA_TRY(input.passes());
+        Window window(std::move(pass), reference.clock);
+        std::uint64_t rows = 0;
+        // One row of reach: the window then always holds the sample behind `begin`.
+        constexpr std::int64_t stretch = 60'000'000'000;
+        for (std::int64_t t = to_ns(plan.begin);; t += stretch) {
+          const std::int64_t until = std::min(t + stretch - 1, to_ns(plan.end));
+          KA_TRY(window.move(t, until, 1));
+          const auto& stamps = window.time_ns;
+          rows += static_cast<std::uint64_t>(std::upper_bound(stamps.begin(), stamps.end(), until) -
+                                             std::lower_bound(stamps.begin(), stamps.end(), t));
+          if (until == to_ns(plan.end)) return rows;
+        }
+      },
+      reference.data);
+}
+
+ResampleRule rule_of(const RecordedStream& s, const AlignOptions& options) {
+  ResampleRule rule;
+  rule.step_ns = s.step_ns ? std::llround(*s.step_ns) : s.survey.median_step_ns;
+  rule.gap_ns = options.gap_ms > 0.0 ? std::llround(options.gap_ms * 1e6) : 3 * rule.step_ns;
+  // Stamps rounded to a milli- or microsecond make three steps a little longer than three medians.
+  if (options.gap_ms == 0.0) rule.gap_ns += rule.step_ns / 10;
+  rule.curve = options.rotations == "slerp" ? RotationCurve::slerp : RotationCurve::spline;
+  return rule;
+}
+
+bool any_known(const TimeModel& clock) {
+  return std::all_of(clock.pieces.begin(), clock.pieces.end(),
+                     [](const TimeModelPiece& piece) { return piece.half_width.has_value(); });
+}
+
+std::variant<ClipGroup, PointGroup, ImuGroup> kind_of(const RecordedStream& s,
+                                                      const StreamOptions& options) {
+  if (const auto* clip = std::get_if<ClipInput>(&s.data)) return ClipGroup{clip->skeleton};
+  if (const auto* points = std::get_if<PointInput>(&s.data)) return PointGroup{points->joint_names};
+  const auto& imu = std::get<ImuInput>(s.data);
+  return ImuGroup{imu.node_names, imu.content, options.root_node};
+}
+
+/// A further stream of nodes joins the group of its name.
+Result<void> join(TakeGroup& group, const RecordedStream& s) {
+  auto* nodes = std::get_if<ImuGroup>(&group.kind);
+  const auto* imu = std::get_if<ImuInput>(&s.data);
+  if (nodes == nullptr || imu == nullptr) {
+    return Failure(Error{"", 0, "streams with names that differ", "'" + s.name + "' twice"});
+  }
+  if (!(nodes->content == imu->content)) {
+    return Failure(Error{"", 0, "nodes of '" + s.name + "' that measure the same quantities",
+                         "'" + imu->node_names.front() + "', which measures others"});
+  }
+  for (const std::string& node : imu->node_names) {
+    if (std::find(nodes->node_names.begin(), nodes->node_names.end(), node) !=
+        nodes->node_names.end()) {
+      return Failure(Error{"", 0, "nodes with names that differ", "'" + node + "' twice"});
+    }
+    nodes->node_names.push_back(node);
+  }
+  group.interval_known = group.interval_known && any_known(s.clock);
+  group.files.insert(group.files.end(), s.files.begin(), s.files.end());
+  return {};
+}
+
+Result<void> make_groups(const Recording& recording, const Manifest& manifest, AlignPlan& plan) {
+  auto& groups = plan.header.groups;
+  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
+    const RecordedStream& s = recording.streams[i];
+    StreamPlan stream;
+    stream.rule = rule_of(s, manifest.align);
+    stream.rule.begin_ns = to_ns(plan.begin);
+    stream.rule.end_ns = to_ns(plan.end);
+    const auto same = std::find_if(groups.begin(), groups.end(),
+                                   [&s](const TakeGroup& g) { return g.name == s.name; });
+    stream.group = static_cast<std::size_t>(same - groups.begin());
+    if (same == groups.end()) {
+      const bool resampled = i != plan.reference;
+      groups.push_back({s.name, kind_of(s, options_of(manifest, s.name)), resampled,
+                        resampled && any_known(s.clock), s.files});
+    } else {
+      if (const auto* nodes = std::get_if<ImuGroup>(&same->kind)) {
+        stream.first_node = nodes->node_names.size();
+      }
+      KA_TRY(join(*same, s));
+    }
+    plan.streams.push_back(stream);
+  }
+  return {};
+}
+
+Result<void> check_roots(const TakeHeader& header) {
+  for (const TakeGroup& group : header.groups) {
+    const auto* nodes = std::get_if<ImuGroup>(&group.kind);
+    if (nodes == nullptr || nodes->root_node.empty()) continue;
+    const auto& names = nodes->node_names;
+    if (std::find(names.begin(), names.end(), nodes->root_node) == names.end()) {
+      return Failure(Error{"", 0, "a node of '" + group.name + "' as root_node",
+                           "'" + nodes->root_node + "'"});
+    }
+    if (!nodes->content.orientation) {
+      return Failure(Error{"", 0, "orientations in '" + group.name + "', for root_node", "none"});
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {
+  static const StreamOptions defaults;
+  for (const StreamOptions& s : manifest.streams) {
+    if (s.name == stream) return s;
+  }
+  return defaults;
+}
+
+Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest) {
+  if (recording.streams.empty()) return Failure(Error{"", 0, "at least one stream", "none"});
+  AlignPlan plan;
+  plan.reference = KA_TRY(find_reference(recording, manifest));
+  const RecordedStream& reference = recording.streams[plan.reference];
+  if (std::holds_alternative<ImuInput>(reference.data)) {
+    return Failure(Error{"", 0, "a clip or points as the reference", "nodes"});
+  }
+  KA_TRY(find_span(recording, plan));
+  KA_TRY(make_groups(recording, manifest, plan));
+  KA_TRY(check_roots(plan.header));
+  plan.header.subject = recording.subject;
+  plan.header.action = recording.action;
+  plan.header.parameters = manifest;
+  plan.header.frames = KA_TRY(count_rows(reference, plan));
+  if (plan.header.frames == 0) {
+    return Failure(Error{"", 0, "frames of '" + reference.name + "' in the common span",
+                         "none; " + spans(recording)});
+  }
+  return plan;
+}
+
+}  // namespace kinalign

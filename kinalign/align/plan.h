@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What alignment will do, decided before any sample is touched: the reference, the common span,
+// the number of rows, how each stream is resampled and where it goes.
+#pragma once
+
+#include "kinalign/align/resample.h"
+#include "kinalign/take/take.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace kinalign {
+
+struct StreamPlan {
+  std::size_t group = 0;       // of the take's header
+  std::size_t first_node = 0;  // of a group of nodes, the stream's first column
+  ResampleRule rule;
+};
+
+struct AlignPlan {
+  std::size_t reference = 0;        // stream whose stamps are the grid
+  Time begin{}, end{};              // common span, both included, on the take's axis
+  std::vector<StreamPlan> streams;  // as in the recording
+  TakeHeader header;
+};
+
+/// Fails where streams do not overlap in time, names repeat, or the manifest names what is not
+/// there.
+Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest);
+
+/// The manifest's options of a stream; defaults where it has none.
+const StreamOptions& options_of(const Manifest& manifest, const std::string& stream);
+
+}  // namespace kinalign

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Streams onto the stamps of a grid (paper section 3.2): natural cubic splines on the true stamps,
+// rotations on the rotation group. Nothing is invented across a gap: a row there is invalid and
+// zero. Splines end at gaps and do not run through samples that were not seen.
+#pragma once
+
+#include "kinalign/align/window.h"
+#include "kinalign/take/take.h"
+
+#include <cstdint>
+#include <span>
+
+namespace kinalign {
+
+/// How far from a row samples still matter. Up to two of three may be missing before a stretch is a
+/// gap by default, which leaves more knots than a spline can feel (motion/spline.h).
+constexpr std::size_t window_reach = 192;
+
+enum class RotationCurve { spline, slerp };
+
+struct ResampleRule {
+  std::int64_t gap_ns = 0;   // longer stretches without samples are gaps
+  std::int64_t step_ns = 0;  // the stream's median step
+  RotationCurve curve = RotationCurve::spline;
+  std::int64_t begin_ns = 0, end_ns = 0;  // of the take: gaps are counted within
+
+  GapCount gap_count() const { return {gap_ns, begin_ns, end_ns}; }
+};
+
+/// What resampling saw, summed over calls.
+struct ResampleCount {
+  std::uint64_t samples = 0, invalid = 0, inferred = 0, bridged = 0;
+  std::int64_t worst_nearest_ns = 0;
+};
+
+/// Neighbours of each row of a grid in a stream, on rising stamps.
+struct Neighbours {
+  std::vector<std::size_t> left;             // [n] last sample at or before the row
+  std::vector<std::int64_t> nearest_raw_ns;  // [n]
+};
+/// Rows outside the stream have left = stamps.size().
+Neighbours find_neighbours(std::span<const std::int64_t> stamps,
+                           std::span<const std::int64_t> grid);
+
+class PointResampler {
+ public:
+  PointResampler(Pass<PointFrames> pass, const TimeModel& clock, const ResampleRule& rule)
+      : window_(std::move(pass), clock, rule.gap_count()), clock_(&clock), rule_(rule) {}
+
+  /// Rows at the grid's stamps (ns, rising, from call to call too).
+  Result<void> rows(std::span<const std::int64_t> grid, PointRows& out);
+  const ResampleCount& count() const { return count_; }
+  const GapCount& gaps() const { return window_.gaps; }
+
+ private:
+  Window<PointFrames> window_;
+  const TimeModel* clock_;
+  ResampleRule rule_;
+  ResampleCount count_;
+};
+
+/// The nodes of one stream, which share their stamps, as columns `first_node`.. of a group.
+class ImuResampler {
+ public:
+  ImuResampler(Pass<ImuSamples> pass, const TimeModel& clock, const ResampleRule& rule,
+               const ImuContent& content)
+      : window_(std::move(pass), clock, rule.gap_count()),
+        clock_(&clock),
+        rule_(rule),
+        content_(content) {}
+
+  /// Vectors are turned into the world before they are interpolated, if `to_world`: in a turning
+  /// sensor's space a spline would bend what is straight.
+  Result<void> rows(std::span<const std::int64_t> grid, bool to_world, ImuRows& out);
+  const ResampleCount& count() const { return count_; }
+  const GapCount& gaps() const { return window_.gaps; }
+
+ private:
+  Window<ImuSamples> window_;
+  const TimeModel* clock_;
+  ResampleRule rule_;
+  ImuContent content_;
+  ResampleCount count_;
+};
+
+class ClipResampler {
+ public:
+  ClipResampler(Pass<ClipFrames> pass, const TimeModel& clock, const ResampleRule& rule)
+      : window_(std::move(pass), clock, rule.gap_count()), clock_(&clock), rule_(rule) {}
+
+  /// Fills all but the global positions.
+  Result<void> rows(std::span<const std::int64_t> grid, ClipRows& out);
+  const ResampleCount& count() const { return count_; }
+  const GapCount& gaps() const { return window_.gaps; }
+
+ private:
+  Window<ClipFrames> window_;
+  const TimeModel* clock_;
+  ResampleRule rule_;
+  ResampleCount count_;
+};
+
+}  // namespace kinalign

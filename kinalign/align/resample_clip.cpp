@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/resample.h"
+#include "kinalign/align/rotation_rows.h"
+#include "kinalign/align/segments.h"
+#include "kinalign/motion/spline.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+/// One joint's rotations of consecutive frames.
+std::vector<double> column(const std::vector<double>& rotations, std::size_t joints, std::size_t j,
+                           std::size_t first, std::size_t last) {
+  std::vector<double> out;
+  for (std::size_t t = first; t < last; ++t) {
+    const double* q = &rotations[(t * joints + j) * 4];
+    out.insert(out.end(), q, q + 4);
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& out) {
+  out = {};
+  if (grid.empty()) return {};
+  KA_TRY(window_.move(grid.front(), grid.back(), window_reach));
+  const auto& stamps = window_.time_ns;
+  if (stamps.empty()) return Failure(Error{"", 0, "frames in a clip", "none"});
+  const std::size_t channels = window_.rows.local_positions.size() / stamps.size();
+  const std::size_t joints = channels / 3;
+  out.local_positions.assign(grid.size() * channels, 0.0);
+  out.local_rotations.assign(grid.size() * joints * 4, 0.0);
+  out.valid.assign(grid.size(), 0);
+  for (const Segment& s : find_segments(stamps, grid, rule_.gap_ns)) {
+    const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
+    const auto x = seconds_from(stamps[s.first], std::span(stamps).subspan(s.first, knots));
+    const auto at = seconds_from(stamps[s.first], grid.subspan(s.row, rows));
+    const Knots spline{
+        x, std::span(window_.rows.local_positions).subspan(s.first * channels, knots * channels),
+        channels};
+    std::vector<double> bends(knots * channels);
+    natural_spline(spline, bends);
+    spline_at(spline, bends, at,
+              std::span(out.local_positions).subspan(s.row * channels, rows * channels));
+    for (std::size_t j = 0; j < joints; ++j) {
+      const auto turned = rotations_at(
+          rule_.curve, x, column(window_.rows.local_rotations, joints, j, s.first, s.last), at);
+      for (std::size_t r = 0; r < rows; ++r) {
+        std::copy_n(&turned[4 * r], 4, &out.local_rotations[4 * ((s.row + r) * joints + j)]);
+      }
+    }
+    std::fill(&out.valid[s.row], &out.valid[s.row] + rows, std::uint8_t{1});
+  }
+  Neighbours near = find_neighbours(stamps, grid);
+  for (std::size_t r = 0; r < grid.size(); ++r) {
+    const std::size_t at = std::min(near.left[r], stamps.size() - 1);
+    if (const auto known = half_width(*clock_, window_.rows.stamps[at])) {
+      out.distance.time_interval_ns.push_back(known->count());
+    }
+    if (out.valid[r] == 0) continue;
+    count_.worst_nearest_ns = std::max(count_.worst_nearest_ns, near.nearest_raw_ns[r]);
+  }
+  count_.samples += grid.size();
+  count_.invalid += static_cast<std::uint64_t>(std::count(out.valid.begin(), out.valid.end(), 0));
+  out.distance.nearest_raw_ns = std::move(near.nearest_raw_ns);
+  return {};
+}
+
+}  // namespace kinalign

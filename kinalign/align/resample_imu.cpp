@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/resample.h"
+#include "kinalign/align/rotation_rows.h"
+#include "kinalign/align/segments.h"
+#include "kinalign/motion/spline.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+/// The valid samples of one node.
+struct NodeSamples {
+  std::vector<std::int64_t> stamps;
+  std::vector<double> orientation;  // [T',4]
+  std::vector<double> vectors;      // [T',C] acceleration and angular velocity, as far as present
+  std::size_t channels = 0;
+};
+
+NodeSamples samples_of(const Window<ImuSamples>& window, std::size_t node,
+                       const ImuContent& content, bool to_world) {
+  const ImuSamples& rows = window.rows;
+  const std::size_t nodes = rows.valid.size() / rows.size();
+  NodeSamples out;
+  const auto add = [&out](const Vec3& v) {
+    out.vectors.insert(out.vectors.end(), v.begin(), v.end());
+  };
+  out.channels = (content.acceleration ? 3U : 0U) + (content.angular_velocity ? 3U : 0U);
+  for (std::size_t t = 0; t < rows.size(); ++t) {
+    const std::size_t i = t * nodes + node;
+    if (rows.valid[i] == 0) continue;
+    out.stamps.push_back(window.time_ns[t]);
+    Quat turn = Quat::Identity();
+    if (content.orientation) {
+      const Quat q = quat(rows.orientation, i);
+      if (to_world) turn = q;
+      for (const double part : {q.w(), q.x(), q.y(), q.z()}) out.orientation.push_back(part);
+    }
+    if (content.acceleration) add(turn * vec3(rows.acceleration, i));
+    if (content.angular_velocity) add(turn * vec3(rows.angular_velocity, i));
+  }
+  return out;
+}
+
+/// The rows of one segment into a node's column.
+struct NodeColumn {
+  std::size_t node, nodes;
+};
+
+void put_vectors(const std::vector<double>& values, const Segment& s, const ImuContent& content,
+                 const NodeColumn& column, ImuRows& out) {
+  const std::size_t rows = s.row_end - s.row, channels = values.size() / rows;
+  for (std::size_t r = 0; r < rows; ++r) {
+    const std::size_t cell = (s.row + r) * column.nodes + column.node;
+    const double* from = &values[r * channels];
+    if (content.acceleration) std::copy_n(from, 3, &out.acceleration[3 * cell]);
+    if (content.angular_velocity) {
+      std::copy_n(from + (content.acceleration ? 3 : 0), 3, &out.angular_velocity[3 * cell]);
+    }
+  }
+}
+
+void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
+                 const ResampleRule& rule, const ImuContent& content, const NodeColumn& column,
+                 ImuRows& out) {
+  for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
+    const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
+    const auto stamps = std::span(samples.stamps).subspan(s.first, knots);
+    const auto x = seconds_from(stamps.front(), stamps);
+    const auto at = seconds_from(stamps.front(), grid.subspan(s.row, rows));
+    if (samples.channels > 0) {
+      const std::size_t channels = samples.channels;
+      const Knots spline{
+          x, std::span(samples.vectors).subspan(s.first * channels, knots * channels), channels};
+      std::vector<double> bends(knots * channels), values(rows * channels);
+      natural_spline(spline, bends);
+      spline_at(spline, bends, at, values);
+      put_vectors(values, s, content, column, out);
+    }
+    if (content.orientation) {
+      const auto turned = rotations_at(
+          rule.curve, x, std::span(samples.orientation).subspan(4 * s.first, 4 * knots), at);
+      for (std::size_t r = 0; r < rows; ++r) {
+        std::copy_n(&turned[4 * r], 4,
+                    &out.orientation[4 * ((s.row + r) * column.nodes + column.node)]);
+      }
+    }
+    for (std::size_t r = s.row; r < s.row_end; ++r) out.valid[r * column.nodes + column.node] = 1;
+  }
+}
+
+}  // namespace
+
+Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_world, ImuRows& out) {
+  out = {};
+  if (grid.empty()) return {};
+  KA_TRY(window_.move(grid.front(), grid.back(), window_reach));
+  const auto& stamps = window_.time_ns;
+  if (stamps.empty()) return Failure(Error{"", 0, "samples in a stream of nodes", "none"});
+  const std::size_t nodes = window_.rows.valid.size() / stamps.size(), n = grid.size() * nodes;
+  out.valid.assign(n, 0);
+  if (content_.orientation) out.orientation.assign(4 * n, 0.0);
+  if (content_.acceleration) out.acceleration.assign(3 * n, 0.0);
+  if (content_.angular_velocity) out.angular_velocity.assign(3 * n, 0.0);
+  for (std::size_t node = 0; node < nodes; ++node) {
+    interpolate(samples_of(window_, node, content_, to_world), grid, rule_, content_,
+                NodeColumn{node, nodes}, out);
+  }
+  const Neighbours near = find_neighbours(stamps, grid);
+  for (std::size_t r = 0; r < grid.size(); ++r) {
+    const std::size_t left = near.left[r];
+    const bool inside = left + 1 < stamps.size();
+    const bool lost = inside && stamps[left] != grid[r] &&
+                      stamps[left + 1] - stamps[left] > rule_.step_ns * 3 / 2;
+    const std::size_t known_at = std::min(left, stamps.size() - 1);
+    const auto known = half_width(*clock_, window_.rows.stamps[known_at]);
+    for (std::size_t node = 0; node < nodes; ++node) {
+      out.distance.nearest_raw_ns.push_back(near.nearest_raw_ns[r]);
+      if (known) out.distance.time_interval_ns.push_back(known->count());
+      if (out.valid[r * nodes + node] == 0) continue;
+      count_.bridged += lost ? 1 : 0;
+      count_.worst_nearest_ns = std::max(count_.worst_nearest_ns, near.nearest_raw_ns[r]);
+    }
+  }
+  count_.samples += n;
+  count_.invalid += static_cast<std::uint64_t>(std::count(out.valid.begin(), out.valid.end(), 0));
+  return {};
+}
+
+}  // namespace kinalign

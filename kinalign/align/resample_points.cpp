@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/resample.h"
+#include "kinalign/align/segments.h"
+#include "kinalign/motion/spline.h"
+
+#include <algorithm>
+#include <map>
+
+namespace kinalign {
+
+namespace {
+
+using Joints = std::vector<std::size_t>;
+
+/// Joints by the samples in which they were seen: most often one group of all.
+std::map<std::vector<bool>, Joints> joints_by_seen(const PointFrames& rows, std::size_t joints) {
+  std::map<std::vector<bool>, Joints> groups;
+  std::vector<bool> seen(rows.size());
+  for (std::size_t j = 0; j < joints; ++j) {
+    for (std::size_t t = 0; t < rows.size(); ++t) {
+      seen[t] = rows.state[t * joints + j] != Tracking::missing;
+    }
+    groups[seen].push_back(j);
+  }
+  return groups;
+}
+
+/// Samples [T', 3 |group|] of a group's joints in the rows where they were seen.
+struct Gathered {
+  std::vector<std::int64_t> stamps;
+  std::vector<double> values;
+};
+
+Gathered gather(const Window<PointFrames>& window, const std::vector<bool>& seen,
+                const Joints& group, std::size_t joints) {
+  Gathered out;
+  for (std::size_t t = 0; t < seen.size(); ++t) {
+    if (!seen[t]) continue;
+    out.stamps.push_back(window.time_ns[t]);
+    for (const std::size_t j : group) {
+      const double* p = &window.rows.positions[(t * joints + j) * 3];
+      out.values.insert(out.values.end(), p, p + 3);
+    }
+  }
+  return out;
+}
+
+/// One spline for all of a group's channels in each segment; rows outside stay invalid.
+void interpolate(const Gathered& samples, const Joints& group, std::span<const std::int64_t> grid,
+                 const ResampleRule& rule, PointRows& out) {
+  const std::size_t joints = out.valid.size() / grid.size(), channels = 3 * group.size();
+  std::vector<double> bends, values;
+  for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
+    const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
+    const auto stamps = std::span(samples.stamps).subspan(s.first, knots);
+    const auto x = seconds_from(stamps.front(), stamps);
+    const auto at = seconds_from(stamps.front(), grid.subspan(s.row, rows));
+    const Knots spline{x, std::span(samples.values).subspan(s.first * channels, knots * channels),
+                       channels};
+    bends.resize(knots * channels);
+    natural_spline(spline, bends);
+    values.resize(rows * channels);
+    spline_at(spline, bends, at, values);
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t g = 0; g < group.size(); ++g) {
+        const std::size_t cell = (s.row + r) * joints + group[g];
+        std::copy_n(&values[r * channels + 3 * g], 3, &out.positions[3 * cell]);
+        out.valid[cell] = 1;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Neighbours find_neighbours(std::span<const std::int64_t> stamps,
+                           std::span<const std::int64_t> grid) {
+  Neighbours out;
+  std::size_t k = 0;
+  for (const std::int64_t row : grid) {
+    while (k + 1 < stamps.size() && stamps[k + 1] <= row) ++k;
+    const bool outside = stamps.empty() || row < stamps.front() || row > stamps.back();
+    out.left.push_back(outside ? stamps.size() : k);
+    std::int64_t nearest = stamps.empty() ? 0 : std::abs(row - stamps[k]);
+    if (k + 1 < stamps.size()) nearest = std::min(nearest, std::abs(stamps[k + 1] - row));
+    out.nearest_raw_ns.push_back(nearest);
+  }
+  return out;
+}
+
+Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows& out) {
+  out = {};
+  if (grid.empty()) return {};
+  KA_TRY(window_.move(grid.front(), grid.back(), window_reach));
+  const auto& stamps = window_.time_ns;
+  if (stamps.empty()) return Failure(Error{"", 0, "samples in a stream of points", "none"});
+  const std::size_t joints = window_.rows.state.size() / stamps.size();
+  out.positions.assign(grid.size() * joints * 3, 0.0);
+  out.state.assign(grid.size() * joints, Tracking::missing);
+  out.valid.assign(grid.size() * joints, 0);
+  for (const auto& [seen, group] : joints_by_seen(window_.rows, joints)) {
+    interpolate(gather(window_, seen, group, joints), group, grid, rule_, out);
+  }
+  Neighbours near = find_neighbours(stamps, grid);
+  for (std::size_t r = 0; r < grid.size(); ++r) {
+    const std::size_t left = near.left[r];
+    if (left == stamps.size()) continue;
+    const std::size_t right = stamps[left] == grid[r] ? left : left + 1;
+    const bool lost = stamps[right] - stamps[left] > rule_.step_ns * 3 / 2;
+    for (std::size_t j = 0; j < joints; ++j) {
+      const std::size_t cell = r * joints + j;
+      out.state[cell] =
+          std::min(window_.rows.state[left * joints + j], window_.rows.state[right * joints + j]);
+      if (out.valid[cell] == 0) {
+        out.state[cell] = Tracking::missing;
+        continue;
+      }
+      count_.inferred += out.state[cell] == Tracking::inferred ? 1 : 0;
+      count_.bridged += lost || out.state[cell] == Tracking::missing ? 1 : 0;
+      count_.worst_nearest_ns = std::max(count_.worst_nearest_ns, near.nearest_raw_ns[r]);
+    }
+    if (const auto known = half_width(*clock_, window_.rows.stamps[left])) {
+      out.distance.time_interval_ns.push_back(known->count());
+    }
+  }
+  count_.samples += out.valid.size();
+  count_.invalid += static_cast<std::uint64_t>(std::count(out.valid.begin(), out.valid.end(), 0));
+  out.distance.nearest_raw_ns = std::move(near.nearest_raw_ns);
+  return {};
+}
+
+}  // namespace kinalign

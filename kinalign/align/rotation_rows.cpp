@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/rotation_rows.h"
+
+#include "kinalign/motion/rotation_spline.h"
+#include "kinalign/motion/slerp.h"
+
+namespace kinalign {
+
+std::vector<double> rotations_at(RotationCurve curve, std::span<const double> times,
+                                 std::span<const double> knots, std::span<const double> at) {
+  std::vector<double> out(4 * at.size());
+  if (curve == RotationCurve::slerp) {
+    slerp_at(times, knots, at, out);
+  } else {
+    const RotationKnots rotations{times, knots};
+    rotation_spline_at(rotations, rotation_spline_rates(rotations), at, out);
+  }
+  return out;
+}
+
+}  // namespace kinalign

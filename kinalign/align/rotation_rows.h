@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "kinalign/align/resample.h"
+
+#include <span>
+#include <vector>
+
+namespace kinalign {
+
+/// Rotations [N,4] at times `at` of the curve through `knots` [T,4] at `times` (see
+/// motion/rotation_spline.h and motion/slerp.h).
+std::vector<double> rotations_at(RotationCurve curve, std::span<const double> times,
+                                 std::span<const double> knots, std::span<const double> at);
+
+}  // namespace kinalign

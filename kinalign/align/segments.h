@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stretches of knots without a gap, and the rows of a grid that lie in them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kinalign {
+
+/// Knots [first, last) without a gap between them, and the grid's rows [row, row_end) from the
+/// first knot's stamp to the last one's, both included.
+struct Segment {
+  std::size_t first = 0, last = 0;
+  std::size_t row = 0, row_end = 0;
+};
+
+/// `stamps` and `grid` rise strictly. Segments without rows are left out.
+std::vector<Segment> find_segments(std::span<const std::int64_t> stamps,
+                                   std::span<const std::int64_t> grid, std::int64_t gap_ns);
+
+/// Seconds from `origin`: small numbers, on which a double keeps picoseconds.
+std::vector<double> seconds_from(std::int64_t origin, std::span<const std::int64_t> stamps);
+
+}  // namespace kinalign

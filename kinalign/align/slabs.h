@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rows of a take, slab by slab: the reference as it is, every other stream resampled onto it.
+#pragma once
+
+#include "kinalign/align/plan.h"
+
+#include <memory>
+#include <vector>
+
+namespace kinalign {
+
+/// Rows of a slab: enough for the windows' overlap to cost little, few enough for the second cache.
+constexpr std::size_t slab_rows = 2048;
+
+class SlabMaker {
+ public:
+  /// Starts a pass over the streams of the groups in `groups` (by number of the header; the
+  /// reference is always in). Both arguments must outlive it.
+  static Result<SlabMaker> start(const Recording& recording, const AlignPlan& plan,
+                                 const std::vector<bool>& groups);
+  SlabMaker(SlabMaker&&) noexcept;
+  SlabMaker& operator=(SlabMaker&&) noexcept;
+  SlabMaker(const SlabMaker&) = delete;
+  SlabMaker& operator=(const SlabMaker&) = delete;
+  ~SlabMaker();
+
+  /// The next slab of at most slab_rows; false at the end. Groups left out have empty rows. Points
+  /// are in their own space yet.
+  Result<bool> next(TakeSlab& slab);
+
+  /// What the streams' resampling has counted so far, as in the recording.
+  ResampleCount count(std::size_t stream) const;
+  GapCount gaps(std::size_t stream) const;
+
+ private:
+  struct State;
+  explicit SlabMaker(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace kinalign

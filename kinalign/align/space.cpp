@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kinalign {
+
+namespace {
+
+const std::vector<std::string>* joint_names(const TakeGroup& group) {
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return &clip->skeleton.joint_names;
+  if (const auto* points = std::get_if<PointGroup>(&group.kind)) return &points->joint_names;
+  return nullptr;
+}
+
+/// Index of a name, or the number of names.
+std::size_t find_joint(const std::vector<std::string>& names, std::string_view name) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+Result<std::size_t> find_group(const TakeHeader& header, const std::string& name) {
+  for (std::size_t g = 0; g < header.groups.size(); ++g) {
+    if (header.groups[g].name == name && joint_names(header.groups[g]) != nullptr) return g;
+  }
+  return Failure(Error{"", 0, "a stream with joints in [space]", "'" + name + "'"});
+}
+
+Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name) {
+  const auto& names = *joint_names(group);
+  const std::size_t j = find_joint(names, name);
+  if (j < names.size()) return j;
+  return Failure(Error{"", 0, "a joint of '" + group.name + "'", "'" + shown(name) + "'"});
+}
+
+Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup& onto,
+                                          const SpaceOptions& options) {
+  std::vector<JointPair> pairs;
+  for (const auto& [a, b] : options.joints) {
+    pairs.push_back({KA_TRY(known_joint(from, a)), KA_TRY(known_joint(onto, b))});
+  }
+  if (!pairs.empty()) return pairs;
+  const auto &theirs = *joint_names(onto), &ours = *joint_names(from);
+  const auto add = [&](std::string_view a, std::string_view b) {
+    const JointPair pair{find_joint(ours, a), find_joint(theirs, b)};
+    if (pair.from < ours.size() && pair.onto < theirs.size()) pairs.push_back(pair);
+  };
+  for (const std::string& name : ours) add(name, name);
+  if (pairs.empty()) {
+    for (const auto& [a, b] : usual_pairs()) add(a, b);
+  }
+  return pairs;
+}
+
+Result<RigidTransform> given_transform(const SpaceOptions& options) {
+  RigidTransform out;
+  if (options.method == "paper") out.rotation = turn_about_y(options.rotation_y_deg);
+  if (options.method != "given") return out;
+  if (!options.rotation.empty()) {
+    const Quat q = quat(options.rotation, 0);
+    if (!(q.norm() > 0.5 && q.norm() < 2.0)) {
+      return Failure(Error{"", 0, "a unit quaternion w,x,y,z as rotation", "another length"});
+    }
+    out.rotation = q.normalized();
+  }
+  if (!options.translation.empty()) out.translation = vec3(std::span(options.translation), 0);
+  return out;
+}
+
+/// Global positions and validity of one group's joint in a slab.
+struct JointColumn {
+  std::span<const double> positions;
+  std::span<const std::uint8_t> valid;  // per row and joint, per row, or empty: all are
+  std::span<const Tracking> state;      // empty: all tracked
+  std::size_t joints = 0;
+
+  bool usable(std::size_t row, std::size_t j) const {
+    if (!state.empty() && state[row * joints + j] != Tracking::tracked) return false;
+    if (valid.empty()) return true;
+    return valid[state.empty() ? row : row * joints + j] != 0;
+  }
+  Vec3 at(std::size_t row, std::size_t j) const { return vec3(positions, row * joints + j); }
+};
+
+JointColumn column(const TakeSlab& slab, std::size_t group) {
+  JointColumn out;
+  if (const auto* clip = std::get_if<ClipRows>(&slab.rows[group])) {
+    out = {clip->positions, clip->valid, {}, 0};
+  } else {
+    const auto& points = std::get<PointRows>(slab.rows[group]);
+    out = {points.positions, points.valid, points.state, 0};
+  }
+  out.joints = out.positions.size() / 3 / slab.stamps.size();
+  return out;
+}
+
+}  // namespace
+
+Quat turn_about_y(double degrees) {
+  return Quat(Eigen::AngleAxisd(degrees * std::numbers::pi / 180.0, Vec3::UnitY()));
+}
+
+std::vector<std::pair<std::string_view, std::string_view>> usual_pairs() {
+  // Joints that mean the same place on both skeletons (formats: Kinect v2; Perception Neuron).
+  return {
+      {"SpineBase", "Hips"},       {"ShoulderLeft", "LeftArm"},   {"ElbowLeft", "LeftForeArm"},
+      {"WristLeft", "LeftHand"},   {"ShoulderRight", "RightArm"}, {"ElbowRight", "RightForeArm"},
+      {"WristRight", "RightHand"}, {"HipLeft", "LeftUpLeg"},      {"KneeLeft", "LeftLeg"},
+      {"AnkleLeft", "LeftFoot"},   {"HipRight", "RightUpLeg"},    {"KneeRight", "RightLeg"},
+      {"AnkleRight", "RightFoot"}};
+}
+
+Result<std::vector<SpacePlan>> plan_spaces(const TakeHeader& header, const Manifest& manifest,
+                                           std::size_t reference_group) {
+  std::vector<SpacePlan> plans;
+  for (const auto& [name, options] : manifest.spaces) {
+    if (options.method == "none") continue;
+    SpacePlan plan;
+    plan.options = options;
+    plan.group = KA_TRY(find_group(header, name));
+    plan.onto = options.onto.empty() ? reference_group : KA_TRY(find_group(header, options.onto));
+    const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
+    if (plan.group == plan.onto || !std::holds_alternative<PointGroup>(from.kind)) {
+      return Failure(Error{"", 0, "points to be brought onto another stream", "'" + name + "'"});
+    }
+    const auto moved = manifest.spaces.find(onto.name);
+    if (moved != manifest.spaces.end() && moved->second.method != "none") {
+      return Failure(Error{"", 0, "'" + name + "' onto a stream that is not moved itself",
+                           "'" + onto.name + "'"});
+    }
+    plan.pairs = KA_TRY(find_pairs(from, onto, options));
+    if (options.method == "paper") {
+      plan.root = {KA_TRY(known_joint(from, options.root)),
+                   KA_TRY(known_joint(onto, options.onto_root))};
+    }
+    if (options.method == "fit" && plan.pairs.size() < 3) {
+      return Failure(Error{"", 0, "three named joints or more for a fit (joints = { ... })",
+                           std::to_string(plan.pairs.size())});
+    }
+    plan.transform = KA_TRY(given_transform(options));
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+void add_pairs(const SpacePlan& plan, const TakeSlab& slab, PairMoments& moments) {
+  const JointColumn from = column(slab, plan.group), onto = column(slab, plan.onto);
+  for (std::size_t r = 0; r < slab.stamps.size(); ++r) {
+    for (const JointPair& pair : plan.pairs) {
+      if (from.usable(r, pair.from) && onto.usable(r, pair.onto)) {
+        moments.add(from.at(r, pair.from), onto.at(r, pair.onto));
+      }
+    }
+  }
+}
+
+void ResidualSums::transform(const SpacePlan& plan, TakeSlab& slab) {
+  auto& points = std::get<PointRows>(slab.rows[plan.group]);
+  const std::vector<double> before = points.positions;
+  const JointColumn onto = column(slab, plan.onto);
+  const std::size_t joints = points.valid.size() / slab.stamps.size();
+  const double m = plan.options.magnification;
+  for (std::size_t r = 0; r < slab.stamps.size(); ++r) {
+    RigidTransform transform = plan.transform;
+    bool placed = true;
+    if (plan.options.method == "paper") {
+      // x' = m (A_rot x - A_offset), A_offset = A_rot x_k0 - x_d0 / m: the root lands on x_d0.
+      const std::size_t root = r * joints + plan.root.from;
+      placed = points.valid[root] != 0 && onto.usable(r, plan.root.onto);
+      transform.translation = onto.at(r, plan.root.onto) / m -
+                              transform.rotation * vec3(std::span<const double>(before), root);
+    }
+    for (std::size_t j = 0; j < joints; ++j) {
+      const std::size_t cell = r * joints + j;
+      if (points.valid[cell] == 0) continue;
+      auto p = vec3(std::span(points.positions), cell);
+      if (placed) {
+        p = (m * (transform * p)).eval();
+      } else {  // the root that gives the place was not seen
+        p.setZero();
+        points.valid[cell] = 0;
+        points.state[cell] = Tracking::missing;
+      }
+    }
+  }
+  const JointColumn was{before, points.valid, points.state, joints};
+  const JointColumn is = column(slab, plan.group);
+  for (std::size_t k = 0; k < plan.pairs.size(); ++k) {
+    const JointPair& pair = plan.pairs[k];
+    for (std::size_t r = 0; r < slab.stamps.size(); ++r) {
+      if (!is.usable(r, pair.from) || !onto.usable(r, pair.onto)) continue;
+      ++rows_[k];
+      before_[k] += (was.at(r, pair.from) - onto.at(r, pair.onto)).squaredNorm();
+      after_[k] += (is.at(r, pair.from) - onto.at(r, pair.onto)).squaredNorm();
+    }
+  }
+}
+
+SpaceReport ResidualSums::report(const SpacePlan& plan, const TakeHeader& header) const {
+  SpaceReport out;
+  out.stream = header.groups[plan.group].name;
+  out.onto = header.groups[plan.onto].name;
+  out.method = plan.options.method;
+  out.transform = plan.transform;
+  out.magnification = plan.options.magnification;
+  const auto& ours = *joint_names(header.groups[plan.group]);
+  const auto& theirs = *joint_names(header.groups[plan.onto]);
+  const auto rms = [](double square, std::uint64_t n) {
+    return n == 0 ? 0.0 : std::sqrt(square / static_cast<double>(n));
+  };
+  std::uint64_t rows = 0;
+  double before = 0.0, after = 0.0;
+  for (std::size_t k = 0; k < plan.pairs.size(); ++k) {
+    out.joints.push_back({ours[plan.pairs[k].from], theirs[plan.pairs[k].onto], rows_[k],
+                          rms(before_[k], rows_[k]), rms(after_[k], rows_[k])});
+    rows += rows_[k];
+    before += before_[k];
+    after += after_[k];
+  }
+  out.before_m = rms(before, rows);
+  out.after_m = rms(after, rows);
+  std::stable_sort(out.joints.begin(), out.joints.end(),
+                   [](const auto& a, const auto& b) { return a.after_m > b.after_m; });
+  return out;
+}
+
+}  // namespace kinalign
