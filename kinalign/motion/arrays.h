@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace kinalign {
 
@@ -20,6 +21,12 @@ inline Eigen::Map<Vec3> vec3(std::span<double> array, std::size_t i) {
 }
 inline Eigen::Map<const Vec3> vec3(std::span<const double> array, std::size_t i) {
   return Eigen::Map<const Vec3>(&array[3 * i]);
+}
+inline Eigen::Map<Vec3> vec3(std::vector<double>& array, std::size_t i) {
+  return vec3(std::span<double>(array), i);
+}
+inline Eigen::Map<const Vec3> vec3(const std::vector<double>& array, std::size_t i) {
+  return vec3(std::span<const double>(array), i);
 }
 
 /// The i-th rotation of an array of w,x,y,z quadruples.

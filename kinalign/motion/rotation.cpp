@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/motion/rotation.h"
+
+namespace kinalign {
+
+Vec3 rotation_vector(const Quat& q) {
+  const Vec3 v = q.vec();
+  return rotation_vector_factor(q.w(), v.squaredNorm()) * v;
+}
+
+Quat rotation(const Vec3& vector) {
+  Vec3 r = vector;
+  int halvings = 0;
+  // Above 1e9 rad a double no longer says which way the rotation points; 40 halvings reach it.
+  for (; !(r.squaredNorm() <= most_rotation_parts) && halvings < 40; ++halvings) r *= 0.5;
+  const RotationParts parts = rotation_parts(r.squaredNorm());
+  const Vec3 v = parts.vector * r;
+  Quat q(parts.w, v.x(), v.y(), v.z());
+  for (; halvings > 0; --halvings) q = (q * q).normalized();
+  return q;
+}
+
+}  // namespace kinalign
