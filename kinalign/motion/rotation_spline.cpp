@@ -119,7 +119,7 @@ double sweep(const RotationIntervals& intervals, const std::vector<Step>& steps,
 }
 
 constexpr int most_sweeps = 10;       // as many as SciPy's
-constexpr double negligible = 2e-12;  // rad of an interval's turn: 3e-13 on the curve
+constexpr double negligible = 2e-13;  // rad of an interval's turn; a seventh of that on the curve
 
 /// Sweeps until what later ones would change, by the rate at which changes shrink, is negligible.
 void iterate(const RotationIntervals& intervals, const std::vector<Step>& steps, Rates& rates) {
