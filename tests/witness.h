@@ -25,7 +25,8 @@ inline Arrays run_python(const std::string& script, const Arrays& given) {
                  {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
   }
   const std::string command = "OPENBLAS_NUM_THREADS=1 /usr/bin/python3 " KINALIGN_SOURCE_DIR
-                              "/tests/witness/" + script + " " + folder.path();
+                              "/tests/witness/" +
+                              script + " " + folder.path();
   if (std::system(command.c_str()) != 0) throw std::runtime_error(script + " has failed");
   Arrays found;
   for (const auto& name : folder.names()) {

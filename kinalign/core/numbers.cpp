@@ -92,15 +92,17 @@ int decimals_of(std::string_view number) {
 
 char* put_number(char* at, double value, int decimals) {
   const double scale = ten[static_cast<std::size_t>(decimals)];
-  const double scaled = std::nearbyint(std::abs(value) * scale);
-  if (!(scaled < 9e15) || scaled / scale != std::abs(value)) {
+  const double magnitude = std::abs(value), scaled = magnitude * scale;
+  // Below 2^52 the nearest integer is exact, and if any with these decimals reads back, it does.
+  if (!(scaled < 4e15)) return std::to_chars(at, at + number_room, value).ptr;
+  const auto all = static_cast<std::int64_t>(scaled + 0.5);
+  if (static_cast<double>(all) / scale != magnitude) {
     return std::to_chars(at, at + number_room, value).ptr;
   }
   if (std::signbit(value)) *at++ = '-';
-  const auto all = static_cast<std::uint64_t>(scaled);
-  const auto power = static_cast<std::uint64_t>(scale);
-  std::uint64_t whole = all / power;
-  std::uint64_t fraction = all - whole * power;
+  const auto power = static_cast<std::int64_t>(scale);
+  const std::int64_t whole = all / power;
+  std::int64_t fraction = all - whole * power;
   at = std::to_chars(at, at + 20, whole).ptr;
   if (decimals == 0) return at;
   *at++ = '.';
@@ -111,7 +113,7 @@ char* put_number(char* at, double value, int decimals) {
     --left;
   }
   for (; left > 0; left -= 2) {
-    std::memcpy(at + left - 2, &digit_pairs[2 * (fraction % 100)], 2);
+    std::memcpy(at + left - 2, &digit_pairs[static_cast<std::size_t>(2 * (fraction % 100))], 2);
     fraction /= 100;
   }
   return at + decimals;

@@ -96,10 +96,15 @@ void follow(const Pose& parent, const Pose& local, Pose& global) {
 /// Frames first.. of joint j as lanes; lanes beyond the last frame repeat it.
 void load(const ClipFrames& frames, std::size_t joints, std::size_t first, std::size_t j,
           Pose& pose) {
+  const std::size_t last = std::min(block, frames.size() - first) - 1;
+  const double* q = &frames.local_rotations[4 * (first * joints + j)];
+  const double* p = &frames.local_positions[3 * (first * joints + j)];
   for (std::size_t i = 0; i < block; ++i) {
-    const std::size_t row = std::min(first + i, frames.size() - 1) * joints + j;
-    for (std::size_t k = 0; k < 4; ++k) pose[k][i] = frames.local_rotations[4 * row + k];
-    for (std::size_t k = 0; k < 3; ++k) pose[4 + k][i] = frames.local_positions[3 * row + k];
+    for (std::size_t k = 0; k < 4; ++k) pose[k][i] = q[k];
+    for (std::size_t k = 0; k < 3; ++k) pose[4 + k][i] = p[k];
+    if (i >= last) continue;
+    q += 4 * joints;
+    p += 3 * joints;
   }
 }
 

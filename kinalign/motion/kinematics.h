@@ -5,6 +5,7 @@
 #include "kinalign/motion/clip.h"
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 namespace kinalign {
@@ -14,6 +15,10 @@ namespace kinalign {
 struct EulerOrder {
   int first = 2, second = 0, third = 1;
 };
+
+/// Frames at a time for all joints, one after the other, that keep rows of channels in the first
+/// cache: 0.6 of the time of whole columns of 256 frames.
+constexpr std::size_t euler_frames = 16;
 
 /// Angles of one joint over many frames, degrees, one column for each of the order's rotations
 /// (nullptr: always zero), rows `stride` apart; rotations go to rotations[i * rotation_stride +

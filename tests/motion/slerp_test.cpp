@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/motion/slerp.h"
 
-#include "kinalign/motion/rotation.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
 #include "tests/witness.h"
+
+#include "kinalign/motion/rotation.h"
 
 #include <doctest/doctest.h>
 
