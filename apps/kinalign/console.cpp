@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/console.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+namespace kinalign {
+
+namespace {
+
+// The only variable that outlives a call: a signal handler can be told nothing.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
+volatile std::sig_atomic_t ctrl_c = 0;
+
+constexpr std::array<std::string_view, 7> codes{"",         "\x1b[32m", "\x1b[33m", "\x1b[31m",
+                                                "\x1b[31m", "\x1b[32m", "\x1b[34m"};
+constexpr std::string_view plain = "\x1b[0m";
+constexpr std::string_view start_of_line = "\r\x1b[K";
+
+std::string painted(bool wanted, Colour colour, std::string_view text) {
+  const std::string_view code = codes[static_cast<std::size_t>(colour)];
+  if (!wanted || code.empty()) return std::string(text);
+  return fmt::format("{}{}{}", code, text, plain);
+}
+
+/// 0, or the errno of the write that failed.
+int write_all(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t put = ::write(fd, bytes.data(), bytes.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) return errno;
+    bytes.remove_prefix(static_cast<std::size_t>(put));
+  }
+  return 0;
+}
+
+std::size_t width_of(int fd) {
+  winsize size{};
+  return ::ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+bool colour_wanted(const Surroundings& surroundings, const Common& common, bool terminal) {
+  if (common.color != "auto") return common.color == "always";
+  return terminal && surroundings.variable("NO_COLOR").empty() &&
+         surroundings.variable("TERM") != "dumb";
+}
+
+std::string rate_text(double per_s) {
+  if (per_s >= 1e9) return fmt::format("{:.1f} G/s", per_s / 1e9);
+  if (per_s >= 1e6) return fmt::format("{:.1f} M/s", per_s / 1e6);
+  if (per_s >= 1e3) return fmt::format("{:.1f} k/s", per_s / 1e3);
+  return fmt::format("{:.0f} /s", per_s);
+}
+
+std::string time_text(double s) {
+  if (s < 59.5) return fmt::format("{:.0f} s", s);
+  const auto minutes = static_cast<std::int64_t>(s / 60 + 0.5);
+  if (minutes < 60) return fmt::format("{} min", minutes);
+  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+}  // namespace
+
+std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
+                          double elapsed_s, std::size_t width) {
+  std::string line(what);
+  const auto doing = static_cast<double>(done);
+  const auto all = static_cast<double>(total);
+  if (total > 0) line += fmt::format("  {:.0f} %", 100 * std::min(1.0, doing / all));
+  if (done > 0 && elapsed_s > 0.5) {
+    line += "  " + rate_text(doing / elapsed_s);
+    if (total > done) line += fmt::format("  {} left", time_text(elapsed_s * (all / doing - 1)));
+  }
+  return line.substr(0, width);
+}
+
+void take_signals() {
+  ctrl_c = 0;
+  struct sigaction action {};
+  action.sa_handler = [](int) { ctrl_c = 1; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  ::sigaction(SIGINT, &action, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+}
+
+bool interrupted() { return ctrl_c != 0; }
+
+Console::Console(const Surroundings& surroundings, const Common& common, std::string verb)
+    : surroundings_(surroundings),
+      common_(common),
+      verb_(std::move(verb)),
+      colour_out_(colour_wanted(surroundings, common, surroundings.out_is_terminal)),
+      colour_err_(colour_wanted(surroundings, common, surroundings.err_is_terminal)),
+      progress_(surroundings.err_is_terminal && !common.quiet &&
+                surroundings.variable("TERM") != "dumb") {}
+
+Console::~Console() {
+  erase_progress();
+  flush();
+}
+
+void Console::print(std::string_view text) {
+  if (!common_.quiet && !common_.json) put(text);
+}
+
+void Console::print_json(std::string_view object, int version) {
+  if (!common_.json) return;
+  const std::string_view members = object.substr(object.find('{') + 1);
+  const bool none = members.find_first_not_of(" \n") == members.find('}');
+  put(fmt::format("{{\"schema\": \"kinalign.{}/{}\"{}{}\n", verb_, version, none ? "" : ", ",
+                  members.substr(std::min(members.find_first_not_of(" \n"), members.size()))));
+}
+
+void Console::put(std::string_view text) {
+  constexpr std::size_t most_held = std::size_t{64} << 10;
+  held_ += text;
+  if (held_.size() >= most_held) flush();
+}
+
+void Console::note(std::string_view line) {
+  if (!common_.quiet) say(line);
+}
+
+void Console::detail(std::string_view line) {
+  if (common_.verbose && !common_.quiet) say(line);
+}
+
+void Console::complain(std::string_view line) { say(line, Colour::bad); }
+
+std::string Console::paint(Colour colour, std::string_view text) const {
+  return painted(colour_out_, colour, text);
+}
+
+Progress Console::progress() {
+  began_ = Clock::now();
+  return [this](std::string_view what, std::uint64_t done, std::uint64_t total) {
+    if (progress_) show_progress(what, done, total);
+    return !interrupted();
+  };
+}
+
+void Console::report(const Error& error) {
+  const std::string name = verb_.empty() ? "kinalign" : "kinalign " + verb_;
+  complain(name + ": " + to_string(error));
+  if (!advice_) return;
+  for (const std::string& line : advice_(error)) say("  " + line);
+}
+
+Result<void> Console::finish() {
+  erase_progress();
+  flush();
+  if (fault_ == 0 || fault_ == EPIPE) return {};
+  return Failure(Error{"standard output", 0, "room to write", std::strerror(fault_)});
+}
+
+void Console::show_progress(std::string_view what, std::uint64_t done, std::uint64_t total) {
+  const Clock::time_point now = Clock::now();
+  if (doing_ != what) {
+    doing_ = what;
+    began_ = now;
+  }
+  constexpr auto redraw = std::chrono::milliseconds(100);
+  if (shown_ && now - drawn_ < redraw) return;
+  drawn_ = now;
+  shown_ = true;
+  const double elapsed_s = std::chrono::duration<double>(now - began_).count();
+  const std::size_t width = width_of(surroundings_.err);
+  write_all(surroundings_.err, fmt::format("{}{}", start_of_line,
+                                           progress_line(what, done, total, elapsed_s, width - 1)));
+}
+
+void Console::erase_progress() {
+  if (shown_) write_all(surroundings_.err, start_of_line);
+  shown_ = false;
+}
+
+void Console::say(std::string_view line, Colour colour) {
+  erase_progress();
+  flush();
+  write_all(surroundings_.err, painted(colour_err_, colour, line) + "\n");
+}
+
+void Console::flush() {
+  if (fault_ == 0) fault_ = write_all(surroundings_.out, held_);
+  held_.clear();
+}
+
+}  // namespace kinalign

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a verb says: results on stdout, everything else on stderr. Colour and the progress line only
+// where they are wanted (docs/commands.md).
+#pragma once
+
+#include "apps/kinalign/verb.h"
+
+#include "kinalign/core/error.h"
+#include "kinalign/core/progress.h"
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+enum class Colour { plain, good, warning, bad, mocap, kinect, imu };
+
+/// Lines under an error: what was left undone, what to do next.
+using Advice = std::function<std::vector<std::string>(const Error&)>;
+
+class Console {
+ public:
+  Console(const Surroundings& surroundings, const Common& common, std::string verb);
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
+  ~Console();
+
+  /// A piece of the result, for people: on stdout, as it stands. Silent with --quiet and --json.
+  void print(std::string_view text);
+
+  /// What --json asks for: `object` is the text "{...}" of a JSON object, which gets
+  /// "schema": "kinalign.<verb>/<version>" as its first member. Silent without --json.
+  void print_json(std::string_view object, int version = 1);
+
+  /// Text that is the result itself (a man page, a completion): on stdout whatever the flags.
+  void put(std::string_view text);
+
+  /// A line on stderr; silent with --quiet.
+  void note(std::string_view line);
+  /// A line on stderr, with --verbose only.
+  void detail(std::string_view line);
+  /// A line on stderr in any case.
+  void complain(std::string_view line);
+
+  /// `text` in a colour where stdout shows one.
+  std::string paint(Colour colour, std::string_view text) const;
+
+  /// One line on stderr, on a terminal only, gone when the job is done. Asks the job to stop after
+  /// the first Ctrl-C (the second one ends the program at once).
+  Progress progress();
+
+  /// To be said if the verb fails; the last call counts.
+  void if_it_fails(Advice advice) { advice_ = std::move(advice); }
+
+  /// Says what went wrong and what was advised.
+  void report(const Error& error);
+
+  /// Writes what is still held. Fails where stdout took no more; a reader that went away is fine.
+  Result<void> finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void erase_progress();
+  void show_progress(std::string_view what, std::uint64_t done, std::uint64_t total);
+  void say(std::string_view line, Colour colour = Colour::plain);
+  void flush();
+
+  const Surroundings& surroundings_;
+  const Common& common_;
+  std::string verb_;
+  Advice advice_;
+  bool colour_out_ = false, colour_err_ = false, progress_ = false;
+  std::string held_;    // for stdout
+  int fault_ = 0;       // errno of stdout
+  std::string doing_;   // what the progress line says
+  bool shown_ = false;  // a progress line stands
+  Clock::time_point began_{}, drawn_{};
+};
+
+/// "align  43 %  1.2 M/s  12 s left": of a job that has run for `elapsed_s`, cut to `width`.
+std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
+                          double elapsed_s, std::size_t width);
+
+/// From here on the first Ctrl-C is only noted, and a reader of stdout that goes away is no signal.
+void take_signals();
+/// Ctrl-C was pressed since take_signals().
+bool interrupted();
+
+}  // namespace kinalign

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/field_text.h"
+
+#include "kinalign/core/numbers.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+template <class... Kinds>
+struct Overloaded : Kinds... {
+  using Kinds::operator()...;
+};
+
+std::string text_of(double number) {
+  std::array<char, number_room> room{};
+  const char* end = std::to_chars(room.data(), room.data() + room.size(), number).ptr;
+  return {room.data(), static_cast<std::size_t>(end - room.data())};
+}
+
+Failure instead_of(std::string expected, std::string_view text) {
+  return Failure(Error{"", 0, std::move(expected), text.empty() ? "nothing" : shown(text)});
+}
+
+std::string range_of(const Field& field) {
+  const bool above = field.least > -1e307;
+  const bool below = field.most < 1e307;
+  if (above && below) return " from " + text_of(field.least) + " to " + text_of(field.most);
+  if (above) return " of at least " + text_of(field.least);
+  if (below) return " of at most " + text_of(field.most);
+  return "";
+}
+
+Result<double> number_in(const Field& field, std::string_view text) {
+  double value = 0.0;
+  if (!parse_number(text, value) || value < field.least || value > field.most) {
+    return instead_of("a number" + range_of(field), text);
+  }
+  return value;
+}
+
+Result<std::int64_t> integer_in(const Field& field, std::string_view text) {
+  std::int64_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto [behind, fault] = std::from_chars(text.data(), end, value);
+  const auto near = static_cast<double>(value);
+  if (fault != std::errc{} || behind != end || near < field.least || near > field.most) {
+    return instead_of("a whole number" + range_of(field), text);
+  }
+  return value;
+}
+
+Result<bool> truth_in(std::string_view text) {
+  if (text == "true" || text == "1" || text == "yes") return true;
+  if (text == "false" || text == "0" || text == "no") return false;
+  return instead_of("true or false", text);
+}
+
+Result<std::string> string_in(const Field& field, std::string_view text) {
+  const auto& choices = field.choices;
+  if (choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end()) {
+    return std::string(text);
+  }
+  return instead_of(any_of(choices), text);
+}
+
+std::string capitals(std::string_view name) {
+  std::string out;
+  for (const char c : name) out += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  return out;
+}
+
+}  // namespace
+
+Result<void> set_field(const Field& field, std::string_view text) {
+  const Overloaded set{
+      [&](bool* at) -> Result<void> { return truth_in(text).map([&](bool v) { *at = v; }); },
+      [&](double* at) -> Result<void> {
+        return number_in(field, text).map([&](double v) { *at = v; });
+      },
+      [&](std::optional<double>* at) -> Result<void> {
+        return number_in(field, text).map([&](double v) { *at = v; });
+      },
+      [&](std::int64_t* at) -> Result<void> {
+        return integer_in(field, text).map([&](std::int64_t v) { *at = v; });
+      },
+      [&](std::optional<std::int64_t>* at) -> Result<void> {
+        return integer_in(field, text).map([&](std::int64_t v) { *at = v; });
+      },
+      [&](std::string* at) -> Result<void> {
+        return string_in(field, text).map([&](std::string v) { *at = std::move(v); });
+      },
+      [&](std::vector<std::string>* at) -> Result<void> {
+        return string_in(field, text).map([&](std::string v) { at->push_back(std::move(v)); });
+      },
+  };
+  return std::visit(set, field.value);
+}
+
+std::string field_text(const Field& field) {
+  const Overloaded text{
+      [](const bool* at) { return std::string(*at ? "true" : "false"); },
+      [](const double* at) { return text_of(*at); },
+      [](const std::optional<double>* at) { return *at ? text_of(**at) : std::string(); },
+      [](const std::int64_t* at) { return std::to_string(*at); },
+      [](const std::optional<std::int64_t>* at) {
+        return *at ? std::to_string(**at) : std::string();
+      },
+      [](const std::string* at) { return *at; },
+      [](const std::vector<std::string>* at) {
+        std::string all;
+        for (const std::string& one : *at) all += (all.empty() ? "" : ", ") + one;
+        return all;
+      },
+  };
+  return std::visit(text, field.value);
+}
+
+bool is_switch(const Field& field) { return std::holds_alternative<bool*>(field.value); }
+
+std::string placeholder(const Field& field) {
+  if (is_switch(field)) return "";
+  std::string choices;
+  for (const std::string& choice : field.choices) {
+    if (!choice.empty()) choices += (choices.empty() ? "" : "|") + choice;
+  }
+  if (!choices.empty()) return choices;
+  if (field.name == "out" || field.name == "config") return "FILE";
+  const bool text = std::holds_alternative<std::string*>(field.value) ||
+                    std::holds_alternative<std::vector<std::string>*>(field.value);
+  return text ? "TEXT" : "NUMBER";
+}
+
+std::string flag_of(std::string_view name) {
+  std::string flag = "--" + std::string(name);
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
+std::string variable_of(std::string_view name) { return "KINALIGN_" + capitals(name); }
+
+std::string nearest(std::string_view word, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& other : known) {
+    // Optimal string alignment: three rows of the table of distances between beginnings.
+    std::vector<std::size_t> before(other.size() + 1), row(other.size() + 1), two_before(row);
+    for (std::size_t j = 0; j <= other.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= word.size(); ++i) {
+      two_before.swap(before);
+      before.swap(row);
+      row[0] = i;
+      for (std::size_t j = 1; j <= other.size(); ++j) {
+        const std::size_t changed = before[j - 1] + (word[i - 1] == other[j - 1] ? 0 : 1);
+        row[j] = std::min({before[j] + 1, row[j - 1] + 1, changed});
+        const bool swapped =
+            i > 1 && j > 1 && word[i - 1] == other[j - 2] && word[i - 2] == other[j - 1];
+        if (swapped) row[j] = std::min(row[j], two_before[j - 2] + 1);
+      }
+    }
+    if (row[other.size()] < least) {
+      least = row[other.size()];
+      best = other;
+    }
+  }
+  return best;
+}
+
+std::string any_of(const std::vector<std::string>& words) {
+  std::string text;
+  std::size_t left = words.size();
+  for (const std::string& word : words) {
+    --left;
+    if (word.empty()) continue;
+    text += word + (left == 0 ? "" : left == 1 ? " or " : ", ");
+  }
+  return text;
+}
+
+}  // namespace kinalign

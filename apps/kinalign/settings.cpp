@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/settings.h"
+
+#include "apps/kinalign/command_line.h"
+#include "apps/kinalign/field_text.h"
+
+#include <toml++/toml.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 20;
+
+std::int64_t line_of(const toml::node& node) { return node.source().begin.line; }
+
+std::optional<std::string> scalar_text(const toml::node& node) {
+  if (const auto text = node.value<std::string>(); node.is_string()) return text;
+  if (const auto truth = node.value<bool>(); node.is_boolean()) return *truth ? "true" : "false";
+  if (const auto whole = node.value<std::int64_t>(); node.is_integer()) {
+    return std::to_string(*whole);
+  }
+  if (const auto number = node.value<double>(); node.is_floating_point()) {
+    double value = *number;
+    return field_text(Field{"", "", &value});
+  }
+  return std::nullopt;
+}
+
+Result<Setting> setting_of(const std::string& path, const toml::key& key, const toml::node& node) {
+  Setting setting{"", std::string(key.str()), {}, line_of(node)};
+  const auto add = [&](const toml::node& one) -> Result<void> {
+    auto text = scalar_text(one);
+    if (!text) {
+      return Failure(Error{path, setting.line, "a number, a text or true or false",
+                           "something else for " + setting.name});
+    }
+    setting.values.push_back(std::move(*text));
+    return {};
+  };
+  if (const toml::array* many = node.as_array()) {
+    for (const toml::node& one : *many) KA_TRY(add(one));
+  } else {
+    KA_TRY(add(node));
+  }
+  return setting;
+}
+
+Result<SettingsFile> settings_of(const toml::table& all, SettingsFile file) {
+  for (const auto& [key, node] : all) {
+    if (const toml::table* table = node.as_table()) {
+      for (const auto& [inner_key, inner] : *table) {
+        Setting setting = KA_TRY(setting_of(file.path, inner_key, inner));
+        setting.verb = key.str();
+        file.settings.push_back(std::move(setting));
+      }
+    } else {
+      file.settings.push_back(KA_TRY(setting_of(file.path, key, node)));
+    }
+  }
+  return file;
+}
+
+bool there(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
+
+std::string users_file(const Surroundings& surroundings) {
+  const std::string config = surroundings.variable("XDG_CONFIG_HOME");
+  if (!config.empty()) return config + "/kinalign/config.toml";
+  const std::string home = surroundings.variable("HOME");
+  return home.empty() ? "" : home + "/.config/kinalign/config.toml";
+}
+
+std::string projects_file(std::string folder) {
+  for (;;) {
+    std::string path = folder + (folder.ends_with('/') ? "" : "/") + "kinalign.toml";
+    if (there(path)) return path;
+    const auto slash = folder.rfind('/');
+    if (slash == std::string::npos || folder.size() <= 1) return "";
+    folder.resize(std::max<std::size_t>(slash, 1));
+  }
+}
+
+const Field* named(const Fields& fields, const std::string& name) {
+  const auto found = std::find_if(fields.begin(), fields.end(),
+                                  [&](const Field& field) { return field.name == name; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+Result<void> set_all(const Field& field, const std::vector<std::string>& values) {
+  auto* const* many = std::get_if<std::vector<std::string>*>(&field.value);
+  if (many != nullptr) (*many)->clear();
+  if (many == nullptr && values.size() != 1) {
+    return Failure(Error{"", 0, "one value for " + field.name, std::to_string(values.size())});
+  }
+  for (const std::string& value : values) KA_TRY(set_field(field, value));
+  return {};
+}
+
+Failure unknown(const SettingsFile& file, const Setting& setting,
+                const std::vector<std::string>& known, const std::string& expected) {
+  const std::string& word = expected == "a verb" ? setting.verb : setting.name;
+  const std::string near = suggestion(word, known);
+  return Failure(Error{file.path, setting.line, expected + (near.empty() ? "" : " (" + near + ")"),
+                       shown(word)});
+}
+
+Result<void> check_name(const SettingsFile& file, const Setting& setting, const Settable& settable,
+                        const std::vector<Verb>& verbs) {
+  std::vector<std::string> known;
+  if (setting.verb.empty()) {
+    known = {"jobs", "seed", "quiet", "verbose", "color"};
+    return is_common_setting(setting.name)
+               ? Result<void>{}
+               : unknown(file, setting, known, "a setting of all verbs");
+  }
+  for (const Verb& verb : verbs) known.push_back(verb.page.name);
+  if (std::find(known.begin(), known.end(), setting.verb) == known.end()) {
+    return unknown(file, setting, known, "a verb");
+  }
+  if (setting.verb != settable.page.name || named(settable.settings, setting.name) != nullptr) {
+    return {};
+  }
+  known.clear();
+  for (const Field& field : settable.settings) known.push_back(field.name);
+  return unknown(file, setting, known, "a setting of " + setting.verb);
+}
+
+}  // namespace
+
+Result<SettingsFile> read_settings(FileSystem& files, const std::string& path, Source source) {
+  const std::string text = KA_TRY(read_whole(files, path, most_bytes));
+  try {
+    return settings_of(toml::parse(text, path), SettingsFile{path, source, {}});
+  } catch (const toml::parse_error& error) {
+    return Failure(Error{path, static_cast<std::int64_t>(error.source().begin.line), "TOML",
+                         std::string(error.description())});
+  }
+}
+
+Result<std::vector<SettingsFile>> find_settings(const Surroundings& surroundings,
+                                                const std::string& config) {
+  std::vector<SettingsFile> found;
+  const std::string users = users_file(surroundings);
+  if (!users.empty() && there(users)) {
+    found.push_back(KA_TRY(read_settings(surroundings.files, users, Source::user)));
+  }
+  std::string projects = config.empty() ? surroundings.variable("KINALIGN_CONFIG") : config;
+  if (projects.empty()) projects = projects_file(surroundings.folder);
+  if (!projects.empty()) {
+    found.push_back(KA_TRY(read_settings(surroundings.files, projects, Source::project)));
+  }
+  return found;
+}
+
+Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
+                            const std::vector<Verb>& verbs, Sources& sources) {
+  for (const Setting& setting : file.settings) {
+    KA_TRY(check_name(file, setting, settable, verbs));
+    if (!setting.verb.empty() && setting.verb != settable.page.name) continue;
+    const Fields& fields = setting.verb.empty() ? settable.common : settable.settings;
+    const Field* field = named(fields, setting.name);
+    if (field == nullptr) continue;  // a setting of all verbs that this one has no use for
+    const auto known = sources.find(setting.name);
+    if (known != sources.end() && known->second > file.source) continue;
+    KA_TRY(set_all(*field, setting.values).map_error([&](Error error) {
+      error.file = file.path;
+      error.line = setting.line;
+      return error;
+    }));
+    sources[setting.name] = file.source;
+  }
+  return {};
+}
+
+Result<void> apply_environment(const Surroundings& surroundings, const Settable& settable,
+                               Sources& sources) {
+  for (const Fields* fields : {&settable.settings, &settable.common}) {
+    for (const Field& field : *fields) {
+      if (fields == &settable.common && !is_common_setting(field.name)) continue;
+      const auto known = sources.find(field.name);
+      if (known != sources.end() && known->second == Source::flag) continue;
+      const std::string text = surroundings.variable(variable_of(field.name));
+      if (text.empty()) continue;
+      KA_TRY(set_all(field, {text}).map_error([&](Error error) {
+        error.file = variable_of(field.name);
+        return error;
+      }));
+      sources[field.name] = Source::environment;
+    }
+  }
+  return {};
+}
+
+}  // namespace kinalign

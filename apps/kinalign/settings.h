@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options that need not be typed each time. Flags win over KINALIGN_<NAME> in the environment, that
+// over the project's kinalign.toml (in the current folder or the nearest one above it), that over
+// the user's ~/.config/kinalign/config.toml.
+#pragma once
+
+#include "apps/kinalign/verb.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct Setting {
+  std::string verb;  // the table it stands in; empty: for every verb
+  std::string name;
+  std::vector<std::string> values;
+  std::int64_t line = 0;
+};
+
+struct SettingsFile {
+  std::string path;
+  Source source = Source::user;
+  std::vector<Setting> settings;
+};
+
+/// Reads one file: `jobs = 4` for every verb, `[align]` with `gap_ms = 50` for one.
+Result<SettingsFile> read_settings(FileSystem& files, const std::string& path, Source source);
+
+/// The user's file and the project's (`config`, where not empty, in its place), where they exist.
+Result<std::vector<SettingsFile>> find_settings(const Surroundings& surroundings,
+                                                const std::string& config);
+
+/// Options that a verb's table and the front of a file may set.
+struct Settable {
+  const Page& page;
+  const Fields& settings;  // of the verb
+  const Fields& common;
+};
+
+/// Sets what no later source has set; `sources` grows. Fails on names that nobody knows.
+Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
+                            const std::vector<Verb>& verbs, Sources& sources);
+Result<void> apply_environment(const Surroundings& surroundings, const Settable& settable,
+                               Sources& sources);
+
+}  // namespace kinalign

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// All verbs, in the order of the help page. A new verb: its file, a line here, a line in verbs.cpp.
+#pragma once
+
+#include "apps/kinalign/verb.h"
+
+#include <vector>
+
+namespace kinalign {
+
+Verb config_verb();
+Verb completion_verb();
+Verb man_verb();
+
+std::vector<Verb> all_verbs();
+
+}  // namespace kinalign

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/console.h"
+
+#include "tests/apps/fake_verb.h"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+
+#include <array>
+#include <csignal>
+#include <filesystem>
+
+using namespace kinalign;
+
+namespace {
+
+Result<int> speak(Mix& /*options*/, Call& call) {
+  call.console.print("a result, " + call.console.paint(Colour::bad, "red") + "\n");
+  call.console.note("a note");
+  call.console.detail("a detail");
+  call.console.print_json(R"({"frames": 3})", 2);
+  return 0;
+}
+
+Result<int> fail(Mix& /*options*/, Call& call) {
+  call.console.if_it_fails([](const Error& error) {
+    return std::vector<std::string>{"nothing was written",
+                                    "kinalign check " + error.file + " lists everything"};
+  });
+  return Failure(Error{"walk.bvh", 142, "354 values in the frame", "353"});
+}
+
+}  // namespace
+
+TEST_CASE("results go to stdout, everything else to stderr") {
+  const Outcome outcome = Machine{}.run(speak, {"mix", "a"});
+  CHECK(outcome.out == "a result, red\n");
+  CHECK(outcome.err == "a note\n");
+  CHECK(Machine{}.run(speak, {"mix", "a", "-v"}).err == "a note\na detail\n");
+}
+
+TEST_CASE("--quiet leaves errors only") {
+  const Outcome outcome = Machine{}.run(speak, {"mix", "a", "-q"});
+  CHECK(outcome.out.empty());
+  CHECK(outcome.err.empty());
+  CHECK_FALSE(Machine{}.run(fail, {"mix", "a", "-q"}).err.empty());
+}
+
+TEST_CASE("--json prints one object with its schema and nothing else on stdout") {
+  const Outcome outcome = Machine{}.run(speak, {"mix", "a", "--json"});
+  CHECK(outcome.out == "{\"schema\": \"kinalign.mix/2\", \"frames\": 3}\n");
+  const auto empty = [](Mix&, Call& call) -> Result<int> {
+    call.console.print_json("{}");
+    return 0;
+  };
+  CHECK(Machine{}.run(empty, {"mix", "a", "--json"}).out == "{\"schema\": \"kinalign.mix/1\"}\n");
+}
+
+TEST_CASE("colour stands on a terminal without NO_COLOR, or where it was asked for") {
+  const std::string red = "a result, \x1b[31mred\x1b[0m\n";
+  const std::string plain = "a result, red\n";
+  const Machine terminal{.out_is_terminal = true};
+  const Machine no_colour{.variables = {{"NO_COLOR", "1"}}, .out_is_terminal = true};
+  CHECK(terminal.run(speak, {"mix", "a"}).out == red);
+  CHECK(terminal.run(speak, {"mix", "a", "--color=never"}).out == plain);
+  CHECK(no_colour.run(speak, {"mix", "a"}).out == plain);
+  CHECK(no_colour.run(speak, {"mix", "a", "--color=always"}).out == red);
+  CHECK(Machine{}.run(speak, {"mix", "a", "--color=always"}).out == red);
+}
+
+TEST_CASE("an error says what, where, and what to do next, and the exit code is 3") {
+  const Outcome outcome = Machine{}.run(fail, {"mix", "a"});
+  CHECK(outcome.code == 3);
+  CHECK(outcome.out.empty());
+  CHECK(outcome.err ==
+        "kinalign mix: walk.bvh:142: expected 354 values in the frame, found 353\n"
+        "  nothing was written\n"
+        "  kinalign check walk.bvh lists everything\n");
+}
+
+TEST_CASE("the progress line stands on a terminal only and is gone when the job is done") {
+  const auto job = [](Mix&, Call& call) -> Result<int> {
+    go_on(call.console.progress(), "reading", 1, 4);
+    return 0;
+  };
+  CHECK(Machine{}.run(job, {"mix", "a"}).err.empty());
+  const Machine terminal{.err_is_terminal = true};
+  CHECK(terminal.run(job, {"mix", "a"}).err == "\r\x1b[Kreading  25 %\r\x1b[K");
+  CHECK(terminal.run(job, {"mix", "a", "-q"}).err.empty());
+}
+
+TEST_CASE("the progress line gives rate and time left, cut to the terminal") {
+  CHECK(progress_line("reading", 250'000'000, 1'000'000'000, 2.0, 80) ==
+        "reading  25 %  125.0 M/s  6 s left");
+  CHECK(progress_line("frames", 100, 36'000, 10.0, 80) == "frames  0 %  10 /s  1 h 00 min left");
+  CHECK(progress_line("reading", 5, 0, 0.1, 80) == "reading");
+  CHECK(progress_line("reading", 250'000'000, 1'000'000'000, 2.0, 12) == "reading  25 ");
+}
+
+TEST_CASE("Ctrl-C stops a job through its progress and leaves no half file") {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("kinalign_stop_" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  const auto job = [&](Mix&, Call& call) -> Result<int> {
+    auto file =
+        KA_TRY(OutputFile::create(call.surroundings.files, (folder / "t").string(), Overwrite::no));
+    KA_TRY(file.write("half"));
+    const Progress progress = call.console.progress();
+    CHECK(go_on(progress, "reading", 1, 4));
+    std::raise(SIGINT);
+    if (!go_on(progress, "reading", 2, 4)) return Failure(Error{"", 0, "to go on", "Ctrl-C"});
+    KA_TRY(file.commit());
+    return 0;
+  };
+  const Outcome outcome = Machine{}.run(job, {"mix", "a"});
+  CHECK(outcome.code == 130);
+  CHECK(outcome.err == "kinalign mix: stopped; no unfinished file is left\n");
+  CHECK(std::filesystem::is_empty(folder));
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("a reader of stdout that goes away ends the output quietly") {
+  std::array<int, 2> ends{};
+  REQUIRE(::pipe(ends.data()) == 0);
+  ::close(ends[0]);
+  const Outcome outcome = Machine{.out = ends[1]}.run(speak, {"mix", "a"});
+  ::close(ends[1]);
+  CHECK(outcome.code == 0);
+  CHECK(outcome.err == "a note\n");
+}
+
+TEST_CASE("a full disk behind stdout is an error of output") {
+  const int full = ::open("/dev/full", O_WRONLY);
+  REQUIRE(full >= 0);
+  const Outcome outcome = Machine{.out = full}.run(speak, {"mix", "a"});
+  ::close(full);
+  CHECK(outcome.code == 3);
+  CHECK(outcome.err ==
+        "a note\n"
+        "kinalign mix: standard output: expected room to write, found No space left on device\n");
+}
