@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The main of every room's tests. Beside doctest's own output it writes one line a case to the file
 // named by KINALIGN_TEST_LOG (passed | failed | skipped, a tab, the case), from which ./dev test
-// counts: a case that reads ../shared/data and can't find it is skipped, and says so there.
+// counts: a case that reads ../shared/data and can't find it is skipped, and says so there. Each
+// line is written at once: several programs share the file.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
@@ -18,10 +19,11 @@ class CaseLog : public doctest::IReporter {
   }
   void test_case_start(const doctest::TestCaseData& data) override { name_ = data.m_name; }
   void test_case_end(const doctest::CurrentTestCaseStats& stats) override {
-    if (log_.is_open()) log_ << (stats.testCaseSuccess ? "passed\t" : "failed\t") << name_ << "\n";
+    if (log_.is_open())
+      log_ << (stats.testCaseSuccess ? "passed\t" : "failed\t") << name_ << std::endl;
   }
   void test_case_skipped(const doctest::TestCaseData& data) override {
-    if (log_.is_open() && data.m_skip) log_ << "skipped\t" << data.m_name << "\n";
+    if (log_.is_open() && data.m_skip) log_ << "skipped\t" << data.m_name << std::endl;
   }
   void report_query(const doctest::QueryData&) override {}
   void test_run_start() override {}

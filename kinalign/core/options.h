@@ -18,8 +18,8 @@ struct Field {
   std::variant<bool*, double*, std::int64_t*, std::string*, std::optional<double>*,
                std::optional<std::int64_t>*, std::vector<std::string>*>
       value;
-  double least = -1e308;             // numbers only
-  double most = 1e308;               // numbers only
+  double least = -1e308;               // numbers only
+  double most = 1e308;                 // numbers only
   std::vector<std::string> choices{};  // strings only; empty: any text
 };
 
