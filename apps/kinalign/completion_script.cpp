@@ -38,6 +38,7 @@ void for_each_verb(const std::vector<Verb>& verbs, Use&& use) {
 
 std::string verb_names(const std::vector<Verb>& verbs) {
   std::vector<std::string> names;
+  names.reserve(verbs.size());
   for (const Verb& verb : verbs) names.push_back(verb.page.name);
   return joined(names);
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 
@@ -61,7 +62,7 @@ std::string rate_text(double per_s) {
 
 std::string time_text(double s) {
   if (s < 59.5) return fmt::format("{:.0f} s", s);
-  const auto minutes = static_cast<std::int64_t>(s / 60 + 0.5);
+  const auto minutes = std::llround(s / 60);
   if (minutes < 60) return fmt::format("{} min", minutes);
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }

@@ -16,6 +16,8 @@ template <class... Kinds>
 struct Overloaded : Kinds... {
   using Kinds::operator()...;
 };
+template <class... Kinds>
+Overloaded(Kinds...) -> Overloaded<Kinds...>;  // clang 14 needs to be told
 
 std::string text_of(double number) {
   std::array<char, number_room> room{};

@@ -19,7 +19,7 @@ constexpr std::size_t most_bytes = std::size_t{1} << 20;
 std::int64_t line_of(const toml::node& node) { return node.source().begin.line; }
 
 std::optional<std::string> scalar_text(const toml::node& node) {
-  if (const auto text = node.value<std::string>(); node.is_string()) return text;
+  if (node.is_string()) return node.value<std::string>();
   if (const auto truth = node.value<bool>(); node.is_boolean()) return *truth ? "true" : "false";
   if (const auto whole = node.value<std::int64_t>(); node.is_integer()) {
     return std::to_string(*whole);
