@@ -24,6 +24,21 @@ std::string kind_of(mode_t mode) {
   return "a device";
 }
 
+/// Reads until `to` is full or the file ends.
+Result<std::size_t> fill(FileSystem& files, const std::string& path, int fd, std::uint64_t at,
+                         std::span<char> to) {
+  std::size_t done = 0;
+  while (done < to.size()) {
+    const ssize_t got =
+        files.read_at(fd, to.data() + done, to.size() - done, static_cast<off_t>(at + done));
+    if (got == 0) break;
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return failed(path, "a readable file", errno);
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
+}
+
 }  // namespace
 
 int PosixFiles::open(const char* path, int flags, mode_t mode) {
@@ -33,6 +48,13 @@ ssize_t PosixFiles::read(int fd, void* data, std::size_t size) { return ::read(f
 ssize_t PosixFiles::write(int fd, const void* data, std::size_t size) {
   return ::write(fd, data, size);
 }
+ssize_t PosixFiles::read_at(int fd, void* data, std::size_t size, off_t at) {
+  return ::pread(fd, data, size, at);
+}
+ssize_t PosixFiles::write_at(int fd, const void* data, std::size_t size, off_t at) {
+  return ::pwrite(fd, data, size, at);
+}
+int PosixFiles::allocate(int fd, off_t size) { return ::fallocate(fd, 0, 0, size); }
 int PosixFiles::sync(int fd) { return ::fsync(fd); }
 int PosixFiles::link(const char* from, const char* to) {
   return ::linkat(AT_FDCWD, from, AT_FDCWD, to, AT_SYMLINK_FOLLOW);
@@ -87,6 +109,10 @@ Result<std::string_view> InputFile::next() {
     if (got >= 0) return std::string_view(buffer_.data(), static_cast<std::size_t>(got));
     if (errno != EINTR) return failed(path_, "a readable file", errno);
   }
+}
+
+Result<std::size_t> InputFile::read_at(std::uint64_t at, std::span<char> to) const {
+  return fill(*files_, path_, fd_, at, to);
 }
 
 Result<std::string> read_whole(FileSystem& files, const std::string& path, std::size_t most) {
@@ -172,6 +198,30 @@ Result<void> OutputFile::write(std::string_view bytes) {
     bytes.remove_prefix(static_cast<std::size_t>(put));
   }
   return {};
+}
+
+Result<void> OutputFile::write_at(std::uint64_t at, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t put = files_->write_at(fd_, bytes.data(), bytes.size(), static_cast<off_t>(at));
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) return failed(path_, "room to write", errno);
+    bytes.remove_prefix(static_cast<std::size_t>(put));
+    at += static_cast<std::uint64_t>(put);
+  }
+  return {};
+}
+
+Result<void> OutputFile::reserve(std::uint64_t size) {
+  while (files_->allocate(fd_, static_cast<off_t>(size)) != 0) {
+    if (errno == EINTR) continue;
+    if (errno == EOPNOTSUPP || errno == ENOSYS) return {};
+    return failed(path_, "room for " + std::to_string(size) + " bytes", errno);
+  }
+  return {};
+}
+
+Result<std::size_t> OutputFile::read_at(std::uint64_t at, std::span<char> to) const {
+  return fill(*files_, path_, fd_, at, to);
 }
 
 Result<void> OutputFile::place() {

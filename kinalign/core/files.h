@@ -24,6 +24,9 @@ class FileSystem {
   virtual int open(const char* path, int flags, mode_t mode) = 0;
   virtual ssize_t read(int fd, void* data, std::size_t size) = 0;
   virtual ssize_t write(int fd, const void* data, std::size_t size) = 0;
+  virtual ssize_t read_at(int fd, void* data, std::size_t size, off_t at) = 0;         // pread
+  virtual ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) = 0;  // pwrite
+  virtual int allocate(int fd, off_t size) = 0;  // fallocate of all bytes up to `size`
   virtual int sync(int fd) = 0;
   virtual int link(const char* from, const char* to) = 0;  // follows a /proc/self/fd link
   virtual int rename(const char* from, const char* to) = 0;
@@ -37,6 +40,9 @@ class PosixFiles final : public FileSystem {
   int open(const char* path, int flags, mode_t mode) override;
   ssize_t read(int fd, void* data, std::size_t size) override;
   ssize_t write(int fd, const void* data, std::size_t size) override;
+  ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override;
+  ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override;
+  int allocate(int fd, off_t size) override;
   int sync(int fd) override;
   int link(const char* from, const char* to) override;
   int rename(const char* from, const char* to) override;
@@ -60,6 +66,10 @@ class InputFile {
 
   /// The next piece; empty at the end. Valid until the next call.
   Result<std::string_view> next();
+
+  /// Fills `to` from byte `at` on, as far as the file reaches; returns how much that was. Does not
+  /// move what next() reads.
+  Result<std::size_t> read_at(std::uint64_t at, std::span<char> to) const;
 
   std::uint64_t size() const { return size_; }  // when it was opened: for progress, not for trust
   const std::string& path() const { return path_; }
@@ -94,10 +104,15 @@ class OutputFile {
   ~OutputFile();
 
   Result<void> write(std::string_view bytes);
+  /// At any place, also behind the end: what lies between reads as zeros.
+  Result<void> write_at(std::uint64_t at, std::string_view bytes);
+  /// Takes room on the disk for a file of that length, so that a full disk shows before the work;
+  /// the file then reads as zeros. Where the file system can't, nothing happens.
+  Result<void> reserve(std::uint64_t size);
+  /// What was written there; returns how much of `to` the file filled.
+  Result<std::size_t> read_at(std::uint64_t at, std::span<char> to) const;
   Result<void> commit();
 
-  /// The path under which a library may open the unfinished file.
-  const std::string& unfinished() const { return unfinished_; }
   const std::string& path() const { return path_; }
 
  private:
