@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// HDF5's C API as this room uses it: handles that close themselves, failures as errors, and a
+// driver of ours below, so that every byte goes through core's files. A failed write is remembered
+// and told to HDF5 as done: HDF5 1.10 can't close a file that it could not write.
+// For the .cpp files of takes only: no other header includes this one.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/core/files.h"
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace kinalign::hdf5 {
+
+/// Owns one of HDF5's numbered things.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle() = default;
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() { reset(); }
+
+  hid_t id() const { return id_; }
+  bool good() const { return id_ >= 0; }
+  bool reset() { return !good() || close_(std::exchange(id_, -1)) >= 0; }
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+/// Where a file's bytes lie: one of the two. Must not move while HDF5 has the file open.
+struct Bytes {
+  InputFile* input = nullptr;
+  OutputFile* output = nullptr;
+  std::uint64_t size = 0;
+  std::optional<Error> failure;  // the first that HDF5 was not told of
+
+  std::string path() const { return input != nullptr ? input->path() : output->path(); }
+  Result<void> write(std::uint64_t at, std::string_view bytes);
+};
+
+/// An empty file that old HDF5 and MATLAB read.
+Result<Handle> create(Bytes& bytes);
+/// Opens for reading only. Runs no plug-in that a file might ask for.
+Result<Handle> open(Bytes& bytes);
+/// "expected `expected`, found (what HDF5 says of its last failure)".
+Failure failure(const Bytes& bytes, std::string expected);
+
+/// What a data set or an attribute holds.
+struct Shape {
+  hid_t type = -1;             // HDF5's
+  std::vector<hsize_t> sizes;  // none: a scalar
+};
+
+Handle text_type(std::size_t bytes);  // fixed, UTF-8, padded with NUL
+Handle space(const std::vector<hsize_t>& sizes);
+Handle create_group(hid_t parent, const std::string& name);
+/// Contiguous, with its place in the file but no bytes yet.
+Handle create_dataset(hid_t parent, const std::string& name, const Shape& shape);
+
+bool put_attribute(hid_t object, const char* name, const Shape& shape, const void* value);
+bool put_text(hid_t object, const char* name, std::string_view text);
+bool put_texts(hid_t object, const char* name, const std::vector<std::string>& texts);
+
+/// Texts of one length, padded, one behind the other; at least one byte each.
+struct PackedTexts {
+  std::size_t width = 1;
+  std::string bytes;
+};
+PackedTexts pack(const std::vector<std::string>& texts);
+std::vector<std::string> unpack(std::string_view bytes, std::size_t width);
+
+}  // namespace kinalign::hdf5

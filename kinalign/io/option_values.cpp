@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/option_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+std::string written(const OptionValue& value) {
+  if (const auto* truth = std::get_if<bool>(&value)) return *truth ? "true" : "false";
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  if (const auto* text = std::get_if<std::string>(&value)) return "\"" + shown(*text) + "\"";
+  return "a list";
+}
+
+/// What may stand there, in words.
+std::string wanted(const Field& field, const char* kind) {
+  if (!field.choices.empty()) {
+    std::string list;
+    for (const std::string& choice : field.choices) {
+      list += (list.empty() ? "" : ", ") + (choice.empty() ? "\"\"" : choice);
+    }
+    return field.name + " as one of " + list;
+  }
+  if (field.least > -1e300) {
+    return fmt::format("{} as {} from {} to {}", field.name, kind, field.least, field.most);
+  }
+  return field.name + " as " + kind;
+}
+
+std::optional<double> number_in(const OptionValue& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> whole_in(const OptionValue& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return *whole;
+  return std::nullopt;
+}
+
+template <class Value>
+std::optional<Value> same_in(const OptionValue& value) {
+  if (const auto* same = std::get_if<Value>(&value)) return *same;
+  return std::nullopt;
+}
+
+/// One overload a kind of option: its name in messages, and the value where it is of that kind.
+struct Kind {
+  const char* name;
+  bool fits;
+};
+
+struct Assigner {
+  const Field& field;
+  const OptionValue& value;
+
+  template <class Target, class Value>
+  Kind put(const char* name, Target* target, const std::optional<Value>& found) const {
+    if (!found) return {name, false};
+    if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
+      const auto number = static_cast<double>(*found);
+      if (!(number >= field.least && number <= field.most)) return {name, false};
+    }
+    if constexpr (std::is_same_v<Value, std::string>) {
+      const auto& choices = field.choices;
+      if (!choices.empty() && std::find(choices.begin(), choices.end(), *found) == choices.end()) {
+        return {name, false};
+      }
+    }
+    *target = *found;
+    return {name, true};
+  }
+
+  Kind operator()(bool* to) const { return put("true or false", to, same_in<bool>(value)); }
+  Kind operator()(double* to) const { return put("a number", to, number_in(value)); }
+  Kind operator()(std::optional<double>* to) const { return put("a number", to, number_in(value)); }
+  Kind operator()(std::int64_t* to) const { return put("a whole number", to, whole_in(value)); }
+  Kind operator()(std::optional<std::int64_t>* to) const {
+    return put("a whole number", to, whole_in(value));
+  }
+  Kind operator()(std::string* to) const { return put("a text", to, same_in<std::string>(value)); }
+  Kind operator()(std::vector<std::string>* to) const {
+    return put("a list of texts", to, same_in<std::vector<std::string>>(value));
+  }
+};
+
+/// Letters to insert, remove or replace (Levenshtein).
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t corner = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = corner + (a[i] == b[j] ? 0 : 1);
+      corner = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, corner + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+Result<void> assign(const Field& field, const OptionValue& value) {
+  const Kind kind = std::visit(Assigner{field, value}, field.value);
+  if (kind.fits) return {};
+  return Failure(Error{"", 0, wanted(field, kind.name), written(value)});
+}
+
+const Field* find_field(const Fields& fields, std::string_view name) {
+  const auto found = std::find_if(fields.begin(), fields.end(),
+                                  [&](const Field& field) { return field.name == name; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+Error unknown_name(std::string_view name, const std::string& what,
+                   const std::vector<std::string>& known) {
+  const std::string_view start = name.substr(0, 64);
+  const auto nearest = std::min_element(
+      known.begin(), known.end(),
+      [&](const auto& a, const auto& b) { return distance(start, a) < distance(start, b); });
+  const std::string hint = nearest == known.end() ? "" : " (nearest: " + *nearest + ")";
+  return {"", 0, what + hint, "\"" + shown(name) + "\""};
+}
+
+}  // namespace kinalign

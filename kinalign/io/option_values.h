@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Values of described options (core/options.h) as TOML and JSON hold them: checked on the way in,
+// the same messages for both.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/core/options.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace kinalign {
+
+using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>>;
+
+/// Puts `value` into the option. The error has no place: "gap_ms between 0 and 86400000", "-1".
+Result<void> assign(const Field& field, const OptionValue& value);
+
+/// The field of that name; nullptr where there is none.
+const Field* find_field(const Fields& fields, std::string_view name);
+
+/// The error for a name that is not known, with the nearest known one: "a key of [align]
+/// (gap_ms?)".
+Error unknown_name(std::string_view name, const std::string& what,
+                   const std::vector<std::string>& known);
+
+}  // namespace kinalign

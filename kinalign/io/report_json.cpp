@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/report_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json survey_json(const StampSurvey& survey) {
+  return {{"samples", survey.samples},
+          {"duplicates", survey.duplicates},
+          {"backward", survey.backward},
+          {"largest_step_back_ns", survey.largest_step_back_ns},
+          {"first_ns", to_ns(survey.first)},
+          {"last_ns", to_ns(survey.last)},
+          {"median_step_ns", survey.median_step_ns}};
+}
+
+Json stream_json(const StreamReport& stream) {
+  Json out = {{"stream", stream.stream}};
+  if (!stream.node.empty()) out["node"] = stream.node;
+  out["stamps"] = survey_json(stream.survey);
+  out["rate_hz"] = stream.rate_hz;
+  out["gap_ns"] = stream.gap_ns;
+  out["gaps"] = stream.gaps;
+  out["gap_time_ns"] = stream.gap_time_ns;
+  out["samples"] = stream.samples;
+  out["invalid"] = stream.invalid;
+  out["inferred"] = stream.inferred;
+  out["bridged"] = stream.bridged;
+  out["worst_nearest_ns"] = stream.worst_nearest_ns;
+  if (stream.worst_interval_ns) out["worst_interval_ns"] = *stream.worst_interval_ns;
+  return out;
+}
+
+Json space_json(const SpaceReport& space) {
+  const Quat& q = space.transform.rotation;
+  const Vec3& t = space.transform.translation;
+  Json out = {{"stream", space.stream},
+              {"onto", space.onto},
+              {"method", space.method},
+              {"rotation", {q.w(), q.x(), q.y(), q.z()}},
+              {"translation_m", {t.x(), t.y(), t.z()}},
+              {"magnification", space.magnification},
+              {"before_m", space.before_m},
+              {"after_m", space.after_m},
+              {"joints", Json::array()}};
+  for (const JointResidual& joint : space.joints) {
+    out["joints"].push_back({{"joint", joint.joint},
+                             {"onto", joint.onto},
+                             {"rows", joint.rows},
+                             {"before_m", joint.before_m},
+                             {"after_m", joint.after_m}});
+  }
+  return out;
+}
+
+Json finding_json(const Finding& finding) {
+  return {{"severity", std::string(to_string(finding.severity))},
+          {"file", finding.what.file},
+          {"line", finding.what.line},
+          {"expected", finding.what.expected},
+          {"found", finding.what.found},
+          {"meaning", finding.meaning},
+          {"repair", finding.repair}};
+}
+
+Json findings_array(const Findings& findings) {
+  Json out = Json::array();
+  for (const Finding& finding : findings) out.push_back(finding_json(finding));
+  return out;
+}
+
+/// Names may hold bytes that are no UTF-8; they are shown as U+FFFD.
+std::string written(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string report_json(const AlignmentReport& report) {
+  Json out = {{"schema", "kinalign.report/1"},   {"frames", report.frames},
+              {"begin_ns", to_ns(report.begin)}, {"end_ns", to_ns(report.end)},
+              {"rate_hz", report.rate_hz},       {"reference", report.reference},
+              {"streams", Json::array()},        {"spaces", Json::array()}};
+  for (const StreamReport& stream : report.streams) out["streams"].push_back(stream_json(stream));
+  for (const SpaceReport& space : report.spaces) out["spaces"].push_back(space_json(space));
+  out["findings"] = findings_array(report.findings);
+  return written(out);
+}
+
+std::string findings_json(const Findings& findings) { return written(findings_array(findings)); }
+
+}  // namespace kinalign
