@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // HDF5 lays out the file and writes its small parts; rows go straight to the places it gave them.
+#include "kinalign/io/hdf5_checks.h"
 #include "kinalign/io/hdf5_file.h"
 #include "kinalign/io/parameters_json.h"
 #include "kinalign/io/report_json.h"
@@ -19,22 +20,6 @@ using hdf5::Shape;
 
 constexpr const char* can_hold = "a take that HDF5 can hold";
 
-hid_t hdf5_type(Stored stored) {
-  switch (stored) {
-    case Stored::float32:
-      return H5T_IEEE_F32LE;
-    case Stored::float64:
-      return H5T_IEEE_F64LE;
-    case Stored::int64:
-      return H5T_STD_I64LE;
-    case Stored::int32:
-      return H5T_STD_I32LE;
-    case Stored::uint8:
-      break;
-  }
-  return H5T_STD_U8LE;
-}
-
 /// A column whose place in the file is known.
 struct Placed {
   std::string name;
@@ -52,7 +37,7 @@ class Layout {
     std::vector<hsize_t> sizes{frames};
     sizes.insert(sizes.end(), column.shape.begin(), column.shape.end());
     const Handle made =
-        hdf5::create_dataset(parent, column.name, {hdf5_type(column.stored), sizes});
+        hdf5::create_dataset(parent, column.name, {hdf5::type_of(column.stored), sizes});
     if (!made.good()) return hdf5::failure(bytes_, can_hold);
     for (const auto& [name, text] : column.facts) {
       if (!hdf5::put_text(made.id(), name.c_str(), text)) return hdf5::failure(bytes_, can_hold);
