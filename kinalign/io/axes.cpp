@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/axes.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+Eigen::Matrix3d matrix_of(const Axes& axes) {
+  Eigen::Matrix3d matrix;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Vec3 unit = Vec3::Unit(i);
+    matrix.col(i) = turned(axes, unit.data());
+  }
+  return matrix;
+}
+
+}  // namespace
+
+int determinant(const Axes& axes) {
+  return static_cast<int>(std::lround(matrix_of(axes).determinant()));
+}
+
+Quat rotation_of(const Axes& axes) {
+  assert(determinant(axes) == 1);
+  return Quat(matrix_of(axes));
+}
+
+}  // namespace kinalign

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/cells.h"
+
+#include "kinalign/core/numbers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double largest = 1e15;  // above it no length, angle or rate of ours can be meant
+
+std::string_view unquoted(std::string_view cell) {
+  if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
+  return trimmed(cell.substr(1, cell.size() - 2));
+}
+
+std::string_view between(const char* at, const char* end) {
+  return {at, static_cast<std::size_t>(end - at)};
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+bool says_missing(std::string_view cell) {
+  if (cell.empty()) return true;
+  if (cell.starts_with('-')) cell.remove_prefix(1);
+  return cell.size() == 3 && (cell[0] | 32) == 'n' && (cell[1] | 32) == 'a' &&
+         (cell[2] | 32) == 'n';
+}
+
+RowParser::RowParser(char delimiter, std::vector<ColumnUse> columns)
+    : delimiter_(delimiter), columns_(std::move(columns)) {
+  int slots = 0;
+  int wanted_texts = 0;
+  for (const ColumnUse use : columns_) {
+    slots = std::max(slots, use.slot + 1);
+    wanted_texts = std::max(wanted_texts, use.text + 1);
+  }
+  values.resize(static_cast<std::size_t>(slots));
+  missing.resize(static_cast<std::size_t>(slots));
+  texts.resize(static_cast<std::size_t>(wanted_texts));
+}
+
+inline bool RowParser::delimits(char c) const {
+  return delimiter_ == runs_of_blanks ? c == ' ' || c == '\t' : c == delimiter_;
+}
+
+inline bool RowParser::pads(char c) const { return (c == ' ' || c == '\t') && c != delimiter_; }
+
+const char* RowParser::cell_end(const char* at, const char* end) const {
+  if (at != end && *at == '"') {
+    const char* closing = std::find(at + 1, end, '"');
+    if (closing != end) at = closing;
+  }
+  return std::find_if(at, end, [this](char c) { return delimits(c); });
+}
+
+const char* RowParser::odd_number(const char* at, const char* end, int slot) {
+  const auto i = static_cast<std::size_t>(slot);
+  const char* behind = cell_end(at, end);
+  const std::string_view cell = unquoted(trimmed(between(at, behind)));
+  values[i] = 0.0;
+  if (says_missing(cell)) {
+    missing[i] = 1;
+    any_missing = true;
+    return behind;
+  }
+  if (!parse_number(cell, values[i]) || !(std::abs(values[i]) < largest)) return nullptr;
+  return behind;
+}
+
+inline const char* RowParser::number(const char* at, const char* end, int slot) {
+  double& value = values[static_cast<std::size_t>(slot)];
+  const char* behind = parse_number(at, end, value);
+  if (behind == nullptr || !(std::abs(value) < largest)) return odd_number(at, end, slot);
+  if (behind == end || *behind == delimiter_) return behind;
+  if (delimiter_ == runs_of_blanks && delimits(*behind)) return behind;
+  return odd_number(at, end, slot);
+}
+
+template <bool runs>
+Result<void> RowParser::read_cells(const char* at, const char* end) {
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    while (at != end && pads(*at)) ++at;
+    if (runs && at == end) return too_few(i);
+    const char* start = at;
+    const ColumnUse use = columns_[i];
+    at = use.slot >= 0 ? number(start, end, use.slot) : cell_end(start, end);
+    if (at == nullptr) {
+      const auto cell = between(start, cell_end(start, end));
+      return Failure(
+          Error{"", 0, "a number in column " + std::to_string(i + 1), shown(trimmed(cell))});
+    }
+    if (use.text >= 0)
+      texts[static_cast<std::size_t>(use.text)] = unquoted(trimmed(between(start, at)));
+    if (!runs && at == end && i + 1 < columns_.size()) return too_few(i + 1);
+    if (!runs && at != end) ++at;  // the delimiter
+  }
+  while (at != end && (pads(*at) || delimits(*at))) ++at;
+  if (at != end) return too_many(at, end);
+  return {};
+}
+
+Result<void> RowParser::read(std::string_view line) {
+  if (any_missing) {
+    std::fill(missing.begin(), missing.end(), std::uint8_t{0});
+    any_missing = false;
+  }
+  const char* end = line.data() + line.size();
+  return delimiter_ == runs_of_blanks ? read_cells<true>(line.data(), end)
+                                      : read_cells<false>(line.data(), end);
+}
+
+Failure RowParser::too_few(std::size_t cells) const {
+  return Failure(Error{"", 0, std::to_string(columns_.size()) + " cells", std::to_string(cells)});
+}
+
+Failure RowParser::too_many(const char* at, const char* end) const {
+  const std::size_t more = split_cells(between(at, end), delimiter_).size();
+  return too_few(columns_.size() + more);
+}
+
+std::vector<std::string> split_cells(std::string_view line, char delimiter) {
+  std::vector<std::string> cells;
+  if (delimiter == runs_of_blanks) {
+    for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
+      const auto length = std::min(line.find_first_of(" \t"), line.size());
+      cells.emplace_back(unquoted(line.substr(0, length)));
+      line.remove_prefix(length);
+    }
+    return cells;
+  }
+  for (;;) {
+    const auto length = line.find(delimiter);
+    cells.emplace_back(unquoted(trimmed(line.substr(0, length))));
+    if (length == std::string_view::npos) break;
+    line.remove_prefix(length + 1);
+  }
+  while (!cells.empty() && cells.back().empty()) cells.pop_back();  // delimiters at the line's end
+  return cells;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines of a text file whose name the messages know.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/core/lines.h"
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace kinalign {
+
+class NamedLines {
+ public:
+  explicit NamedLines(std::string_view file) : file_(file) {}
+
+  /// Calls `use(line)` -> Result<void> for each completed line; an error without a place gets this
+  /// file and line. A byte order mark in front of the first line is dropped.
+  template <class Use>
+  Result<void> feed(std::string_view piece, Use&& use) {
+    return placed(lines_.feed(piece, [&](std::string_view line) { return use(unmarked(line)); }));
+  }
+
+  /// The file has ended. Where its last line has no line end and can't be used, `incomplete` says
+  /// so and the result is good: the writer was cut off.
+  template <class Use>
+  Result<void> finish(Use&& use, Findings& incomplete) {
+    auto last = placed(lines_.finish([&](std::string_view line) { return use(unmarked(line)); }));
+    if (!last) {
+      incomplete.push_back({Severity::warning, std::move(last).error(),
+                            "the last line is incomplete and was dropped", ""});
+    }
+    return {};
+  }
+
+  /// The same where an incomplete last line is a failure.
+  template <class Use>
+  Result<void> finish(Use&& use) {
+    return placed(lines_.finish([&](std::string_view line) { return use(unmarked(line)); }));
+  }
+
+  /// An error of the line that was read last.
+  Error error(std::string expected, std::string found) const {
+    return {file_, lines_.number(), std::move(expected), std::move(found)};
+  }
+
+  const std::string& file() const { return file_; }
+  std::int64_t number() const { return lines_.number(); }
+
+ private:
+  std::string_view unmarked(std::string_view line) const {
+    if (lines_.number() == 1 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+    return line;
+  }
+
+  Result<void> placed(Result<void> result) const {
+    if (!result && result.error().file.empty()) {
+      result.error().file = file_;
+      if (result.error().line == 0) result.error().line = lines_.number();
+    }
+    return result;
+  }
+
+  std::string file_;
+  LineSplitter lines_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/point_rows.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+Axes axes_of(const Axes& of_format, const StreamOptions& options) {
+  if (options.up == "y") return y_up;
+  if (options.up == "z") return z_up;
+  return of_format;
+}
+
+PointUnits point_units(const PointUnits& of_format, const StreamOptions& options) {
+  return {axes_of(of_format.axes, options),
+          options.metres_per_unit > 0.0 ? options.metres_per_unit : of_format.metres};
+}
+
+MirrorWatch::MirrorWatch(const std::vector<std::string>& joint_names) {
+  const auto index = [&](std::string_view name) {
+    const auto at = std::find(joint_names.begin(), joint_names.end(), name);
+    return static_cast<std::size_t>(at - joint_names.begin());
+  };
+  left_ = index("ShoulderLeft");
+  right_ = index("ShoulderRight");
+  present_ = std::max(left_, right_) < joint_names.size();
+}
+
+void MirrorWatch::watch(const double* positions, const Tracking* states) {
+  if (!present_) return;
+  if (states[left_] == Tracking::missing || states[right_] == Tracking::missing) return;
+  ++rows_;
+  mirrored_ += positions[3 * left_] > positions[3 * right_] ? 1 : 0;
+}
+
+void MirrorWatch::report(const std::string& file, Findings& findings) const {
+  if (mirrored_ * 2 <= rows_) return;
+  findings.push_back({Severity::warning,
+                      Error{file, 0, "the left shoulder at smaller x than the right one",
+                            "it at larger x in " + std::to_string(mirrored_) + " of " +
+                                std::to_string(rows_) + " rows"},
+                      "the file was mirrored, or the person stood with the back to the sensor",
+                      "if it was mirrored, use a layout with x = \"-x\" and mirrored = true"});
+}
+
+}  // namespace kinalign

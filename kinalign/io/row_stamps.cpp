@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/row_stamps.h"
+
+#include "kinalign/core/numbers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr int most_digits = 18;           // an int64 holds them
+constexpr int most_fraction_digits = 10;  // of seconds: a tenth of a nanosecond
+
+/// "12.50" as whole 12, fraction 5, scale 10.
+struct Decimal {
+  bool minus = false;
+  std::int64_t whole = 0;
+  std::uint64_t fraction = 0, scale = 1;
+};
+
+bool is_digit(char c) { return static_cast<unsigned>(c - '0') < 10; }
+
+/// Plain decimals only; false where an exponent or anything else stands.
+bool parse_decimal(std::string_view text, Decimal& out) {
+  std::size_t i = 0;
+  if (i < text.size() && (text[i] == '-' || text[i] == '+')) out.minus = text[i++] == '-';
+  const std::size_t first = i;
+  for (; i < text.size() && is_digit(text[i]); ++i) {
+    if (i - first >= most_digits + 1 || out.whole > INT64_MAX / 10 - 1) return false;
+    out.whole = out.whole * 10 + (text[i] - '0');
+  }
+  std::size_t digits = i - first;
+  if (i < text.size() && text[i] == '.') {
+    const std::size_t point = i++;
+    for (; i < text.size() && is_digit(text[i]); ++i, ++digits) {
+      if (i - point > most_fraction_digits) continue;
+      out.fraction = out.fraction * 10 + static_cast<unsigned>(text[i] - '0');
+      out.scale *= 10;
+    }
+  }
+  return digits > 0 && i == text.size();
+}
+
+std::optional<std::int64_t> through_double(std::string_view text, TimeScale scale) {
+  std::string point(text.substr(0, 64));
+  std::replace(point.begin(), point.end(), ',', '.');  // a French locale's 1,594038E+12
+  double value = 0.0;
+  if (!parse_number(point, value)) return std::nullopt;
+  const double ns =
+      (value - static_cast<double>(scale.epoch_s) * 1e9 / static_cast<double>(scale.unit_ns)) *
+      static_cast<double>(scale.unit_ns);
+  if (!(std::abs(ns) <= static_cast<double>(furthest_stamp_ns))) return std::nullopt;
+  return std::llround(ns);
+}
+
+}  // namespace
+
+std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale) {
+  Decimal decimal;
+  if (!parse_decimal(text, decimal)) return through_double(text, scale);
+  const std::int64_t units = (decimal.minus ? -decimal.whole : decimal.whole) -
+                             scale.epoch_s * (second_ns / scale.unit_ns);
+  if (std::abs(units) > furthest_stamp_ns / scale.unit_ns) return std::nullopt;
+  // below 1e10 * 1e9 + 5e9: fits into 64 bits without a sign
+  const std::uint64_t part =
+      (decimal.fraction * static_cast<std::uint64_t>(scale.unit_ns) + decimal.scale / 2) /
+      decimal.scale;
+  const auto fraction = static_cast<std::int64_t>(part);
+  return units * scale.unit_ns + (decimal.minus ? -fraction : fraction);
+}
+
+std::int64_t stamp_at_rate(std::uint64_t index, double rate_hz) {
+  const double ns = static_cast<double>(index) * 1e9 / rate_hz;
+  return ns < 9e18 ? std::llround(ns) : INT64_MAX / 2;
+}
+
+RowStamps::RowStamps(bool column, double rate_hz, std::optional<std::int64_t> start_ns)
+    : column_(column), rate_hz_(rate_hz), start_ns_(start_ns), settled_(!column) {}
+
+Result<Time> RowStamps::next(std::int64_t ns) {
+  if (rows_ == 0) {
+    first_ = column_ ? ns : 0;
+    if (start_ns_) shift_ = *start_ns_ - first_;
+  } else if (!settled_) {
+    stuck_ = ns == first_ && rows_ + 1 >= patience;
+    settled_ = ns != first_ || stuck_;
+  }
+  if (by_rate()) ns = first_ + stamp_at_rate(rows_, rate_hz_);
+  ++rows_;
+  std::int64_t shifted = 0;
+  const bool overflow = __builtin_add_overflow(ns, shift_, &shifted);
+  if (overflow || shifted > furthest_stamp_ns || shifted < -furthest_stamp_ns) {
+    return Failure(Error{"", 0, "a stamp inside +-4e18 ns", std::to_string(ns) + " ns"});
+  }
+  return utc_time(shifted);
+}
+
+void RowStamps::settle() {
+  constexpr std::uint64_t least = 3;
+  if (!settled_) stuck_ = rows_ >= least;
+  settled_ = true;
+}
+
+void RowStamps::restamp(std::vector<Time>& held) const {
+  if (!stuck_ || rate_hz_ <= 0.0) return;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    held[i] = utc_time(first_ + shift_ + stamp_at_rate(i, rate_hz_));
+  }
+}
+
+Finding stuck_finding(std::string_view file, const RowStamps& stamps) {
+  const bool rate = stamps.rate_hz() > 0.0;
+  return {Severity::warning,
+          Error{std::string(file), 0, "stamps that move",
+                "the same stamp in the first " +
+                    std::to_string(std::min(stamps.rows(), RowStamps::patience)) + " rows"},
+          rate ? "the rows were stamped by rate_hz" : "the rows can't be placed in time",
+          rate ? "" : "say rate_hz, the rate at which the device wrote"};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/table_columns.h"
+
+#include "kinalign/core/numbers.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace kinalign {
+
+namespace {
+
+using enum TableField;
+
+/// A quantity: its fields in the order of its slots, and where its first slot is noted.
+struct Quantity {
+  std::vector<TableField> fields;
+  int TableColumns::*first;
+  bool needed;
+};
+
+std::vector<Quantity> quantities() {
+  return {{{x, y, z}, &TableColumns::positions, true},
+          {{state}, &TableColumns::states, false},
+          {{qw, qx, qy, qz}, &TableColumns::orientation, false},
+          {{ax, ay, az}, &TableColumns::acceleration, false},
+          {{gx, gy, gz}, &TableColumns::angular_velocity, false}};
+}
+
+std::string with_member(std::string pattern, const std::string& member) {
+  for (const std::string_view place : {"{joint}", "{node}"}) {
+    for (auto at = pattern.find(place); at != std::string::npos;
+         at = pattern.find(place, at + member.size())) {
+      pattern.replace(at, place.size(), member);
+    }
+  }
+  return pattern;
+}
+
+Failure no_column(const std::string& name) {
+  return Failure(Error{"", 0, "a column " + shown(name), "none of that name"});
+}
+
+class Finder {
+ public:
+  Finder(const TableLayout& layout, const std::vector<std::string>& members,
+         const std::vector<std::string>& names)
+      : layout_(layout), members_(members), named_(!names.empty()) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      ++places_.try_emplace(names[i], i).first->second.times;
+    found_.uses.resize(named_ ? names.size() : layout.columns);
+  }
+
+  Result<TableColumns> find(const std::map<std::string, std::string>& select) {
+    for (const Quantity& quantity : quantities()) KA_TRY(place(quantity));
+    if (layout_.time) {
+      found_.time_text = static_cast<int>(text_of(KA_TRY(column_of(layout_.time->column))));
+    }
+    for (const auto& [column, value] : select) {
+      found_.choices.push_back({text_of(KA_TRY(column_of(choice_of(column)))), value});
+    }
+    if (slots_ == 0) return Failure(Error{"", 0, "columns of layout " + layout_.name, "none"});
+    return std::move(found_);
+  }
+
+ private:
+  struct Place {
+    explicit Place(std::size_t i) : column(i) {}
+    std::size_t column;
+    int times = 0;
+  };
+
+  ColumnChoice choice_of(const std::string& column) const {
+    std::size_t number = 0;
+    const char* end = column.data() + column.size();
+    const auto [behind, fault] = std::from_chars(column.data(), end, number);
+    if (!places_.contains(column) && fault == std::errc{} && behind == end) return {"", number};
+    return {column, 0};
+  }
+
+  Result<std::size_t> column_of(const ColumnChoice& choice) const {
+    if (choice.number != 0) {
+      if (choice.number <= found_.uses.size()) return choice.number - 1;
+      return Failure(Error{"", 0, "a column " + std::to_string(choice.number),
+                           std::to_string(found_.uses.size()) + " columns"});
+    }
+    const auto place = places_.find(choice.name);
+    if (place == places_.end()) return no_column(choice.name);
+    if (place->second.times == 1) return place->second.column;
+    return Failure(Error{"", 0, "one column " + shown(choice.name),
+                         std::to_string(place->second.times) + " of that name"});
+  }
+
+  /// The columns of a quantity, members outside, fields inside; a missing one is `none`.
+  Result<std::vector<std::size_t>> columns_of(const Quantity& quantity,
+                                              std::string& missing) const {
+    std::vector<std::size_t> columns;
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+      for (const TableField field : quantity.fields) {
+        const auto at = std::find_if(layout_.fields.begin(), layout_.fields.end(),
+                                     [&](const FieldColumn& each) { return each.field == field; });
+        if (at == layout_.fields.end()) return columns;
+        const auto i = static_cast<std::size_t>(at - layout_.fields.begin());
+        const std::string name = with_member(at->pattern, members_[m]);
+        ColumnChoice choice{name, 0};
+        if (!layout_.by_name) {
+          choice.number = layout_.first_column + m * layout_.fields.size() + i;
+        } else if (!places_.contains(name)) {
+          if (missing.empty()) missing = name;
+          continue;
+        }
+        columns.push_back(KA_TRY(column_of(choice)));
+      }
+    }
+    return columns;
+  }
+
+  Result<void> place(const Quantity& quantity) {
+    std::string missing;
+    const auto columns = KA_TRY(columns_of(quantity, missing));
+    if (!missing.empty() && (quantity.needed || !columns.empty())) return no_column(missing);
+    if (columns.empty()) return {};
+    found_.*quantity.first = slots_;
+    for (const std::size_t column : columns) {
+      if (found_.uses[column].slot >= 0) {
+        return Failure(Error{"", 0, "one meaning for column " + std::to_string(column + 1), "two"});
+      }
+      found_.uses[column].slot = slots_++;
+    }
+    return {};
+  }
+
+  std::size_t text_of(std::size_t column) {
+    int& text = found_.uses[column].text;
+    if (text < 0) text = texts_++;
+    return static_cast<std::size_t>(text);
+  }
+
+  const TableLayout& layout_;
+  const std::vector<std::string>& members_;
+  bool named_;
+  std::map<std::string, Place> places_;
+  TableColumns found_;
+  int slots_ = 0, texts_ = 0;
+};
+
+}  // namespace
+
+Result<TableColumns> find_columns(const TableLayout& layout,
+                                  const std::vector<std::string>& members,
+                                  const std::map<std::string, std::string>& select,
+                                  const std::vector<std::string>& names) {
+  return Finder(layout, members, names).find(select);
+}
+
+bool is_chosen(const std::vector<RowChoice>& choices, const std::vector<std::string_view>& texts) {
+  return std::all_of(choices.begin(), choices.end(), [&](const RowChoice& choice) {
+    const std::string_view cell = texts[choice.text];
+    if (cell == choice.value) return true;
+    double one = 0.0;
+    double other = 0.0;
+    return parse_number(cell, one) && parse_number(choice.value, other) && one == other;
+  });
+}
+
+}  // namespace kinalign

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/table_reader.h"
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/numbers.h"
+#include "kinalign/io/held_rows.h"
+#include "kinalign/io/imu_rows.h"
+#include "kinalign/io/named_lines.h"
+#include "kinalign/io/point_rows.h"
+#include "kinalign/io/table_columns.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace kinalign {
+
+namespace {
+
+/// Makes points of parsed rows.
+class PointBuilder {
+ public:
+  using ReaderType = PointReader;
+
+  PointBuilder(const TableLayout& layout, const StreamOptions& options,
+               const std::vector<std::string>& joints)
+      : layout_(layout),
+        units_(point_units({layout.axes, layout.metres_per_unit}, options)),
+        states_(joints.size()),
+        mirror_(joints) {}
+
+  PointHeader header(const std::vector<std::string>& joints, const TableColumns&) const {
+    return {joints};
+  }
+
+  Result<void> append(const RowParser& row, const TableColumns& columns, PointFrames& out) {
+    for (std::size_t j = 0; j < states_.size(); ++j) {
+      states_[j] = KA_TRY(state_of(row, columns, j));
+    }
+    for (std::size_t j = 0; j < states_.size(); ++j) {
+      append_point(units_, &row.values[3 * j], states_[j], out);
+    }
+    const std::size_t first = out.positions.size() - 3 * states_.size();
+    mirror_.watch(&out.positions[first], states_.data());
+    return {};
+  }
+
+  void report(const std::string& file, Findings& findings) const { mirror_.report(file, findings); }
+
+ private:
+  Result<Tracking> state_of(const RowParser& row, const TableColumns& columns,
+                            std::size_t j) const {
+    const double* p = &row.values[3 * j];
+    if (row.any_missing && (row.missing[3 * j] | row.missing[3 * j + 1] | row.missing[3 * j + 2])) {
+      return Tracking::missing;
+    }
+    const std::vector<double>& unseen = layout_.missing_point;
+    if (!unseen.empty() && std::equal(p, p + 3, unseen.begin())) return Tracking::missing;
+    if (columns.states < 0) return Tracking::tracked;
+    const std::size_t slot = static_cast<std::size_t>(columns.states) + j;
+    return row.missing[slot] != 0 ? Tracking::missing : named_state(row.values[slot]);
+  }
+
+  Result<Tracking> named_state(double value) const {
+    const auto among = [value](const std::vector<double>& values) {
+      return std::find(values.begin(), values.end(), value) != values.end();
+    };
+    if (among(layout_.state.tracked)) return Tracking::tracked;
+    if (among(layout_.state.inferred)) return Tracking::inferred;
+    if (among(layout_.state.missing)) return Tracking::missing;
+    std::string text(number_room, ' ');
+    text.resize(static_cast<std::size_t>(put_number(text.data(), value, 0) - text.data()));
+    return Failure(Error{"", 0, "a tracking state that the layout names", text});
+  }
+
+  const TableLayout& layout_;
+  PointUnits units_;
+  std::vector<Tracking> states_;
+  MirrorWatch mirror_;
+};
+
+/// Makes samples of parsed rows.
+class ImuBuilder {
+ public:
+  using ReaderType = ImuReader;
+
+  ImuBuilder(const TableLayout& layout, const StreamOptions& options,
+             const std::vector<std::string>& nodes)
+      : gravity_(layout.gravity),
+        nodes_(nodes.size()),
+        rows_({axes_of(layout.axes, options), layout.acceleration_unit,
+               layout.angular_velocity_unit}) {}
+
+  ImuHeader header(const std::vector<std::string>& nodes, const TableColumns& columns) const {
+    return {nodes,
+            {columns.orientation >= 0, columns.acceleration >= 0, columns.angular_velocity >= 0,
+             gravity_}};
+  }
+
+  Result<void> append(const RowParser& row, const TableColumns& columns, ImuSamples& out) {
+    for (std::size_t s = 0; s < nodes_; ++s) {
+      RawImuSample sample;
+      sample.orientation = quantity(row, columns.orientation, 4, s, sample.valid);
+      sample.acceleration = quantity(row, columns.acceleration, 3, s, sample.valid);
+      sample.angular_velocity = quantity(row, columns.angular_velocity, 3, s, sample.valid);
+      rows_.append(sample, out);
+    }
+    return {};
+  }
+
+  void report(const std::string& file, Findings& findings) const { rows_.report(file, findings); }
+
+ private:
+  static const double* quantity(const RowParser& row, int first, std::size_t parts,
+                                std::size_t node, bool& valid) {
+    if (first < 0) return nullptr;
+    const std::size_t slot = static_cast<std::size_t>(first) + parts * node;
+    for (std::size_t i = 0; i < parts; ++i) valid = valid && row.missing[slot + i] == 0;
+    return &row.values[slot];
+  }
+
+  bool gravity_;
+  std::size_t nodes_;
+  ImuRows rows_;
+};
+
+template <class Builder>
+class TableReader final : public Builder::ReaderType {
+ public:
+  using Header = typename Builder::ReaderType::Header;
+  using Frames = typename Builder::ReaderType::Frames;
+
+  TableReader(const TableLayout& layout, const StreamOptions& options, std::string_view file,
+              std::vector<std::string> members)
+      : layout_(layout),
+        members_(std::move(members)),
+        select_(options.select),
+        lines_(file),
+        stamps_(layout.time.has_value(), options.rate_hz > 0.0 ? options.rate_hz : layout.rate_hz,
+                options.start_ns),
+        builder_(layout_, options, members_) {
+    for (const auto& choice : layout.select) select_.insert(choice);
+  }
+
+  Result<void> feed(std::string_view piece, Frames& out) override {
+    return lines_.feed(piece, [&](std::string_view line) { return read(line, out); });
+  }
+
+  Result<void> finish(Frames& out) override {
+    const auto use = [&](std::string_view line) { return read(line, out); };
+    KA_TRY(header_ ? lines_.finish(use, this->findings) : lines_.finish(use));
+    if (!header_) {
+      return Failure(lines_.error("a table of layout " + layout_.name, "the end of the file"));
+    }
+    stamps_.settle();
+    held_.release(stamps_, out);
+    if (stamps_.stuck()) this->findings.push_back(stuck_finding(lines_.file(), stamps_));
+    builder_.report(lines_.file(), this->findings);
+    return {};
+  }
+
+  const Header* header() const override { return header_ ? &*header_ : nullptr; }
+
+ private:
+  Result<void> read(std::string_view line, Frames& out) {
+    if (static_cast<std::size_t>(lines_.number()) <= layout_.skip_lines) return {};
+    if (!layout_.comment.empty() && line.starts_with(layout_.comment)) return {};
+    if (trimmed(line).empty()) return {};
+    if (header_) return read_row(line, out);
+    if (layout_.header) return read_head(split_cells(line, layout_.delimiter));
+    KA_TRY(read_head({}));
+    return read_row(line, out);
+  }
+
+  Result<void> read_head(const std::vector<std::string>& names) {
+    if (!layout_.time && stamps_.rate_hz() <= 0.0) {
+      return Failure(lines_.error("rate_hz for rows without stamps", "none"));
+    }
+    columns_ = KA_TRY(find_columns(layout_, members_, select_, names));
+    row_ = RowParser(layout_.delimiter, columns_.uses);
+    header_ = builder_.header(members_, columns_);
+    return {};
+  }
+
+  Result<void> read_row(std::string_view line, Frames& out) {
+    KA_TRY(row_.read(line));
+    if (!columns_.choices.empty() && !is_chosen(columns_.choices, row_.texts)) return {};
+    const std::int64_t ns = KA_TRY(column_stamp());
+    Frames& target = held_.target(stamps_, out);
+    const Time stamp = KA_TRY(stamps_.next(ns));
+    KA_TRY(builder_.append(row_, columns_, target));
+    target.stamps.push_back(stamp);
+    held_.release(stamps_, out);
+    return {};
+  }
+
+  Result<std::int64_t> column_stamp() const {
+    if (columns_.time_text < 0) return 0;
+    const std::string_view cell = row_.texts[static_cast<std::size_t>(columns_.time_text)];
+    if (const auto ns = parse_stamp(cell, layout_.time->scale)) return *ns;
+    return Failure(Error{"", 0, "a stamp inside +-4e18 ns", shown(cell)});
+  }
+
+  TableLayout layout_;
+  std::vector<std::string> members_;
+  std::map<std::string, std::string> select_;
+  NamedLines lines_;
+  RowStamps stamps_;
+  Builder builder_;
+  HeldRows<Frames> held_;
+  TableColumns columns_;
+  RowParser row_;
+  std::optional<Header> header_;
+};
+
+}  // namespace
+
+std::unique_ptr<PointReader> make_point_table_reader(const TableLayout& layout,
+                                                     const StreamOptions& options,
+                                                     std::string_view file) {
+  assert(layout.kind == TableKind::points);
+  return std::make_unique<TableReader<PointBuilder>>(layout, options, file, layout.names);
+}
+
+std::unique_ptr<ImuReader> make_imu_table_reader(const TableLayout& layout,
+                                                 const StreamOptions& options,
+                                                 std::string_view file, std::string_view node) {
+  assert(layout.kind == TableKind::imu);
+  std::vector<std::string> nodes = layout.names;
+  if (nodes.empty()) {
+    const std::string_view name = file_name(file);
+    nodes.emplace_back(node.empty() ? name.substr(0, name.rfind('.')) : node);
+  }
+  return std::make_unique<TableReader<ImuBuilder>>(layout, options, file, std::move(nodes));
+}
+
+bool matches(const TableLayout& layout, std::string_view head) {
+  StreamOptions options;
+  options.rate_hz = layout.rate_hz > 0.0 ? layout.rate_hz : 1.0;
+  const std::size_t whole = head.rfind('\n');
+  if (whole != std::string_view::npos) head = head.substr(0, whole + 1);  // its last line is cut
+  const auto reads = [&](auto reader) {
+    typename std::decay_t<decltype(*reader)>::Frames frames;
+    return reader->feed(head, frames) && reader->finish(frames);
+  };
+  return layout.kind == TableKind::points
+             ? reads(make_point_table_reader(layout, options, "head"))
+             : reads(make_imu_table_reader(layout, options, "head", "node"));
+}
+
+}  // namespace kinalign
