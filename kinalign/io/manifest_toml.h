@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// recording.toml: what a user says of a recording. Every key: docs/formats/recording_toml.md.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/take/manifest.h"
+
+#include <string_view>
+
+namespace kinalign {
+
+/// Streams come in the order of the file. `name` appears in messages only; an unknown key, a wrong
+/// type or a value out of range is refused with its line and the nearest known key.
+Result<Manifest> read_manifest(std::string_view toml, std::string_view name);
+
+}  // namespace kinalign
