@@ -23,6 +23,12 @@ int determinant(const Axes& axes) {
   return static_cast<int>(std::lround(matrix_of(axes).determinant()));
 }
 
+Axes axes_of(const Axes& of_format, const StreamOptions& options) {
+  if (options.up == "y") return y_up;
+  if (options.up == "z") return z_up;
+  return of_format;
+}
+
 Quat rotation_of(const Axes& axes) {
   assert(determinant(axes) == 1);
   return Quat(matrix_of(axes));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/motion/arrays.h"
+#include "kinalign/take/manifest.h"
 
 #include <array>
 #include <cstddef>
@@ -28,6 +29,9 @@ inline Vec3 turned(const Axes& axes, const double* file) {
 
 /// +1: right-handed stays right-handed; -1: a mirror image; 0: an axis stands twice.
 int determinant(const Axes& axes);
+
+/// What the user says is up, else the format's own axes.
+Axes axes_of(const Axes& of_format, const StreamOptions& options);
 
 /// The same turn as a rotation; the determinant must be +1.
 Quat rotation_of(const Axes& axes);

@@ -5,12 +5,6 @@
 
 namespace kinalign {
 
-Axes axes_of(const Axes& of_format, const StreamOptions& options) {
-  if (options.up == "y") return y_up;
-  if (options.up == "z") return z_up;
-  return of_format;
-}
-
 PointUnits point_units(const PointUnits& of_format, const StreamOptions& options) {
   return {axes_of(of_format.axes, options),
           options.metres_per_unit > 0.0 ? options.metres_per_unit : of_format.metres};

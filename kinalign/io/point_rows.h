@@ -20,7 +20,6 @@ struct PointUnits {
 
 /// What the user says of unit and axes, else the format's own.
 PointUnits point_units(const PointUnits& of_format, const StreamOptions& options);
-Axes axes_of(const Axes& of_format, const StreamOptions& options);
 
 /// Appends a joint: zeros where it is missing.
 inline void append_point(const PointUnits& units, const double* file, Tracking state,

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/trc.h"
+
+#include "kinalign/core/numbers.h"
+#include "kinalign/io/cells.h"
+#include "kinalign/io/held_rows.h"
+#include "kinalign/io/named_lines.h"
+#include "kinalign/io/point_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr TimeScale trc_seconds{1'000'000'000, 0};
+
+class TrcReader final : public PointReader {
+ public:
+  TrcReader(const StreamOptions& options, std::string_view file)
+      : lines_(file), options_(options), stamps_(true, options.rate_hz, options.start_ns) {}
+
+  Result<void> feed(std::string_view piece, PointFrames& out) override {
+    return lines_.feed(piece, [&](std::string_view line) { return read(line, out); });
+  }
+
+  Result<void> finish(PointFrames& out) override {
+    const auto use = [&](std::string_view line) { return read(line, out); };
+    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish(use));
+    if (!header_) return Failure(lines_.error("the head of a TRC file", "the end of the file"));
+    stamps_.settle();
+    held_.release(stamps_, out);
+    report();
+    return {};
+  }
+
+  const PointHeader* header() const override { return header_ ? &*header_ : nullptr; }
+
+ private:
+  Result<void> read(std::string_view line, PointFrames& out) {
+    if (header_) return read_row(line, out);
+    switch (lines_.number()) {
+      case 1:
+        return expect(line.starts_with("PathFileType"), "PathFileType", line);
+      case 2:
+        keys_ = split_cells(line, '\t');
+        return {};
+      case 3:
+        return read_facts(split_cells(line, '\t'));
+      case 4:
+        return read_names(split_cells(line, '\t'));
+      default:
+        return read_labels(split_cells(line, '\t'), line);
+    }
+  }
+
+  static Result<void> expect(bool good, std::string expected, std::string_view found) {
+    if (good) return {};
+    return Failure(Error{"", 0, std::move(expected), shown(found)});
+  }
+
+  Result<void> read_facts(const std::vector<std::string>& facts) {
+    for (std::size_t i = 0; i < std::min(keys_.size(), facts.size()); ++i) {
+      if (keys_[i] == "NumFrames") {
+        KA_TRY(expect(parse_number(facts[i], declared_), "a number of frames", facts[i]));
+      }
+      if (keys_[i] == "NumMarkers") markers_fact_ = facts[i];
+      if (keys_[i] == "Units") KA_TRY(read_unit(facts[i]));
+    }
+    return expect(units_.metres > 0.0, "Units among the keys of line 2", "none");
+  }
+
+  Result<void> read_unit(const std::string& unit) {
+    const double metres = unit == "mm" ? 0.001 : unit == "cm" ? 0.01 : unit == "m" ? 1.0 : 0.0;
+    KA_TRY(expect(metres > 0.0, "units mm, cm or m", unit));
+    units_ = point_units({y_up, metres}, options_);
+    return {};
+  }
+
+  Result<void> read_names(std::vector<std::string> cells) {
+    std::erase(cells, "");
+    KA_TRY(expect(cells.size() > 2 && cells[0] == "Frame#" && cells[1] == "Time",
+                  "Frame#, Time and names of markers", cells.empty() ? "" : cells[0]));
+    names_.assign(cells.begin() + 2, cells.end());
+    double declared = 0.0;
+    if (parse_number(markers_fact_, declared) && declared == static_cast<double>(names_.size())) {
+      return {};
+    }
+    findings.push_back(
+        {Severity::warning,
+         lines_.error(shown(markers_fact_) + " names of markers", std::to_string(names_.size())),
+         "the named markers were read", ""});
+    return {};
+  }
+
+  /// X1 Y1 Z1 X2 ...: how many there are is how wide a row is.
+  Result<void> read_labels(std::vector<std::string> cells, std::string_view line) {
+    std::erase(cells, "");
+    KA_TRY(expect(cells.size() == 3 * names_.size() && cells[0] == "X1",
+                  std::to_string(3 * names_.size()) + " labels X1, Y1, Z1, ...", line));
+    std::vector<ColumnUse> uses(2 + cells.size());
+    uses[1].text = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) uses[2 + i].slot = static_cast<int>(i);
+    row_ = RowParser('\t', std::move(uses));
+    header_ = PointHeader{names_};
+    return {};
+  }
+
+  Result<void> read_row(std::string_view line, PointFrames& out) {
+    if (trimmed(line).empty()) {
+      ended_ = stamps_.rows() > 0;  // before the rows it may stand
+      return {};
+    }
+    if (ended_) {
+      ++behind_the_end_;
+      return {};
+    }
+    KA_TRY(row_.read(line));
+    const auto ns = parse_stamp(row_.texts[0], trc_seconds);
+    KA_TRY(expect(ns.has_value(), "a time in seconds", row_.texts[0]));
+    PointFrames& target = held_.target(stamps_, out);
+    target.stamps.push_back(KA_TRY(stamps_.next(*ns)));
+    for (std::size_t j = 0; j < names_.size(); ++j) {
+      const bool missing =
+          (row_.missing[3 * j] | row_.missing[3 * j + 1] | row_.missing[3 * j + 2]) != 0;
+      append_point(units_, &row_.values[3 * j], missing ? Tracking::missing : Tracking::tracked,
+                   target);
+    }
+    held_.release(stamps_, out);
+    return {};
+  }
+
+  void report() {
+    const std::string& file = lines_.file();
+    if (stamps_.stuck()) findings.push_back(stuck_finding(file, stamps_));
+    if (static_cast<double>(stamps_.rows()) != declared_) {
+      std::string declared(number_room, ' ');
+      declared.resize(
+          static_cast<std::size_t>(put_number(declared.data(), declared_, 0) - declared.data()));
+      findings.push_back({Severity::warning,
+                          Error{file, 3, declared + " frames", std::to_string(stamps_.rows())},
+                          "the frames that are there were read", "correct NumFrames"});
+    }
+    if (behind_the_end_ > 0) {
+      findings.push_back({Severity::warning,
+                          Error{file, 0, "nothing behind the blank line that ends the rows",
+                                std::to_string(behind_the_end_) + " lines"},
+                          "they were not read", "take the blank line out"});
+    }
+  }
+
+  NamedLines lines_;
+  StreamOptions options_;
+  RowStamps stamps_;
+  HeldRows<PointFrames> held_;
+  PointUnits units_{y_up, 0.0};
+  std::vector<std::string> keys_, names_;
+  std::string markers_fact_;
+  double declared_ = 0.0;
+  RowParser row_;
+  bool ended_ = false;
+  std::uint64_t behind_the_end_ = 0;
+  std::optional<PointHeader> header_;
+};
+
+}  // namespace
+
+std::unique_ptr<PointReader> make_trc_reader(const StreamOptions& options, std::string_view file) {
+  return std::make_unique<TrcReader>(options, file);
+}
+
+bool looks_like_trc(std::string_view head) {
+  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
+  return head.starts_with("PathFileType");
+}
+
+}  // namespace kinalign

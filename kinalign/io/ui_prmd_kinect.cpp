@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/ui_prmd_kinect.h"
+
+#include "kinalign/io/cells.h"
+#include "kinalign/io/named_lines.h"
+#include "kinalign/io/point_rows.h"
+#include "kinalign/io/row_stamps.h"
+
+#include <algorithm>
+#include <cassert>
+#include <deque>
+#include <numbers>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t cells = 3 * ui_prmd_joints;
+
+constexpr std::array<std::string_view, ui_prmd_joints> names{
+    "Waist",        "Spine",         "Chest",        "Neck",          "Head",
+    "HeadTip",      "CollarLeft",    "UpperArmLeft", "ForearmLeft",   "HandLeft",
+    "CollarRight",  "UpperArmRight", "ForearmRight", "HandRight",     "UpperLegLeft",
+    "LowerLegLeft", "FootLeft",      "ToesLeft",     "UpperLegRight", "LowerLegRight",
+    "FootRight",    "ToesRight"};
+
+constexpr std::array<int, ui_prmd_joints> parents{-1, 0,  1,  2, 3,  4,  2,  6, 7,  8,  2,
+                                                  10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
+
+RowParser numbers_parser() {
+  std::vector<ColumnUse> uses(cells);
+  for (std::size_t i = 0; i < cells; ++i) uses[i].slot = static_cast<int>(i);
+  return {',', std::move(uses)};
+}
+
+Quat rotation(const double* degrees) {
+  constexpr double degree = std::numbers::pi / 180.0;
+  return Eigen::AngleAxisd(degrees[2] * degree, Vec3::UnitZ()) *
+         Eigen::AngleAxisd(degrees[0] * degree, Vec3::UnitX()) *
+         Eigen::AngleAxisd(degrees[1] * degree, Vec3::UnitY());
+}
+
+/// The rows of the angles' file, one at a time.
+class AngleRows {
+ public:
+  AngleRows(std::string_view file, TextPieces pieces)
+      : lines_(file), pieces_(std::move(pieces)), row_(numbers_parser()) {}
+
+  /// The next row; false at the end.
+  Result<bool> next(std::vector<double>& angles) {
+    while (rows_.empty() && !ended_) {
+      const std::string_view piece = KA_TRY(pieces_());
+      const auto use = [this](std::string_view line) { return read(line); };
+      ended_ = piece.empty();
+      KA_TRY(ended_ ? lines_.finish(use, findings) : lines_.feed(piece, use));
+    }
+    if (rows_.empty()) return false;
+    angles = std::move(rows_.front());
+    rows_.pop_front();
+    return true;
+  }
+
+  Findings findings;
+
+ private:
+  Result<void> read(std::string_view line) {
+    if (trimmed(line).empty()) return {};
+    KA_TRY(row_.read(line));
+    if (row_.any_missing) return Failure(Error{"", 0, "66 angles", "an empty cell"});
+    rows_.push_back(row_.values);
+    return {};
+  }
+
+  NamedLines lines_;
+  TextPieces pieces_;
+  RowParser row_;
+  std::deque<std::vector<double>> rows_;  // of one piece
+  bool ended_ = false;
+};
+
+class UiPrmdReader final : public PointReader {
+ public:
+  UiPrmdReader(const StreamOptions& options, std::string_view offsets_file,
+               std::string_view angles_file, TextPieces angles)
+      : lines_(offsets_file),
+        angles_file_(angles_file),
+        angle_rows_(angles_file, std::move(angles)),
+        stamps_(false, options.rate_hz > 0.0 ? options.rate_hz : 30.0, options.start_ns),
+        units_(point_units({y_up, 0.01}, options)),
+        row_(numbers_parser()),
+        header_{{names.begin(), names.end()}} {}
+
+  Result<void> feed(std::string_view piece, PointFrames& out) override {
+    return lines_.feed(piece, [&](std::string_view line) { return read(line, out); });
+  }
+
+  Result<void> finish(PointFrames& out) override {
+    const auto use = [&](std::string_view line) { return read(line, out); };
+    KA_TRY(read_ ? lines_.finish(use, findings) : lines_.finish(use));
+    if (!read_) return Failure(lines_.error("rows of 66 numbers", "the end of the file"));
+    auto more = KA_TRY(count_angles_left());
+    findings.insert(findings.end(), angle_rows_.findings.begin(), angle_rows_.findings.end());
+    report(without_angles_, lines_.file(), angles_file_);
+    report(more, angles_file_, lines_.file());
+    return {};
+  }
+
+  const PointHeader* header() const override { return read_ ? &header_ : nullptr; }
+
+ private:
+  Result<void> read(std::string_view line, PointFrames& out) {
+    if (trimmed(line).empty()) return {};
+    KA_TRY(row_.read(line));
+    if (row_.any_missing) return Failure(Error{"", 0, "66 offsets", "an empty cell"});
+    read_ = true;
+    if (!KA_TRY(angle_rows_.next(angles_))) {
+      ++without_angles_;
+      return {};
+    }
+    const Time stamp = KA_TRY(stamps_.next(0));
+    ui_prmd_places(row_.values, angles_, places_);
+    for (std::size_t j = 0; j < ui_prmd_joints; ++j) {
+      append_point(units_, &places_[3 * j], Tracking::tracked, out);
+    }
+    out.stamps.push_back(stamp);
+    return {};
+  }
+
+  Result<std::uint64_t> count_angles_left() {
+    std::uint64_t left = 0;
+    while (KA_TRY(angle_rows_.next(angles_))) ++left;
+    return left;
+  }
+
+  void report(std::uint64_t rows, const std::string& file, const std::string& other) {
+    if (rows == 0) return;
+    findings.push_back(
+        {Severity::warning,
+         Error{file, 0, "as many rows as in " + other, std::to_string(rows) + " more"},
+         "they were dropped", ""});
+  }
+
+  NamedLines lines_;
+  std::string angles_file_;
+  AngleRows angle_rows_;
+  RowStamps stamps_;
+  PointUnits units_;
+  RowParser row_;
+  PointHeader header_;
+  bool read_ = false;
+  std::uint64_t without_angles_ = 0;
+  std::vector<double> angles_;
+  std::vector<double> places_ = std::vector<double>(cells);
+};
+
+}  // namespace
+
+void ui_prmd_places(std::span<const double> offsets, std::span<const double> angles,
+                    std::span<double> places) {
+  assert(offsets.size() == cells && angles.size() == cells && places.size() == cells);
+  std::array<Quat, ui_prmd_joints> global;
+  for (std::size_t j = 0; j < ui_prmd_joints; ++j) {
+    const Quat local = rotation(&angles[3 * j]);
+    const Vec3 offset = vec3(offsets, j);
+    if (parents[j] < 0) {
+      global[j] = local;
+      vec3(places, j) = offset;
+      continue;
+    }
+    const auto p = static_cast<std::size_t>(parents[j]);
+    const Vec3 place = vec3(places, p) + global[p] * offset;
+    vec3(places, j) = place;
+    global[j] = global[p] * local;
+  }
+}
+
+std::unique_ptr<PointReader> make_ui_prmd_kinect_reader(const StreamOptions& options,
+                                                        std::string_view offsets_file,
+                                                        std::string_view angles_file,
+                                                        TextPieces angles) {
+  return std::make_unique<UiPrmdReader>(options, offsets_file, angles_file, std::move(angles));
+}
+
+bool looks_like_ui_prmd_kinect(std::string_view head) {
+  const auto end = head.find('\n');
+  const std::string line(trimmed(head.substr(0, end)));  // ends in what can't belong to a number
+  RowParser row = numbers_parser();
+  return row.read(line) && !row.any_missing;
+}
+
+}  // namespace kinalign

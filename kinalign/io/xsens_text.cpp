@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/xsens_text.h"
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/numbers.h"
+#include "kinalign/io/imu_rows.h"
+#include "kinalign/io/named_lines.h"
+#include "kinalign/io/row_stamps.h"
+#include "kinalign/io/xsens_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+/// "MT_012005D6_009-001_00B421E6.txt" -> "00B421E6"; else the name without its ending.
+std::string device_of(std::string_view file) {
+  std::string_view name = file_name(file);
+  name = name.substr(0, name.rfind('.'));
+  const std::string_view id = name.size() > 8 ? name.substr(name.size() - 8) : name;
+  const bool hexadecimal = id.find_first_not_of("0123456789ABCDEFabcdef") == std::string_view::npos;
+  return std::string(hexadecimal ? id : name);
+}
+
+/// Counts on over a 16-bit counter's wraps.
+class PacketCount {
+ public:
+  /// Fails, without a place, on what is no counter.
+  Result<std::uint64_t> next(double cell) {
+    constexpr double most = 4294967295.0;
+    if (!(cell >= 0.0) || cell > most || cell != std::floor(cell)) {
+      return Failure(Error{"", 0, "a whole PacketCounter", std::to_string(cell)});
+    }
+    const auto counter = static_cast<std::uint64_t>(cell);
+    if (rows_++ == 0) {
+      count_ = counter;
+    } else {
+      const std::uint64_t step = step_to(counter);
+      lost_ += step > 1 ? step - 1 : 0;
+      count_ += step;
+    }
+    last_ = counter;
+    return count_;
+  }
+
+  std::uint64_t lost() const { return lost_; }
+
+ private:
+  std::uint64_t step_to(std::uint64_t counter) const {
+    constexpr std::uint64_t wrap = 65'536;
+    if (counter >= last_) return counter - last_;
+    return (counter % wrap + wrap - last_ % wrap) % wrap;
+  }
+
+  std::uint64_t rows_ = 0, last_ = 0, count_ = 0, lost_ = 0;
+};
+
+class XsensReader final : public ImuReader {
+ public:
+  XsensReader(const StreamOptions& options, std::string_view file, std::string_view node)
+      : lines_(file),
+        options_(options),
+        node_(node.empty() ? device_of(file) : std::string(node)),
+        rate_hz_(options.rate_hz),
+        samples_(ImuUnits{axes_of(z_up, options), 1.0, 1.0}) {}
+
+  Result<void> feed(std::string_view piece, ImuSamples& out) override {
+    return lines_.feed(piece, [&](std::string_view line) { return read(line, out); });
+  }
+
+  Result<void> finish(ImuSamples& out) override {
+    const auto use = [&](std::string_view line) { return read(line, out); };
+    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish(use));
+    if (!header_) return Failure(lines_.error("rows of an Xsens export", "the end of the file"));
+    if (packets_.lost() > 0) {
+      findings.push_back(
+          {Severity::note,
+           Error{lines_.file(), 0, "every packet", std::to_string(packets_.lost()) + " lost"},
+           "they are gaps", ""});
+    }
+    samples_.report(lines_.file(), findings);
+    return {};
+  }
+
+  const ImuHeader* header() const override { return header_ ? &*header_ : nullptr; }
+
+ private:
+  Result<void> read(std::string_view line, ImuSamples& out) {
+    if (line.starts_with("//")) return read_comment(line);
+    if (trimmed(line).empty()) return {};
+    return named_ ? read_row(line, out) : read_names(line);
+  }
+
+  Result<void> read_comment(std::string_view line) {
+    constexpr std::string_view key = "Update Rate:";
+    const auto at = line.find(key);
+    if (at == std::string_view::npos || options_.rate_hz > 0.0) return {};
+    std::string_view text = trimmed(line.substr(at + key.size()));
+    if (text.ends_with("Hz")) text.remove_suffix(2);
+    if (parse_number(trimmed(text), rate_hz_) && rate_hz_ >= 1e-3 && rate_hz_ <= 1e6) return {};
+    return Failure(Error{"", 0, "Update Rate: 100.0Hz", shown(trimmed(line))});
+  }
+
+  Result<void> read_names(std::string_view line) {
+    const auto delimiter = xsens_delimiter(trimmed(line));
+    if (!delimiter) return Failure(Error{"", 0, "names of columns", shown(line)});
+    columns_ = find_xsens_columns(split_cells(line, *delimiter));
+    if (!columns_.counter.there()) {
+      return Failure(Error{"", 0, "a column PacketCounter", "none of that name"});
+    }
+    if (rate_hz_ <= 0.0) {
+      return Failure(Error{"", 0, "a line // Update Rate: ... above, or rate_hz", "none"});
+    }
+    row_ = RowParser(*delimiter, columns_.uses);
+    named_ = true;
+    return {};
+  }
+
+  Result<void> read_row(std::string_view line, ImuSamples& out) {
+    KA_TRY(row_.read(line));
+    const bool counted = columns_.counter.whole(row_);
+    if (!counted) return Failure(Error{"", 0, "a whole PacketCounter", "an empty cell"});
+    if (!header_ && !choose_content()) return {};  // nothing was measured yet
+    const auto count = KA_TRY(packets_.next(row_.values[columns_.counter.slots[0]]));
+    const Time stamp = KA_TRY(stamp_of(count));
+    append_sample(out);
+    out.stamps.push_back(stamp);
+    return {};
+  }
+
+  /// By the first row that holds anything: a named column may be empty all along.
+  bool choose_content() {
+    ImuContent content;
+    for (const XsensGroup* group : {&columns_.quaternion, &columns_.matrix, &columns_.euler}) {
+      if (content.orientation || !group->any(row_)) continue;
+      content.orientation = true;
+      orientation_ = group;
+    }
+    content.gravity = columns_.acceleration.any(row_) || !columns_.free_acceleration.any(row_);
+    content.acceleration = content.gravity ? columns_.acceleration.any(row_) : content.orientation;
+    content.angular_velocity = columns_.angular_velocity.any(row_);
+    if (!content.orientation && !content.acceleration && !content.angular_velocity) return false;
+    header_ = ImuHeader{{node_}, content};
+    return true;
+  }
+
+  Result<Time> stamp_of(std::uint64_t count) {
+    if (!first_count_) first_count_ = count;
+    std::int64_t ns = stamp_at_rate(count, rate_hz_);
+    if (options_.start_ns) ns = *options_.start_ns + stamp_at_rate(count - *first_count_, rate_hz_);
+    if (ns <= furthest_stamp_ns) return utc_time(ns);
+    return Failure(Error{"", 0, "a stamp inside +-4e18 ns", std::to_string(count) + " packets"});
+  }
+
+  void append_sample(ImuSamples& out) {
+    const ImuContent& content = header_->content;
+    const XsensGroup& force = content.gravity ? columns_.acceleration : columns_.free_acceleration;
+    RawImuSample sample;
+    std::array<double, 4> orientation{1, 0, 0, 0};
+    std::array<double, 3> acceleration{}, angular_velocity{};
+    if (content.orientation) {
+      sample.orientation = orientation.data();
+      sample.valid = orientation_->whole(row_);
+      if (sample.valid) put_quat(orientation, 0, quaternion());
+    }
+    if (content.acceleration) {
+      sample.acceleration = acceleration.data();
+      sample.valid = sample.valid && force.whole(row_);
+      copy(force, acceleration);
+      if (!content.gravity) into_sensor(orientation, acceleration);
+    }
+    if (content.angular_velocity) {
+      sample.angular_velocity = angular_velocity.data();
+      sample.valid = sample.valid && columns_.angular_velocity.whole(row_);
+      copy(columns_.angular_velocity, angular_velocity);
+    }
+    samples_.append(sample, out);
+  }
+
+  Quat quaternion() const {
+    if (orientation_ == &columns_.quaternion) return xsens_quaternion(*orientation_, row_);
+    if (orientation_ == &columns_.matrix) return xsens_from_matrix(*orientation_, row_);
+    return xsens_from_euler(*orientation_, row_);
+  }
+
+  void copy(const XsensGroup& group, std::array<double, 3>& to) const {
+    for (std::size_t i = 0; i < 3; ++i) to[i] = row_.values[group.slots[i]];
+  }
+
+  /// FreeAcc stands in the world's space.
+  static void into_sensor(const std::array<double, 4>& orientation, std::array<double, 3>& vector) {
+    const Quat q = quat(orientation, 0);
+    if (q.norm() < 1e-6) return;  // makes the sample invalid
+    const Vec3 world(vector[0], vector[1], vector[2]);
+    const Vec3 sensor = q.normalized().conjugate() * world;
+    std::copy_n(sensor.data(), 3, vector.begin());
+  }
+
+  NamedLines lines_;
+  StreamOptions options_;
+  std::string node_;
+  double rate_hz_;
+  ImuRows samples_;
+  bool named_ = false;
+  XsensColumns columns_;
+  const XsensGroup* orientation_ = nullptr;  // of columns_
+  RowParser row_;
+  PacketCount packets_;
+  std::optional<std::uint64_t> first_count_;
+  std::optional<ImuHeader> header_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImuReader> make_xsens_text_reader(const StreamOptions& options,
+                                                  std::string_view file, std::string_view node) {
+  return std::make_unique<XsensReader>(options, file, node);
+}
+
+bool looks_like_xsens_text(std::string_view head) {
+  for (std::size_t line = 0; line < 40 && !head.empty(); ++line) {
+    const auto end = head.find('\n');
+    const std::string_view text = head.substr(0, end);
+    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
+    if (!text.starts_with("//") && !trimmed(text).empty()) return text.starts_with("PacketCounter");
+  }
+  return false;
+}
+
+}  // namespace kinalign

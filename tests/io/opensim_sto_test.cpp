@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/opensim_sto.h"
+
+#include "tests/io/reading.h"
+#include "tests/shared_data.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+using namespace kinalign;
+
+namespace {
+
+const std::string head =
+    "\nDataRate=100.000000\nDataType=Quaternion\nversion=3\nOpenSimVersion=4.1\n endheader \n"
+    "time\ttorso_imu\tpelvis_imu\n";
+
+Read<ImuReader> read_sto(std::string_view text, const StreamOptions& options = {}) {
+  return read_all(make_opensim_sto_reader(options, "a.sto"), text);
+}
+
+}  // namespace
+
+TEST_CASE("a .sto file gives the nodes' orientations, z up turned to y up") {
+  const auto read = read_sto(head + "678\t1,0,0,0\t0.5,0.5,0.5,0.5\n678.01\tnan\t1,0,0,0\n");
+  CHECK(read.error == "");
+  CHECK(read.header.node_names == std::vector<std::string>{"torso_imu", "pelvis_imu"});
+  CHECK(read.header.content == ImuContent{true, false, false, true});
+  CHECK(read.rows.stamps ==
+        std::vector<Time>{utc_time(678'000'000'000), utc_time(678'010'000'000)});
+  CHECK(read.rows.valid == std::vector<std::uint8_t>{1, 1, 0, 1});
+  CHECK((quat(read.rows.orientation, 0) * Vec3(0, 0, 1) - Vec3(0, 1, 0)).norm() < 1e-15);
+  StreamOptions options;
+  options.up = "y";
+  options.start_ns = 5;
+  const auto upright = read_sto(head + "678\t1,0,0,0\t1,0,0,0\n", options);
+  CHECK(upright.rows.orientation == std::vector<double>{1, 0, 0, 0, 1, 0, 0, 0});
+  CHECK(upright.rows.stamps[0] == utc_time(5));
+}
+
+TEST_CASE("a .sto file of other things is an error") {
+  CHECK(read_sto("DataType=Vec3\nendheader\n").error ==
+        "a.sto:1: expected DataType=Quaternion, found Vec3");
+  CHECK(read_sto("version=3\nendheader\n").error ==
+        "a.sto:2: expected DataType=Quaternion in the head, found none");
+  CHECK(read_sto("").error == "a.sto: expected the head of a .sto file, found the end of the file");
+  CHECK(read_sto(head + "1\t1,0,0,0\n").error == "a.sto:8: expected 3 cells, found 2");
+  CHECK(read_sto(head + "1\t1,0,0\t1,0,0,0\n").error ==
+        "a.sto:8: expected w,x,y,z for torso_imu, found 1,0,0");
+}
+
+TEST_CASE("rows of a .sto file do not depend on where it is cut into pieces") {
+  check_pieces([] { return make_opensim_sto_reader({}, "s"); },
+               head + "678\t1,0,0,0\t0.5,0.5,0.5,0.5\r\n678.01\t\t1,0,0,0\n679\t1,0");
+}
+
+TEST_CASE("OpenSense's orientation files are read" * doctest::skip(!shared_data())) {
+  struct Expected {
+    const char* file;
+    std::size_t nodes, rows;
+  };
+  for (const Expected& expected :
+       {Expected{"MT_012005D6_009-quaternions_calibration_trial_Facing_negX.sto", 8, 401},
+        {"imuOrientations.sto", 8, 2},
+        {"myComplexTasksTrial_orientations.sto", 7, 6}}) {
+    CAPTURE(expected.file);
+    const std::string text = shared_text(std::string("imu_opensim/opensense/") + expected.file);
+    CHECK(looks_like_opensim_sto(text.substr(0, 4096)));
+    const auto read = read_in_pieces(make_opensim_sto_reader({}, "a.sto"), text, 777);
+    CHECK(read.error == "");
+    CHECK(read.header.node_names.size() == expected.nodes);
+    CHECK(read.rows.size() == expected.rows);
+    CHECK(read.findings.empty());
+  }
+}

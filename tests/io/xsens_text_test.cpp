@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/xsens_text.h"
+
+#include "tests/io/reading.h"
+#include "tests/shared_data.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+
+using namespace kinalign;
+
+namespace {
+
+Read<ImuReader> read_xsens(std::string_view text, const StreamOptions& options = {}) {
+  return read_all(make_xsens_text_reader(options, "MT_01_00B421E6.txt", ""), text);
+}
+
+const std::string rate = "// Update Rate: 100.0Hz\n";
+
+/// Where the sensor's axes point in our world.
+Vec3 turned_axis(const Read<ImuReader>& read, const Vec3& axis) {
+  return quat(read.rows.orientation, 0) * axis;
+}
+
+}  // namespace
+
+TEST_CASE("an Xsens export gives a node's quantities and the counter's time") {
+  const auto read = read_xsens(
+      rate +
+      "PacketCounter\tSampleTimeFine\tAcc_X\tAcc_Y\tAcc_Z\tGyr_X\tGyr_Y\tGyr_Z\tQuat_q0\tQuat_q1\t"
+      "Quat_q2\tQuat_q3\n65534\t\t1\t2\t3\t4\t5\t6\t1\t0\t0\t0\n"
+      "65535\t\t1\t2\t3\t4\t5\t6\t1\t0\t0\t0\n2\t\t\t2\t3\t4\t5\t6\t1\t0\t0\t0\n");
+  CHECK(read.error == "");
+  CHECK(read.header.node_names == std::vector<std::string>{"00B421E6"});
+  CHECK(read.header.content == ImuContent{true, true, true, true});
+  CHECK(read.rows.stamps == std::vector<Time>{utc_time(655'340'000'000), utc_time(655'350'000'000),
+                                              utc_time(655'380'000'000)});
+  CHECK(read.rows.valid == std::vector<std::uint8_t>{1, 1, 0});
+  CHECK((turned_axis(read, Vec3::UnitZ()) - Vec3::UnitY()).norm() < 1e-15);
+  CHECK(read.rows.acceleration == std::vector<double>{1, 2, 3, 1, 2, 3, 0, 0, 0});
+  REQUIRE(read.findings.size() == 1);
+  CHECK(text_of(read.findings[0]) == "MT_01_00B421E6.txt: expected every packet, found 2 lost");
+}
+
+TEST_CASE("quaternion, matrix and angles of one orientation agree") {
+  // Roll 10, pitch 20, yaw 30 degrees: R = Rz Ry Rx, the matrix column by column.
+  const auto euler = read_xsens(rate + "PacketCounter;Roll;Pitch;Yaw\n1;10;20;30\n");
+  const auto matrix = read_xsens(
+      rate +
+      "PacketCounter,Mat[1][1],Mat[2][1],Mat[3][1],Mat[1][2],Mat[2][2],Mat[3][2],Mat[1][3],"
+      "Mat[2][3],Mat[3][3],Roll,Pitch,Yaw\n1,0.813797681,0.469846310,-0.342020143,-0.440969610,"
+      "0.882564119,0.163175911,0.378522306,0.018028311,0.925416578,,,\n");
+  const auto quaternion =
+      read_xsens(rate +
+                 "PacketCounter Quat_q0 Quat_q1 Quat_q2 Quat_q3\n1 0.951548525 0.038134576 "
+                 "0.189307857 0.239298338\n");
+  CHECK(matrix.error == "");
+  REQUIRE(euler.rows.size() == 1);
+  const Quat expected = quat(euler.rows.orientation, 0);
+  CHECK(expected.angularDistance(quat(matrix.rows.orientation, 0)) < 1e-8);
+  CHECK(expected.angularDistance(quat(quaternion.rows.orientation, 0)) < 1e-8);
+}
+
+TEST_CASE("free acceleration is brought into the sensor's space, without gravity") {
+  // A quarter turn about the world's z: the world's x is the sensor's -y.
+  const auto read = read_xsens(
+      rate + "PacketCounter|FreeAcc_E|FreeAcc_N|FreeAcc_U|Roll|Pitch|Yaw\n1|3|0|1|0|0|90\n");
+  CHECK(read.error == "");
+  CHECK_FALSE(read.header.content.gravity);
+  REQUIRE(read.rows.acceleration.size() == 3);
+  CHECK((Vec3(read.rows.acceleration.data()) - Vec3(0, -3, 1)).norm() < 1e-15);
+}
+
+TEST_CASE("a named quantity that is empty is absent") {
+  const auto read = read_xsens(rate +
+                               "PacketCounter\tAcc_X\tAcc_Y\tAcc_Z\tRoll\tPitch\tYaw\n"
+                               "1\t\t\t\t\t\t\n2\t1\t2\t3\t\t\t\n");
+  CHECK(read.error == "");
+  CHECK(read.header.content == ImuContent{false, true, false, true});
+  CHECK(read.rows.stamps == std::vector<Time>{utc_time(20'000'000)});
+}
+
+TEST_CASE("rate and start are the user's where given") {
+  const std::string text = "PacketCounter,Acc_X,Acc_Y,Acc_Z\n7,1,2,3\n9,1,2,3\n";
+  CHECK(read_xsens(text).error ==
+        "MT_01_00B421E6.txt:1: expected a line // Update Rate: ... above, or rate_hz, found none");
+  StreamOptions options;
+  options.rate_hz = 50;
+  options.start_ns = 1'000'000'000;
+  CHECK(read_xsens(rate + text, options).rows.stamps ==
+        std::vector<Time>{utc_time(1'000'000'000), utc_time(1'040'000'000)});
+}
+
+TEST_CASE("an Xsens export that can't be understood is an error with its line") {
+  CHECK(read_xsens("").error ==
+        "MT_01_00B421E6.txt: expected rows of an Xsens export, found the end of the file");
+  CHECK(read_xsens(rate + "Acc_X,Acc_Y\n").error ==
+        "MT_01_00B421E6.txt:2: expected a column PacketCounter, found none of that name");
+  CHECK(read_xsens("// Update Rate: often\n").error ==
+        "MT_01_00B421E6.txt:1: expected Update Rate: 100.0Hz, found // Update Rate: often");
+  CHECK(read_xsens(rate + "PacketCounter,Roll,Pitch,Yaw\n1.5,1,2,3\n").error ==
+        "MT_01_00B421E6.txt:3: expected a whole PacketCounter, found 1.500000");
+  CHECK(read_xsens(rate + "PacketCounter,Roll,Pitch,Yaw\n1,1,2\n").error ==
+        "MT_01_00B421E6.txt:3: expected 4 cells, found 3");
+}
+
+TEST_CASE("rows of an Xsens export do not depend on where it is cut into pieces") {
+  check_pieces([] { return make_xsens_text_reader({}, "x", "waist"); },
+               rate + "PacketCounter;Year;Roll;Pitch;Yaw\r\n00001;;1;2;3\r\n00003;;;2;3\r\n4;;1;2");
+}
+
+TEST_CASE("Xsens exports of every delimiter are read" * doctest::skip(!shared_data())) {
+  struct Expected {
+    const char* file;
+    std::size_t rows;
+    ImuContent content;
+  };
+  constexpr ImuContent all{true, true, true, true};
+  constexpr ImuContent no_gyro{true, true, false, true};
+  for (const Expected& expected :
+       {Expected{"MT2022_ACC_00B42D4B.txt", 5, {false, true, false, true}},
+        {"MT2022_ACC_GYRO_ROT_ALL_TAB_NAN_00B42D4B.txt", 5, all},
+        {"MT2022_ACC_GYRO_ROT_EULER_TAB_00B42D4F.txt", 5, all},
+        {"MT2022_ACC_GYRO_ROT_MAT_COMMA_00B42D4B.txt", 5, all},
+        {"MT2022_ACC_GYRO_ROT_MAT_SEMICOLON_00B42D4B.txt", 5, all},
+        {"MT2022_ACC_GYRO_ROT_MAT_SPACE_00B42D4B.txt", 5, all},
+        {"MT46_01-000_00B42D4D.txt", 5, all},
+        {"MT_01200312-002-000_00B474BA.txt", 5, no_gyro},
+        {"MT_01200454_000-000_00B40DE4.txt", 4, all},
+        {"MT_012005D6-000_sit_to_stand-000_00B421ED.txt", 1459, {true, false, false, true}},
+        {"MT_012005D6_009-001_00B421E6.txt", 2432, no_gyro},
+        {"MT_012005D6_009-001_00B421ED.txt", 2481, no_gyro},
+        {"test1_00B421E6.txt", 3, all}}) {
+    CAPTURE(expected.file);
+    const std::string text = shared_text(std::string("imu_opensim/xsens/") + expected.file);
+    CHECK(looks_like_xsens_text(text.substr(0, 4096)));
+    StreamOptions options;
+    options.rate_hz = 100;
+    const auto read =
+        read_in_pieces(make_xsens_text_reader(options, expected.file, ""), text, 4096);
+    CHECK(read.error == "");
+    CHECK(read.rows.size() == expected.rows);
+    CHECK(read.header.content == expected.content);
+    CHECK(read.header.node_names[0].size() == 8);
+  }
+}
+
+TEST_CASE("gravity points up in a walk's raw Xsens export" * doctest::skip(!shared_data())) {
+  const std::string path = "imu_pose/unsw_walk/rawimu/S02-Trial-Walk-1-000_00B40B91.txt";
+  const auto read = read_all(make_xsens_text_reader({}, path, ""), shared_text(path));
+  CHECK(read.error == "");
+  REQUIRE(read.rows.size() == 2503);
+  CHECK(read.findings.empty());
+  CHECK(to_ns(read.rows.stamps[0]) == 276'260'000'000);  // packet 27626
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t t = 1119; t < 1119 + 955; ++t) {
+    sum += quat(read.rows.orientation, t) *
+           Vec3(vec3(std::span<const double>(read.rows.acceleration), t));
+  }
+  CHECK((sum / 955 - Vec3(0.06, 9.90, 0.09)).norm() < 0.01);
+}
