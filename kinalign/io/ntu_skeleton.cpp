@@ -146,9 +146,7 @@ class NtuReader final : public PointReader {
   Result<void> end_frame(PointFrames& out) {
     next_ = Next::bodies;
     const Time stamp = KA_TRY(stamps_.next(0));
-    for (std::size_t j = 0; j < joint_count; ++j) {
-      append_point(units_, &frame_.positions[3 * j], frame_.states[j], out);
-    }
+    append_points(units_, frame_.positions.data(), frame_.states, out);
     out.stamps.push_back(stamp);
     mirror_.watch(frame_.positions.data(), frame_.states.data());
     frames_with_body_ += seen_ ? 1 : 0;

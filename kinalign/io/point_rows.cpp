@@ -2,12 +2,33 @@
 #include "kinalign/io/point_rows.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace kinalign {
 
 PointUnits point_units(const PointUnits& of_format, const StreamOptions& options) {
   return {axes_of(of_format.axes, options),
           options.metres_per_unit > 0.0 ? options.metres_per_unit : of_format.metres};
+}
+
+void append_points(const PointUnits& units, const double* file, std::span<const Tracking> states,
+                   PointFrames& out) {
+  const std::size_t first = out.positions.size();
+  out.positions.resize(first + 3 * states.size());
+  out.state.insert(out.state.end(), states.begin(), states.end());
+  const auto [x, y, z] = units.axes;
+  const auto metres = [&](int axis) { return axis < 0 ? -units.metres : units.metres; };
+  const double x_metres = metres(x), y_metres = metres(y), z_metres = metres(z);
+  const double* from_x = file + std::abs(x) - 1;
+  const double* from_y = file + std::abs(y) - 1;
+  const double* from_z = file + std::abs(z) - 1;
+  double* to = out.positions.data() + first;
+  for (std::size_t j = 0; j < states.size(); ++j, to += 3) {
+    if (states[j] == Tracking::missing) continue;
+    to[0] = from_x[3 * j] * x_metres;
+    to[1] = from_y[3 * j] * y_metres;
+    to[2] = from_z[3 * j] * z_metres;
+  }
 }
 
 MirrorWatch::MirrorWatch(const std::vector<std::string>& joint_names) {

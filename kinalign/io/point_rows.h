@@ -8,6 +8,7 @@
 #include "kinalign/take/manifest.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,14 +22,9 @@ struct PointUnits {
 /// What the user says of unit and axes, else the format's own.
 PointUnits point_units(const PointUnits& of_format, const StreamOptions& options);
 
-/// Appends a joint: zeros where it is missing.
-inline void append_point(const PointUnits& units, const double* file, Tracking state,
-                         PointFrames& out) {
-  const bool seen = state != Tracking::missing;
-  const Vec3 p = seen ? Vec3(turned(units.axes, file) * units.metres) : Vec3(Vec3::Zero());
-  out.positions.insert(out.positions.end(), {p.x(), p.y(), p.z()});
-  out.state.push_back(state);
-}
+/// Appends a row of joints, [J,3] as in the file and [J]; a missing one gets zeros.
+void append_points(const PointUnits& units, const double* file, std::span<const Tracking> states,
+                   PointFrames& out);
 
 /// Notices a Kinect file that was mirrored: facing the sensor, the person's left shoulder is at
 /// smaller x (in 74,392 of 74,404 rows of a public set).

@@ -36,9 +36,7 @@ class PointBuilder {
     for (std::size_t j = 0; j < states_.size(); ++j) {
       states_[j] = KA_TRY(state_of(row, columns, j));
     }
-    for (std::size_t j = 0; j < states_.size(); ++j) {
-      append_point(units_, &row.values[3 * j], states_[j], out);
-    }
+    append_points(units_, row.values.data(), states_, out);
     const std::size_t first = out.positions.size() - 3 * states_.size();
     mirror_.watch(&out.positions[first], states_.data());
     return {};

@@ -103,6 +103,7 @@ class TrcReader final : public PointReader {
     uses[1].text = 0;
     for (std::size_t i = 0; i < cells.size(); ++i) uses[2 + i].slot = static_cast<int>(i);
     row_ = RowParser('\t', std::move(uses));
+    states_.resize(names_.size());
     header_ = PointHeader{names_};
     return {};
   }
@@ -121,12 +122,12 @@ class TrcReader final : public PointReader {
     KA_TRY(expect(ns.has_value(), "a time in seconds", row_.texts[0]));
     PointFrames& target = held_.target(stamps_, out);
     target.stamps.push_back(KA_TRY(stamps_.next(*ns)));
-    for (std::size_t j = 0; j < names_.size(); ++j) {
+    for (std::size_t j = 0; j < states_.size(); ++j) {
       const bool missing =
           (row_.missing[3 * j] | row_.missing[3 * j + 1] | row_.missing[3 * j + 2]) != 0;
-      append_point(units_, &row_.values[3 * j], missing ? Tracking::missing : Tracking::tracked,
-                   target);
+      states_[j] = missing ? Tracking::missing : Tracking::tracked;
     }
+    append_points(units_, row_.values.data(), states_, target);
     held_.release(stamps_, out);
     return {};
   }
@@ -159,6 +160,7 @@ class TrcReader final : public PointReader {
   std::string markers_fact_;
   double declared_ = 0.0;
   RowParser row_;
+  std::vector<Tracking> states_;  // [J] of a row
   bool ended_ = false;
   std::uint64_t behind_the_end_ = 0;
   std::optional<PointHeader> header_;

@@ -119,9 +119,7 @@ class UiPrmdReader final : public PointReader {
     }
     const Time stamp = KA_TRY(stamps_.next(0));
     ui_prmd_places(row_.values, angles_, places_);
-    for (std::size_t j = 0; j < ui_prmd_joints; ++j) {
-      append_point(units_, &places_[3 * j], Tracking::tracked, out);
-    }
+    append_points(units_, places_.data(), states_, out);
     out.stamps.push_back(stamp);
     return {};
   }
@@ -151,6 +149,7 @@ class UiPrmdReader final : public PointReader {
   std::uint64_t without_angles_ = 0;
   std::vector<double> angles_;
   std::vector<double> places_ = std::vector<double>(cells);
+  std::vector<Tracking> states_ = std::vector<Tracking>(ui_prmd_joints, Tracking::tracked);
 };
 
 }  // namespace
