@@ -21,3 +21,5 @@ inline std::string text_of(const std::string& path) {
   text << in.rdbuf();
   return text.str();
 }
+
+inline std::string shared_text(std::string_view name) { return text_of(shared_path(name)); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/io/reader.h"
+#include "kinalign/take/manifest.h"
 
 #include <cstdint>
 #include <functional>
@@ -18,6 +19,9 @@ struct BvhOptions {
   bool z_up = false;              // the file's up axis is z; y otherwise
   Time start{};                   // stamp of frame 0; the file itself knows none
 };
+
+/// As a stream's user has it; the click's latency is added to its stamp.
+BvhOptions bvh_options(const StreamOptions& options);
 
 /// One channel of a joint: 0..2 position x, y, z; 3..5 rotation about x, y, z.
 using Channel = std::uint8_t;

@@ -214,7 +214,9 @@ class HierarchyParser {
     }
     words_.next();
     out_.frame_time = KA_TRY(value_of("time", "Frame Time:"));
-    if (!parse_number(out_.frame_time, out_.frame_seconds) || out_.frame_seconds <= 0.0) {
+    constexpr double longest = 1e4;  // s: nobody waits longer, and a clip's end stays countable
+    if (!parse_number(out_.frame_time, out_.frame_seconds) || out_.frame_seconds <= 0.0 ||
+        out_.frame_seconds > longest) {
       return Failure(words_.wrong("a frame time above 0 s", out_.frame_time));
     }
     if (out_.frame_seconds >= 1.0) {

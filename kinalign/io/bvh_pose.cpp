@@ -24,6 +24,15 @@ constexpr double half_root = 0.70710678118654752440;  // of 2: z up to y up is -
 
 }  // namespace
 
+BvhOptions bvh_options(const StreamOptions& options) {
+  BvhOptions out;
+  if (options.metres_per_unit > 0.0) out.metres_per_unit = options.metres_per_unit;
+  out.z_up = options.up == "z";
+  out.start = utc_time(options.start_ns.value_or(0)) +
+              Duration{std::llround(options.click_latency_ms * 1e6)};
+  return out;
+}
+
 BvhPoser::BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options)
     : row_size_(hierarchy.row_size()), options_(options), frame_ns_(hierarchy.frame_seconds * 1e9) {
   int column = 0;
@@ -82,7 +91,7 @@ void BvhPoser::append(std::span<const double> values, ClipFrames& out) {
   out.local_positions.resize((first + frames) * joints * 3);
   out.local_rotations.resize((first + frames) * joints * 4);
   for (std::size_t i = 0; i < frames; ++i) {
-    const auto since = static_cast<double>(frames_++) * frame_ns_;
+    const double since = std::min(static_cast<double>(frames_++) * frame_ns_, 4e18);
     out.stamps.push_back(options_.start + Duration{std::llround(since)});
   }
   for (std::size_t j = 0; j < joints && frames > 0; ++j) {

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/bvh_survey.h"
+
+#include "kinalign/core/hash.h"
+#include "kinalign/motion/targets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+/// How many words begin in [at, end); at[-1] must be readable.
+KA_EVERY_PROCESSOR
+std::uint64_t words_begun(const char* at, const char* end) {
+  std::uint64_t words = 0;
+  while (at < end) {
+    // Sums of a byte each, which vector code adds 16 or more at a time.
+    const char* stop = at + std::min<std::ptrdiff_t>(end - at, 255);
+    unsigned char some = 0;
+    for (; at < stop; ++at) {
+      const auto here = static_cast<unsigned char>(*at),
+                 before = static_cast<unsigned char>(at[-1]);
+      some = static_cast<unsigned char>(some + ((here > ' ') & (before <= ' ')));
+    }
+    words += some;
+  }
+  return words;
+}
+
+/// Counts words of a text that comes in pieces.
+class WordCount {
+ public:
+  void add(std::string_view piece) {
+    if (piece.empty()) return;
+    const std::string first{last_, piece.front()};
+    words_ += words_begun(first.data() + 1, first.data() + 2);
+    words_ += words_begun(piece.data() + 1, piece.data() + piece.size());
+    last_ = piece.back();
+  }
+  std::uint64_t words() const { return words_; }
+
+ private:
+  char last_ = ' ';
+  std::uint64_t words_ = 0;
+};
+
+/// What the file promises, where it keeps the promise by number of words.
+struct Counted {
+  BvhHierarchy hierarchy;
+  Findings findings;
+  InputFacts facts;
+  bool kept = false;
+};
+
+Failure cancelled(const std::string& path) {
+  return Failure(Error{path, 0, "the end of the job", "an interruption"});
+}
+
+Result<Counted> count(FileSystem& files, const std::string& path, const Progress& progress) {
+  constexpr std::size_t longest_head = std::size_t{8} << 20;
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  Counted out;
+  out.facts.name = file_name(path);
+  Sha256 hash;
+  WordCount count;
+  std::string head;
+  bool in_rows = false;
+  for (;;) {
+    const std::string_view piece = KA_TRY(file.next());
+    if (piece.empty()) break;
+    hash.update(piece);
+    out.facts.bytes += piece.size();
+    if (in_rows) {
+      count.add(piece);
+    } else if (head.size() <= longest_head) {
+      head += piece;
+      if (bvh_head_is_whole(head)) {
+        std::size_t rows = 0;
+        out.hierarchy = KA_TRY(parse_bvh_hierarchy(head, path, rows, out.findings));
+        count.add(std::string_view(head).substr(rows));
+        in_rows = true;
+      }
+    }
+    if (!go_on(progress, "reading", out.facts.bytes, file.size())) return cancelled(path);
+  }
+  if (!in_rows) {  // no line end behind the frame time, or no frame time at all
+    std::size_t rows = 0;
+    out.hierarchy = KA_TRY(parse_bvh_hierarchy(head + ' ', path, rows, out.findings));
+  }
+  out.facts.sha256 = hash.hex();
+  const std::uint64_t row_size = out.hierarchy.row_size();
+  out.kept = in_rows && row_size > 0 && count.words() % row_size == 0 &&
+             count.words() / row_size == out.hierarchy.frames;
+  return out;
+}
+
+StampSurvey survey_of(const BvhOptions& options, double step_ns, std::uint64_t frames) {
+  StampSurvey survey;
+  survey.samples = frames;
+  survey.first = survey.last = options.start;
+  if (frames == 0) return survey;
+  survey.last += Duration{std::llround(static_cast<double>(frames - 1) * step_ns)};
+  survey.median_step_ns = frames > 1 ? std::llround(step_ns) : 0;
+  return survey;
+}
+
+/// Reads all numbers, for files that break their promise: faults fail, oddities are found.
+Result<BvhSurvey> read_all(FileSystem& files, const std::string& path, const BvhOptions& options) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  const auto reader = make_bvh_reader(options, path);
+  StampSurveyor surveyor;
+  for (bool ended = false; !ended;) {
+    const std::string_view piece = KA_TRY(file.next());
+    ClipFrames block;
+    ended = piece.empty();
+    KA_TRY(ended ? reader->finish(block) : reader->feed(piece, block));
+    surveyor.add(block.stamps);
+  }
+  BvhSurvey out;
+  out.skeleton = *reader->header();
+  out.findings = std::move(reader->findings);
+  out.survey = surveyor.result();
+  return out;
+}
+
+}  // namespace
+
+Result<BvhSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
+                             const Progress& progress) {
+  Counted counted = KA_TRY(count(files, path, progress));
+  BvhSurvey out;
+  if (!counted.kept) {
+    out = KA_TRY(read_all(files, path, options));
+  } else {
+    out.findings = std::move(counted.findings);
+    out.skeleton = skeleton_of(counted.hierarchy, options, path, out.findings);
+    const Findings size = judge_size(out.skeleton, options, path);
+    out.findings.insert(out.findings.end(), size.begin(), size.end());
+  }
+  out.facts = std::move(counted.facts);
+  out.step_ns = counted.hierarchy.frame_seconds * 1e9;
+  const std::uint64_t frames = counted.kept ? counted.hierarchy.frames : out.survey.samples;
+  out.survey = survey_of(options, out.step_ns, frames);
+  return out;
+}
+
+}  // namespace kinalign

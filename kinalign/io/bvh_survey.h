@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first pass over a BVH: hashed, its frames counted without reading their numbers.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/io/bvh.h"
+#include "kinalign/take/recording.h"
+
+#include <string>
+
+namespace kinalign {
+
+struct BvhSurvey {
+  Skeleton skeleton;
+  StampSurvey survey;
+  double step_ns = 0.0;
+  InputFacts facts;
+  Findings findings;
+};
+
+/// The numbers are read only where counting words does not give the frames that the file promises.
+Result<BvhSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
+                             const Progress& progress);
+
+}  // namespace kinalign
