@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/demo/devices.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+using namespace kinalign;
+
+namespace {
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "kinalign demo XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() { std::filesystem::remove_all(path_); }
+
+  std::string text(const std::string& name) const {
+    PosixFiles files;
+    auto text = read_whole(files, (path_ / name).string(), std::size_t{1} << 30);
+    REQUIRE(text);
+    return *std::move(text);
+  }
+  std::string path() const { return path_.string() + "/"; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+void write(const Folder& folder, std::uint64_t seed) {
+  PosixFiles files;
+  const DemoTake take{files, folder.path(), 6.0, seed, "S01", "wave"};
+  const DemoMotion motion(demo_body(1.0), seed);
+  REQUIRE(write_demo_mocap(take, motion));
+  REQUIRE(write_demo_kinect(take, motion));
+  REQUIRE(write_demo_imus(take, motion));
+  REQUIRE(write_demo_manifest(take));
+}
+
+}  // namespace
+
+TEST_CASE("the demo's body has the 59 joints and 13 end sites of the suit, parents first") {
+  const DemoBody body = demo_body(1.0);
+  REQUIRE(body.joints.size() == demo_joints);
+  int ends = 0;
+  for (std::size_t j = 0; j < demo_joints; ++j) {
+    CHECK(body.joints[j].parent < static_cast<int>(j));
+    ends += body.joints[j].end.isZero() ? 0 : 1;
+  }
+  CHECK(ends == 13);
+  CHECK(body.joints[20].name == "RightInHandIndex");
+  CHECK(body.joints[36].name == "LeftShoulder");
+  CHECK(body.joints[58].name == "LeftHandPinky3");
+}
+
+TEST_CASE("the demo stands in T-pose at first, with its feet on the floor") {
+  const DemoMotion motion(demo_body(1.0), 7);
+  const DemoPlaces places = motion.places(1.0);
+  const DemoBody& body = motion.body();
+  const Vec3 hand = places.positions[body.find("LeftHand")];
+  const Vec3 arm = places.positions[body.find("LeftArm")];
+  CHECK((hand - arm).normalized().x() == doctest::Approx(1.0).epsilon(0.01));
+  CHECK(places.positions[body.find("LeftFoot")].y() == doctest::Approx(0.077).epsilon(0.1));
+}
+
+TEST_CASE("the demo's motion has no jump in position, speed or acceleration") {
+  const DemoMotion motion(demo_body(1.0), 7);
+  constexpr double h = 1e-3;
+  Vec3 last = Vec3::Zero();
+  for (double t = 0.5; t < 25; t += h) {
+    const auto hand = [&](double at) {
+      return motion.places(at).positions[motion.body().find("RightHand")];
+    };
+    const Vec3 acceleration = (hand(t - h) - 2 * hand(t) + hand(t + h)) / (h * h);
+    if (t > 0.5) CHECK((acceleration - last).norm() < 1.5);  // m/s2 within a millisecond
+    last = acceleration;
+  }
+}
+
+TEST_CASE("the same seed gives the same bytes, another one others") {
+  const Folder a;
+  const Folder b;
+  const Folder c;
+  write(a, 3);
+  write(b, 3);
+  write(c, 4);
+  for (const char* name : {"mocap.bvh", "kinect.csv", "imu_waist.csv", "recording.toml"}) {
+    CAPTURE(name);
+    CHECK((a.text(name) == b.text(name)));
+    CHECK((a.text(name) != c.text(name)));
+  }
+}
+
+TEST_CASE("an inertial node at rest reads gravity upwards and no turning") {
+  const Folder folder;
+  write(folder, 3);
+  const std::string text = folder.text("imu_waist.csv");
+  std::size_t at = text.find('\n') + 1;  // the first sample: still in T-pose
+  std::vector<double> row;
+  for (const std::size_t end = text.find('\n', at); at < end;) {
+    row.push_back(std::strtod(&text[at], nullptr));
+    at = std::min(text.find(',', at), end) + 1;
+  }
+  REQUIRE(row.size() == 11);
+  CHECK(std::hypot(row[1], row[2], row[3]) == doctest::Approx(1.0).epsilon(0.01));
+  CHECK(std::hypot(row[5], row[6], row[7]) == doctest::Approx(9.8).epsilon(0.03));
+  CHECK(std::hypot(row[8], row[9], row[10]) < 0.2);
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers into a file, by the megabyte.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/numbers.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+class TextOut {
+ public:
+  static Result<TextOut> create(FileSystem& files, std::string path) {
+    return TextOut(KA_TRY(OutputFile::create(files, std::move(path), Overwrite::yes)));
+  }
+
+  void text(std::string_view piece) { held_ += piece; }
+
+  /// `before` (where it is no '\0'), then the value rounded to `decimals` (0 to 9).
+  void number(char before, double value, int decimals) {
+    constexpr std::array<double, 10> scales{1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+    const double scale = scales[static_cast<std::size_t>(decimals)];
+    std::array<char, number_room> room{};
+    // "+ 0.0": no "-0.0000"
+    const double rounded = std::nearbyint(value * scale) / scale + 0.0;
+    const char* end = put_number(room.data(), rounded, decimals);
+    if (before != '\0') held_ += before;
+    held_.append(room.data(), static_cast<std::size_t>(end - room.data()));
+  }
+
+  void integer(std::int64_t value) {
+    std::array<char, 24> room{};
+    const char* end = std::to_chars(room.data(), room.data() + room.size(), value).ptr;
+    held_.append(room.data(), static_cast<std::size_t>(end - room.data()));
+  }
+
+  /// Ends a line; writes what is held now and then.
+  Result<void> end_line() {
+    held_ += '\n';
+    return held_.size() < most_held ? Result<void>{} : flush();
+  }
+
+  Result<void> commit() {
+    KA_TRY(flush());
+    return file_.commit();
+  }
+
+ private:
+  static constexpr std::size_t most_held = std::size_t{1} << 20;
+
+  explicit TextOut(OutputFile file) : file_(std::move(file)) { held_.reserve(2 * most_held); }
+
+  Result<void> flush() {
+    KA_TRY(file_.write(held_));
+    held_.clear();
+    return {};
+  }
+
+  OutputFile file_;
+  std::string held_;
+};
+
+}  // namespace kinalign
