@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The tools' own cases, counted like the others: a sentence, a small tree, the exact outcome."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+CASES = []
+
+
+def case(function):
+    CASES.append(function)
+    return function
+
+
+def put(folder, name, text):
+    path = pathlib.Path(folder) / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    return path
+
+
+def run(*command, **options):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False,
+                          **options)
+    return done.returncode, done.stdout + done.stderr
+
+
+def includes(folder):
+    return run(sys.executable, ROOT / "tools/check_includes.py", folder)
+
+
+def house(folder):
+    put(folder, "kinalign/wire/CMakeLists.txt", "kinalign_room(wire SOURCES a.cpp)\n")
+    put(folder, "kinalign/wire/a.h", "")
+    put(folder, "kinalign/core/CMakeLists.txt", "kinalign_room(core USES wire)  # a word\n")
+    put(folder, "kinalign/core/b.h", '#include "kinalign/wire/a.h"\n')
+    put(folder, "kinalign/io/CMakeLists.txt", "kinalign_room(io SOURCES c.cpp USES core LIBRARIES X::X)\n")
+    put(folder, "kinalign/io/c.cpp", '#include "kinalign/wire/a.h"\n#include <hdf5.h>\n')
+
+
+@case
+def a_room_may_include_what_it_uses_and_all_below(folder):
+    house(folder)
+    assert includes(folder) == (0, "\n"), includes(folder)
+
+
+@case
+def a_room_may_not_include_what_stands_above(folder):
+    house(folder)
+    put(folder, "kinalign/wire/a.h", '#include "kinalign/core/b.h"\n')
+    code, text = includes(folder)
+    assert code == 1
+    assert text == "kinalign/wire/a.h: wire may not include kinalign/core/b.h: it uses wire\n", text
+
+
+@case
+def a_header_may_not_include_a_heavy_library(folder):
+    house(folder)
+    put(folder, "kinalign/io/d.h", "#include <nlohmann/json.hpp>\n#include <Eigen/Core>\n")
+    code, text = includes(folder)
+    assert code == 1
+    assert text == "kinalign/io/d.h: <nlohmann/json.hpp> is heavy: only a .cpp file may include it\n"
+
+
+@case
+def rooms_in_a_circle_are_refused(folder):
+    house(folder)
+    put(folder, "kinalign/wire/CMakeLists.txt", "kinalign_room(wire USES io)\n")
+    code, text = includes(folder)
+    assert code == 1 and text.startswith("rooms in a circle: "), text
+
+
+@case
+def an_app_reaches_the_rooms_that_it_links(folder):
+    house(folder)
+    put(folder, "apps/a/CMakeLists.txt", "target_link_libraries(a kinalign_core)\n")
+    put(folder, "apps/a/main.cpp", '#include "kinalign/wire/a.h"\n')
+    assert includes(folder)[0] == 0
+    put(folder, "kinalign/io/e.h", "")
+    put(folder, "apps/a/main.cpp", '#include "kinalign/io/e.h"\n')
+    assert includes(folder)[0] == 1
+
+
+def count(folder, log, elsewhere="0", ctest=""):
+    put(folder, "log", log)
+    put(folder, "ctest", ctest)
+    return run(sys.executable, ROOT / "tools/count_cases.py", "log", "ctest", elsewhere, cwd=folder)
+
+
+@case
+def the_count_names_skipped_cases_and_ends_with_the_numbers(folder):
+    code, text = count(folder, "passed\ta\nskipped\tKeraal\npassed\tb\n")
+    assert code == 0
+    assert text == ("skipped, needs ../shared/data, which is not there:\n  Keraal\n"
+                    "2 passed, 0 failed, 1 skipped\n"), text
+
+
+@case
+def a_failed_case_a_crash_and_a_failed_check_each_fail_the_run(folder):
+    code, text = count(folder, "failed\ta\n")
+    assert code == 1 and text == "failed: a\n0 passed, 1 failed, 0 skipped\n", text
+    code, text = count(folder, "passed\ta\n", "1", "\t  3 - io (SEGFAULT)\n")
+    assert code == 1 and text.endswith("1 passed, 1 failed, 0 skipped\n"), text
+    code, text = count(folder, "passed\ta\n", "1")
+    assert code == 1 and text.endswith("1 passed, 0 failed, 0 skipped\n"), text
+
+
+@case
+def packages_that_are_there_are_not_asked_for(folder):
+    put(folder, "packages.txt", "# dpkg build\ndpkg build\nno-such-package-here test # a word\n")
+    missing = ROOT / "tools/missing_packages.sh"
+    assert run(missing, "packages.txt", "build", cwd=folder) == (0, "")
+    assert run(missing, "packages.txt", "build", "test", cwd=folder) == (0, "no-such-package-here\n")
+
+
+@case
+def dev_names_its_verbs_and_refuses_others(folder):
+    code, text = run(ROOT / "dev", "--help", cwd=folder)
+    assert code == 0 and "./dev test" in text
+    code, text = run(ROOT / "dev", "tset", cwd=folder)
+    assert code == 2 and "usage" in text
+
+
+def main():
+    log = os.environ.get("KINALIGN_TEST_LOG")
+    failed = False
+    for one in CASES:
+        name = one.__name__.replace("_", " ")
+        with tempfile.TemporaryDirectory(prefix="kinalign tools ") as folder:
+            try:
+                one(folder)
+                outcome = "passed"
+            except AssertionError as error:
+                outcome = "failed"
+                failed = True
+                print(f"{name}: {error}")
+        if log:
+            with open(log, "a", encoding="utf-8") as out:
+                out.write(f"{outcome}\t{name}\n")
+    return 1 if failed else 0
+
+
+sys.exit(main())
