@@ -3,6 +3,9 @@
 
 namespace kinalign {
 
-std::vector<Verb> all_verbs() { return {config_verb(), completion_verb(), man_verb()}; }
+std::vector<Verb> all_verbs() {
+  return {align_verb(),   info_verb(),   check_verb(),      convert_verb(),
+          rebuild_verb(), config_verb(), completion_verb(), man_verb()};
+}
 
 }  // namespace kinalign

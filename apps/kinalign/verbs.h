@@ -8,6 +8,11 @@
 
 namespace kinalign {
 
+Verb align_verb();
+Verb info_verb();
+Verb check_verb();
+Verb convert_verb();
+Verb rebuild_verb();
 Verb config_verb();
 Verb completion_verb();
 Verb man_verb();

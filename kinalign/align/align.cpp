@@ -80,25 +80,6 @@ StreamReport report_stream(const Recording& recording, const AlignPlan& plan, st
   return out;
 }
 
-Findings judge_stamps(const RecordedStream& s) {
-  Findings out;
-  const std::string file = s.files.empty() ? s.name : s.files.front().name;
-  if (s.survey.duplicates > 0) {
-    out.push_back({Severity::note,
-                   Error{file, 0, "stamps that rise",
-                         fmt::format("{} that repeat the one before", s.survey.duplicates)},
-                   "these samples were left out", ""});
-  }
-  if (s.survey.backward > 0) {
-    out.push_back({Severity::warning,
-                   Error{file, 0, "stamps that rise",
-                         fmt::format("{} that step back, by up to {:.3f} s", s.survey.backward,
-                                     1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
-                   "these samples were left out", "look at the device's clock if there are many"});
-  }
-  return out;
-}
-
 AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) {
   AlignmentReport report;
   report.frames = plan.header.frames;
@@ -123,6 +104,25 @@ void finish_report(const Recording& recording, const AlignPlan& plan, const Slab
 }
 
 }  // namespace
+
+Findings judge_stamps(const RecordedStream& s) {
+  Findings out;
+  const std::string file = s.files.empty() ? s.name : s.files.front().name;
+  if (s.survey.duplicates > 0) {
+    out.push_back({Severity::note,
+                   Error{file, 0, "stamps that rise",
+                         fmt::format("{} that repeat the one before", s.survey.duplicates)},
+                   "these samples were left out", ""});
+  }
+  if (s.survey.backward > 0) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "stamps that rise",
+                         fmt::format("{} that step back, by up to {:.3f} s", s.survey.backward,
+                                     1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
+                   "these samples were left out", "look at the device's clock if there are many"});
+  }
+  return out;
+}
 
 Result<AlignmentReport> align(const Recording& recording, const Manifest& manifest,
                               const TakeSink& sink, const Progress& progress) {

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/align_job.h"
+#include "apps/kinalign/console.h"
+#include "apps/kinalign/inputs.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/io/manifest_toml.h"
+#include "kinalign/io/open_recording.h"
+#include "kinalign/io/report_json.h"
+
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+namespace {
+
+/// The quick case without a manifest, and what overrides one.
+struct AlignVerb {
+  std::vector<std::string> manifest;  // at most one
+  AlignOptions options;
+
+  std::string mocap, kinect;
+  std::vector<std::string> points;  // NAME=FILE
+  std::vector<std::string> imu;     // NODE=FILE
+  std::string kinect_layout, imu_layout, root_node;
+  StreamOptions mocap_options;
+  SpaceOptions space;
+  std::vector<std::string> joints;  // JOINT=JOINT
+};
+
+Fields flags(AlignVerb& o) {
+  return {
+      {"mocap", "the reference: a BVH, or a file of points", &o.mocap},
+      {"kinect", "a file of Kinect joints", &o.kinect},
+      {"imu", "a node's file as NODE=FILE; may be repeated", &o.imu},
+      {"points", "a further file of points as NAME=FILE; may be repeated", &o.points},
+      {"kinect_layout", "layout of the Kinect file", &o.kinect_layout},
+      {"imu_layout", "layout of the nodes' files", &o.imu_layout},
+      {"root_node", "node into whose space all nodes are brought", &o.root_node},
+      {"start_ns", "stamp of the click that started the mocap, ns", &o.mocap_options.start_ns,
+       -4e18, 4e18},
+      {"metres_per_unit", "length of the BVH's unit, m", &o.mocap_options.metres_per_unit, 0.0,
+       1000.0},
+      {"up", "the BVH's up axis", &o.mocap_options.up, -1e308, 1e308, {"", "y", "z"}},
+      {"space",
+       "how the Kinect comes into the mocap's space",
+       &o.space.method,
+       -1e308,
+       1e308,
+       {"none", "paper", "fit"}},
+      {"rotation_y_deg", "of --space paper: turn about the y axis, degrees",
+       &o.space.rotation_y_deg, -360.0, 360.0},
+      {"joint", "of --space: KINECT=MOCAP joints that mean one place; may be repeated", &o.joints}};
+}
+
+Usage describe_verb_options(AlignVerb& o) {
+  o.space.method = "fit";
+  Usage usage;
+  usage.positionals = {{"RECORDING", "recording.toml: streams, files, clocks", &o.manifest, 0, 1}};
+  usage.flags = flags(o);
+  usage.settings = describe(o.options);
+  usage.check = [&o]() -> Result<void> {
+    const bool quick = !o.mocap.empty();
+    if (o.manifest.empty() != quick) {
+      return Failure(
+          Error{"", 0, "either a recording.toml or --mocap FILE", quick ? "both" : "neither"});
+    }
+    return {};
+  };
+  return usage;
+}
+
+Result<Manifest> quick_manifest(const AlignVerb& o) {
+  Manifest manifest;
+  const auto add = [&manifest](StreamOptions stream, std::string name, std::string file) {
+    stream.name = std::move(name);
+    stream.files = {{std::move(file), ""}};
+    manifest.streams.push_back(std::move(stream));
+  };
+  SpaceOptions space = o.space;
+  for (const std::string& joint : o.joints) {
+    space.joints.insert(KA_TRY(split_pair(joint, "--joint KINECT=MOCAP")));
+  }
+  add(o.mocap_options, "mocap", o.mocap);
+  StreamOptions kinect;
+  kinect.layout = o.kinect_layout;
+  if (!o.kinect.empty()) {
+    add(kinect, "kinect", o.kinect);
+    manifest.spaces["kinect"] = space;
+  }
+  for (const std::string& one : o.points) {
+    const auto [name, file] = KA_TRY(split_pair(one, "--points NAME=FILE"));
+    add({}, name, file);
+  }
+  StreamOptions nodes;
+  nodes.name = "imu";
+  nodes.layout = o.imu_layout;
+  nodes.root_node = o.root_node;
+  for (const std::string& one : o.imu) {
+    const auto [node, file] = KA_TRY(split_pair(one, "--imu NODE=FILE"));
+    nodes.files.push_back({file, node});
+  }
+  if (!nodes.files.empty()) manifest.streams.push_back(nodes);
+  return manifest;
+}
+
+Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
+  if (o.manifest.empty()) {
+    Manifest manifest = KA_TRY(quick_manifest(o));
+    manifest.align = o.options;
+    return manifest;
+  }
+  constexpr std::size_t longest = std::size_t{1} << 20;
+  const std::string& path = o.manifest.front();
+  const std::string text = KA_TRY(read_whole(call.surroundings.files, path, longest));
+  Manifest manifest = KA_TRY(read_manifest(text, path));
+  copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
+  return manifest;
+}
+
+Result<int> run(AlignVerb& o, Call& call) {
+  call.console.if_it_fails(
+      [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
+  if (call.common.out.empty() && !call.common.dry_run) {
+    return Failure(Error{"-o", 0, "the take's file name, as in -o take.h5", "none"});
+  }
+  const Manifest manifest = KA_TRY(manifest_of(o, call));
+  const std::string base = o.manifest.empty() ? "" : std::string(folder(o.manifest.front()));
+  const Progress progress = call.console.progress();
+  const std::string out = call.common.dry_run ? "" : call.common.out;
+  const Recording recording =
+      KA_TRY(open_recording(call.surroundings.files, manifest, base, progress));
+  const AlignmentReport report =
+      KA_TRY(align_to_file(call.surroundings.files, recording, manifest, out,
+                           call.common.force ? Overwrite::yes : Overwrite::no, progress));
+  call.console.print(summary(report, out));
+  call.console.print_json(report_json(report));
+  return 0;
+}
+
+}  // namespace
+
+Verb align_verb() {
+  return make_verb<AlignVerb>(
+      {.name = "align",
+       .summary = "raw files of one motion into a take: one grid, one space",
+       .text = "Streams are cut to the span they share and resampled onto the reference's stamps; "
+               "nothing is invented across a gap. The take is an HDF5 file that h5py and MATLAB "
+               "open, with the report and every parameter inside.",
+       .examples = {{"kinalign align demo/recording.toml -o demo/take.h5",
+                     "what the manifest says"},
+                    {"kinalign align --mocap walk.bvh --kinect kinect.csv -o take.h5",
+                     "two files on one clock"},
+                    {"kinalign align --mocap walk.bvh --imu waist=w.csv --imu wrist_left=l.csv "
+                     "--root-node waist -o take.h5",
+                     "nodes, brought into the waist's space"}},
+       .common = {"out", "force", "json", "dry_run"}},
+      describe_verb_options, run);
+}
+
+}  // namespace kinalign

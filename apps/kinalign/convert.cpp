@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/console.h"
+#include "apps/kinalign/inputs.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/io/bvh.h"
+#include "kinalign/io/take_hdf5.h"
+#include "kinalign/io/take_npz.h"
+#include "kinalign/motion/kinematics.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+struct Convert {
+  std::vector<std::string> files;  // from, to
+  bool store_double = false;
+  StreamFlags stream;
+};
+
+Usage describe_convert(Convert& o) {
+  Usage usage;
+  usage.positionals = {{"FILE", "from, to; the ending of the second decides", &o.files, 2, 2}};
+  usage.flags = o.stream.fields();
+  usage.flags.push_back({"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double});
+  return usage;
+}
+
+struct Job {
+  FileSystem& files;
+  std::string from, to;
+  Overwrite overwrite;
+};
+
+/// Rows of a stream as a take would hold them.
+ClipRows rows_of(const ClipInput& input, ClipFrames& block) {
+  ClipRows rows;
+  rows.positions.resize(block.size() * input.skeleton.joints() * 3);
+  forward_kinematics(input.skeleton, block, rows.positions);
+  rows.local_positions = std::move(block.local_positions);
+  rows.local_rotations = std::move(block.local_rotations);
+  return rows;
+}
+
+PointRows rows_of(const PointInput&, PointFrames& block) {
+  PointRows rows;
+  rows.positions = std::move(block.positions);
+  for (const Tracking state : block.state) rows.valid.push_back(state != Tracking::missing ? 1 : 0);
+  rows.state = std::move(block.state);
+  return rows;
+}
+
+ImuRows rows_of(const ImuInput&, ImuSamples& block) {
+  return {std::move(block.orientation),
+          std::move(block.acceleration),
+          std::move(block.angular_velocity),
+          std::move(block.valid),
+          {}};
+}
+
+ClipGroup group_of(const ClipInput& input) { return {input.skeleton}; }
+PointGroup group_of(const PointInput& input) { return {input.joint_names}; }
+ImuGroup group_of(const ImuInput& input) { return {input.node_names, input.content, ""}; }
+
+template <class Input, class Frames>
+Result<void> write_rows(const Input& input, const Passes<Frames>& passes, TakeNpzWriter& writer) {
+  const Pass<Frames> pass = KA_TRY(passes());
+  Frames block;
+  TakeSlab slab;
+  while (KA_TRY(pass(block))) {
+    slab.stamps = block.stamps;
+    slab.rows = {rows_of(input, block)};
+    KA_TRY(writer.append(slab));
+    slab.first += slab.stamps.size();
+  }
+  return writer.finish();
+}
+
+Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, bool store_double) {
+  TakeHeader header;
+  header.frames = stream.survey.samples;
+  header.parameters.align.store_double = store_double;
+  return std::visit(
+      [&](const auto& input) -> Result<void> {
+        header.groups = {{stream.name, group_of(input), false, false, stream.files}};
+        auto writer = KA_TRY(
+            TakeNpzWriter::create(job.files, job.to, job.overwrite, header, NpzNames::plain));
+        return write_rows(input, input.passes, writer);
+      },
+      stream.data);
+}
+
+Result<void> put_bvh(const Job& job, const BvhFile& bvh) {
+  OutputFile out = KA_TRY(OutputFile::create(job.files, job.to, job.overwrite));
+  KA_TRY(write_bvh(bvh, [&out](std::string_view text) { return out.write(text); }));
+  return out.commit();
+}
+
+Result<void> bvh_to_bvh(const Job& job, const StreamOptions& options) {
+  const std::string text = KA_TRY(read_whole(job.files, job.from, SIZE_MAX));
+  const BvhFile bvh = KA_TRY(read_bvh(text, job.from, bvh_options(options)));
+  return put_bvh(job, bvh);
+}
+
+// The two for takes run in a child process.
+
+Result<void> take_to_npz(const Job& job) {
+  TakeReader reader = KA_TRY(TakeReader::open(job.files, job.from));
+  auto writer = KA_TRY(TakeNpzWriter::create(job.files, job.to, job.overwrite, reader.header(),
+                                             NpzNames::by_stream));
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) KA_TRY(writer.append(slab));
+  return writer.finish();
+}
+
+Result<void> take_to_bvh(const Job& job) {
+  TakeReader reader = KA_TRY(TakeReader::open(job.files, job.from));
+  const auto& groups = reader.header().groups;
+  std::size_t g = 0;
+  while (g < groups.size() && !std::holds_alternative<ClipGroup>(groups[g].kind)) ++g;
+  if (g == groups.size()) {
+    return Failure(Error{job.from, 0, "a take with a skeleton's stream", "none"});
+  }
+  Clip clip;
+  clip.skeleton = std::get<ClipGroup>(groups[g].kind).skeleton;
+  ClipFrames& frames = clip.frames;
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) {
+    const auto& rows = std::get<ClipRows>(slab.rows[g]);
+    const auto append = [](auto& to, const auto& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(frames.stamps, slab.stamps);
+    append(frames.local_positions, rows.local_positions);
+    append(frames.local_rotations, rows.local_rotations);
+  }
+  const std::size_t steps = frames.size() > 1 ? frames.size() - 1 : 1;
+  const double length =
+      frames.size() > 1 ? seconds(frames.stamps.back() - frames.stamps.front()) : 1.0 / 60.0;
+  return put_bvh(job, bvh_from_clip(std::move(clip), length / static_cast<double>(steps)));
+}
+
+Result<void> convert_take(const Job& job) {
+  if (!job.to.ends_with(".npz") && !job.to.ends_with(".bvh")) {
+    return Failure(Error{job.to, 0, "a name that ends in .npz or .bvh", "another ending"});
+  }
+  const auto work = [&job]() -> Result<std::string> {
+    KA_TRY(job.to.ends_with(".npz") ? take_to_npz(job) : take_to_bvh(job));
+    return std::string();
+  };
+  KA_TRY(run_guarded(GuardLimits{}, blame(job.from), work));
+  return {};
+}
+
+Result<int> run(Convert& o, Call& call) {
+  call.console.if_it_fails(
+      [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
+  const Job job{call.surroundings.files, o.files[0], o.files[1],
+                call.common.force ? Overwrite::yes : Overwrite::no};
+  if (KA_TRY(is_take(job.files, job.from))) {
+    KA_TRY(convert_take(job));
+  } else if (job.to.ends_with(".bvh")) {
+    const StreamOptions options = KA_TRY(o.stream.stream({job.from}));
+    KA_TRY(bvh_to_bvh(job, options));
+  } else if (job.to.ends_with(".npz")) {
+    const Recording input =
+        KA_TRY(open_input(job.files, job.from, o.stream, call.console.progress()));
+    if (input.streams.size() != 1) {
+      return Failure(
+          Error{job.from, 0, "one stream's file", fmt::format("{} streams", input.streams.size())});
+    }
+    KA_TRY(stream_to_npz(job, input.streams.front(), o.store_double));
+  } else {
+    return Failure(Error{job.to, 0, "a name that ends in .npz or .bvh", "another ending"});
+  }
+  call.console.print(job.to + "\n");
+  call.console.print_json(R"({"written": true})");
+  return 0;
+}
+
+}  // namespace
+
+Verb convert_verb() {
+  return make_verb<Convert>(
+      {.name = "convert",
+       .summary = "one format into another",
+       .text = "From a take to .npz or .bvh, from any stream's file to .npz, from .bvh to .bvh.",
+       .examples = {{"kinalign convert walk.bvh walk.npz",
+                     "positions, local_positions, local_rotations, joint_names, ... for NumPy"},
+                    {"kinalign convert take.h5 take.npz", "all streams of a take"},
+                    {"kinalign convert take.h5 mocap.bvh", "the take's skeleton stream"}},
+       .common = {"force", "json"}},
+      describe_convert, run);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/describe_file.h"
+
+#include "apps/kinalign/inputs.h"
+
+#include "kinalign/io/take_hdf5.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Contents {
+  std::string kind, parts;  // "points", "25 joints"
+  Json names;
+};
+
+Contents contents(const Skeleton& skeleton) {
+  return {"clip",
+          fmt::format("{} joints, {} end sites", skeleton.joints(), skeleton.end_sites.size()),
+          skeleton.joint_names};
+}
+
+Contents contents(const std::vector<std::string>& joints) {
+  return {"points", fmt::format("{} joints", joints.size()), joints};
+}
+
+Contents contents(const std::vector<std::string>& nodes, const ImuContent& content) {
+  std::string parts = fmt::format("{} node{}:", nodes.size(), nodes.size() == 1 ? "" : "s");
+  if (content.orientation) parts += " orientation,";
+  if (content.acceleration) {
+    parts += content.gravity ? " acceleration with gravity," : " acceleration without gravity,";
+  }
+  if (content.angular_velocity) parts += " angular velocity,";
+  parts.pop_back();
+  return {"imu", parts, nodes};
+}
+
+Contents contents_of(const RecordedStream& stream) {
+  if (const auto* clip = std::get_if<ClipInput>(&stream.data)) return contents(clip->skeleton);
+  if (const auto* points = std::get_if<PointInput>(&stream.data)) {
+    return contents(points->joint_names);
+  }
+  const auto& imu = std::get<ImuInput>(stream.data);
+  return contents(imu.node_names, imu.content);
+}
+
+Contents contents_of(const TakeGroup& group) {
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return contents(clip->skeleton);
+  if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
+    return contents(points->joint_names);
+  }
+  const auto& imu = std::get<ImuGroup>(group.kind);
+  return contents(imu.node_names, imu.content);
+}
+
+Json files_json(const std::vector<InputFacts>& files) {
+  Json out = Json::array();
+  for (const InputFacts& file : files) {
+    out.push_back({{"name", file.name}, {"sha256", file.sha256}, {"bytes", file.bytes}});
+  }
+  return out;
+}
+
+double rate_hz(const RecordedStream& s) {
+  const double step = s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns));
+  return step > 0.0 ? 1e9 / step : 0.0;
+}
+
+double seconds_of(const StampSurvey& survey) {
+  return 1e-9 * static_cast<double>((survey.last - survey.first).count());
+}
+
+std::string stream_line(const RecordedStream& s, const Contents& c) {
+  std::string line =
+      fmt::format("  {:<8} {}: {} samples over {:.3f} s at {:.4g} Hz; {}\n", s.name, c.kind,
+                  s.survey.samples, seconds_of(s.survey), rate_hz(s), c.parts);
+  if (s.survey.duplicates + s.survey.backward > 0) {
+    line += fmt::format("           {} stamps repeat, {} step back\n", s.survey.duplicates,
+                        s.survey.backward);
+  }
+  return line;
+}
+
+Json stream_json(const RecordedStream& s, const Contents& c) {
+  return {{"name", s.name},
+          {"kind", c.kind},
+          {"names", c.names},
+          {"samples", s.survey.samples},
+          {"first_ns", to_ns(s.survey.first)},
+          {"last_ns", to_ns(s.survey.last)},
+          {"rate_hz", rate_hz(s)},
+          {"duplicate_stamps", s.survey.duplicates},
+          {"backward_stamps", s.survey.backward},
+          {"files", files_json(s.files)}};
+}
+
+/// In the child: everything about a take as one JSON text.
+Result<std::string> take_facts(FileSystem& files, const std::string& path) {
+  const TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  const TakeHeader& header = reader.header();
+  Json out{{"file", path},
+           {"kind", "take"},
+           {"software", reader.software()},
+           {"subject", header.subject},
+           {"action", header.action},
+           {"frames", header.frames},
+           {"streams", Json::array()}};
+  for (const TakeGroup& group : header.groups) {
+    const Contents c = contents_of(group);
+    out["streams"].push_back({{"name", group.name},
+                              {"kind", c.kind},
+                              {"parts", c.parts},
+                              {"names", c.names},
+                              {"files", files_json(group.files)}});
+  }
+  out["report"] = Json::parse(KA_TRY(reader.report_json()), nullptr, false);
+  return out.dump();
+}
+
+std::string take_text(const Json& take) {
+  std::string text =
+      fmt::format("{}: a take of {} frames by {}\n", take.value("file", ""),
+                  take.value("frames", std::uint64_t{0}), take.value("software", ""));
+  const std::string subject = take.value("subject", ""), action = take.value("action", "");
+  if (!subject.empty() || !action.empty()) {
+    text += fmt::format("  subject {}, action {}\n", subject, action);
+  }
+  for (const Json& stream : take["streams"]) {
+    text += fmt::format("  {:<8} {}: {}\n", stream.value("name", ""), stream.value("kind", ""),
+                        stream.value("parts", ""));
+    for (const Json& file : stream["files"]) {
+      text += fmt::format("           {}  sha256 {}...\n", file.value("name", ""),
+                          file.value("sha256", "").substr(0, 12));
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Description describe_recording(const std::string& path, const Recording& recording) {
+  Json out{{"file", path},
+           {"kind", "recording"},
+           {"subject", recording.subject},
+           {"action", recording.action},
+           {"streams", Json::array()}};
+  std::string text = path + "\n";
+  for (const RecordedStream& s : recording.streams) {
+    const Contents c = contents_of(s);
+    out["streams"].push_back(stream_json(s, c));
+    text += stream_line(s, c);
+  }
+  return {std::move(text), out.dump()};
+}
+
+Result<Description> describe_take(FileSystem& files, const std::string& path) {
+  const std::string json =
+      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return take_facts(files, path); }));
+  return Description{take_text(Json::parse(json)), json};
+}
+
+std::string finding_lines(Findings findings) {
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+  std::string text;
+  for (const Finding& finding : findings) {
+    text += fmt::format("{:<8} {}\n", to_string(finding.severity), to_string(finding.what));
+    text += "         " + finding.meaning + "\n";
+    if (!finding.repair.empty()) text += "         " + finding.repair + "\n";
+  }
+  return text;
+}
+
+}  // namespace kinalign
