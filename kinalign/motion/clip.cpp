@@ -2,6 +2,8 @@
 #include "kinalign/motion/clip.h"
 
 #include <set>
+#include <string>
+#include <string_view>
 
 namespace kinalign {
 
@@ -21,6 +23,12 @@ Result<void> validate(const Skeleton& skeleton) {
     if (!names.insert(skeleton.joint_names[j]).second) {
       return Failure(Error{"", 0, "joint names that differ",
                            "'" + shown(skeleton.joint_names[j]) + "' twice"});
+    }
+  }
+  for (const EndSite& end : skeleton.end_sites) {
+    if (end.parent < 0 || end.parent >= static_cast<int>(joints)) {
+      return Failure(Error{"", 0, "end sites on joints of the skeleton",
+                           "one on joint " + std::to_string(end.parent)});
     }
   }
   return {};

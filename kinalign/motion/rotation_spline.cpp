@@ -93,6 +93,10 @@ struct Rates {
   Columns inner;     // [n-1]
 };
 
+/// rad in the shorter interval at a knot. Above about 2.5 rad between knots on irregular stamps
+/// the iteration may diverge; this holds the curve, which means little there, within bounds.
+constexpr double most_turn = 30.0;
+
 /// One solution of the system; returns the largest change of a rate times its shorter interval,
 /// rad.
 double sweep(const RotationIntervals& intervals, const std::vector<Step>& steps,
@@ -111,8 +115,9 @@ double sweep(const RotationIntervals& intervals, const std::vector<Step>& steps,
     const double h = std::min(intervals.length[k], intervals.length[k + 1]);
     for (Eigen::Index i = 0; i < 3; ++i) {
       double& rate = rates.inner[static_cast<std::size_t>(i)][k];
-      change = std::max(change, h * std::abs(w[i] - rate));
-      rate = w[i];
+      const double kept = std::clamp(w[i], -most_turn / h, most_turn / h);
+      change = std::max(change, h * std::abs(kept - rate));
+      rate = kept;
     }
   }
   return change;

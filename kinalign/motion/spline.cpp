@@ -10,75 +10,90 @@ namespace kinalign {
 
 namespace {
 
-// Forward step of the tridiagonal system, for a row of channels:
-// below[c] = (6 (slope after - slope before) - h_before * below_before[c]) / pivot.
+/// The row after the next, which the processor does not foresee behind short rows: 4 % of the time.
+inline __attribute__((always_inline)) void prefetch(const double* row, std::size_t channels) {
+  for (std::size_t c = 0; c < channels; c += 8) __builtin_prefetch(row + c);
+}
+
+// Elimination of the tridiagonal system row by row, all channels of a row at once:
+// bend[i] = (6 (slope after - slope before) - h_before * bend[i-1]) / pivot[i].
 KA_EVERY_PROCESSOR
-void eliminate(const double* y, std::size_t channels, double before, double after, double pivot,
-               const double* below, double* out) {
-  const double to_before = 6.0 / before, to_after = 6.0 / after, scale = 1.0 / pivot;
-  const double *y0 = y - channels, *y2 = y + channels;
-  for (std::size_t c = 0; c < channels; ++c) {
-    out[c] = ((y2[c] - y[c]) * to_after - (y[c] - y0[c]) * to_before - before * below[c]) * scale;
+void eliminate(const double* t, const double* values, std::size_t rows, std::size_t channels,
+               double* ratio, double* bends) {
+  for (std::size_t i = 1; i + 1 < rows; ++i) {
+    const double before = t[i] - t[i - 1], after = t[i + 1] - t[i];
+    const double scale = 1.0 / (2.0 * (before + after) - before * ratio[i - 1]);
+    ratio[i] = after * scale;
+    const double to_before = 6.0 * scale / before, to_after = 6.0 * scale / after;
+    const double carry = before * scale;
+    const double *y0 = values + (i - 1) * channels, *y1 = y0 + channels, *y2 = y1 + channels;
+    const double* above = bends + (i - 1) * channels;
+    double* bend = bends + i * channels;
+    prefetch(y2 + 2 * channels, channels);
+#pragma GCC ivdep
+    for (std::size_t c = 0; c < channels; ++c) {
+      bend[c] = (y2[c] - y1[c]) * to_after - (y1[c] - y0[c]) * to_before - carry * above[c];
+    }
   }
 }
 
 KA_EVERY_PROCESSOR
-void substitute(std::size_t channels, double ratio, const double* above, double* bend) {
-  for (std::size_t c = 0; c < channels; ++c) bend[c] -= ratio * above[c];
+void substitute(const double* ratio, std::size_t rows, std::size_t channels, double* bends) {
+  for (std::size_t i = rows - 2; i > 0; --i) {
+    double* bend = bends + i * channels;
+    const double* below = bend + channels;
+#pragma GCC ivdep
+    for (std::size_t c = 0; c < channels; ++c) bend[c] -= ratio[i] * below[c];
+  }
 }
 
-struct Weights {
+/// A place between two knots, as fractions of the way and the weights of both bends.
+struct Place {
   double left, right, left_bend, right_bend;
 };
 
+Place place_in(double from, double to, double at) {
+  const double h = to - from, right = (at - from) / h, left = 1.0 - right;
+  const double sixth = h * h * (1.0 / 6.0);
+  return {left, right, (left * left * left - left) * sixth,
+          (right * right * right - right) * sixth};
+}
+
 KA_EVERY_PROCESSOR
-void blend(const double* y, const double* bend, std::size_t channels, const Weights& w,
-           double* out) {
-  const double *y1 = y + channels, *bend1 = bend + channels;
-  for (std::size_t c = 0; c < channels; ++c) {
-    out[c] = w.left * y[c] + w.right * y1[c] + (w.left_bend * bend[c] + w.right_bend * bend1[c]);
+void blend(const Knots& knots, const double* bends, std::span<const double> at, double* out) {
+  const auto& t = knots.times;
+  const std::size_t channels = knots.channels;
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < at.size(); ++i, out += channels) {
+    while (k + 2 < t.size() && at[i] >= t[k + 1]) ++k;
+    const Place w = place_in(t[k], t[k + 1], at[i]);
+    const double *y = &knots.values[k * channels], *bend = bends + k * channels;
+    const double *y1 = y + channels, *bend1 = bend + channels;
+#pragma GCC ivdep
+    for (std::size_t c = 0; c < channels; ++c) {
+      out[c] = w.left * y[c] + w.right * y1[c] + (w.left_bend * bend[c] + w.right_bend * bend1[c]);
+    }
   }
 }
 
 }  // namespace
 
 void natural_spline(const Knots& knots, std::span<double> bends) {
-  const auto& t = knots.times;
-  const std::size_t n = t.size(), channels = knots.channels;
-  std::fill(bends.begin(), bends.end(), 0.0);
-  if (n < 3) return;
-  std::vector<double> ratio(n, 0.0);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double before = t[i] - t[i - 1], after = t[i + 1] - t[i];
-    const double pivot = 2.0 * (before + after) - before * ratio[i - 1];
-    ratio[i] = after / pivot;
-    eliminate(&knots.values[i * channels], channels, before, after, pivot,
-              &bends[(i - 1) * channels], &bends[i * channels]);
-  }
-  for (std::size_t i = n - 2; i > 0; --i) {
-    substitute(channels, ratio[i], &bends[(i + 1) * channels], &bends[i * channels]);
-  }
+  const std::size_t rows = knots.times.size(), channels = knots.channels;
+  const auto first = bends.first(channels), last = bends.subspan((rows - 1) * channels, channels);
+  std::fill(first.begin(), first.end(), 0.0);
+  std::fill(last.begin(), last.end(), 0.0);
+  if (rows < 3) return;
+  std::vector<double> ratio(rows, 0.0);
+  eliminate(knots.times.data(), knots.values.data(), rows, channels, ratio.data(), bends.data());
+  substitute(ratio.data(), rows, channels, bends.data());
 }
 
 void spline_at(const Knots& knots, std::span<const double> bends, std::span<const double> times,
                std::span<double> out) {
-  const auto& t = knots.times;
-  const std::size_t n = t.size(), channels = knots.channels;
-  if (n == 1) {
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      std::copy_n(knots.values.begin(), channels, &out[i * channels]);
-    }
-    return;
-  }
-  std::size_t k = 0;
+  if (knots.times.size() > 1) return blend(knots, bends.data(), times, out.data());
   for (std::size_t i = 0; i < times.size(); ++i) {
-    while (k + 2 < n && times[i] >= t[k + 1]) ++k;
-    const double h = t[k + 1] - t[k];
-    const double right = (times[i] - t[k]) / h, left = (t[k + 1] - times[i]) / h;
-    const double sixth = h * h / 6.0;
-    const Weights weights{left, right, (left * left * left - left) * sixth,
-                          (right * right * right - right) * sixth};
-    blend(&knots.values[k * channels], &bends[k * channels], channels, weights, &out[i * channels]);
+    std::copy_n(knots.values.begin(), knots.channels, &out[i * knots.channels]);
   }
 }
 

@@ -16,6 +16,15 @@ std::size_t class_of(std::uint64_t step) {
   return (std::size_t{bits} << 6) + (fraction & 63);
 }
 
+/// later - earlier, also where that is more than a Duration holds.
+std::uint64_t step_between(Time earlier, Time later) {
+  return static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
+}
+
+std::int64_t held(std::uint64_t ns) {
+  return static_cast<std::int64_t>(std::min<std::uint64_t>(ns, INT64_MAX));
+}
+
 /// The middle of a class, ns.
 double middle_of(std::size_t number) {
   const auto bits = static_cast<int>(number >> 6);
@@ -36,9 +45,9 @@ void StampSurveyor::add(std::span<const Time> stamps) {
     } else if (stamp < survey_.last) {
       ++survey_.backward;
       survey_.largest_step_back_ns =
-          std::max(survey_.largest_step_back_ns, (survey_.last - stamp).count());
+          std::max(survey_.largest_step_back_ns, held(step_between(stamp, survey_.last)));
     } else {
-      ++steps_[class_of(static_cast<std::uint64_t>((stamp - survey_.last).count()))];
+      ++steps_[class_of(step_between(survey_.last, stamp))];
       survey_.last = stamp;
     }
   }
@@ -52,7 +61,7 @@ StampSurvey StampSurveyor::result() const {
   for (std::size_t i = 0; i < classes && all > 0; ++i) {
     below += steps_[i];
     if (2 * below >= all) {
-      survey.median_step_ns = std::llround(middle_of(i));
+      survey.median_step_ns = held(static_cast<std::uint64_t>(middle_of(i)));
       break;
     }
   }

@@ -83,7 +83,8 @@ TEST_CASE("a rotation spline goes through every knot") {
     std::mt19937_64 random(seed);
     const auto t = irregular_stamps(1 + random() % 60, random);
     const auto knots = rotation_walk(t.size(), 3.0, random);
-    CHECK(worst_angle(curve(t, knots, t), knots) <= 1e-14);
+    // with cubics of up to a thousand radians that cancel at the knots, where they are 3 rad apart
+    CHECK(worst_angle(curve(t, knots, t), knots) <= 1e-12);
   }
 }
 

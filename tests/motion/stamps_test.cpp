@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/motion/stamps.h"
+
+#include "tests/seeds.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace kinalign;
+
+namespace {
+
+std::vector<Time> stamps(const std::vector<std::int64_t>& ns) {
+  std::vector<Time> out;
+  for (const auto t : ns) out.push_back(utc_time(t));
+  return out;
+}
+
+StampSurvey survey(const std::vector<Time>& all) {
+  StampSurveyor surveyor;
+  surveyor.add(all);
+  return surveyor.result();
+}
+
+}  // namespace
+
+TEST_CASE("a survey counts what repeats and what steps back, and keeps the rest") {
+  const auto found = survey(stamps({100, 200, 200, 150, 120, 300, 250, 400}));
+  CHECK(found.samples == 8);
+  CHECK(found.duplicates == 1);
+  CHECK(found.backward == 3);
+  CHECK(found.largest_step_back_ns == 80);
+  CHECK(found.kept() == 4);
+  CHECK(found.first == utc_time(100));
+  CHECK(found.last == utc_time(400));
+  CHECK(std::abs(static_cast<double>(found.median_step_ns) - 100.0) <= 1.0);
+}
+
+TEST_CASE("no stamps and one stamp have no step") {
+  CHECK(survey({}).median_step_ns == 0);
+  CHECK(survey({}).kept() == 0);
+  CHECK(survey(stamps({-5})).median_step_ns == 0);
+  CHECK(survey(stamps({-5})).first == utc_time(-5));
+}
+
+TEST_CASE("the median step is true to one percent at any rate") {
+  for (const auto seed : fresh_seeds(300)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const double scale = std::exp(std::uniform_real_distribution<double>(5.0, 30.0)(random));
+    std::lognormal_distribution<double> spread(0.0, 0.3);
+    std::vector<std::int64_t> ns{static_cast<std::int64_t>(random() % 1000)}, steps;
+    for (std::size_t i = 0; i < 201; ++i) {
+      steps.push_back(1 + std::llround(scale * spread(random)));
+      ns.push_back(ns.back() + steps.back());
+    }
+    std::nth_element(steps.begin(), steps.begin() + 100, steps.end());
+    const auto median = static_cast<double>(steps[100]);
+    const auto found = static_cast<double>(survey(stamps(ns)).median_step_ns);
+    CHECK(std::abs(found - median) <= 0.01 * median + 1.0);
+  }
+}
+
+TEST_CASE("a survey does not depend on how the stamps are cut into pieces") {
+  for (const auto seed : fresh_seeds(50)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    std::vector<std::int64_t> ns;
+    for (std::size_t i = 0; i < 100; ++i) ns.push_back(static_cast<std::int64_t>(random() % 500));
+    const auto all = stamps(ns);
+    const auto whole = survey(all);
+    StampSurveyor pieces;
+    for (std::size_t i = 0; i < all.size();) {
+      const std::size_t n = std::min<std::size_t>(1 + random() % 7, all.size() - i);
+      pieces.add(std::span(all).subspan(i, n));
+      i += n;
+    }
+    const auto found = pieces.result();
+    CHECK(found.kept() == whole.kept());
+    CHECK(found.duplicates == whole.duplicates);
+    CHECK(found.largest_step_back_ns == whole.largest_step_back_ns);
+    CHECK(found.median_step_ns == whole.median_step_ns);
+  }
+}
+
+TEST_CASE("stamps from one end of time to the other are surveyed without overflow") {
+  const auto found = survey(stamps({INT64_MIN, INT64_MAX, INT64_MIN}));
+  CHECK(found.kept() == 2);
+  CHECK(found.backward == 1);
+  CHECK(found.largest_step_back_ns == INT64_MAX);  // as much as there is room for
+}
