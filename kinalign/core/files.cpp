@@ -21,6 +21,7 @@ std::string kind_of(mode_t mode) {
   if (S_ISDIR(mode)) return "a directory";
   if (S_ISFIFO(mode)) return "a pipe; save it to a file first";
   if (S_ISSOCK(mode)) return "a socket";
+  if (S_ISLNK(mode)) return "a symbolic link";
   return "a device";
 }
 
@@ -129,13 +130,14 @@ Result<std::string> read_whole(FileSystem& files, const std::string& path, std::
 }
 
 Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overwrite overwrite) {
+  if (file_name(path).empty()) return Failure(Error{path, 0, "the name of a file", "a folder's"});
   struct stat status {};
   if (::lstat(path.c_str(), &status) == 0) {
+    if (!S_ISREG(status.st_mode)) {
+      return Failure(Error{path, 0, "a regular file or none", kind_of(status.st_mode)});
+    }
     if (overwrite == Overwrite::no) {
       return Failure(Error{path, 0, "no file of that name (--force overwrites)", "one"});
-    }
-    if (!S_ISREG(status.st_mode)) {
-      return Failure(Error{path, 0, "a regular file to overwrite", kind_of(status.st_mode)});
     }
   }
   OutputFile file(files, std::move(path), overwrite);
@@ -194,7 +196,11 @@ Result<void> OutputFile::write(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t put = files_->write(fd_, bytes.data(), bytes.size());
     if (put < 0 && errno == EINTR) continue;
-    if (put < 0) return failed(path_, "room to write", errno);
+    if (put <= 0) {
+      const int code = put < 0 ? errno : ENOSPC;
+      discard();  // what has a hole is never committed
+      return failed(path_, "room to write", code);
+    }
     bytes.remove_prefix(static_cast<std::size_t>(put));
   }
   return {};
@@ -245,7 +251,10 @@ Result<void> OutputFile::place() {
   // link, not rename: it refuses a name that another program took in the meantime.
   const char* from = beside_.empty() ? unfinished_.c_str() : beside_.c_str();
   if (files_->link(from, path_.c_str()) != 0) {
-    return failed(path_, "no file of that name (--force overwrites)", errno);
+    if (errno == EEXIST) {
+      return Failure(Error{path_, 0, "no file of that name (--force overwrites)", "one"});
+    }
+    return failed(path_, "a folder that can be written", errno);
   }
   return {};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/core/numbers.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -26,12 +27,19 @@ constexpr std::array<char, 200> digit_pairs = [] {
 
 bool is_digit(char c) { return static_cast<unsigned>(c - '0') < 10; }
 
-/// Of a number that no double holds: 1e-999 (nothing, to a double), not 1e999.
+/// Of a number that no double holds, a digit other than 0 in it: 1e-999 (nothing, to a double), not
+/// 1e999. By the power of ten of its first such digit.
 bool too_small(std::string_view number) {
-  const auto exponent = number.find_first_of("eE");
-  if (exponent != std::string_view::npos) return number.substr(exponent + 1).starts_with('-');
-  const auto digit = number.find_first_not_of("-0");
-  return digit == std::string_view::npos || number[digit] == '.';
+  const auto exponent_at = std::min(number.find_first_of("eE"), number.size());
+  const std::string_view digits = number.substr(0, exponent_at);
+  const auto point = static_cast<std::int64_t>(std::min(digits.find('.'), digits.size()));
+  const auto first = static_cast<std::int64_t>(digits.find_first_of("123456789"));
+  std::string_view exponent = number.substr(std::min(exponent_at + 1, number.size()));
+  const bool negative = exponent.starts_with('-');
+  if (negative || exponent.starts_with('+')) exponent.remove_prefix(1);
+  std::int64_t power = 0;
+  for (const char c : exponent) power = std::min(power * 10 + (c - '0'), std::int64_t{1} << 40);
+  return point - first + (negative ? -power : power) < 0;
 }
 
 const char* parse_any(const char* at, const char* end, double& value) {

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/core/files.h"
+
+#include "tests/folder.h"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+
+using namespace kinalign;
+
+namespace {
+
+/// The machine's files, but for one call that fails: the k-th, or every nameless open.
+class FaultyFiles final : public FileSystem {
+ public:
+  int fail_at = 0;              // from 1; 0: none
+  bool nameless = true;         // O_TMPFILE is there
+  std::size_t most = SIZE_MAX;  // bytes a write takes
+  int calls = 0;
+
+  int open(const char* path, int flags, mode_t mode) override {
+    if (fails()) return -1;
+    if (!nameless && (flags & O_TMPFILE) == O_TMPFILE) {
+      errno = EOPNOTSUPP;
+      return -1;
+    }
+    return files_.open(path, flags, mode);
+  }
+  ssize_t read(int fd, void* data, std::size_t size) override {
+    return fails() ? -1 : files_.read(fd, data, size);
+  }
+  ssize_t write(int fd, const void* data, std::size_t size) override {
+    return fails() ? -1 : files_.write(fd, data, std::min(size, most));
+  }
+  int sync(int fd) override { return fails() ? -1 : files_.sync(fd); }
+  int link(const char* from, const char* to) override {
+    return fails() ? -1 : files_.link(from, to);
+  }
+  int rename(const char* from, const char* to) override {
+    return fails() ? -1 : files_.rename(from, to);
+  }
+  int remove(const char* path) override { return files_.remove(path); }
+  int close(int fd) override {
+    const bool failing = fails();
+    files_.close(fd);  // as Linux does it: closed, whatever it says
+    return failing ? -1 : 0;
+  }
+
+ private:
+  bool fails() {
+    if (++calls != fail_at) return false;
+    errno = ENOSPC;
+    return true;
+  }
+  PosixFiles files_;
+};
+
+Result<void> write_file(FileSystem& files, const std::string& path, Overwrite overwrite) {
+  OutputFile file = KA_TRY(OutputFile::create(files, path, overwrite));
+  KA_TRY(file.write("new "));
+  KA_TRY(file.write("text"));
+  return file.commit();
+}
+
+std::string refusal(const Result<void>& result) { return result ? "" : to_string(result.error()); }
+
+/// "FOLDER/name: ..." without the folder.
+template <class T>
+std::string refusal_in(const FreshFolder& folder, const Result<T>& result) {
+  REQUIRE(!result);
+  const std::string text = to_string(result.error());
+  REQUIRE(text.starts_with(folder.path() + "/"));
+  return text.substr(folder.path().size() + 1);
+}
+
+}  // namespace
+
+TEST_CASE("a file is read from front to back in pieces") {
+  const FreshFolder folder;
+  PosixFiles files;
+  std::string bytes;
+  for (std::size_t i = 0; i < 2 * InputFile::piece_size + 77; ++i) {
+    bytes += static_cast<char>(i * 131 >> 4);
+  }
+  auto file = InputFile::open(files, folder.write("data", bytes));
+  REQUIRE(file);
+  CHECK(file->size() == bytes.size());
+  std::string found;
+  for (;;) {
+    const auto piece = file->next();
+    REQUIRE(piece);
+    CHECK(piece->size() <= InputFile::piece_size);
+    if (piece->empty()) break;
+    found += *piece;
+  }
+  CHECK(found == bytes);
+  CHECK(read_whole(files, folder / "data", bytes.size()) == bytes);
+}
+
+TEST_CASE("what is no regular file is refused at once, with what it is") {
+  const FreshFolder folder;
+  PosixFiles files;
+  CHECK(refusal_in(folder, InputFile::open(files, folder / "none")) ==
+        "none: expected a readable file, found No such file or directory");
+  REQUIRE(::mkdir((folder / "sub").c_str(), 0700) == 0);
+  CHECK(refusal_in(folder, InputFile::open(files, folder / "sub")) ==
+        "sub: expected a regular file, found a directory");
+  REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  CHECK(refusal_in(folder, InputFile::open(files, folder / "pipe")) ==
+        "pipe: expected a regular file, found a pipe; save it to a file first");
+  const auto device = InputFile::open(files, "/dev/null");
+  REQUIRE(!device);
+  CHECK(to_string(device.error()) == "/dev/null: expected a regular file, found a device");
+  folder.write("large", "12345");
+  CHECK(refusal_in(folder, read_whole(files, folder / "large", 4)) ==
+        "large: expected at most 4 bytes, found more");
+}
+
+TEST_CASE("a reading that fails says so") {
+  const FreshFolder folder;
+  folder.write("data", "text");
+  for (int k = 1; k <= 2; ++k) {
+    FaultyFiles files;
+    files.fail_at = k;
+    CHECK(refusal_in(folder, read_whole(files, folder / "data", 100)) ==
+          "data: expected a readable file, found No space left on device");
+  }
+}
+
+TEST_CASE("a written file is there whole after commit and not at all before") {
+  for (const bool nameless : {true, false}) {
+    CAPTURE(nameless);
+    const FreshFolder folder;
+    FaultyFiles files;
+    files.nameless = nameless;
+    files.most = 3;
+    {
+      auto file = OutputFile::create(files, folder / "out", Overwrite::no);
+      REQUIRE(file);
+      REQUIRE(file->write("some text"));
+      CHECK(::access((folder / "out").c_str(), F_OK) != 0);
+      CHECK(folder.names().size() == (nameless ? 0 : 1));
+      REQUIRE(file->commit());
+    }
+    CHECK(folder.names() == std::vector<std::string>{"out"});
+    CHECK(folder.read("out") == "some text");
+  }
+}
+
+TEST_CASE("a file that is not committed leaves nothing") {
+  for (const bool nameless : {true, false}) {
+    CAPTURE(nameless);
+    const FreshFolder folder;
+    FaultyFiles files;
+    files.nameless = nameless;
+    REQUIRE(OutputFile::create(files, folder / "out", Overwrite::yes)->write("text"));
+    CHECK(folder.names().empty());
+  }
+}
+
+TEST_CASE("an existing file is overwritten only when asked for") {
+  const FreshFolder folder;
+  PosixFiles files;
+  folder.write("out", "old");
+  CHECK(refusal_in(folder, write_file(files, folder / "out", Overwrite::no)) ==
+        "out: expected no file of that name (--force overwrites), found one");
+  CHECK(folder.read("out") == "old");
+  CHECK(refusal(write_file(files, folder / "out", Overwrite::yes)).empty());
+  CHECK(folder.read("out") == "new text");
+  CHECK(folder.names().size() == 1);
+}
+
+TEST_CASE("a name taken while a file is written is not overwritten") {
+  for (const bool nameless : {true, false}) {
+    CAPTURE(nameless);
+    const FreshFolder folder;
+    FaultyFiles files;
+    files.nameless = nameless;
+    auto file = OutputFile::create(files, folder / "out", Overwrite::no);
+    REQUIRE(file);
+    folder.write("out", "theirs");
+    CHECK(refusal_in(folder, file->commit()) ==
+          "out: expected no file of that name (--force overwrites), found one");
+    file = Failure(Error{});
+    CHECK(folder.read("out") == "theirs");
+    CHECK(folder.names().size() == 1);
+  }
+}
+
+TEST_CASE("what is no regular file is not overwritten") {
+  const FreshFolder folder;
+  PosixFiles files;
+  REQUIRE(::mkdir((folder / "sub").c_str(), 0700) == 0);
+  REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  REQUIRE(::symlink("elsewhere", (folder / "link").c_str()) == 0);
+  CHECK(refusal_in(folder, write_file(files, folder / "sub", Overwrite::yes)) ==
+        "sub: expected a regular file or none, found a directory");
+  CHECK(refusal_in(folder, write_file(files, folder / "pipe", Overwrite::yes)) ==
+        "pipe: expected a regular file or none, found a pipe; save it to a file first");
+  CHECK(refusal_in(folder, write_file(files, folder / "link", Overwrite::yes)) ==
+        "link: expected a regular file or none, found a symbolic link");
+  CHECK(refusal_in(folder, write_file(files, folder / "sub/", Overwrite::yes)) ==
+        "sub/: expected the name of a file, found a folder's");
+  CHECK(refusal_in(folder, write_file(files, folder / "none/out", Overwrite::no)) ==
+        "none/out: expected a folder that can be written, found No such file or directory");
+}
+
+TEST_CASE("whichever call fails, the old file or the whole new one stands there, and no other") {
+  for (const bool nameless : {true, false}) {
+    for (const auto overwrite : {Overwrite::no, Overwrite::yes}) {
+      int failures = 0;
+      for (int k = 1; k < 30; ++k) {
+        CAPTURE(nameless);
+        CAPTURE(k);
+        const FreshFolder folder;
+        if (overwrite == Overwrite::yes) folder.write("out", "old");
+        FaultyFiles files;
+        files.nameless = nameless;
+        files.fail_at = k;
+        const auto result = write_file(files, folder / "out", overwrite);
+        const auto names = folder.names();
+        CHECK(std::all_of(names.begin(), names.end(), [](auto& name) { return name == "out"; }));
+        if (result) {
+          CHECK(folder.read("out") == "new text");
+        } else {
+          ++failures;
+          CHECK(folder.read("out") == (overwrite == Overwrite::yes ? "old" : ""));
+          CHECK(names.size() == (overwrite == Overwrite::yes ? 1 : 0));
+          CHECK(to_string(result.error()).ends_with("found No space left on device"));
+        }
+        if (files.calls < k) break;
+      }
+      CHECK(failures >= 5);  // opening, two writes, syncing, placing
+    }
+  }
+}
+
+TEST_CASE("a file that lost a piece can't be committed") {
+  const FreshFolder folder;
+  FaultyFiles files;
+  auto file = OutputFile::create(files, folder / "out", Overwrite::no);
+  REQUIRE(file);
+  files.fail_at = 2;
+  CHECK(!file->write("lost"));
+  CHECK(!file->write("more"));
+  CHECK(!file->commit());
+  CHECK(folder.names().empty());
+}
+
+TEST_CASE("a program killed while it writes leaves what stood there") {
+  for (const auto overwrite : {Overwrite::no, Overwrite::yes}) {
+    const FreshFolder folder;
+    if (overwrite == Overwrite::yes) folder.write("out", "old");
+    const auto before = folder.names();
+    const pid_t child = ::fork();
+    if (child == 0) {
+      PosixFiles files;
+      auto file = OutputFile::create(files, folder / "out", overwrite);
+      if (!file || !file->write(std::string(100000, 'x'))) ::_exit(1);
+      ::kill(::getpid(), SIGKILL);
+    }
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    REQUIRE(WIFSIGNALED(status));
+    CHECK(folder.names() == before);
+    if (overwrite == Overwrite::yes) CHECK(folder.read("out") == "old");
+  }
+}
+
+TEST_CASE("a moved output file is still the one to commit") {
+  const FreshFolder folder;
+  PosixFiles files;
+  auto first = OutputFile::create(files, folder / "out", Overwrite::no);
+  REQUIRE(first);
+  OutputFile second = std::move(*first);
+  REQUIRE(second.write("text"));
+  REQUIRE(second.commit());
+  CHECK(folder.read("out") == "text");
+}
+
+TEST_CASE("a path has a folder and a name") {
+  CHECK(file_name("a/b/c.txt") == "c.txt");
+  CHECK(folder("a/b/c.txt") == "a/b/");
+  CHECK(file_name("c.txt") == "c.txt");
+  CHECK(folder("c.txt").empty());
+  CHECK(folder("/c") == "/");
+}
