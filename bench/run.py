@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the kernels' benchmarks, ours and the references interleaved, and prints the table.
+
+usage: run.py [BUILD=build/bench] [ROUNDS=7]
+
+Each line: the job, what it is measured against, the ratio of the medians of CPU time, the aim.
+"""
+import json
+import pathlib
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+# job, ours, reference, in words, aim (ours / reference)
+ROWS = [
+    ("text to doubles", "parse/kinalign", "parse/from_chars", "`std::from_chars`", 0.75),
+    ("doubles of a file to text", "print_file_like/kinalign", "print_file_like/to_chars",
+     "`std::to_chars`, shortest", 0.2),
+    ("any doubles to text", "print_any/kinalign", "print_any/to_chars",
+     "`std::to_chars`, shortest", 1.05),
+    ("59 joints: angles to positions", "kinematics/kinalign", "kinematics/eigen",
+     "Eigen, joint by joint", 0.5),
+    ("natural spline, whole file", "spline/kinalign", "spline/traffic",
+     "the same bytes moved", None),
+    ("natural spline, windows of 1000 rows", "spline_windows/kinalign", "spline/traffic",
+     "the same bytes moved", 1.6),
+    ("natural spline, windows into one slab", "spline_slabs/kinalign", "spline/traffic",
+     "the same bytes moved", 1.6),
+    ("natural spline, windows of 1000 rows", "spline_windows/kinalign", "spline/scipy",
+     "SciPy `CubicSpline`", 1 / 30),
+    ("slerp", "slerp/kinalign", "slerp/eigen", "Eigen's slerp", 0.65),
+    ("slerp", "slerp/kinalign", "slerp/scipy", "SciPy `Slerp`", None),
+    ("rotation spline", "rotation_spline/kinalign", "slerp/kinalign", "our slerp", 4),
+    ("rotation spline", "rotation_spline/kinalign", "rotation_spline/scipy",
+     "SciPy `RotationSpline`", 1 / 50),
+    ("SHA-256 of a warm file", "sha256/kinalign", "sha256/read_and_openssl",
+     "`read()` and OpenSSL", 1.15),
+]
+
+
+def nanoseconds(build, rounds):
+    """CPU time of one item of each benchmark, ns."""
+    found = {}
+    for program in sorted((build / "bench").glob("*_bench")):
+        answer = subprocess.run(
+            [program, "--benchmark_format=json", f"--benchmark_repetitions={rounds}",
+             "--benchmark_enable_random_interleaving=true", "--benchmark_min_time=0.2",
+             "--benchmark_report_aggregates_only=true"],
+            check=True, capture_output=True, text=True).stdout
+        for run in json.loads(answer)["benchmarks"]:
+            if run.get("aggregate_name") == "median":
+                rate = run.get("items_per_second") or run["bytes_per_second"]
+                found[run["run_name"].removesuffix("/repeats:" + str(rounds))] = 1e9 / rate
+    peers = subprocess.run(["/usr/bin/python3", HERE / "peers" / "scipy_resampling.py"],
+                           check=True, capture_output=True, text=True,
+                           env={"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}).stdout
+    return found | json.loads(peers)
+
+
+def shown(ratio):
+    return f"{ratio:.3g}" if ratio >= 0.1 else f"1/{1 / ratio:.0f}"
+
+
+def main():
+    build = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else HERE.parent / "build" / "bench")
+    rounds = int(sys.argv[2]) if len(sys.argv) > 2 else 7
+    found = nanoseconds(build, rounds)
+    print("| job | reference | ours / reference | aim | met |")
+    print("| --- | --- | --- | --- | --- |")
+    for job, ours, reference, words, aim in ROWS:
+        ratio = found[ours] / found[reference]
+        met = "" if aim is None else "yes" if ratio <= aim else "no"
+        print(f"| {job} | {words} | {shown(ratio)} | {'' if aim is None else shown(aim)} | {met} |")
+
+
+if __name__ == "__main__":
+    main()
