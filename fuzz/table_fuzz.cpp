@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every layout that the program carries, on any bytes.
+#include "fuzz/pieces.h"
+
+#include "kinalign/io/table_reader.h"
+
+#include <vector>
+
+namespace {
+
+const std::vector<kinalign::TableLayout>& layouts() {
+  static const auto all = [] {
+    std::vector<kinalign::TableLayout> parsed;
+    for (const auto name : kinalign::builtin_layout_names()) {
+      parsed.push_back(*kinalign::parse_layout(*kinalign::builtin_layout(name), name));
+    }
+    return parsed;
+  }();
+  return all;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace kinalign;
+  const std::string_view text = text_of(data, size);
+  for (const TableLayout& layout : layouts()) {
+    (void)matches(layout, text.substr(0, 4096));
+    if (layout.kind == TableKind::points) {
+      check_pieces([&] { return make_point_table_reader(layout, {}, "f"); }, text);
+    } else {
+      check_pieces([&] { return make_imu_table_reader(layout, {}, "f", ""); }, text);
+    }
+  }
+  return 0;
+}
