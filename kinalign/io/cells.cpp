@@ -86,27 +86,32 @@ inline const char* RowParser::number(const char* at, const char* end, int slot) 
   return odd_number(at, end, slot);
 }
 
+inline const char* RowParser::read_cell(ColumnUse use, const char* at, const char* end) {
+  const char* behind = use.slot >= 0 ? number(at, end, use.slot) : cell_end(at, end);
+  if (use.text >= 0 && behind != nullptr) {
+    texts[static_cast<std::size_t>(use.text)] = unquoted(trimmed(between(at, behind)));
+  }
+  return behind;
+}
+
 template <bool runs>
 Result<void> RowParser::read_cells(const char* at, const char* end) {
+  const std::size_t last = columns_.size() - 1;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     while (at != end && pads(*at)) ++at;
-    if (runs && at == end) return too_few(i);
-    const char* start = at;
-    const ColumnUse use = columns_[i];
-    at = use.slot >= 0 ? number(start, end, use.slot) : cell_end(start, end);
-    if (at == nullptr) {
-      const auto cell = between(start, cell_end(start, end));
-      return Failure(
-          Error{"", 0, "a number in column " + std::to_string(i + 1), shown(trimmed(cell))});
-    }
-    if (use.text >= 0)
-      texts[static_cast<std::size_t>(use.text)] = unquoted(trimmed(between(start, at)));
-    if (!runs && at == end && i + 1 < columns_.size()) return too_few(i + 1);
-    if (!runs && at != end) ++at;  // the delimiter
+    if (runs && at == end) return wrong_count(i);
+    const char* behind = read_cell(columns_[i], at, end);
+    if (behind == nullptr) return no_number(i, between(at, cell_end(at, end)));
+    if (!runs && behind == end && i < last) return wrong_count(i + 1);
+    at = !runs && behind != end ? behind + 1 : behind;  // behind the delimiter
   }
-  while (at != end && (pads(*at) || delimits(*at))) ++at;
-  if (at != end) return too_many(at, end);
-  return {};
+  return nothing_behind(at, end);
+}
+
+Result<void> RowParser::nothing_behind(const char* at, const char* end) const {
+  at = std::find_if_not(at, end, [this](char c) { return pads(c) || delimits(c); });
+  if (at == end) return {};
+  return wrong_count(columns_.size() + split_cells(between(at, end), delimiter_).size());
 }
 
 Result<void> RowParser::read(std::string_view line) {
@@ -119,13 +124,13 @@ Result<void> RowParser::read(std::string_view line) {
                                       : read_cells<false>(line.data(), end);
 }
 
-Failure RowParser::too_few(std::size_t cells) const {
-  return Failure(Error{"", 0, std::to_string(columns_.size()) + " cells", std::to_string(cells)});
+Failure RowParser::no_number(std::size_t column, std::string_view cell) {
+  return Failure(
+      Error{"", 0, "a number in column " + std::to_string(column + 1), shown(trimmed(cell))});
 }
 
-Failure RowParser::too_many(const char* at, const char* end) const {
-  const std::size_t more = split_cells(between(at, end), delimiter_).size();
-  return too_few(columns_.size() + more);
+Failure RowParser::wrong_count(std::size_t cells) const {
+  return Failure(Error{"", 0, std::to_string(columns_.size()) + " cells", std::to_string(cells)});
 }
 
 std::vector<std::string> split_cells(std::string_view line, char delimiter) {

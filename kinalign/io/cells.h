@@ -48,8 +48,10 @@ class RowParser {
   const char* cell_end(const char* at, const char* end) const;
   bool delimits(char c) const;
   bool pads(char c) const;
-  Failure too_few(std::size_t cells) const;
-  Failure too_many(const char* at, const char* end) const;
+  const char* read_cell(ColumnUse use, const char* at, const char* end);
+  Result<void> nothing_behind(const char* at, const char* end) const;
+  Failure wrong_count(std::size_t cells) const;
+  static Failure no_number(std::size_t column, std::string_view cell);
 
   char delimiter_ = ',';
   std::vector<ColumnUse> columns_;

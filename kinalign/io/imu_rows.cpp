@@ -15,31 +15,34 @@ constexpr double zeros[4] = {};
 
 }  // namespace
 
-void ImuRows::append(const RawImuSample& sample, ImuSamples& out) {
+bool ImuRows::turn(const double* raw, Quat& q) {
   constexpr double smallest = 1e-6;
   constexpr double unit_within = 0.02;
-  bool valid = sample.valid;
-  Quat q(1, 0, 0, 0);
-  if (const double* raw = sample.orientation; raw != nullptr && valid) {
-    q = Quat(raw[0], raw[1], raw[2], raw[3]);
-    const double length = q.norm();
-    valid = length > smallest;
-    zero_ += valid ? 0 : 1;
-    not_unit_ += valid && std::abs(length - 1.0) > unit_within ? 1 : 0;
-    if (valid) q = (turn_ * Quat(q.coeffs() / length)).normalized();
+  q = Quat(raw[0], raw[1], raw[2], raw[3]);
+  const double length = q.norm();
+  if (!(length > smallest)) {
+    ++zero_;
+    return false;
   }
+  not_unit_ += std::abs(length - 1.0) > unit_within ? 1 : 0;
+  q = (turn_ * Quat(q.coeffs() / length)).normalized();
+  return true;
+}
+
+void ImuRows::append(const RawImuSample& sample, ImuSamples& out) {
   ++samples_;
-  const double scale = valid ? 1.0 : 0.0;
+  bool valid = sample.valid;
   if (sample.orientation != nullptr) {
-    for (const double part : {q.w(), q.x(), q.y(), q.z()})
-      out.orientation.push_back(valid ? part : 0.0);
+    Quat q(1, 0, 0, 0);
+    valid = valid && turn(sample.orientation, q);
+    const double parts[] = {q.w(), q.x(), q.y(), q.z()};
+    append_scaled(valid ? parts : zeros, 4, 1.0, out.orientation);
   }
   if (sample.acceleration != nullptr) {
-    append_scaled(valid ? sample.acceleration : zeros, 3, scale * units_.acceleration,
-                  out.acceleration);
+    append_scaled(valid ? sample.acceleration : zeros, 3, units_.acceleration, out.acceleration);
   }
   if (sample.angular_velocity != nullptr) {
-    append_scaled(valid ? sample.angular_velocity : zeros, 3, scale * units_.angular_velocity,
+    append_scaled(valid ? sample.angular_velocity : zeros, 3, units_.angular_velocity,
                   out.angular_velocity);
   }
   out.valid.push_back(valid ? 1 : 0);

@@ -38,6 +38,8 @@ class ImuRows {
   void report(const std::string& file, Findings& findings) const;
 
  private:
+  bool turn(const double* raw, Quat& q);
+
   ImuUnits units_;
   Quat turn_;
   std::uint64_t samples_ = 0, zero_ = 0, not_unit_ = 0;

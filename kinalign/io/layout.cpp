@@ -89,15 +89,15 @@ Result<TableField> field_of(const LayoutKeys& keys, std::string_view name, Table
                             shown(name)));
 }
 
-Result<void> read_fields(const LayoutKeys& keys, TableLayout& layout) {
-  layout.by_name = keys.is_table("fields");
-  if (!layout.by_name) {
-    for (const std::string& name : KA_TRY(keys.texts("fields"))) {
-      layout.fields.push_back({KA_TRY(field_of(keys, name, layout.kind)), ""});
-    }
-    layout.first_column = KA_TRY(keys.count("first_column", 1));
-    return {};
+Result<void> read_fields_in_order(const LayoutKeys& keys, TableLayout& layout) {
+  for (const std::string& name : KA_TRY(keys.texts("fields"))) {
+    layout.fields.push_back({KA_TRY(field_of(keys, name, layout.kind)), ""});
   }
+  layout.first_column = KA_TRY(keys.count("first_column", 1));
+  return {};
+}
+
+Result<void> read_fields_by_name(const LayoutKeys& keys, TableLayout& layout) {
   const LayoutKeys named = KA_TRY(keys.table("fields", {}));
   for (const std::string& name : named.keys()) {
     const TableField field = KA_TRY(field_of(keys, name, layout.kind));
@@ -111,7 +111,8 @@ Result<void> read_members(const LayoutKeys& top, TableLayout& layout) {
   const std::string_view key = points ? "joints" : "nodes";
   const LayoutKeys keys = KA_TRY(top.table(key, {"names", "fields", "first_column"}));
   if (points || keys.has("names")) layout.names = KA_TRY(keys.texts("names"));
-  return read_fields(keys, layout);
+  layout.by_name = keys.is_table("fields");
+  return layout.by_name ? read_fields_by_name(keys, layout) : read_fields_in_order(keys, layout);
 }
 
 Result<void> read_state(const LayoutKeys& top, TableLayout& layout) {
@@ -168,7 +169,7 @@ bool has_field(const TableLayout& layout, TableField field) {
 }
 
 /// Each quantity with all its components or not at all, and no component twice.
-Result<void> check_fields(const LayoutKeys& keys, const TableLayout& layout) {
+Result<void> check_fields(const LayoutKeys& keys, TableLayout& layout) {
   using enum TableField;
   for (const FieldColumn& one : layout.fields) {
     const auto same = [&](const FieldColumn& each) { return each.field == one.field; };
@@ -216,15 +217,10 @@ Result<void> check_columns(const LayoutKeys& keys, TableLayout& layout) {
 Result<TableLayout> read_layout(const LayoutKeys& keys) {
   TableLayout layout;
   layout.name = KA_TRY(keys.text("name"));
-  KA_TRY(read_shape(keys, layout));
-  KA_TRY(read_time(keys, layout));
-  KA_TRY(read_members(keys, layout));
-  KA_TRY(read_state(keys, layout));
-  KA_TRY(read_axes(keys, layout));
-  KA_TRY(read_units(keys, layout));
-  KA_TRY(read_selection(keys, layout));
-  KA_TRY(check_fields(keys, layout));
-  KA_TRY(check_columns(keys, layout));
+  for (const auto step : {read_shape, read_time, read_members, read_state, read_axes, read_units,
+                          read_selection, check_fields, check_columns}) {
+    KA_TRY(step(keys, layout));
+  }
   return layout;
 }
 
