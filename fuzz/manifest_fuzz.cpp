@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// A manifest that is accepted survives the way into a take's parameters and back.
+#include "kinalign/io/manifest_toml.h"
+#include "kinalign/io/parameters_json.h"
+
+#include <cstdint>
+#include <cstdlib>
+
+using namespace kinalign;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto manifest = read_manifest({reinterpret_cast<const char*>(data), size}, "fuzz");
+  if (!manifest) return 0;
+  const std::string json = parameters_json(*manifest);
+  const auto again = parse_parameters_json(json);
+  if (!again || parameters_json(*again) != json) std::abort();
+  return 0;
+}

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/npz.h"
+
+#include "tests/io/take_samples.h"
+
+#include "kinalign/io/take_npz.h"
+
+#include <doctest/doctest.h>
+
+#include <cerrno>
+#include <string>
+
+using namespace kinalign;
+
+namespace {
+
+Result<void> write(FileSystem& files, const std::string& path, const Take& take, NpzNames names) {
+  auto writer = KA_TRY(TakeNpzWriter::create(files, path, Overwrite::no, take.header, names));
+  KA_TRY(writer.append(take.all));
+  return writer.finish();
+}
+
+/// Leaves holes for pieces of 64 KiB, which are zeros here: gigabytes without a disk.
+class SparseFiles final : public FileSystem {
+ public:
+  int open(const char* path, int flags, mode_t mode) override {
+    return real_.open(path, flags, mode);
+  }
+  ssize_t read(int fd, void* data, std::size_t size) override { return real_.read(fd, data, size); }
+  ssize_t write(int fd, const void* data, std::size_t size) override {
+    return real_.write(fd, data, size);
+  }
+  ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override {
+    return real_.read_at(fd, data, size, at);
+  }
+  ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
+    return size == 65'536 ? 65'536 : real_.write_at(fd, data, size, at);
+  }
+  int allocate(int, off_t) override {
+    errno = EOPNOTSUPP;
+    return -1;
+  }
+  int sync(int) override { return 0; }
+  int link(const char* from, const char* to) override { return real_.link(from, to); }
+  int rename(const char* from, const char* to) override { return real_.rename(from, to); }
+  int remove(const char* path) override { return real_.remove(path); }
+  int close(int fd) override { return real_.close(fd); }
+
+ private:
+  PosixFiles real_;
+};
+
+/// The first stream alone, as `convert` writes a BVH.
+Take clip_alone(std::size_t frames) {
+  Take take = sample_take(frames);
+  take.header.groups.resize(1);
+  take.all.rows.resize(1);
+  return take;
+}
+
+}  // namespace
+
+TEST_CASE("numpy opens a take and a clip alone") {
+  const ScratchFolder folder;
+  PosixFiles files;
+  REQUIRE(write(files, folder / "take.npz", sample_take(50), NpzNames::by_stream));
+  REQUIRE(write(files, folder / "clip.npz", clip_alone(50), NpzNames::plain));
+  REQUIRE(write(files, folder / "empty.npz", clip_alone(0), NpzNames::plain));
+  CHECK(run_witness("npz_numpy.py", folder.path.string()) == 0);
+}
+
+TEST_CASE("an NPZ beyond 4 GB opens too") {
+  const ScratchFolder folder;
+  SparseFiles files;
+  const std::uint64_t rows = 65'537;  // of 64 KiB
+  auto writer = NpzWriter::create(
+      files, folder / "large.npz", Overwrite::no,
+      {npz_numbers("a", Stored::uint8, {rows, 65'536}), npz_numbers("b", Stored::int64, {2})});
+  REQUIRE(writer);
+  const std::string zeros(65'536, '\0');
+  for (std::uint64_t r = 0; r < rows; ++r) REQUIRE(writer->append(0, zeros));
+  const std::int64_t values[] = {7, -9};
+  REQUIRE(writer->append(1, bytes_of(std::span<const std::int64_t>(values))));
+  REQUIRE(writer->finish());
+  CHECK(run_witness("npz_large.py", folder / "large.npz") == 0);
+}
+
+TEST_CASE("the same arrays give the same bytes, also from slabs") {
+  const ScratchFolder folder;
+  PosixFiles files;
+  REQUIRE(write(files, folder / "a.npz", sample_take(9), NpzNames::by_stream));
+  REQUIRE(write(files, folder / "b.npz", sample_take(9), NpzNames::by_stream));
+  CHECK(bytes_in(folder / "a.npz") == bytes_in(folder / "b.npz"));
+}
+
+TEST_CASE("whichever file call fails, no NPZ is left and the error names it") {
+  bool went_through = false;
+  for (int call = 0; !went_through; ++call) {
+    CAPTURE(call);
+    REQUIRE(call < 500);
+    const ScratchFolder folder;
+    FailingFiles files(call, ENOSPC);
+    const auto done = write(files, folder / "a.npz", sample_take(9), NpzNames::by_stream);
+    went_through = !files.failed();
+    if (done) continue;
+    CHECK(done.error().file == folder / "a.npz");
+    CHECK(done.error().found == "No space left on device");
+    CHECK(folder.empty());
+  }
+}
+
+TEST_CASE("texts become numpy's UTF-32, a stray byte stands for itself") {
+  const NpzTexts texts = npz_texts("names", {"a", "H\xc3\xa4", "\xff", "\xe2\x82", ""});
+  CHECK(texts.array.descr == "<U2");
+  CHECK(texts.array.bytes() == 5 * 8);
+  const std::u32string expected = {U'a', 0, U'H', 0xe4, 0xff, 0, 0xe2, 0x82, 0, 0};
+  CHECK((texts.bytes == bytes_of(std::span<const char32_t>(expected))));
+}

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/parameters_json.h"
+
+#include "kinalign/io/report_json.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <type_traits>
+
+using namespace kinalign;
+
+namespace {
+
+using Random = std::mt19937_64;
+
+std::string any_text(Random& random) {
+  const std::string letters = "abc \"\\/{}[]:,\n\t#.=\xc3\xa4";
+  std::string out;
+  for (std::uint64_t n = random() % 12; n > 0; --n) {
+    const char c = letters[random() % (letters.size() - 2)];
+    out += c;
+    if (random() % 8 == 0) out += "\xc3\xa4";
+  }
+  return out;
+}
+
+std::map<std::string, std::string> any_map(Random& random) {
+  std::map<std::string, std::string> out;
+  for (std::uint64_t n = random() % 4; n > 0; --n) out[any_text(random)] = any_text(random);
+  return out;
+}
+
+std::vector<double> any_numbers(Random& random) {
+  std::vector<double> out(random() % 5);
+  for (double& x : out) x = std::ldexp(static_cast<double>(random()), -70);
+  return out;
+}
+
+/// Puts anything that is allowed into every described option.
+void fill(const Fields& fields, Random& random) {
+  for (const Field& field : fields) {
+    std::uniform_real_distribution<double> range(std::max(field.least, -1e9),
+                                                 std::min(field.most, 1e9));
+    std::visit(
+        [&](auto* to) {
+          using Value = std::remove_pointer_t<decltype(to)>;
+          if constexpr (std::is_same_v<Value, bool>) *to = random() % 2 == 0;
+          if constexpr (std::is_same_v<Value, double>) *to = range(random);
+          if constexpr (std::is_same_v<Value, std::optional<double>>) {
+            if (random() % 2 == 0) *to = range(random);
+          }
+          if constexpr (std::is_same_v<Value, std::optional<std::int64_t>>) {
+            if (random() % 2 == 0) *to = static_cast<std::int64_t>(random() >> 3);
+          }
+          if constexpr (std::is_same_v<Value, std::string>) {
+            *to = field.choices.empty() ? any_text(random)
+                                        : field.choices[random() % field.choices.size()];
+          }
+        },
+        field.value);
+  }
+}
+
+Manifest any_manifest(std::uint64_t seed) {
+  Random random(seed);
+  Manifest out;
+  out.subject = any_text(random);
+  out.action = any_text(random);
+  fill(describe(out.align), random);
+  for (std::uint64_t n = random() % 4; n > 0; --n) {
+    StreamOptions& stream = out.streams.emplace_back();
+    stream.name = any_text(random);
+    stream.select = any_map(random);
+    fill(describe(stream), random);
+    for (std::uint64_t f = random() % 3; f > 0; --f) {
+      stream.files.push_back({any_text(random), any_text(random)});
+    }
+  }
+  for (std::uint64_t n = random() % 3; n > 0; --n) {
+    SpaceOptions& space = out.spaces[any_text(random)];
+    fill(describe(space), random);
+    space.rotation = any_numbers(random);
+    space.translation = any_numbers(random);
+    space.joints = any_map(random);
+  }
+  return out;
+}
+
+std::string error_of(const std::string& json) {
+  const auto manifest = parse_parameters_json(json);
+  return manifest ? "none" : to_string(manifest.error());
+}
+
+std::string with_schema(const std::string& rest) {
+  return R"({"schema": "kinalign.parameters/1", )" + rest + "}";
+}
+
+}  // namespace
+
+TEST_CASE("any manifest comes back from its JSON, every number exactly") {
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    CAPTURE(seed);
+    const Manifest manifest = any_manifest(seed);
+    const std::string json = parameters_json(manifest);
+    const auto back = parse_parameters_json(json);
+    REQUIRE_MESSAGE(back, (back ? "" : to_string(back.error())));
+    REQUIRE(parameters_json(*back) == json);
+    CHECK(back->align.gap_ms == manifest.align.gap_ms);
+    REQUIRE(back->streams.size() == manifest.streams.size());
+    for (std::size_t i = 0; i < manifest.streams.size(); ++i) {
+      CHECK(back->streams[i].name == manifest.streams[i].name);
+      CHECK(back->streams[i].start_ns == manifest.streams[i].start_ns);
+      CHECK(back->streams[i].interval_ms == manifest.streams[i].interval_ms);
+      CHECK(back->streams[i].select == manifest.streams[i].select);
+    }
+    for (const auto& [name, space] : manifest.spaces) {
+      CHECK(back->spaces.at(name).rotation == space.rotation);
+      CHECK(back->spaces.at(name).joints == space.joints);
+    }
+  }
+}
+
+TEST_CASE("parameters with unknown keys, wrong types or wild values are refused") {
+  CHECK(error_of("{") == "expected parameters as JSON, found {");
+  CHECK(error_of("[]") == "expected an object at the top, found a JSON array");
+  CHECK(error_of("{}") == "expected schema kinalign.parameters/1, found another one");
+  CHECK(error_of(std::string(100'000, '[')) ==
+        "expected parameters as JSON, found too many brackets");
+  CHECK(error_of(with_schema(R"("sub": "")")) ==
+        "expected a known key (nearest: subject), found \"sub\"");
+  CHECK(error_of(with_schema(R"("align": {"gap": 3})")) ==
+        "expected a known key (nearest: gap_ms), found \"align.gap\"");
+  CHECK(error_of(with_schema(R"("align": {"gap_ms": null})")) ==
+        "expected a value at align.gap_ms, found a JSON null");
+  CHECK(error_of(with_schema(R"("align": {"gap_ms": 1e300})")) ==
+        "expected gap_ms as a number from 0 to 86400000, found 1e+300");
+  CHECK(error_of(with_schema(R"("streams": [{"start_ns": 18446744073709551615}])")) ==
+        "expected an option's value at streams[0].start_ns, found a JSON number");
+  CHECK(error_of(with_schema(R"("streams": [{"files": [{"path": 3}]}])")) ==
+        "expected a text at streams[0].files.path, found a JSON number");
+}
+
+TEST_CASE("of paths only what stays in the manifest's folder is kept") {
+  Manifest manifest;
+  manifest.streams.resize(1);
+  manifest.streams[0].layout = "/opt/odd.toml";
+  manifest.streams[0].files = {
+      {"/home/a/walk.bvh", ""}, {"../b/k.csv", ""}, {"imu/w.csv", ""}, {"x/../../y.csv", ""}};
+  const Manifest kept = without_folders(manifest);
+  CHECK(kept.streams[0].layout == "odd.toml");
+  CHECK(kept.streams[0].files[0].path == "walk.bvh");
+  CHECK(kept.streams[0].files[1].path == "k.csv");
+  CHECK(kept.streams[0].files[2].path == "imu/w.csv");
+  CHECK(kept.streams[0].files[3].path == "y.csv");
+}
+
+TEST_CASE("a report's JSON has its schema, units in the names, and whole findings") {
+  AlignmentReport report;
+  report.frames = 2;
+  report.begin = utc_time(5);
+  report.reference = "mocap";
+  report.spaces.push_back({});
+  report.spaces[0].stream = "kinect";
+  report.spaces[0].transform.translation = {1, 2, 3};
+  report.findings.push_back(
+      {Severity::warning, {"walk.bvh", 12, "2 frames", "1"}, "one frame is used", "none needed"});
+  const std::string json = report_json(report);
+  for (const char* part :
+       {"\"schema\": \"kinalign.report/1\"", "\"frames\": 2", "\"begin_ns\": 5",
+        "\"severity\": \"warning\"", "\"file\": \"walk.bvh\"", "\"line\": 12",
+        "\"expected\": \"2 frames\"", "\"found\": \"1\"", "\"meaning\": \"one frame is used\"",
+        "\"repair\": \"none needed\"", "\"translation_m\"", "\"after_m\": 0.0"}) {
+    CAPTURE(part);
+    CHECK(json.find(part) != std::string::npos);
+  }
+  CHECK(report_json(report) == json);
+}
