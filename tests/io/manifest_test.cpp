@@ -120,6 +120,8 @@ TEST_CASE("a stream that is spoken of must be there and have files") {
 TEST_CASE("what is no TOML is refused with its line") {
   CHECK(error_of("subject = \"03\"\naction = = 3\n")
             .starts_with("recording.toml:2: expected TOML, found a fault in it: "));
+  // Found by fuzzing: toml++ 3.3.0 has an assertion there, which Debian's library is built without.
+  CHECK(error_of("[&a]\n").starts_with("recording.toml:1: expected TOML"));
   CHECK(error_of(std::string(100'000, '[')).starts_with("recording.toml:1: expected TOML"));
   CHECK(error_of(std::string("a\0b", 3)).starts_with("recording.toml:1: expected TOML"));
 }
