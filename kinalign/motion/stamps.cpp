@@ -25,12 +25,6 @@ std::int64_t held(std::uint64_t ns) {
   return static_cast<std::int64_t>(std::min<std::uint64_t>(ns, INT64_MAX));
 }
 
-/// The middle of a class, ns.
-double middle_of(std::size_t number) {
-  const auto bits = static_cast<int>(number >> 6);
-  return std::ldexp(1.0 + (static_cast<double>(number & 63) + 0.5) / 64.0, bits);
-}
-
 }  // namespace
 
 void StampSurveyor::add(std::span<const Time> stamps) {
@@ -47,7 +41,9 @@ void StampSurveyor::add(std::span<const Time> stamps) {
       survey_.largest_step_back_ns =
           std::max(survey_.largest_step_back_ns, held(step_between(stamp, survey_.last)));
     } else {
-      ++steps_[class_of(step_between(survey_.last, stamp))];
+      const std::uint64_t step = step_between(survey_.last, stamp);
+      ++steps_[class_of(step)];
+      sums_[class_of(step)] += static_cast<double>(step);
       survey_.last = stamp;
     }
   }
@@ -61,7 +57,8 @@ StampSurvey StampSurveyor::result() const {
   for (std::size_t i = 0; i < classes && all > 0; ++i) {
     below += steps_[i];
     if (2 * below >= all) {
-      survey.median_step_ns = held(static_cast<std::uint64_t>(middle_of(i)));
+      const double middle = sums_[i] / static_cast<double>(steps_[i]);
+      survey.median_step_ns = held(static_cast<std::uint64_t>(middle + 0.5));
       break;
     }
   }

@@ -29,10 +29,12 @@ class StampSurveyor {
   StampSurvey result() const;
 
  private:
-  // Steps by size, 64 classes to each power of two of nanoseconds: the median to under 1 percent.
+  // Steps by size, 64 classes to each power of two of nanoseconds, and their sums: the median is
+  // the mean of the middle class, exact for a steady rate and never off by more than 1 percent.
   static constexpr std::size_t classes = 64 * 64;
   StampSurvey survey_;
   std::array<std::uint64_t, classes> steps_{};
+  std::array<double, classes> sums_{};
 };
 
 }  // namespace kinalign

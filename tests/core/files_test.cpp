@@ -39,6 +39,13 @@ class FaultyFiles final : public FileSystem {
   ssize_t write(int fd, const void* data, std::size_t size) override {
     return fails() ? -1 : files_.write(fd, data, std::min(size, most));
   }
+  ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override {
+    return fails() ? -1 : files_.read_at(fd, data, size, at);
+  }
+  ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
+    return fails() ? -1 : files_.write_at(fd, data, std::min(size, most), at);
+  }
+  int allocate(int fd, off_t size) override { return fails() ? -1 : files_.allocate(fd, size); }
   int sync(int fd) override { return fails() ? -1 : files_.sync(fd); }
   int link(const char* from, const char* to) override {
     return fails() ? -1 : files_.link(from, to);
