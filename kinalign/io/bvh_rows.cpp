@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/bvh_rows.h"
+
+#include "kinalign/core/numbers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t longest_word = 512;
+
+bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
+
+}  // namespace
+
+bool BvhRowRule::line_end(std::uint64_t values, std::int64_t line) {
+  const std::uint64_t in_line = values - line_start_;
+  if (in_line == 0) return true;
+  const std::uint64_t before = line_start_ % row_size_;
+  if (!judged_) {
+    judged_ = true;
+    strict_ = in_line % row_size_ == 0;
+  }
+  if (strict_ && before != 0 && before + in_line > row_size_) return false;
+  if (before == 0) {
+    shift_line_ = line;
+    shift_values_ = in_line;
+  }
+  line_start_ = values;
+  return true;
+}
+
+Result<void> BvhRows::feed(std::string_view piece, Findings& findings) {
+  if (ended_) return {};
+  if (!carry_.empty()) {
+    std::size_t end = 0;
+    while (end < piece.size() && !is_blank(piece[end])) ++end;
+    if (end == piece.size() || carry_.size() + end > longest_word) return hold(piece);
+    carry_ += piece.substr(0, end + 1);
+    piece.remove_prefix(end + 1);
+    const std::string word = std::move(carry_);
+    carry_.clear();
+    KA_TRY(parse(word.data(), word.data() + word.size(), findings));
+  }
+  std::size_t end = piece.size();
+  while (end > 0 && !is_blank(piece[end - 1])) --end;
+  KA_TRY(parse(piece.data(), piece.data() + end, findings));
+  return ended_ ? Result<void>{} : hold(piece.substr(end));
+}
+
+Result<void> BvhRows::finish(Findings& findings) {
+  KA_TRY(feed("\n", findings));  // ends the last number
+  const std::size_t left = count_ % head_.row_size;
+  if (left == 0) return {};
+  findings.push_back(
+      {Severity::warning,
+       Error{head_.name, head_.line - 1, fmt::format("{} values in the frame", head_.row_size),
+             std::to_string(left)},
+       "the incomplete last frame was dropped", ""});
+  return {};
+}
+
+void BvhRows::drop_frames() {
+  const std::size_t whole = frames().size();
+  std::copy(values_.begin() + static_cast<std::ptrdiff_t>(whole),
+            values_.begin() + static_cast<std::ptrdiff_t>(count_), values_.begin());
+  dropped_ += whole / head_.row_size;
+  count_ -= whole;
+}
+
+Result<void> BvhRows::hold(std::string_view word) {
+  carry_ += word.substr(0, longest_word + 1);
+  if (carry_.size() <= longest_word) return {};
+  return Failure(wrong_number(carry_));
+}
+
+Error BvhRows::wrong_number(std::string_view word) const {
+  return Error{head_.name, head_.line, "a number", "'" + shown(word) + "'"};
+}
+
+bool BvhRows::end_line(std::size_t count) {
+  return rule_.line_end(dropped_ * head_.row_size + count, head_.line++);
+}
+
+// [at, end) ends in a blank, so that no number touches `end`.
+Result<void> BvhRows::parse(const char* at, const char* end, Findings& findings) {
+  const std::size_t most = count_ + static_cast<std::size_t>(end - at) / 2 + 1;
+  if (values_.size() < most) values_.resize(most);
+  double* out = values_.data() + count_;
+  const auto count = [&] { return static_cast<std::size_t>(out - values_.data()); };
+  for (;;) {
+    for (; at < end && is_blank(*at); ++at) {
+      if (*at == '\n' && !end_line(count())) {
+        return Failure(Error{head_.name, rule_.shift_line(),
+                             fmt::format("{} values in the frame", head_.row_size),
+                             std::to_string(rule_.shift_values())});
+      }
+    }
+    if (at >= end) break;
+    const char* behind = parse_number(at, end, *out);
+    if (behind == nullptr || !is_blank(*behind)) {
+      count_ = count();
+      return strange_word(at, end, findings);
+    }
+    if (count_decimals) {
+      const std::string_view word(at, static_cast<std::size_t>(behind - at));
+      decimals_ = std::max(decimals_, decimals_of(word));
+    }
+    ++out;
+    at = behind;
+  }
+  count_ = count();
+  return {};
+}
+
+Result<void> BvhRows::strange_word(const char* at, const char* end, Findings& findings) {
+  const char* behind = at;
+  while (behind < end && !is_blank(*behind)) ++behind;
+  const std::string_view word(at, static_cast<std::size_t>(behind - at));
+  if (frames_read() < head_.frames || count_ % head_.row_size != 0 || head_.frames == 0) {
+    return Failure(wrong_number(word));
+  }
+  findings.push_back({Severity::warning,
+                      Error{head_.name, head_.line, "the end of the file", "'" + shown(word) + "'"},
+                      "everything from here on was left out", ""});
+  ended_ = true;
+  return {};
+}
+
+}  // namespace kinalign

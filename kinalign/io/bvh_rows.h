@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The numbers below "Frame Time:" of a BVH, from pieces cut anywhere.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+/// Judges where lines end against where frames end, in numbers of values.
+class BvhRowRule {
+ public:
+  explicit BvhRowRule(std::size_t row_size) : row_size_(row_size) {}
+
+  /// A line has ended after `values` values in all. False: its frames are shifted for good.
+  bool line_end(std::uint64_t values, std::int64_t line);
+
+  // The line from which on frames are shifted, and how many values it holds.
+  std::int64_t shift_line() const { return shift_line_; }
+  std::uint64_t shift_values() const { return shift_values_; }
+
+ private:
+  std::size_t row_size_;
+  std::uint64_t line_start_ = 0;  // values before the current line
+  bool judged_ = false;           // the first line has been seen
+  bool strict_ = false;           // and held whole frames
+  std::int64_t shift_line_ = 0;
+  std::uint64_t shift_values_ = 0;
+};
+
+/// Where a file's rows begin and what its head promised of them.
+struct BvhRowsHead {
+  std::string name;          // of the file, for messages
+  std::size_t row_size = 0;  // values in a frame
+  std::uint64_t frames = 0;  // promised
+  std::int64_t line = 1;     // where the rows begin
+};
+
+class BvhRows {
+ public:
+  explicit BvhRows(BvhRowsHead head) : head_(std::move(head)), rule_(head_.row_size) {}
+
+  /// All numbers that end in the piece; the piece's last word waits for its end. Fails at a word
+  /// that is no number, except behind all the frames that were promised: that is a finding.
+  Result<void> feed(std::string_view piece, Findings& findings);
+  /// The file has ended; an incomplete last frame is a finding.
+  Result<void> finish(Findings& findings);
+
+  /// The whole frames [n, row_size] that have not been dropped yet.
+  std::span<const double> frames() const {
+    return {values_.data(), count_ / head_.row_size * head_.row_size};
+  }
+  void drop_frames();
+
+  std::uint64_t frames_read() const { return dropped_ + count_ / head_.row_size; }
+  int decimals() const { return decimals_; }  // most digits behind a point, with count_decimals
+  bool count_decimals = false;
+
+ private:
+  Result<void> parse(const char* at, const char* end, Findings& findings);
+  Result<void> strange_word(const char* at, const char* end, Findings& findings);
+  Result<void> hold(std::string_view word);
+  Error wrong_number(std::string_view word) const;
+  bool end_line(std::size_t count);
+
+  BvhRowsHead head_;
+  BvhRowRule rule_;
+  std::string carry_;           // a word cut by the end of a piece
+  std::vector<double> values_;  // room; the first count_ are values
+  std::size_t count_ = 0;
+  std::uint64_t dropped_ = 0;  // frames
+  bool ended_ = false;         // by strange text
+  int decimals_ = 0;
+};
+
+}  // namespace kinalign
