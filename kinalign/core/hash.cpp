@@ -16,7 +16,9 @@ struct Sha256::State {
     if (context == nullptr || EVP_DigestInit_ex(context, EVP_sha256(), nullptr) != 1) std::abort();
   }
   State(const State&) = delete;
+  State(State&&) = delete;
   State& operator=(const State&) = delete;
+  State& operator=(State&&) = delete;
   ~State() { EVP_MD_CTX_free(context); }
 };
 

@@ -103,7 +103,8 @@ char* put_number(char* at, double value, int decimals) {
   const double magnitude = std::abs(value), scaled = magnitude * scale;
   // Below 2^52 the nearest integer is exact, and if any with these decimals reads back, it does.
   if (!(scaled < 4e15)) return std::to_chars(at, at + number_room, value).ptr;
-  const auto all = static_cast<std::int64_t>(scaled + 0.5);
+  auto all = static_cast<std::int64_t>(scaled);
+  if (scaled - static_cast<double>(all) >= 0.5) ++all;
   if (static_cast<double>(all) / scale != magnitude) {
     return std::to_chars(at, at + number_room, value).ptr;
   }

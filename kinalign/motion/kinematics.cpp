@@ -19,8 +19,7 @@ using Lane = std::array<double, block>;
 
 // sin and cos of half an angle in degrees, through a quarter of it: reduced to +-180 degrees, the
 // quarter lies within +-45, where Taylor's series of degree 15 and 16 is exact to 5e-17.
-inline __attribute__((always_inline)) void half_angle(double degrees, double& sine,
-                                                      double& cosine) {
+KA_INLINE void half_angle(double degrees, double& sine, double& cosine) {
   constexpr double to_integer =
       0x1.8p52;  // adding and subtracting it rounds to the nearest integer
   const double turns = (degrees * (1.0 / 360.0) + to_integer) - to_integer;
@@ -58,7 +57,7 @@ struct Rotations {
 KA_EVERY_PROCESSOR
 void compose(const std::array<Lane, 3>& degrees, double sign, Rotations& q) {
   for (std::size_t i = 0; i < block; ++i) {
-    double sa, ca, sb, cb, sc, cc;
+    double sa = 0.0, ca = 0.0, sb = 0.0, cb = 0.0, sc = 0.0, cc = 0.0;
     half_angle(degrees[0][i], sa, ca);
     half_angle(degrees[1][i], sb, cb);
     half_angle(degrees[2][i], sc, cc);

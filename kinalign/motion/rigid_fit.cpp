@@ -65,7 +65,7 @@ Result<RigidTransform> fit_rigid(const PairMoments& m) {
   const Vec3 from_mean = m.from_sum / n, to_mean = m.to_sum / n;
   const Eigen::Matrix3d spread = m.cross / n - to_mean * from_mean.transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vec3 sizes = svd.singularValues();
+  const Vec3& sizes = svd.singularValues();
   if (!(sizes[1] > 1e-9 * sizes[0])) {
     return Failure(Error{"", 0, "points that do not lie on one line", "a line"});
   }

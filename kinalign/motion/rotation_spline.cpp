@@ -10,6 +10,7 @@
 
 #include "kinalign/motion/rotation_intervals.h"
 #include "kinalign/motion/targets.h"
+#include "kinalign/motion/vector_lanes.h"
 
 #include <algorithm>
 #include <array>
@@ -19,148 +20,258 @@ namespace kinalign {
 
 namespace {
 
-using Matrix = Eigen::Matrix3d;
+// The rows of the system depend on each other one after the other. So it is cut into eight pieces,
+// which are solved side by side as vector code: each with some rows of its neighbours, whose rates
+// beyond come from the sweep before. What that leaves, 1e-14 of a change on even stamps, the next
+// sweep takes away with the rest.
+constexpr std::size_t overlap = 24;
 
-/// first * r x . + second * r x (r x .) + 1, as a matrix.
-Matrix about(const Vec3& r, double first, double second) {
-  const double x = r.x(), y = r.y(), z = r.z();
-  const double xx = second * x * x, yy = second * y * y, zz = second * z * z;
-  const double xy = second * x * y, xz = second * x * z, yz = second * y * z;
-  const double fx = first * x, fy = first * y, fz = first * z;
-  Matrix m;
-  m << 1.0 - yy - zz, xy - fz, xz + fy,  //
-      xy + fz, 1.0 - xx - zz, yz - fx,   //
-      xz - fy, yz + fx, 1.0 - xx - yy;
-  return m;
-}
-
-/// The block tridiagonal system for the rates at the inner knots, eliminated once:
-/// rate[k] = inverse * right side - before * rate[k-1], and so backwards with `after`.
-struct Step {
-  Matrix inverse, before, after;
+struct Pieces {
+  std::size_t rows = 0;                      // of each
+  std::array<std::size_t, lanes> begin{};    // first row
+  std::array<std::size_t, lanes + 1> own{};  // rows [own[i], own[i+1]) count from piece i
 };
 
-std::vector<Step> eliminate(const RotationIntervals& intervals) {
-  const std::size_t inner = intervals.size() - 1;
-  std::vector<Step> steps(inner);
-  Matrix after = Matrix::Zero();
-  for (std::size_t k = 0; k < inner; ++k) {
-    const double to_left = 2.0 / intervals.length[k], to_right = 2.0 / intervals.length[k + 1];
-    const Matrix left = to_left * about(intervals.r(k), -intervals.rate1[k], intervals.rate2[k]);
-    const Matrix right = to_right * about(intervals.r(k + 1), 0.5, intervals.back2[k + 1]);
-    const Matrix pivot = 2.0 * (to_left + to_right) * Matrix::Identity() - left * after;
-    Step& step = steps[k];
-    step.inverse = pivot.inverse();
-    step.before = step.inverse * left;
-    after = step.inverse * right;
-    step.after = after;
+Pieces cut(std::size_t inner) {
+  Pieces pieces;
+  pieces.rows = std::min(inner, (inner + lanes - 1) / lanes + 2 * overlap);
+  for (std::size_t i = 0; i <= lanes; ++i) pieces.own[i] = inner * i / lanes;
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const std::size_t from = pieces.own[i] < overlap ? 0 : pieces.own[i] - overlap;
+    pieces.begin[i] = std::min(from, inner - pieces.rows);
   }
-  return steps;
+  return pieces;
 }
 
-/// Right side of the system at the inner knots, [n-1] x, y, z one after the other in `out`.
-KA_EVERY_PROCESSOR
-void right_side(const RotationIntervals& in, std::size_t inner, const Columns& rates, double* out) {
-  const double *x = in.vector[0].data(), *y = in.vector[1].data(), *z = in.vector[2].data();
-  const double *wx = rates[0].data(), *wy = rates[1].data(), *wz = rates[2].data();
-  const double *h = in.length.data(), *back2 = in.back2.data(), *rate2 = in.rate2.data();
-  const double *bend1 = in.bend1.data(), *bend2 = in.bend2.data();
-#pragma GCC ivdep
-  for (std::size_t k = 0; k < inner; ++k) {
-    const double rx = x[k], ry = y[k], rz = z[k], ux = wx[k], uy = wy[k], uz = wz[k];
-    const double cx = ry * uz - rz * uy, cy = rz * ux - rx * uz, cz = rx * uy - ry * ux;
-    const double ccx = ry * cz - rz * cy, ccy = rz * cx - rx * cz, ccz = rx * cy - ry * cx;
-    // v = W(r)^-1 w, the rotation vector's derivative at the interval's end
-    const double vx = ux + 0.5 * cx + back2[k] * ccx, vy = uy + 0.5 * cy + back2[k] * ccy,
-                 vz = uz + 0.5 * cz + back2[k] * ccz;
-    const double dx = ry * vz - rz * vy, dy = rz * vx - rx * vz, dz = rx * vy - ry * vx;
-    const double ex = ry * dz - rz * dy, ey = rz * dx - rx * dz, ez = rx * dy - ry * dx;
-    const double gx = vy * dz - vz * dy, gy = vz * dx - vx * dz, gz = vx * dy - vy * dx;
-    const double along = rx * vx + ry * vy + rz * vz;
-    const double before = 6.0 / (h[k] * h[k]), after = 6.0 / (h[k + 1] * h[k + 1]);
-    out[3 * k] =
-        before * rx + after * x[k + 1] - along * (bend1[k] * dx + bend2[k] * ex) - rate2[k] * gx;
-    out[3 * k + 1] =
-        before * ry + after * y[k + 1] - along * (bend1[k] * dy + bend2[k] * ey) - rate2[k] * gy;
-    out[3 * k + 2] =
-        before * rz + after * z[k + 1] - along * (bend1[k] * dz + bend2[k] * ez) - rate2[k] * gz;
-  }
+/// scale * (1 + first * r x . + second * r x (r x .)).
+KA_INLINE Matrix about(const VectorLanes& r, std::size_t i, double first, double second,
+                       double scale) {
+  const double x = r[0][i], y = r[1][i], z = r[2][i];
+  const double sx = scale * second * x, sy = scale * second * y, sz = scale * second * z;
+  const double fx = scale * first * x, fy = scale * first * y, fz = scale * first * z;
+  return {scale - sy * y - sz * z, sx * y - fz, sx * z + fy, sx * y + fz,
+          scale - sx * x - sz * z, sy * z - fx, sx * z - fy, sy * z + fx,
+          scale - sx * x - sy * y};
 }
 
-/// Rates at the right ends of the intervals, as the iteration sees them.
-struct Rates {
-  Vec3 first, last;  // at the ends, given
-  Columns inner;     // [n-1]
+/// (diagonal * 1 - m)^-1, by cofactors.
+KA_INLINE Matrix inverse_of_difference(double diagonal, const Matrix& m) {
+  const double a = diagonal - m.xx, e = diagonal - m.yy, i = diagonal - m.zz;
+  const double b = -m.xy, c = -m.xz, d = -m.yx, f = -m.yz, g = -m.zx, h = -m.zy;
+  const double ca = e * i - f * h, cb = f * g - d * i, cc = d * h - e * g;
+  const double scale = 1.0 / (a * ca + b * cb + c * cc);
+  return {scale * ca, scale * (c * h - b * i), scale * (b * f - c * e),
+          scale * cb, scale * (a * i - c * g), scale * (c * d - a * f),
+          scale * cc, scale * (b * g - a * h), scale * (a * e - b * d)};
+}
+
+/// One row of the system, at knot k, of each piece.
+struct Row {
+  // Of the right side 6 (r'/h'^2 + r/h^2) - b(r', rate), r' and what b needs of it:
+  VectorLanes constant, r;
+  Lane back2, bend1, bend2, rate2;
+  Lane most;  // rad/s, see most_turn
+  // Eliminated: rate[k] = inverse * right side - before * rate[k-1], and backwards with `after`.
+  MatrixLanes inverse, before, after;
+  VectorLanes solution, rate;
 };
 
 /// rad in the shorter interval at a knot. Above about 2.5 rad between knots on irregular stamps
 /// the iteration may diverge; this holds the curve, which means little there, within bounds.
 constexpr double most_turn = 30.0;
 
-/// One solution of the system; returns the largest change of a rate times its shorter interval,
-/// rad.
-double sweep(const RotationIntervals& intervals, const std::vector<Step>& steps,
-             std::vector<double>& right, Rates& rates) {
-  const std::size_t inner = steps.size();
-  Vec3 w = rates.first;
-  for (std::size_t k = 0; k < inner; ++k) {
-    Eigen::Map<Vec3> at(&right[3 * k]);
-    w = steps[k].inverse * at - steps[k].before * w;
-    at = w;
+/// The interval behind the knot: what only the matrices need.
+struct NextInterval {
+  VectorLanes r;
+  Lane h_before, h, rate1, back2;
+};
+
+void gather(const RotationIntervals& in, const Pieces& pieces, std::size_t at, Row& row,
+            NextInterval& next) {
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const std::size_t k = pieces.begin[i] + at;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      row.r[axis][i] = in.vector[axis][k];
+      next.r[axis][i] = in.vector[axis][k + 1];
+    }
+    row.back2[i] = in.back2[k];
+    row.bend1[i] = in.bend1[k];
+    row.bend2[i] = in.bend2[k];
+    row.rate2[i] = in.rate2[k];
+    next.h_before[i] = in.length[k];
+    next.h[i] = in.length[k + 1];
+    next.rate1[i] = in.rate1[k];
+    next.back2[i] = in.back2[k + 1];
   }
-  double change = 0.0;
-  w = rates.last;
-  for (std::size_t k = inner; k-- > 0;) {
-    w = Eigen::Map<const Vec3>(&right[3 * k]) - steps[k].after * w;
-    const double h = std::min(intervals.length[k], intervals.length[k + 1]);
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      double& rate = rates.inner[static_cast<std::size_t>(i)][k];
-      const double kept = std::clamp(w[i], -most_turn / h, most_turn / h);
-      change = std::max(change, h * std::abs(kept - rate));
-      rate = kept;
+}
+
+KA_EVERY_PROCESSOR
+void eliminate(const NextInterval& next, const MatrixLanes& above, Row& row) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < lanes; ++i) {
+    const double before = 1.0 / next.h_before[i], after = 1.0 / next.h[i];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      row.rate[axis][i] = before * row.r[axis][i];  // where the iteration begins
+      row.constant[axis][i] =
+          6.0 * (before * before * row.r[axis][i] + after * after * next.r[axis][i]);
+    }
+    row.most[i] = most_turn * std::max(before, after);
+    const Matrix left = about(row.r, i, -next.rate1[i], row.rate2[i], 2.0 * before);
+    const Matrix right = about(next.r, i, 0.5, next.back2[i], 2.0 * after);
+    const Matrix inverse = inverse_of_difference(4.0 * (before + after), left * load(above, i));
+    store(inverse, row.inverse, i);
+    store(inverse * left, row.before, i);
+    store(inverse * right, row.after, i);
+  }
+}
+
+std::vector<Row> eliminate(const RotationIntervals& intervals, const Pieces& pieces) {
+  std::vector<Row> rows(pieces.rows);
+  NextInterval next{};
+  const MatrixLanes none{};
+  for (std::size_t k = 0; k < pieces.rows; ++k) {
+    gather(intervals, pieces, k, rows[k], next);
+    eliminate(next, k == 0 ? none : rows[k - 1].after, rows[k]);
+  }
+  return rows;
+}
+
+KA_INLINE Vector right_side(const Row& row, std::size_t i) {
+  const Vector r = load(row.r, i), w = load(row.rate, i);
+  const Vector rw = cross(r, w), rrw = cross(r, rw);
+  const double k = row.back2[i];
+  // W(r)^-1 w, the derivative of the rotation vector where the interval ends
+  const Vector v{w.x + 0.5 * rw.x + k * rrw.x, w.y + 0.5 * rw.y + k * rrw.y,
+                 w.z + 0.5 * rw.z + k * rrw.z};
+  const Vector c = cross(r, v), rc = cross(r, c), vc = cross(v, c);
+  const double along = r.x * v.x + r.y * v.y + r.z * v.z;
+  const double b1 = along * row.bend1[i], b2 = along * row.bend2[i], b3 = row.rate2[i];
+  return {row.constant[0][i] - b1 * c.x - b2 * rc.x - b3 * vc.x,
+          row.constant[1][i] - b1 * c.y - b2 * rc.y - b3 * vc.y,
+          row.constant[2][i] - b1 * c.z - b2 * rc.z - b3 * vc.z};
+}
+
+KA_EVERY_PROCESSOR
+void forwards(std::span<Row> rows, VectorLanes above) {
+  for (Row& row : rows) {
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const Vector given = load(row.inverse, i) * right_side(row, i);
+      const Vector carried = load(row.before, i) * load(above, i);
+      const Vector w{given.x - carried.x, given.y - carried.y, given.z - carried.z};
+      store(w, row.solution, i);
+      store(w, above, i);
     }
   }
-  return change;
 }
+
+/// Also takes the solution over as the new rates; returns the largest change of one, as rad in the
+/// shorter interval at its knot.
+KA_EVERY_PROCESSOR
+double backwards(std::span<Row> rows, VectorLanes below) {
+  Lane change{};
+  for (std::size_t k = rows.size(); k-- > 0;) {
+    Row& row = rows[k];
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const Vector carried = load(row.after, i) * load(below, i);
+      const Vector w{row.solution[0][i] - carried.x, row.solution[1][i] - carried.y,
+                     row.solution[2][i] - carried.z};
+      store(w, below, i);
+      const double most = row.most[i];
+      const Vector kept{std::clamp(w.x, -most, most), std::clamp(w.y, -most, most),
+                        std::clamp(w.z, -most, most)};
+      const Vector old = load(row.rate, i);
+      const double largest = std::max(std::abs(kept.x - old.x),
+                                      std::max(std::abs(kept.y - old.y), std::abs(kept.z - old.z)));
+      change[i] = std::max(change[i], largest / most);
+      store(kept, row.rate, i);
+    }
+  }
+  return most_turn * *std::max_element(change.begin(), change.end());
+}
+
+/// The pieces in their state between two sweeps.
+struct System {
+  Pieces pieces;
+  std::vector<Row> rows;
+  Vec3 first, last;  // rates at the ends, given
+
+  /// The rate of inner knot k, from the piece where it counts.
+  Vec3 rate(std::size_t k) const {
+    std::size_t i = 0;
+    while (pieces.own[i + 1] <= k) ++i;
+    const VectorLanes& rate = rows[k - pieces.begin[i]].rate;
+    return {rate[0][i], rate[1][i], rate[2][i]};
+  }
+
+  double sweep() {
+    VectorLanes above, below;
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const std::size_t begin = pieces.begin[i], end = begin + pieces.rows;
+      const Vec3 left = begin == 0 ? first : rate(begin - 1);
+      const Vec3 right = end == pieces.own[lanes] ? last : rate(end);
+      store({left.x(), left.y(), left.z()}, above, i);
+      store({right.x(), right.y(), right.z()}, below, i);
+    }
+    forwards(rows, above);
+    return backwards(rows, below);
+  }
+};
 
 constexpr int most_sweeps = 10;       // as many as SciPy's
 constexpr double negligible = 2e-13;  // rad of an interval's turn; a seventh of that on the curve
 
 /// Sweeps until what later ones would change, by the rate at which changes shrink, is negligible.
-void iterate(const RotationIntervals& intervals, const std::vector<Step>& steps, Rates& rates) {
-  std::vector<double> right(3 * steps.size());
+void iterate(System& system) {
   double last_change = 0.0;
   for (int i = 0; i < most_sweeps; ++i) {
-    right_side(intervals, steps.size(), rates.inner, right.data());
-    const double change = sweep(intervals, steps, right, rates);
+    const double change = system.sweep();
     const double shrinks = i == 0 ? 1.0 : change / last_change;
     if (change == 0.0 || (shrinks < 0.5 && change * shrinks / (1.0 - shrinks) < negligible)) break;
     last_change = change;
   }
 }
 
+/// Rates at all of a few knots.
+std::vector<double> rates_of_window(const RotationKnots& knots) {
+  const RotationIntervals intervals(knots);
+  const std::size_t n = intervals.size();
+  const Vec3 first = intervals.r(0) / intervals.length[0];
+  const Vec3 last = intervals.r(n - 1) / intervals.length[n - 1];
+  std::vector<double> out(3 * (n + 1));
+  vec3(out, 0) = first;
+  vec3(out, n) = last;
+  if (n == 1) return out;
+  const Pieces pieces = cut(n - 1);
+  System system{pieces, eliminate(intervals, pieces), first, last};
+  iterate(system);
+  for (std::size_t i = 0; i < lanes; ++i) {
+    for (std::size_t k = pieces.own[i]; k < pieces.own[i + 1]; ++k) {
+      const VectorLanes& rate = system.rows[k - pieces.begin[i]].rate;
+      vec3(out, k + 1) = Vec3(rate[0][i], rate[1][i], rate[2][i]);
+    }
+  }
+  return out;
+}
+
+constexpr std::size_t window = 1024;  // knots whose rows, 3 kB of eight, stay in the second cache
+
 }  // namespace
 
 std::vector<double> rotation_spline_rates(const RotationKnots& knots) {
   const std::size_t count = knots.times.size();
-  std::vector<double> out(3 * count, 0.0);
-  if (count < 2) return out;
-  const RotationIntervals intervals(knots);
-  const std::size_t n = count - 1;
-  Rates rates{
-      intervals.r(0) / intervals.length[0], intervals.r(n - 1) / intervals.length[n - 1], {}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    rates.inner[i].resize(n - 1);
-    for (std::size_t k = 0; k + 1 < n; ++k) {
-      rates.inner[i][k] = intervals.vector[i][k] / intervals.length[k];
-    }
+  if (count < 2) return std::vector<double>(3 * count, 0.0);
+  if (count <= window + 2 * rotation_spline_reach) return rates_of_window(knots);
+  std::vector<double> out(3 * count);
+  for (std::size_t first = 0; first < count; first += window) {
+    const std::size_t begin = first < rotation_spline_reach ? 0 : first - rotation_spline_reach;
+    const std::size_t end = std::min(count, first + window + rotation_spline_reach);
+    const auto part = rates_of_window({knots.times.subspan(begin, end - begin),
+                                       knots.rotations.subspan(4 * begin, 4 * (end - begin))});
+    const std::size_t own = std::min(window, count - first);
+    std::copy_n(&part[3 * (first - begin)], 3 * own, &out[3 * first]);
   }
-  if (n > 1) iterate(intervals, eliminate(intervals), rates);
-  vec3(out, 0) = rates.first;
-  for (std::size_t k = 0; k + 1 < n; ++k) {
-    for (std::size_t i = 0; i < 3; ++i) out[3 * (k + 1) + i] = rates.inner[i][k];
-  }
-  vec3(out, n) = rates.last;
   return out;
 }
 

@@ -11,16 +11,18 @@ namespace kinalign {
 namespace {
 
 /// The row after the next, which the processor does not foresee behind short rows: 4 % of the time.
-inline __attribute__((always_inline)) void prefetch(const double* row, std::size_t channels) {
+KA_INLINE void prefetch(const double* row, std::size_t channels) {
   for (std::size_t c = 0; c < channels; c += 8) __builtin_prefetch(row + c);
 }
 
 // Elimination of the tridiagonal system row by row, all channels of a row at once:
 // bend[i] = (6 (slope after - slope before) - h_before * bend[i-1]) / pivot[i].
 KA_EVERY_PROCESSOR
-void eliminate(const double* t, const double* values, std::size_t rows, std::size_t channels,
-               double* ratio, double* bends) {
-  for (std::size_t i = 1; i + 1 < rows; ++i) {
+void eliminate(const Knots& knots, double* ratio, double* bends) {
+  const auto& t = knots.times;
+  const double* values = knots.values.data();
+  const std::size_t channels = knots.channels;
+  for (std::size_t i = 1; i + 1 < t.size(); ++i) {
     const double before = t[i] - t[i - 1], after = t[i + 1] - t[i];
     const double scale = 1.0 / (2.0 * (before + after) - before * ratio[i - 1]);
     ratio[i] = after * scale;
@@ -85,7 +87,7 @@ void natural_spline(const Knots& knots, std::span<double> bends) {
   std::fill(last.begin(), last.end(), 0.0);
   if (rows < 3) return;
   std::vector<double> ratio(rows, 0.0);
-  eliminate(knots.times.data(), knots.values.data(), rows, channels, ratio.data(), bends.data());
+  eliminate(knots, ratio.data(), bends.data());
   substitute(ratio.data(), rows, channels, bends.data());
 }
 

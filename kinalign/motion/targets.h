@@ -8,3 +8,6 @@
 #else
 #define KA_EVERY_PROCESSOR
 #endif
+
+/// A part of such loops: it must become part of the loop to be built for its processor.
+#define KA_INLINE inline __attribute__((always_inline))

@@ -4,13 +4,13 @@
 // roots: sin(x) = x * sine_ratio(x^2), so weights that depend on an angle need only its square.
 #pragma once
 
+#include "kinalign/motion/targets.h"
+
 #include <array>
 #include <cstddef>
 #include <utility>
 
 namespace kinalign {
-
-#define KA_INLINE inline __attribute__((always_inline))
 
 /// Coefficients, lowest power first, by Horner's rule.
 template <std::size_t terms>

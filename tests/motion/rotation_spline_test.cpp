@@ -122,6 +122,15 @@ TEST_CASE("a rotation spline agrees with SciPy on smooth, random, fast and irreg
   }
 }
 
+TEST_CASE("a rotation spline of thousands of knots, solved in windows, agrees with SciPy") {
+  for (const auto seed : fresh_seeds(1)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const auto t = jittery_stamps(3333, random);
+    check_against_scipy(t, rotation_walk(t.size(), 0.5, random), random);
+  }
+}
+
 TEST_CASE("a rotation spline of three knots agrees with SciPy") {
   for (const auto seed : fresh_seeds(1)) {
     CAPTURE(seed);
