@@ -104,7 +104,7 @@ char* put_number(char* at, double value, int decimals) {
   // Below 2^52 the nearest integer is exact, and if any with these decimals reads back, it does.
   if (!(scaled < 4e15)) return std::to_chars(at, at + number_room, value).ptr;
   auto all = static_cast<std::int64_t>(scaled);
-  if (scaled - static_cast<double>(all) >= 0.5) ++all;
+  all += static_cast<std::int64_t>(scaled - static_cast<double>(all) >= 0.5);  // no branch to guess
   if (static_cast<double>(all) / scale != magnitude) {
     return std::to_chars(at, at + number_room, value).ptr;
   }

@@ -87,16 +87,9 @@ void store(const Samples& s, std::size_t count, double* out) {
   }
 }
 
-}  // namespace
-
-void rotation_spline_at(const RotationKnots& knots, std::span<const double> rates,
-                        std::span<const double> at, std::span<double> out) {
+void fill(const RotationKnots& knots, std::span<const double> rates, std::span<const double> at,
+          double* out) {
   const auto& t = knots.times;
-  if (t.size() == 1) {
-    for (std::size_t i = 0; i < at.size(); ++i)
-      std::copy_n(knots.rotations.begin(), 4, &out[4 * i]);
-    return;
-  }
   const std::vector<Cubic> curve = cubics(RotationIntervals(knots), rates);
   Samples samples{};
   std::size_t k = 0;
@@ -108,7 +101,35 @@ void rotation_spline_at(const RotationKnots& knots, std::span<const double> rate
       load(samples, i, curve[k], &knots.rotations[4 * k]);
     }
     turn(samples);
-    store(samples, count, &out[4 * first]);
+    store(samples, count, out + 4 * first);
+  }
+}
+
+constexpr std::size_t window = 1024;  // intervals at a time: little memory, which stays in cache
+
+}  // namespace
+
+void rotation_spline_at(const RotationKnots& knots, std::span<const double> rates,
+                        std::span<const double> at, std::span<double> out) {
+  const auto& t = knots.times;
+  if (t.size() == 1) {
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      std::copy_n(knots.rotations.begin(), 4, &out[4 * i]);
+    }
+    return;
+  }
+  std::size_t sample = 0;
+  for (std::size_t first = 0; first + 1 < t.size() && sample < at.size(); first += window) {
+    const std::size_t count = std::min(window + 1, t.size() - first);
+    const bool last = first + count == t.size();
+    std::size_t end = at.size();
+    if (!last) {
+      const auto behind = std::lower_bound(at.begin(), at.end(), t[first + count - 1]);
+      end = static_cast<std::size_t>(behind - at.begin());
+    }
+    fill({t.subspan(first, count), knots.rotations.subspan(4 * first, 4 * count)},
+         rates.subspan(3 * first, 3 * count), at.subspan(sample, end - sample), &out[4 * sample]);
+    sample = end;
   }
 }
 

@@ -3,8 +3,8 @@
 // interval from knot k to k + 1: r its rotation vector, h its length; W(r) turns the derivative of
 // a rotation vector into an angular rate, W(r)^-1 back. Continuous angular acceleration at knot k
 // demands
-//   2/h' W(r') w[k-1] + 4 (1/h' + 1/h) w[k] + 2/h W(r)^-1 w[k+1] = 6 (r'/h'^2 + r/h^2) - b(r',
-//   w[k])
+//   2/h' W(r') w[k-1] + 4 (1/h' + 1/h) w[k] + 2/h W(r)^-1 w[k+1]
+//       = 6 (r'/h'^2 + r/h^2) - b(r', w[k])
 // with ' for the interval before; b is quadratic in the rate and is iterated.
 #include "kinalign/motion/rotation_spline.h"
 
