@@ -93,9 +93,7 @@ void windows(benchmark::State& state) {
 
 BENCHMARK(traffic)->Name("spline/traffic")->Unit(benchmark::kMillisecond);
 BENCHMARK(whole)->Name("spline/kinalign")->Unit(benchmark::kMillisecond);
-BENCHMARK(windows<Output::whole>)
-    ->Name("spline_windows/kinalign")
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(windows<Output::whole>)->Name("spline_windows/kinalign")->Unit(benchmark::kMillisecond);
 BENCHMARK(windows<Output::slab>)->Name("spline_slabs/kinalign")->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -22,9 +22,9 @@ namespace {
 
 // The rows of the system depend on each other one after the other. So it is cut into eight pieces,
 // which are solved side by side as vector code: each with some rows of its neighbours, whose rates
-// beyond come from the sweep before. What that leaves, 1e-14 of a change on even stamps, the next
+// beyond come from the sweep before. What that leaves, less than 1e-14 of a change, the next
 // sweep takes away with the rest.
-constexpr std::size_t overlap = 24;
+constexpr std::size_t overlap = 48;
 
 struct Pieces {
   std::size_t rows = 0;                      // of each
@@ -76,9 +76,9 @@ struct Row {
   VectorLanes solution, rate;
 };
 
-/// rad in the shorter interval at a knot. Above about 2.5 rad between knots on irregular stamps
-/// the iteration may diverge; this holds the curve, which means little there, within bounds.
-constexpr double most_turn = 30.0;
+/// rad in the longer interval at a knot. Above about 2.5 rad between knots on irregular stamps the
+/// iteration may diverge; this holds the curve, which means little there, within bounds.
+constexpr double most_turn = 1000.0;
 
 /// The interval behind the knot: what only the matrices need.
 struct NextInterval {
@@ -115,7 +115,7 @@ void eliminate(const NextInterval& next, const MatrixLanes& above, Row& row) {
       row.constant[axis][i] =
           6.0 * (before * before * row.r[axis][i] + after * after * next.r[axis][i]);
     }
-    row.most[i] = most_turn * std::max(before, after);
+    row.most[i] = most_turn * std::min(before, after);
     const Matrix left = about(row.r, i, -next.rate1[i], row.rate2[i], 2.0 * before);
     const Matrix right = about(next.r, i, 0.5, next.back2[i], 2.0 * after);
     const Matrix inverse = inverse_of_difference(4.0 * (before + after), left * load(above, i));
@@ -166,7 +166,7 @@ void forwards(std::span<Row> rows, VectorLanes above) {
 }
 
 /// Also takes the solution over as the new rates; returns the largest change of one, as rad in the
-/// shorter interval at its knot.
+/// longer interval at its knot.
 KA_EVERY_PROCESSOR
 double backwards(std::span<Row> rows, VectorLanes below) {
   Lane change{};
@@ -220,7 +220,7 @@ struct System {
 };
 
 constexpr int most_sweeps = 10;       // as many as SciPy's
-constexpr double negligible = 2e-13;  // rad of an interval's turn; a seventh of that on the curve
+constexpr double negligible = 1e-13;  // rad of an interval's turn; a seventh of that on the curve
 
 /// Sweeps until what later ones would change, by the rate at which changes shrink, is negligible.
 void iterate(System& system) {
@@ -255,7 +255,7 @@ std::vector<double> rates_of_window(const RotationKnots& knots) {
   return out;
 }
 
-constexpr std::size_t window = 1024;  // knots whose rows, 3 kB of eight, stay in the second cache
+constexpr std::size_t window = 1536;  // knots whose rows, 3 kB of eight, stay in the second cache
 
 }  // namespace
 
