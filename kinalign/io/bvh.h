@@ -81,6 +81,7 @@ class BvhPoser {
  private:
   struct Joint;
   void place(const Joint& joint, std::span<const double> values, std::span<double> positions) const;
+  void turn(const Joint& joint, std::span<const double> values, std::span<double> rotations) const;
 
   std::vector<Joint> joints_;
   std::size_t row_size_ = 0;

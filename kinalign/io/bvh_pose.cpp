@@ -85,31 +85,41 @@ void BvhPoser::place(const Joint& joint, std::span<const double> values,
   }
 }
 
+void BvhPoser::turn(const Joint& joint, std::span<const double> values,
+                    std::span<double> rotations) const {
+  const std::size_t stride = 4 * joints_.size(), frames = values.size() / row_size_;
+  EulerColumns columns;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (joint.angle[k] >= 0) columns.angles[k] = &values[static_cast<std::size_t>(joint.angle[k])];
+  }
+  columns.stride = row_size_;
+  columns.rotations = rotations.data();
+  columns.rotation_stride = stride;
+  rotations_from_euler(joint.order, columns, frames);
+  if (!options_.z_up || !joint.root) return;
+  for (std::size_t i = 0; i < frames; ++i) {
+    const auto q = rotations.subspan(i * stride, 4);
+    put_quat(q, 0, Quat(half_root, -half_root, 0.0, 0.0) * quat(q, 0));
+  }
+}
+
 void BvhPoser::append(std::span<const double> values, ClipFrames& out) {
   const std::size_t joints = joints_.size(), frames = values.size() / row_size_;
-  const std::size_t first = out.size();
-  out.local_positions.resize((first + frames) * joints * 3);
-  out.local_rotations.resize((first + frames) * joints * 4);
+  const std::size_t before = out.size();
+  out.local_positions.resize((before + frames) * joints * 3);
+  out.local_rotations.resize((before + frames) * joints * 4);
   for (std::size_t i = 0; i < frames; ++i) {
     const double since = std::min(static_cast<double>(frames_++) * frame_ns_, 4e18);
     out.stamps.push_back(options_.start + Duration{std::llround(since)});
   }
-  for (std::size_t j = 0; j < joints && frames > 0; ++j) {
-    const Joint& joint = joints_[j];
-    place(joint, values, std::span(out.local_positions).subspan((first * joints + j) * 3));
-    EulerColumns columns;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (joint.angle[k] >= 0)
-        columns.angles[k] = &values[static_cast<std::size_t>(joint.angle[k])];
-    }
-    columns.stride = row_size_;
-    columns.rotations = &out.local_rotations[(first * joints + j) * 4];
-    columns.rotation_stride = joints * 4;
-    rotations_from_euler(joint.order, columns, frames);
-    if (!options_.z_up || !joint.root) continue;
-    for (std::size_t i = 0; i < frames; ++i) {
-      const std::span<double> q(columns.rotations + i * joints * 4, 4);
-      put_quat(q, 0, Quat(half_root, -half_root, 0.0, 0.0) * quat(q, 0));
+  // All joints of a few frames, then the next few: rows stay in the first cache.
+  for (std::size_t first = 0; first < frames; first += euler_frames) {
+    const std::size_t some = std::min(euler_frames, frames - first);
+    const auto rows = values.subspan(first * row_size_, some * row_size_);
+    for (std::size_t j = 0; j < joints; ++j) {
+      const std::size_t cell = (before + first) * joints + j;
+      place(joints_[j], rows, std::span(out.local_positions).subspan(3 * cell));
+      turn(joints_[j], rows, std::span(out.local_rotations).subspan(4 * cell));
     }
   }
 }
