@@ -46,9 +46,10 @@ Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup
     const JointPair pair{find_joint(ours, a), find_joint(theirs, b)};
     if (pair.from < ours.size() && pair.onto < theirs.size()) pairs.push_back(pair);
   };
-  for (const std::string& name : ours) add(name, name);
+  // Kinect onto mocap first: both have a Neck and a Head, which are not the same places.
+  for (const auto& [a, b] : usual_pairs()) add(a, b);
   if (pairs.empty()) {
-    for (const auto& [a, b] : usual_pairs()) add(a, b);
+    for (const std::string& name : ours) add(name, name);
   }
   return pairs;
 }

@@ -25,8 +25,8 @@ struct SpacePlan {
   RigidTransform transform;      // fit: found; given: as given; paper: A_rot
 };
 
-/// Plans for all streams of the manifest; `header` has the joints. Without named joints those of
-/// equal name and the usual pairs of Kinect and mocap joints are taken.
+/// Plans for all streams of the manifest; `header` has the joints. Without named joints the usual
+/// pairs of Kinect and mocap joints are taken or, where there are none, joints of equal name.
 Result<std::vector<SpacePlan>> plan_spaces(const TakeHeader& header, const Manifest& manifest,
                                            std::size_t reference_group);
 

@@ -175,6 +175,23 @@ TEST_CASE("a rigid fit once per take finds a camera's place and turn") {
   }
 }
 
+TEST_CASE("without named joints a Kinect is fitted by the places that both skeletons have") {
+  // Neck and Head stand on both, but are not the same places: they must not be paired by name.
+  const std::vector<std::string> kinect{"SpineBase", "Neck", "Head", "KneeLeft", "WristLeft"};
+  const std::vector<std::string> mocap{"Hips", "Neck", "Head", "LeftLeg", "LeftHand"};
+  const auto higher = [](std::size_t j, double t) {
+    return Vec3(wander(j, t) + (j == 1 || j == 2 ? Vec3(0.0, 0.1, 0.0) : Vec3::Zero()));
+  };
+  Manifest manifest;
+  manifest.spaces["kinect"].method = "fit";
+  const auto take = align(
+      two(points(mocap, every(10 * ms, 300), higher), points(kinect, every(10 * ms, 300), wander)),
+      manifest);
+  REQUIRE(take);
+  CHECK(take->report.spaces.at(0).joints.size() == 3);
+  CHECK(take->report.spaces.at(0).after_m < 1e-9);
+}
+
 TEST_CASE("equations (1) and (2): in every frame the root lies on the mocap's root") {
   const auto seen = [](std::size_t j, double t) {
     return Vec3(turn_about_y(-60.0) * wander(j, t) + Vec3(0.3 * std::sin(5.0 * t), -0.9, 2.5));
