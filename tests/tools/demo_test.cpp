@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 
 using namespace kinalign;
 
@@ -65,7 +66,9 @@ TEST_CASE("the demo stands in T-pose at first, with its feet on the floor") {
   const DemoBody& body = motion.body();
   const Vec3 hand = places.positions[body.find("LeftHand")];
   const Vec3 arm = places.positions[body.find("LeftArm")];
-  CHECK((hand - arm).normalized().x() == doctest::Approx(1.0).epsilon(0.01));
+  const Vec3 left(std::cos(demo_heading_deg * std::numbers::pi / 180), 0,
+                  -std::sin(demo_heading_deg * std::numbers::pi / 180));
+  CHECK((hand - arm).normalized().dot(left) == doctest::Approx(1.0).epsilon(0.01));
   CHECK(places.positions[body.find("LeftFoot")].y() == doctest::Approx(0.077).epsilon(0.1));
 }
 
@@ -111,4 +114,17 @@ TEST_CASE("an inertial node at rest reads gravity upwards and no turning") {
   CHECK(std::hypot(row[1], row[2], row[3]) == doctest::Approx(1.0).epsilon(0.01));
   CHECK(std::hypot(row[5], row[6], row[7]) == doctest::Approx(9.8).epsilon(0.03));
   CHECK(std::hypot(row[8], row[9], row[10]) < 0.2);
+}
+
+TEST_CASE("the demo's camera sees a face: the left shoulder is at smaller x, as the SDK has it") {
+  const Folder folder;
+  write(folder, 3);
+  const std::string text = folder.text("kinect.csv");
+  const std::size_t row = text.find('\n') + 1;
+  std::vector<double> cells;
+  for (std::size_t at = row; cells.size() < 101; at = text.find(',', at) + 1) {
+    cells.push_back(std::strtod(&text[at], nullptr));
+  }
+  CHECK(cells[1 + 4 * 4] < cells[1 + 4 * 8] - 0.2);  // ShoulderLeft, ShoulderRight: m
+  CHECK(cells[1 + 4 * 2 + 2] > 2.0);                 // the neck, in front of the sensor
 }

@@ -183,6 +183,9 @@ DemoPose DemoMotion::pose(double t) const {
 
   pose.positions[0] += Vec3{4 * step * swing, 0.3 * turn(0.25, t) - 1.5 * step, 0};
   pose.positions[0].z() += 25 * step * turn(0.15, u) - 7 * bend;
+  // R = Ry Rx Rz: a turn of everything about y adds to the first angle of the root.
+  angles(Named::hips)[0] += demo_heading_deg;
+  pose.positions[0] = rotation({demo_heading_deg, 0, 0}) * pose.positions[0];
   // The suit's own habit: legs stretch a little to keep the feet where they stand.
   pose.positions[used_[Named::left_foot]].y() -= 0.8 * left;
   pose.positions[used_[Named::right_foot]].y() -= 0.8 * right;

@@ -15,6 +15,10 @@ namespace kinalign {
 
 constexpr std::size_t demo_joints = 59;
 
+/// Where the person faces, from +z towards +x: a suit's axes are where its calibration left them,
+/// and the camera, which looks the person in the face, comes out turned by 180 degrees more.
+constexpr double demo_heading_deg = 58.7 - 180.0;
+
 struct DemoJoint {
   std::string name;
   int parent = -1;

@@ -130,9 +130,10 @@ class KinectWriter {
   DemoRandom random_;
   std::array<std::size_t, 25> from_{}, to_{};
   std::array<Vec3, 25> beside_;  // m: what this camera takes for a joint lies beside it
+  // The person looks into the camera, whose z points at the person and x to the person's right.
   Quat camera_from_floor_{
-      Eigen::AngleAxisd(-58.7 * std::numbers::pi / 180, Vec3::UnitY())};  // the camera's turn
-  Vec3 camera_{0.21, -0.86, 2.64};                                        // m
+      Eigen::AngleAxisd(-(demo_heading_deg + 180) * std::numbers::pi / 180, Vec3::UnitY())};
+  Vec3 camera_{0.21, -0.86, 2.64};  // m
 };
 
 /// Where a node is worn: it lies at one joint and turns with another.
