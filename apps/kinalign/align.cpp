@@ -2,6 +2,7 @@
 #include "apps/kinalign/align_job.h"
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/inputs.h"
+#include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/io/manifest_toml.h"
@@ -33,16 +34,21 @@ Fields flags(AlignVerb& o) {
   return {
       {"mocap", "the reference: a BVH, or a file of points", &o.mocap},
       {"kinect", "a file of Kinect joints", &o.kinect},
-      {"imu", "a node's file as NODE=FILE; may be repeated", &o.imu},
-      {"points", "a further file of points as NAME=FILE; may be repeated", &o.points},
+      {"imu", "a node's file; may be repeated", &o.imu},
+      {"points", "a further file of points; may be repeated", &o.points},
       {"kinect_layout", "layout of the Kinect file", &o.kinect_layout},
       {"imu_layout", "layout of the nodes' files", &o.imu_layout},
       {"root_node", "node into whose space all nodes are brought", &o.root_node},
-      {"start_ns", "stamp of the click that started the mocap, ns", &o.mocap_options.start_ns,
-       -4e18, 4e18},
-      {"metres_per_unit", "length of the BVH's unit, m", &o.mocap_options.metres_per_unit, 0.0,
-       1000.0},
-      {"up", "the BVH's up axis", &o.mocap_options.up, -1e308, 1e308, {"", "y", "z"}},
+      {"start_ns", "stamp of the click that started the mocap, ns since 1970",
+       &o.mocap_options.start_ns, -4e18, 4e18},
+      {"metres_per_unit", "length of the mocap file's unit, m; 0: the format's own (BVH: 0.01)",
+       &o.mocap_options.metres_per_unit, 0.0, 1000.0},
+      {"up",
+       "the mocap file's up axis (BVH: y)",
+       &o.mocap_options.up,
+       -1e308,
+       1e308,
+       {"", "y", "z"}},
       {"space",
        "how the Kinect comes into the mocap's space",
        &o.space.method,
@@ -51,7 +57,8 @@ Fields flags(AlignVerb& o) {
        {"none", "paper", "fit"}},
       {"rotation_y_deg", "of --space paper: turn about the y axis, degrees",
        &o.space.rotation_y_deg, -360.0, 360.0},
-      {"joint", "of --space: KINECT=MOCAP joints that mean one place; may be repeated", &o.joints}};
+      {"joint", "of --space: a Kinect's and a mocap's joint that mean one place; may be repeated",
+       &o.joints}};
 }
 
 Usage describe_verb_options(AlignVerb& o) {
@@ -113,15 +120,30 @@ Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
   }
   constexpr std::size_t longest = std::size_t{1} << 20;
   const std::string& path = o.manifest.front();
+  if (!path.ends_with(".toml")) {
+    return Failure(Error{path, 0,
+                         "a recording.toml (a single file goes behind --mocap, --kinect, ...)",
+                         "another ending"});
+  }
   const std::string text = KA_TRY(read_whole(call.surroundings.files, path, longest));
   Manifest manifest = KA_TRY(read_manifest(text, path));
   copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
   return manifest;
 }
 
+std::vector<std::string> advice(const Error& error) {
+  std::vector<std::string> lines{"nothing was written"};
+  if (error.file.empty()) {
+    lines.push_back(
+        "kinalign align --help shows the flags, docs/formats/recording_toml.md the keys");
+  } else if (error.line > 0 && !error.file.ends_with(".toml")) {
+    lines.push_back("kinalign check " + error.file + " lists all that is wrong with it");
+  }
+  return lines;
+}
+
 Result<int> run(AlignVerb& o, Call& call) {
-  call.console.if_it_fails(
-      [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
+  call.console.if_it_fails(advice);
   if (call.common.out.empty() && !call.common.dry_run) {
     return Failure(Error{"-o", 0, "the take's file name, as in -o take.h5", "none"});
   }
@@ -134,7 +156,7 @@ Result<int> run(AlignVerb& o, Call& call) {
   const AlignmentReport report =
       KA_TRY(align_to_file(call.surroundings.files, recording, manifest, out,
                            call.common.force ? Overwrite::yes : Overwrite::no, progress));
-  call.console.print(summary(report, out));
+  call.console.print(summary(report, out, call.console));
   call.console.print_json(report_json(report));
   return 0;
 }
@@ -148,13 +170,15 @@ Verb align_verb() {
        .text = "Streams are cut to the span they share and resampled onto the reference's stamps; "
                "nothing is invented across a gap. The take is an HDF5 file that h5py and MATLAB "
                "open, with the report and every parameter inside.",
-       .examples = {{"kinalign align demo/recording.toml -o demo/take.h5",
-                     "what the manifest says"},
-                    {"kinalign align --mocap walk.bvh --kinect kinect.csv -o take.h5",
-                     "two files on one clock"},
-                    {"kinalign align --mocap walk.bvh --imu waist=w.csv --imu wrist_left=l.csv "
-                     "--root-node waist -o take.h5",
-                     "nodes, brought into the waist's space"}},
+       .examples =
+           {{"kinalign align demo/recording.toml -o demo/take.h5", "what the manifest says"},
+
+            {"kinalign align --mocap walk.bvh --start-ns 1790000000000000000 --kinect kinect.csv "
+             "-o take.h5",
+             "two files without a manifest; a BVH knows no time of day"},
+            {"kinalign align --mocap walk.bvh --imu waist=w.csv --imu wrist_left=l.csv "
+             "--root-node waist -o take.h5",
+             "nodes, brought into the waist's space"}},
        .common = {"out", "force", "json", "dry_run"}},
       describe_verb_options, run);
 }

@@ -17,7 +17,4 @@ Result<AlignmentReport> align_to_file(FileSystem& files, const Recording& record
                                       const Manifest& manifest, const std::string& out,
                                       Overwrite overwrite, const Progress& progress);
 
-/// The report's few lines for people, worst first.
-std::string summary(const AlignmentReport& report, const std::string& out);
-
 }  // namespace kinalign

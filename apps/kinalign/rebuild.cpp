@@ -2,6 +2,7 @@
 #include "apps/kinalign/align_job.h"
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/inputs.h"
+#include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/io/open_recording.h"
@@ -168,7 +169,7 @@ Result<int> run(Rebuild& o, Call& call) {
   const AlignmentReport report = KA_TRY(
       align_to_file(files, recording, origin.parameters, call.common.out,
                     call.common.force ? Overwrite::yes : Overwrite::no, call.console.progress()));
-  call.console.print(summary(report, call.common.out));
+  call.console.print(summary(report, call.common.out, call.console));
   call.console.print_json(fmt::format("{{\"written\": true, \"frames\": {}}}", report.frames));
   return 0;
 }
