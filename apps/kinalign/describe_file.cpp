@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/describe_file.h"
 
+#include "apps/kinalign/describe_report.h"
 #include "apps/kinalign/inputs.h"
 
+#include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
 
 #include <fmt/format.h>
@@ -79,7 +81,8 @@ double seconds_of(const StampSurvey& survey) {
 
 std::string stream_line(const RecordedStream& s, const Contents& c) {
   std::string line =
-      fmt::format("  {:<8} {}: {} samples over {:.3f} s at {:.4g} Hz; {}\n", s.name, c.kind,
+      fmt::format("  {:<8} {}: {} samples over {:.3f} s at {:.4g} Hz; {}\n", s.name,
+                  c.kind == "imu" ? shown(c.names.front().get<std::string>()) : c.kind,
                   s.survey.samples, seconds_of(s.survey), rate_hz(s), c.parts);
   if (s.survey.duplicates + s.survey.backward > 0) {
     line += fmt::format("           {} stamps repeat, {} step back\n", s.survey.duplicates,
@@ -98,7 +101,8 @@ Json stream_json(const RecordedStream& s, const Contents& c) {
           {"rate_hz", rate_hz(s)},
           {"duplicate_stamps", s.survey.duplicates},
           {"backward_stamps", s.survey.backward},
-          {"files", files_json(s.files)}};
+          {"files", files_json(s.files)},
+          {"findings", Json::parse(findings_json(s.findings))}};
 }
 
 /// In the child: everything about a take as one JSON text.
@@ -124,25 +128,6 @@ Result<std::string> take_facts(FileSystem& files, const std::string& path) {
   return out.dump();
 }
 
-std::string take_text(const Json& take) {
-  std::string text =
-      fmt::format("{}: a take of {} frames by {}\n", take.value("file", ""),
-                  take.value("frames", std::uint64_t{0}), take.value("software", ""));
-  const std::string subject = take.value("subject", ""), action = take.value("action", "");
-  if (!subject.empty() || !action.empty()) {
-    text += fmt::format("  subject {}, action {}\n", subject, action);
-  }
-  for (const Json& stream : take["streams"]) {
-    text += fmt::format("  {:<8} {}: {}\n", stream.value("name", ""), stream.value("kind", ""),
-                        stream.value("parts", ""));
-    for (const Json& file : stream["files"]) {
-      text += fmt::format("           {}  sha256 {}...\n", file.value("name", ""),
-                          file.value("sha256", "").substr(0, 12));
-    }
-  }
-  return text;
-}
-
 }  // namespace
 
 Description describe_recording(const std::string& path, const Recording& recording) {
@@ -152,10 +137,16 @@ Description describe_recording(const std::string& path, const Recording& recordi
            {"action", recording.action},
            {"streams", Json::array()}};
   std::string text = path + "\n";
+  std::size_t findings = 0;
   for (const RecordedStream& s : recording.streams) {
     const Contents c = contents_of(s);
     out["streams"].push_back(stream_json(s, c));
     text += stream_line(s, c);
+    findings += s.findings.size();
+  }
+  if (findings > 0) {
+    text += fmt::format("  {} finding{}: see kinalign check {}\n", findings,
+                        findings == 1 ? "" : "s", path);
   }
   return {std::move(text), out.dump()};
 }
@@ -163,7 +154,7 @@ Description describe_recording(const std::string& path, const Recording& recordi
 Result<Description> describe_take(FileSystem& files, const std::string& path) {
   const std::string json =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return take_facts(files, path); }));
-  return Description{take_text(Json::parse(json)), json};
+  return Description{take_text(json), json};
 }
 
 std::string finding_lines(Findings findings) {

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/describe_report.h"
+
+#include "apps/kinalign/summary.h"
+
+#include "kinalign/core/error.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <numbers>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
+  std::string text = json[key].get<std::string>();
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+double number_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return 0.0;
+  return json[key].get<double>();
+}
+
+std::uint64_t count_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned()) return 0;
+  return json[key].get<std::uint64_t>();
+}
+
+const Json& list_at(const Json& json, const char* key) {
+  static const Json none = Json::array();
+  if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return none;
+  return json[key];
+}
+
+/// A stamp as calendars have it, to the millisecond.
+std::string date_text(std::int64_t ns) {
+  const std::int64_t ms = (ns + 500'000) / 1'000'000;
+  const std::time_t whole = ms / 1000;
+  std::tm parts{};
+  ::gmtime_r(&whole, &parts);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", parts.tm_year + 1900,
+                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
+                     ms % 1000);
+}
+
+/// The take's span; devices without a calendar count from near zero.
+std::string span_text(const Json& report) {
+  constexpr double year_ns = 3.2e16;
+  const double begin = number_at(report, "begin_ns"), end = number_at(report, "end_ns");
+  if (begin < year_ns || end > 9.2e18) {
+    return fmt::format("  from {:.3f} to {:.3f} s, no date known\n", 1e-9 * begin, 1e-9 * end);
+  }
+  return fmt::format("  from {} to {} UTC\n", date_text(static_cast<std::int64_t>(begin)),
+                     date_text(static_cast<std::int64_t>(end)));
+}
+
+std::string head_text(const Json& take, const Json& report) {
+  const double rate = number_at(report, "rate_hz");
+  const std::uint64_t frames = count_at(take, "frames");
+  std::string text = fmt::format("{}: a take by {}, {} frames", text_at(take, "file"),
+                                 text_at(take, "software"), grouped(frames));
+  if (rate > 0.0) {
+    text +=
+        fmt::format(" at {:.4g} Hz, {}", rate, duration_text(static_cast<double>(frames) / rate));
+  }
+  text += "\n";
+  const std::string subject = text_at(take, "subject"), action = text_at(take, "action");
+  if (!subject.empty() || !action.empty()) {
+    text += fmt::format("  subject {}, action {}\n", subject, action);
+  }
+  return text + span_text(report);
+}
+
+/// "29.92 Hz, shared clock, 97.8 % valid, 2 gaps (0.83 s)"
+std::string quality_text(const Json& s) {
+  const bool known = s.is_object() && s.contains("worst_interval_ns");
+  const double interval_ms = 1e-6 * number_at(s, "worst_interval_ns");
+  std::string text = fmt::format("{:.4g} Hz, ", number_at(s, "rate_hz"));
+  text += !known               ? "stamps of unknown accuracy"
+          : interval_ms == 0.0 ? "shared clock"
+                               : fmt::format("± {:.1f} ms", interval_ms);
+  const std::uint64_t samples = count_at(s, "samples");
+  const std::uint64_t invalid = std::min(samples, count_at(s, "invalid"));
+  text += fmt::format(", {} valid", share_text(samples - invalid, samples));
+  const auto share = [&](const char* key, const char* what) {
+    if (count_at(s, key) > 0) text += ", " + share_text(count_at(s, key), samples) + what;
+  };
+  share("inferred", " inferred");
+  share("bridged", " interpolated over loss");
+  const std::uint64_t gaps = count_at(s, "gaps");
+  if (gaps > 0) {
+    text += fmt::format(", {} gap{} ({:.2f} s)", gaps, gaps == 1 ? "" : "s",
+                        1e-9 * number_at(s, "gap_time_ns"));
+  }
+  return text + fmt::format(", nearest sample within {:.1f} ms\n",
+                            1e-6 * number_at(s, "worst_nearest_ns"));
+}
+
+std::string stream_text(const Json& stream, const Json& report) {
+  const std::string name = text_at(stream, "name");
+  std::string text =
+      fmt::format("  {:<8} {}: {}\n", name, text_at(stream, "kind"), text_at(stream, "parts"));
+  for (const Json& file : list_at(stream, "files")) {
+    text += fmt::format("           {}  sha256 {}...\n", text_at(file, "name"),
+                        text_at(file, "sha256").substr(0, 12));
+  }
+  if (name == text_at(report, "reference")) return text + "           the reference\n";
+  for (const Json& s : list_at(report, "streams")) {
+    if (text_at(s, "stream") != name) continue;
+    const std::string node = text_at(s, "node");
+    text += "           " + (node.empty() ? "" : node + ": ") + quality_text(s);
+  }
+  return text;
+}
+
+std::string space_text(const Json& space) {
+  std::string text =
+      fmt::format("  space    {} on {}, {}: {:.1f} cm rms (before: {:.1f})\n",
+                  text_at(space, "stream"), text_at(space, "onto"), text_at(space, "method"),
+                  100.0 * number_at(space, "after_m"), 100.0 * number_at(space, "before_m"));
+  for (const Json& joint : list_at(space, "joints")) {
+    text += fmt::format("           {:<16} on {:<16} {:6.1f} cm over {} rows\n",
+                        text_at(joint, "joint"), text_at(joint, "onto"),
+                        100.0 * number_at(joint, "after_m"), grouped(count_at(joint, "rows")));
+  }
+  return text;
+}
+
+std::string finding_text(const Json& finding) {
+  const Error what{text_at(finding, "file"), static_cast<std::int64_t>(count_at(finding, "line")),
+                   text_at(finding, "expected"), text_at(finding, "found")};
+  return fmt::format("  {:<8} {}: {}\n", text_at(finding, "severity"), to_string(what),
+                     text_at(finding, "meaning"));
+}
+
+}  // namespace
+
+std::string take_text(const std::string& json) {
+  const Json take = Json::parse(json, nullptr, false);
+  const Json none = Json::object();
+  const Json& report = take.is_object() && take.contains("report") ? take["report"] : none;
+  std::string text = head_text(take, report);
+  for (const Json& stream : list_at(take, "streams")) text += stream_text(stream, report);
+  for (const Json& space : list_at(report, "spaces")) text += space_text(space);
+  for (const Json& finding : list_at(report, "findings")) text += finding_text(finding);
+  return text;
+}
+
+}  // namespace kinalign
