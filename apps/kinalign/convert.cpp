@@ -17,14 +17,15 @@ namespace kinalign {
 namespace {
 
 struct Convert {
-  std::vector<std::string> files;  // from, to
+  std::vector<std::string> from, to;  // one each
   bool store_double = false;
   StreamFlags stream;
 };
 
 Usage describe_convert(Convert& o) {
   Usage usage;
-  usage.positionals = {{"FILE", "from, to; the ending of the second decides", &o.files, 2, 2}};
+  usage.positionals = {{"IN", "a take, or a stream's file", &o.from},
+                       {"OUT", "a new file; its ending, .npz or .bvh, decides", &o.to}};
   usage.flags = o.stream.fields();
   usage.flags.push_back({"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double});
   return usage;
@@ -102,6 +103,10 @@ Result<void> put_bvh(const Job& job, const BvhFile& bvh) {
 
 Result<void> bvh_to_bvh(const Job& job, const StreamOptions& options) {
   const std::string text = KA_TRY(read_whole(job.files, job.from, SIZE_MAX));
+  if (!looks_like_bvh(text)) {
+    return Failure(Error{job.from, 1, "a BVH or a take, which alone can become a BVH",
+                         "'" + shown(std::string_view(text).substr(0, text.find('\n'))) + "'"});
+  }
   const BvhFile bvh = KA_TRY(read_bvh(text, job.from, bvh_options(options)));
   return put_bvh(job, bvh);
 }
@@ -159,7 +164,7 @@ Result<void> convert_take(const Job& job) {
 Result<int> run(Convert& o, Call& call) {
   call.console.if_it_fails(
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
-  const Job job{call.surroundings.files, o.files[0], o.files[1],
+  const Job job{call.surroundings.files, o.from.front(), o.to.front(),
                 call.common.force ? Overwrite::yes : Overwrite::no};
   if (KA_TRY(is_take(job.files, job.from))) {
     KA_TRY(convert_take(job));

@@ -7,6 +7,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 namespace kinalign {
 
@@ -132,7 +134,20 @@ std::string placeholder(const Field& field) {
     if (!choice.empty()) choices += (choices.empty() ? "" : "|") + choice;
   }
   if (!choices.empty()) return choices;
-  if (field.name == "out" || field.name == "config") return "FILE";
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> names{
+      {{"out", "FILE"},
+       {"config", "FILE"},
+       {"mocap", "FILE"},
+       {"kinect", "FILE"},
+       {"inputs", "FOLDER"},
+       {"imu", "NODE=FILE"},
+       {"points", "NAME=FILE"},
+       {"joint", "JOINT=JOINT"},
+       {"select", "COLUMN=VALUE"},
+       {"root_node", "NODE"}}};
+  for (const auto& [name, shown_as] : names) {
+    if (field.name == name) return std::string(shown_as);
+  }
   const bool text = std::holds_alternative<std::string*>(field.value) ||
                     std::holds_alternative<std::vector<std::string>*>(field.value);
   return text ? "TEXT" : "NUMBER";

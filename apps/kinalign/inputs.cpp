@@ -24,7 +24,7 @@ Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
 
 Fields StreamFlags::fields() {
   Fields out = describe(options);
-  out.push_back({"select", "rows of a table to take, COLUMN=VALUE; may be repeated", &select});
+  out.push_back({"select", "rows of a table to take; may be repeated", &select});
   return out;
 }
 
