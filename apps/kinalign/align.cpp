@@ -67,11 +67,14 @@ Usage describe_verb_options(AlignVerb& o) {
   usage.positionals = {{"RECORDING", "recording.toml: streams, files, clocks", &o.manifest, 0, 1}};
   usage.flags = flags(o);
   usage.settings = describe(o.options);
-  usage.check = [&o]() -> Result<void> {
+  usage.check = [&o](const Common& common) -> Result<void> {
     const bool quick = !o.mocap.empty();
     if (o.manifest.empty() != quick) {
       return Failure(
           Error{"", 0, "either a recording.toml or --mocap FILE", quick ? "both" : "neither"});
+    }
+    if (common.out.empty() && !common.dry_run) {
+      return Failure(Error{"-o", 0, "the take's file name, as in -o take.h5", "none"});
     }
     return {};
   };
@@ -144,9 +147,6 @@ std::vector<std::string> advice(const Error& error) {
 
 Result<int> run(AlignVerb& o, Call& call) {
   call.console.if_it_fails(advice);
-  if (call.common.out.empty() && !call.common.dry_run) {
-    return Failure(Error{"-o", 0, "the take's file name, as in -o take.h5", "none"});
-  }
   const Manifest manifest = KA_TRY(manifest_of(o, call));
   const std::string base = o.manifest.empty() ? "" : std::string(folder(o.manifest.front()));
   const Progress progress = call.console.progress();

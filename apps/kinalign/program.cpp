@@ -64,7 +64,7 @@ class Run {
       KA_TRY(apply_settings(file, settable, verbs_, sources_));
     }
     KA_TRY(apply_environment(surroundings_, settable, sources_));
-    if (usage.check) KA_TRY(usage.check());
+    if (usage.check) KA_TRY(usage.check(common_));
     return false;
   }
 

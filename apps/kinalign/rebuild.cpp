@@ -31,9 +31,15 @@ Usage describe_rebuild(Rebuild& o) {
   usage.positionals = {{"TAKE", "a take that kinalign wrote", &o.take}};
   usage.flags = {{"inputs", "folder of the files that the take was made from", &o.inputs},
                  {"verify", "compare every byte with the take; write nothing", &o.verify}};
-  usage.check = [&o]() -> Result<void> {
-    if (!o.inputs.empty()) return {};
-    return Failure(Error{"--inputs", 0, "the folder of the take's inputs", "none"});
+  usage.check = [&o](const Common& common) -> Result<void> {
+    if (o.inputs.empty()) {
+      return Failure(Error{"--inputs", 0, "the folder of the take's inputs", "none"});
+    }
+    if (o.verify != common.out.empty()) {
+      return Failure(Error{"-o", 0, "either the new take's file name or --verify",
+                           o.verify ? "both" : "neither"});
+    }
+    return {};
   };
   return usage;
 }
@@ -163,9 +169,6 @@ Result<int> run(Rebuild& o, Call& call) {
   const Recording recording =
       KA_TRY(open_recording(files, origin.parameters, base, call.console.progress()));
   if (o.verify) return verify(take, recording, origin, call);
-  if (call.common.out.empty()) {
-    return Failure(Error{"-o", 0, "the new take's file name, or --verify", "neither"});
-  }
   const AlignmentReport report = KA_TRY(
       align_to_file(files, recording, origin.parameters, call.common.out,
                     call.common.force ? Overwrite::yes : Overwrite::no, call.console.progress()));

@@ -17,6 +17,7 @@ namespace kinalign {
 
 class Console;
 struct Verb;
+struct Common;
 
 /// A command that works as it stands, and what it does.
 struct Example {
@@ -37,7 +38,8 @@ struct Usage {
   std::vector<Positional> positionals;
   Fields flags;     // on the command line only; a vector of strings may be given as often as wanted
   Fields settings;  // also from KINALIGN_<NAME> and from the verb's table in kinalign.toml
-  std::function<Result<void>()> check;  // what the parts can't say; its failures are wrong use
+  /// What the parts can't say; its failures are wrong use.
+  std::function<Result<void>(const Common&)> check;
 };
 
 /// The flags that mean the same everywhere. A verb names those it takes (Page::common); config,
