@@ -147,8 +147,9 @@ std::string finding_lines(const Findings& findings, const Console& console) {
     const Colour colour = finding.severity == Severity::note      ? Colour::plain
                           : finding.severity == Severity::warning ? Colour::warning
                                                                   : Colour::bad;
-    text += fmt::format("  {}  {}: {}\n", console.paint(colour, to_string(finding.severity)),
-                        to_string(finding.what), finding.meaning);
+    const std::string repair = finding.repair.empty() ? "" : "; " + finding.repair;
+    text += fmt::format("  {}  {}: {}{}\n", console.paint(colour, to_string(finding.severity)),
+                        to_string(finding.what), finding.meaning, repair);
   }
   if (findings.size() > most) text += fmt::format("  and {} more\n", findings.size() - most);
   return text;

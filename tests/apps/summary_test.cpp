@@ -67,9 +67,9 @@ TEST_CASE("a group with one node of unknown clock is of unknown accuracy, and th
 
 TEST_CASE("five findings are shown, the word in colour where there is colour") {
   AlignmentReport some = report();
-  some.findings.assign(7, {Severity::warning, {"a.csv", 3, "x", "y"}, "z", ""});
+  some.findings.assign(7, {Severity::warning, {"a.csv", 3, "x", "y"}, "z", "do w"});
   const std::string text = plain(some, "t.h5", "always");
-  CHECK(text.find("  \x1b[33mwarning\x1b[0m  a.csv:3: expected x, found y: z\n") !=
+  CHECK(text.find("  \x1b[33mwarning\x1b[0m  a.csv:3: expected x, found y: z; do w\n") !=
         std::string::npos);
   CHECK(text.find("  and 2 more\n") != std::string::npos);
 }
