@@ -56,7 +56,7 @@ struct RecordedStream {
   StampSurvey survey;  // of the device's stamps
   /// Of a file that states a fixed step instead of stamps: frame k is at first + k * step, rounded.
   std::optional<double> step_ns;
-  TimeModel clock;     // from those to the take's axis
+  TimeModel clock;  // from those to the take's axis
   std::vector<InputFacts> files;
   Findings findings;  // of the reader
 };
