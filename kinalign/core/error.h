@@ -53,10 +53,14 @@ T unwrap(Result<T>&& result) {
 
 }  // namespace kinalign
 
-/// The value of a Result, or the calling function ends with its error.
-#define KA_TRY(expression)                                                    \
-  __extension__({                                                             \
-    auto ka_result = (expression);                                            \
-    if (!ka_result) return ::kinalign::Failure(std::move(ka_result).error()); \
-    ::kinalign::unwrap(std::move(ka_result));                                 \
+/// The value of a Result, or the calling function ends with its error. May stand in another's
+/// argument: each use has a name of its own.
+#define KA_TRY(expression) KA_TRY_AS(KA_TRY_JOIN(ka_result_, __COUNTER__), expression)
+#define KA_TRY_JOIN(a, b) KA_TRY_JOINED(a, b)
+#define KA_TRY_JOINED(a, b) a##b
+#define KA_TRY_AS(result, expression)                                     \
+  __extension__({                                                         \
+    auto result((expression));                                            \
+    if (!(result)) return ::kinalign::Failure(std::move(result).error()); \
+    ::kinalign::unwrap(std::move(result));                                \
   })

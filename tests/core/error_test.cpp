@@ -19,6 +19,8 @@ Result<int> quarter(int n) {
   return KA_TRY(half(once));
 }
 
+Result<int> eighth(int n) { return KA_TRY(half(KA_TRY(half(KA_TRY(half(n)))))); }
+
 }  // namespace
 
 TEST_CASE("an error is said with its place, as far as that is known") {
@@ -41,6 +43,12 @@ TEST_CASE("KA_TRY gives the value or ends the function with the error") {
   REQUIRE(!quarter(6));
   CHECK(to_string(quarter(6).error()) == "numbers.txt:3: expected an even number, found 3");
   CHECK(to_string(quarter(5).error()) == "numbers.txt:3: expected an even number, found 5");
+}
+
+TEST_CASE("KA_TRY may stand in the argument of another") {
+  CHECK(eighth(24) == 3);
+  REQUIRE(!eighth(12));
+  CHECK(to_string(eighth(12).error()) == "numbers.txt:3: expected an even number, found 3");
 }
 
 TEST_CASE("severities have names") {
