@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/hdf5_checks.h"
 
+#include <hdf5.h>
+
 #include <algorithm>
 
 namespace kinalign::hdf5 {

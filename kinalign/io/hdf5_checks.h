@@ -21,10 +21,10 @@ struct Source {
   std::uint64_t row_values = 1;
 };
 
-bool has(hid_t group, const char* name);
+bool has(Id group, const char* name);
 
 /// The name of HDF5's type for what we store.
-hid_t type_of(Stored stored);
+Id type_of(Stored stored);
 
 /// Reads rows into values of their own type; floats into doubles.
 Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
@@ -46,12 +46,12 @@ class Checked {
   const Bytes& bytes() const { return bytes_; }
 
   /// The first size of a data set.
-  Result<std::uint64_t> rows(hid_t group, const char* name) const;
-  Result<Source> find(hid_t group, const char* name, Stored stored,
+  Result<std::uint64_t> rows(Id group, const char* name) const;
+  Result<Source> find(Id group, const char* name, Stored stored,
                       const std::vector<std::uint64_t>& sizes) const;
 
   template <class Value>
-  Result<std::vector<Value>> all(hid_t group, const char* name,
+  Result<std::vector<Value>> all(Id group, const char* name,
                                  const std::vector<std::uint64_t>& sizes) const {
     const Source source = KA_TRY(find(group, name, stored_as<Value>(), sizes));
     std::vector<Value> values(sizes.front() * source.row_values);
@@ -60,17 +60,17 @@ class Checked {
   }
 
   /// A scalar text, and a list of texts.
-  Result<std::string> text(hid_t group, const char* name) const;
-  Result<std::vector<std::string>> texts(hid_t group, const char* name) const;
-  Result<std::string> text_attribute(hid_t object, const char* name) const;
-  Result<std::vector<std::string>> text_attributes(hid_t object, const char* name) const;
+  Result<std::string> text(Id group, const char* name) const;
+  Result<std::vector<std::string>> texts(Id group, const char* name) const;
+  Result<std::string> text_attribute(Id object, const char* name) const;
+  Result<std::vector<std::string>> text_attributes(Id object, const char* name) const;
   /// The files that a stream came from.
-  Result<std::vector<InputFacts>> inputs(hid_t group) const;
+  Result<std::vector<InputFacts>> inputs(Id group) const;
 
  private:
   struct Place;
-  Result<Place> place(hid_t group, const char* name) const;
-  Result<std::string> packed_texts(hid_t group, const char* name, std::uint64_t rank,
+  Result<Place> place(Id group, const char* name) const;
+  Result<std::string> packed_texts(Id group, const char* name, std::uint64_t rank,
                                    std::size_t& width) const;
   Failure other(const char* name, const std::string& expected, const std::string& found) const;
 

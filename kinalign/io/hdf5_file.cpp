@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/hdf5_file.h"
 
+#include <hdf5.h>
+
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 namespace kinalign::hdf5 {
+
+static_assert(std::is_same_v<Id, hid_t> && std::is_same_v<Size, hsize_t> &&
+              std::is_same_v<int, herr_t>);
 
 Handle text_type(std::size_t bytes) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);

@@ -2,13 +2,10 @@
 // HDF5's C API as this room uses it: handles that close themselves, failures as errors, and a
 // driver of ours below, so that every byte goes through core's files. A failed write is remembered
 // and told to HDF5 as done: HDF5 1.10 can't close a file that it could not write.
-// For the .cpp files of takes only: no other header includes this one.
 #pragma once
 
 #include "kinalign/core/error.h"
 #include "kinalign/core/files.h"
-
-#include <hdf5.h>
 
 #include <cstdint>
 #include <optional>
@@ -20,12 +17,16 @@
 
 namespace kinalign::hdf5 {
 
+// HDF5's own types, so that <hdf5.h> stays in .cpp files; hdf5_file.cpp holds them to it.
+using Id = std::int64_t;          // hid_t
+using Size = unsigned long long;  // hsize_t
+
 /// Owns one of HDF5's numbered things.
 class Handle {
  public:
-  using Close = herr_t (*)(hid_t);
+  using Close = int (*)(Id);
   Handle() = default;
-  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Id id, Close close) : id_(id), close_(close) {}
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle& operator=(Handle&& other) noexcept {
     std::swap(id_, other.id_);
@@ -36,12 +37,12 @@ class Handle {
   Handle& operator=(const Handle&) = delete;
   ~Handle() { reset(); }
 
-  hid_t id() const { return id_; }
+  Id id() const { return id_; }
   bool good() const { return id_ >= 0; }
   bool reset() { return !good() || close_(std::exchange(id_, -1)) >= 0; }
 
  private:
-  hid_t id_ = -1;
+  Id id_ = -1;
   Close close_ = nullptr;
 };
 
@@ -65,19 +66,19 @@ Failure failure(const Bytes& bytes, std::string expected);
 
 /// What a data set or an attribute holds.
 struct Shape {
-  hid_t type = -1;             // HDF5's
-  std::vector<hsize_t> sizes;  // none: a scalar
+  Id type = -1;             // HDF5's
+  std::vector<Size> sizes;  // none: a scalar
 };
 
 Handle text_type(std::size_t bytes);  // fixed, UTF-8, padded with NUL
-Handle space(const std::vector<hsize_t>& sizes);
-Handle create_group(hid_t parent, const std::string& name);
+Handle space(const std::vector<Size>& sizes);
+Handle create_group(Id parent, const std::string& name);
 /// Contiguous, with its place in the file but no bytes yet.
-Handle create_dataset(hid_t parent, const std::string& name, const Shape& shape);
+Handle create_dataset(Id parent, const std::string& name, const Shape& shape);
 
-bool put_attribute(hid_t object, const char* name, const Shape& shape, const void* value);
-bool put_text(hid_t object, const char* name, std::string_view text);
-bool put_texts(hid_t object, const char* name, const std::vector<std::string>& texts);
+bool put_attribute(Id object, const char* name, const Shape& shape, const void* value);
+bool put_text(Id object, const char* name, std::string_view text);
+bool put_texts(Id object, const char* name, const std::vector<std::string>& texts);
 
 /// Texts of one length, padded, one behind the other; at least one byte each.
 struct PackedTexts {

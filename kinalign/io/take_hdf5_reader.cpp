@@ -6,6 +6,8 @@
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_layout.h"
 
+#include <hdf5.h>
+
 #include <algorithm>
 #include <cmath>
 
