@@ -153,9 +153,8 @@ Result<int> run(AlignVerb& o, Call& call) {
   const std::string out = call.common.dry_run ? "" : call.common.out;
   const Recording recording =
       KA_TRY(open_recording(call.surroundings.files, manifest, base, progress));
-  const AlignmentReport report =
-      KA_TRY(align_to_file(call.surroundings.files, recording, manifest, out,
-                           call.common.force ? Overwrite::yes : Overwrite::no, progress));
+  const AlignmentReport report = KA_TRY(align_to_file(call.surroundings.files, recording, manifest,
+                                                      {out, call.common.overwrite()}, progress));
   call.console.print(summary(report, out, call.console));
   call.console.print_json(report_json(report));
   return 0;

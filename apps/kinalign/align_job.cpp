@@ -9,12 +9,13 @@
 namespace kinalign {
 
 Result<AlignmentReport> align_to_file(FileSystem& files, const Recording& recording,
-                                      const Manifest& manifest, const std::string& out,
-                                      Overwrite overwrite, const Progress& progress) {
+                                      const Manifest& manifest, const TakeTarget& target,
+                                      const Progress& progress) {
   std::optional<TakeWriter> writer;
   TakeSink sink;
   sink.begin = [&](const TakeHeader& header) -> Result<void> {
-    if (!out.empty()) writer.emplace(KA_TRY(TakeWriter::create(files, out, overwrite, header)));
+    if (target.path.empty()) return {};
+    writer.emplace(KA_TRY(TakeWriter::create(files, target.path, target.overwrite, header)));
     return {};
   };
   sink.rows = [&](const TakeSlab& slab) -> Result<void> {

@@ -12,9 +12,15 @@
 
 namespace kinalign {
 
-/// Aligns a recording and writes the take; `out` empty: writes nothing.
+/// Where a take is to go; without a path nowhere.
+struct TakeTarget {
+  std::string path;
+  Overwrite overwrite = Overwrite::no;
+};
+
+/// Aligns a recording and writes the take.
 Result<AlignmentReport> align_to_file(FileSystem& files, const Recording& recording,
-                                      const Manifest& manifest, const std::string& out,
-                                      Overwrite overwrite, const Progress& progress);
+                                      const Manifest& manifest, const TakeTarget& target,
+                                      const Progress& progress);
 
 }  // namespace kinalign

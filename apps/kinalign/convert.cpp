@@ -164,8 +164,7 @@ Result<void> convert_take(const Job& job) {
 Result<int> run(Convert& o, Call& call) {
   call.console.if_it_fails(
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
-  const Job job{call.surroundings.files, o.from.front(), o.to.front(),
-                call.common.force ? Overwrite::yes : Overwrite::no};
+  const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite()};
   if (KA_TRY(is_take(job.files, job.from))) {
     KA_TRY(convert_take(job));
   } else if (job.to.ends_with(".bvh")) {

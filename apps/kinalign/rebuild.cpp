@@ -134,7 +134,7 @@ Result<int> verify(const std::string& take, const Recording& recording, const Or
   FileSystem& files = call.surroundings.files;
   const Scratch scratch = KA_TRY(Scratch::make());
   const std::string again = scratch.name() + "/take.h5";
-  KA_TRY(align_to_file(files, recording, origin.parameters, again, Overwrite::no,
+  KA_TRY(align_to_file(files, recording, origin.parameters, {again, Overwrite::no},
                        call.console.progress()));
   const auto difference = KA_TRY(first_difference(files, take, again));
   const auto changed = changed_inputs(origin, recording);
@@ -169,9 +169,9 @@ Result<int> run(Rebuild& o, Call& call) {
   const Recording recording =
       KA_TRY(open_recording(files, origin.parameters, base, call.console.progress()));
   if (o.verify) return verify(take, recording, origin, call);
-  const AlignmentReport report = KA_TRY(
-      align_to_file(files, recording, origin.parameters, call.common.out,
-                    call.common.force ? Overwrite::yes : Overwrite::no, call.console.progress()));
+  const AlignmentReport report =
+      KA_TRY(align_to_file(files, recording, origin.parameters,
+                           {call.common.out, call.common.overwrite()}, call.console.progress()));
   call.console.print(summary(report, call.common.out, call.console));
   call.console.print_json(fmt::format("{{\"written\": true, \"frames\": {}}}", report.frames));
   return 0;

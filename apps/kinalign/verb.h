@@ -54,6 +54,8 @@ struct Common {
   std::string config;
   bool quiet = false, verbose = false;
   std::string color = "auto";
+
+  Overwrite overwrite() const { return force ? Overwrite::yes : Overwrite::no; }
 };
 
 /// Where an option's value comes from; a later one wins.
