@@ -46,24 +46,24 @@ NodeSamples samples_of(const Window<ImuSamples>& window, std::size_t node,
 /// The rows of one segment into a node's column.
 struct NodeColumn {
   std::size_t node, nodes;
+  const ImuContent& content;
 };
 
-void put_vectors(const std::vector<double>& values, const Segment& s, const ImuContent& content,
-                 const NodeColumn& column, ImuRows& out) {
+void put_vectors(const std::vector<double>& values, const Segment& s, const NodeColumn& column,
+                 ImuRows& out) {
   const std::size_t rows = s.row_end - s.row, channels = values.size() / rows;
   for (std::size_t r = 0; r < rows; ++r) {
     const std::size_t cell = (s.row + r) * column.nodes + column.node;
     const double* from = &values[r * channels];
-    if (content.acceleration) std::copy_n(from, 3, &out.acceleration[3 * cell]);
-    if (content.angular_velocity) {
-      std::copy_n(from + (content.acceleration ? 3 : 0), 3, &out.angular_velocity[3 * cell]);
+    if (column.content.acceleration) std::copy_n(from, 3, &out.acceleration[3 * cell]);
+    if (column.content.angular_velocity) {
+      std::copy_n(from + (column.content.acceleration ? 3 : 0), 3, &out.angular_velocity[3 * cell]);
     }
   }
 }
 
 void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
-                 const ResampleRule& rule, const ImuContent& content, const NodeColumn& column,
-                 ImuRows& out) {
+                 const ResampleRule& rule, const NodeColumn& column, ImuRows& out) {
   for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
     const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
     const auto stamps = std::span(samples.stamps).subspan(s.first, knots);
@@ -76,9 +76,9 @@ void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
       std::vector<double> bends(knots * channels), values(rows * channels);
       natural_spline(spline, bends);
       spline_at(spline, bends, at, values);
-      put_vectors(values, s, content, column, out);
+      put_vectors(values, s, column, out);
     }
-    if (content.orientation) {
+    if (column.content.orientation) {
       const auto turned = rotations_at(
           rule.curve, x, std::span(samples.orientation).subspan(4 * s.first, 4 * knots), at);
       for (std::size_t r = 0; r < rows; ++r) {
@@ -104,8 +104,8 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
   if (content_.acceleration) out.acceleration.assign(3 * n, 0.0);
   if (content_.angular_velocity) out.angular_velocity.assign(3 * n, 0.0);
   for (std::size_t node = 0; node < nodes; ++node) {
-    interpolate(samples_of(window_, node, content_, to_world), grid, rule_, content_,
-                NodeColumn{node, nodes}, out);
+    interpolate(samples_of(window_, node, content_, to_world), grid, rule_,
+                NodeColumn{node, nodes, content_}, out);
   }
   const Neighbours near = find_neighbours(stamps, grid);
   for (std::size_t r = 0; r < grid.size(); ++r) {
