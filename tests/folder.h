@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fresh folder for one test, removed with all it holds at the end.
+// A fresh folder for one test, removed with all it holds at the end. Its name has a blank: users'
+// do.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +13,15 @@
 
 namespace kinalign {
 
+inline std::string bytes_in(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 class FreshFolder {
  public:
   FreshFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "kinalign.XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "kinalign XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for the test");
     path_ = name;
   }
@@ -30,13 +36,13 @@ class FreshFolder {
   const std::string& path() const { return path_; }
 
   std::string write(std::string_view name, std::string_view bytes) const {
-    std::ofstream(*this / name, std::ios::binary) << bytes;
-    return *this / name;
+    const std::filesystem::path path = *this / name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path, std::ios::binary) << bytes;
+    return path.string();
   }
-  std::string read(std::string_view name) const {
-    std::ifstream file(*this / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string read(std::string_view name) const { return bytes_in(*this / name); }
+  bool empty() const { return std::filesystem::is_empty(path_); }
   std::vector<std::string> names() const {
     std::vector<std::string> all;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {

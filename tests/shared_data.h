@@ -3,11 +3,13 @@
 // `* doctest::skip(!shared_data())` and shows in the count.
 #pragma once
 
+#include "tests/folder.h"
+
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <string_view>
+
+namespace kinalign {
 
 inline std::string shared_path(std::string_view name) {
   return std::string(KINALIGN_SOURCE_DIR) + "/../shared/data/" + std::string(name);
@@ -15,11 +17,6 @@ inline std::string shared_path(std::string_view name) {
 
 inline bool shared_data() { return std::filesystem::is_directory(shared_path("bvh")); }
 
-inline std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+inline std::string shared_text(std::string_view name) { return bytes_in(shared_path(name)); }
 
-inline std::string shared_text(std::string_view name) { return text_of(shared_path(name)); }
+}  // namespace kinalign

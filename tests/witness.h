@@ -16,7 +16,15 @@ namespace kinalign {
 
 using Arrays = std::map<std::string, std::vector<double>>;
 
-/// Runs the script with Debian's Python. Throws, which fails the test, where it fails: NumPy and
+/// Runs a script of tests/witness with Debian's Python; its exit status.
+inline int run_witness(const std::string& script, const std::string& path) {
+  const std::string command = "OPENBLAS_NUM_THREADS=1 /usr/bin/python3 " KINALIGN_SOURCE_DIR
+                              "/tests/witness/" +
+                              script + " '" + path + "'";
+  return std::system(command.c_str());
+}
+
+/// Runs a script on arrays. Throws, which fails the test, where it fails: NumPy and
 /// SciPy stand in packages.txt.
 inline Arrays run_python(const std::string& script, const Arrays& given) {
   const FreshFolder folder;
@@ -24,10 +32,7 @@ inline Arrays run_python(const std::string& script, const Arrays& given) {
     folder.write(name + ".in",
                  {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
   }
-  const std::string command = "OPENBLAS_NUM_THREADS=1 /usr/bin/python3 " KINALIGN_SOURCE_DIR
-                              "/tests/witness/" +
-                              script + " " + folder.path();
-  if (std::system(command.c_str()) != 0) throw std::runtime_error(script + " has failed");
+  if (run_witness(script, folder.path()) != 0) throw std::runtime_error(script + " has failed");
   Arrays found;
   for (const auto& name : folder.names()) {
     if (!name.ends_with(".out")) continue;

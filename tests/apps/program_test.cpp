@@ -4,40 +4,15 @@
 #include "apps/kinalign/help.h"
 #include "apps/kinalign/verbs.h"
 #include "tests/apps/fake_verb.h"
+#include "tests/folder.h"
 
 #include <doctest/doctest.h>
 
 #include <chrono>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 using namespace kinalign;
 
 namespace {
-
-/// A folder for one test, with files of settings in it.
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "kinalign XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { std::filesystem::remove_all(path_); }
-
-  std::string put(const std::string& name, const std::string& text) const {
-    const auto path = path_ / name;
-    std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path) << text;
-    return path.string();
-  }
-  std::string path(const std::string& name = "") const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A job that prints what is in force.
 Result<int> show(Mix& o, Call& call) {
@@ -46,8 +21,8 @@ Result<int> show(Mix& o, Call& call) {
   return 0;
 }
 
-Machine machine_in(const Folder& folder) {
-  return {.variables = {{"HOME", folder.path()}}, .folder = folder.path("project/deep")};
+Machine machine_in(const FreshFolder& folder) {
+  return {.variables = {{"HOME", folder.path()}}, .folder = folder / "project/deep"};
 }
 
 }  // namespace
@@ -84,13 +59,13 @@ TEST_CASE("what only a verb's own check can see is wrong use too") {
 }
 
 TEST_CASE("a flag wins over the environment, that over the project, that over the user") {
-  const Folder folder;
+  const FreshFolder folder;
   Machine machine = machine_in(folder);
   const std::vector<std::string> words{"mix", "a"};
   CHECK(machine.run(show, {"mix", "a", "--jobs=1"}).out == "50 3 1");
-  folder.put(".config/kinalign/config.toml", "jobs = 2\n[mix]\ngap_ms = 10\nrows = 2\n");
+  folder.write(".config/kinalign/config.toml", "jobs = 2\n[mix]\ngap_ms = 10\nrows = 2\n");
   CHECK(machine.run(show, words).out == "10 2 2");
-  folder.put("project/kinalign.toml", "jobs = 3\n[mix]\ngap_ms = 20\n");
+  folder.write("project/kinalign.toml", "jobs = 3\n[mix]\ngap_ms = 20\n");
   CHECK(machine.run(show, words).out == "20 2 3");
   machine.variables["KINALIGN_GAP_MS"] = "30";
   machine.variables["KINALIGN_JOBS"] = "4";
@@ -99,9 +74,9 @@ TEST_CASE("a flag wins over the environment, that over the project, that over th
 }
 
 TEST_CASE("--config takes the place of the project's file") {
-  const Folder folder;
-  folder.put("project/kinalign.toml", "[mix]\nrows = 4\n");
-  const std::string other = folder.put("other.toml", "[mix]\nrows = 6\n");
+  const FreshFolder folder;
+  folder.write("project/kinalign.toml", "[mix]\nrows = 4\n");
+  const std::string other = folder.write("other.toml", "[mix]\nrows = 6\n");
   const Machine machine = machine_in(folder);
   CHECK(machine.run(show, {"mix", "a", "--jobs=1", "--config", other}).out == "50 6 1");
   const Outcome missing = machine.run(show, {"mix", "a", "--config=/no/such"});
@@ -110,11 +85,11 @@ TEST_CASE("--config takes the place of the project's file") {
 }
 
 TEST_CASE("a fault in a file of settings is told with its line") {
-  const Folder folder;
+  const FreshFolder folder;
   const Machine machine = machine_in(folder);
-  const std::string path = folder.path("project/kinalign.toml");
+  const std::string path = folder / "project/kinalign.toml";
   const auto message = [&](const std::string& text) {
-    folder.put("project/kinalign.toml", text);
+    folder.write("project/kinalign.toml", text);
     const std::string err = machine.run(show, {"mix", "a"}).err;
     return err.substr(0, err.find('\n'));
   };
@@ -181,7 +156,7 @@ TEST_CASE("bash completes verbs, flags and choices of the program as built") {
       "[ \"$(ask kinalign conf)\" = config ] && [ \"$(ask kinalign config --js)\" = --json ] &&\n"
       "[ \"$(ask kinalign config --color a)\" = 'auto always' ] &&\n"
       "[ \"$(ask kinalign completion z)\" = zsh ]";
-  const Folder folder;
-  const std::string file = folder.put("ask.sh", script);
+  const FreshFolder folder;
+  const std::string file = folder.write("ask.sh", script);
   CHECK(std::system(("bash '" + file + "'").c_str()) == 0);
 }

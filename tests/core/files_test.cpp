@@ -1,73 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/core/files.h"
 
+#include "tests/faulty_files.h"
 #include "tests/folder.h"
 
 #include <doctest/doctest.h>
-#include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 
 using namespace kinalign;
 
 namespace {
-
-/// The machine's files, but for one call that fails: the k-th, or every nameless open.
-class FaultyFiles final : public FileSystem {
- public:
-  int fail_at = 0;              // from 1; 0: none
-  bool nameless = true;         // O_TMPFILE is there
-  std::size_t most = SIZE_MAX;  // bytes a write takes
-  int calls = 0;
-
-  int open(const char* path, int flags, mode_t mode) override {
-    if (fails()) return -1;
-    if (!nameless && (flags & O_TMPFILE) == O_TMPFILE) {
-      errno = EOPNOTSUPP;
-      return -1;
-    }
-    return files_.open(path, flags, mode);
-  }
-  ssize_t read(int fd, void* data, std::size_t size) override {
-    return fails() ? -1 : files_.read(fd, data, size);
-  }
-  ssize_t write(int fd, const void* data, std::size_t size) override {
-    return fails() ? -1 : files_.write(fd, data, std::min(size, most));
-  }
-  ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override {
-    return fails() ? -1 : files_.read_at(fd, data, size, at);
-  }
-  ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
-    return fails() ? -1 : files_.write_at(fd, data, std::min(size, most), at);
-  }
-  int allocate(int fd, off_t size) override { return fails() ? -1 : files_.allocate(fd, size); }
-  int sync(int fd) override { return fails() ? -1 : files_.sync(fd); }
-  int link(const char* from, const char* to) override {
-    return fails() ? -1 : files_.link(from, to);
-  }
-  int rename(const char* from, const char* to) override {
-    return fails() ? -1 : files_.rename(from, to);
-  }
-  int remove(const char* path) override { return files_.remove(path); }
-  int close(int fd) override {
-    const bool failing = fails();
-    files_.close(fd);  // as Linux does it: closed, whatever it says
-    return failing ? -1 : 0;
-  }
-
- private:
-  bool fails() {
-    if (++calls != fail_at) return false;
-    errno = ENOSPC;
-    return true;
-  }
-  PosixFiles files_;
-};
 
 Result<void> write_file(FileSystem& files, const std::string& path, Overwrite overwrite) {
   OutputFile file = KA_TRY(OutputFile::create(files, path, overwrite));

@@ -26,7 +26,7 @@ struct Place {
 /// fk_reference.csv: file, frame, joint_index, joint, x, y, z in the file's own units.
 std::map<std::string, std::vector<Place>> reference(const std::string& path) {
   std::map<std::string, std::vector<Place>> places;
-  std::istringstream lines(text_of(path));
+  std::istringstream lines(bytes_in(path));
   std::string line;
   std::getline(lines, line);
   while (std::getline(lines, line)) {
@@ -47,7 +47,7 @@ void compare(const std::string& folder, const std::string& reference_file) {
     if (!std::filesystem::exists(path)) path = folder + "edge/" + name;
     BvhOptions own_units;
     own_units.metres_per_unit = 1.0;
-    const auto file = read_bvh(text_of(path), name, own_units);
+    const auto file = read_bvh(bytes_in(path), name, own_units);
     REQUIRE(file);
     const std::size_t joints = file->clip.skeleton.joints();
     std::vector<double> global(file->clip.frames.size() * joints * 3);
@@ -85,7 +85,7 @@ TEST_CASE("every real BVH reads, writes and reads again to the same numbers" *
   for (const auto& entry : std::filesystem::recursive_directory_iterator(shared_path(""))) {
     if (entry.path().extension() != ".bvh") continue;
     CAPTURE(entry.path().filename().string());
-    const auto first = read_bvh(text_of(entry.path()), "first", {});
+    const auto first = read_bvh(bytes_in(entry.path()), "first", {});
     REQUIRE(first);
     std::string text;
     const auto sink = [&text](std::string_view piece) -> Result<void> {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/take_hdf5.h"
 
+#include "tests/faulty_files.h"
+#include "tests/folder.h"
 #include "tests/io/take_samples.h"
+#include "tests/witness.h"
 
 #include "kinalign/io/guarded.h"
 #include "kinalign/io/parameters_json.h"
@@ -54,7 +57,7 @@ Result<std::string> read_through(const std::string& path) {
 }  // namespace
 
 TEST_CASE("a take that was written reads the same") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   for (const std::size_t frames : {0U, 1U, 5U, 9000U}) {
     for (const bool store_double : {false, true}) {
       CAPTURE(frames);
@@ -88,7 +91,7 @@ TEST_CASE("a take that was written reads the same") {
 }
 
 TEST_CASE("a take can be written in slabs of any size") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   const Take whole = sample_take(100);
   write_or_fail(folder / "whole.h5", whole);
   PosixFiles files;
@@ -126,27 +129,27 @@ TEST_CASE("a take can be written in slabs of any size") {
     REQUIRE(writer->append(slab));
   }
   REQUIRE(writer->finish(whole.report));
-  CHECK(bytes_in(folder / "slabs.h5") == bytes_in(folder / "whole.h5"));
+  CHECK(folder.read("slabs.h5") == folder.read("whole.h5"));
 }
 
 TEST_CASE("the same take gives the same bytes, also a second later") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   write_or_fail(folder / "a.h5", sample_take(50));
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 counts seconds
   write_or_fail(folder / "b.h5", sample_take(50));
-  CHECK(bytes_in(folder / "a.h5") == bytes_in(folder / "b.h5"));
+  CHECK(folder.read("a.h5") == folder.read("b.h5"));
 }
 
 TEST_CASE("h5py sees the names, shapes, types and values of a take") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   write_or_fail(folder / "take.h5", sample_take(50));
   CHECK(run_witness("take_h5py.py", folder / "take.h5") == 0);
 }
 
 TEST_CASE("a take holds no path of the machine that made it") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   write_or_fail(folder / "take.h5", sample_take(5));
-  const std::string bytes = bytes_in(folder / "take.h5");
+  const std::string bytes = folder.read("take.h5");
   CHECK(bytes.find("someone") == std::string::npos);
   CHECK(bytes.find("walk.bvh") != std::string::npos);
 }
@@ -154,11 +157,13 @@ TEST_CASE("a take holds no path of the machine that made it") {
 TEST_CASE("whichever file call fails, no take is left and the error names it") {
   const Take take = sample_take(20);
   bool went_through = false;
-  for (int call = 0; !went_through; ++call) {
+  for (int call = 1; !went_through; ++call) {
     CAPTURE(call);
     REQUIRE(call < 500);
-    const ScratchFolder folder;
-    FailingFiles files(call, EIO);
+    const FreshFolder folder;
+    FaultyFiles files;
+    files.fail_at = call;
+    files.code = EIO;
     const auto done = write(files, folder / "take.h5", take);
     went_through = !files.failed();
     if (done) {
@@ -173,10 +178,11 @@ TEST_CASE("whichever file call fails, no take is left and the error names it") {
 }
 
 TEST_CASE("a full disk is said before the work, with the room that is needed") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   bool seen = false;
-  for (int call = 0; call < 60 && !seen; ++call) {
-    FailingFiles files(call, ENOSPC);
+  for (int call = 1; call < 60 && !seen; ++call) {
+    FaultyFiles files;
+    files.fail_at = call;
     const auto done = write(files, folder / "take.h5", sample_take(20));
     if (done) break;
     CHECK(done.error().found == "No space left on device");
@@ -186,7 +192,7 @@ TEST_CASE("a full disk is said before the work, with the room that is needed") {
 }
 
 TEST_CASE("a file size limit is an ordinary error") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   const auto done = run_guarded({}, {"", 0, "a child", ""}, [&]() -> Result<std::string> {
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit small{10'000, 10'000};
@@ -201,7 +207,7 @@ TEST_CASE("a file size limit is an ordinary error") {
 }
 
 TEST_CASE("a take is not written over another without being told to") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   write_or_fail(folder / "take.h5", sample_take(5));
   PosixFiles files;
   const auto again = write(files, folder / "take.h5", sample_take(6));
@@ -211,7 +217,7 @@ TEST_CASE("a take is not written over another without being told to") {
 }
 
 TEST_CASE("streams that can't be told apart are refused") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   PosixFiles files;
   Take take = sample_take(5);
   take.header.groups[1].name = "mocap";
@@ -226,10 +232,10 @@ TEST_CASE("streams that can't be told apart are refused") {
 }
 
 TEST_CASE("what is no take is refused with a reason") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   for (const std::string& bytes :
        {std::string(), std::string("rubbish"), std::string(5000, '\0')}) {
-    write_bytes(folder / "x.h5", bytes);
+    folder.write("x.h5", bytes);
     const auto read = read_through(folder / "x.h5");
     REQUIRE_FALSE(read);
     CHECK(read.error().file == folder / "x.h5");
@@ -240,7 +246,7 @@ TEST_CASE("what is no take is refused with a reason") {
 namespace {
 
 /// Reads each damaged copy in a child; whatever comes back is a take or an error.
-void read_damaged(const std::string& path, const std::vector<std::string>& copies) {
+void read_damaged(const FreshFolder& folder, const std::vector<std::string>& copies) {
   int errors = 0;
   int crashes = 0;
   GuardLimits limits;
@@ -248,7 +254,7 @@ void read_damaged(const std::string& path, const std::vector<std::string>& copie
   limits.wall_seconds = 20;
   for (std::size_t i = 0; i < copies.size(); ++i) {
     CAPTURE(i);
-    write_bytes(path, copies[i]);
+    const std::string path = folder.write("damaged.h5", copies[i]);
     const auto read = run_guarded(limits, {path, 0, "a take that HDF5 can read", ""},
                                   [&] { return read_through(path); });
     if (read) continue;
@@ -262,20 +268,20 @@ void read_damaged(const std::string& path, const std::vector<std::string>& copie
 }  // namespace
 
 TEST_CASE("a take cut short anywhere is an ordinary error or reads") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   write_or_fail(folder / "take.h5", sample_take(20));
-  const std::string whole = bytes_in(folder / "take.h5");
+  const std::string whole = folder.read("take.h5");
   std::vector<std::string> copies;
   for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 150) {
     copies.push_back(whole.substr(0, size));
   }
-  read_damaged(folder / "cut.h5", copies);
+  read_damaged(folder, copies);
 }
 
 TEST_CASE("a take with bits flipped is an ordinary error or reads") {
-  const ScratchFolder folder;
+  const FreshFolder folder;
   write_or_fail(folder / "take.h5", sample_take(3));
-  const std::string whole = bytes_in(folder / "take.h5");
+  const std::string whole = folder.read("take.h5");
   std::vector<std::string> copies;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     std::mt19937_64 random(seed);
@@ -285,5 +291,5 @@ TEST_CASE("a take with bits flipped is an ordinary error or reads") {
       byte = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << random() % 8));
     }
   }
-  read_damaged(folder / "flipped.h5", copies);
+  read_damaged(folder, copies);
 }

@@ -1,97 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes of random contents, and a file system that fails, for the tests of this room.
+// Takes of random contents.
 #pragma once
 
-#include "kinalign/core/files.h"
 #include "kinalign/take/take.h"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <functional>
+#include <cstddef>
+#include <cstdint>
 #include <random>
 #include <string>
+#include <vector>
 
 namespace kinalign {
-
-/// A folder that goes when the test ends.
-struct ScratchFolder {
-  ScratchFolder() {
-    std::string form = (std::filesystem::temp_directory_path() / "kinalign-XXXXXX").string();
-    path = ::mkdtemp(form.data());
-  }
-  ~ScratchFolder() { std::filesystem::remove_all(path); }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::string operator/(const std::string& name) const { return (path / name).string(); }
-  bool empty() const { return std::filesystem::is_empty(path); }
-
-  std::filesystem::path path;
-};
-
-inline std::string bytes_in(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-inline void write_bytes(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
-/// Runs a witness of tests/witness with Debian's Python; its exit status.
-inline int run_witness(const std::string& script, const std::string& arguments) {
-  const std::string command =
-      "/usr/bin/python3 " KINALIGN_SOURCE_DIR "/tests/witness/" + script + " " + arguments;
-  return std::system(command.c_str());
-}
-
-/// Does as the machine's, until the call number `fail_at` (from 0), which fails with `code`.
-class FailingFiles final : public FileSystem {
- public:
-  FailingFiles(int fail_at, int code) : left_(fail_at), code_(code) {}
-  bool failed() const { return left_ < 0; }
-
-  int open(const char* path, int flags, mode_t mode) override {
-    return fails() ? -1 : real_.open(path, flags, mode);
-  }
-  ssize_t read(int fd, void* data, std::size_t size) override {
-    return fails() ? -1 : real_.read(fd, data, size);
-  }
-  ssize_t write(int fd, const void* data, std::size_t size) override {
-    return fails() ? -1 : real_.write(fd, data, size);
-  }
-  ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override {
-    return fails() ? -1 : real_.read_at(fd, data, size, at);
-  }
-  ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
-    return fails() ? -1 : real_.write_at(fd, data, size, at);
-  }
-  int allocate(int fd, off_t size) override { return fails() ? -1 : real_.allocate(fd, size); }
-  int sync(int fd) override { return fails() ? -1 : real_.sync(fd); }
-  int link(const char* from, const char* to) override {
-    return fails() ? -1 : real_.link(from, to);
-  }
-  int rename(const char* from, const char* to) override {
-    return fails() ? -1 : real_.rename(from, to);
-  }
-  int remove(const char* path) override { return real_.remove(path); }
-  int close(int fd) override { return real_.close(fd); }
-
- private:
-  bool fails() {
-    if (left_-- != 0) return false;
-    errno = code_;
-    return true;
-  }
-
-  PosixFiles real_;
-  int left_;
-  int code_;
-};
 
 /// A take of three streams; numbers are floats, so that storing them loses nothing.
 inline Take sample_take(std::size_t frames, std::uint64_t seed = 1) {

@@ -141,7 +141,7 @@ TEST_CASE("KinectMultiTrack: the second Kinect onto the first by the server's st
           doctest::skip(!shared_data())) {
   const FreshFolder scratch;
   const std::string unpack =
-      "/usr/bin/python3 " + shared_path("unpack.py") + " multitrack " + scratch.path();
+      "/usr/bin/python3 " + shared_path("unpack.py") + " multitrack '" + scratch.path() + "'";
   REQUIRE(std::system(unpack.c_str()) == 0);
   struct Row {
     std::string file;

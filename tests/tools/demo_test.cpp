@@ -1,42 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/folder.h"
 #include "tools/demo/devices.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <numbers>
 
 using namespace kinalign;
 
 namespace {
 
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "kinalign demo XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { std::filesystem::remove_all(path_); }
-
-  std::string text(const std::string& name) const {
-    PosixFiles files;
-    auto text = read_whole(files, (path_ / name).string(), std::size_t{1} << 30);
-    REQUIRE(text);
-    return *std::move(text);
-  }
-  std::string path() const { return path_.string() + "/"; }
-
- private:
-  std::filesystem::path path_;
-};
-
-void write(const Folder& folder, std::uint64_t seed) {
+void write(const FreshFolder& folder, std::uint64_t seed) {
   PosixFiles files;
-  const DemoTake take{files, folder.path(), 6.0, seed, "S01", "wave"};
+  const DemoTake take{files, folder.path() + "/", 6.0, seed, "S01", "wave"};
   const DemoMotion motion(demo_body(1.0), seed);
   REQUIRE(write_demo_mocap(take, motion));
   REQUIRE(write_demo_kinect(take, motion));
@@ -87,23 +64,23 @@ TEST_CASE("the demo's motion has no jump in position, speed or acceleration") {
 }
 
 TEST_CASE("the same seed gives the same bytes, another one others") {
-  const Folder a;
-  const Folder b;
-  const Folder c;
+  const FreshFolder a;
+  const FreshFolder b;
+  const FreshFolder c;
   write(a, 3);
   write(b, 3);
   write(c, 4);
   for (const char* name : {"mocap.bvh", "kinect.csv", "imu_waist.csv", "recording.toml"}) {
     CAPTURE(name);
-    CHECK((a.text(name) == b.text(name)));
-    CHECK((a.text(name) != c.text(name)));
+    CHECK((a.read(name) == b.read(name)));
+    CHECK((a.read(name) != c.read(name)));
   }
 }
 
 TEST_CASE("an inertial node at rest reads gravity upwards and no turning") {
-  const Folder folder;
+  const FreshFolder folder;
   write(folder, 3);
-  const std::string text = folder.text("imu_waist.csv");
+  const std::string text = folder.read("imu_waist.csv");
   std::size_t at = text.find('\n') + 1;  // the first sample: still in T-pose
   std::vector<double> row;
   for (const std::size_t end = text.find('\n', at); at < end;) {
