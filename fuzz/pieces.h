@@ -2,51 +2,17 @@
 // The law of every reader: rows do not depend on where the file is cut into pieces.
 #pragma once
 
-#include "kinalign/io/reader.h"
+#include "tests/pieces.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
-#include <memory>
-#include <string>
 #include <string_view>
 
 namespace kinalign {
 
 inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
-}
-
-template <class ReaderType>
-struct Outcome {
-  typename ReaderType::Frames rows;
-  bool failed = false;
-  std::string error;
-};
-
-template <class ReaderType>
-Outcome<ReaderType> outcome(std::unique_ptr<ReaderType> reader, std::string_view text,
-                            std::size_t piece) {
-  Outcome<ReaderType> out;
-  Result<void> result;
-  for (std::size_t at = 0; at < text.size() && result; at += piece) {
-    result = reader->feed(text.substr(at, piece), out.rows);
-  }
-  if (result) result = reader->finish(out.rows);
-  out.failed = !result;
-  if (!result) out.error = to_string(result.error());
-  if (result && reader->header() == nullptr) std::abort();  // a good file has a head
-  return out;
-}
-
-inline bool same_rows(const PointFrames& a, const PointFrames& b) {
-  return a.stamps == b.stamps && a.positions == b.positions && a.state == b.state;
-}
-
-inline bool same_rows(const ImuSamples& a, const ImuSamples& b) {
-  return a.stamps == b.stamps && a.orientation == b.orientation &&
-         a.acceleration == b.acceleration && a.angular_velocity == b.angular_velocity &&
-         a.valid == b.valid;
 }
 
 /// Numbers that a reader lets through can be computed with.
@@ -67,9 +33,10 @@ inline bool sound(const ImuSamples& rows) {
 template <class MakeReader>
 void check_pieces(MakeReader make, std::string_view text) {
   const std::size_t piece = text.empty() ? 1 : 1 + static_cast<unsigned char>(text.back()) % 61;
-  const auto whole = outcome(make(), text, std::max<std::size_t>(text.size(), 1));
-  const auto cut = outcome(make(), text, piece);
-  if (whole.failed != cut.failed || whole.error != cut.error) std::abort();
+  const auto whole = read_all(make(), text);
+  const auto cut = read_in_pieces(make(), text, piece);
+  if (whole.error != cut.error) std::abort();
+  if (whole.error.empty() && !whole.has_header) std::abort();  // a good file has a head
   if (!same_rows(whole.rows, cut.rows) || !sound(whole.rows)) std::abort();
 }
 
