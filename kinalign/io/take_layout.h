@@ -76,9 +76,6 @@ Result<void> for_each_array(Rows& rows, Use&& use) {
   return use("time_interval_ns", rows.distance.time_interval_ns);
 }
 
-/// Puts the rows of `slab` behind those of `all`, which has the same groups.
-void append_rows(TakeSlab& all, const TakeSlab& slab);
-
 /// The bytes of an array as they lie in memory, which is how files hold them.
 template <class Value>
 std::string_view bytes_of(std::span<const Value> values) {

@@ -84,6 +84,9 @@ struct TakeSlab {
   std::vector<std::variant<ClipRows, PointRows, ImuRows>> rows;
 };
 
+/// Puts the rows of `slab` behind those of `all`, which has the same groups or, still empty, none.
+void append_rows(TakeSlab& all, const TakeSlab& slab);
+
 /// A whole take in memory.
 struct Take {
   TakeHeader header;
