@@ -182,6 +182,20 @@ Result<void> check_roots(const TakeHeader& header) {
   return {};
 }
 
+Result<void> check_mountings(const TakeHeader& header, const Manifest& manifest) {
+  for (const TakeGroup& group : header.groups) {
+    const auto* nodes = std::get_if<ImuGroup>(&group.kind);
+    for (const auto& [worn, rotation] : options_of(manifest, group.name).mounting) {
+      if (nodes == nullptr || std::find(nodes->node_names.begin(), nodes->node_names.end(), worn) ==
+                                  nodes->node_names.end()) {
+        return Failure(
+            Error{"", 0, "a node of '" + group.name + "' under mounting", "'" + worn + "'"});
+      }
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {
@@ -203,6 +217,7 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   KA_TRY(find_span(recording, plan));
   KA_TRY(make_groups(recording, manifest, plan));
   KA_TRY(check_roots(plan.header));
+  KA_TRY(check_mountings(plan.header, manifest));
   plan.header.subject = recording.subject;
   plan.header.action = recording.action;
   plan.header.parameters = manifest;

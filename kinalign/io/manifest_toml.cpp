@@ -116,6 +116,13 @@ class ManifestReader {
               Error{"", 0, entry.key + " as " + wanted, std::to_string(out.size()) + " numbers"});
   }
 
+  Result<std::vector<double>> rotation(const Entry& entry) const {
+    auto out = KA_TRY(numbers(entry, 4));
+    auto checked = check_rotation(entry.key, out);
+    if (!checked) return at(*entry.value, std::move(checked).error());
+    return out;
+  }
+
   static std::optional<OptionValue> option_value(const toml::node& node) {
     if (const auto* truth = node.as_boolean()) return truth->get();
     if (const auto* whole = node.as_integer()) return whole->get();
@@ -180,8 +187,13 @@ class ManifestReader {
         KA_TRY(read_files(entry, out.files));
       } else if (entry.key == "select") {
         out.select = KA_TRY(texts(entry));
+      } else if (entry.key == "mounting") {
+        for (const Entry& node : in_file_order(KA_TRY(table(entry)))) {
+          out.mounting[node.key] = KA_TRY(rotation(node));
+        }
       } else {
-        KA_TRY(read_option(entry, fields, "stream." + stream.key, {"file", "files", "select"}));
+        KA_TRY(read_option(entry, fields, "stream." + stream.key,
+                           {"file", "files", "select", "mounting"}));
       }
     }
     if (!out.files.empty()) return {};
@@ -198,7 +210,7 @@ class ManifestReader {
     const Fields fields = describe(out);
     for (const Entry& entry : in_file_order(KA_TRY(table(space)))) {
       if (entry.key == "rotation") {
-        out.rotation = KA_TRY(numbers(entry, 4));
+        out.rotation = KA_TRY(rotation(entry));
       } else if (entry.key == "translation") {
         out.translation = KA_TRY(numbers(entry, 3));
       } else if (entry.key == "joints") {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -113,6 +114,17 @@ Result<void> assign(const Field& field, const OptionValue& value) {
   const Kind kind = std::visit(Assigner{field, value}, field.value);
   if (kind.fits) return {};
   return Failure(Error{"", 0, wanted(field, kind.name), written(value)});
+}
+
+Result<void> check_rotation(const std::string& name, std::span<const double> numbers) {
+  const std::string expected = name + " as w,x,y,z of a length from 0.5 to 2";
+  if (numbers.size() != 4) {
+    return Failure(Error{"", 0, expected, fmt::format("{} numbers", numbers.size())});
+  }
+  const double length =
+      std::sqrt(std::inner_product(numbers.begin(), numbers.end(), numbers.begin(), 0.0));
+  if (length >= 0.5 && length <= 2.0) return {};
+  return Failure(Error{"", 0, expected, fmt::format("a length of {:.6g}", length)});
 }
 
 const Field* find_field(const Fields& fields, std::string_view name) {

@@ -35,18 +35,13 @@ Json fields_to_json(const Fields& fields) {
   return out;
 }
 
-Json map_to_json(const std::map<std::string, std::string>& map) {
-  Json out = Json::object();
-  for (const auto& [key, value] : map) out[key] = value;
-  return out;
-}
-
 Json stream_to_json(StreamOptions stream) {
   Json out = {{"name", stream.name}, {"files", Json::array()}};
   for (const StreamFile& file : stream.files) {
     out["files"].push_back({{"path", file.path}, {"node", file.node}});
   }
-  out["select"] = map_to_json(stream.select);
+  out["select"] = stream.select;
+  out["mounting"] = stream.mounting;
   out.update(fields_to_json(describe(stream)));
   return out;
 }
@@ -55,7 +50,7 @@ Json space_to_json(SpaceOptions space) {
   Json out = fields_to_json(describe(space));
   out["rotation"] = space.rotation;
   out["translation"] = space.translation;
-  out["joints"] = map_to_json(space.joints);
+  out["joints"] = space.joints;
   return out;
 }
 
@@ -94,11 +89,32 @@ Result<void> map_from(const Json& json, const std::string& at,
   return {};
 }
 
-Result<void> numbers_from(const Json& json, const std::string& at, std::vector<double>& to) {
+Result<std::vector<double>> numbers_from(const Json& json, const std::string& at) {
   if (!json.is_array()) return wrong(at, "a list of numbers", json);
+  std::vector<double> out;
   for (const Json& number : json) {
     if (!number.is_number()) return wrong(at, "a list of numbers", number);
-    to.push_back(number.get<double>());
+    out.push_back(number.get<double>());
+  }
+  return out;
+}
+
+Result<std::vector<double>> rotation_from(const Json& json, const std::string& at) {
+  auto out = KA_TRY(numbers_from(json, at));
+  KA_TRY(check_rotation(at, out));
+  return out;
+}
+
+Result<std::vector<double>> translation_from(const Json& json, const std::string& at) {
+  auto out = KA_TRY(numbers_from(json, at));
+  if (out.size() == 3) return out;
+  return Failure(Error{"", 0, at + " as 3 numbers", std::to_string(out.size()) + " numbers"});
+}
+
+Result<void> mounting_from(const Json& json, const std::string& at, StreamOptions& to) {
+  if (!json.is_object()) return wrong(at, "an object", json);
+  for (const auto& [node, rotation] : json.items()) {
+    to.mounting[node] = KA_TRY(rotation_from(rotation, at + "." + node));
   }
   return {};
 }
@@ -148,6 +164,8 @@ Result<StreamOptions> stream_from(const Json& json, const std::string& at) {
       KA_TRY(files_from(value, here, out.files));
     } else if (key == "select") {
       KA_TRY(map_from(value, here, out.select));
+    } else if (key == "mounting") {
+      KA_TRY(mounting_from(value, here, out));
     } else {
       KA_TRY(field_from(value, here, fields, key));
     }
@@ -161,10 +179,12 @@ Result<SpaceOptions> space_from(const Json& json, const std::string& at) {
   const Fields fields = describe(out);
   for (const auto& [key, value] : json.items()) {
     const std::string here = at + "." + key;
+    const bool given = key == "rotation" || key == "translation";
+    if (given && value == Json::array()) continue;  // nothing is
     if (key == "rotation") {
-      KA_TRY(numbers_from(value, here, out.rotation));
+      out.rotation = KA_TRY(rotation_from(value, here));
     } else if (key == "translation") {
-      KA_TRY(numbers_from(value, here, out.translation));
+      out.translation = KA_TRY(translation_from(value, here));
     } else if (key == "joints") {
       KA_TRY(map_from(value, here, out.joints));
     } else {

@@ -233,46 +233,6 @@ TEST_CASE("a given transform is applied as it is") {
   }
 }
 
-TEST_CASE("nodes come into the waist's space and their gravity cancels") {
-  const auto turn = [](std::size_t s, double t) {
-    return Quat(Eigen::AngleAxisd(0.4 * t, Vec3::UnitY()) *
-                Eigen::AngleAxisd(0.3 * static_cast<double>(s) * std::sin(t), Vec3::UnitX()));
-  };
-  Recording recording;
-  recording.streams.push_back(recorded("optical", points(joints, every(10 * ms, 500), wander)));
-  const auto jitter = [](std::int64_t start) { return every(66 * ms, 75, start); };
-  const auto one = [&](std::size_t s, const std::string& name) {
-    return recorded("imu", nodes({name}, jitter(static_cast<std::int64_t>(s) * 7 * ms),
-                                 [&, s](std::size_t, double t) { return turn(s, t); }));
-  };
-  recording.streams.push_back(one(0, "waist"));
-  recording.streams.push_back(one(1, "wrist_left"));
-  Manifest manifest;
-  manifest.streams.push_back({.name = "imu",
-                              .files = {},
-                              .layout = {},
-                              .select = {},
-                              .up = {},
-                              .start_ns = {},
-                              .end_ns = {},
-                              .interval_ms = {},
-                              .mounting = {},
-                              .root_node = "waist"});
-  const auto take = align(recording, manifest);
-  REQUIRE(take);
-  REQUIRE(take->header.groups.size() == 2);
-  const auto& imu = std::get<ImuRows>(take->all.rows[1]);
-  for (std::size_t r = 30; r + 30 < take->all.stamps.size(); ++r) {
-    const double t = 1e-9 * static_cast<double>(to_ns(take->all.stamps[r]));
-    CHECK(imu.valid[2 * r] == 1);
-    CHECK(quat(imu.orientation, 2 * r).angularDistance(turn(0, t)) < 1e-5);
-    CHECK(quat(imu.orientation, 2 * r + 1).angularDistance(turn(0, t).conjugate() * turn(1, t)) <
-          1e-5);
-    CHECK((vec3(std::span(imu.acceleration), 2 * r) - Vec3(0, 9.81, 0)).norm() < 1e-9);
-    CHECK(vec3(std::span(imu.acceleration), 2 * r + 1).norm() < 1e-9);
-  }
-}
-
 TEST_CASE("a take of many slabs is the same as one computed at once") {
   // 6000 rows are three slabs: their seams must not show.
   const auto take = align(two(points(joints, every(10 * ms, 6000), wander),

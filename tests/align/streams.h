@@ -66,7 +66,4 @@ inline ImuStream nodes(const std::vector<std::string>& names, const std::vector<
   return out;
 }
 
-/// "left: no" as one text.
-inline std::string fault(const Error& error) { return to_string(error); }
-
 }  // namespace kinalign::test

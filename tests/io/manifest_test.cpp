@@ -37,6 +37,8 @@ select = { "Skeleton#" = "0" }
 root_node = "waist"
 files = { wrist_left = "wl.csv", waist = "w.csv" }
 interval_ms = 3.5
+[stream.imu.mounting]
+waist = [0.5, -0.5, 0.5, 0.5]
 [space.kinect]
 method = "given"
 joints = { SpineBase = "Hips" }
@@ -58,6 +60,8 @@ translation = [0, 0.5, -2]
   const StreamOptions& imu = manifest->streams[2];
   CHECK(imu.root_node == "waist");
   CHECK(imu.interval_ms == 3.5);
+  REQUIRE(imu.mounting.size() == 1);
+  CHECK(imu.mounting.at("waist") == std::vector<double>{0.5, -0.5, 0.5, 0.5});
   REQUIRE(imu.files.size() == 2);
   CHECK(imu.files[0].node == "wrist_left");
   CHECK(imu.files[1].path == "w.csv");
@@ -104,6 +108,27 @@ TEST_CASE("a wrong type or a value out of range is refused with its line") {
         "recording.toml:4: expected rotation as a list of 4 numbers, found 3 numbers");
   CHECK(error_of(mocap + "[space.mocap]\ntranslation = [1, 0, \"x\"]\n") ==
         "recording.toml:4: expected translation as a list of 3 numbers, found a text");
+}
+
+TEST_CASE("a rotation that is none is refused with its line") {
+  const std::string worn = mocap + "[stream.mocap.mounting]\n";
+  CHECK(error_of(worn + "waist = [0.3, 0, 0, 0.3]\n") ==
+        "recording.toml:4: expected waist as w,x,y,z of a length from 0.5 to 2, found a length of "
+        "0.424264");
+  CHECK(error_of(worn + "waist = [0, 0, 0, 90]\n") ==
+        "recording.toml:4: expected waist as w,x,y,z of a length from 0.5 to 2, found a length of "
+        "90");
+  CHECK(error_of(worn + "waist = [1, 0, 0]\n") ==
+        "recording.toml:4: expected waist as a list of 4 numbers, found 3 numbers");
+  CHECK(error_of(worn + "waist = [1, 0, 0, nan]\n") ==
+        "recording.toml:4: expected waist as a list of 4 numbers, found a number");
+  CHECK(error_of(worn + "waist = \"x\"\n") ==
+        "recording.toml:4: expected waist as a list of 4 numbers, found a text");
+  CHECK(error_of(mocap + "mounting = [1, 0, 0, 0]\n") ==
+        "recording.toml:3: expected mounting as a table, found a list");
+  CHECK(error_of(mocap + "[space.mocap]\nrotation = [0, 0, 0, 0]\n") ==
+        "recording.toml:4: expected rotation as w,x,y,z of a length from 0.5 to 2, found a length "
+        "of 0");
 }
 
 TEST_CASE("a stream that is spoken of must be there and have files") {

@@ -32,9 +32,15 @@ std::map<std::string, std::string> any_map(Random& random) {
   return out;
 }
 
-std::vector<double> any_numbers(Random& random) {
-  std::vector<double> out(random() % 5);
+std::vector<double> any_numbers(std::size_t count, Random& random) {
+  std::vector<double> out(count);
   for (double& x : out) x = std::ldexp(static_cast<double>(random()), -70);
+  return out;
+}
+
+std::vector<double> any_rotation(Random& random) {
+  auto out = any_numbers(4, random);  // each below 1/64
+  out[random() % 4] += random() % 2 == 0 ? 1.0 : -1.0;
   return out;
 }
 
@@ -73,6 +79,7 @@ Manifest any_manifest(std::uint64_t seed) {
     StreamOptions& stream = out.streams.emplace_back();
     stream.name = any_text(random);
     stream.select = any_map(random);
+    for (const auto& [node, unused] : any_map(random)) stream.mounting[node] = any_rotation(random);
     fill(describe(stream), random);
     for (std::uint64_t f = random() % 3; f > 0; --f) {
       stream.files.push_back({any_text(random), any_text(random)});
@@ -81,8 +88,8 @@ Manifest any_manifest(std::uint64_t seed) {
   for (std::uint64_t n = random() % 3; n > 0; --n) {
     SpaceOptions& space = out.spaces[any_text(random)];
     fill(describe(space), random);
-    space.rotation = any_numbers(random);
-    space.translation = any_numbers(random);
+    if (random() % 2 == 0) space.rotation = any_rotation(random);
+    if (random() % 2 == 0) space.translation = any_numbers(3, random);
     space.joints = any_map(random);
   }
   return out;
@@ -114,9 +121,11 @@ TEST_CASE("any manifest comes back from its JSON, every number exactly") {
       CHECK(back->streams[i].start_ns == manifest.streams[i].start_ns);
       CHECK(back->streams[i].interval_ms == manifest.streams[i].interval_ms);
       CHECK(back->streams[i].select == manifest.streams[i].select);
+      CHECK(back->streams[i].mounting == manifest.streams[i].mounting);
     }
     for (const auto& [name, space] : manifest.spaces) {
       CHECK(back->spaces.at(name).rotation == space.rotation);
+      CHECK(back->spaces.at(name).translation == space.translation);
       CHECK(back->spaces.at(name).joints == space.joints);
     }
   }
@@ -140,6 +149,21 @@ TEST_CASE("parameters with unknown keys, wrong types or wild values are refused"
         "expected an option's value at streams[0].start_ns, found a JSON number");
   CHECK(error_of(with_schema(R"("streams": [{"files": [{"path": 3}]}])")) ==
         "expected a text at streams[0].files.path, found a JSON number");
+}
+
+TEST_CASE("parameters whose rotations or translations are none are refused") {
+  CHECK(
+      error_of(with_schema(R"("streams": [{"mounting": {"waist": [0, 0, 0, 3]}}])")) ==
+      "expected streams[0].mounting.waist as w,x,y,z of a length from 0.5 to 2, found a length of "
+      "3");
+  CHECK(error_of(with_schema(R"("streams": [{"mounting": {"waist": []}}])")) ==
+        "expected streams[0].mounting.waist as w,x,y,z of a length from 0.5 to 2, found 0 numbers");
+  CHECK(error_of(with_schema(R"("streams": [{"mounting": []}])")) ==
+        "expected an object at streams[0].mounting, found a JSON array");
+  CHECK(error_of(with_schema(R"("spaces": {"k": {"rotation": [1, 0]}})")) ==
+        "expected spaces.k.rotation as w,x,y,z of a length from 0.5 to 2, found 2 numbers");
+  CHECK(error_of(with_schema(R"("spaces": {"k": {"translation": [1, 0]}})")) ==
+        "expected spaces.k.translation as 3 numbers, found 2 numbers");
 }
 
 TEST_CASE("of paths only what stays in the manifest's folder is kept") {
