@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The main of every room's tests. Beside doctest's own output it writes one line a case to the file
 // named by KINALIGN_TEST_LOG (passed | failed | skipped, a tab, the case), from which ./dev test
-// counts: a case that reads ../shared/data and can't find it is skipped, and says so there. Each
-// line is written at once: several programs share the file.
+// counts: a case that reads ../shared/data and can't find it is skipped, and says so there; what is
+// skipped for another reason says it in its doctest::description, which stands behind a second tab.
+// Each line is written at once: several programs share the file.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
@@ -23,7 +24,10 @@ class CaseLog : public doctest::IReporter {
       log_ << (stats.testCaseSuccess ? "passed\t" : "failed\t") << name_ << std::endl;
   }
   void test_case_skipped(const doctest::TestCaseData& data) override {
-    if (log_.is_open() && data.m_skip) log_ << "skipped\t" << data.m_name << std::endl;
+    if (!log_.is_open() || !data.m_skip) return;
+    log_ << "skipped\t" << data.m_name;
+    if (data.m_description != nullptr) log_ << '\t' << data.m_description;
+    log_ << std::endl;
   }
   void report_query(const doctest::QueryData&) override {}
   void test_run_start() override {}

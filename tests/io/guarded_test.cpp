@@ -77,7 +77,8 @@ TEST_CASE("an endless loop in a child is ended by processor time or by the clock
         }) == "take.h5: expected a take that HDF5 can read, found one that took more than 1 s");
 }
 
-TEST_CASE("a child that wants too much memory is an error" * doctest::skip(sanitized)) {
+TEST_CASE("a child that wants too much memory is an error" * doctest::skip(sanitized) *
+          doctest::description("a sanitizer's own memory goes beyond any limit")) {
   GuardLimits limits;
   limits.memory_bytes = std::uint64_t{256} << 20;
   CHECK(outcome(limits,

@@ -92,10 +92,11 @@ def count(folder, log, elsewhere="0", ctest=""):
 
 @case
 def the_count_names_skipped_cases_and_ends_with_the_numbers(folder):
-    code, text = count(folder, "passed\ta\nskipped\tKeraal\npassed\tb\n")
+    code, text = count(folder, "passed\ta\nskipped\tKeraal\npassed\tb\nskipped\tc\tis slow\n")
     assert code == 0
-    assert text == ("skipped, needs ../shared/data, which is not there:\n  Keraal\n"
-                    "2 passed, 0 failed, 1 skipped\n"), text
+    assert text == ("skipped, is slow:\n  c\n"
+                    "skipped, needs ../shared/data, which is not there:\n  Keraal\n"
+                    "2 passed, 0 failed, 2 skipped\n"), text
 
 
 @case
