@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Every check that is no test; build/dev must be built. clang-tidy sees the files that are not as
-# they were when they passed (build/tidy/): all of them the first time, two at a time.
+# they were when they passed: tools/tidy.py says which that are, also with --changed.
+#   tools/checks.sh [--changed]
 # shellcheck disable=SC2317 # the checks are called by name
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 3
@@ -39,5 +40,5 @@ check format format
 check licence licence
 check includes /usr/bin/python3 tools/check_includes.py
 check docs /usr/bin/python3 tools/check_docs.py build/dev/apps/kinalign/kinalign
-check clang-tidy /usr/bin/python3 tools/tidy.py build/dev --jobs 2
+check clang-tidy /usr/bin/python3 tools/tidy.py build/dev --jobs "$(nproc)" "$@"
 exit "$failed"

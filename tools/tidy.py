@@ -3,8 +3,11 @@
 
 A file has passed as it stands when <BUILD>/../tidy/ holds a stamp of its text, of every header of
 ours that it reaches, and of .clang-tidy. So an unchanged tree costs nothing, and after a commit that
-passed only what changed since then is looked at: usage: tidy.py BUILD [--jobs N]
+passed only what changed since then is looked at. A fresh clone has no stamps: with --changed the
+commit before HEAD is taken to have passed, without it every file is looked at.
+Usage: tidy.py BUILD [--jobs N] [--changed]
 """
+import argparse
 import concurrent.futures
 import hashlib
 import json
@@ -38,30 +41,64 @@ def stamp(path):
 def tidy(path, build):
     run = subprocess.run(
         ["clang-tidy-14", "-p", str(build), "--quiet",
-         "--extra-arg=-Wno-unknown-warning-option", str(path)],
+         "--extra-arg=-Wno-unknown-warning-option", str(path)],  # some are g++'s alone
         capture_output=True, text=True, check=False)
     return run.returncode, run.stdout
 
 
-def main():
-    build = ROOT / sys.argv[1]
-    jobs = int(sys.argv[sys.argv.index("--jobs") + 1]) if "--jobs" in sys.argv else 2
-    passed = build.parent / "tidy"
-    passed.mkdir(exist_ok=True)
+def sources(build):
     commands = json.loads((build / "compile_commands.json").read_text())
     files = sorted({pathlib.Path(c["file"]) for c in commands})
-    files = [f for f in files if f.is_relative_to(ROOT / "kinalign") or f.is_relative_to(ROOT / "apps")]
+    return [f for f in files if f.is_relative_to(ROOT / "kinalign") or f.is_relative_to(ROOT / "apps")]
+
+
+def changed_since_parent():
+    """What differs from the commit before HEAD; None where there is none to compare with."""
+    names = set()
+    for command in (["diff", "--name-only", "HEAD~1"], ["ls-files", "--others", "--exclude-standard"]):
+        git = subprocess.run(["git", *command], cwd=ROOT, capture_output=True, text=True, check=False)
+        if git.returncode != 0:
+            return None
+        names.update(ROOT / name for name in git.stdout.splitlines())
+    return names
+
+
+def assume(files, stamps, passed):
+    """Leaves a stamp `.assumed` of each file that the last commit did not touch."""
+    changed = changed_since_parent()
+    if changed is None or ROOT / ".clang-tidy" in changed:
+        return
+    for path in files:
+        if not changed & reached(path, set()):
+            (passed / f"{stamps[path]}.assumed").touch()
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("build")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--changed", action="store_true")
+    asked = parser.parse_args()
+    build = ROOT / asked.build
+    passed = build.parent / "tidy"
+    files = sources(build)
     stamps = {f: stamp(f) for f in files}
-    todo = [f for f in files if not (passed / stamps[f]).exists()]
+    if not passed.is_dir():
+        passed.mkdir()
+        if asked.changed:
+            assume(files, stamps, passed)
+    endings = ("", ".assumed") if asked.changed else ("",)
+    todo = [f for f in files if not any((passed / (stamps[f] + e)).exists() for e in endings)]
     failed = False
-    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+    with concurrent.futures.ThreadPoolExecutor(asked.jobs) as pool:
         for path, (code, text) in zip(todo, pool.map(lambda f: tidy(f, build), todo)):
             if code == 0:
                 (passed / stamps[path]).touch()
             else:
                 failed = True
-                print(text or f"{path}: clang-tidy-14 failed")
+                print(text or f"{path}: clang-tidy-14 failed", flush=True)
     return 1 if failed else 0
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())
