@@ -3,8 +3,21 @@
 
 namespace kinalign {
 
+namespace {
+
+std::string without_controls(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) c = '?';
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string to_string(const Error& error) {
-  std::string text = error.file;
+  std::string text = without_controls(error.file);  // a file's name may hold any byte
   if (error.line > 0) text += (text.empty() ? "line " : ":") + std::to_string(error.line);
   if (!text.empty()) text += ": ";
   text += "expected " + error.expected;
@@ -14,12 +27,16 @@ std::string to_string(const Error& error) {
 
 std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
-  std::string out;
-  for (const char c : text.substr(0, most)) {
-    const auto byte = static_cast<unsigned char>(c);
-    out += byte < 0x20 || byte == 0x7f ? '?' : c;
-  }
+  std::string out = without_controls(text.substr(0, most));
   if (text.size() > most) out += "...";
+  return out;
+}
+
+std::string harmless(std::string_view text) {
+  std::string out = without_controls(text);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\n') out[i] = '\n';
+  }
   return out;
 }
 

@@ -27,6 +27,10 @@ std::string to_string(const Error& error);
 /// Text of a file as a message may show it: at most 40 bytes, control characters replaced by '?'.
 std::string shown(std::string_view text);
 
+/// Text that holds names of files or from files, for a terminal: control characters other than line
+/// ends replaced by '?'.
+std::string harmless(std::string_view text);
+
 enum class Severity { note, warning, error };
 
 /// Something found in an input that was read all the same.

@@ -32,6 +32,15 @@ TEST_CASE("an error is said with its place, as far as that is known") {
   CHECK(to_string(Error{"", 0, "a number", "'x'"}) == "expected a number, found 'x'");
 }
 
+TEST_CASE("an error keeps to its line whatever the file is called") {
+  CHECK(to_string(Error{"a\nb\x1b[31m.bvh", 1, "ROOT", "JOINT"}) ==
+        "a?b?[31m.bvh:1: expected ROOT, found JOINT");
+}
+
+TEST_CASE("names on a terminal can't move its cursor") {
+  CHECK(harmless("\x1b[31m.bvh\n  Hips\tx\n") == "?[31m.bvh\n  Hips?x\n");
+}
+
 TEST_CASE("text of a file is shown short and without control characters") {
   CHECK(shown("a\tb\x1b[31mc\x7f") == "a?b?[31mc?");
   CHECK(shown(std::string(40, 'x')) == std::string(40, 'x'));
