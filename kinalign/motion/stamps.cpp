@@ -21,31 +21,79 @@ std::uint64_t step_between(Time earlier, Time later) {
   return static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
 }
 
+constexpr std::uint64_t longest_step = 1'000'000'000;  // ns; longer ones may be a slip
+
 std::int64_t held(std::uint64_t ns) {
   return static_cast<std::int64_t>(std::min<std::uint64_t>(ns, INT64_MAX));
 }
 
 }  // namespace
 
+StampFate StampRule::judge(Time stamp) {
+  if (!last_) {
+    last_ = stamp;
+    return StampFate::kept;
+  }
+  if (stamp == *last_) return StampFate::duplicate;
+  if (stamp > *last_) {
+    const bool first_was_right = withdrawn_ && stamp > *withdrawn_;
+    if (!first_was_right) before_ = last_;
+    withdrawn_.reset();
+    last_ = stamp;
+    return first_was_right ? StampFate::replaces : StampFate::kept;
+  }
+  const bool first_leads = !before_ && !withdrawn_ && step_between(stamp, *last_) > longest_step;
+  if (first_leads) withdrawn_ = last_;
+  if (!first_leads && !(before_ && stamp > *before_ && pending())) return StampFate::backward;
+  last_ = stamp;
+  return StampFate::replaces;
+}
+
+bool StampRule::pending() const {
+  return last_ && (!before_ || step_between(*before_, *last_) > longest_step);
+}
+
+void StampSurveyor::keep(Time stamp) {
+  if (survey_.kept() == 1) {
+    survey_.first = stamp;
+  } else {
+    const std::uint64_t step = step_between(survey_.last, stamp);
+    ++steps_[class_of(step)];
+    sums_[class_of(step)] += static_cast<double>(step);
+  }
+  before_ = survey_.last;
+  survey_.last = stamp;
+}
+
+/// The last stamp kept; the counts say already that it is gone.
+void StampSurveyor::take_back() {
+  if (survey_.kept() > 1) {
+    const std::uint64_t step = step_between(before_, survey_.last);
+    --steps_[class_of(step)];
+    sums_[class_of(step)] -= static_cast<double>(step);
+  }
+  survey_.last = before_;
+}
+
 void StampSurveyor::add(std::span<const Time> stamps) {
   for (const Time stamp : stamps) {
-    const bool first = survey_.samples++ == 0;
-    if (first) {
-      survey_.first = survey_.last = stamp;
-      continue;
-    }
-    if (stamp == survey_.last) {
-      ++survey_.duplicates;
-    } else if (stamp < survey_.last) {
+    const Time last = survey_.last;
+    const StampFate fate = rule_.judge(stamp);
+    ++survey_.samples;
+    if (fate == StampFate::duplicate) ++survey_.duplicates;
+    const bool steps_back = stamp < last && survey_.samples > 1;
+    if (fate == StampFate::backward || (fate == StampFate::replaces && !steps_back)) {
       ++survey_.backward;
-      survey_.largest_step_back_ns =
-          std::max(survey_.largest_step_back_ns, held(step_between(stamp, survey_.last)));
-    } else {
-      const std::uint64_t step = step_between(survey_.last, stamp);
-      ++steps_[class_of(step)];
-      sums_[class_of(step)] += static_cast<double>(step);
-      survey_.last = stamp;
     }
+    if (fate == StampFate::backward) {
+      survey_.largest_step_back_ns =
+          std::max(survey_.largest_step_back_ns, held(step_between(stamp, last)));
+    }
+    if (fate == StampFate::replaces) {
+      survey_.ahead += steps_back ? 1 : 0;
+      take_back();
+    }
+    if (fate == StampFate::kept || fate == StampFate::replaces) keep(stamp);
   }
 }
 

@@ -11,28 +11,57 @@
 
 namespace kinalign {
 
+/// What becomes of a sample, by its stamp and the ones before it.
+enum class StampFate {
+  kept,
+  replaces,   // kept, and the last one kept is taken back: it had jumped ahead of this one
+  duplicate,  // left out: the stamp of the last one kept
+  backward    // left out: a stamp before the last one kept
+};
+
+/// Rising stamps are kept. One that leads the one before by more than a second and the next one by
+/// anything is a slip of the clock and is taken back, so that a single wild stamp costs a single
+/// sample and not all that follow. Of the first stamp, which has none before it, the second and
+/// third decide.
+class StampRule {
+ public:
+  StampFate judge(Time stamp);
+  /// Whether the next sample may take the last one kept back.
+  bool pending() const;
+
+ private:
+  std::optional<Time> last_, before_;  // kept
+  std::optional<Time> withdrawn_;      // the first one, until the third says who was wrong
+};
+
 struct StampSurvey {
   std::uint64_t samples = 0;     // all that were read
   std::uint64_t duplicates = 0;  // stamp equal to the last one kept
   std::uint64_t backward = 0;    // stamp before the last one kept
+  std::uint64_t ahead = 0;       // stamp far ahead of the ones before and behind
   std::int64_t largest_step_back_ns = 0;
   Time first{}, last{};             // of the samples kept
   std::int64_t median_step_ns = 0;  // between kept samples; 0 with fewer than two
 
-  std::uint64_t kept() const { return samples - duplicates - backward; }
+  std::uint64_t kept() const { return samples - duplicates - backward - ahead; }
 };
 
-/// A stamp is kept where it is later than the last one kept; others are counted.
+/// Counts what StampRule keeps and leaves out.
 class StampSurveyor {
  public:
   void add(std::span<const Time> stamps);
   StampSurvey result() const;
 
  private:
+  void keep(Time stamp);
+  void take_back();
+
   // Steps by size, 64 classes to each power of two of nanoseconds, and their sums: the median is
   // the mean of the middle class, exact for a steady rate and never off by more than 1 percent.
   static constexpr std::size_t classes = 64 * 64;
+  StampRule rule_;
   StampSurvey survey_;
+  Time before_{};  // the last stamp kept but one
   std::array<std::uint64_t, classes> steps_{};
   std::array<double, classes> sums_{};
 };

@@ -40,6 +40,37 @@ TEST_CASE("a survey counts what repeats and what steps back, and keeps the rest"
   CHECK(std::abs(static_cast<double>(found.median_step_ns) - 100.0) <= 1.0);
 }
 
+TEST_CASE("one wild stamp far ahead costs one sample, not all that follow") {
+  constexpr std::int64_t s = 1'000'000'000;
+  const auto found = survey(stamps({0, s, 2 * s, 999'999 * s, 3 * s, 4 * s, 5 * s}));
+  CHECK(found.ahead == 1);
+  CHECK(found.backward == 0);
+  CHECK(found.kept() == 6);
+  CHECK(found.last == utc_time(5 * s));
+  CHECK(found.median_step_ns == s);
+  CHECK(survey(stamps({0, s, 999'999 * s})).kept() == 3);  // nothing behind it says who is wrong
+}
+
+TEST_CASE("a wild first stamp costs one sample, ahead or behind") {
+  constexpr std::int64_t s = 1'000'000'000;
+  const auto ahead = survey(stamps({999'999 * s, 0, s, 2 * s}));
+  CHECK(ahead.ahead == 1);
+  CHECK(ahead.kept() == 3);
+  CHECK(ahead.first == utc_time(0));
+  const auto behind = survey(stamps({900 * s, 0, 901 * s, 902 * s}));
+  CHECK(behind.kept() == 2);
+  CHECK(behind.first == utc_time(901 * s));
+}
+
+TEST_CASE("a clock that is set back for good keeps what came before") {
+  std::vector<std::int64_t> ns;
+  for (std::int64_t i = 0; i < 100; ++i) ns.push_back(3'600'000'000'000 + i * 33'000'000);
+  for (std::int64_t i = 0; i < 50; ++i) ns.push_back(i * 33'000'000);
+  const auto found = survey(stamps(ns));
+  CHECK(found.kept() == 100);
+  CHECK(found.backward == 50);
+}
+
 TEST_CASE("no stamps and one stamp have no step") {
   CHECK(survey({}).median_step_ns == 0);
   CHECK(survey({}).kept() == 0);
