@@ -31,6 +31,16 @@ void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns
   put_columns(from.distance.time_interval_ns, 1, rows, columns, to.distance.time_interval_ns);
 }
 
+std::uint64_t count_invalid(const ImuRows& rows, const NodeColumns& columns, std::size_t count) {
+  std::uint64_t invalid = 0;
+  for (std::size_t row = 0; row < rows.valid.size(); row += columns.all) {
+    for (std::size_t s = 0; s < count; ++s) {
+      invalid += rows.valid[row + columns.first + s] == 0 ? 1 : 0;
+    }
+  }
+  return invalid;
+}
+
 void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& rows) {
   const std::size_t nodes = group.node_names.size();
   for (std::size_t s = 0; s < nodes; ++s) {

@@ -5,6 +5,7 @@
 #include "kinalign/take/take.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ using Mounting = std::map<std::string, std::vector<double>>;
 struct NodeColumns {
   std::size_t first = 0, all = 0;
 };
+
+/// Rows x nodes of a stream's `count` columns that are not valid.
+std::uint64_t count_invalid(const ImuRows& rows, const NodeColumns& columns, std::size_t count);
 
 /// Copies a stream's `rows` rows of some nodes into a group's rows of all.
 void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns, ImuRows& to);

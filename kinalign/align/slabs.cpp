@@ -26,7 +26,8 @@ class ReferenceRows {
     KA_TRY(window_.fill(begin_, slab_rows));
     const auto& stamps = window_.time_ns;
     const auto first = std::lower_bound(stamps.begin(), stamps.end(), begin_);
-    const auto last = std::upper_bound(first, stamps.end(), end_);
+    const std::int64_t until = first == stamps.end() ? end_ : *first + longest_slab_ns;
+    const auto last = std::upper_bound(first, stamps.end(), std::min(end_, until));
     const std::size_t rows =
         std::min<std::size_t>(static_cast<std::size_t>(last - first), slab_rows);
     if (rows == 0) return {};

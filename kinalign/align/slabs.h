@@ -11,6 +11,9 @@ namespace kinalign {
 
 /// Rows of a slab: enough for the windows' overlap to cost little, few enough for the second cache.
 constexpr std::size_t slab_rows = 2048;
+/// And no longer than this, whatever the reference's rate: the other streams' samples of a slab
+/// lie in memory.
+constexpr std::int64_t longest_slab_ns = 120'000'000'000;
 
 class SlabMaker {
  public:

@@ -19,6 +19,11 @@ void drop(std::vector<T>& array, std::size_t rows, std::size_t count) {
   array.erase(array.begin(), array.begin() + static_cast<std::ptrdiff_t>(count * width));
 }
 
+template <class T>
+void drop_back(std::vector<T>& array, std::size_t rows) {
+  array.resize(array.size() - array.size() / rows);
+}
+
 }  // namespace
 
 void append_rows(ClipFrames& to, const ClipFrames& from, std::size_t first, std::size_t count) {
@@ -68,6 +73,29 @@ void drop_front(ImuSamples& rows, std::size_t count) {
   drop(rows.angular_velocity, all, count);
   drop(rows.valid, all, count);
   drop(rows.stamps, all, count);
+}
+
+void drop_last(ClipFrames& rows) {
+  const std::size_t all = rows.size();
+  drop_back(rows.local_positions, all);
+  drop_back(rows.local_rotations, all);
+  drop_back(rows.stamps, all);
+}
+
+void drop_last(PointFrames& rows) {
+  const std::size_t all = rows.size();
+  drop_back(rows.positions, all);
+  drop_back(rows.state, all);
+  drop_back(rows.stamps, all);
+}
+
+void drop_last(ImuSamples& rows) {
+  const std::size_t all = rows.size();
+  drop_back(rows.orientation, all);
+  drop_back(rows.acceleration, all);
+  drop_back(rows.angular_velocity, all);
+  drop_back(rows.valid, all);
+  drop_back(rows.stamps, all);
 }
 
 }  // namespace kinalign

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The samples of a stream around the rows being made: a stream is pulled block by block, stamps
-// that do not rise are dropped, and what lies behind is forgotten.
+// that do not rise (motion/stamps.h) are dropped, and what lies behind is forgotten.
 #pragma once
 
+#include "kinalign/motion/stamps.h"
 #include "kinalign/take/recording.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +22,9 @@ void append_rows(ImuSamples& to, const ImuSamples& from, std::size_t first, std:
 void drop_front(ClipFrames& rows, std::size_t count);
 void drop_front(PointFrames& rows, std::size_t count);
 void drop_front(ImuSamples& rows, std::size_t count);
+void drop_last(ClipFrames& rows);
+void drop_last(PointFrames& rows);
+void drop_last(ImuSamples& rows);
 
 /// Stretches without samples within a span.
 struct GapCount {
@@ -44,7 +49,10 @@ class Window {
   /// After it, `rows` hold all samples within [from, to] and, where the stream has them, `reach`
   /// more on either side. `from` and `to` (ns on the take's axis) rise from call to call.
   Result<void> move(std::int64_t from, std::int64_t to, std::size_t reach) {
-    while (!ended_ && !reaches(to, reach)) KA_TRY(pull());
+    while (!ended_ && !reaches(to, reach)) {
+      KA_TRY(pull());
+      forget(from, reach);
+    }
     drop_before(from, reach);
     return {};
   }
@@ -76,35 +84,65 @@ class Window {
     return time_ns.size() > reach && time_ns[time_ns.size() - 1 - reach] >= to;
   }
 
+  /// Drops while pulling, where it is worth the move: a stretch without rows may be long.
+  void forget(std::int64_t from, std::size_t reach) {
+    const std::size_t half = time_ns.size() / 2;
+    if (half > reach && time_ns[half] < from) drop_before(from, reach);
+  }
+
+  /// Until the last row can't be taken back any more.
   Result<void> pull() {
-    if (!KA_TRY(pass_(block_))) {
-      ended_ = true;
-      return {};
-    }
-    std::size_t i = 0;
-    while (i < block_.size()) {
-      if (any_ && block_.stamps[i] <= last_) {
-        ++i;
+    do {
+      if (!KA_TRY(pass_(block_))) {
+        ended_ = true;
+        return {};
+      }
+      take_block();
+    } while (rule_.pending());
+    return {};
+  }
+
+  void take_block() {
+    std::size_t first = 0, i = 0;  // rows [first, i) are kept and not yet appended
+    for (; i < block_.size(); ++i) {
+      const StampFate fate = rule_.judge(block_.stamps[i]);
+      if (fate == StampFate::kept) {
+        add_time(block_.stamps[i]);
         continue;
       }
-      const std::size_t first = i;
-      while (i < block_.size() && (!any_ || block_.stamps[i] > last_)) {
-        any_ = true;
-        last_ = block_.stamps[i++];
-        const std::int64_t t = to_ns(take_time(*clock_, last_));
-        if (!time_ns.empty()) gaps.add(time_ns.back(), t);
-        time_ns.push_back(t);
-      }
       append_rows(rows, block_, first, i - first);
+      first = i + 1;
+      if (fate != StampFate::replaces) continue;
+      take_back();
+      add_time(block_.stamps[i]);
+      first = i;
     }
-    return {};
+    append_rows(rows, block_, first, i - first);
+  }
+
+  void add_time(Time stamp) {
+    const std::int64_t t = to_ns(take_time(*clock_, stamp));
+    gaps_before_ = gaps;
+    if (last_ns_) gaps.add(*last_ns_, t);
+    before_ns_ = last_ns_;
+    last_ns_ = t;
+    time_ns.push_back(t);
+  }
+
+  void take_back() {
+    drop_last(rows);
+    time_ns.pop_back();
+    gaps = gaps_before_;
+    last_ns_ = before_ns_;
   }
 
   Pass<Frames> pass_;
   const TimeModel* clock_;
   Frames block_;
-  Time last_{};
-  bool any_ = false, ended_ = false;
+  StampRule rule_;
+  std::optional<std::int64_t> last_ns_, before_ns_;  // of the rows added, kept or forgotten
+  GapCount gaps_before_;                             // without the last row
+  bool ended_ = false;
 };
 
 }  // namespace kinalign
