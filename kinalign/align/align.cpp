@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/align.h"
 
+#include "kinalign/align/nodes.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/align/slabs.h"
 #include "kinalign/align/space.h"
+#include "kinalign/core/files.h"
 
 #include <fmt/format.h>
 
@@ -50,6 +52,19 @@ Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
   return {};
 }
 
+/// Adds what is not valid of each stream of nodes in the end: a row without the root has none.
+void count_nodes(const Recording& recording, const AlignPlan& plan, const TakeSlab& slab,
+                 std::vector<std::uint64_t>& invalid) {
+  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
+    const auto* imu = std::get_if<ImuInput>(&recording.streams[i].data);
+    if (imu == nullptr) continue;
+    const StreamPlan& stream = plan.streams[i];
+    const auto& nodes = std::get<ImuGroup>(plan.header.groups[stream.group].kind).node_names;
+    invalid[i] += count_invalid(std::get<ImuRows>(slab.rows[stream.group]),
+                                {stream.first_node, nodes.size()}, imu->node_names.size());
+  }
+}
+
 StreamReport report_stream(const Recording& recording, const AlignPlan& plan, std::size_t i,
                            const SlabMaker& slabs) {
   const ResampleCount count = slabs.count(i);
@@ -87,17 +102,39 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
   const ResampleRule& grid = plan.streams[plan.reference].rule;
   report.rate_hz = grid.step_ns > 0 ? 1e9 / static_cast<double>(grid.step_ns) : 0.0;
   for (const RecordedStream& s : recording.streams) {
-    report.findings.insert(report.findings.end(), s.findings.begin(), s.findings.end());
+    for (Finding finding : s.findings) {  // a take shall not depend on where its inputs lay
+      finding.what.file = file_name(finding.what.file);
+      report.findings.push_back(std::move(finding));
+    }
     const Findings stamps = judge_stamps(s);
     report.findings.insert(report.findings.end(), stamps.begin(), stamps.end());
   }
   return report;
 }
 
+/// What the grid can't carry of one stream.
+Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {
+  Findings out;
+  const auto add = [&](const std::vector<CarriedContent>& contents, const std::string& quantity,
+                       const std::vector<std::string>& parts, double noise) {
+    const Findings found = judge_content(contents, {s.name, quantity, parts, grid_hz, noise});
+    out.insert(out.end(), found.begin(), found.end());
+  };
+  if (const auto* points = std::get_if<PointInput>(&s.data)) {
+    add(count.positions, "position", points->joint_names, 0.002);
+  } else if (const auto* imu = std::get_if<ImuInput>(&s.data)) {
+    add(count.acceleration, "acceleration", imu->node_names, 0.05);
+    add(count.angular_velocity, "angular velocity", imu->node_names, 0.01);
+  }
+  return out;
+}
+
 void finish_report(const Recording& recording, const AlignPlan& plan, const SlabMaker& slabs,
                    AlignmentReport& report) {
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     report.streams.push_back(report_stream(recording, plan, i, slabs));
+    const Findings content = judge_content(recording.streams[i], slabs.count(i), report.rate_hz);
+    report.findings.insert(report.findings.end(), content.begin(), content.end());
   }
   std::stable_sort(report.findings.begin(), report.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
@@ -114,12 +151,25 @@ Findings judge_stamps(const RecordedStream& s) {
                          fmt::format("{} that repeat the one before", s.survey.duplicates)},
                    "these samples were left out", ""});
   }
+  if (s.survey.ahead > 0) {
+    out.push_back(
+        {Severity::warning,
+         Error{file, 0, "stamps that go on from one another",
+               fmt::format("{} more than a second ahead of the ones around", s.survey.ahead)},
+         "these samples were left out", ""});
+  }
   if (s.survey.backward > 0) {
-    out.push_back({Severity::warning,
-                   Error{file, 0, "stamps that rise",
-                         fmt::format("{} that step back, by up to {:.3f} s", s.survey.backward,
-                                     1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
-                   "these samples were left out", "look at the device's clock if there are many"});
+    // Behind a clock that was set back nothing is later than what came before.
+    const bool many = 20 * s.survey.backward > s.survey.samples;
+    out.push_back(
+        {many ? Severity::error : Severity::warning,
+         Error{file, 0, "stamps that rise",
+               fmt::format("{} of {} that step back, by up to {:.3f} s", s.survey.backward,
+                           s.survey.samples,
+                           1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
+         "these samples were left out",
+         many ? "the device's clock was set back: cut the file there, or stamp it by rate_hz"
+              : "look at the device's clock if there are many"});
   }
   return out;
 }
@@ -138,6 +188,7 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
   SlabMaker slabs =
       KA_TRY(SlabMaker::start(recording, plan, std::vector<bool>(plan.header.groups.size(), true)));
   TakeSlab slab;
+  std::vector<std::uint64_t> invalid_nodes(recording.streams.size());
   std::uint64_t done = 0;
   while (KA_TRY(slabs.next(slab))) {
     for (std::size_t k = 0; k < spaces.size(); ++k) residuals[k].transform(spaces[k], slab);
@@ -145,6 +196,7 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
     report.end = slab.stamps.back();
     done += slab.stamps.size();
     if (done > plan.header.frames) break;
+    count_nodes(recording, plan, slab, invalid_nodes);
     KA_TRY(sink.rows(slab));
     if (!go_on(progress, "aligning", done, plan.header.frames)) return cancelled();
   }
@@ -154,6 +206,11 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
                          fmt::format("{}", done)});
   }
   finish_report(recording, plan, slabs, report);
+  for (std::size_t i = 0; i < invalid_nodes.size(); ++i) {
+    if (std::holds_alternative<ImuInput>(recording.streams[i].data)) {
+      report.streams[i].invalid = invalid_nodes[i];
+    }
+  }
   for (std::size_t k = 0; k < spaces.size(); ++k) {
     report.spaces.push_back(residuals[k].report(spaces[k], plan.header));
   }

@@ -148,6 +148,9 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
     stream.rule = rule_of(s, manifest.align);
     stream.rule.begin_ns = to_ns(plan.begin);
     stream.rule.end_ns = to_ns(plan.end);
+    const ResampleRule grid = rule_of(recording.streams[plan.reference], manifest.align);
+    stream.rule.finer =
+        static_cast<double>(stream.rule.step_ns) < 0.9 * static_cast<double>(grid.step_ns);
     const auto same = std::find_if(groups.begin(), groups.end(),
                                    [&s](const TakeGroup& g) { return g.name == s.name; });
     stream.group = static_cast<std::size_t>(same - groups.begin());

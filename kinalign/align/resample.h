@@ -4,6 +4,7 @@
 // zero. Splines end at gaps and do not run through samples that were not seen.
 #pragma once
 
+#include "kinalign/align/coarse_grid.h"
 #include "kinalign/align/window.h"
 #include "kinalign/take/take.h"
 
@@ -23,6 +24,7 @@ struct ResampleRule {
   std::int64_t step_ns = 0;  // the stream's median step
   RotationCurve curve = RotationCurve::spline;
   std::int64_t begin_ns = 0, end_ns = 0;  // of the take: gaps are counted within
+  bool finer = false;                     // than the grid: what that can't carry is measured
 
   GapCount gap_count() const { return {gap_ns, begin_ns, end_ns}; }
 };
@@ -31,6 +33,9 @@ struct ResampleRule {
 struct ResampleCount {
   std::uint64_t samples = 0, invalid = 0, inferred = 0, bridged = 0;
   std::int64_t worst_nearest_ns = 0;
+  // Only where the rule says finer:
+  std::vector<CarriedContent> positions;                       // [J]
+  std::vector<CarriedContent> acceleration, angular_velocity;  // [S]
 };
 
 /// Neighbours of each row of a grid in a stream, on rising stamps.

@@ -43,10 +43,11 @@ NodeSamples samples_of(const Window<ImuSamples>& window, std::size_t node,
   return out;
 }
 
-/// The rows of one segment into a node's column.
+/// A node's column of the rows, and where what happens in it is counted.
 struct NodeColumn {
   std::size_t node, nodes;
   const ImuContent& content;
+  ResampleCount* count;
 };
 
 void put_vectors(const std::vector<double>& values, const Segment& s, const NodeColumn& column,
@@ -59,6 +60,18 @@ void put_vectors(const std::vector<double>& values, const Segment& s, const Node
     if (column.content.angular_velocity) {
       std::copy_n(from + (column.content.acceleration ? 3 : 0), 3, &out.angular_velocity[3 * cell]);
     }
+  }
+}
+
+/// What the rows of one segment can't carry of a node's vectors.
+void measure(const Knots& raw, const Knots& rows, const NodeColumn& column) {
+  ResampleCount& count = *column.count;
+  count.acceleration.resize(column.nodes);
+  count.angular_velocity.resize(column.nodes);
+  if (column.content.acceleration) add_content(raw, rows, 0, count.acceleration[column.node]);
+  if (column.content.angular_velocity) {
+    const std::size_t first = column.content.acceleration ? 3 : 0;
+    add_content(raw, rows, first, count.angular_velocity[column.node]);
   }
 }
 
@@ -77,6 +90,7 @@ void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
       natural_spline(spline, bends);
       spline_at(spline, bends, at, values);
       put_vectors(values, s, column, out);
+      if (rule.finer) measure(spline, {at, values, channels}, column);
     }
     if (column.content.orientation) {
       const auto turned = rotations_at(
@@ -105,7 +119,7 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
   if (content_.angular_velocity) out.angular_velocity.assign(3 * n, 0.0);
   for (std::size_t node = 0; node < nodes; ++node) {
     interpolate(samples_of(window_, node, content_, to_world), grid, rule_,
-                NodeColumn{node, nodes, content_}, out);
+                NodeColumn{node, nodes, content_, &count_}, out);
   }
   const Neighbours near = find_neighbours(stamps, grid);
   for (std::size_t r = 0; r < grid.size(); ++r) {

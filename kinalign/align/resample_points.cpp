@@ -47,7 +47,7 @@ Gathered gather(const Window<PointFrames>& window, const std::vector<bool>& seen
 
 /// One spline for all of a group's channels in each segment; rows outside stay invalid.
 void interpolate(const Gathered& samples, const Joints& group, std::span<const std::int64_t> grid,
-                 const ResampleRule& rule, PointRows& out) {
+                 const ResampleRule& rule, PointRows& out, ResampleCount& count) {
   const std::size_t joints = out.valid.size() / grid.size(), channels = 3 * group.size();
   std::vector<double> bends, values;
   for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
@@ -61,6 +61,10 @@ void interpolate(const Gathered& samples, const Joints& group, std::span<const s
     natural_spline(spline, bends);
     values.resize(rows * channels);
     spline_at(spline, bends, at, values);
+    for (std::size_t g = 0; rule.finer && g < group.size(); ++g) {
+      count.positions.resize(joints);
+      add_content(spline, {at, values, channels}, 3 * g, count.positions[group[g]]);
+    }
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t g = 0; g < group.size(); ++g) {
         const std::size_t cell = (s.row + r) * joints + group[g];
@@ -99,11 +103,13 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
   out.state.assign(grid.size() * joints, Tracking::missing);
   out.valid.assign(grid.size() * joints, 0);
   for (const auto& [seen, group] : joints_by_seen(window_.rows, joints)) {
-    interpolate(gather(window_, seen, group, joints), group, grid, rule_, out);
+    interpolate(gather(window_, seen, group, joints), group, grid, rule_, out, count_);
   }
   Neighbours near = find_neighbours(stamps, grid);
   for (std::size_t r = 0; r < grid.size(); ++r) {
     const std::size_t left = near.left[r];
+    const auto known = half_width(*clock_, window_.rows.stamps[std::min(left, stamps.size() - 1)]);
+    if (known) out.distance.time_interval_ns.push_back(known->count());
     if (left == stamps.size()) continue;
     const std::size_t right = stamps[left] == grid[r] ? left : left + 1;
     const bool lost = stamps[right] - stamps[left] > rule_.step_ns * 3 / 2;
@@ -118,9 +124,6 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
       count_.inferred += out.state[cell] == Tracking::inferred ? 1 : 0;
       count_.bridged += lost || out.state[cell] == Tracking::missing ? 1 : 0;
       count_.worst_nearest_ns = std::max(count_.worst_nearest_ns, near.nearest_raw_ns[r]);
-    }
-    if (const auto known = half_width(*clock_, window_.rows.stamps[left])) {
-      out.distance.time_interval_ns.push_back(known->count());
     }
   }
   count_.samples += out.valid.size();

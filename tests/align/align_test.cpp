@@ -141,7 +141,7 @@ TEST_CASE("stamps that repeat or step back are left out and reported") {
   CHECK(take->report.streams[1].survey.backward == 1);
   REQUIRE(take->report.findings.size() == 2);
   CHECK(to_string(take->report.findings[0].what) ==
-        "kinect: expected stamps that rise, found 1 that step back, by up to 0.060 s");
+        "kinect: expected stamps that rise, found 1 of 100 that step back, by up to 0.060 s");
 }
 
 TEST_CASE("streams that do not overlap are refused with their spans") {
