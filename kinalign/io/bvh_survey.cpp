@@ -75,7 +75,9 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
     out.facts.bytes += piece.size();
     if (in_rows) {
       count.add(piece);
-    } else if (head.size() <= longest_head) {
+    } else if (head.size() > longest_head) {
+      break;  // a line of zeros, or no BVH at all: the rest need not be read to say so
+    } else {
       head += piece;
       if (bvh_head_is_whole(head)) {
         std::size_t rows = 0;
@@ -89,6 +91,9 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
   if (!in_rows) {  // no line end behind the frame time, or no frame time at all
     std::size_t rows = 0;
     out.hierarchy = KA_TRY(parse_bvh_hierarchy(head + ' ', path, rows, out.findings));
+    if (head.size() > longest_head) {
+      return Failure(Error{path, 0, "a hierarchy of at most 8 MiB", "a longer one"});
+    }
   }
   out.facts.sha256 = hash.hex();
   const std::uint64_t row_size = out.hierarchy.row_size();

@@ -136,10 +136,13 @@ Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
   for (const Format& format : formats) {
     if (format.looks(head)) return program_format(format, source);
   }
+  std::optional<TableLayout> named;  // the first one that knows the columns, if not the rows
   for (const std::string_view name : builtin_layout_names()) {
     const TableLayout layout = KA_TRY(parse_layout(*builtin_layout(name), name));
     if (matches(layout, head)) return table_format(layout, source);
+    if (!named && knows_columns(layout, head)) named = layout;
   }
+  if (named) return table_format(*named, source);  // its reader says which row is wrong
   return Failure(
       Error{file.path, 1, "a file that begins as one of " + known_formats(),
             head.empty() ? "an empty file" : "'" + shown(head.substr(0, head.find('\n'))) + "'"});

@@ -81,9 +81,9 @@ void set_limits(const GuardLimits& limits) {
   std::set_new_handler([] { ::_exit(no_memory_code); });
 }
 
-/// A crash shall kill, whatever the parent does with these signals.
+/// A crash shall kill, and so shall Ctrl-C, whatever the parent does with these signals.
 void reset_signals() {
-  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) {
+  for (const int number : {SIGINT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) {
     ::signal(number, SIG_DFL);
   }
   ::signal(SIGPIPE, SIG_IGN);
@@ -207,7 +207,8 @@ class Inbox {
   bool done_ = false;
 };
 
-/// Reads until the child closes its end. False: its time is up.
+/// Reads until the child closes its end. False: its time is up. Fails where a signal came that the
+/// program handles, which is Ctrl-C.
 Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbox) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -217,6 +218,9 @@ Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbo
     if (left <= 0) return false;
     pollfd waiting{child.pipe(), POLLIN, 0};
     const int ready = ::poll(&waiting, 1, static_cast<int>(std::min(left, 1000.0) * 1000.0) + 1);
+    if (ready < 0 && errno == EINTR) {
+      return Failure(Error{"", 0, "the end of the job", "an interruption"});
+    }
     if (ready <= 0) continue;
     const ssize_t got = ::read(child.pipe(), buffer.data(), buffer.size());
     if (got == 0) return true;

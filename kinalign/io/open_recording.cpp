@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/open_recording.h"
 
+#include "kinalign/core/file_version.h"
 #include "kinalign/core/hash.h"
 #include "kinalign/io/bvh_survey.h"
 #include "kinalign/io/formats.h"
@@ -29,10 +30,19 @@ ImuInput input_of(const ImuHeader& header, Passes<ImuSamples> passes) {
   return {header.node_names, header.content, std::move(passes)};
 }
 
+using Version = std::optional<FileVersion>;
+
+/// A take names its inputs' hashes: every pass has to see the bytes that were hashed.
+Result<void> unchanged(const std::string& path, const Version& version) {
+  if (version_of(path) == version) return {};
+  return Failure(Error{path, 0, "a file that stays as it is while it is read", "one that changed"});
+}
+
 /// A file in the middle of a pass.
 template <class R>
 struct Reading {
   InputFile file;
+  Version version;
   std::unique_ptr<R> reader;
   bool ended = false;
 
@@ -40,6 +50,7 @@ struct Reading {
     block = {};
     while (block.size() == 0 && !ended) {
       const std::string_view piece = KA_TRY(file.next());
+      KA_TRY(unchanged(file.path(), version));
       if (piece.empty()) {
         ended = true;
         KA_TRY(reader->finish(block));
@@ -52,21 +63,24 @@ struct Reading {
 };
 
 template <class R>
-Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, MakeReader make) {
+Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const Version& version,
+                                     MakeReader make) {
   using Frames = typename R::Frames;
-  return [&files, path = std::move(path), make = std::move(make)]() -> Result<Pass<Frames>> {
-    auto reader = KA_TRY(make());
-    auto reading = std::make_shared<Reading<R>>(
-        Reading<R>{KA_TRY(InputFile::open(files, path)),
-                   std::get<std::unique_ptr<R>>(std::move(reader)), false});
-    return Pass<Frames>([reading](Frames& block) { return reading->next(block); });
-  };
+  return
+      [&files, path = std::move(path), version, make = std::move(make)]() -> Result<Pass<Frames>> {
+        auto reader = KA_TRY(make());
+        auto reading = std::make_shared<Reading<R>>(
+            Reading<R>{KA_TRY(InputFile::open(files, path)), version,
+                       std::get<std::unique_ptr<R>>(std::move(reader)), false});
+        return Pass<Frames>([reading](Frames& block) { return reading->next(block); });
+      };
 }
 
 struct Job {
   FileSystem* files;
   const StreamOptions* options;
   const Progress* progress;
+  Version version;  // of the file, before it was opened
 };
 
 /// The first pass: hashes the file and surveys its stamps, rows are thrown away.
@@ -91,7 +105,8 @@ Result<RecordedStream> survey(const Job& job, InputFile file, std::string_view h
   surveyor.add(block.stamps);
   RecordedStream out;
   out.name = job.options->name;
-  out.data = input_of(*reader->header(), passes_of<R>(*job.files, file.path(), format.make));
+  out.data =
+      input_of(*reader->header(), passes_of<R>(*job.files, file.path(), job.version, format.make));
   out.survey = surveyor.result();
   out.files.push_back({std::string(file_name(file.path())), hash.hex(), bytes});
   out.findings = std::move(reader->findings);
@@ -137,7 +152,8 @@ Result<RecordedStream> survey_file(const Job& job, const StreamFile& named) {
     out.step_ns = made.step_ns;
     out.files.push_back(made.facts);
     out.findings = made.findings;
-    out.data = input_of(made.skeleton, passes_of<ClipReader>(*job.files, named.path, format.make));
+    out.data = input_of(made.skeleton,
+                        passes_of<ClipReader>(*job.files, named.path, job.version, format.make));
     const Findings clicks = judge_clicks(*job.options, out);
     out.findings.insert(out.findings.end(), clicks.begin(), clicks.end());
   } else {
@@ -171,7 +187,8 @@ Result<std::vector<RecordedStream>> open_stream(FileSystem& files, const StreamO
   }
   std::vector<RecordedStream> streams;
   for (const StreamFile& file : options.files) {
-    streams.push_back(KA_TRY(survey_file({&files, &options, &progress}, file)));
+    streams.push_back(
+        KA_TRY(survey_file({&files, &options, &progress, version_of(file.path)}, file)));
     streams.back().clock = clock_of(options, streams.back().survey);
   }
   return streams;

@@ -284,7 +284,10 @@ Result<Manifest> parse_parameters_json(std::string_view json) {
   if (deeper_than(json, 32))
     return Failure(Error{"", 0, "parameters as JSON", "too many brackets"});
   const Json parsed = Json::parse(json, nullptr, false);
-  if (parsed.is_discarded()) return Failure(Error{"", 0, "parameters as JSON", shown(json)});
+  if (parsed.is_discarded()) {
+    return Failure(
+        Error{"", 0, "parameters as JSON", json.empty() ? "an empty text" : shown(json)});
+  }
   return manifest_from(parsed);
 }
 

@@ -13,6 +13,7 @@ Json survey_json(const StampSurvey& survey) {
   return {{"samples", survey.samples},
           {"duplicates", survey.duplicates},
           {"backward", survey.backward},
+          {"ahead", survey.ahead},
           {"largest_step_back_ns", survey.largest_step_back_ns},
           {"first_ns", to_ns(survey.first)},
           {"last_ns", to_ns(survey.last)},

@@ -231,18 +231,35 @@ std::unique_ptr<ImuReader> make_imu_table_reader(const TableLayout& layout,
   return std::make_unique<TableReader<ImuBuilder>>(layout, options, file, std::move(nodes));
 }
 
-bool matches(const TableLayout& layout, std::string_view head) {
+namespace {
+
+/// `use(reader, good)` of a reader that was fed a file's beginning.
+template <class Use>
+bool read_head_of_file(const TableLayout& layout, std::string_view head, Use&& use) {
   StreamOptions options;
   options.rate_hz = layout.rate_hz > 0.0 ? layout.rate_hz : 1.0;
   const std::size_t whole = head.rfind('\n');
   if (whole != std::string_view::npos) head = head.substr(0, whole + 1);  // its last line is cut
   const auto reads = [&](auto reader) {
     typename std::decay_t<decltype(*reader)>::Frames frames;
-    return reader->feed(head, frames) && reader->finish(frames);
+    const bool good = reader->feed(head, frames) && reader->finish(frames);
+    return use(*reader, good);
   };
   return layout.kind == TableKind::points
              ? reads(make_point_table_reader(layout, options, "head"))
              : reads(make_imu_table_reader(layout, options, "head", "node"));
+}
+
+}  // namespace
+
+bool matches(const TableLayout& layout, std::string_view head) {
+  return read_head_of_file(layout, head, [](const auto&, bool good) { return good; });
+}
+
+bool knows_columns(const TableLayout& layout, std::string_view head) {
+  return layout.header && read_head_of_file(layout, head, [](const auto& reader, bool) {
+           return reader.header() != nullptr;
+         });
 }
 
 }  // namespace kinalign

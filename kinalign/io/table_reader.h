@@ -29,4 +29,7 @@ std::unique_ptr<ImuReader> make_imu_table_reader(const TableLayout& layout,
 /// The beginning of a file (some 4 KiB) looks as the layout says.
 bool matches(const TableLayout& layout, std::string_view head);
 
+/// Its line of names does, whatever the rows below it hold.
+bool knows_columns(const TableLayout& layout, std::string_view head);
+
 }  // namespace kinalign
