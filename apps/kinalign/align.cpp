@@ -151,6 +151,8 @@ Result<int> run(AlignVerb& o, Call& call) {
   const std::string base = o.manifest.empty() ? "" : std::string(folder(o.manifest.front()));
   const Progress progress = call.console.progress();
   const std::string out = call.common.dry_run ? "" : call.common.out;
+  KA_TRY(keep_inputs(out, o.manifest));
+  KA_TRY(keep_inputs(out, files_named(manifest, base)));
   const Recording recording =
       KA_TRY(open_recording(call.surroundings.files, manifest, base, progress));
   const AlignmentReport report = KA_TRY(align_to_file(call.surroundings.files, recording, manifest,

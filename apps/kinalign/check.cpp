@@ -82,7 +82,7 @@ Result<int> run(Check& o, Call& call) {
       all.push_back({Severity::error, std::move(found).error(), "the file can't be used", ""});
     }
   }
-  call.console.print(finding_lines(all));
+  call.console.print(harmless(finding_lines(all)));
   if (all.empty()) {
     call.console.print(fmt::format("{} file{} read, nothing found\n", o.files.size(),
                                    o.files.size() == 1 ? "" : "s"));

@@ -89,6 +89,7 @@ void take_signals() {
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   ::sigaction(SIGINT, &action, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);  // a limit on files' sizes is then a full disk like any other
 }
 
 bool interrupted() { return ctrl_c != 0; }

@@ -165,6 +165,7 @@ Result<int> run(Convert& o, Call& call) {
   call.console.if_it_fails(
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
   const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite()};
+  KA_TRY(keep_inputs(job.to, {job.from}));
   if (KA_TRY(is_take(job.files, job.from))) {
     KA_TRY(convert_take(job));
   } else if (job.to.ends_with(".bvh")) {
@@ -181,7 +182,7 @@ Result<int> run(Convert& o, Call& call) {
   } else {
     return Failure(Error{job.to, 0, "a name that ends in .npz or .bvh", "another ending"});
   }
-  call.console.print(job.to + "\n");
+  call.console.print(harmless(job.to) + "\n");
   call.console.print_json(R"({"written": true})");
   return 0;
 }

@@ -84,9 +84,9 @@ std::string stream_line(const RecordedStream& s, const Contents& c) {
       fmt::format("  {:<8} {}: {} samples over {:.3f} s at {:.4g} Hz; {}\n", s.name,
                   c.kind == "imu" ? shown(c.names.front().get<std::string>()) : c.kind,
                   s.survey.samples, seconds_of(s.survey), rate_hz(s), c.parts);
-  if (s.survey.duplicates + s.survey.backward > 0) {
-    line += fmt::format("           {} stamps repeat, {} step back\n", s.survey.duplicates,
-                        s.survey.backward);
+  if (s.survey.kept() < s.survey.samples) {
+    line += fmt::format("           {} stamps repeat, {} step back, {} leap ahead\n",
+                        s.survey.duplicates, s.survey.backward, s.survey.ahead);
   }
   return line;
 }
@@ -101,6 +101,7 @@ Json stream_json(const RecordedStream& s, const Contents& c) {
           {"rate_hz", rate_hz(s)},
           {"duplicate_stamps", s.survey.duplicates},
           {"backward_stamps", s.survey.backward},
+          {"ahead_stamps", s.survey.ahead},
           {"files", files_json(s.files)},
           {"findings", Json::parse(findings_json(s.findings))}};
 }

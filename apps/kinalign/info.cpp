@@ -33,7 +33,7 @@ Result<int> run(Info& o, Call& call) {
     const Recording recording = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
     found = describe_recording(path, recording);
   }
-  call.console.print(found.text);
+  call.console.print(harmless(found.text));
   call.console.print_json(found.json);
   return 0;
 }

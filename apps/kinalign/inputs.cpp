@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/inputs.h"
 
+#include "kinalign/core/file_version.h"
 #include "kinalign/core/files.h"
 #include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/open_recording.h"
@@ -51,6 +52,28 @@ Result<Recording> open_input(FileSystem& files, const std::string& path, const S
   const StreamOptions options = KA_TRY(flags.stream({path}));
   recording.streams = KA_TRY(open_stream(files, options, progress));
   return recording;
+}
+
+Result<void> keep_inputs(const std::string& out, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    if (same_file(out, input)) {
+      return Failure(Error{out, 0, "another name than those of the files it is made of",
+                           "'" + shown(file_name(input)) + "', which is one of them"});
+    }
+  }
+  return {};
+}
+
+std::vector<std::string> files_named(const Manifest& manifest, const std::string& folder) {
+  std::vector<std::string> paths;
+  const auto add = [&](const std::string& path) {
+    paths.push_back(path.starts_with('/') ? path : folder + path);
+  };
+  for (const StreamOptions& stream : manifest.streams) {
+    for (const StreamFile& file : stream.files) add(file.path);
+    if (stream.layout.ends_with(".toml")) add(stream.layout);
+  }
+  return paths;
 }
 
 Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can read", ""}; }

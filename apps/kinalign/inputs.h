@@ -38,6 +38,13 @@ struct StreamFlags {
 Result<Recording> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
                              const Progress& progress);
 
+/// Fails where `out` is one of `inputs`, under whatever name: no --force replaces what was measured
+/// by what is made of it.
+Result<void> keep_inputs(const std::string& out, const std::vector<std::string>& inputs);
+
+/// Every file that a manifest names; relative paths are relative to `folder`.
+std::vector<std::string> files_named(const Manifest& manifest, const std::string& folder);
+
 /// What a failed job on a take's file is blamed on, and how far it may go.
 Error blame(const std::string& path);
 

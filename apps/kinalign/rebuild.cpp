@@ -156,7 +156,7 @@ Result<int> verify(const std::string& take, const Recording& recording, const Or
         "remade it\n",
         origin.software);
   }
-  call.console.print(text);
+  call.console.print(harmless(text));
   call.console.print_json(json.dump());
   return difference ? 1 : 0;
 }
@@ -169,6 +169,7 @@ Result<int> run(Rebuild& o, Call& call) {
   const Recording recording =
       KA_TRY(open_recording(files, origin.parameters, base, call.console.progress()));
   if (o.verify) return verify(take, recording, origin, call);
+  KA_TRY(keep_inputs(call.common.out, files_named(origin.parameters, base)));
   const AlignmentReport report =
       KA_TRY(align_to_file(files, recording, origin.parameters,
                            {call.common.out, call.common.overwrite()}, call.console.progress()));

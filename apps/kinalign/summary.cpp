@@ -149,7 +149,7 @@ std::string finding_lines(const Findings& findings, const Console& console) {
                                                                   : Colour::bad;
     const std::string repair = finding.repair.empty() ? "" : "; " + finding.repair;
     text += fmt::format("  {}  {}: {}{}\n", console.paint(colour, to_string(finding.severity)),
-                        to_string(finding.what), finding.meaning, repair);
+                        harmless(to_string(finding.what)), finding.meaning, repair);
   }
   if (findings.size() > most) text += fmt::format("  and {} more\n", findings.size() - most);
   return text;
