@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Cases that drive the real program: a sentence each, counted like the others (tests/main.cpp)."""
+import json
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+
+BUILD = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/dev").resolve()
+PROGRAM = BUILD / "apps/kinalign/kinalign"
+DEMO = BUILD / "tools/kinalign_demo_recording"
+SANITIZED = BUILD.name in ("asan", "tsan")  # sanitizers reserve terabytes of addresses
+LONG = bool(os.environ.get("KINALIGN_LONG_TESTS"))  # the same sweeps, finer
+CASES = []
+
+
+def case(function):
+    CASES.append(function)
+    return function
+
+
+class Skip(Exception):
+    """What the case needs and this machine does not have."""
+
+
+def limits(memory, file_size):
+    def set_limits():
+        if not SANITIZED:
+            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        if file_size is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (file_size, file_size))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    return set_limits
+
+
+def kinalign(*words, cwd=None, memory=1 << 30, file_size=None, seconds=60, prefix=(), env=None):
+    """Runs the program within bounds; a hang raises TimeoutExpired."""
+    return subprocess.run([*map(str, prefix), str(PROGRAM), *map(str, words)], cwd=cwd, timeout=seconds,
+                          capture_output=True, stdin=subprocess.DEVNULL, check=False,
+                          preexec_fn=limits(memory, file_size), env={**os.environ, **(env or {})})
+
+
+def law(done, words, out=None):
+    """What holds for every call with files of any content."""
+    err = done.stderr.decode("utf-8", "backslashreplace")
+    said = f"{' '.join(map(str, words))}\nexit {done.returncode}\n{err[:2000]}"
+    assert done.returncode in (0, 1, 2, 3, 130), said
+    for stream in (done.stdout, done.stderr):
+        assert not re.search(rb"[\x00-\x09\x0b-\x1f\x7f]", stream), "control characters: " + said
+    if done.returncode in (2, 3):
+        assert done.stdout == b"", "stdout of a failure: " + said
+        verb = words[0]
+        assert re.fullmatch(rf"kinalign {verb}: (.+: )?expected .+, found .+(\n  .*)*\n", err), said
+        if out is not None:
+            assert not pathlib.Path(out).exists(), "half a file: " + said
+    elif done.returncode in (0, 1):
+        assert err == "", "stderr of a success: " + said
+        if "--json" in words:
+            json.loads(done.stdout.decode("utf-8"))
+    return said
+
+
+def refused(*words, naming, out=None, **how):
+    """The call ends with exit code 3 and a line that begins with the file's name."""
+    done = kinalign(*words, **how)
+    said = law(done, words, out)
+    assert done.returncode == 3, said
+    first = done.stderr.decode("utf-8", "replace").splitlines()[0]
+    assert first.startswith(f"kinalign {words[0]}: {naming}"), f"not {naming}: {said}"
+    return first
+
+
+def demo(folder, seconds=1, seed=1):
+    subprocess.run([DEMO, folder, "--seed", str(seed), "--seconds", str(seconds)], check=True,
+                   capture_output=True)
+    return pathlib.Path(folder)
+
+
+def main():
+    log = os.environ.get("KINALIGN_TEST_LOG")
+    wanted = sys.argv[2:]
+    failed = False
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+    for one in CASES:
+        name = one.__name__.replace("_", " ")
+        if wanted and one.__name__ not in wanted:
+            continue
+        with tempfile.TemporaryDirectory(prefix="kinalign apps ") as folder:
+            try:
+                one(pathlib.Path(folder))
+                outcome = "passed"
+            except Skip as reason:
+                outcome, name = "skipped", f"{name}\t{reason}"
+            except (AssertionError, subprocess.SubprocessError, OSError) as error:
+                outcome = "failed"
+                failed = True
+                print(f"{name}: {error}")
+        if log:
+            with open(log, "a", encoding="utf-8") as out:
+                out.write(f"{outcome}\t{name}\n")
+    return 1 if failed else 0
