@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whatever is accepted is written and read again to the same text, and pieces cut anywhere give the
-// same frames. Seeds: bvh/*.bvh bvh/edge/*.bvh
+// same frames.
+// Seeds: bvh/*.bvh bvh/edge/*.bvh
 #include "kinalign/io/bvh.h"
 
 #include <cstdint>

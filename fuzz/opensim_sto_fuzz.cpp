@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Seeds: imu_opensim/opensense/*.sto
 #include "fuzz/pieces.h"
 
 #include "kinalign/io/opensim_sto.h"

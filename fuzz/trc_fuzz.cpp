@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Seeds: points_trc/*.trc
 #include "fuzz/pieces.h"
 
 #include "kinalign/io/trc.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Seeds: imu_opensim/xsens/*.txt
 #include "fuzz/pieces.h"
 
 #include "kinalign/io/xsens_text.h"
