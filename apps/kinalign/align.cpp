@@ -123,6 +123,8 @@ Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
   }
   constexpr std::size_t longest = std::size_t{1} << 20;
   const std::string& path = o.manifest.front();
+  KA_TRY(
+      InputFile::open(call.surroundings.files, path));  // what it is comes before what it is named
   if (!path.ends_with(".toml")) {
     return Failure(Error{path, 0,
                          "a recording.toml (a single file goes behind --mocap, --kinect, ...)",

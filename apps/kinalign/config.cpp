@@ -2,6 +2,7 @@
 #include "apps/kinalign/command_line.h"
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/field_text.h"
+#include "apps/kinalign/json_text.h"
 #include "apps/kinalign/settings.h"
 #include "apps/kinalign/verbs.h"
 
@@ -87,7 +88,7 @@ Result<int> run(Config&, Call& call) {
     call.console.print(fmt::format("{:<{}}  {:<{}}  {}\n", full_name(one), name_width, one.value,
                                    value_width, one.whence));
   }
-  call.console.print_json(nlohmann::ordered_json{{"settings", settings}}.dump());
+  call.console.print_json(json_text(nlohmann::ordered_json{{"settings", settings}}));
   return 0;
 }
 

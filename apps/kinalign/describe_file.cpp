@@ -3,6 +3,7 @@
 
 #include "apps/kinalign/describe_report.h"
 #include "apps/kinalign/inputs.h"
+#include "apps/kinalign/json_text.h"
 
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
@@ -126,7 +127,7 @@ Result<std::string> take_facts(FileSystem& files, const std::string& path) {
                               {"files", files_json(group.files)}});
   }
   out["report"] = Json::parse(KA_TRY(reader.report_json()), nullptr, false);
-  return out.dump();
+  return json_text(out);
 }
 
 }  // namespace
@@ -149,7 +150,7 @@ Description describe_recording(const std::string& path, const Recording& recordi
     text += fmt::format("  {} finding{}: see kinalign check {}\n", findings,
                         findings == 1 ? "" : "s", path);
   }
-  return {std::move(text), out.dump()};
+  return {std::move(text), json_text(out)};
 }
 
 Result<Description> describe_take(FileSystem& files, const std::string& path) {

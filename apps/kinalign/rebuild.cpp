@@ -2,6 +2,7 @@
 #include "apps/kinalign/align_job.h"
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/inputs.h"
+#include "apps/kinalign/json_text.h"
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
@@ -59,7 +60,7 @@ Result<std::string> origin_json(FileSystem& files, const std::string& path) {
   for (const TakeGroup& group : reader.header().groups) {
     for (const InputFacts& file : group.files) out["files"].push_back({file.name, file.sha256});
   }
-  return out.dump();
+  return json_text(out);
 }
 
 Result<Origin> origin_of(FileSystem& files, const std::string& path) {
@@ -157,7 +158,7 @@ Result<int> verify(const std::string& take, const Recording& recording, const Or
         origin.software);
   }
   call.console.print(harmless(text));
-  call.console.print_json(json.dump());
+  call.console.print_json(json_text(json));
   return difference ? 1 : 0;
 }
 

@@ -185,9 +185,9 @@ std::string summary(const AlignmentReport& report, const std::string& out, const
   const std::vector<Group> groups = groups_of(report);
   std::string names;
   for (const Group& group : groups) names += (names.empty() ? "" : " + ") + name_of(group);
-  std::string text =
-      fmt::format("{}: {}, {} frames at {:.4g} Hz, {}\n", out.empty() ? "nothing written" : out,
-                  duration_text(length), grouped(report.frames), report.rate_hz, names);
+  std::string text = fmt::format(
+      "{}: {}, {} frames at {:.4g} Hz, {}\n", out.empty() ? "nothing written" : harmless(out),
+      duration_text(length), grouped(report.frames), report.rate_hz, harmless(names));
   text += time_line(groups, report.reference, console);
   for (const SpaceReport& s : report.spaces) text += space_line(s);
   text += gap_lines(groups);

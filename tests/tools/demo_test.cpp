@@ -94,9 +94,9 @@ TEST_CASE("an inertial node at rest reads gravity upwards and no turning") {
 }
 
 TEST_CASE("the demo's camera sees a face: the left shoulder is at smaller x, as the SDK has it") {
-  const Folder folder;
+  const FreshFolder folder;
   write(folder, 3);
-  const std::string text = folder.text("kinect.csv");
+  const std::string text = folder.read("kinect.csv");
   const std::size_t row = text.find('\n') + 1;
   std::vector<double> cells;
   for (std::size_t at = row; cells.size() < 101; at = text.find(',', at) + 1) {
