@@ -261,13 +261,22 @@ Result<BvhHierarchy> parse_bvh_hierarchy(std::string_view text, std::string_view
 }
 
 bool bvh_head_is_whole(std::string_view text) {
-  while (!text.empty()) {
-    const auto end = text.find('\n');
-    if (end == std::string_view::npos) return false;
-    if (lower(trimmed(text.substr(0, std::min<std::size_t>(end, 64)))).starts_with("frame time")) {
-      return true;
+  Words words(text, "");
+  std::string word;
+  const auto next = [&] {  // false where nothing ends the word yet
+    word = lower(words.next().substr(0, 64));
+    return words.at() < text.size();
+  };
+  bool motion = false, frame = false;
+  while (next()) {
+    if (motion && frame && word.starts_with("time")) {  // as value_of reads it
+      word.erase(0, 4);
+      if (word.empty() && !next()) return false;
+      if (word.starts_with(':')) word.erase(0, 1);
+      return !word.empty() || next();
     }
-    text.remove_prefix(end + 1);
+    frame = word == "frame";
+    motion = motion || word == "motion";
   }
   return false;
 }
