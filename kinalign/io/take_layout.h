@@ -59,21 +59,26 @@ AnyRows rows_for(const TakeGroup& group);
 template <class Rows, class Use>
 Result<void> for_each_array(Rows& rows, Use&& use) {
   using Kind = std::remove_const_t<Rows>;
+  Result<void> done;
+  const auto next = [&done, &use](std::string_view name, auto& values) {
+    if (done) done = use(name, values);
+  };
   if constexpr (std::is_same_v<Kind, ImuRows>) {
-    KA_TRY(use("orientation", rows.orientation));
-    KA_TRY(use("acceleration", rows.acceleration));
-    KA_TRY(use("angular_velocity", rows.angular_velocity));
+    next("orientation", rows.orientation);
+    next("acceleration", rows.acceleration);
+    next("angular_velocity", rows.angular_velocity);
   } else {
-    KA_TRY(use("positions", rows.positions));
+    next("positions", rows.positions);
   }
   if constexpr (std::is_same_v<Kind, ClipRows>) {
-    KA_TRY(use("local_positions", rows.local_positions));
-    KA_TRY(use("local_rotations", rows.local_rotations));
+    next("local_positions", rows.local_positions);
+    next("local_rotations", rows.local_rotations);
   }
-  if constexpr (std::is_same_v<Kind, PointRows>) KA_TRY(use("state", rows.state));
-  KA_TRY(use("valid", rows.valid));
-  KA_TRY(use("nearest_raw_ns", rows.distance.nearest_raw_ns));
-  return use("time_interval_ns", rows.distance.time_interval_ns);
+  if constexpr (std::is_same_v<Kind, PointRows>) next("state", rows.state);
+  next("valid", rows.valid);
+  next("nearest_raw_ns", rows.distance.nearest_raw_ns);
+  next("time_interval_ns", rows.distance.time_interval_ns);
+  return done;
 }
 
 /// The bytes of an array as they lie in memory, which is how files hold them.
