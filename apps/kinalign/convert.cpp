@@ -149,16 +149,27 @@ Result<void> take_to_bvh(const Job& job) {
   return put_bvh(job, bvh_from_clip(std::move(clip), length / static_cast<double>(steps)));
 }
 
+Failure other_ending(const Job& job) {
+  return Failure(Error{job.to, 0, "a name that ends in .npz or .bvh", "another ending"});
+}
+
 Result<void> convert_take(const Job& job) {
-  if (!job.to.ends_with(".npz") && !job.to.ends_with(".bvh")) {
-    return Failure(Error{job.to, 0, "a name that ends in .npz or .bvh", "another ending"});
-  }
+  if (!job.to.ends_with(".npz") && !job.to.ends_with(".bvh")) return other_ending(job);
   const auto work = [&job]() -> Result<std::string> {
     KA_TRY(job.to.ends_with(".npz") ? take_to_npz(job) : take_to_bvh(job));
     return std::string();
   };
   KA_TRY(run_guarded(GuardLimits{}, blame(job.from), work));
   return {};
+}
+
+Result<void> convert_stream(const Job& job, const Convert& o, const Progress& progress) {
+  if (job.to.ends_with(".bvh")) return bvh_to_bvh(job, KA_TRY(o.stream.stream({job.from})));
+  if (!job.to.ends_with(".npz")) return other_ending(job);
+  const Recording input = KA_TRY(open_input(job.files, job.from, o.stream, progress));
+  if (input.streams.size() == 1) return stream_to_npz(job, input.streams.front(), o.store_double);
+  return Failure(
+      Error{job.from, 0, "one stream's file", fmt::format("{} streams", input.streams.size())});
 }
 
 Result<int> run(Convert& o, Call& call) {
@@ -168,19 +179,8 @@ Result<int> run(Convert& o, Call& call) {
   KA_TRY(keep_inputs(job.to, {job.from}));
   if (KA_TRY(is_take(job.files, job.from))) {
     KA_TRY(convert_take(job));
-  } else if (job.to.ends_with(".bvh")) {
-    const StreamOptions options = KA_TRY(o.stream.stream({job.from}));
-    KA_TRY(bvh_to_bvh(job, options));
-  } else if (job.to.ends_with(".npz")) {
-    const Recording input =
-        KA_TRY(open_input(job.files, job.from, o.stream, call.console.progress()));
-    if (input.streams.size() != 1) {
-      return Failure(
-          Error{job.from, 0, "one stream's file", fmt::format("{} streams", input.streams.size())});
-    }
-    KA_TRY(stream_to_npz(job, input.streams.front(), o.store_double));
   } else {
-    return Failure(Error{job.to, 0, "a name that ends in .npz or .bvh", "another ending"});
+    KA_TRY(convert_stream(job, o, call.console.progress()));
   }
   call.console.print(harmless(job.to) + "\n");
   call.console.print_json(R"({"written": true})");
