@@ -56,8 +56,9 @@ def changed_since_parent():
     """What differs from the commit before HEAD; None where there is none to compare with."""
     names = set()
     for command in (["diff", "--name-only", "HEAD~1"], ["ls-files", "--others", "--exclude-standard"]):
-        git = subprocess.run(["git", *command], cwd=ROOT, capture_output=True, text=True, check=False)
-        if git.returncode != 0:
+        try:
+            git = subprocess.run(["git", *command], cwd=ROOT, capture_output=True, text=True, check=True)
+        except (OSError, subprocess.CalledProcessError):
             return None
         names.update(ROOT / name for name in git.stdout.splitlines())
     return names
