@@ -127,6 +127,9 @@ Result<std::string> take_facts(FileSystem& files, const std::string& path) {
                               {"files", files_json(group.files)}});
   }
   out["report"] = Json::parse(KA_TRY(reader.report_json()), nullptr, false);
+  if (out["report"].is_discarded()) {
+    return Failure(Error{path, 0, "a report as JSON", "a text that is none"});
+  }
   return json_text(out);
 }
 

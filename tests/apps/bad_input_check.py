@@ -88,6 +88,15 @@ def a_damaged_take_is_read_or_refused(folder):
 
 
 @case
+def a_take_whose_report_is_no_JSON_is_refused(folder):
+    take = folder / "t.h5"
+    assert kinalign("align", samples.recording(folder), "-o", take).returncode == 0
+    take.write_bytes(take.read_bytes().replace(b'{\n  "schema": "kinalign.report/1"', b'{\n  "schema": [kinalign.report/1"'))
+    for words in (("info", take), ("info", take, "--json")):
+        refused(*words, naming=take)
+
+
+@case
 def what_is_no_regular_file_is_refused_at_once(folder):
     os.mkfifo(folder / "pipe")
     (folder / "folder").mkdir()
