@@ -78,7 +78,7 @@ std::string time_text(const Group& group, const Console& console) {
   std::string sure = console.paint(Colour::warning, "stamps of unknown accuracy");
   if (known && *known == 0) sure = "shared clock";
   if (known && *known > 0) sure = fmt::format("± {:.1f} ms", 1e-6 * static_cast<double>(*known));
-  return name_of(group) + " " + sure + worst_node(group, doubt);
+  return harmless(name_of(group)) + " " + sure + worst_node(group, doubt);
 }
 
 std::string time_line(std::vector<Group> groups, const std::string& reference,
@@ -98,12 +98,14 @@ std::string space_line(const SpaceReport& s) {
   std::string how = "root onto root in every frame";
   if (s.method == "fit") how = "fitted once per take";
   if (s.method == "given") how = "as given";
-  std::string text = fmt::format(
-      "  space  {} on {} {:.1f} cm rms (before: {:.1f}), rotation {:.1f}°, {}", s.stream, s.onto,
-      100.0 * s.after_m, 100.0 * s.before_m, turn.angle() * 180.0 / std::numbers::pi, how);
+  std::string text =
+      fmt::format("  space  {} on {} {:.1f} cm rms (before: {:.1f}), rotation {:.1f}°, {}",
+                  harmless(s.stream), harmless(s.onto), 100.0 * s.after_m, 100.0 * s.before_m,
+                  turn.angle() * 180.0 / std::numbers::pi, how);
   if (!s.joints.empty()) {
     const JointResidual& worst = s.joints.front();
-    text += fmt::format("; worst joint: {} {:.1f} cm", worst.joint, 100.0 * worst.after_m);
+    text +=
+        fmt::format("; worst joint: {} {:.1f} cm", harmless(worst.joint), 100.0 * worst.after_m);
   }
   return text + "\n";
 }
@@ -122,7 +124,7 @@ std::string gap_line(const Group& group) {
   share(s.invalid, "invalid");
   share(s.inferred, "inferred");
   share(s.bridged, "interpolated over loss");
-  std::string text = "  gaps   " + s.stream;
+  std::string text = "  gaps   " + harmless(s.stream);
   for (const std::string& one : said) text += (&one == said.data() ? " " : ", ") + one;
   return text + worst_node(group, harm) + "\n";
 }
@@ -192,7 +194,7 @@ std::string summary(const AlignmentReport& report, const std::string& out, const
   for (const SpaceReport& s : report.spaces) text += space_line(s);
   text += gap_lines(groups);
   text += finding_lines(report.findings, console);
-  if (!out.empty()) text += fmt::format("  see    kinalign info {}\n", out);
+  if (!out.empty()) text += fmt::format("  see    kinalign info {}\n", harmless(out));
   return text;
 }
 

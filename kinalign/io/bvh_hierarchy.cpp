@@ -275,6 +275,7 @@ bool bvh_head_is_whole(std::string_view text) {
       if (word.starts_with(':')) word.erase(0, 1);
       return !word.empty() || next();
     }
+    if (word == "root" || word == "joint" || word == "end") words.rest_of_line();  // any name
     frame = word == "frame";
     motion = motion || word == "motion";
   }

@@ -198,6 +198,8 @@ def names_in_files_reach_the_terminal_and_JSON_harmlessly(folder):
                       ("align", "--mocap", path, "-o", folder / "o.h5", "--force", "--json"),
                       ("info", folder / "o.h5"), ("info", folder / "o.h5", "--json")):
             law(kinalign(*words), words)
+        words = ("align", "--mocap", path, "-o", os.fsdecode(bytes(path)) + ".h5")
+        law(kinalign(*words), words)
         path.write_text("rubbish")
         words = ("check", path)
         done = kinalign(*words)
