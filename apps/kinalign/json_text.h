@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include <string>
 
 namespace kinalign {
 
-/// JSON of what may come from files: bytes that are no UTF-8 become U+FFFD.
+/// JSON (nlohmann's) of what may come from files: bytes that are no UTF-8 become U+FFFD.
 template <class Json>
 std::string json_text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
