@@ -57,7 +57,8 @@ std::string bvh_text() {
 
 std::string csv_text() {
   std::string text = "time_ns";
-  for (const auto& name : (*parse_layout(*builtin_layout("kinect"), "kinect")).names) {
+  const TableLayout layout = *parse_layout(*builtin_layout("kinect"), "kinect");
+  for (const auto& name : layout.names) {
     for (const char* field : {"x", "y", "z", "state"}) text += fmt::format(",{}_{}", name, field);
   }
   text += '\n';

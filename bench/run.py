@@ -15,6 +15,12 @@ HERE = pathlib.Path(__file__).resolve().parent
 # job, ours, reference, in words, aim (ours / reference)
 ROWS = [
     ("text to doubles", "parse/kinalign", "parse/from_chars", "`std::from_chars`", 0.75),
+    ("a BVH file read, all checks", "bvh/kinalign", "bvh/from_chars",
+     "`std::from_chars` from memory", 0.75),
+    ("a Kinect CSV read, all checks", "csv/kinalign", "csv/from_chars",
+     "`std::from_chars` from memory", 0.8),
+    ("a take of 118 MB, synced", "take/kinalign/real_time", "take/write/real_time",
+     "`write()` and `fsync` of the same bytes", 1.1),
     ("doubles of a file to text", "print_file_like/kinalign", "print_file_like/to_chars",
      "`std::to_chars`, shortest", 0.2),
     ("any doubles to text", "print_any/kinalign", "print_any/to_chars",
