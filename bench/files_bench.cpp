@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole files: a BVH and a CSV read with all checks against a std::from_chars loop over the same
 // text in memory, and a take written against write() of the same bytes to a new file.
-#include "kinalign/io/bvh.h"
+#include "kinalign/io/bvh_head.h"
 #include "kinalign/io/bvh_rows.h"
 #include "kinalign/io/layout.h"
 #include "kinalign/io/table_reader.h"
@@ -110,15 +110,12 @@ void bvh_kinalign(benchmark::State& state) {
   for (auto _ : state) {
     InputFile file = *InputFile::open(files, path);
     std::optional<BvhRows> rows;
-    std::string head;
+    BvhHead head(path);
     for (std::string_view piece = *file.next(); !piece.empty(); piece = *file.next()) {
       if (!rows) {
-        head += piece;
-        if (!bvh_head_is_whole(head)) continue;
-        std::size_t begin = 0;
-        const BvhHierarchy h = *parse_bvh_hierarchy(head, path, begin, findings);
-        rows.emplace(BvhRowsHead{path, h.row_size(), h.frames, 1});
-        piece = std::string_view(head).substr(begin);
+        if (!*head.add(piece, findings)) continue;
+        rows.emplace(BvhRowsHead{path, head.hierarchy.row_size(), head.hierarchy.frames, 1});
+        piece = head.rows();
       }
       if (!rows->feed(piece, findings)) std::abort();
       benchmark::DoNotOptimize(rows->frames().data());

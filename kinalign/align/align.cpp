@@ -6,6 +6,7 @@
 #include "kinalign/align/slabs.h"
 #include "kinalign/align/space.h"
 #include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,6 @@
 namespace kinalign {
 
 namespace {
-
-Failure cancelled() { return Failure(Error{"", 0, "the end of the job", "an interruption"}); }
 
 /// The groups that fits need: their own and the ones they are fitted onto.
 std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size_t groups) {
@@ -38,7 +37,7 @@ Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
     for (std::size_t k = 0; k < spaces.size(); ++k) {
       if (spaces[k].options.method == "fit") add_pairs(spaces[k], slab, moments[k]);
     }
-    if (!go_on(progress, "fitting", slab.first, plan.header.frames)) return cancelled();
+    if (!go_on(progress, "fitting", slab.first, plan.header.frames)) return Failure(interruption());
   }
   for (std::size_t k = 0; k < spaces.size(); ++k) {
     if (spaces[k].options.method != "fit") continue;
@@ -63,36 +62,6 @@ void count_nodes(const Recording& recording, const AlignPlan& plan, const TakeSl
     invalid[i] += count_invalid(std::get<ImuRows>(slab.rows[stream.group]),
                                 {stream.first_node, nodes.size()}, imu->node_names.size());
   }
-}
-
-StreamReport report_stream(const Recording& recording, const AlignPlan& plan, std::size_t i,
-                           const SlabMaker& slabs) {
-  const ResampleCount count = slabs.count(i);
-  const GapCount gaps = slabs.gaps(i);
-  const RecordedStream& s = recording.streams[i];
-  StreamReport out;
-  out.stream = s.name;
-  if (const auto* imu = std::get_if<ImuInput>(&s.data)) {
-    for (const std::string& node : imu->node_names) {
-      out.node += (out.node.empty() ? "" : ", ") + node;
-    }
-  }
-  out.survey = s.survey;
-  const ResampleRule& rule = plan.streams[i].rule;
-  out.rate_hz = rule.step_ns > 0 ? 1e9 / static_cast<double>(rule.step_ns) : 0.0;
-  out.gap_ns = rule.gap_ns;
-  out.gaps = gaps.gaps;
-  out.gap_time_ns = gaps.time_ns;
-  out.samples = count.samples;
-  out.invalid = count.invalid;
-  out.inferred = count.inferred;
-  out.bridged = count.bridged;
-  out.worst_nearest_ns = count.worst_nearest_ns;
-  for (const TimeModelPiece& piece : s.clock.pieces) {
-    if (!piece.half_width) continue;
-    out.worst_interval_ns = std::max(out.worst_interval_ns.value_or(0), piece.half_width->count());
-  }
-  return out;
 }
 
 AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) {
@@ -129,15 +98,97 @@ Findings judge_content(const RecordedStream& s, const ResampleCount& count, doub
   return out;
 }
 
-void finish_report(const Recording& recording, const AlignPlan& plan, const SlabMaker& slabs,
+/// What is counted while the slabs go by.
+struct Counts {
+  Time begin{}, end{};                       // first and last row
+  std::vector<ResidualSums> residuals;       // [spaces]
+  std::vector<std::uint64_t> invalid_nodes;  // [streams] in the end; 0 where it is none of nodes
+};
+
+Counts no_counts(const Recording& recording, const std::vector<SpacePlan>& spaces) {
+  Counts out;
+  out.residuals.reserve(spaces.size());
+  for (const SpacePlan& space : spaces) out.residuals.emplace_back(space.pairs.size());
+  out.invalid_nodes.resize(recording.streams.size());
+  return out;
+}
+
+/// The plan and what it became; all as long as one call of align.
+struct Job {
+  const Recording& recording;
+  const AlignPlan& plan;
+  const std::vector<SpacePlan>& spaces;
+};
+
+/// Makes, turns, counts and hands on every slab.
+Result<void> pass_slabs(const Job& job, SlabMaker& slabs, const TakeSink& sink,
+                        const Progress& progress, Counts& counts) {
+  const std::uint64_t frames = job.plan.header.frames;
+  TakeSlab slab;
+  std::uint64_t done = 0;
+  while (KA_TRY(slabs.next(slab))) {
+    if (done == 0) counts.begin = slab.stamps.front();
+    counts.end = slab.stamps.back();
+    done += slab.stamps.size();
+    if (done > frames) break;
+    for (std::size_t k = 0; k < job.spaces.size(); ++k) {
+      counts.residuals[k].transform(job.spaces[k], slab);
+    }
+    count_nodes(job.recording, job.plan, slab, counts.invalid_nodes);
+    KA_TRY(sink.rows(slab));
+    if (!go_on(progress, "aligning", done, frames)) return Failure(interruption());
+  }
+  if (done == frames) return {};
+  return Failure(Error{job.recording.streams[job.plan.reference].name, 0,
+                       fmt::format("{} frames, as in the first reading", frames),
+                       fmt::format("{}", done)});
+}
+
+StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts& counts,
+                           std::size_t i) {
+  const ResampleCount count = slabs.count(i);
+  const GapCount gaps = slabs.gaps(i);
+  const RecordedStream& s = job.recording.streams[i];
+  StreamReport out;
+  out.stream = s.name;
+  if (const auto* imu = std::get_if<ImuInput>(&s.data)) {
+    for (const std::string& node : imu->node_names) {
+      out.node += (out.node.empty() ? "" : ", ") + node;
+    }
+  }
+  out.survey = s.survey;
+  const ResampleRule& rule = job.plan.streams[i].rule;
+  out.rate_hz = rule.step_ns > 0 ? 1e9 / static_cast<double>(rule.step_ns) : 0.0;
+  out.gap_ns = rule.gap_ns;
+  out.gaps = gaps.gaps;
+  out.gap_time_ns = gaps.time_ns;
+  out.samples = count.samples;
+  out.invalid = count.invalid + counts.invalid_nodes[i];
+  out.inferred = count.inferred;
+  out.bridged = count.bridged;
+  out.worst_nearest_ns = count.worst_nearest_ns;
+  for (const TimeModelPiece& piece : s.clock.pieces) {
+    if (!piece.half_width) continue;
+    out.worst_interval_ns = std::max(out.worst_interval_ns.value_or(0), piece.half_width->count());
+  }
+  return out;
+}
+
+void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
                    AlignmentReport& report) {
-  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
-    report.streams.push_back(report_stream(recording, plan, i, slabs));
-    const Findings content = judge_content(recording.streams[i], slabs.count(i), report.rate_hz);
+  report.begin = counts.begin;
+  report.end = counts.end;
+  for (std::size_t i = 0; i < job.recording.streams.size(); ++i) {
+    const RecordedStream& stream = job.recording.streams[i];
+    report.streams.push_back(report_stream(job, slabs, counts, i));
+    const Findings content = judge_content(stream, slabs.count(i), report.rate_hz);
     report.findings.insert(report.findings.end(), content.begin(), content.end());
   }
   std::stable_sort(report.findings.begin(), report.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+  for (std::size_t k = 0; k < job.spaces.size(); ++k) {
+    report.spaces.push_back(counts.residuals[k].report(job.spaces[k], job.plan.header));
+  }
 }
 
 }  // namespace
@@ -182,38 +233,13 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
   KA_TRY(fit_spaces(recording, plan, spaces, progress));
 
   AlignmentReport report = begin_report(recording, plan);
-  std::vector<ResidualSums> residuals;
-  for (const SpacePlan& space : spaces) residuals.emplace_back(space.pairs.size());
   KA_TRY(sink.begin(plan.header));
   SlabMaker slabs =
       KA_TRY(SlabMaker::start(recording, plan, std::vector<bool>(plan.header.groups.size(), true)));
-  TakeSlab slab;
-  std::vector<std::uint64_t> invalid_nodes(recording.streams.size());
-  std::uint64_t done = 0;
-  while (KA_TRY(slabs.next(slab))) {
-    for (std::size_t k = 0; k < spaces.size(); ++k) residuals[k].transform(spaces[k], slab);
-    if (done == 0) report.begin = slab.stamps.front();
-    report.end = slab.stamps.back();
-    done += slab.stamps.size();
-    if (done > plan.header.frames) break;
-    count_nodes(recording, plan, slab, invalid_nodes);
-    KA_TRY(sink.rows(slab));
-    if (!go_on(progress, "aligning", done, plan.header.frames)) return cancelled();
-  }
-  if (done != plan.header.frames) {
-    return Failure(Error{report.reference, 0,
-                         fmt::format("{} frames, as in the first reading", plan.header.frames),
-                         fmt::format("{}", done)});
-  }
-  finish_report(recording, plan, slabs, report);
-  for (std::size_t i = 0; i < invalid_nodes.size(); ++i) {
-    if (std::holds_alternative<ImuInput>(recording.streams[i].data)) {
-      report.streams[i].invalid = invalid_nodes[i];
-    }
-  }
-  for (std::size_t k = 0; k < spaces.size(); ++k) {
-    report.spaces.push_back(residuals[k].report(spaces[k], plan.header));
-  }
+  const Job job{recording, plan, spaces};
+  Counts counts = no_counts(recording, spaces);
+  KA_TRY(pass_slabs(job, slabs, sink, progress, counts));
+  finish_report(job, slabs, counts, report);
   return report;
 }
 

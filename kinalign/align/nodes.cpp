@@ -83,6 +83,25 @@ void clear_row(const ImuGroup& group, std::size_t first, ImuRows& rows) {
   std::fill(valid, valid + static_cast<std::ptrdiff_t>(nodes), std::uint8_t{0});
 }
 
+/// The root node of a row, as it was in the world.
+struct RootPose {
+  Quat to_root;
+  Vec3 acceleration;
+};
+
+/// One node of a row into the root's space.
+void turn_node(const RootPose& root, bool is_root, std::size_t i, ImuRows& rows) {
+  if (!is_root) put_quat(rows.orientation, i, root.to_root * quat(rows.orientation, i));
+  if (!rows.acceleration.empty()) {
+    auto a = vec3(std::span(rows.acceleration), i);
+    a = (root.to_root * (is_root ? Vec3(a) : Vec3(a - root.acceleration))).eval();
+  }
+  if (!rows.angular_velocity.empty()) {
+    auto w = vec3(std::span(rows.angular_velocity), i);
+    w = (root.to_root * w).eval();
+  }
+}
+
 }  // namespace
 
 void bring_to_root(const ImuGroup& group, ImuRows& rows) {
@@ -95,22 +114,12 @@ void bring_to_root(const ImuGroup& group, ImuRows& rows) {
       clear_row(group, first, rows);
       continue;
     }
-    const Quat to_root = quat(rows.orientation, first + root).conjugate();
-    const Vec3 root_acceleration = group.content.acceleration
-                                       ? Vec3(vec3(std::span(rows.acceleration), first + root))
-                                       : Vec3(Vec3::Zero());
+    RootPose pose{quat(rows.orientation, first + root).conjugate(), Vec3::Zero()};
+    if (group.content.acceleration) {
+      pose.acceleration = vec3(std::span(rows.acceleration), first + root);
+    }
     for (std::size_t i = first; i < first + nodes; ++i) {
-      if (rows.valid[i] == 0) continue;
-      const bool is_root = i == first + root;
-      if (!is_root) put_quat(rows.orientation, i, to_root * quat(rows.orientation, i));
-      if (group.content.acceleration) {
-        auto a = vec3(std::span(rows.acceleration), i);
-        a = (to_root * (is_root ? Vec3(a) : Vec3(a - root_acceleration))).eval();
-      }
-      if (group.content.angular_velocity) {
-        auto w = vec3(std::span(rows.angular_velocity), i);
-        w = (to_root * w).eval();
-      }
+      if (rows.valid[i] != 0) turn_node(pose, i == first + root, i, rows);
     }
   }
 }

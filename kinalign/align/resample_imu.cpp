@@ -104,6 +104,16 @@ void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
   }
 }
 
+/// n samples, none of them valid.
+ImuRows no_samples(std::size_t n, const ImuContent& content) {
+  ImuRows out;
+  out.valid.assign(n, 0);
+  if (content.orientation) out.orientation.assign(4 * n, 0.0);
+  if (content.acceleration) out.acceleration.assign(3 * n, 0.0);
+  if (content.angular_velocity) out.angular_velocity.assign(3 * n, 0.0);
+  return out;
+}
+
 }  // namespace
 
 Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_world, ImuRows& out) {
@@ -113,10 +123,7 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
   const auto& stamps = window_.time_ns;
   if (stamps.empty()) return Failure(Error{"", 0, "samples in a stream of nodes", "none"});
   const std::size_t nodes = window_.rows.valid.size() / stamps.size(), n = grid.size() * nodes;
-  out.valid.assign(n, 0);
-  if (content_.orientation) out.orientation.assign(4 * n, 0.0);
-  if (content_.acceleration) out.acceleration.assign(3 * n, 0.0);
-  if (content_.angular_velocity) out.angular_velocity.assign(3 * n, 0.0);
+  out = no_samples(n, content_);
   for (std::size_t node = 0; node < nodes; ++node) {
     interpolate(samples_of(window_, node, content_, to_world), grid, rule_,
                 NodeColumn{node, nodes, content_, &count_}, out);
@@ -138,7 +145,6 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
     }
   }
   count_.samples += n;
-  count_.invalid += static_cast<std::uint64_t>(std::count(out.valid.begin(), out.valid.end(), 0));
   return {};
 }
 

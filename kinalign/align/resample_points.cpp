@@ -27,6 +27,7 @@ std::map<std::vector<bool>, Joints> joints_by_seen(const PointFrames& rows, std:
 
 /// Samples [T', 3 |group|] of a group's joints in the rows where they were seen.
 struct Gathered {
+  const Joints* group = nullptr;
   std::vector<std::int64_t> stamps;
   std::vector<double> values;
 };
@@ -34,6 +35,7 @@ struct Gathered {
 Gathered gather(const Window<PointFrames>& window, const std::vector<bool>& seen,
                 const Joints& group, std::size_t joints) {
   Gathered out;
+  out.group = &group;
   for (std::size_t t = 0; t < seen.size(); ++t) {
     if (!seen[t]) continue;
     out.stamps.push_back(window.time_ns[t]);
@@ -46,8 +48,9 @@ Gathered gather(const Window<PointFrames>& window, const std::vector<bool>& seen
 }
 
 /// One spline for all of a group's channels in each segment; rows outside stay invalid.
-void interpolate(const Gathered& samples, const Joints& group, std::span<const std::int64_t> grid,
+void interpolate(const Gathered& samples, std::span<const std::int64_t> grid,
                  const ResampleRule& rule, PointRows& out, ResampleCount& count) {
+  const Joints& group = *samples.group;
   const std::size_t joints = out.valid.size() / grid.size(), channels = 3 * group.size();
   std::vector<double> bends, values;
   for (const Segment& s : find_segments(samples.stamps, grid, rule.gap_ns)) {
@@ -73,6 +76,22 @@ void interpolate(const Gathered& samples, const Joints& group, std::span<const s
       }
     }
   }
+}
+
+/// Between two raw samples.
+struct Between {
+  Tracking lesser;
+  bool lost;  // samples in between
+  std::int64_t nearest_ns;
+};
+
+/// The state of a joint there, counted.
+Tracking judge(const Between& between, bool valid, ResampleCount& count) {
+  if (!valid) return Tracking::missing;
+  count.inferred += between.lesser == Tracking::inferred ? 1 : 0;
+  count.bridged += between.lost || between.lesser == Tracking::missing ? 1 : 0;
+  count.worst_nearest_ns = std::max(count.worst_nearest_ns, between.nearest_ns);
+  return between.lesser;
 }
 
 }  // namespace
@@ -103,7 +122,7 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
   out.state.assign(grid.size() * joints, Tracking::missing);
   out.valid.assign(grid.size() * joints, 0);
   for (const auto& [seen, group] : joints_by_seen(window_.rows, joints)) {
-    interpolate(gather(window_, seen, group, joints), group, grid, rule_, out, count_);
+    interpolate(gather(window_, seen, group, joints), grid, rule_, out, count_);
   }
   Neighbours near = find_neighbours(stamps, grid);
   for (std::size_t r = 0; r < grid.size(); ++r) {
@@ -115,15 +134,9 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
     const bool lost = stamps[right] - stamps[left] > rule_.step_ns * 3 / 2;
     for (std::size_t j = 0; j < joints; ++j) {
       const std::size_t cell = r * joints + j;
-      out.state[cell] =
+      const Tracking lesser =
           std::min(window_.rows.state[left * joints + j], window_.rows.state[right * joints + j]);
-      if (out.valid[cell] == 0) {
-        out.state[cell] = Tracking::missing;
-        continue;
-      }
-      count_.inferred += out.state[cell] == Tracking::inferred ? 1 : 0;
-      count_.bridged += lost || out.state[cell] == Tracking::missing ? 1 : 0;
-      count_.worst_nearest_ns = std::max(count_.worst_nearest_ns, near.nearest_raw_ns[r]);
+      out.state[cell] = judge({lesser, lost, near.nearest_raw_ns[r]}, out.valid[cell] != 0, count_);
     }
   }
   count_.samples += out.valid.size();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/window.h"
 
+#include <tuple>
+
 namespace kinalign {
 
 namespace {
@@ -24,78 +26,53 @@ void drop_back(std::vector<T>& array, std::size_t rows) {
   array.resize(array.size() - array.size() / rows);
 }
 
+/// The arrays of a block, each [rows] of something.
+template <class Frames>
+constexpr std::tuple<> arrays;
+template <>
+constexpr auto arrays<ClipFrames> = std::tuple(&ClipFrames::stamps, &ClipFrames::local_positions,
+                                               &ClipFrames::local_rotations);
+template <>
+constexpr auto arrays<PointFrames> = std::tuple(&PointFrames::stamps, &PointFrames::positions,
+                                                &PointFrames::state);
+template <>
+constexpr auto arrays<ImuSamples> = std::tuple(&ImuSamples::stamps, &ImuSamples::orientation,
+                                               &ImuSamples::acceleration,
+                                               &ImuSamples::angular_velocity, &ImuSamples::valid);
+
+template <class Frames, class Use>
+void for_each_array(Use&& use) {
+  std::apply([&use](auto... array) { (use(array), ...); }, arrays<Frames>);
+}
+
 }  // namespace
 
-void append_rows(ClipFrames& to, const ClipFrames& from, std::size_t first, std::size_t count) {
+template <class Frames>
+void append_rows(Frames& to, const Frames& from, std::size_t first, std::size_t count) {
   const std::size_t rows = from.size();
-  append(to.local_positions, from.local_positions, rows, first, count);
-  append(to.local_rotations, from.local_rotations, rows, first, count);
-  append(to.stamps, from.stamps, rows, first, count);
+  for_each_array<Frames>([&](auto array) { append(to.*array, from.*array, rows, first, count); });
 }
 
-void append_rows(PointFrames& to, const PointFrames& from, std::size_t first, std::size_t count) {
-  const std::size_t rows = from.size();
-  append(to.positions, from.positions, rows, first, count);
-  append(to.state, from.state, rows, first, count);
-  append(to.stamps, from.stamps, rows, first, count);
-}
-
-void append_rows(ImuSamples& to, const ImuSamples& from, std::size_t first, std::size_t count) {
-  const std::size_t rows = from.size();
-  append(to.orientation, from.orientation, rows, first, count);
-  append(to.acceleration, from.acceleration, rows, first, count);
-  append(to.angular_velocity, from.angular_velocity, rows, first, count);
-  append(to.valid, from.valid, rows, first, count);
-  append(to.stamps, from.stamps, rows, first, count);
-}
-
-void drop_front(ClipFrames& rows, std::size_t count) {
-  if (count == 0) return;
+template <class Frames>
+void drop_front(Frames& rows, std::size_t count) {
   const std::size_t all = rows.size();
-  drop(rows.local_positions, all, count);
-  drop(rows.local_rotations, all, count);
-  drop(rows.stamps, all, count);
+  if (count > 0) for_each_array<Frames>([&](auto array) { drop(rows.*array, all, count); });
 }
 
-void drop_front(PointFrames& rows, std::size_t count) {
-  if (count == 0) return;
+template <class Frames>
+void drop_last(Frames& rows) {
   const std::size_t all = rows.size();
-  drop(rows.positions, all, count);
-  drop(rows.state, all, count);
-  drop(rows.stamps, all, count);
+  for_each_array<Frames>([&](auto array) { drop_back(rows.*array, all); });
 }
 
-void drop_front(ImuSamples& rows, std::size_t count) {
-  if (count == 0) return;
-  const std::size_t all = rows.size();
-  drop(rows.orientation, all, count);
-  drop(rows.acceleration, all, count);
-  drop(rows.angular_velocity, all, count);
-  drop(rows.valid, all, count);
-  drop(rows.stamps, all, count);
-}
-
-void drop_last(ClipFrames& rows) {
-  const std::size_t all = rows.size();
-  drop_back(rows.local_positions, all);
-  drop_back(rows.local_rotations, all);
-  drop_back(rows.stamps, all);
-}
-
-void drop_last(PointFrames& rows) {
-  const std::size_t all = rows.size();
-  drop_back(rows.positions, all);
-  drop_back(rows.state, all);
-  drop_back(rows.stamps, all);
-}
-
-void drop_last(ImuSamples& rows) {
-  const std::size_t all = rows.size();
-  drop_back(rows.orientation, all);
-  drop_back(rows.acceleration, all);
-  drop_back(rows.angular_velocity, all);
-  drop_back(rows.valid, all);
-  drop_back(rows.stamps, all);
-}
+template void append_rows(ClipFrames&, const ClipFrames&, std::size_t, std::size_t);
+template void append_rows(PointFrames&, const PointFrames&, std::size_t, std::size_t);
+template void append_rows(ImuSamples&, const ImuSamples&, std::size_t, std::size_t);
+template void drop_front(ClipFrames&, std::size_t);
+template void drop_front(PointFrames&, std::size_t);
+template void drop_front(ImuSamples&, std::size_t);
+template void drop_last(ClipFrames&);
+template void drop_last(PointFrames&);
+template void drop_last(ImuSamples&);
 
 }  // namespace kinalign

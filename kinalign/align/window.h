@@ -14,17 +14,14 @@
 
 namespace kinalign {
 
-// Rows first.. of one block appended to another, and rows dropped from the front. The number of
-// values in a row follows from the arrays' sizes.
-void append_rows(ClipFrames& to, const ClipFrames& from, std::size_t first, std::size_t count);
-void append_rows(PointFrames& to, const PointFrames& from, std::size_t first, std::size_t count);
-void append_rows(ImuSamples& to, const ImuSamples& from, std::size_t first, std::size_t count);
-void drop_front(ClipFrames& rows, std::size_t count);
-void drop_front(PointFrames& rows, std::size_t count);
-void drop_front(ImuSamples& rows, std::size_t count);
-void drop_last(ClipFrames& rows);
-void drop_last(PointFrames& rows);
-void drop_last(ImuSamples& rows);
+// Rows first.. of one block appended to another, and rows dropped from the front or the last one.
+// The number of values in a row follows from the arrays' sizes. For all three kinds of blocks.
+template <class Frames>
+void append_rows(Frames& to, const Frames& from, std::size_t first, std::size_t count);
+template <class Frames>
+void drop_front(Frames& rows, std::size_t count);
+template <class Frames>
+void drop_last(Frames& rows);
 
 /// Stretches without samples within a span.
 struct GapCount {

@@ -2,8 +2,11 @@
 // How far a long job is, told to whoever asked; and whether it should stop.
 #pragma once
 
+#include "kinalign/core/error.h"
+
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <string_view>
 
 namespace kinalign {
@@ -16,6 +19,11 @@ using Progress =
 inline bool go_on(const Progress& progress, std::string_view what, std::uint64_t done,
                   std::uint64_t total) {
   return !progress || progress(what, done, total);
+}
+
+/// What a job fails with that was told to stop.
+inline Error interruption(std::string file = {}) {
+  return {std::move(file), 0, "the end of the job", "an interruption"};
 }
 
 }  // namespace kinalign

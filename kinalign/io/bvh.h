@@ -55,10 +55,6 @@ struct BvhFile {
 Result<BvhHierarchy> parse_bvh_hierarchy(std::string_view text, std::string_view name,
                                          std::size_t& rows, Findings& findings);
 
-/// True where `text` reaches beyond the line "Frame Time: ...", so that the hierarchy can be
-/// parsed.
-bool bvh_head_is_whole(std::string_view text);
-
 /// "HIERARCHY" stands first.
 bool looks_like_bvh(std::string_view head);
 

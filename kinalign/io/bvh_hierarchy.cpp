@@ -2,6 +2,7 @@
 // The part of a BVH above its rows: joints, offsets, channels, number of frames, frame time.
 #include "kinalign/core/numbers.h"
 #include "kinalign/io/bvh.h"
+#include "kinalign/io/bvh_words.h"
 
 #include <algorithm>
 #include <array>
@@ -15,69 +16,6 @@ namespace {
 
 constexpr std::array<std::string_view, 6> channel_names{"xposition", "yposition", "zposition",
                                                         "xrotation", "yrotation", "zrotation"};
-
-bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
-  }
-  return out;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// Words of a text, with the line they stand on.
-class Words {
- public:
-  Words(std::string_view text, std::string_view name) : text_(text), name_(name) {}
-
-  /// The next word; a brace is a word of its own. Empty at the end.
-  std::string_view next() {
-    skip_blanks();
-    const std::size_t begin = at_;
-    if (at_ < text_.size() && is_brace(text_[at_])) return text_.substr(at_++, 1);
-    while (at_ < text_.size() && !is_blank(text_[at_]) && !is_brace(text_[at_])) ++at_;
-    return text_.substr(begin, at_ - begin);
-  }
-
-  std::string_view peek() {
-    const Words before = *this;
-    const std::string_view word = next();
-    *this = before;
-    return word;
-  }
-
-  /// What is left of the line, without a brace at its end: a name may hold blanks.
-  std::string_view rest_of_line() {
-    const std::size_t begin = at_;
-    while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '{') ++at_;
-    return trimmed(text_.substr(begin, at_ - begin));
-  }
-
-  Error wrong(std::string expected, std::string_view found) const {
-    return Error{std::string(name_), line_, std::move(expected),
-                 found.empty() ? "the end of the file" : "'" + shown(found) + "'"};
-  }
-
-  std::int64_t line() const { return line_; }
-  std::size_t at() const { return at_; }
-
- private:
-  static bool is_brace(char c) { return c == '{' || c == '}'; }
-  void skip_blanks() {
-    for (; at_ < text_.size() && is_blank(text_[at_]); ++at_) line_ += text_[at_] == '\n' ? 1 : 0;
-  }
-
-  std::string_view text_, name_;
-  std::size_t at_ = 0;
-  std::int64_t line_ = 1;
-};
 
 class HierarchyParser {
  public:
@@ -239,7 +177,7 @@ class HierarchyParser {
     return word.empty() ? words_.next() : word;
   }
 
-  Words words_;
+  BvhWords words_;
   std::string_view name_;
   Findings* findings_;
   BvhHierarchy out_;
@@ -258,33 +196,6 @@ std::size_t BvhHierarchy::row_size() const {
 Result<BvhHierarchy> parse_bvh_hierarchy(std::string_view text, std::string_view name,
                                          std::size_t& rows, Findings& findings) {
   return HierarchyParser(text, name, findings).parse(rows);
-}
-
-bool bvh_head_is_whole(std::string_view text) {
-  Words words(text, "");
-  std::string word;
-  const auto next = [&] {  // false where nothing ends the word yet
-    word = lower(words.next().substr(0, 64));
-    return words.at() < text.size();
-  };
-  bool motion = false, frame = false;
-  while (next()) {
-    if (motion && frame && word.starts_with("time")) {  // as value_of reads it
-      word.erase(0, 4);
-      if (word.empty() && !next()) return false;
-      if (word.starts_with(':')) word.erase(0, 1);
-      return !word.empty() || next();
-    }
-    if (word == "root" || word == "joint" || word == "end") words.rest_of_line();  // any name
-    frame = word == "frame";
-    motion = motion || word == "motion";
-  }
-  return false;
-}
-
-bool looks_like_bvh(std::string_view head) {
-  if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
-  return lower(trimmed(head.substr(0, 64))).starts_with("hierarchy");
 }
 
 Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A BVH in pieces: its head is gathered until it is whole, then rows become poses.
-#include "kinalign/io/bvh.h"
+#include "kinalign/io/bvh_head.h"
 #include "kinalign/io/bvh_rows.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 
 namespace kinalign {
@@ -15,18 +14,13 @@ namespace {
 class BvhReader final : public ClipReader {
  public:
   BvhReader(const BvhOptions& options, std::string name)
-      : options_(options), name_(std::move(name)) {}
+      : options_(options), name_(std::move(name)), head_(name_) {}
 
   Result<void> feed(std::string_view piece, ClipFrames& out) override {
     if (rows_) {
       KA_TRY(rows_->feed(piece, findings));
     } else {
-      constexpr std::size_t longest_head = std::size_t{8} << 20;
-      head_ += piece;
-      if (!bvh_head_is_whole(head_)) {
-        if (head_.size() <= longest_head) return {};
-        return Failure(Error{name_, 0, "MOTION within the first 8 MiB", "none"});
-      }
+      if (!KA_TRY(head_.add(piece, findings))) return {};
       KA_TRY(begin_rows());
     }
     release(out);
@@ -35,48 +29,42 @@ class BvhReader final : public ClipReader {
 
   Result<void> finish(ClipFrames& out) override {
     if (!rows_) {
-      head_ += ' ';
+      KA_TRY(head_.finish(findings));
       KA_TRY(begin_rows());
     }
     KA_TRY(rows_->finish(findings));
     release(out);
-    if (rows_->frames_read() != hierarchy_.frames) {
-      findings.push_back(
-          {Severity::warning,
-           Error{name_, hierarchy_.frames_line, fmt::format("{} frames", hierarchy_.frames),
-                 std::to_string(rows_->frames_read())},
-           "the frames that are there were read", ""});
+    if (rows_->frames_read() != head_.hierarchy.frames) {
+      findings.push_back({Severity::warning,
+                          Error{name_, head_.hierarchy.frames_line,
+                                fmt::format("{} frames", head_.hierarchy.frames),
+                                std::to_string(rows_->frames_read())},
+                          "the frames that are there were read", ""});
     }
     return {};
   }
 
   const Skeleton* header() const override { return rows_ ? &skeleton_ : nullptr; }
 
-  BvhHierarchy& hierarchy() { return hierarchy_; }
+  BvhHierarchy& hierarchy() { return head_.hierarchy; }
   int decimals() const { return rows_->decimals(); }
   void keep_values(std::vector<double>& values) { kept_ = &values; }
 
  private:
   /// The head is whole: what stands behind it are rows.
   Result<void> begin_rows() {
-    std::size_t begin = 0;
-    hierarchy_ = KA_TRY(parse_bvh_hierarchy(head_, name_, begin, findings));
-    skeleton_ = skeleton_of(hierarchy_, options_, name_, findings);
+    skeleton_ = skeleton_of(head_.hierarchy, options_, name_, findings);
     const Findings size = judge_size(skeleton_, options_, name_);
     findings.insert(findings.end(), size.begin(), size.end());
-    const std::size_t row_size = hierarchy_.row_size();
+    const std::size_t row_size = head_.hierarchy.row_size();
     if (row_size == 0) {
-      return Failure(Error{name_, hierarchy_.frames_line, "at least one channel", "none"});
+      return Failure(Error{name_, head_.hierarchy.frames_line, "at least one channel", "none"});
     }
-    const std::string_view head(head_);
-    const auto lines =
-        std::count(head.begin(), head.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
-    poser_.emplace(hierarchy_, options_);
-    rows_.emplace(BvhRowsHead{name_, row_size, hierarchy_.frames, 1 + lines});
+    poser_.emplace(head_.hierarchy, options_);
+    rows_.emplace(BvhRowsHead{name_, row_size, head_.hierarchy.frames, head_.first_row_line()});
     rows_->count_decimals = kept_ != nullptr;
-    KA_TRY(rows_->feed(head.substr(begin), findings));
-    head_.clear();
-    head_.shrink_to_fit();
+    KA_TRY(rows_->feed(head_.rows(), findings));
+    head_.forget_text();
     return {};
   }
 
@@ -90,8 +78,7 @@ class BvhReader final : public ClipReader {
 
   BvhOptions options_;
   std::string name_;
-  std::string head_;  // until it is whole
-  BvhHierarchy hierarchy_;
+  BvhHead head_;
   Skeleton skeleton_;
   std::optional<BvhRows> rows_;
   std::optional<BvhPoser> poser_;

@@ -2,6 +2,7 @@
 #include "kinalign/io/bvh_rows.h"
 
 #include "kinalign/core/numbers.h"
+#include "kinalign/io/bvh_words.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +13,6 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t longest_word = 512;
-
-bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
 
 }  // namespace
 

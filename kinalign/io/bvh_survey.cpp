@@ -2,6 +2,7 @@
 #include "kinalign/io/bvh_survey.h"
 
 #include "kinalign/core/hash.h"
+#include "kinalign/io/bvh_head.h"
 #include "kinalign/motion/targets.h"
 
 #include <algorithm>
@@ -55,50 +56,33 @@ struct Counted {
   bool kept = false;
 };
 
-Failure cancelled(const std::string& path) {
-  return Failure(Error{path, 0, "the end of the job", "an interruption"});
-}
-
 Result<Counted> count(FileSystem& files, const std::string& path, const Progress& progress) {
-  constexpr std::size_t longest_head = std::size_t{8} << 20;
   InputFile file = KA_TRY(InputFile::open(files, path));
   Counted out;
-  out.facts.name = file_name(path);
   Sha256 hash;
-  WordCount count;
-  std::string head;
+  BvhHead head(path);
+  WordCount words;
   bool in_rows = false;
+  std::uint64_t bytes = 0;
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
     if (piece.empty()) break;
     hash.update(piece);
-    out.facts.bytes += piece.size();
+    bytes += piece.size();
     if (in_rows) {
-      count.add(piece);
-    } else if (head.size() > longest_head) {
-      break;  // a line of zeros, or no BVH at all: the rest need not be read to say so
-    } else {
-      head += piece;
-      if (bvh_head_is_whole(head)) {
-        std::size_t rows = 0;
-        out.hierarchy = KA_TRY(parse_bvh_hierarchy(head, path, rows, out.findings));
-        count.add(std::string_view(head).substr(rows));
-        in_rows = true;
-      }
+      words.add(piece);
+    } else if (KA_TRY(head.add(piece, out.findings))) {
+      words.add(head.rows());
+      in_rows = true;
     }
-    if (!go_on(progress, "reading", out.facts.bytes, file.size())) return cancelled(path);
+    if (!go_on(progress, "reading", bytes, file.size())) return Failure(interruption(path));
   }
-  if (!in_rows) {  // no line end behind the frame time, or no frame time at all
-    std::size_t rows = 0;
-    out.hierarchy = KA_TRY(parse_bvh_hierarchy(head + ' ', path, rows, out.findings));
-    if (head.size() > longest_head) {
-      return Failure(Error{path, 0, "a hierarchy of at most 8 MiB", "a longer one"});
-    }
-  }
-  out.facts.sha256 = hash.hex();
-  const std::uint64_t row_size = out.hierarchy.row_size();
-  out.kept = in_rows && row_size > 0 && count.words() % row_size == 0 &&
-             count.words() / row_size == out.hierarchy.frames;
+  if (!in_rows) KA_TRY(head.finish(out.findings));
+  out.facts = {std::string(file_name(path)), hash.hex(), bytes};
+  const std::uint64_t row_size = head.hierarchy.row_size();
+  out.kept = in_rows && row_size > 0 && words.words() % row_size == 0 &&
+             words.words() / row_size == head.hierarchy.frames;
+  out.hierarchy = std::move(head.hierarchy);
   return out;
 }
 

@@ -123,9 +123,11 @@ Result<FoundFormat> named_format(const Source& source) {
 }  // namespace
 
 std::vector<std::string_view> format_names() {
-  std::vector<std::string_view> names;
-  for (const Format& format : formats) names.push_back(format.name);
-  for (const std::string_view name : builtin_layout_names()) names.push_back(name);
+  std::vector<std::string_view> names(std::size(formats));
+  std::transform(std::begin(formats), std::end(formats), names.begin(),
+                 [](const Format& format) { return format.name; });
+  const auto layouts = builtin_layout_names();
+  names.insert(names.end(), layouts.begin(), layouts.end());
   return names;
 }
 

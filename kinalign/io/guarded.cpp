@@ -3,6 +3,8 @@
 // four bytes of length, that many bytes. The parent believes no length above `message_most`.
 #include "kinalign/io/guarded.h"
 
+#include "kinalign/core/progress.h"
+
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -218,9 +220,7 @@ Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbo
     if (left <= 0) return false;
     pollfd waiting{child.pipe(), POLLIN, 0};
     const int ready = ::poll(&waiting, 1, static_cast<int>(std::min(left, 1000.0) * 1000.0) + 1);
-    if (ready < 0 && errno == EINTR) {
-      return Failure(Error{"", 0, "the end of the job", "an interruption"});
-    }
+    if (ready < 0 && errno == EINTR) return Failure(interruption());
     if (ready <= 0) continue;
     const ssize_t got = ::read(child.pipe(), buffer.data(), buffer.size());
     if (got == 0) return true;

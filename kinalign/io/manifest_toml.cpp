@@ -123,6 +123,15 @@ class ManifestReader {
     return out;
   }
 
+  /// Of nodes: { waist = [1, 0, 0, 0] }.
+  Result<std::map<std::string, std::vector<double>>> rotations(const Entry& entry) const {
+    std::map<std::string, std::vector<double>> out;
+    for (const Entry& node : in_file_order(KA_TRY(table(entry)))) {
+      out[node.key] = KA_TRY(rotation(node));
+    }
+    return out;
+  }
+
   static std::optional<OptionValue> option_value(const toml::node& node) {
     if (const auto* truth = node.as_boolean()) return truth->get();
     if (const auto* whole = node.as_integer()) return whole->get();
@@ -188,9 +197,7 @@ class ManifestReader {
       } else if (entry.key == "select") {
         out.select = KA_TRY(texts(entry));
       } else if (entry.key == "mounting") {
-        for (const Entry& node : in_file_order(KA_TRY(table(entry)))) {
-          out.mounting[node.key] = KA_TRY(rotation(node));
-        }
+        out.mounting = KA_TRY(rotations(entry));
       } else {
         KA_TRY(read_option(entry, fields, "stream." + stream.key,
                            {"file", "files", "select", "mounting"}));

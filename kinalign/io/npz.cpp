@@ -96,22 +96,32 @@ std::string npy_header(const NpzArray& array) {
   return Record().text("\x93NUMPY").u16(1).u16(text.size()).text(text).bytes();
 }
 
-/// The characters of UTF-8; a byte that is none stands for itself.
+struct Character {
+  char32_t code = 0;
+  std::size_t bytes = 1;
+};
+
+/// The first character of UTF-8; a byte that begins none stands for itself.
+Character first_character(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text.front());
+  const std::size_t more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : lead >= 0xc2 ? 1 : 0;
+  char32_t code = more == 0 ? lead : lead & (0x3fU >> more);
+  bool good = lead < 0xf5 && more < text.size();
+  for (std::size_t k = 1; good && k <= more; ++k) {
+    const auto next = static_cast<unsigned char>(text[k]);
+    good = (next & 0xc0U) == 0x80;
+    code = code << 6U | (next & 0x3fU);
+  }
+  good = good && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
+  return good ? Character{code, more + 1} : Character{lead, 1};
+}
+
 std::u32string characters(std::string_view text) {
   std::u32string out;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    std::size_t more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : lead >= 0xc2 ? 1 : 0;
-    char32_t c = more == 0 ? lead : lead & (0x3fU >> more);
-    bool good = lead < 0xf5 && i + more < text.size();
-    for (std::size_t k = 1; good && k <= more; ++k) {
-      const auto next = static_cast<unsigned char>(text[i + k]);
-      good = (next & 0xc0U) == 0x80;
-      c = c << 6U | (next & 0x3fU);
-    }
-    good = good && c <= 0x10ffff && (c < 0xd800 || c > 0xdfff);
-    out += good ? c : lead;
-    i += good ? more + 1 : 1;
+  while (!text.empty()) {
+    const Character next = first_character(text);
+    out += next.code;
+    text.remove_prefix(next.bytes);
   }
   return out;
 }

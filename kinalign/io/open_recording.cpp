@@ -16,10 +16,6 @@ namespace kinalign {
 
 namespace {
 
-Failure cancelled(const std::string& path) {
-  return Failure(Error{path, 0, "the end of the job", "an interruption"});
-}
-
 ClipInput input_of(const Skeleton& header, Passes<ClipFrames> passes) {
   return {header, std::move(passes)};
 }
@@ -98,7 +94,9 @@ Result<RecordedStream> survey(const Job& job, InputFile file, std::string_view h
     KA_TRY(reader->feed(piece, block));
     surveyor.add(block.stamps);
     block = {};
-    if (!go_on(*job.progress, "reading", bytes, file.size())) return cancelled(file.path());
+    if (!go_on(*job.progress, "reading", bytes, file.size())) {
+      return Failure(interruption(file.path()));
+    }
     piece = KA_TRY(file.next());
   }
   KA_TRY(reader->finish(block));

@@ -29,6 +29,23 @@ Failure bad_value(const std::string& path, const std::string& expected, const st
   return Failure(Error{path, 0, expected, "another one in " + where});
 }
 
+Result<std::vector<EndSite>> read_end_sites(const hdf5::Checked& file, hid_t group,
+                                            std::uint64_t joints) {
+  const Handle sites(H5Gopen2(group, "end_sites", H5P_DEFAULT), H5Gclose);
+  if (!sites.good()) return hdf5::failure(file.bytes(), "a group end_sites");
+  const std::uint64_t count = KA_TRY(file.rows(sites.id(), "parents"));
+  const auto parents = KA_TRY(file.all<int>(sites.id(), "parents", {count}));
+  const auto tips = KA_TRY(file.all<double>(sites.id(), "offsets", {count, 3}));
+  std::vector<EndSite> out;
+  for (std::size_t e = 0; e < count; ++e) {
+    if (parents[e] < 0 || static_cast<std::uint64_t>(parents[e]) >= joints) {
+      return bad_value(file.bytes().path(), "an end site's joint", "end_sites");
+    }
+    out.push_back({parents[e], vec3(tips, e)});
+  }
+  return out;
+}
+
 Result<Skeleton> read_skeleton(const hdf5::Checked& file, hid_t group) {
   Skeleton out;
   out.joint_names = KA_TRY(file.texts(group, "joint_names"));
@@ -36,17 +53,7 @@ Result<Skeleton> read_skeleton(const hdf5::Checked& file, hid_t group) {
   out.parents = KA_TRY(file.all<int>(group, "parents", {joints}));
   const auto offsets = KA_TRY(file.all<double>(group, "rest_offsets", {joints, 3}));
   for (std::size_t j = 0; j < joints; ++j) out.rest_offsets.emplace_back(vec3(offsets, j));
-  const Handle sites(H5Gopen2(group, "end_sites", H5P_DEFAULT), H5Gclose);
-  if (!sites.good()) return hdf5::failure(file.bytes(), "a group end_sites");
-  const std::uint64_t count = KA_TRY(file.rows(sites.id(), "parents"));
-  const auto parents = KA_TRY(file.all<int>(sites.id(), "parents", {count}));
-  const auto tips = KA_TRY(file.all<double>(sites.id(), "offsets", {count, 3}));
-  for (std::size_t e = 0; e < count; ++e) {
-    if (parents[e] < 0 || static_cast<std::uint64_t>(parents[e]) >= joints) {
-      return bad_value(file.bytes().path(), "an end site's joint", "end_sites");
-    }
-    out.end_sites.push_back({parents[e], vec3(tips, e)});
-  }
+  out.end_sites = KA_TRY(read_end_sites(file, group, joints));
   KA_TRY(validate(out));
   return out;
 }
@@ -106,6 +113,7 @@ struct TakeReader::State {
   std::uint64_t rows = 0, slab_rows = 4096;
   Time last = Time::min();
 
+  Result<void> read_words(const hdf5::Checked& checked);
   Result<void> read_header();
   Result<void> find_columns(hid_t group, const TakeGroup& what, std::uint64_t& row_bytes);
   Result<void> read_stamps(std::uint64_t count, std::vector<Time>& stamps);
@@ -125,13 +133,28 @@ struct TakeReader::State {
   }
   template <class Flag>
   Result<void> check(const Found& column, std::span<const Flag> values) const {
-    const int most = std::is_same_v<Flag, Tracking> ? 2 : 1;
+    constexpr int most = std::is_same_v<Flag, Tracking> ? 2 : 1;
     const bool good = std::all_of(values.begin(), values.end(),
-                                  [most](Flag v) { return static_cast<int>(v) <= most; });
+                                  [](Flag v) { return static_cast<int>(v) <= most; });
     return good ? Result<void>()
                 : bad_value(input.path(), "values up to " + std::to_string(most), column.name);
   }
 };
+
+/// Attributes and parameters.
+Result<void> TakeReader::State::read_words(const hdf5::Checked& checked) {
+  const hid_t root = file.id();
+  software = KA_TRY(checked.text_attribute(root, "software"));
+  header.subject = KA_TRY(checked.text_attribute(root, "subject"));
+  header.action = KA_TRY(checked.text_attribute(root, "action"));
+  auto parameters = parse_parameters_json(KA_TRY(checked.text(root, "parameters_json")));
+  if (!parameters) {
+    parameters.error().file = input.path();
+    return Failure(std::move(parameters).error());
+  }
+  header.parameters = *std::move(parameters);
+  return {};
+}
 
 Result<void> TakeReader::State::read_header() {
   const hdf5::Checked checked(bytes);
@@ -139,18 +162,9 @@ Result<void> TakeReader::State::read_header() {
   if (KA_TRY(checked.text_attribute(root, "format")) != "kinalign.take/1") {
     return Failure(Error{input.path(), 0, "format kinalign.take/1", "another one"});
   }
-  software = KA_TRY(checked.text_attribute(root, "software"));
-  header.subject = KA_TRY(checked.text_attribute(root, "subject"));
-  header.action = KA_TRY(checked.text_attribute(root, "action"));
+  KA_TRY(read_words(checked));
   header.frames = KA_TRY(checked.rows(root, "time_ns"));
   time = KA_TRY(checked.find(root, "time_ns", Stored::int64, {header.frames}));
-  auto parameters = parse_parameters_json(KA_TRY(checked.text(root, "parameters_json")));
-  if (!parameters) {
-    Error error = parameters.error();
-    error.file = input.path();
-    return Failure(error);
-  }
-  header.parameters = *std::move(parameters);
   std::uint64_t row_bytes = 8;
   for (const std::string& name : KA_TRY(checked.text_attributes(root, "streams"))) {
     const Handle group(H5Gopen2(root, name.c_str(), H5P_DEFAULT), H5Gclose);
