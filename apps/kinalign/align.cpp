@@ -156,9 +156,9 @@ Result<int> run(AlignVerb& o, Call& call) {
   KA_TRY(keep_inputs(out, o.manifest));
   KA_TRY(keep_inputs(out, files_named(manifest, base)));
   const Recording recording =
-      KA_TRY(open_recording(call.surroundings.files, manifest, base, progress));
-  const AlignmentReport report = KA_TRY(align_to_file(call.surroundings.files, recording, manifest,
-                                                      {out, call.common.overwrite()}, progress));
+      KA_TRY(open_recording(call.surroundings.files, manifest, base, progress, call.jobs));
+  const AlignmentReport report =
+      KA_TRY(align_to_file(call, recording, manifest, {out, call.common.overwrite()}));
   call.console.print(summary(report, out, call.console));
   call.console.print_json(report_json(report));
   return 0;
@@ -182,7 +182,7 @@ Verb align_verb() {
             {"kinalign align --mocap walk.bvh --imu waist=w.csv --imu wrist_left=l.csv "
              "--root-node waist -o take.h5",
              "nodes, brought into the waist's space"}},
-       .common = {"out", "force", "json", "dry_run"}},
+       .common = {"out", "force", "json", "dry_run", "jobs"}},
       describe_verb_options, run);
 }
 

@@ -4,7 +4,6 @@
 
 #include "apps/kinalign/verb.h"
 
-#include "kinalign/core/progress.h"
 #include "kinalign/take/recording.h"
 #include "kinalign/take/take.h"
 
@@ -19,8 +18,7 @@ struct TakeTarget {
 };
 
 /// Aligns a recording and writes the take.
-Result<AlignmentReport> align_to_file(FileSystem& files, const Recording& recording,
-                                      const Manifest& manifest, const TakeTarget& target,
-                                      const Progress& progress);
+Result<AlignmentReport> align_to_file(const Call& call, const Recording& recording,
+                                      const Manifest& manifest, const TakeTarget& target);
 
 }  // namespace kinalign

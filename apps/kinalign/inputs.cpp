@@ -50,7 +50,7 @@ Result<Recording> open_input(FileSystem& files, const std::string& path, const S
   }
   Recording recording;
   const StreamOptions options = KA_TRY(flags.stream({path}));
-  recording.streams = KA_TRY(open_stream(files, options, progress));
+  recording.streams = KA_TRY(open_streams(files, {options}, progress));
   return recording;
 }
 

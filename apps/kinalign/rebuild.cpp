@@ -135,8 +135,7 @@ Result<int> verify(const std::string& take, const Recording& recording, const Or
   FileSystem& files = call.surroundings.files;
   const Scratch scratch = KA_TRY(Scratch::make());
   const std::string again = scratch.name() + "/take.h5";
-  KA_TRY(align_to_file(files, recording, origin.parameters, {again, Overwrite::no},
-                       call.console.progress()));
+  KA_TRY(align_to_file(call, recording, origin.parameters, {again, Overwrite::no}));
   const auto difference = KA_TRY(first_difference(files, take, again));
   const auto changed = changed_inputs(origin, recording);
   nlohmann::ordered_json json{{"take", take},
@@ -168,12 +167,11 @@ Result<int> run(Rebuild& o, Call& call) {
   const Origin origin = KA_TRY(origin_of(files, take));
   const std::string base = o.inputs.ends_with('/') ? o.inputs : o.inputs + "/";
   const Recording recording =
-      KA_TRY(open_recording(files, origin.parameters, base, call.console.progress()));
+      KA_TRY(open_recording(files, origin.parameters, base, call.console.progress(), call.jobs));
   if (o.verify) return verify(take, recording, origin, call);
   KA_TRY(keep_inputs(call.common.out, files_named(origin.parameters, base)));
-  const AlignmentReport report =
-      KA_TRY(align_to_file(files, recording, origin.parameters,
-                           {call.common.out, call.common.overwrite()}, call.console.progress()));
+  const AlignmentReport report = KA_TRY(align_to_file(call, recording, origin.parameters,
+                                                      {call.common.out, call.common.overwrite()}));
   call.console.print(summary(report, call.common.out, call.console));
   call.console.print_json(fmt::format("{{\"written\": true, \"frames\": {}}}", report.frames));
   return 0;
@@ -190,7 +188,7 @@ Verb rebuild_verb() {
                      "exit code 0: the same bytes; 1: not"},
                     {"kinalign rebuild take.h5 --inputs recordings -o again.h5",
                      "writes it again"}},
-       .common = {"out", "force", "json"}},
+       .common = {"out", "force", "json", "jobs"}},
       describe_rebuild, run);
 }
 

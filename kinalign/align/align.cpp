@@ -27,18 +27,19 @@ std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size
 
 /// A pass over the streams concerned that finds the transforms to be fitted.
 Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
-                        std::vector<SpacePlan>& spaces, const Progress& progress) {
+                        std::vector<SpacePlan>& spaces, const Progress& progress,
+                        std::size_t jobs) {
   const auto groups = groups_of_fits(spaces, plan.header.groups.size());
   if (std::find(groups.begin(), groups.end(), true) == groups.end()) return {};
   SlabMaker slabs = KA_TRY(SlabMaker::start(recording, plan, groups));
   std::vector<PairMoments> moments(spaces.size());
-  TakeSlab slab;
-  while (KA_TRY(slabs.next(slab))) {
+  KA_TRY(slabs.for_each(jobs, [&](TakeSlab& slab) -> Result<void> {
     for (std::size_t k = 0; k < spaces.size(); ++k) {
       if (spaces[k].options.method == "fit") add_pairs(spaces[k], slab, moments[k]);
     }
-    if (!go_on(progress, "fitting", slab.first, plan.header.frames)) return Failure(interruption());
-  }
+    if (go_on(progress, "fitting", slab.first, plan.header.frames)) return {};
+    return Failure(interruption());
+  }));
   for (std::size_t k = 0; k < spaces.size(); ++k) {
     if (spaces[k].options.method != "fit") continue;
     auto fitted = fit_rigid(moments[k]);
@@ -100,6 +101,7 @@ Findings judge_content(const RecordedStream& s, const ResampleCount& count, doub
 
 /// What is counted while the slabs go by.
 struct Counts {
+  std::uint64_t rows = 0;
   Time begin{}, end{};                       // first and last row
   std::vector<ResidualSums> residuals;       // [spaces]
   std::vector<std::uint64_t> invalid_nodes;  // [streams] in the end; 0 where it is none of nodes
@@ -120,28 +122,27 @@ struct Job {
   const std::vector<SpacePlan>& spaces;
 };
 
-/// Makes, turns, counts and hands on every slab.
-Result<void> pass_slabs(const Job& job, SlabMaker& slabs, const TakeSink& sink,
-                        const Progress& progress, Counts& counts) {
-  const std::uint64_t frames = job.plan.header.frames;
-  TakeSlab slab;
-  std::uint64_t done = 0;
-  while (KA_TRY(slabs.next(slab))) {
-    if (done == 0) counts.begin = slab.stamps.front();
-    counts.end = slab.stamps.back();
-    done += slab.stamps.size();
-    if (done > frames) break;
-    for (std::size_t k = 0; k < job.spaces.size(); ++k) {
-      counts.residuals[k].transform(job.spaces[k], slab);
-    }
-    count_nodes(job.recording, job.plan, slab, counts.invalid_nodes);
-    KA_TRY(sink.rows(slab));
-    if (!go_on(progress, "aligning", done, frames)) return Failure(interruption());
+/// The reference had another number of frames when it was first read.
+Error other_length(const Job& job, std::uint64_t rows) {
+  return {job.recording.streams[job.plan.reference].name, 0,
+          fmt::format("{} frames, as in the first reading", job.plan.header.frames),
+          fmt::format("{}", rows)};
+}
+
+/// Turns, counts and hands on a slab.
+Result<void> pass_slab(const Job& job, TakeSlab& slab, const TakeSink& sink,
+                       const Progress& progress, Counts& counts) {
+  if (counts.rows == 0) counts.begin = slab.stamps.front();
+  counts.end = slab.stamps.back();
+  counts.rows += slab.stamps.size();
+  if (counts.rows > job.plan.header.frames) return Failure(other_length(job, counts.rows));
+  for (std::size_t k = 0; k < job.spaces.size(); ++k) {
+    counts.residuals[k].transform(job.spaces[k], slab);
   }
-  if (done == frames) return {};
-  return Failure(Error{job.recording.streams[job.plan.reference].name, 0,
-                       fmt::format("{} frames, as in the first reading", frames),
-                       fmt::format("{}", done)});
+  count_nodes(job.recording, job.plan, slab, counts.invalid_nodes);
+  KA_TRY(sink.rows(slab));
+  if (go_on(progress, "aligning", counts.rows, job.plan.header.frames)) return {};
+  return Failure(interruption());
 }
 
 StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts& counts,
@@ -226,11 +227,11 @@ Findings judge_stamps(const RecordedStream& s) {
 }
 
 Result<AlignmentReport> align(const Recording& recording, const Manifest& manifest,
-                              const TakeSink& sink, const Progress& progress) {
+                              const TakeSink& sink, const Progress& progress, std::size_t jobs) {
   const AlignPlan plan = KA_TRY(plan_alignment(recording, manifest));
   const std::size_t reference_group = plan.streams[plan.reference].group;
   auto spaces = KA_TRY(plan_spaces(plan.header, manifest, reference_group));
-  KA_TRY(fit_spaces(recording, plan, spaces, progress));
+  KA_TRY(fit_spaces(recording, plan, spaces, progress, jobs));
 
   AlignmentReport report = begin_report(recording, plan);
   KA_TRY(sink.begin(plan.header));
@@ -238,7 +239,9 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
       KA_TRY(SlabMaker::start(recording, plan, std::vector<bool>(plan.header.groups.size(), true)));
   const Job job{recording, plan, spaces};
   Counts counts = no_counts(recording, spaces);
-  KA_TRY(pass_slabs(job, slabs, sink, progress, counts));
+  KA_TRY(slabs.for_each(
+      jobs, [&](TakeSlab& slab) { return pass_slab(job, slab, sink, progress, counts); }));
+  if (counts.rows != plan.header.frames) return Failure(other_length(job, counts.rows));
   finish_report(job, slabs, counts, report);
   return report;
 }

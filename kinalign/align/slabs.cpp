@@ -2,6 +2,7 @@
 #include "kinalign/align/slabs.h"
 
 #include "kinalign/align/nodes.h"
+#include "kinalign/core/parallel.h"
 #include "kinalign/motion/kinematics.h"
 
 #include <algorithm>
@@ -43,6 +44,12 @@ class ReferenceRows {
   std::int64_t begin_, end_;
 };
 
+/// The reference's rows of a slab.
+struct ReferenceSlab {
+  std::vector<std::int64_t> grid;  // their stamps, ns on the take's axis; empty behind the last
+  std::variant<ClipFrames, PointFrames> rows;
+};
+
 using AnyRows = std::variant<std::monostate, ReferenceRows<ClipFrames>, ReferenceRows<PointFrames>,
                              PointResampler, ImuResampler, ClipResampler>;
 
@@ -68,13 +75,16 @@ struct SlabMaker::State {
   const Recording* recording = nullptr;
   const AlignPlan* plan = nullptr;
   std::vector<AnyRows> streams;
-  std::vector<std::int64_t> grid;
   ImuRows nodes;  // of one stream, on the way into its group
   std::uint64_t done = 0;
 
   Result<void> open(std::size_t i);
-  Result<void> reference_rows(TakeSlab& slab);
-  Result<void> other_rows(std::size_t i, TakeSlab& slab);
+  /// Touches the reference's stream only; the others below touch all but it.
+  Result<void> pull(ReferenceSlab& next);
+  Result<void> make(ReferenceSlab& reference, TakeSlab& slab);
+  void put_reference(ReferenceSlab& reference, TakeSlab& slab) const;
+  Result<void> other_rows(std::size_t i, std::span<const std::int64_t> grid, TakeSlab& slab);
+  void finish_nodes(TakeSlab& slab) const;
 };
 
 Result<void> SlabMaker::State::open(std::size_t i) {
@@ -103,32 +113,35 @@ Result<void> SlabMaker::State::open(std::size_t i) {
   return {};
 }
 
-Result<void> SlabMaker::State::reference_rows(TakeSlab& slab) {
-  const std::size_t group = plan->streams[plan->reference].group;
+Result<void> SlabMaker::State::pull(ReferenceSlab& next) {
   AnyRows& stream = streams[plan->reference];
   if (auto* clip = std::get_if<ReferenceRows<ClipFrames>>(&stream)) {
-    ClipFrames frames;
-    KA_TRY(clip->next(frames, grid));
-    ClipRows rows;
-    rows.local_positions = std::move(frames.local_positions);
-    rows.local_rotations = std::move(frames.local_rotations);
-    fill_positions(std::get<ClipGroup>(plan->header.groups[group].kind).skeleton, rows,
-                   grid.size());
-    slab.rows[group] = std::move(rows);
-  } else {
-    PointFrames frames;
-    KA_TRY(std::get<ReferenceRows<PointFrames>>(stream).next(frames, grid));
-    PointRows rows;
-    rows.positions = std::move(frames.positions);
-    for (const Tracking state : frames.state) rows.valid.push_back(state != Tracking::missing);
-    rows.state = std::move(frames.state);
-    slab.rows[group] = std::move(rows);
+    return clip->next(next.rows.emplace<ClipFrames>(), next.grid);
   }
-  for (const std::int64_t t : grid) slab.stamps.push_back(utc_time(t));
-  return {};
+  auto& points = std::get<ReferenceRows<PointFrames>>(stream);
+  return points.next(next.rows.emplace<PointFrames>(), next.grid);
 }
 
-Result<void> SlabMaker::State::other_rows(std::size_t i, TakeSlab& slab) {
+void SlabMaker::State::put_reference(ReferenceSlab& reference, TakeSlab& slab) const {
+  const std::size_t group = plan->streams[plan->reference].group;
+  for (const std::int64_t t : reference.grid) slab.stamps.push_back(utc_time(t));
+  if (auto* clip = std::get_if<ClipFrames>(&reference.rows)) {
+    ClipRows& rows = slab.rows[group].emplace<ClipRows>();
+    rows.local_positions = std::move(clip->local_positions);
+    rows.local_rotations = std::move(clip->local_rotations);
+    fill_positions(std::get<ClipGroup>(plan->header.groups[group].kind).skeleton, rows,
+                   slab.stamps.size());
+    return;
+  }
+  auto& points = std::get<PointFrames>(reference.rows);
+  PointRows& rows = slab.rows[group].emplace<PointRows>();
+  rows.positions = std::move(points.positions);
+  for (const Tracking state : points.state) rows.valid.push_back(state != Tracking::missing);
+  rows.state = std::move(points.state);
+}
+
+Result<void> SlabMaker::State::other_rows(std::size_t i, std::span<const std::int64_t> grid,
+                                          TakeSlab& slab) {
   const std::size_t group = plan->streams[i].group;
   AnyRows& stream = streams[i];
   if (auto* points = std::get_if<PointResampler>(&stream)) {
@@ -151,6 +164,30 @@ Result<void> SlabMaker::State::other_rows(std::size_t i, TakeSlab& slab) {
   return {};
 }
 
+void SlabMaker::State::finish_nodes(TakeSlab& slab) const {
+  for (std::size_t g = 0; g < slab.rows.size(); ++g) {
+    const TakeGroup& group = plan->header.groups[g];
+    const auto* nodes_group = std::get_if<ImuGroup>(&group.kind);
+    auto* rows = std::get_if<ImuRows>(&slab.rows[g]);
+    if (nodes_group == nullptr || rows == nullptr) continue;
+    apply_mounting(*nodes_group, options_of(plan->header.parameters, group.name).mounting, *rows);
+    if (!nodes_group->root_node.empty()) bring_to_root(*nodes_group, *rows);
+  }
+}
+
+Result<void> SlabMaker::State::make(ReferenceSlab& reference, TakeSlab& slab) {
+  slab.first = done;
+  slab.stamps.clear();
+  slab.rows.assign(plan->header.groups.size(), ClipRows{});
+  put_reference(reference, slab);
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    if (i != plan->reference) KA_TRY(other_rows(i, reference.grid, slab));
+  }
+  finish_nodes(slab);
+  done += slab.stamps.size();
+  return {};
+}
+
 SlabMaker::SlabMaker(std::unique_ptr<State> state) : state_(std::move(state)) {}
 SlabMaker::SlabMaker(SlabMaker&&) noexcept = default;
 SlabMaker& SlabMaker::operator=(SlabMaker&&) noexcept = default;
@@ -168,27 +205,26 @@ Result<SlabMaker> SlabMaker::start(const Recording& recording, const AlignPlan& 
   return SlabMaker(std::move(state));
 }
 
-Result<bool> SlabMaker::next(TakeSlab& slab) {
+Result<void> SlabMaker::for_each(std::size_t jobs,
+                                 const std::function<Result<void>(TakeSlab&)>& use) {
   State& s = *state_;
-  slab.first = s.done;
-  slab.stamps.clear();
-  slab.rows.assign(s.plan->header.groups.size(), ClipRows{});
-  KA_TRY(s.reference_rows(slab));
-  if (s.grid.empty()) return false;
-  for (std::size_t i = 0; i < s.streams.size(); ++i) {
-    if (i != s.plan->reference) KA_TRY(s.other_rows(i, slab));
+  ReferenceSlab now, next;
+  TakeSlab slab;
+  KA_TRY(s.pull(now));
+  while (!now.grid.empty()) {
+    Result<void> pulled, used;
+    parallel_for(2, jobs, [&](std::size_t which) {
+      if (which == 0) {
+        pulled = s.pull(next);
+      } else if (used = s.make(now, slab); used) {
+        used = use(slab);
+      }
+    });
+    KA_TRY(std::move(used));  // what concerns earlier rows first
+    KA_TRY(std::move(pulled));
+    std::swap(now, next);
   }
-  for (std::size_t g = 0; g < slab.rows.size(); ++g) {
-    const auto* group = std::get_if<ImuGroup>(&s.plan->header.groups[g].kind);
-    auto* rows = std::get_if<ImuRows>(&slab.rows[g]);
-    if (group == nullptr || rows == nullptr) continue;
-    apply_mounting(*group,
-                   options_of(s.plan->header.parameters, s.plan->header.groups[g].name).mounting,
-                   *rows);
-    if (!group->root_node.empty()) bring_to_root(*group, *rows);
-  }
-  s.done += s.grid.size();
-  return true;
+  return {};
 }
 
 ResampleCount SlabMaker::count(std::size_t stream) const {

@@ -4,6 +4,8 @@
 
 #include "kinalign/align/plan.h"
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -27,9 +29,9 @@ class SlabMaker {
   SlabMaker& operator=(const SlabMaker&) = delete;
   ~SlabMaker();
 
-  /// The next slab of at most slab_rows; false at the end. Groups left out have empty rows. Points
-  /// are in their own space yet.
-  Result<bool> next(TakeSlab& slab);
+  /// Calls `use` with each slab of at most slab_rows in turn. Groups left out have empty rows.
+  /// Points are in their own space yet. With two jobs the reference is read one slab ahead.
+  Result<void> for_each(std::size_t jobs, const std::function<Result<void>(TakeSlab&)>& use);
 
   /// What the streams' resampling has counted so far, as in the recording.
   ResampleCount count(std::size_t stream) const;

@@ -3,30 +3,58 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 namespace kinalign {
 
+namespace {
+
+/// What the threads of one call share.
+class Shared {
+ public:
+  Shared(std::size_t count, const std::function<void(std::size_t)>& body)
+      : count_(count), body_(body) {}
+
+  void work() {
+    try {
+      for (std::size_t i = next_++; i < count_; i = next_++) body_(i);
+    } catch (...) {
+      if (!thrown_.test_and_set()) fault_ = std::current_exception();
+    }
+  }
+
+  /// After all threads have ended.
+  void rethrow() const {
+    if (fault_) std::rethrow_exception(fault_);
+  }
+
+ private:
+  std::size_t count_;
+  const std::function<void(std::size_t)>& body_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic_flag thrown_;
+  std::exception_ptr fault_;
+};
+
+}  // namespace
+
 void parallel_for(std::size_t count, std::size_t jobs,
                   const std::function<void(std::size_t)>& body) {
   const std::size_t threads = std::min(count, std::max<std::size_t>(jobs, 1));
-  if (threads <= 1) {
-    for (std::size_t i = 0; i < count; ++i) body(i);
-    return;
+  Shared shared(count, body);
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (std::size_t i = 1; i < threads; ++i) others.emplace_back([&shared] { shared.work(); });
+    } catch (const std::system_error&) {
+      // The machine has no more threads to give: those that began do it all.
+    }
+    shared.work();
   }
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) body(i);
-  };
-  std::vector<std::jthread> others;
-  try {
-    for (std::size_t i = 1; i < threads; ++i) others.emplace_back(work);
-  } catch (const std::system_error&) {
-    // The machine has no more threads to give: those that began do it all.
-  }
-  work();
+  shared.rethrow();
 }
 
 }  // namespace kinalign

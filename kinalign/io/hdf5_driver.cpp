@@ -85,7 +85,7 @@ H5FD_class_t driver_class() {
   c.name = "kinalign_files";
   c.maxaddr = (haddr_t{1} << 62);
   c.fc_degree = H5F_CLOSE_STRONG;
-  c.fapl_size = sizeof(Bytes*);
+  c.fapl_size = sizeof(void*);
   c.open = open_driven;
   c.close = close_driven;
   c.query = query;

@@ -3,6 +3,7 @@
 
 #include "kinalign/core/file_version.h"
 #include "kinalign/core/hash.h"
+#include "kinalign/core/parallel.h"
 #include "kinalign/io/bvh_survey.h"
 #include "kinalign/io/formats.h"
 
@@ -10,6 +11,7 @@
 
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <utility>
 
 namespace kinalign {
@@ -73,9 +75,9 @@ Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const 
 }
 
 struct Job {
-  FileSystem* files;
-  const StreamOptions* options;
-  const Progress* progress;
+  FileSystem* files = nullptr;
+  const StreamOptions* options = nullptr;
+  const Progress* progress = nullptr;
   Version version;  // of the file, before it was opened
 };
 
@@ -176,38 +178,87 @@ TimeModel clock_of(const StreamOptions& options, const StampSurvey& survey) {
   return model;
 }
 
+/// Files read side by side, told as one job.
+class SharedProgress {
+ public:
+  SharedProgress(const Progress& progress, std::size_t parts)
+      : progress_(progress), parts_(parts) {}
+
+  Progress part(std::size_t i) {
+    if (!progress_) return {};
+    return [this, i](std::string_view what, std::uint64_t done, std::uint64_t total) {
+      const std::lock_guard lock(mutex_);
+      parts_[i] = {done, total};
+      Part sum;
+      for (const Part& each : parts_) {
+        sum.done += each.done;
+        sum.total += each.total;
+      }
+      return progress_(what, sum.done, sum.total);
+    };
+  }
+
+ private:
+  struct Part {
+    std::uint64_t done = 0, total = 0;
+  };
+  const Progress& progress_;
+  std::mutex mutex_;
+  std::vector<Part> parts_;
+};
+
+/// A file of a stream.
+struct NamedFile {
+  const StreamOptions* options = nullptr;
+  const StreamFile* file = nullptr;
+};
+
+Result<RecordedStream> open_file(FileSystem& files, const NamedFile& named,
+                                 const Progress& progress) {
+  const Job job{&files, named.options, &progress, version_of(named.file->path)};
+  RecordedStream stream = KA_TRY(survey_file(job, *named.file));
+  stream.clock = clock_of(*named.options, stream.survey);
+  return stream;
+}
+
 }  // namespace
 
-Result<std::vector<RecordedStream>> open_stream(FileSystem& files, const StreamOptions& options,
-                                                const Progress& progress) {
-  if (options.files.empty()) {
-    return Failure(Error{"", 0, "a file for stream '" + options.name + "'", "none"});
+Result<std::vector<RecordedStream>> open_streams(FileSystem& files,
+                                                 const std::vector<StreamOptions>& streams,
+                                                 const Progress& progress, std::size_t jobs) {
+  std::vector<NamedFile> named;
+  for (const StreamOptions& options : streams) {
+    if (options.files.empty()) {
+      return Failure(Error{"", 0, "a file for stream '" + options.name + "'", "none"});
+    }
+    for (const StreamFile& file : options.files) named.push_back({&options, &file});
   }
-  std::vector<RecordedStream> streams;
-  for (const StreamFile& file : options.files) {
-    streams.push_back(
-        KA_TRY(survey_file({&files, &options, &progress, version_of(file.path)}, file)));
-    streams.back().clock = clock_of(options, streams.back().survey);
-  }
-  return streams;
+  SharedProgress shared(progress, named.size());
+  std::vector<Result<RecordedStream>> opened(named.size());
+  parallel_for(named.size(), jobs,
+               [&](std::size_t i) { opened[i] = open_file(files, named[i], shared.part(i)); });
+  std::vector<RecordedStream> out;
+  out.reserve(opened.size());
+  for (auto& stream : opened) out.push_back(KA_TRY(std::move(stream)));
+  return out;
 }
 
 Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
-                                 const std::string& folder, const Progress& progress) {
-  Recording recording;
-  recording.subject = manifest.subject;
-  recording.action = manifest.action;
-  for (StreamOptions options : manifest.streams) {
+                                 const std::string& folder, const Progress& progress,
+                                 std::size_t jobs) {
+  std::vector<StreamOptions> streams = manifest.streams;
+  for (StreamOptions& options : streams) {
     for (StreamFile& file : options.files) {
       if (!file.path.starts_with('/')) file.path = folder + file.path;
     }
     if (options.layout.ends_with(".toml") && !options.layout.starts_with('/')) {
       options.layout = folder + options.layout;
     }
-    for (RecordedStream& stream : KA_TRY(open_stream(files, options, progress))) {
-      recording.streams.push_back(std::move(stream));
-    }
   }
+  Recording recording;
+  recording.subject = manifest.subject;
+  recording.action = manifest.action;
+  recording.streams = KA_TRY(open_streams(files, streams, progress, jobs));
   return recording;
 }
 

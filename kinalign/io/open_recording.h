@@ -13,13 +13,18 @@
 
 namespace kinalign {
 
-/// The streams of one stream's files: one, or one for each file of nodes. Paths are taken as they
-/// stand. `files` must outlive the streams.
-Result<std::vector<RecordedStream>> open_stream(FileSystem& files, const StreamOptions& options,
-                                                const Progress& progress = {});
+/// The recorded streams of the given ones: one each, or one for each file of nodes. Paths are taken
+/// as they stand. `files` must outlive the streams. Files are read on up to `jobs` threads, which
+/// changes nothing but the time; the first that fails, in their order, is the error. `progress` is
+/// never called on two threads at once.
+Result<std::vector<RecordedStream>> open_streams(FileSystem& files,
+                                                 const std::vector<StreamOptions>& streams,
+                                                 const Progress& progress = {},
+                                                 std::size_t jobs = 1);
 
 /// All streams of a manifest; relative paths are relative to `folder` ("" or ending in '/').
 Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
-                                 const std::string& folder, const Progress& progress = {});
+                                 const std::string& folder, const Progress& progress = {},
+                                 std::size_t jobs = 1);
 
 }  // namespace kinalign

@@ -61,6 +61,13 @@ Failure wrong(const std::string& at, const std::string& wanted, const Json& foun
       Error{"", 0, wanted + " at " + shown(at), std::string("a JSON ") + found.type_name()});
 }
 
+/// "spaces.kinect"
+std::string below(std::string place, std::string_view key) {
+  place += '.';
+  place += key;
+  return place;
+}
+
 std::optional<OptionValue> option_value(const Json& json) {
   if (json.is_boolean()) return json.get<bool>();
   if (json.is_number_unsigned() && json.get<std::uint64_t>() > INT64_MAX) return std::nullopt;
@@ -85,7 +92,7 @@ Result<void> text_from(const Json& json, const std::string& at, std::string& to)
 Result<void> map_from(const Json& json, const std::string& at,
                       std::map<std::string, std::string>& to) {
   if (!json.is_object()) return wrong(at, "an object", json);
-  for (const auto& [key, value] : json.items()) KA_TRY(text_from(value, at + "." + key, to[key]));
+  for (const auto& [key, value] : json.items()) KA_TRY(text_from(value, below(at, key), to[key]));
   return {};
 }
 
@@ -114,7 +121,7 @@ Result<std::vector<double>> translation_from(const Json& json, const std::string
 Result<void> mounting_from(const Json& json, const std::string& at, StreamOptions& to) {
   if (!json.is_object()) return wrong(at, "an object", json);
   for (const auto& [node, rotation] : json.items()) {
-    to.mounting[node] = KA_TRY(rotation_from(rotation, at + "." + node));
+    to.mounting[node] = KA_TRY(rotation_from(rotation, below(at, node)));
   }
   return {};
 }
@@ -146,7 +153,7 @@ Result<void> files_from(const Json& json, const std::string& at, std::vector<Str
       if (key != "path" && key != "node") {
         return Failure(unknown_name(key, "a known key at " + at, {"path", "node"}));
       }
-      KA_TRY(text_from(value, at + "." + key, key == "path" ? file.path : file.node));
+      KA_TRY(text_from(value, below(at, key), key == "path" ? file.path : file.node));
     }
   }
   return {};
@@ -157,7 +164,7 @@ Result<StreamOptions> stream_from(const Json& json, const std::string& at) {
   StreamOptions out;
   const Fields fields = describe(out);
   for (const auto& [key, value] : json.items()) {
-    const std::string here = at + "." + key;
+    const std::string here = below(at, key);
     if (key == "name") {
       KA_TRY(text_from(value, here, out.name));
     } else if (key == "files") {
@@ -178,7 +185,7 @@ Result<SpaceOptions> space_from(const Json& json, const std::string& at) {
   SpaceOptions out;
   const Fields fields = describe(out);
   for (const auto& [key, value] : json.items()) {
-    const std::string here = at + "." + key;
+    const std::string here = below(at, key);
     const bool given = key == "rotation" || key == "translation";
     if (given && value == Json::array()) continue;  // nothing is
     if (key == "rotation") {

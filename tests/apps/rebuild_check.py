@@ -48,6 +48,18 @@ def the_same_take_has_the_same_bytes_wherever_and_by_whomever_it_is_made(folder)
 
 
 @case
+def the_number_of_threads_changes_no_byte(folder):
+    demo(folder / "d", seconds=150)  # several slabs
+    takes = []
+    for jobs in ("1", "2", "7"):
+        out = folder / f"{jobs}.h5"
+        done = kinalign("align", folder / "d/recording.toml", "-o", out, "--jobs", jobs)
+        assert done.returncode == 0, done.stderr
+        takes.append(out.read_bytes())
+    assert takes[0] == takes[1] == takes[2]
+
+
+@case
 def a_take_is_remade_to_the_byte_and_one_changed_input_byte_is_named(folder):
     demo(folder / "d", seconds=2)
     take = folder / "t.h5"

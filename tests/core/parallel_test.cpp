@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -37,4 +38,16 @@ TEST_CASE("two jobs run side by side") {
     while (here < 2) std::this_thread::yield();
   });
   CHECK(here == 2);
+}
+
+TEST_CASE("what a body throws reaches the caller when the others are done") {
+  for (const std::size_t jobs : {1, 2, 8}) {
+    std::atomic<int> done{0};
+    const auto body = [&](std::size_t i) {
+      if (i == 0) throw std::runtime_error("no memory");
+      ++done;
+    };
+    CHECK_THROWS_WITH_AS(parallel_for(8, jobs, body), "no memory", std::runtime_error);
+    CHECK(done == (jobs == 1 ? 0 : 7));
+  }
 }
