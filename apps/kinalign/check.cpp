@@ -4,7 +4,7 @@
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/align/align.h"
+#include "kinalign/align/judge.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/align.h"
 
+#include "kinalign/align/judge.h"
 #include "kinalign/align/nodes.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/align/slabs.h"
@@ -15,6 +16,8 @@
 namespace kinalign {
 
 namespace {
+
+void add(Findings& all, const Findings& more) { all.insert(all.end(), more.begin(), more.end()); }
 
 /// The groups that fits need: their own and the ones they are fitted onto.
 std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size_t groups) {
@@ -76,27 +79,10 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
       finding.what.file = file_name(finding.what.file);
       report.findings.push_back(std::move(finding));
     }
-    const Findings stamps = judge_stamps(s);
-    report.findings.insert(report.findings.end(), stamps.begin(), stamps.end());
+    add(report.findings, judge_stamps(s));
   }
+  add(report.findings, judge_spaces(plan.header));
   return report;
-}
-
-/// What the grid can't carry of one stream.
-Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {
-  Findings out;
-  const auto add = [&](const std::vector<CarriedContent>& contents, const std::string& quantity,
-                       const std::vector<std::string>& parts, double noise) {
-    const Findings found = judge_content(contents, {s.name, quantity, parts, grid_hz, noise});
-    out.insert(out.end(), found.begin(), found.end());
-  };
-  if (const auto* points = std::get_if<PointInput>(&s.data)) {
-    add(count.positions, "position", points->joint_names, 0.002);
-  } else if (const auto* imu = std::get_if<ImuInput>(&s.data)) {
-    add(count.acceleration, "acceleration", imu->node_names, 0.05);
-    add(count.angular_velocity, "angular velocity", imu->node_names, 0.01);
-  }
-  return out;
 }
 
 /// What is counted while the slabs go by.
@@ -182,49 +168,17 @@ void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
   for (std::size_t i = 0; i < job.recording.streams.size(); ++i) {
     const RecordedStream& stream = job.recording.streams[i];
     report.streams.push_back(report_stream(job, slabs, counts, i));
-    const Findings content = judge_content(stream, slabs.count(i), report.rate_hz);
-    report.findings.insert(report.findings.end(), content.begin(), content.end());
+    add(report.findings, judge_content(stream, slabs.count(i), report.rate_hz));
+  }
+  for (std::size_t k = 0; k < job.spaces.size(); ++k) {
+    report.spaces.push_back(counts.residuals[k].report(job.spaces[k], job.plan.header));
+    add(report.findings, judge_residual(report.spaces.back()));
   }
   std::stable_sort(report.findings.begin(), report.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
-  for (std::size_t k = 0; k < job.spaces.size(); ++k) {
-    report.spaces.push_back(counts.residuals[k].report(job.spaces[k], job.plan.header));
-  }
 }
 
 }  // namespace
-
-Findings judge_stamps(const RecordedStream& s) {
-  Findings out;
-  const std::string file = s.files.empty() ? s.name : s.files.front().name;
-  if (s.survey.duplicates > 0) {
-    out.push_back({Severity::note,
-                   Error{file, 0, "stamps that rise",
-                         fmt::format("{} that repeat the one before", s.survey.duplicates)},
-                   "these samples were left out", ""});
-  }
-  if (s.survey.ahead > 0) {
-    out.push_back(
-        {Severity::warning,
-         Error{file, 0, "stamps that go on from one another",
-               fmt::format("{} more than a second ahead of the ones around", s.survey.ahead)},
-         "these samples were left out", ""});
-  }
-  if (s.survey.backward > 0) {
-    // Behind a clock that was set back nothing is later than what came before.
-    const bool many = 20 * s.survey.backward > s.survey.samples;
-    out.push_back(
-        {many ? Severity::error : Severity::warning,
-         Error{file, 0, "stamps that rise",
-               fmt::format("{} of {} that step back, by up to {:.3f} s", s.survey.backward,
-                           s.survey.samples,
-                           1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
-         "these samples were left out",
-         many ? "the device's clock was set back: cut the file there, or stamp it by rate_hz"
-              : "look at the device's clock if there are many"});
-  }
-  return out;
-}
 
 Result<AlignmentReport> align(const Recording& recording, const Manifest& manifest,
                               const TakeSink& sink, const Progress& progress, std::size_t jobs) {

@@ -27,7 +27,4 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
 /// The same, into memory.
 Result<Take> align(const Recording& recording, const Manifest& manifest);
 
-/// Stamps that repeat or step back, as findings.
-Findings judge_stamps(const RecordedStream& stream);
-
 }  // namespace kinalign

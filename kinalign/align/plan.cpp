@@ -69,34 +69,38 @@ std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, b
   return low;
 }
 
-/// Rows of the grid: by arithmetic for a fixed step, else by a pass over the reference's stamps.
+/// Rows of the grid: by arithmetic for a fixed step, all that were kept where nothing is cut, else
+/// by a pass over the reference's stamps.
 Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPlan& plan) {
   if (reference.step_ns) {
     return first_frame(reference, *reference.step_ns, plan.end, true) -
            first_frame(reference, *reference.step_ns, plan.begin, false);
+  }
+  if (first_of(reference) >= plan.begin && last_of(reference) <= plan.end) {
+    return reference.survey.kept();
   }
   return std::visit(
       [&](const auto& input) -> Result<std::uint64_t> {
         auto pass = KA_TRY(input.passes());
         Window window(std::move(pass), reference.clock);
         std::uint64_t rows = 0;
-        // One row of reach: the window then always holds the sample behind `begin`.
-        constexpr std::int64_t stretch = 60'000'000'000;
-        for (std::int64_t t = to_ns(plan.begin);; t += stretch) {
-          const std::int64_t until = std::min(t + stretch - 1, to_ns(plan.end));
-          KA_TRY(window.move(t, until, 1));
+        constexpr std::size_t at_once = 4096;
+        for (std::int64_t from = to_ns(plan.begin);; from = window.time_ns.back() + 1) {
+          KA_TRY(window.fill(from, at_once));
           const auto& stamps = window.time_ns;
-          rows += static_cast<std::uint64_t>(std::upper_bound(stamps.begin(), stamps.end(), until) -
-                                             std::lower_bound(stamps.begin(), stamps.end(), t));
-          if (until == to_ns(plan.end)) return rows;
+          const auto end = std::upper_bound(stamps.begin(), stamps.end(), to_ns(plan.end));
+          rows += static_cast<std::uint64_t>(end - stamps.begin());
+          if (end != stamps.end() || stamps.empty()) return rows;
         }
       },
       reference.data);
 }
 
-ResampleRule rule_of(const RecordedStream& s, const AlignOptions& options) {
+ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
+                     const AlignOptions& options) {
   ResampleRule rule;
   rule.step_ns = s.step_ns ? std::llround(*s.step_ns) : s.survey.median_step_ns;
+  if (stream.rate_hz > 0.0) rule.step_ns = std::llround(1e9 / stream.rate_hz);
   rule.gap_ns = options.gap_ms > 0.0 ? std::llround(options.gap_ms * 1e6) : 3 * rule.step_ns;
   // Stamps rounded to a milli- or microsecond make three steps a little longer than three medians.
   if (options.gap_ms == 0.0) rule.gap_ns += rule.step_ns / 10;
@@ -104,7 +108,7 @@ ResampleRule rule_of(const RecordedStream& s, const AlignOptions& options) {
   return rule;
 }
 
-bool any_known(const TimeModel& clock) {
+bool all_known(const TimeModel& clock) {
   return std::all_of(clock.pieces.begin(), clock.pieces.end(),
                      [](const TimeModelPiece& piece) { return piece.half_width.has_value(); });
 }
@@ -115,6 +119,15 @@ std::variant<ClipGroup, PointGroup, ImuGroup> kind_of(const RecordedStream& s,
   if (const auto* points = std::get_if<PointInput>(&s.data)) return PointGroup{points->joint_names};
   const auto& imu = std::get<ImuInput>(s.data);
   return ImuGroup{imu.node_names, imu.content, options.root_node};
+}
+
+/// Where a stream's positions will be: in the reference's space, or in one that was not moved.
+std::string space_of(const std::string& stream, const std::string& reference,
+                     const Manifest& manifest) {
+  const auto found = manifest.spaces.find(stream);
+  const bool moved = found != manifest.spaces.end() && found->second.method != "none";
+  const std::string& in = moved ? found->second.onto : stream;
+  return in.empty() || in == reference ? "take" : in;
 }
 
 /// A further stream of nodes joins the group of its name.
@@ -135,20 +148,26 @@ Result<void> join(TakeGroup& group, const RecordedStream& s) {
     }
     nodes->node_names.push_back(node);
   }
-  group.interval_known = group.interval_known && any_known(s.clock);
+  group.interval_known = group.interval_known && all_known(s.clock);
   group.files.insert(group.files.end(), s.files.begin(), s.files.end());
   return {};
 }
 
 Result<void> make_groups(const Recording& recording, const Manifest& manifest, AlignPlan& plan) {
   auto& groups = plan.header.groups;
+  const RecordedStream& reference = recording.streams[plan.reference];
+  const ResampleRule grid =
+      rule_of(reference, options_of(manifest, reference.name), manifest.align);
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     const RecordedStream& s = recording.streams[i];
+    if (const double rate = options_of(manifest, s.name).rate_hz; s.step_ns && rate > 0.0) {
+      return Failure(Error{"", 0, "no rate_hz for '" + s.name + "', whose file states its step",
+                           fmt::format("rate_hz = {:g}", rate)});
+    }
     StreamPlan stream;
-    stream.rule = rule_of(s, manifest.align);
+    stream.rule = rule_of(s, options_of(manifest, s.name), manifest.align);
     stream.rule.begin_ns = to_ns(plan.begin);
     stream.rule.end_ns = to_ns(plan.end);
-    const ResampleRule grid = rule_of(recording.streams[plan.reference], manifest.align);
     stream.rule.finer =
         static_cast<double>(stream.rule.step_ns) < 0.9 * static_cast<double>(grid.step_ns);
     const auto same = std::find_if(groups.begin(), groups.end(),
@@ -157,7 +176,8 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
     if (same == groups.end()) {
       const bool resampled = i != plan.reference;
       groups.push_back({s.name, kind_of(s, options_of(manifest, s.name)), resampled,
-                        resampled && any_known(s.clock), s.files});
+                        resampled && all_known(s.clock), s.files,
+                        space_of(s.name, reference.name, manifest)});
     } else {
       if (const auto* nodes = std::get_if<ImuGroup>(&same->kind)) {
         stream.first_node = nodes->node_names.size();

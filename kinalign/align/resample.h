@@ -6,16 +6,18 @@
 
 #include "kinalign/align/coarse_grid.h"
 #include "kinalign/align/window.h"
+#include "kinalign/motion/rotation_spline.h"
+#include "kinalign/motion/spline.h"
 #include "kinalign/take/take.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
 namespace kinalign {
 
-/// How far from a row samples still matter. Up to two of three may be missing before a stretch is a
-/// gap by default, which leaves more knots than a spline can feel (motion/spline.h).
-constexpr std::size_t window_reach = 192;
+/// Knots on either side beyond which neither spline feels anything.
+constexpr std::size_t knots_felt = std::max(spline_reach, rotation_spline_reach);
 
 enum class RotationCurve { spline, slerp };
 
@@ -27,6 +29,7 @@ struct ResampleRule {
   bool finer = false;                     // than the grid: what that can't carry is measured
 
   GapCount gap_count() const { return {gap_ns, begin_ns, end_ns}; }
+  Reach reach() const { return {knots_felt, gap_ns}; }
 };
 
 /// What resampling saw, summed over calls.
@@ -42,7 +45,7 @@ struct ResampleCount {
 /// Neighbours of each row of a grid in a stream, on rising stamps.
 struct Neighbours {
   std::vector<std::size_t> left;             // [n] last sample at or before the row
-  std::vector<std::int64_t> nearest_raw_ns;  // [n]
+  std::vector<std::int64_t> nearest_raw_ns;  // [n] at most farthest_nearest_ns
 };
 /// Rows outside the stream have left = stamps.size().
 Neighbours find_neighbours(std::span<const std::int64_t> stamps,

@@ -26,7 +26,7 @@ std::vector<double> column(const std::vector<double>& rotations, std::size_t joi
 Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& out) {
   out = {};
   if (grid.empty()) return {};
-  KA_TRY(window_.move(grid.front(), grid.back(), window_reach));
+  KA_TRY(window_.move(grid.front(), grid.back(), rule_.reach()));
   const auto& stamps = window_.time_ns;
   if (stamps.empty()) return Failure(Error{"", 0, "frames in a clip", "none"});
   const std::size_t channels = window_.rows.local_positions.size() / stamps.size();

@@ -104,6 +104,23 @@ void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
   }
 }
 
+/// How far each row is from the node's nearest sample, and which lie over lost ones.
+void put_distances(const NodeSamples& samples, std::span<const std::int64_t> grid,
+                   const ResampleRule& rule, const NodeColumn& column, ImuRows& out) {
+  const Neighbours near = find_neighbours(samples.stamps, grid);
+  ResampleCount& count = *column.count;
+  for (std::size_t r = 0; r < grid.size(); ++r) {
+    const std::size_t cell = r * column.nodes + column.node, left = near.left[r];
+    out.distance.nearest_raw_ns[cell] = near.nearest_raw_ns[r];
+    if (out.valid[cell] == 0) continue;
+    const bool between = samples.stamps[left] != grid[r];
+    const bool lost =
+        between && samples.stamps[left + 1] - samples.stamps[left] > rule.step_ns * 3 / 2;
+    count.bridged += lost ? 1 : 0;
+    count.worst_nearest_ns = std::max(count.worst_nearest_ns, near.nearest_raw_ns[r]);
+  }
+}
+
 /// n samples, none of them valid.
 ImuRows no_samples(std::size_t n, const ImuContent& content) {
   ImuRows out;
@@ -119,30 +136,25 @@ ImuRows no_samples(std::size_t n, const ImuContent& content) {
 Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_world, ImuRows& out) {
   out = {};
   if (grid.empty()) return {};
-  KA_TRY(window_.move(grid.front(), grid.back(), window_reach));
+  KA_TRY(window_.move(grid.front(), grid.back(), rule_.reach()));
   const auto& stamps = window_.time_ns;
   if (stamps.empty()) return Failure(Error{"", 0, "samples in a stream of nodes", "none"});
   const std::size_t nodes = window_.rows.valid.size() / stamps.size(), n = grid.size() * nodes;
   out = no_samples(n, content_);
+  out.distance.nearest_raw_ns.resize(n);
   for (std::size_t node = 0; node < nodes; ++node) {
-    interpolate(samples_of(window_, node, content_, to_world), grid, rule_,
-                NodeColumn{node, nodes, content_, &count_}, out);
+    const NodeSamples samples = samples_of(window_, node, content_, to_world);
+    const NodeColumn column{node, nodes, content_, &count_};
+    interpolate(samples, grid, rule_, column, out);
+    put_distances(samples, grid, rule_, column, out);
   }
   const Neighbours near = find_neighbours(stamps, grid);
   for (std::size_t r = 0; r < grid.size(); ++r) {
-    const std::size_t left = near.left[r];
-    const bool inside = left + 1 < stamps.size();
-    const bool lost = inside && stamps[left] != grid[r] &&
-                      stamps[left + 1] - stamps[left] > rule_.step_ns * 3 / 2;
-    const std::size_t known_at = std::min(left, stamps.size() - 1);
+    const std::size_t known_at = std::min(near.left[r], stamps.size() - 1);
     const auto known = half_width(*clock_, window_.rows.stamps[known_at]);
-    for (std::size_t node = 0; node < nodes; ++node) {
-      out.distance.nearest_raw_ns.push_back(near.nearest_raw_ns[r]);
-      if (known) out.distance.time_interval_ns.push_back(known->count());
-      if (out.valid[r * nodes + node] == 0) continue;
-      count_.bridged += lost ? 1 : 0;
-      count_.worst_nearest_ns = std::max(count_.worst_nearest_ns, near.nearest_raw_ns[r]);
-    }
+    if (!known) continue;
+    auto& intervals = out.distance.time_interval_ns;
+    intervals.insert(intervals.end(), nodes, known->count());
   }
   count_.samples += n;
   return {};

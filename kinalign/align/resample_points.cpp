@@ -78,6 +78,15 @@ void interpolate(const Gathered& samples, std::span<const std::int64_t> grid,
   }
 }
 
+/// Stamps of the frames in which any joint was seen.
+std::vector<std::int64_t> stamps_seen(const Window<PointFrames>& window) {
+  std::vector<std::int64_t> out;
+  for (std::size_t t = 0; t < window.time_ns.size(); ++t) {
+    if (any_seen(window.rows, t)) out.push_back(window.time_ns[t]);
+  }
+  return out;
+}
+
 /// Between two raw samples.
 struct Between {
   Tracking lesser;
@@ -104,8 +113,10 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
     while (k + 1 < stamps.size() && stamps[k + 1] <= row) ++k;
     const bool outside = stamps.empty() || row < stamps.front() || row > stamps.back();
     out.left.push_back(outside ? stamps.size() : k);
-    std::int64_t nearest = stamps.empty() ? 0 : std::abs(row - stamps[k]);
-    if (k + 1 < stamps.size()) nearest = std::min(nearest, std::abs(stamps[k + 1] - row));
+    std::int64_t nearest = farthest_nearest_ns;
+    for (std::size_t i = k; i < std::min(k + 2, stamps.size()); ++i) {
+      nearest = std::min(nearest, std::abs(row - stamps[i]));
+    }
     out.nearest_raw_ns.push_back(nearest);
   }
   return out;
@@ -114,7 +125,7 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
 Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows& out) {
   out = {};
   if (grid.empty()) return {};
-  KA_TRY(window_.move(grid.front(), grid.back(), window_reach));
+  KA_TRY(window_.move(grid.front(), grid.back(), rule_.reach()));
   const auto& stamps = window_.time_ns;
   if (stamps.empty()) return Failure(Error{"", 0, "samples in a stream of points", "none"});
   const std::size_t joints = window_.rows.state.size() / stamps.size();
@@ -124,7 +135,8 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
   for (const auto& [seen, group] : joints_by_seen(window_.rows, joints)) {
     interpolate(gather(window_, seen, group, joints), grid, rule_, out, count_);
   }
-  Neighbours near = find_neighbours(stamps, grid);
+  const Neighbours near = find_neighbours(stamps, grid);
+  out.distance.nearest_raw_ns = find_neighbours(stamps_seen(window_), grid).nearest_raw_ns;
   for (std::size_t r = 0; r < grid.size(); ++r) {
     const std::size_t left = near.left[r];
     const auto known = half_width(*clock_, window_.rows.stamps[std::min(left, stamps.size() - 1)]);
@@ -136,12 +148,12 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
       const std::size_t cell = r * joints + j;
       const Tracking lesser =
           std::min(window_.rows.state[left * joints + j], window_.rows.state[right * joints + j]);
-      out.state[cell] = judge({lesser, lost, near.nearest_raw_ns[r]}, out.valid[cell] != 0, count_);
+      out.state[cell] =
+          judge({lesser, lost, out.distance.nearest_raw_ns[r]}, out.valid[cell] != 0, count_);
     }
   }
   count_.samples += out.valid.size();
   count_.invalid += static_cast<std::uint64_t>(std::count(out.valid.begin(), out.valid.end(), 0));
-  out.distance.nearest_raw_ns = std::move(near.nearest_raw_ns);
   return {};
 }
 

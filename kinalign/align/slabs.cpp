@@ -11,26 +11,41 @@ namespace kinalign {
 
 namespace {
 
+/// Numbers in a row of a group.
+std::size_t width(const TakeGroup& group) {
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return 10 * clip->skeleton.joints();
+  if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
+    return 4 * points->joint_names.size();
+  }
+  return 12 * std::get<ImuGroup>(group.kind).node_names.size();
+}
+
+std::size_t rows_at_once(const TakeHeader& header) {
+  std::size_t numbers = 1;
+  for (const TakeGroup& group : header.groups) numbers += width(group);
+  return std::clamp<std::size_t>(slab_bytes / (sizeof(double) * numbers), 16, slab_rows);
+}
+
 /// The rows of the reference within the common span, pulled from a window.
 template <class Frames>
 class ReferenceRows {
  public:
   ReferenceRows(Pass<Frames> pass, const RecordedStream& stream, const AlignPlan& plan)
       : window_(std::move(pass), stream.clock, plan.streams[plan.reference].rule.gap_count()),
+        most_rows_(rows_at_once(plan.header)),
         begin_(to_ns(plan.begin)),
         end_(to_ns(plan.end)) {}
 
-  /// Moves up to slab_rows further frames into `out`, and their stamps into `grid`.
+  /// Moves the next slab's frames into `out`, and their stamps into `grid`.
   Result<void> next(Frames& out, std::vector<std::int64_t>& grid) {
     out = {};
     grid.clear();
-    KA_TRY(window_.fill(begin_, slab_rows));
+    KA_TRY(window_.fill(begin_, most_rows_));
     const auto& stamps = window_.time_ns;
     const auto first = std::lower_bound(stamps.begin(), stamps.end(), begin_);
     const std::int64_t until = first == stamps.end() ? end_ : *first + longest_slab_ns;
     const auto last = std::upper_bound(first, stamps.end(), std::min(end_, until));
-    const std::size_t rows =
-        std::min<std::size_t>(static_cast<std::size_t>(last - first), slab_rows);
+    const std::size_t rows = std::min(static_cast<std::size_t>(last - first), most_rows_);
     if (rows == 0) return {};
     grid.assign(first, first + static_cast<std::ptrdiff_t>(rows));
     append_rows(out, window_.rows, static_cast<std::size_t>(first - stamps.begin()), rows);
@@ -41,6 +56,7 @@ class ReferenceRows {
 
  private:
   Window<Frames> window_;
+  std::size_t most_rows_;
   std::int64_t begin_, end_;
 };
 

@@ -11,8 +11,11 @@
 
 namespace kinalign {
 
-/// Rows of a slab: enough for the windows' overlap to cost little, few enough for the second cache.
+/// Rows of a slab at most: enough for the windows' overlap to cost little, few enough for the
+/// second cache.
 constexpr std::size_t slab_rows = 2048;
+/// Fewer where the rows of a take are longer than usual: no more than these, and some.
+constexpr std::size_t slab_bytes = std::size_t{16} << 20;
 /// And no longer than this, whatever the reference's rate: the other streams' samples of a slab
 /// lie in memory.
 constexpr std::int64_t longest_slab_ns = 120'000'000'000;

@@ -139,6 +139,10 @@ Result<std::vector<SpacePlan>> plan_spaces(const TakeHeader& header, const Manif
       return Failure(Error{"", 0, "three named joints or more for a fit (joints = { ... })",
                            std::to_string(plan.pairs.size())});
     }
+    if (options.method != "paper" && options.magnification != 1.0) {
+      return Failure(Error{"", 0, "magnification with method = \"paper\" only",
+                           "'" + name + "' with method = \"" + options.method + "\""});
+    }
     plan.transform = KA_TRY(given_transform(options));
     plans.push_back(std::move(plan));
   }
@@ -161,7 +165,7 @@ void ResidualSums::transform(const SpacePlan& plan, TakeSlab& slab) {
   const std::vector<double> before = points.positions;
   const JointColumn onto = column(slab, plan.onto);
   const std::size_t joints = points.valid.size() / slab.stamps.size();
-  const double m = plan.options.magnification;
+  const double m = plan.options.method == "paper" ? plan.options.magnification : 1.0;
   for (std::size_t r = 0; r < slab.stamps.size(); ++r) {
     RigidTransform transform = plan.transform;
     bool placed = true;

@@ -30,7 +30,7 @@ struct SpacePlan {
 Result<std::vector<SpacePlan>> plan_spaces(const TakeHeader& header, const Manifest& manifest,
                                            std::size_t reference_group);
 
-/// The counterparts that are used without a manifest's word: docs/formats/recording_toml.md.
+/// The counterparts that are used without a manifest's word: docs/align.md lists them.
 std::vector<std::pair<std::string_view, std::string_view>> usual_pairs();
 
 /// Adds the pairs of a slab in which both joints are valid and the stream's is tracked.

@@ -23,7 +23,43 @@ void drop_front(Frames& rows, std::size_t count);
 template <class Frames>
 void drop_last(Frames& rows);
 
-/// Stretches without samples within a span.
+// What was seen in a row, column by column: joints, nodes, or the one body of a clip.
+inline std::size_t columns(const ClipFrames&) { return 1; }
+inline std::size_t columns(const PointFrames& rows) { return rows.state.size() / rows.size(); }
+inline std::size_t columns(const ImuSamples& rows) { return rows.valid.size() / rows.size(); }
+inline bool seen(const ClipFrames&, std::size_t) { return true; }
+inline bool seen(const PointFrames& rows, std::size_t cell) {
+  return rows.state[cell] != Tracking::missing;
+}
+inline bool seen(const ImuSamples& rows, std::size_t cell) { return rows.valid[cell] != 0; }
+
+template <class Frames>
+bool any_seen(const Frames& rows, std::size_t row) {
+  const std::size_t width = columns(rows);
+  for (std::size_t cell = row * width; cell < (row + 1) * width; ++cell) {
+    if (seen(rows, cell)) return true;
+  }
+  return false;
+}
+
+/// Distances to raw samples are told up to here, so that a column that was not seen for hours does
+/// not keep hours in memory.
+constexpr std::int64_t farthest_nearest_ns = 10'000'000'000;
+
+/// How far from a row samples still matter: so many seen ones of each column, or up to a gap; and
+/// the nearest one within farthest_nearest_ns.
+struct Reach {
+  std::size_t knots = 0;
+  std::int64_t gap_ns = 0;
+
+  /// Whether a row `distance` behind the last knot, or behind the start where `found` is none yet,
+  /// can't matter any more.
+  bool ended(std::int64_t distance, std::size_t found) const {
+    return distance > (found == 0 ? std::max(gap_ns, farthest_nearest_ns) : gap_ns);
+  }
+};
+
+/// Stretches within a span in which nothing was seen.
 struct GapCount {
   std::int64_t limit_ns = 0;              // longer ones count
   std::int64_t begin_ns = 0, end_ns = 0;  // of the take
@@ -44,8 +80,8 @@ class Window {
       : gaps(count), pass_(std::move(pass)), clock_(&clock) {}
 
   /// After it, `rows` hold all samples within [from, to] and, where the stream has them, `reach`
-  /// more on either side. `from` and `to` (ns on the take's axis) rise from call to call.
-  Result<void> move(std::int64_t from, std::int64_t to, std::size_t reach) {
+  /// on either side. `from` and `to` (ns on the take's axis) rise from call to call.
+  Result<void> move(std::int64_t from, std::int64_t to, const Reach& reach) {
     while (!ended_ && !reaches(to, reach)) {
       KA_TRY(pull());
       forget(from, reach);
@@ -58,7 +94,7 @@ class Window {
   /// the stream has them.
   Result<void> fill(std::int64_t from, std::size_t count) {
     for (;;) {
-      drop_before(from, 0);
+      drop(first_not_before(from));
       if (ended_ || time_ns.size() >= count) return {};
       KA_TRY(pull());
     }
@@ -69,22 +105,56 @@ class Window {
   GapCount gaps;                      // in what was pulled so far
 
  private:
-  void drop_before(std::int64_t from, std::size_t reach) {
-    const auto inside = static_cast<std::size_t>(
-        std::lower_bound(time_ns.begin(), time_ns.end(), from) - time_ns.begin());
-    const std::size_t drop = inside - std::min(inside, reach);
-    drop_front(rows, drop);
-    time_ns.erase(time_ns.begin(), time_ns.begin() + static_cast<std::ptrdiff_t>(drop));
+  std::size_t first_not_before(std::int64_t t) const {
+    return static_cast<std::size_t>(std::lower_bound(time_ns.begin(), time_ns.end(), t) -
+                                    time_ns.begin());
   }
 
-  bool reaches(std::int64_t to, std::size_t reach) const {
-    return time_ns.size() > reach && time_ns[time_ns.size() - 1 - reach] >= to;
+  void drop(std::size_t count) {
+    drop_front(rows, count);
+    time_ns.erase(time_ns.begin(), time_ns.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+
+  /// Keeps what `reach` wants of each column in front of `from`.
+  void drop_before(std::int64_t from, const Reach& reach) {
+    const std::size_t inside = first_not_before(from);
+    std::size_t first = inside;
+    const std::size_t width = inside > 0 ? columns(rows) : 0;
+    for (std::size_t c = 0; c < width; ++c) {
+      std::size_t knots = 0;
+      std::int64_t last = from;
+      for (std::size_t t = inside; t-- > 0 && knots < reach.knots;) {
+        if (reach.ended(last - time_ns[t], knots)) break;
+        if (!seen(rows, t * width + c)) continue;
+        ++knots;
+        last = time_ns[t];
+        first = std::min(first, t);
+      }
+    }
+    drop(first);
+  }
+
+  /// Whether `reach` is there of each column behind `to`.
+  bool reaches(std::int64_t to, const Reach& reach) const {
+    if (time_ns.empty() || time_ns.back() < to) return false;
+    const std::size_t begin = first_not_before(to), width = columns(rows);
+    for (std::size_t c = 0; c < width; ++c) {
+      std::size_t knots = 0, t = begin;
+      std::int64_t last = to;
+      for (; t < time_ns.size() && knots < reach.knots; ++t) {
+        if (reach.ended(time_ns[t] - last, knots)) break;
+        if (!seen(rows, t * width + c)) continue;
+        ++knots;
+        last = time_ns[t];
+      }
+      if (t == time_ns.size() && knots < reach.knots) return false;
+    }
+    return true;
   }
 
   /// Drops while pulling, where it is worth the move: a stretch without rows may be long.
-  void forget(std::int64_t from, std::size_t reach) {
-    const std::size_t half = time_ns.size() / 2;
-    if (half > reach && time_ns[half] < from) drop_before(from, reach);
+  void forget(std::int64_t from, const Reach& reach) {
+    if (!time_ns.empty() && time_ns[time_ns.size() / 2] < from) drop_before(from, reach);
   }
 
   /// Until the last row can't be taken back any more.
@@ -104,41 +174,44 @@ class Window {
     for (; i < block_.size(); ++i) {
       const StampFate fate = rule_.judge(block_.stamps[i]);
       if (fate == StampFate::kept) {
-        add_time(block_.stamps[i]);
+        add_time(i);
         continue;
       }
       append_rows(rows, block_, first, i - first);
       first = i + 1;
       if (fate != StampFate::replaces) continue;
       take_back();
-      add_time(block_.stamps[i]);
+      add_time(i);
       first = i;
     }
     append_rows(rows, block_, first, i - first);
   }
 
-  void add_time(Time stamp) {
-    const std::int64_t t = to_ns(take_time(*clock_, stamp));
-    gaps_before_ = gaps;
-    if (last_ns_) gaps.add(*last_ns_, t);
-    before_ns_ = last_ns_;
-    last_ns_ = t;
+  void add_time(std::size_t i) {
+    const std::int64_t t = to_ns(take_time(*clock_, block_.stamps[i]));
     time_ns.push_back(t);
+    gaps_before_ = gaps;
+    seen_before_ = last_seen_;
+    if (!any_seen(block_, i)) return;
+    if (last_seen_) gaps.add(*last_seen_, t);
+    last_seen_ = t;
   }
 
   void take_back() {
     drop_last(rows);
     time_ns.pop_back();
     gaps = gaps_before_;
-    last_ns_ = before_ns_;
+    last_seen_ = seen_before_;
   }
 
   Pass<Frames> pass_;
   const TimeModel* clock_;
   Frames block_;
   StampRule rule_;
-  std::optional<std::int64_t> last_ns_, before_ns_;  // of the rows added, kept or forgotten
-  GapCount gaps_before_;                             // without the last row
+  std::optional<std::int64_t> last_seen_;  // stamp of the last row added with anything in it
+  // Without the last row:
+  std::optional<std::int64_t> seen_before_;
+  GapCount gaps_before_;
   bool ended_ = false;
 };
 

@@ -24,20 +24,22 @@ Facts rotation_facts(std::string space) {
   return {{"order", "w,x,y,z"}, {"space", std::move(space)}};
 }
 
-const char* const parent_space = "each joint in its parent's, a root in the take's";
-
-std::vector<TakeColumn> clip_columns(const Skeleton& skeleton, bool resampled, Stored number) {
+std::vector<TakeColumn> clip_columns(const Skeleton& skeleton, const TakeGroup& group,
+                                     Stored number) {
   const std::uint64_t joints = skeleton.joints();
+  const std::string parent_space =
+      "each joint in its parent's, a root in " +
+      (group.space == "take" ? std::string("the take's") : group.space + "'s own");
   std::vector<TakeColumn> out{
-      {"positions", number, {joints, 3}, facts("m", "take")},
+      {"positions", number, {joints, 3}, facts("m", group.space)},
       {"local_positions", number, {joints, 3}, facts("m", parent_space)},
       {"local_rotations", number, {joints, 4}, rotation_facts(parent_space)}};
-  if (resampled) out.push_back({"valid", Stored::uint8, {}, {{"values", "0 no, 1 yes"}}});
+  if (group.resampled) out.push_back({"valid", Stored::uint8, {}, {{"values", "0 no, 1 yes"}}});
   return out;
 }
 
-std::vector<TakeColumn> point_columns(std::uint64_t joints, Stored number) {
-  return {{"positions", number, {joints, 3}, facts("m", "take")},
+std::vector<TakeColumn> point_columns(std::uint64_t joints, const TakeGroup& group, Stored number) {
+  return {{"positions", number, {joints, 3}, facts("m", group.space)},
           {"state", Stored::uint8, {joints}, {{"values", "0 missing, 1 inferred, 2 tracked"}}},
           {"valid", Stored::uint8, {joints}, {{"values", "0 no, 1 yes"}}}};
 }
@@ -112,9 +114,9 @@ std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision) 
   std::vector<TakeColumn> out;
   std::vector<std::uint64_t> times;
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
-    out = clip_columns(clip->skeleton, group.resampled, number);
+    out = clip_columns(clip->skeleton, group, number);
   } else if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
-    out = point_columns(points->joint_names.size(), number);
+    out = point_columns(points->joint_names.size(), group, number);
   } else {
     const auto& imu = std::get<ImuGroup>(group.kind);
     out = imu_columns(imu, number);

@@ -11,7 +11,7 @@ namespace {
 
 // Class of a step > 0: the six bits behind its leading one, below the number of that bit.
 std::size_t class_of(std::uint64_t step) {
-  const auto bits = static_cast<unsigned>(std::bit_width(step)) - 1;
+  const auto bits = static_cast<unsigned>(std::bit_width(step | 1)) - 1;
   const std::uint64_t fraction = bits >= 6 ? step >> (bits - 6) : step << (6 - bits);
   return (std::size_t{bits} << 6) + (fraction & 63);
 }
@@ -21,7 +21,8 @@ std::uint64_t step_between(Time earlier, Time later) {
   return static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
 }
 
-constexpr std::uint64_t longest_step = 1'000'000'000;  // ns; longer ones may be a slip
+constexpr std::uint64_t longest_first = 1'000'000'000;  // ns; a longer first step may be a slip
+constexpr std::uint64_t longest_ratio = 4;              // and a later one of so many usual steps
 
 std::int64_t held(std::uint64_t ns) {
   return static_cast<std::int64_t>(std::min<std::uint64_t>(ns, INT64_MAX));
@@ -37,20 +38,32 @@ StampFate StampRule::judge(Time stamp) {
   if (stamp == *last_) return StampFate::duplicate;
   if (stamp > *last_) {
     const bool first_was_right = withdrawn_ && stamp > *withdrawn_;
-    if (!first_was_right) before_ = last_;
+    if (!first_was_right) {
+      if (before_) learn(step_between(*before_, *last_));
+      before_ = last_;
+    }
     withdrawn_.reset();
     last_ = stamp;
     return first_was_right ? StampFate::replaces : StampFate::kept;
   }
-  const bool first_leads = !before_ && !withdrawn_ && step_between(stamp, *last_) > longest_step;
+  const bool first_leads = !before_ && !withdrawn_ && step_between(stamp, *last_) > longest_first;
   if (first_leads) withdrawn_ = last_;
   if (!first_leads && !(before_ && stamp > *before_ && pending())) return StampFate::backward;
   last_ = stamp;
   return StampFate::replaces;
 }
 
+/// Follows shorter steps at once and longer ones slowly: one gap makes no slip look usual.
+void StampRule::learn(std::uint64_t step) {
+  constexpr std::uint64_t countable = std::uint64_t{1} << 60;
+  step = std::min(step, countable);
+  usual_step_ = usual_step_ == 0 ? step : std::min(step, 2 * usual_step_);
+}
+
 bool StampRule::pending() const {
-  return last_ && (!before_ || step_between(*before_, *last_) > longest_step);
+  if (!last_ || !before_) return last_.has_value();
+  const std::uint64_t step = step_between(*before_, *last_);
+  return step > (usual_step_ == 0 ? longest_first : longest_ratio * usual_step_);
 }
 
 void StampSurveyor::keep(Time stamp) {
@@ -106,7 +119,7 @@ StampSurvey StampSurveyor::result() const {
     below += steps_[i];
     if (2 * below >= all) {
       const double middle = sums_[i] / static_cast<double>(steps_[i]);
-      survey.median_step_ns = held(static_cast<std::uint64_t>(middle + 0.5));
+      survey.median_step_ns = middle < 9.2e18 ? std::llround(middle) : INT64_MAX;
       break;
     }
   }

@@ -19,10 +19,10 @@ enum class StampFate {
   backward    // left out: a stamp before the last one kept
 };
 
-/// Rising stamps are kept. One that leads the one before by more than a second and the next one by
-/// anything is a slip of the clock and is taken back, so that a single wild stamp costs a single
-/// sample and not all that follow. Of the first stamp, which has none before it, the second and
-/// third decide.
+/// Rising stamps are kept. One that leads the one before by more than four usual steps (at first: a
+/// second) and the next one by anything is a slip of the clock and is taken back, so that a single
+/// wild stamp costs a single sample and not all that follow. Of the first stamp, which has none
+/// before it, the second and third decide.
 class StampRule {
  public:
   StampFate judge(Time stamp);
@@ -30,7 +30,10 @@ class StampRule {
   bool pending() const;
 
  private:
+  void learn(std::uint64_t step);
+
   std::optional<Time> last_, before_;  // kept
+  std::uint64_t usual_step_ = 0;       // ns, of the ones before; 0: not known yet
   std::optional<Time> withdrawn_;      // the first one, until the third says who was wrong
 };
 

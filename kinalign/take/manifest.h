@@ -30,7 +30,7 @@ struct StreamOptions {
 
   double metres_per_unit = 0.0;  // 0: the format's own (BVH: 0.01)
   std::string up;                // "y" or "z"; empty: the format's own (BVH: y)
-  double rate_hz = 0.0;          // of a file without stamps
+  double rate_hz = 0.0;          // nominal: stamps rows without any, and sets the gap of others
 
   std::optional<std::int64_t> start_ns;  // stamp of the first frame; BVH: the click on record
   std::optional<std::int64_t> end_ns;    // BVH: the click on stop

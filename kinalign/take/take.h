@@ -68,6 +68,7 @@ struct TakeGroup {
   bool resampled = false;       // nearest_raw_ns is there
   bool interval_known = false;  // time_interval_ns is there
   std::vector<InputFacts> files;
+  std::string space = "take";  // of positions: the reference's, or a stream's that was not moved
 };
 
 struct TakeHeader {

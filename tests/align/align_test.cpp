@@ -135,7 +135,8 @@ TEST_CASE("stamps that repeat or step back are left out and reported") {
   stamps[20] = stamps[19];
   stamps[60] = stamps[57];
   const auto take =
-      align(two(points(joints, every(10 * ms, 298), wander), points(joints, stamps, wander)), {});
+      align(two(points(joints, every(10 * ms, 298), wander), points(joints, stamps, wander)),
+            own_space());
   REQUIRE(take);
   CHECK(take->report.streams[1].survey.duplicates == 1);
   CHECK(take->report.streams[1].survey.backward == 1);
@@ -233,14 +234,92 @@ TEST_CASE("a given transform is applied as it is") {
   }
 }
 
-TEST_CASE("a take of many slabs is the same as one computed at once") {
-  // 6000 rows are three slabs: their seams must not show.
-  const auto take = align(two(points(joints, every(10 * ms, 6000), wander),
-                              points(joints, every(30 * ms, 2000), wander)),
-                          {});
+TEST_CASE("the paper's table in centimetres: m = 100 and the mocap's root in metres") {
+  // HFUT-MMD, equations (1) and (2) as printed: x' = m (A_rot x - A_offset), A_offset = A_rot x_k0
+  // - x_d0. With m = 100 and x_d0 in metres the result is 100 times ours, in centimetres.
+  const auto seen = [](std::size_t j, double t) {
+    return Vec3(turn_about_y(-60.0) * wander(j, t) + Vec3(0.2, -0.9, 2.5));
+  };
+  Manifest manifest;
+  manifest.spaces["kinect"].method = "paper";
+  manifest.spaces["kinect"].onto_root = "SpineBase";
+  const auto reference = points(joints, every(10 * ms, 300), wander);
+  const auto kinect = points(joints, every(10 * ms, 300), seen);
+  const auto take = align(two(reference, kinect), manifest);
   REQUIRE(take);
-  for (std::size_t r = 60; r + 60 < 5990; ++r) {
-    const double t = 1e-9 * static_cast<double>(to_ns(take->all.stamps[r]));
-    CHECK((at(rows(*take, 1), r, 3) - wander(3, t)).norm() < 5e-6);
+  for (std::size_t r = 0; r < 300; ++r) {
+    const auto x = [&](std::size_t j) { return vec3(kinect.frames.positions, 4 * r + j); };
+    const Vec3 x_d0 = vec3(reference.frames.positions, 4 * r);
+    const Vec3 offset = turn_about_y(60.0) * x(0) - x_d0;
+    for (std::size_t j = 0; j < 4; ++j) {
+      const Vec3 printed = 100.0 * (turn_about_y(60.0) * x(j) - offset);
+      CHECK((100.0 * at(rows(*take, 1), r, j) - printed).norm() < 1e-10);
+    }
   }
+}
+
+TEST_CASE("magnification belongs to the paper's method") {
+  Manifest manifest;
+  manifest.spaces["kinect"].method = "fit";
+  manifest.spaces["kinect"].magnification = 3.0;
+  const auto stream = points(joints, every(10 * ms, 300), wander);
+  const auto take = align(two(stream, stream), manifest);
+  REQUIRE(!take);
+  CHECK(to_string(take.error()) ==
+        "expected magnification with method = \"paper\" only, found 'kinect' with method = "
+        "\"fit\"");
+}
+
+TEST_CASE("a stream that nobody places says so, and whose space it is in") {
+  const auto stream = points(joints, every(10 * ms, 300), wander);
+  Manifest manifest;
+  const auto take = align(two(stream, stream), manifest);
+  REQUIRE(take);
+  CHECK(take->header.groups[0].space == "take");
+  CHECK(take->header.groups[1].space == "kinect");
+  REQUIRE(take->report.findings.size() == 1);
+  CHECK(take->report.findings[0].severity == Severity::note);
+  CHECK(to_string(take->report.findings[0].what) == "expected a space for 'kinect', found none");
+
+  manifest.spaces["kinect"].method = "none";
+  CHECK(align(two(stream, stream), manifest)->report.findings.empty());
+  manifest.spaces["kinect"].method = "fit";
+  const auto moved = align(two(stream, stream), manifest);
+  CHECK(moved->report.findings.empty());
+  CHECK(moved->header.groups[1].space == "take");
+}
+
+TEST_CASE("a fit of what is not the same motion is a warning") {
+  const auto other = [](std::size_t j, double t) { return Vec3(2.0 * wander(3 - j, 3.0 * t)); };
+  Manifest manifest;
+  manifest.spaces["kinect"].method = "fit";
+  const auto take = align(
+      two(points(joints, every(10 * ms, 300), wander), points(joints, every(10 * ms, 300), other)),
+      manifest);
+  REQUIRE(take);
+  REQUIRE(take->report.findings.size() == 1);
+  CHECK(take->report.findings[0].severity == Severity::warning);
+  CHECK(take->report.spaces[0].after_m > 0.3);
+}
+
+TEST_CASE("samples in bursts are a warning, and rate_hz tells the true period") {
+  std::vector<Time> stamps;  // three at once every 99 ms, as some radios deliver them
+  for (std::int64_t k = 0; k < 100; ++k) {
+    stamps.push_back(utc_time((k / 3) * 99 * ms + (k % 3) * ms));
+  }
+  const Recording recording =
+      two(points(joints, every(10 * ms, 320), wander), points(joints, stamps, wander));
+  const auto take = align(recording, {});
+  REQUIRE(take);
+  CHECK(take->report.streams[1].invalid > take->report.streams[1].samples / 2);
+  REQUIRE(!take->report.findings.empty());
+  CHECK(to_string(take->report.findings[0].what) ==
+        "kinect: expected steps near their median of 1 ms, found a mean of 33 ms");
+  Manifest manifest;
+  manifest.streams.resize(1);
+  manifest.streams[0].name = "kinect";
+  manifest.streams[0].rate_hz = 30.0;
+  const auto told = align(recording, manifest);
+  REQUIRE(told);
+  CHECK(told->report.streams[1].invalid == 0);
 }

@@ -2,8 +2,11 @@
 // Small recordings of closed formulas for the tests of alignment.
 #pragma once
 
+#include "kinalign/align/window.h"
+#include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -64,6 +67,26 @@ inline ImuStream nodes(const std::vector<std::string>& names, const std::vector<
     }
   }
   return out;
+}
+
+/// Says that "kinect" shall stay in its own space.
+inline Manifest own_space() {
+  Manifest manifest;
+  manifest.spaces["kinect"].method = "none";
+  return manifest;
+}
+
+/// A stream in blocks of `size` rows, as a reader hands them out.
+template <class Frames>
+Pass<Frames> in_blocks(const Frames& all, std::size_t size) {
+  return [all, size, at = std::size_t{0}](Frames& block) mutable -> Result<bool> {
+    block = {};
+    if (at == all.size()) return false;
+    const std::size_t count = std::min(size, all.size() - at);
+    append_rows(block, all, at, count);
+    at += count;
+    return true;
+  };
 }
 
 }  // namespace kinalign::test

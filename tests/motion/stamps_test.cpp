@@ -51,6 +51,22 @@ TEST_CASE("one wild stamp far ahead costs one sample, not all that follow") {
   CHECK(survey(stamps({0, s, 999'999 * s})).kept() == 3);  // nothing behind it says who is wrong
 }
 
+TEST_CASE("a stamp that runs ahead by some steps costs one sample too") {
+  std::vector<std::int64_t> ns;
+  for (std::int64_t i = 0; i < 100; ++i) ns.push_back(i * 33'000'000 + (i == 50 ? 400'000'000 : 0));
+  const auto found = survey(stamps(ns));
+  CHECK(found.ahead == 1);
+  CHECK(found.kept() == 99);
+}
+
+TEST_CASE("of a slow stream no sample waits for the next one") {
+  StampRule rule;
+  for (std::int64_t i = 0; i < 10; ++i) {
+    CHECK(rule.judge(utc_time(i * 60'000'000'000)) == StampFate::kept);
+    CHECK(rule.pending() == (i < 2));
+  }
+}
+
 TEST_CASE("a wild first stamp costs one sample, ahead or behind") {
   constexpr std::int64_t s = 1'000'000'000;
   const auto ahead = survey(stamps({999'999 * s, 0, s, 2 * s}));

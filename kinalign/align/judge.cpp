@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+/// The median tells a device's period, but not where samples come in bursts.
+Findings judge_rate(const RecordedStream& s, const std::string& file) {
+  const StampSurvey& survey = s.survey;
+  if (s.step_ns || survey.kept() < 10 || survey.median_step_ns == 0) return {};
+  const double median = static_cast<double>(survey.median_step_ns),
+               mean = static_cast<double>(to_ns(survey.last) - to_ns(survey.first)) /
+                      static_cast<double>(survey.kept() - 1);
+  if (mean < 2.0 * median) return {};
+  return {{Severity::warning,
+           Error{file, 0, fmt::format("steps near their median of {:.3g} ms", 1e-6 * median),
+                 fmt::format("a mean of {:.3g} ms", 1e-6 * mean)},
+           "stretches longer than three median steps are taken for gaps",
+           "where samples come in bursts, say the device's rate_hz (or gap_ms); else many are "
+           "missing"}};
+}
+
+}  // namespace
+
+Findings judge_stamps(const RecordedStream& s) {
+  Findings out;
+  const std::string file = s.files.empty() ? s.name : s.files.front().name;
+  if (s.survey.duplicates > 0) {
+    out.push_back({Severity::note,
+                   Error{file, 0, "stamps that rise",
+                         fmt::format("{} that repeat the one before", s.survey.duplicates)},
+                   "these samples were left out", ""});
+  }
+  if (s.survey.ahead > 0) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "stamps that go on from one another",
+                         fmt::format("{} far ahead of the ones around", s.survey.ahead)},
+                   "these samples were left out", ""});
+  }
+  if (s.survey.backward > 0) {
+    // Behind a clock that was set back nothing is later than what came before.
+    const bool many = 20 * s.survey.backward > s.survey.samples;
+    out.push_back(
+        {many ? Severity::error : Severity::warning,
+         Error{file, 0, "stamps that rise",
+               fmt::format("{} of {} that step back, by up to {:.3f} s", s.survey.backward,
+                           s.survey.samples,
+                           1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
+         "these samples were left out",
+         many ? "the device's clock was set back: cut the file there, or stamp it by rate_hz"
+              : "look at the device's clock if there are many"});
+  }
+  const Findings bursts = judge_rate(s, file);
+  out.insert(out.end(), bursts.begin(), bursts.end());
+  return out;
+}
+
+Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {
+  // Below these a stream's own noise looks like content. Chosen: Kinect v2 joints at rest wander by
+  // 0.1 to 0.9 mm, hand tips by 2.5 (measured on KinectMultiTrack); inertial sensors of phones and
+  // trackers by some 0.02 m/s2 and 0.005 rad/s.
+  constexpr double points_m = 0.002, acceleration_m_s2 = 0.05, angular_velocity_rad_s = 0.01;
+  Findings out;
+  const auto add = [&](const std::vector<CarriedContent>& contents, const std::string& quantity,
+                       const std::vector<std::string>& parts, double noise) {
+    const Findings found = judge_content(contents, {s.name, quantity, parts, grid_hz, noise});
+    out.insert(out.end(), found.begin(), found.end());
+  };
+  if (const auto* points = std::get_if<PointInput>(&s.data)) {
+    add(count.positions, "position", points->joint_names, points_m);
+  } else if (const auto* imu = std::get_if<ImuInput>(&s.data)) {
+    add(count.acceleration, "acceleration", imu->node_names, acceleration_m_s2);
+    add(count.angular_velocity, "angular velocity", imu->node_names, angular_velocity_rad_s);
+  }
+  return out;
+}
+
+Findings judge_spaces(const TakeHeader& header) {
+  Findings out;
+  for (const TakeGroup& group : header.groups) {
+    if (!std::holds_alternative<PointGroup>(group.kind) || group.space == "take" ||
+        header.parameters.spaces.contains(group.name)) {
+      continue;
+    }
+    out.push_back({Severity::note, Error{"", 0, "a space for '" + group.name + "'", "none"},
+                   "its positions stay in its own space",
+                   "[space." + group.name + "] method = \"fit\" (or \"none\", if so meant)"});
+  }
+  return out;
+}
+
+Findings judge_residual(const SpaceReport& space) {
+  // Chosen: after a fit Kinect v2 joints lie 6 to 9 cm from optical ones (Keraal: 7.5; Xu and
+  // McGorry, Applied Ergonomics 2015), the worst of another device 21. No body is this far off.
+  constexpr double too_far_m = 0.3;
+  if (!(space.after_m > too_far_m)) return {};
+  return {
+      {Severity::warning,
+       Error{"", 0, fmt::format("'{}' on '{}' to less than 30 cm rms", space.stream, space.onto),
+             fmt::format("{:.1f} cm", 100.0 * space.after_m)},
+       "the positions are not to be trusted",
+       "are both the same motion, at the same time, of the same units and joints?"}};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a person should know of an alignment and could overlook: findings that say what is wrong and
+// what would mend it.
+#pragma once
+
+#include "kinalign/align/resample.h"
+#include "kinalign/take/take.h"
+
+namespace kinalign {
+
+/// Stamps that repeat, step back, run ahead or come in bursts.
+Findings judge_stamps(const RecordedStream& stream);
+
+/// What the grid of `grid_hz` can't carry of one stream.
+Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);
+
+/// Points that stay in a space of their own though nobody said that they should.
+Findings judge_spaces(const TakeHeader& header);
+
+/// Joints that lie too far from their counterparts to be the same ones.
+Findings judge_residual(const SpaceReport& space);
+
+}  // namespace kinalign

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// A take is made in slabs from windows of its streams; neither may show in it. The truth here is
+// one spline through all samples at once.
+#include "tests/align/streams.h"
+
+#include "kinalign/align/align.h"
+#include "kinalign/align/resample.h"
+#include "kinalign/motion/rotation_spline.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace kinalign;
+using namespace kinalign::test;
+
+namespace {
+
+constexpr std::size_t block_rows = 40;  // as from pieces of a file
+
+/// 5000 rows of a grid are three slabs.
+RecordedStream grid() {
+  return recorded("points", points({"a"}, every(10 * ms, 5000, 1000 * ms), wander));
+}
+
+/// Stamps that are nowhere regular, over the grid and a little more.
+std::vector<Time> irregular(std::int64_t step_ns) {
+  std::mt19937_64 random(7);
+  std::vector<Time> out;
+  for (std::int64_t t = 0; t < 52'000 * ms;) {
+    out.push_back(utc_time(t));
+    t += step_ns / 2 + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(step_ns));
+  }
+  return out;
+}
+
+std::vector<double> seconds(const std::vector<Time>& stamps) {
+  std::vector<double> out;
+  for (const Time t : stamps) out.push_back(1e-9 * static_cast<double>(to_ns(t)));
+  return out;
+}
+
+/// The natural spline through all of (stamps, values [T,3]) at the rows of a take.
+std::vector<double> at_once(const std::vector<Time>& stamps, const std::vector<double>& values,
+                            const Take& take) {
+  const auto times = seconds(stamps), rows = seconds(take.all.stamps);
+  const Knots knots{times, values, 3};
+  std::vector<double> bends(values.size()), out(3 * rows.size());
+  natural_spline(knots, bends);
+  spline_at(knots, bends, rows, out);
+  return out;
+}
+
+/// Largest difference of column `column` of an array [n,columns,width] from [n,width].
+double farthest(const std::vector<double>& array, std::size_t columns, std::size_t column,
+                const std::vector<double>& truth, std::size_t width = 3) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const std::size_t row = i / width, k = i % width;
+    most = std::max(most, std::abs(array[(row * columns + column) * width + k] - truth[i]));
+  }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("points of many slabs are one spline's, also of a joint that was seldom seen") {
+  const auto stamps = irregular(20 * ms);
+  PointStream kinect = points({"a", "seldom"}, stamps, wander);
+  std::vector<Time> seen;
+  std::vector<double> all, some;
+  for (std::size_t t = 0; t < stamps.size(); ++t) {
+    const auto cell = [&](std::size_t j) { return vec3(kinect.frames.positions, 2 * t + j); };
+    all.insert(all.end(), cell(0).begin(), cell(0).end());
+    if (t % 50 != 0 && t + 1 != stamps.size()) {
+      kinect.frames.state[2 * t + 1] = Tracking::missing;
+      continue;
+    }
+    seen.push_back(stamps[t]);
+    some.insert(some.end(), cell(1).begin(), cell(1).end());
+  }
+  RecordedStream other = recorded("kinect", kinect);
+  std::get<PointInput>(other.data).passes = [&]() -> Result<Pass<PointFrames>> {
+    return in_blocks(kinect.frames, block_rows);
+  };
+  Recording recording;
+  recording.streams = {grid(), other};
+  Manifest manifest;
+  manifest.align.gap_ms = 3000.0;
+  const auto take = align(recording, manifest);
+  REQUIRE(take);
+  REQUIRE(take->all.stamps.size() == 5000);
+  const auto& rows = std::get<PointRows>(take->all.rows[1]);
+  CHECK(farthest(rows.positions, 2, 0, at_once(stamps, all, *take)) < 1e-12);
+  CHECK(farthest(rows.positions, 2, 1, at_once(seen, some, *take)) < 1e-12);
+  CHECK(take->report.streams[1].invalid == 0);
+}
+
+TEST_CASE("a clip of many slabs is one curve's: places to 1e-12 m, turns to 1e-9 rad") {
+  const auto stamps = irregular(20 * ms);
+  Clip clip;
+  clip.skeleton = {{"Hips"}, {-1}, {Vec3::Zero()}, {}};
+  clip.frames.stamps = stamps;
+  for (const double t : seconds(stamps)) {
+    const Vec3 p = wander(0, t);
+    clip.frames.local_positions.insert(clip.frames.local_positions.end(), p.begin(), p.end());
+    const Quat q = Quat(Eigen::AngleAxisd(2.0 * std::sin(t), Vec3::UnitX()) *
+                        Eigen::AngleAxisd(std::sin(1.7 * t), Vec3::UnitY()));
+    for (const double part : {q.w(), q.x(), q.y(), q.z()}) {
+      clip.frames.local_rotations.push_back(part);
+    }
+  }
+  RecordedStream other = recorded("mocap", clip);
+  std::get<ClipInput>(other.data).passes = [&]() -> Result<Pass<ClipFrames>> {
+    return in_blocks(clip.frames, block_rows);
+  };
+  Recording recording;
+  recording.streams = {grid(), other};
+  const auto take = align(recording, {});
+  REQUIRE(take);
+  const auto& rows = std::get<ClipRows>(take->all.rows[1]);
+  CHECK(farthest(rows.local_positions, 1, 0, at_once(stamps, clip.frames.local_positions, *take)) <
+        1e-12);
+  const auto times = seconds(stamps), at = seconds(take->all.stamps);
+  const RotationKnots knots{times, clip.frames.local_rotations};
+  std::vector<double> turned(4 * at.size());
+  rotation_spline_at(knots, rotation_spline_rates(knots), at, turned);
+  CHECK(farthest(rows.local_rotations, 1, 0, turned, 4) < 1e-9);
+}
+
+TEST_CASE("nodes of many slabs are one spline's across every loss shorter than the gap") {
+  const auto stamps = every(1 * ms, 52'000);
+  ImuStream node = nodes({"waist"}, stamps, [](std::size_t, double t) {
+    return Quat(Eigen::AngleAxisd(std::sin(t), Vec3::UnitX()));
+  });
+  std::vector<Time> seen;
+  std::vector<double> values;
+  for (std::size_t t = 0; t < stamps.size(); ++t) {
+    if (t % 400 >= 150) {  // 250 ms of each 400
+      node.samples.valid[t] = 0;
+      continue;
+    }
+    seen.push_back(stamps[t]);
+    const auto a = vec3(node.samples.acceleration, t);
+    values.insert(values.end(), a.begin(), a.end());
+  }
+  RecordedStream other = recorded("imu", node);
+  std::get<ImuInput>(other.data).passes = [&]() -> Result<Pass<ImuSamples>> {
+    return in_blocks(node.samples, block_rows);
+  };
+  Recording recording;
+  recording.streams = {grid(), other};
+  Manifest manifest;
+  manifest.align.gap_ms = 300.0;
+  const auto take = align(recording, manifest);
+  REQUIRE(take);
+  CHECK(take->report.streams[1].invalid == 0);
+  const auto& rows = std::get<ImuRows>(take->all.rows[1]);
+  CHECK(farthest(rows.acceleration, 1, 0, at_once(seen, values, *take)) < 1e-11);  // of 9.8
+}
+
+TEST_CASE("an empty sample of a node is none: it shortens no distance and hides no loss") {
+  const auto stamps = every(30 * ms, 200);
+  ImuStream node = nodes({"waist"}, stamps, [](std::size_t, double) { return Quat::Identity(); });
+  for (const std::size_t t : {60U, 61U}) node.samples.valid[t] = 0;   // bridged
+  for (std::size_t t = 100; t < 120; ++t) node.samples.valid[t] = 0;  // a gap
+  Recording recording;
+  recording.streams = {recorded("points", points({"a"}, every(10 * ms, 590), wander)),
+                       recorded("imu", node)};
+  const auto take = align(recording, {});
+  REQUIRE(take);
+  const auto& rows = std::get<ImuRows>(take->all.rows[1]);
+  CHECK(rows.distance.nearest_raw_ns[181] == 40 * ms);  // 1810 ms: the last sample was at 1770
+  CHECK(rows.valid[181] == 1);
+  CHECK(rows.distance.nearest_raw_ns[330] == 300 * ms);  // 3300 ms: 2970 and 3600
+  CHECK(rows.valid[330] == 0);
+  const StreamReport& report = take->report.streams[1];
+  CHECK(report.gaps == 1);
+  CHECK(report.gap_time_ns == 630 * ms);
+  CHECK(report.bridged == 8);
+  CHECK(report.worst_nearest_ns == 40 * ms);
+}
+
+TEST_CASE("distances to raw samples are told up to ten seconds") {
+  auto stamps = every(30 * ms, 100);
+  for (const Time t : every(30 * ms, 100, 60'000 * ms)) stamps.push_back(t);
+  PointStream kinect = points({"a"}, stamps, wander);
+  RecordedStream other = recorded("kinect", kinect);
+  std::get<PointInput>(other.data).passes = [&]() -> Result<Pass<PointFrames>> {
+    return in_blocks(kinect.frames, block_rows);
+  };
+  Recording recording;
+  recording.streams = {recorded("points", points({"a"}, every(10 * ms, 6290), wander)), other};
+  const auto take = align(recording, {});
+  REQUIRE(take);
+  const auto& nearest = std::get<PointRows>(take->all.rows[1]).distance.nearest_raw_ns;
+  CHECK(nearest[297] == 0);
+  CHECK(nearest[1000] == 10'000 * ms - 2970 * ms);
+  CHECK(nearest[3000] == 10'000 * ms);
+  CHECK(nearest[5500] == 5'000 * ms);
+}
