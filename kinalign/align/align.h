@@ -15,11 +15,12 @@ struct TakeSink {
   std::function<Result<void>(const TakeSlab&)> rows;
 };
 
-/// Aligns in at most two passes over each stream (the first one only where a transform is fitted)
-/// and memory for some thousand rows. Returns the report, whose figures belong to what was handed
-/// to the sink. Fails where streams do not overlap in time or a stream can't be read again. With
-/// two `jobs` the reference is read ahead while the rows before are made; results are the same.
-/// `sink` and `progress` may be called on another thread, never on two at once.
+/// Aligns in one pass over each stream (after one more where a transform is fitted, and one over
+/// the stamps of a reference that the span cuts) and memory for some thousand rows. Returns the
+/// report, whose figures belong to what was handed to the sink. Fails where streams do not overlap
+/// in time or a stream can't be read again. With two `jobs` the reference is read ahead while the
+/// rows before are made; results are the same. `sink` and `progress` may be called on another
+/// thread, never on two at once.
 Result<AlignmentReport> align(const Recording& recording, const Manifest& manifest,
                               const TakeSink& sink, const Progress& progress = {},
                               std::size_t jobs = 1);

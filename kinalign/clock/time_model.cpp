@@ -17,6 +17,13 @@ const TimeModelPiece& piece_at(const TimeModel& model, Time stamp) {
   return behind == model.pieces.begin() ? model.pieces.front() : *(behind - 1);
 }
 
+/// later - earlier, ns, also where that is more than a Duration holds.
+double since(Time earlier, Time later) {
+  const auto ahead =
+      static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
+  return later < earlier ? -static_cast<double>(-ahead) : static_cast<double>(ahead);
+}
+
 }  // namespace
 
 TimeModel shared_clock() {
@@ -29,8 +36,7 @@ Time take_time(const TimeModel& model, Time stamp) {
   const TimeModelPiece& piece = piece_at(model, stamp);
   Duration drifted{};
   if (piece.drift_ppm != 0.0) {
-    const auto since = static_cast<double>((stamp - piece.begin).count());
-    drifted = Duration{std::llround(piece.drift_ppm * 1e-6 * since)};
+    drifted = Duration{std::llround(piece.drift_ppm * 1e-6 * since(piece.begin, stamp))};
   }
   return stamp + piece.offset + drifted;
 }

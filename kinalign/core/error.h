@@ -24,7 +24,8 @@ struct Error {
 /// "walk.bvh:12: expected 2 frames, found 1"
 std::string to_string(const Error& error);
 
-/// Text of a file as a message may show it: at most 40 bytes, control characters replaced by '?'.
+/// Text of a file as a message may show it: at most 40 bytes, control characters, also those of
+/// U+0080 to U+009F and of the direction of writing, replaced by '?'.
 std::string shown(std::string_view text);
 
 /// Text that holds names of files or from files, for a terminal: control characters other than line

@@ -49,12 +49,12 @@ struct StreamOptions {
 struct SpaceOptions {
   std::string method = "none";      // none, paper, fit, given
   std::string onto;                 // the stream that gives the truth; empty: the reference
-  double rotation_y_deg = 60.0;     // paper: A_rot, counter-clockwise seen from +y
+  double rotation_y_deg = 60.0;     // paper, section 3.1: A_rot, counter-clockwise seen from +y
   double magnification = 1.0;       // paper: m
   std::vector<double> rotation;     // given: w,x,y,z
   std::vector<double> translation;  // given: m
   std::map<std::string, std::string>
-      joints;  // this stream's joint -> the other's; first: the roots
+      joints;  // this stream's joint -> the other's
   std::string root = "SpineBase", onto_root = "Hips";  // paper: the joints that are put together
 };
 

@@ -19,7 +19,7 @@ namespace kinalign {
 
 /// How far a resampled stream's samples are from what the device said. Rows as the stream's.
 struct SampleDistance {
-  std::vector<std::int64_t> nearest_raw_ns;    // to the nearest raw sample; empty: not resampled
+  std::vector<std::int64_t> nearest_raw_ns;    // at most 10 s; empty: not resampled
   std::vector<std::int64_t> time_interval_ns;  // half-width of the stamp's interval; empty: unknown
 };
 

@@ -54,6 +54,15 @@ TEST_CASE("drift adds its millionths of the time since the piece's beginning") {
   CHECK(take_time(slow, Time{300s}) == Time{307s - 1ms});
 }
 
+TEST_CASE("a drift since the beginning of time overflows nothing on the way") {
+  TimeModel model;
+  model.pieces = {{Time::min(), Duration{0}, 1e-6, std::nullopt}};
+  const std::int64_t late = 4'000'000'000'000'000'000;
+  const double since = 4e18 + 9223372036854775808.0;
+  CHECK(std::abs(static_cast<double>(to_ns(take_time(model, at(late))) - late) - 1e-12 * since) <=
+        1.0);
+}
+
 TEST_CASE("within a piece later stamps stay later") {
   for (const auto seed : fresh_seeds(100)) {
     CAPTURE(seed);

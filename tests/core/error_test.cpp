@@ -43,6 +43,11 @@ TEST_CASE("names on a terminal can't move its cursor") {
 
 TEST_CASE("text of a file is shown short and without control characters") {
   CHECK(shown("a\tb\x1b[31mc\x7f") == "a?b?[31mc?");
+  CHECK(shown("caf\xc3\xa9 \xe2\x82\xac") == "caf\xc3\xa9 \xe2\x82\xac");
+  CHECK(shown("a\xc2\x9b"
+              "31m\xe2\x80\xae"
+              "b\xe2\x81\xa6") == "a?31m?b?");  // CSI, turned text
+  CHECK(shown("\xc2") == "\xc2");
   CHECK(shown(std::string(40, 'x')) == std::string(40, 'x'));
   CHECK(shown(std::string(41, 'x')) == std::string(40, 'x') + "...");
 }
