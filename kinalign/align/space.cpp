@@ -96,6 +96,66 @@ JointColumn column(const TakeSlab& slab, std::size_t group) {
   return out;
 }
 
+/// Points onto a stream that stays where it is, by a method that has use for what is given.
+Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
+                          const Manifest& manifest) {
+  const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
+  if (plan.group == plan.onto || !std::holds_alternative<PointGroup>(from.kind)) {
+    return Failure(Error{"", 0, "points to be brought onto another stream", "'" + from.name + "'"});
+  }
+  const auto moved = manifest.spaces.find(onto.name);
+  if (moved != manifest.spaces.end() && moved->second.method != "none") {
+    return Failure(Error{"", 0, "'" + from.name + "' onto a stream that is not moved itself",
+                         "'" + onto.name + "'"});
+  }
+  if (plan.options.method != "paper" && plan.options.magnification != 1.0) {
+    return Failure(Error{"", 0, "magnification with method = \"paper\" only",
+                         "'" + from.name + "' with method = \"" + plan.options.method + "\""});
+  }
+  return {};
+}
+
+Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
+  const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
+  plan.pairs = KA_TRY(find_pairs(from, onto, plan.options));
+  if (plan.options.method == "paper") {
+    plan.root = {KA_TRY(known_joint(from, plan.options.root)),
+                 KA_TRY(known_joint(onto, plan.options.onto_root))};
+  }
+  if (plan.options.method == "fit" && plan.pairs.size() < 3) {
+    return Failure(Error{"", 0, "three named joints or more for a fit (joints = { ... })",
+                         std::to_string(plan.pairs.size())});
+  }
+  return {};
+}
+
+/// Moves the points of a row. By the paper x' = m (A_rot x - A_offset), A_offset = A_rot x_k0 -
+/// x_d0 / m: the root lands on x_d0; a row in which it was not seen has no place.
+void move_row(const SpacePlan& plan, const JointColumn& onto, std::size_t row, std::size_t joints,
+              PointRows& points) {
+  RigidTransform transform = plan.transform;
+  double m = 1.0;
+  bool placed = true;
+  if (plan.options.method == "paper") {
+    m = plan.options.magnification;
+    const std::size_t root = row * joints + plan.root.from;
+    placed = points.valid[root] != 0 && onto.usable(row, plan.root.onto);
+    transform.translation = onto.at(row, plan.root.onto) / m -
+                            transform.rotation * vec3(std::span(points.positions), root);
+  }
+  for (std::size_t cell = row * joints; cell < (row + 1) * joints; ++cell) {
+    if (points.valid[cell] == 0) continue;
+    auto p = vec3(std::span(points.positions), cell);
+    if (placed) {
+      p = (m * (transform * p)).eval();
+    } else {
+      p.setZero();
+      points.valid[cell] = 0;
+      points.state[cell] = Tracking::missing;
+    }
+  }
+}
+
 }  // namespace
 
 Quat turn_about_y(double degrees) {
@@ -121,28 +181,8 @@ Result<std::vector<SpacePlan>> plan_spaces(const TakeHeader& header, const Manif
     plan.options = options;
     plan.group = KA_TRY(find_group(header, name));
     plan.onto = options.onto.empty() ? reference_group : KA_TRY(find_group(header, options.onto));
-    const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
-    if (plan.group == plan.onto || !std::holds_alternative<PointGroup>(from.kind)) {
-      return Failure(Error{"", 0, "points to be brought onto another stream", "'" + name + "'"});
-    }
-    const auto moved = manifest.spaces.find(onto.name);
-    if (moved != manifest.spaces.end() && moved->second.method != "none") {
-      return Failure(Error{"", 0, "'" + name + "' onto a stream that is not moved itself",
-                           "'" + onto.name + "'"});
-    }
-    plan.pairs = KA_TRY(find_pairs(from, onto, options));
-    if (options.method == "paper") {
-      plan.root = {KA_TRY(known_joint(from, options.root)),
-                   KA_TRY(known_joint(onto, options.onto_root))};
-    }
-    if (options.method == "fit" && plan.pairs.size() < 3) {
-      return Failure(Error{"", 0, "three named joints or more for a fit (joints = { ... })",
-                           std::to_string(plan.pairs.size())});
-    }
-    if (options.method != "paper" && options.magnification != 1.0) {
-      return Failure(Error{"", 0, "magnification with method = \"paper\" only",
-                           "'" + name + "' with method = \"" + options.method + "\""});
-    }
+    KA_TRY(check_method(plan, header, manifest));
+    KA_TRY(find_joints(header, plan));
     plan.transform = KA_TRY(given_transform(options));
     plans.push_back(std::move(plan));
   }
@@ -164,33 +204,11 @@ void ResidualSums::transform(const SpacePlan& plan, TakeSlab& slab) {
   auto& points = std::get<PointRows>(slab.rows[plan.group]);
   const std::vector<double> before = points.positions;
   const JointColumn onto = column(slab, plan.onto);
-  const std::size_t joints = points.valid.size() / slab.stamps.size();
-  const double m = plan.options.method == "paper" ? plan.options.magnification : 1.0;
   for (std::size_t r = 0; r < slab.stamps.size(); ++r) {
-    RigidTransform transform = plan.transform;
-    bool placed = true;
-    if (plan.options.method == "paper") {
-      // x' = m (A_rot x - A_offset), A_offset = A_rot x_k0 - x_d0 / m: the root lands on x_d0.
-      const std::size_t root = r * joints + plan.root.from;
-      placed = points.valid[root] != 0 && onto.usable(r, plan.root.onto);
-      transform.translation = onto.at(r, plan.root.onto) / m -
-                              transform.rotation * vec3(std::span<const double>(before), root);
-    }
-    for (std::size_t j = 0; j < joints; ++j) {
-      const std::size_t cell = r * joints + j;
-      if (points.valid[cell] == 0) continue;
-      auto p = vec3(std::span(points.positions), cell);
-      if (placed) {
-        p = (m * (transform * p)).eval();
-      } else {  // the root that gives the place was not seen
-        p.setZero();
-        points.valid[cell] = 0;
-        points.state[cell] = Tracking::missing;
-      }
-    }
+    move_row(plan, onto, r, points.valid.size() / slab.stamps.size(), points);
   }
-  const JointColumn was{before, points.valid, points.state, joints};
   const JointColumn is = column(slab, plan.group);
+  const JointColumn was{before, is.valid, is.state, is.joints};
   for (std::size_t k = 0; k < plan.pairs.size(); ++k) {
     const JointPair& pair = plan.pairs[k];
     for (std::size_t r = 0; r < slab.stamps.size(); ++r) {
