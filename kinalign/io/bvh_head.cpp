@@ -67,7 +67,7 @@ void BvhHead::forget_text() {
 
 bool looks_like_bvh(std::string_view head) {
   if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
-  return lower(trimmed(head.substr(0, 64))).starts_with("hierarchy");
+  return lower(stripped(head.substr(0, 64))).starts_with("hierarchy");
 }
 
 }  // namespace kinalign

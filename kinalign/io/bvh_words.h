@@ -21,7 +21,8 @@ inline std::string lower(std::string_view text) {
   return out;
 }
 
-inline std::string_view trimmed(std::string_view text) {
+/// Without such at both ends; a cell of a table loses less (cells.h).
+inline std::string_view stripped(std::string_view text) {
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
@@ -51,7 +52,7 @@ class BvhWords {
   std::string_view rest_of_line() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '{') ++at_;
-    return trimmed(text_.substr(begin, at_ - begin));
+    return stripped(text_.substr(begin, at_ - begin));
   }
 
   Error wrong(std::string expected, std::string_view found) const {

@@ -3,7 +3,7 @@
 
 #include "kinalign/io/cells.h"
 #include "kinalign/io/held_rows.h"
-#include "kinalign/io/imu_rows.h"
+#include "kinalign/io/imu_converter.h"
 #include "kinalign/io/named_lines.h"
 
 #include <algorithm>
@@ -100,7 +100,7 @@ class StoReader final : public ImuReader {
   NamedLines lines_;
   RowStamps stamps_;
   HeldRows<ImuSamples> held_;
-  ImuRows samples_;
+  ImuConverter samples_;
   RowParser row_, parts_;
   bool in_head_ = true, quaternions_ = false;
   std::vector<double> raw_;          // [S,4]

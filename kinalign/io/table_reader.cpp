@@ -4,7 +4,7 @@
 #include "kinalign/core/files.h"
 #include "kinalign/core/numbers.h"
 #include "kinalign/io/held_rows.h"
-#include "kinalign/io/imu_rows.h"
+#include "kinalign/io/imu_converter.h"
 #include "kinalign/io/named_lines.h"
 #include "kinalign/io/point_rows.h"
 #include "kinalign/io/table_columns.h"
@@ -118,7 +118,7 @@ class ImuBuilder {
 
   bool gravity_;
   std::size_t nodes_;
-  ImuRows rows_;
+  ImuConverter rows_;
 };
 
 template <class Builder>

@@ -3,7 +3,7 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/numbers.h"
-#include "kinalign/io/imu_rows.h"
+#include "kinalign/io/imu_converter.h"
 #include "kinalign/io/named_lines.h"
 #include "kinalign/io/row_stamps.h"
 #include "kinalign/io/xsens_columns.h"
@@ -203,7 +203,7 @@ class XsensReader final : public ImuReader {
   StreamOptions options_;
   std::string node_;
   double rate_hz_;
-  ImuRows samples_;
+  ImuConverter samples_;
   bool named_ = false;
   XsensColumns columns_;
   const XsensGroup* orientation_ = nullptr;  // of columns_

@@ -132,6 +132,15 @@ TEST_CASE("names with colons and blanks, any case, tabs, CRLF and odd numbers ar
   CHECK(file->values == std::vector<double>{-0.5, 2, 3, -0.0, 100, 720.25});
 }
 
+TEST_CASE("blank lines and control characters in front are no part of a BVH, as of no name") {
+  CHECK(looks_like_bvh("\xEF\xBB\xBF\n\v\f\x01 \r\nHIERARCHY\n"));
+  const auto file = read(
+      "\n\x01\fHIERARCHY\nROOT \v\x01 a b\x02\f\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\n"
+      "MOTION\nFrames: 0\nFrame Time: 0.01\n");
+  REQUIRE(file);
+  CHECK(file->hierarchy.names == std::vector<std::string>{"a b"});
+}
+
 TEST_CASE("a repeated name is told apart, and written as it was") {
   const auto file = read(
       "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation Zrotation\nJOINT b\n{\n"

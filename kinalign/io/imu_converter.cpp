@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/imu_rows.h"
+#include "kinalign/io/imu_converter.h"
 
 #include <cmath>
 
@@ -15,7 +15,7 @@ constexpr double zeros[4] = {};
 
 }  // namespace
 
-bool ImuRows::turn(const double* raw, Quat& q) {
+bool ImuConverter::turn(const double* raw, Quat& q) {
   constexpr double smallest = 1e-6;
   constexpr double unit_within = 0.02;
   q = Quat(raw[0], raw[1], raw[2], raw[3]);
@@ -29,7 +29,7 @@ bool ImuRows::turn(const double* raw, Quat& q) {
   return true;
 }
 
-void ImuRows::append(const RawImuSample& sample, ImuSamples& out) {
+void ImuConverter::append(const RawImuSample& sample, ImuSamples& out) {
   ++samples_;
   bool valid = sample.valid;
   if (sample.orientation != nullptr) {
@@ -48,7 +48,7 @@ void ImuRows::append(const RawImuSample& sample, ImuSamples& out) {
   out.valid.push_back(valid ? 1 : 0);
 }
 
-void ImuRows::report(const std::string& file, Findings& findings) const {
+void ImuConverter::report(const std::string& file, Findings& findings) const {
   if (zero_ > 0) {
     findings.push_back({Severity::note,
                         Error{file, 0, "quaternions of length 1",

@@ -27,9 +27,9 @@ struct RawImuSample {
 };
 
 /// Appends nodes' samples one after the other, node after node within a row.
-class ImuRows {
+class ImuConverter {
  public:
-  explicit ImuRows(const ImuUnits& units) : units_(units), turn_(rotation_of(units.world)) {}
+  explicit ImuConverter(const ImuUnits& units) : units_(units), turn_(rotation_of(units.world)) {}
 
   /// A quaternion that is zero makes the sample invalid.
   void append(const RawImuSample& sample, ImuSamples& out);
