@@ -117,7 +117,9 @@ Result<FoundFormat> named_format(const Source& source) {
   }
   constexpr std::size_t longest_layout = std::size_t{1} << 20;
   const std::string text = KA_TRY(read_whole(*source.files, wanted, longest_layout));
-  return table_format(KA_TRY(parse_layout(text, wanted)), source);
+  FoundFormat out = table_format(KA_TRY(parse_layout(text, wanted)), source);
+  out.further_files.push_back(wanted);
+  return out;
 }
 
 }  // namespace

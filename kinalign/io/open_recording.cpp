@@ -1,172 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/open_recording.h"
 
-#include "kinalign/core/file_version.h"
-#include "kinalign/core/hash.h"
 #include "kinalign/core/parallel.h"
-#include "kinalign/io/bvh_survey.h"
-#include "kinalign/io/formats.h"
+#include "kinalign/io/remembered_path.h"
+#include "kinalign/io/stream_survey.h"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
-#include <memory>
+#include <map>
 #include <mutex>
 #include <utility>
 
 namespace kinalign {
 
 namespace {
-
-ClipInput input_of(const Skeleton& header, Passes<ClipFrames> passes) {
-  return {header, std::move(passes)};
-}
-PointInput input_of(const PointHeader& header, Passes<PointFrames> passes) {
-  return {header.joint_names, std::move(passes)};
-}
-ImuInput input_of(const ImuHeader& header, Passes<ImuSamples> passes) {
-  return {header.node_names, header.content, std::move(passes)};
-}
-
-using Version = std::optional<FileVersion>;
-
-/// A take names its inputs' hashes: every pass has to see the bytes that were hashed.
-Result<void> unchanged(const std::string& path, const Version& version) {
-  if (version_of(path) == version) return {};
-  return Failure(Error{path, 0, "a file that stays as it is while it is read", "one that changed"});
-}
-
-/// A file in the middle of a pass.
-template <class R>
-struct Reading {
-  InputFile file;
-  Version version;
-  std::unique_ptr<R> reader;
-  bool ended = false;
-
-  Result<bool> next(typename R::Frames& block) {
-    block = {};
-    while (block.size() == 0 && !ended) {
-      const std::string_view piece = KA_TRY(file.next());
-      KA_TRY(unchanged(file.path(), version));
-      if (piece.empty()) {
-        ended = true;
-        KA_TRY(reader->finish(block));
-      } else {
-        KA_TRY(reader->feed(piece, block));
-      }
-    }
-    return block.size() > 0;
-  }
-};
-
-template <class R>
-Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const Version& version,
-                                     MakeReader make) {
-  using Frames = typename R::Frames;
-  return
-      [&files, path = std::move(path), version, make = std::move(make)]() -> Result<Pass<Frames>> {
-        auto reader = KA_TRY(make());
-        auto reading = std::make_shared<Reading<R>>(
-            Reading<R>{KA_TRY(InputFile::open(files, path)), version,
-                       std::get<std::unique_ptr<R>>(std::move(reader)), false});
-        return Pass<Frames>([reading](Frames& block) { return reading->next(block); });
-      };
-}
-
-struct Job {
-  FileSystem* files = nullptr;
-  const StreamOptions* options = nullptr;
-  const Progress* progress = nullptr;
-  Version version;  // of the file, before it was opened
-};
-
-/// The first pass: hashes the file and surveys its stamps, rows are thrown away.
-template <class R>
-Result<RecordedStream> survey(const Job& job, InputFile file, std::string_view head,
-                              const FoundFormat& format, std::unique_ptr<R> reader) {
-  Sha256 hash;
-  StampSurveyor surveyor;
-  typename R::Frames block;
-  std::uint64_t bytes = 0;
-  std::string_view piece = head;
-  while (!piece.empty()) {
-    bytes += piece.size();
-    hash.update(piece);
-    KA_TRY(reader->feed(piece, block));
-    surveyor.add(block.stamps);
-    block = {};
-    if (!go_on(*job.progress, "reading", bytes, file.size())) {
-      return Failure(interruption(file.path()));
-    }
-    piece = KA_TRY(file.next());
-  }
-  KA_TRY(reader->finish(block));
-  surveyor.add(block.stamps);
-  RecordedStream out;
-  out.name = job.options->name;
-  out.data =
-      input_of(*reader->header(), passes_of<R>(*job.files, file.path(), job.version, format.make));
-  out.survey = surveyor.result();
-  out.files.push_back({std::string(file_name(file.path())), hash.hex(), bytes});
-  out.findings = std::move(reader->findings);
-  return out;
-}
-
-Result<InputFacts> facts_of(FileSystem& files, const std::string& path) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  Sha256 hash;
-  std::uint64_t bytes = 0;
-  for (;;) {
-    const std::string_view piece = KA_TRY(file.next());
-    if (piece.empty()) return InputFacts{std::string(file_name(path)), hash.hex(), bytes};
-    bytes += piece.size();
-    hash.update(piece);
-  }
-}
-
-/// A BVH stamped from a click on record and, where it is known, a click on stop.
-Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
-  if (!options.start_ns || !options.end_ns || !s.step_ns) return {};
-  const double between = 1e-9 * static_cast<double>(*options.end_ns - *options.start_ns);
-  const double stated = 1e-9 * *s.step_ns * static_cast<double>(s.survey.samples);
-  if (std::abs(between - stated) <= 2e-9 * *s.step_ns) return {};
-  return {{Severity::warning,
-           Error{s.files.front().name, 0, fmt::format("{:.3f} s between the clicks", between),
-                 fmt::format("{} frames of {:.6g} s, {:.3f} s", s.survey.samples, 1e-9 * *s.step_ns,
-                             stated)},
-           "stamps are counted from the first click by the file's step",
-           "the true step may differ from the file's, or frames are missing"}};
-}
-
-Result<RecordedStream> survey_file(const Job& job, const StreamFile& named) {
-  InputFile file = KA_TRY(InputFile::open(*job.files, named.path));
-  const std::string head(KA_TRY(file.next()));
-  const FoundFormat format = KA_TRY(find_format(*job.files, *job.options, named, head));
-  RecordedStream out;
-  if (format.name == "bvh") {
-    const BvhSurvey made =
-        KA_TRY(survey_bvh(*job.files, named.path, bvh_options(*job.options), *job.progress));
-    out.name = job.options->name;
-    out.survey = made.survey;
-    out.step_ns = made.step_ns;
-    out.files.push_back(made.facts);
-    out.findings = made.findings;
-    out.data = input_of(made.skeleton,
-                        passes_of<ClipReader>(*job.files, named.path, job.version, format.make));
-    const Findings clicks = judge_clicks(*job.options, out);
-    out.findings.insert(out.findings.end(), clicks.begin(), clicks.end());
-  } else {
-    AnyReader reader = KA_TRY(format.make());
-    out = KA_TRY(std::visit(
-        [&](auto& any) { return survey(job, std::move(file), head, format, std::move(any)); },
-        reader));
-  }
-  for (const std::string& further : format.further_files) {
-    out.files.push_back(KA_TRY(facts_of(*job.files, further)));
-  }
-  return out;
-}
 
 TimeModel clock_of(const StreamOptions& options, const StampSurvey& survey) {
   TimeModel model = options.clock == "shared" ? shared_clock() : TimeModel{};
@@ -213,19 +60,63 @@ struct NamedFile {
   const StreamFile* file = nullptr;
 };
 
-Result<RecordedStream> open_file(FileSystem& files, const NamedFile& named,
-                                 const Progress& progress) {
-  const Job job{&files, named.options, &progress, version_of(named.file->path)};
-  RecordedStream stream = KA_TRY(survey_file(job, *named.file));
-  stream.clock = clock_of(*named.options, stream.survey);
-  return stream;
+/// With paths as a manifest in `folder` has them.
+Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, const NamedFile& named,
+                               const Progress& progress) {
+  StreamOptions options = *named.options;
+  if (options.layout.ends_with(".toml")) options.layout = path_in(folder, options.layout);
+  const StreamFile file{path_in(folder, named.file->path), named.file->node};
+  const SurveyJob job{&files, &options, &progress, version_of(file.path)};
+  SurveyedFile out = KA_TRY(survey_file(job, file));
+  for (std::size_t i = 0; i < out.paths.size(); ++i) {
+    const bool layout = i > 0 && out.paths[i] == options.layout;
+    out.stream.files[i].name =
+        remembered_path(folder, layout ? named.options->layout : named.file->path, out.paths[i]);
+  }
+  out.stream.clock = clock_of(options, out.stream.survey);
+  return out;
 }
 
-}  // namespace
+/// Of two files that a take would call by one name, `rebuild` could not tell which is which.
+Result<void> check_names(const std::vector<SurveyedFile>& opened) {
+  struct Place {
+    const std::string* path;
+    const InputFacts* facts;
+  };
+  std::map<std::string_view, Place> seen;
+  for (const SurveyedFile& each : opened) {
+    for (std::size_t i = 0; i < each.paths.size(); ++i) {
+      const InputFacts& facts = each.stream.files[i];
+      const auto [at, fresh] = seen.try_emplace(facts.name, Place{&each.paths[i], &facts});
+      if (fresh || at->second.facts->sha256 == facts.sha256) continue;
+      return Failure(Error{each.paths[i], 0,
+                           "files that a take can tell apart by name (below the manifest's folder: "
+                           "by their paths), so rename one or move both there",
+                           "'" + shown(facts.name) + "' again: " + *at->second.path});
+    }
+  }
+  return {};
+}
 
-Result<std::vector<RecordedStream>> open_streams(FileSystem& files,
-                                                 const std::vector<StreamOptions>& streams,
-                                                 const Progress& progress, std::size_t jobs) {
+/// Nodes' files share a layout: one stream names it once.
+void drop_repeated(std::vector<SurveyedFile>& opened) {
+  for (std::size_t i = 0; i < opened.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (opened[k].stream.name != opened[i].stream.name) continue;
+      const auto& before = opened[k].stream.files;
+      const auto repeated = [&before](const InputFacts& facts) {
+        const auto same = [&](const InputFacts& other) { return other.name == facts.name; };
+        return std::any_of(before.begin(), before.end(), same);
+      };
+      auto& files = opened[i].stream.files;
+      files.erase(std::remove_if(files.begin() + 1, files.end(), repeated), files.end());
+    }
+  }
+}
+
+Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string& folder,
+                                           const std::vector<StreamOptions>& streams,
+                                           const Progress& progress, std::size_t jobs) {
   std::vector<NamedFile> named;
   for (const StreamOptions& options : streams) {
     if (options.files.empty()) {
@@ -234,31 +125,41 @@ Result<std::vector<RecordedStream>> open_streams(FileSystem& files,
     for (const StreamFile& file : options.files) named.push_back({&options, &file});
   }
   SharedProgress shared(progress, named.size());
-  std::vector<Result<RecordedStream>> opened(named.size());
-  parallel_for(named.size(), jobs,
-               [&](std::size_t i) { opened[i] = open_file(files, named[i], shared.part(i)); });
+  std::vector<Result<SurveyedFile>> opened(named.size());
+  parallel_for(named.size(), jobs, [&](std::size_t i) {
+    opened[i] = open_file(files, folder, named[i], shared.part(i));
+  });
+  std::vector<SurveyedFile> out;
+  out.reserve(opened.size());
+  for (auto& one : opened) out.push_back(KA_TRY(std::move(one)));
+  return out;
+}
+
+std::vector<RecordedStream> streams_of(std::vector<SurveyedFile> opened) {
+  drop_repeated(opened);
   std::vector<RecordedStream> out;
   out.reserve(opened.size());
-  for (auto& stream : opened) out.push_back(KA_TRY(std::move(stream)));
+  for (SurveyedFile& one : opened) out.push_back(std::move(one.stream));
   return out;
+}
+
+}  // namespace
+
+Result<std::vector<RecordedStream>> open_streams(FileSystem& files,
+                                                 const std::vector<StreamOptions>& streams,
+                                                 const Progress& progress, std::size_t jobs) {
+  return streams_of(KA_TRY(open_all(files, "", streams, progress, jobs)));
 }
 
 Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
                                  const std::string& folder, const Progress& progress,
                                  std::size_t jobs) {
-  std::vector<StreamOptions> streams = manifest.streams;
-  for (StreamOptions& options : streams) {
-    for (StreamFile& file : options.files) {
-      if (!file.path.starts_with('/')) file.path = folder + file.path;
-    }
-    if (options.layout.ends_with(".toml") && !options.layout.starts_with('/')) {
-      options.layout = folder + options.layout;
-    }
-  }
+  auto opened = KA_TRY(open_all(files, folder, manifest.streams, progress, jobs));
+  KA_TRY(check_names(opened));
   Recording recording;
   recording.subject = manifest.subject;
   recording.action = manifest.action;
-  recording.streams = KA_TRY(open_streams(files, streams, progress, jobs));
+  recording.streams = streams_of(std::move(opened));
   return recording;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/parameters_json.h"
 
-#include "kinalign/core/files.h"
 #include "kinalign/io/option_values.h"
+#include "kinalign/io/remembered_path.h"
 
 #include <nlohmann/json.hpp>
 
@@ -266,12 +266,6 @@ bool deeper_than(std::string_view json, int most) {
   return false;
 }
 
-std::string without_folder(const std::string& path) {
-  const bool leads_out = path.starts_with('/') || path == ".." || path.starts_with("../") ||
-                         path.find("/../") != std::string::npos;
-  return leads_out ? std::string(file_name(path)) : path;
-}
-
 }  // namespace
 
 std::string parameters_json(const Manifest& manifest) {
@@ -300,8 +294,8 @@ Result<Manifest> parse_parameters_json(std::string_view json) {
 
 Manifest without_folders(Manifest manifest) {
   for (StreamOptions& stream : manifest.streams) {
-    stream.layout = without_folder(stream.layout);
-    for (StreamFile& file : stream.files) file.path = without_folder(file.path);
+    stream.layout = remembered_path(stream.layout);
+    for (StreamFile& file : stream.files) file.path = remembered_path(file.path);
   }
   return manifest;
 }

@@ -19,8 +19,7 @@ std::string parameters_json(const Manifest& manifest);
 /// with the path of the key: "streams[0].gap".
 Result<Manifest> parse_parameters_json(std::string_view json);
 
-/// Without what belongs to one machine: of an absolute path, or one that leads out of the
-/// manifest's folder, only the file's name is left.
+/// Without what belongs to one machine: paths as a take remembers them (remembered_path.h).
 Manifest without_folders(Manifest manifest);
 
 }  // namespace kinalign

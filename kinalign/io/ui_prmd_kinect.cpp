@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/ui_prmd_kinect.h"
 
+#include "kinalign/core/files.h"
 #include "kinalign/io/cells.h"
 #include "kinalign/io/named_lines.h"
 #include "kinalign/io/point_rows.h"
@@ -132,10 +133,10 @@ class UiPrmdReader final : public PointReader {
 
   void report(std::uint64_t rows, const std::string& file, const std::string& other) {
     if (rows == 0) return;
-    findings.push_back(
-        {Severity::warning,
-         Error{file, 0, "as many rows as in " + other, std::to_string(rows) + " more"},
-         "they were dropped", ""});
+    findings.push_back({Severity::warning,
+                        Error{file, 0, "as many rows as in " + std::string(file_name(other)),
+                              std::to_string(rows) + " more"},
+                        "they were dropped", ""});
   }
 
   NamedLines lines_;

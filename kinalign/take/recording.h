@@ -45,7 +45,7 @@ struct ImuInput {
 
 /// A file that a stream came from, as a take remembers it.
 struct InputFacts {
-  std::string name;    // without its folder
+  std::string name;    // as the manifest gives it; outside its folder the file's name only
   std::string sha256;  // 64 hexadecimal digits
   std::uint64_t bytes = 0;
 };

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/remembered_path.h"
+
+#include "kinalign/core/files.h"
+
+namespace kinalign {
+
+std::string path_in(const std::string& folder, const std::string& path) {
+  return path.starts_with('/') ? path : folder + path;
+}
+
+std::string remembered_path(const std::string& path) {
+  const bool leads_out = path.starts_with('/') || path == ".." || path.starts_with("../") ||
+                         path.find("/../") != std::string::npos;
+  return leads_out ? std::string(file_name(path)) : path;
+}
+
+std::string remembered_path(const std::string& folder, const std::string& given,
+                            const std::string& path) {
+  const bool below = !given.starts_with('/') && path.starts_with(folder);
+  return below ? remembered_path(path.substr(folder.size())) : std::string(file_name(path));
+}
+
+}  // namespace kinalign

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/stream_survey.h"
+
+#include "kinalign/core/hash.h"
+#include "kinalign/io/bvh_survey.h"
+#include "kinalign/io/formats.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+ClipInput input_of(const Skeleton& header, Passes<ClipFrames> passes) {
+  return {header, std::move(passes)};
+}
+PointInput input_of(const PointHeader& header, Passes<PointFrames> passes) {
+  return {header.joint_names, std::move(passes)};
+}
+ImuInput input_of(const ImuHeader& header, Passes<ImuSamples> passes) {
+  return {header.node_names, header.content, std::move(passes)};
+}
+
+using Version = std::optional<FileVersion>;
+
+/// A take names its inputs' hashes: every pass has to see the bytes that were hashed.
+Result<void> unchanged(const std::string& path, const Version& version) {
+  if (version_of(path) == version) return {};
+  return Failure(Error{path, 0, "a file that stays as it is while it is read", "one that changed"});
+}
+
+/// A file in the middle of a pass.
+template <class R>
+struct Reading {
+  InputFile file;
+  Version version;
+  std::unique_ptr<R> reader;
+  bool ended = false;
+
+  Result<bool> next(typename R::Frames& block) {
+    block = {};
+    while (block.size() == 0 && !ended) {
+      const std::string_view piece = KA_TRY(file.next());
+      KA_TRY(unchanged(file.path(), version));
+      if (piece.empty()) {
+        ended = true;
+        KA_TRY(reader->finish(block));
+      } else {
+        KA_TRY(reader->feed(piece, block));
+      }
+    }
+    return block.size() > 0;
+  }
+};
+
+template <class R>
+Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const Version& version,
+                                     MakeReader make) {
+  using Frames = typename R::Frames;
+  return
+      [&files, path = std::move(path), version, make = std::move(make)]() -> Result<Pass<Frames>> {
+        auto reader = KA_TRY(make());
+        auto reading = std::make_shared<Reading<R>>(
+            Reading<R>{KA_TRY(InputFile::open(files, path)), version,
+                       std::get<std::unique_ptr<R>>(std::move(reader)), false});
+        return Pass<Frames>([reading](Frames& block) { return reading->next(block); });
+      };
+}
+
+/// The first pass: hashes the file and surveys its stamps, rows are thrown away.
+template <class R>
+Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_view head,
+                              const FoundFormat& format, std::unique_ptr<R> reader) {
+  Sha256 hash;
+  StampSurveyor surveyor;
+  typename R::Frames block;
+  std::uint64_t bytes = 0;
+  std::string_view piece = head;
+  while (!piece.empty()) {
+    bytes += piece.size();
+    hash.update(piece);
+    KA_TRY(reader->feed(piece, block));
+    surveyor.add(block.stamps);
+    block = {};
+    if (!go_on(*job.progress, "reading", bytes, file.size())) {
+      return Failure(interruption(file.path()));
+    }
+    piece = KA_TRY(file.next());
+  }
+  KA_TRY(reader->finish(block));
+  surveyor.add(block.stamps);
+  RecordedStream out;
+  out.name = job.options->name;
+  out.data =
+      input_of(*reader->header(), passes_of<R>(*job.files, file.path(), job.version, format.make));
+  out.survey = surveyor.result();
+  out.files.push_back({std::string(file_name(file.path())), hash.hex(), bytes});
+  out.findings = std::move(reader->findings);
+  return out;
+}
+
+Result<InputFacts> facts_of(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  Sha256 hash;
+  std::uint64_t bytes = 0;
+  for (;;) {
+    const std::string_view piece = KA_TRY(file.next());
+    if (piece.empty()) return InputFacts{std::string(file_name(path)), hash.hex(), bytes};
+    bytes += piece.size();
+    hash.update(piece);
+  }
+}
+
+/// A BVH stamped from a click on record and, where it is known, a click on stop.
+Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
+  if (!options.start_ns || !options.end_ns || !s.step_ns) return {};
+  const double between = 1e-9 * static_cast<double>(*options.end_ns - *options.start_ns);
+  const double stated = 1e-9 * *s.step_ns * static_cast<double>(s.survey.samples);
+  if (std::abs(between - stated) <= 2e-9 * *s.step_ns) return {};
+  return {{Severity::warning,
+           Error{s.files.front().name, 0, fmt::format("{:.3f} s between the clicks", between),
+                 fmt::format("{} frames of {:.6g} s, {:.3f} s", s.survey.samples, 1e-9 * *s.step_ns,
+                             stated)},
+           "stamps are counted from the first click by the file's step",
+           "the true step may differ from the file's, or frames are missing"}};
+}
+
+Result<RecordedStream> survey_bvh_file(const SurveyJob& job, const std::string& path,
+                                       const FoundFormat& format) {
+  const BvhSurvey made =
+      KA_TRY(survey_bvh(*job.files, path, bvh_options(*job.options), *job.progress));
+  RecordedStream out;
+  out.name = job.options->name;
+  out.survey = made.survey;
+  out.step_ns = made.step_ns;
+  out.files.push_back(made.facts);
+  out.findings = made.findings;
+  out.data =
+      input_of(made.skeleton, passes_of<ClipReader>(*job.files, path, job.version, format.make));
+  const Findings clicks = judge_clicks(*job.options, out);
+  out.findings.insert(out.findings.end(), clicks.begin(), clicks.end());
+  return out;
+}
+
+}  // namespace
+
+Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) {
+  InputFile file = KA_TRY(InputFile::open(*job.files, named.path));
+  const std::string head(KA_TRY(file.next()));
+  const FoundFormat format = KA_TRY(find_format(*job.files, *job.options, named, head));
+  SurveyedFile out;
+  out.paths = {named.path};
+  if (format.name == "bvh") {
+    out.stream = KA_TRY(survey_bvh_file(job, named.path, format));
+  } else {
+    AnyReader reader = KA_TRY(format.make());
+    out.stream = KA_TRY(std::visit(
+        [&](auto& any) { return survey(job, std::move(file), head, format, std::move(any)); },
+        reader));
+  }
+  for (const std::string& further : format.further_files) {
+    out.stream.files.push_back(KA_TRY(facts_of(*job.files, further)));
+    out.paths.push_back(further);
+  }
+  return out;
+}
+
+}  // namespace kinalign
