@@ -17,6 +17,8 @@ namespace {
 constexpr std::array<std::string_view, 6> channel_names{"xposition", "yposition", "zposition",
                                                         "xrotation", "yrotation", "zrotation"};
 
+constexpr double largest = 1e15;  // as of the rows' values
+
 class HierarchyParser {
  public:
   HierarchyParser(std::string_view text, std::string_view name, Findings& findings)
@@ -109,7 +111,7 @@ class HierarchyParser {
     Vec3 out;
     for (int i = 0; i < 3; ++i) {
       const std::string_view word = words_.next();
-      if (!parse_number(word, out[i])) {
+      if (!parse_number(word, out[i]) || !(std::abs(out[i]) < largest)) {
         return Failure(words_.wrong("three numbers after OFFSET", word));
       }
       offset_decimals_ = std::max(offset_decimals_, decimals_of(word));

@@ -7,12 +7,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace kinalign {
 
 namespace {
 
 constexpr std::size_t longest_word = 512;
+constexpr double largest = 1e15;  // as in tables (cells.cpp): nothing can be computed with more
 
 }  // namespace
 
@@ -101,7 +103,7 @@ Result<void> BvhRows::parse(const char* at, const char* end, Findings& findings)
     }
     if (at >= end) break;
     const char* behind = parse_number(at, end, *out);
-    if (behind == nullptr || !is_blank(*behind)) {
+    if (behind == nullptr || !is_blank(*behind) || !(std::abs(*out) < largest)) {
       count_ = count();
       return strange_word(at, end, findings);
     }

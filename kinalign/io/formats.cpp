@@ -7,7 +7,9 @@
 #include "kinalign/io/opensim_sto.h"
 #include "kinalign/io/table_reader.h"
 #include "kinalign/io/trc.h"
+#include "kinalign/io/ui_prmd_files.h"
 #include "kinalign/io/ui_prmd_kinect.h"
+#include "kinalign/io/unknown_file.h"
 #include "kinalign/io/xsens_text.h"
 
 #include <algorithm>
@@ -28,49 +30,54 @@ struct Source {
 /// A format that a program of ours reads.
 struct Format {
   std::string_view name;
-  bool (*looks)(std::string_view head);
+  bool (*looks)(std::string_view head, std::string_view path);
   Result<AnyReader> (*make)(const Source& source);
+  Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;  // if any
 };
 
-/// The file of angles that belongs to a file of offsets: "Positions" is "Angles" in its path.
-std::string angles_of(std::string path) {
-  for (const auto& [from, to] : {std::pair{"positions", "angles"}, {"Positions", "Angles"}}) {
-    for (auto at = path.find(from); at != std::string::npos; at = path.find(from)) {
-      path.replace(at, std::string_view(from).size(), to);
-    }
-  }
-  return path;
+/// A format that is known whatever the file's name is.
+template <bool (*looks)(std::string_view head)>
+bool by_content(std::string_view head, std::string_view) {
+  return looks(head);
+}
+
+bool is_ui_prmd(std::string_view head, std::string_view path) {
+  return looks_like_ui_prmd_kinect(head) && named_as_ui_prmd_positions(path);
+}
+
+Result<std::vector<std::string>> ui_prmd_files(const Source& source) {
+  return std::vector{KA_TRY(ui_prmd_angles_of(*source.files, source.file.path))};
 }
 
 Result<AnyReader> make_ui_prmd(const Source& source) {
-  const std::string angles = angles_of(source.file.path);
+  const std::string angles = KA_TRY(ui_prmd_angles_of(*source.files, source.file.path));
   auto file = std::make_shared<InputFile>(KA_TRY(InputFile::open(*source.files, angles)));
   return AnyReader(make_ui_prmd_kinect_reader(source.options, source.file.path, angles,
                                               [file] { return file->next(); }));
 }
 
 constexpr std::array<Format, 6> formats{{
-    {"bvh", looks_like_bvh,
+    {"bvh", by_content<looks_like_bvh>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_bvh_reader(bvh_options(s.options), s.file.path));
      }},
-    {"trc", looks_like_trc,
+    {"trc", by_content<looks_like_trc>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_trc_reader(s.options, s.file.path));
      }},
-    {"xsens", looks_like_xsens_text,
+    {"xsens", by_content<looks_like_xsens_text>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_xsens_text_reader(s.options, s.file.path, s.file.node));
      }},
-    {"sto", looks_like_opensim_sto,
+    {"sto", by_content<looks_like_opensim_sto>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_opensim_sto_reader(s.options, s.file.path));
      }},
-    {"ntu", looks_like_ntu_skeleton,
+    {"ntu", by_content<looks_like_ntu_skeleton>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_ntu_skeleton_reader(s.options, s.file.path));
      }},
-    {"ui_prmd_kinect", looks_like_ui_prmd_kinect, make_ui_prmd},
+    {"ui_prmd_kinect", is_ui_prmd, make_ui_prmd, ui_prmd_files},
 }};
 
 Result<AnyReader> make_table_reader(const TableLayout& layout, const Source& source) {
@@ -88,9 +95,9 @@ FoundFormat table_format(TableLayout layout, const Source& source) {
           {}};
 }
 
-FoundFormat program_format(const Format& format, const Source& source) {
+Result<FoundFormat> program_format(const Format& format, const Source& source) {
   FoundFormat out{std::string(format.name), [&format, source] { return format.make(source); }, {}};
-  if (format.make == make_ui_prmd) out.further_files.push_back(angles_of(source.file.path));
+  if (format.further_files != nullptr) out.further_files = KA_TRY(format.further_files(source));
   return out;
 }
 
@@ -122,6 +129,13 @@ Result<FoundFormat> named_format(const Source& source) {
   return out;
 }
 
+/// A file of angles, of the Kinect or of the optical system, read by itself would be wrong points.
+bool is_ui_prmd_angles(std::string_view head, std::string_view path) {
+  if (!named_as_ui_prmd_angles(path)) return false;
+  return looks_like_ui_prmd_kinect(head) ||
+         matches(*parse_layout(*builtin_layout("ui_prmd_vicon"), "ui_prmd_vicon"), head);
+}
+
 }  // namespace
 
 std::vector<std::string_view> format_names() {
@@ -138,7 +152,12 @@ Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
   const Source source{&files, options, file};
   if (!options.layout.empty()) return named_format(source);
   for (const Format& format : formats) {
-    if (format.looks(head)) return program_format(format, source);
+    if (format.looks(head, file.path)) return program_format(format, source);
+  }
+  if (is_ui_prmd_angles(head, file.path)) {
+    return Failure(Error{file.path, 0,
+                         "UI-PRMD's file of positions, ..._positions.txt; it leads to the angles",
+                         "the file of angles"});
   }
   std::optional<TableLayout> named;  // the first one that knows the columns, if not the rows
   for (const std::string_view name : builtin_layout_names()) {
@@ -147,9 +166,7 @@ Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
     if (!named && knows_columns(layout, head)) named = layout;
   }
   if (named) return table_format(*named, source);  // its reader says which row is wrong
-  return Failure(
-      Error{file.path, 1, "a file that begins as one of " + known_formats(),
-            head.empty() ? "an empty file" : "'" + shown(head.substr(0, head.find('\n'))) + "'"});
+  return Failure(unknown_file(file.path, head));
 }
 
 }  // namespace kinalign

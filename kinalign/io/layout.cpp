@@ -133,6 +133,12 @@ Result<void> read_axes(const LayoutKeys& top, TableLayout& layout) {
                  KA_TRY(chosen(keys, "y", signed_axes, 2)),
                  KA_TRY(chosen(keys, "z", signed_axes, 3))};
   const bool mirrored = KA_TRY(keys.truth("mirrored", false));
+  if (mirrored && layout.kind == TableKind::imu) {
+    return Failure(keys.error("mirrored",
+                              "axes of nodes that keep right-handed: an orientation has "
+                              "no mirror image",
+                              "mirrored = true"));
+  }
   if (determinant(layout.axes) == (mirrored ? -1 : 1)) return {};
   return Failure(top.error("axes", mirrored ? "axes that mirror" : "axes that keep right-handed",
                            determinant(layout.axes) == 0 ? "an axis that stands twice"

@@ -87,6 +87,10 @@ TEST_CASE("what no number says is refused with its line") {
   CHECK(fault(head + "0 90 0 0 0 0\n0 9 0 inf 0 0\n") ==
         "walk.bvh:15: expected a number, found 'inf'");
   CHECK(fault(head + "0 90 0 0 1e999 0\n") == "walk.bvh:14: expected a number, found '1e999'");
+  CHECK(fault(head + "0 90 0 0 0 0\n-1e15 9 0 0 0 0\n") ==
+        "walk.bvh:15: expected a number, found '-1e15'");
+  CHECK(fault("HIERARCHY\nROOT a\n{\nOFFSET 0 1e300 0\n}\n") ==
+        "walk.bvh:4: expected three numbers after OFFSET, found '1e300'");
 }
 
 TEST_CASE("text behind the frames that were promised is left out with a finding") {

@@ -124,6 +124,14 @@ TEST_CASE("a layout whose axes mirror has to say so") {
         "odd.toml:5: expected axes that keep right-handed, found an axis that stands twice");
 }
 
+TEST_CASE("a layout of nodes has no mirror image") {
+  const std::string nodes = "name = 'a'\nkind = 'imu'\n[nodes]\nfields = ['ax', 'ay', 'az']\n";
+  CHECK(fault_of(nodes + "[axes]\nx = '-x'\nmirrored = true\n") ==
+        "odd.toml:7: expected axes of nodes that keep right-handed: an orientation has no mirror "
+        "image, found mirrored = true");
+  CHECK(fault_of(nodes + "[axes]\nx = 'z'\nz = '-x'\nmirrored = false\n") == "none");
+}
+
 TEST_CASE("a quantity stands in a layout with all its components, each once") {
   const std::string begin = "name = 'a'\nheader = false\n[joints]\nnames = ['A']\n";
   CHECK(fault_of(begin + "fields = ['x', 'z']\n") ==

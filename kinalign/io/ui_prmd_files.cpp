@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/ui_prmd_files.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 2> words{
+    {{"positions", "angles"}, {"Positions", "Angles"}}};
+
+/// With the last "positions" made "angles"; unchanged where there is none.
+std::string angles_for(std::string_view name) {
+  std::string out(name);
+  for (const auto& [positions, angles] : words) {
+    const auto at = out.rfind(positions);
+    if (at != std::string::npos) return out.replace(at, positions.size(), angles);
+  }
+  return out;
+}
+
+/// "a/Positions/" becomes "a/Angles/"; other folders stay.
+std::string angles_folder(std::string_view path) {
+  const std::string_view whole = folder(path);
+  const std::string_view name = file_name(whole.substr(0, whole.empty() ? 0 : whole.size() - 1));
+  for (const auto& [positions, angles] : words) {
+    if (name != positions) continue;
+    const std::size_t before = whole.size() - 1 - name.size();
+    return std::string(whole.substr(0, before)) + std::string(angles) + "/";
+  }
+  return std::string(whole);
+}
+
+std::string angles_path(std::string_view path) {
+  return angles_folder(path) + angles_for(file_name(path));
+}
+
+}  // namespace
+
+bool named_as_ui_prmd_positions(std::string_view path) { return angles_path(path) != path; }
+
+bool named_as_ui_prmd_angles(std::string_view path) {
+  if (named_as_ui_prmd_positions(path)) return false;
+  const std::string_view name = file_name(path);
+  return std::any_of(words.begin(), words.end(), [name](const auto& word) {
+    return name.find(word.second) != std::string_view::npos;
+  });
+}
+
+Result<std::string> ui_prmd_angles_of(FileSystem& files, const std::string& path) {
+  if (!named_as_ui_prmd_positions(path)) {
+    return Failure(Error{path, 0,
+                         "UI-PRMD's file of positions, ..._positions.txt; it leads to the angles",
+                         named_as_ui_prmd_angles(path) ? "the file of angles" : "another name"});
+  }
+  std::string beside = angles_path(path);
+  const std::string here = std::string(folder(path)) + angles_for(file_name(path));
+  auto opened = InputFile::open(files, beside);
+  if (opened) return beside;
+  if (here != path && InputFile::open(files, here)) return here;
+  return Failure(std::move(opened).error());
+}
+
+}  // namespace kinalign

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/unknown_file.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> marks{
+    {{"\x1f\x8b"sv, "a gzip archive: unpack it first"},
+     {"PK\x03\x04"sv, "a ZIP archive, such as .npz"},
+     {"\x89HDF\r\n\x1a\n"sv, "an HDF5 file"},
+     {"\x89PNG"sv, "a picture"},
+     {"%PDF"sv, "a PDF"},
+     {"<?xml"sv, "XML"}}};
+
+bool is_text(std::string_view line) {
+  return std::all_of(line.begin(), line.end(),
+                     [](char c) { return c == '\t' || c == '\r' || (c >= ' ' && c < '\x7f'); });
+}
+
+}  // namespace
+
+std::string beginning_of(std::string_view head) {
+  if (head.empty()) return "an empty file";
+  for (const auto& [mark, name] : marks) {
+    if (head.starts_with(mark)) return std::string(name);
+  }
+  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
+  const std::string_view line = head.substr(0, head.find('\n'));
+  return is_text(line.substr(0, 200)) ? "'" + shown(line) + "'" : "bytes that are no plain text";
+}
+
+Error unknown_file(const std::string& path, std::string_view head) {
+  const bool empty = head.empty();
+  return {path, empty ? 0 : 1,
+          empty
+              ? "a recording's file"
+              : "a format that kinalign knows (docs/formats); for a table of another kind write a "
+                "layout, --layout FILE (docs/formats/layouts.md)",
+          beginning_of(head)};
+}
+
+}  // namespace kinalign
