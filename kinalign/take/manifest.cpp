@@ -47,7 +47,7 @@ Fields describe(StreamOptions& o) {
       {"drift_ppm", "rate added to the stream's stamps from the first one on, ppm", &o.drift_ppm,
        -1e5, 1e5},
       {"interval_ms", "half-width of the interval that holds a stamp's true time, ms",
-       &o.interval_ms, 0.0, day_ms},
+       &o.interval_ms, 1e-6, day_ms},
       {"root_node", "node into whose space all nodes are brought (default: the world's)",
        &o.root_node},
   };

@@ -156,3 +156,9 @@ TEST_CASE("an empty manifest is one without streams") {
   REQUIRE(manifest);
   CHECK(manifest->streams.empty());
 }
+
+TEST_CASE("only a shared clock leaves no doubt: an interval of nothing is refused") {
+  CHECK(error_of(mocap + "interval_ms = 0\n") ==
+        "recording.toml:3: expected interval_ms as a number from 1e-06 to 86400000, found 0");
+  CHECK(error_of(mocap + "interval_ms = 0.000001\n") == "none");
+}
