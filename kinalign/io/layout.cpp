@@ -163,6 +163,7 @@ Result<void> read_units(const LayoutKeys& keys, TableLayout& layout) {
 }
 
 Result<void> read_selection(const LayoutKeys& top, TableLayout& layout) {
+  layout.body = KA_TRY(top.text("body", ""));
   if (!top.has("select")) return {};
   const LayoutKeys keys = KA_TRY(top.table("select", {}));
   for (const std::string& column : keys.keys()) layout.select[column] = KA_TRY(keys.text(column));
@@ -253,7 +254,8 @@ Result<TableLayout> parse_layout(std::string_view toml, std::string_view name) {
                                                     "angular_velocity_unit",
                                                     "gravity",
                                                     "missing_point",
-                                                    "select"}));
+                                                    "select",
+                                                    "body"}));
   return read_layout(keys);
 }
 

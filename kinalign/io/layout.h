@@ -71,6 +71,7 @@ struct TableLayout {
   bool gravity = true;                 // stands in the acceleration
 
   std::map<std::string, std::string> select;  // rows to take: column -> value
+  std::string body;  // the column that tells several bodies apart; empty: there is one body
 };
 
 /// `name` appears in messages. Fails at the first key or value that is not understood.

@@ -99,6 +99,16 @@ class ManifestReader {
     return out;
   }
 
+  /// Column = value, a text or a whole number.
+  Result<Texts> selection(const Entry& entry) const {
+    Texts out;
+    for (const Entry& one : in_file_order(KA_TRY(table(entry)))) {
+      const auto* whole = one.value->as_integer();
+      out[one.key] = whole != nullptr ? std::to_string(whole->get()) : KA_TRY(text(one));
+    }
+    return out;
+  }
+
   Result<std::vector<double>> numbers(const Entry& entry, std::size_t count) const {
     const std::string wanted = "a list of " + std::to_string(count) + " numbers";
     const auto* array = entry.value->as_array();
@@ -195,7 +205,7 @@ class ManifestReader {
       } else if (entry.key == "files") {
         KA_TRY(read_files(entry, out.files));
       } else if (entry.key == "select") {
-        out.select = KA_TRY(texts(entry));
+        out.select = KA_TRY(selection(entry));
       } else if (entry.key == "mounting") {
         out.mounting = KA_TRY(rotations(entry));
       } else {

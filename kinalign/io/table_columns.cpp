@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/table_columns.h"
 
-#include "kinalign/core/numbers.h"
+#include "kinalign/io/option_values.h"
 
 #include <algorithm>
 #include <charconv>
@@ -57,7 +57,10 @@ class Finder {
       found_.time_text = static_cast<int>(text_of(KA_TRY(column_of(layout_.time->column))));
     }
     for (const auto& [column, value] : select) {
-      found_.choices.push_back({text_of(KA_TRY(column_of(choice_of(column)))), value});
+      found_.choices.push_back({column, text_of(KA_TRY(selected(column))), value});
+    }
+    if (places_.contains(layout_.body)) {
+      found_.body = {layout_.body, text_of(KA_TRY(column_of({layout_.body, 0}))), ""};
     }
     if (slots_ == 0) return Failure(Error{"", 0, "columns of layout " + layout_.name, "none"});
     return std::move(found_);
@@ -89,6 +92,14 @@ class Finder {
     if (place->second.times == 1) return place->second.column;
     return Failure(Error{"", 0, "one column " + shown(choice.name),
                          std::to_string(place->second.times) + " of that name"});
+  }
+
+  Result<std::size_t> selected(const std::string& column) const {
+    const ColumnChoice choice = choice_of(column);
+    if (choice.number != 0 || !named_ || places_.contains(column)) return column_of(choice);
+    std::vector<std::string> known;
+    for (const auto& [name, place] : places_) known.push_back(name);
+    return Failure(unknown_name(column, "a column of the file to select by", known));
   }
 
   /// The columns of a quantity, members outside, fields inside; a missing one is `none`.
@@ -151,16 +162,6 @@ Result<TableColumns> find_columns(const TableLayout& layout,
                                   const std::map<std::string, std::string>& select,
                                   const std::vector<std::string>& names) {
   return Finder(layout, members, names).find(select);
-}
-
-bool is_chosen(const std::vector<RowChoice>& choices, const std::vector<std::string_view>& texts) {
-  return std::all_of(choices.begin(), choices.end(), [&](const RowChoice& choice) {
-    const std::string_view cell = texts[choice.text];
-    if (cell == choice.value) return true;
-    double one = 0.0;
-    double other = 0.0;
-    return parse_number(cell, one) && parse_number(choice.value, other) && one == other;
-  });
 }
 
 }  // namespace kinalign

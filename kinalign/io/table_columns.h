@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/io/layout.h"
+#include "kinalign/io/row_selection.h"
 #include "kinalign/motion/streams.h"
 
 #include <map>
@@ -11,15 +12,10 @@
 
 namespace kinalign {
 
-/// Rows whose cell says `value` are taken; numbers are compared as numbers.
-struct RowChoice {
-  std::size_t text = 0;  // of RowParser::texts
-  std::string value;
-};
-
 struct TableColumns {
   std::vector<ColumnUse> uses;  // [columns]
   std::vector<RowChoice> choices;
+  RowChoice body;      // the column that tells bodies apart; none where its name is empty
   int time_text = -1;  // of RowParser::texts; -1: there is no time column
 
   // Of RowParser::values, M joints or nodes; -1: not in the file.
@@ -35,8 +31,5 @@ Result<TableColumns> find_columns(const TableLayout& layout,
                                   const std::vector<std::string>& members,
                                   const std::map<std::string, std::string>& select,
                                   const std::vector<std::string>& names);
-
-/// All choices hold for the row.
-bool is_chosen(const std::vector<RowChoice>& choices, const std::vector<std::string_view>& texts);
 
 }  // namespace kinalign

@@ -153,6 +153,7 @@ class TableReader final : public Builder::ReaderType {
     held_.release(stamps_, out);
     if (stamps_.stuck()) this->findings.push_back(stuck_finding(lines_.file(), stamps_));
     builder_.report(lines_.file(), this->findings);
+    selection_.report(lines_.file(), this->findings);
     return {};
   }
 
@@ -174,6 +175,7 @@ class TableReader final : public Builder::ReaderType {
       return Failure(lines_.error("rate_hz for rows without stamps", "none"));
     }
     columns_ = KA_TRY(find_columns(layout_, members_, select_, names));
+    selection_ = RowSelection(columns_.choices, columns_.body);
     row_ = RowParser(layout_.delimiter, columns_.uses);
     header_ = builder_.header(members_, columns_);
     return {};
@@ -181,7 +183,7 @@ class TableReader final : public Builder::ReaderType {
 
   Result<void> read_row(std::string_view line, Frames& out) {
     KA_TRY(row_.read(line));
-    if (!columns_.choices.empty() && !is_chosen(columns_.choices, row_.texts)) return {};
+    if (!selection_.takes(row_.texts)) return {};
     const std::int64_t ns = KA_TRY(column_stamp());
     Frames& target = held_.target(stamps_, out);
     const Time stamp = KA_TRY(stamps_.next(ns));
@@ -206,6 +208,7 @@ class TableReader final : public Builder::ReaderType {
   Builder builder_;
   HeldRows<Frames> held_;
   TableColumns columns_;
+  RowSelection selection_;
   RowParser row_;
   std::optional<Header> header_;
 };

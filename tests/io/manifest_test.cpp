@@ -157,6 +157,16 @@ TEST_CASE("an empty manifest is one without streams") {
   CHECK(manifest->streams.empty());
 }
 
+TEST_CASE("rows are selected by texts and by whole numbers") {
+  const auto manifest =
+      read_manifest(mocap + "select = { \"Skeleton#\" = 1, who = \"ann\" }\n", "recording.toml");
+  REQUIRE(manifest);
+  CHECK(manifest->streams[0].select ==
+        std::map<std::string, std::string>{{"Skeleton#", "1"}, {"who", "ann"}});
+  CHECK(error_of(mocap + "select = { who = 1.5 }\n") ==
+        "recording.toml:3: expected who as a text, found a number");
+}
+
 TEST_CASE("only a shared clock leaves no doubt: an interval of nothing is refused") {
   CHECK(error_of(mocap + "interval_ms = 0\n") ==
         "recording.toml:3: expected interval_ms as a number from 1e-06 to 86400000, found 0");

@@ -188,22 +188,6 @@ TEST_CASE("a stamp outside the range of time is an error") {
         "k.csv:3: expected a stamp inside +-4e18 ns, found 5000000 ns");
 }
 
-TEST_CASE("rows are selected by a column, numbers by their value") {
-  const std::string layout = std::string("name = 's'\nrate_hz = 1\n[joints]\nnames = ['A']\n") +
-                             "fields = { x = 'x', y = 'y', z = 'z' }\n";
-  const std::string text = "id,who,x,y,z\n1,ann,1,0,0\n2,bob,2,0,0\n01.0,bob,3,0,0\n";
-  StreamOptions options;
-  options.select = {{"id", "1"}};
-  CHECK(read_point(layout, text, options).rows.positions == std::vector<double>{1, 0, 0, 3, 0, 0});
-  options.select = {{"id", "1"}, {"who", "bob"}};
-  CHECK(read_point(layout, text, options).rows.positions == std::vector<double>{3, 0, 0});
-  options.select = {{"2", "bob"}};
-  CHECK(read_point(layout, text, options).rows.size() == 2);
-  options.select = {{"colour", "red"}};
-  CHECK(read_point(layout, text, options).error ==
-        "p.csv:1: expected a column colour, found none of that name");
-}
-
 TEST_CASE("unit and axes are the layout's unless the user knows better") {
   const std::string layout = std::string("metres_per_unit = 0.001\nup = 'z'\n") + one_point;
   CHECK(read_point(layout, "1,2,3\n").rows.positions ==
