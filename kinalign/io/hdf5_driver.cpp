@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // HDF5's "virtual file driver" over core's files (HDF5 1.10, H5FDpublic.h).
 #include "kinalign/io/hdf5_file.h"
+#include "kinalign/io/hdf5_start.h"
 
 #include <hdf5.h>
 
@@ -110,7 +111,6 @@ Handle access_to(Bytes& bytes) {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   Bytes* info = &bytes;
   if (H5Pset_driver(access.id(), registered, &info) < 0) return {};
-  H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
   H5Pset_small_data_block_size(access.id(), 0);
   H5Pset_alignment(access.id(), 32768, 4096);  // large arrays at pages: the system copies faster
@@ -141,6 +141,7 @@ Failure failure(const Bytes& bytes, std::string expected) {
 
 Result<Handle> create(Bytes& bytes) {
   const Handle access = access_to(bytes);
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.id(), 0);
   Handle file(H5Fcreate(bytes.path().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
@@ -149,6 +150,9 @@ Result<Handle> create(Bytes& bytes) {
 }
 
 Result<Handle> open(Bytes& bytes) {
+  std::string head(start_bytes, '\0');
+  head.resize(KA_TRY(bytes.input->read_at(0, head)));
+  KA_TRY(check_start(bytes.path(), head, bytes.size));
   const Handle access = access_to(bytes);
   Handle file(H5Fopen(bytes.path().c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (!file.good()) return failure(bytes, "a file that HDF5 can read");

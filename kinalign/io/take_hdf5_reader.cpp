@@ -29,6 +29,12 @@ Failure bad_value(const std::string& path, const std::string& expected, const st
   return Failure(Error{path, 0, expected, "another one in " + where});
 }
 
+bool finite(std::span<const double> values) {
+  double sum = 0.0;  // NaN and infinity stay NaN through 0 * x
+  for (const double value : values) sum += 0.0 * value;
+  return sum == 0.0;
+}
+
 Result<std::vector<EndSite>> read_end_sites(const hdf5::Checked& file, hid_t group,
                                             std::uint64_t joints) {
   const Handle sites(H5Gopen2(group, "end_sites", H5P_DEFAULT), H5Gclose);
@@ -36,6 +42,7 @@ Result<std::vector<EndSite>> read_end_sites(const hdf5::Checked& file, hid_t gro
   const std::uint64_t count = KA_TRY(file.rows(sites.id(), "parents"));
   const auto parents = KA_TRY(file.all<int>(sites.id(), "parents", {count}));
   const auto tips = KA_TRY(file.all<double>(sites.id(), "offsets", {count, 3}));
+  if (!finite(tips)) return bad_value(file.bytes().path(), "finite numbers", "end_sites");
   std::vector<EndSite> out;
   for (std::size_t e = 0; e < count; ++e) {
     if (parents[e] < 0 || static_cast<std::uint64_t>(parents[e]) >= joints) {
@@ -52,6 +59,7 @@ Result<Skeleton> read_skeleton(const hdf5::Checked& file, hid_t group) {
   const std::uint64_t joints = out.joint_names.size();
   out.parents = KA_TRY(file.all<int>(group, "parents", {joints}));
   const auto offsets = KA_TRY(file.all<double>(group, "rest_offsets", {joints, 3}));
+  if (!finite(offsets)) return bad_value(file.bytes().path(), "finite numbers", "rest_offsets");
   for (std::size_t j = 0; j < joints; ++j) out.rest_offsets.emplace_back(vec3(offsets, j));
   out.end_sites = KA_TRY(read_end_sites(file, group, joints));
   KA_TRY(validate(out));
@@ -87,12 +95,6 @@ Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string
                          "\"" + shown(kind) + "\""});
   }
   return out;
-}
-
-bool finite(std::span<const double> values) {
-  double sum = 0.0;  // NaN and infinity stay NaN through 0 * x
-  for (const double value : values) sum += 0.0 * value;
-  return sum == 0.0;
 }
 
 }  // namespace
@@ -159,8 +161,13 @@ Result<void> TakeReader::State::read_words(const hdf5::Checked& checked) {
 Result<void> TakeReader::State::read_header() {
   const hdf5::Checked checked(bytes);
   const hid_t root = file.id();
-  if (KA_TRY(checked.text_attribute(root, "format")) != "kinalign.take/1") {
-    return Failure(Error{input.path(), 0, "format kinalign.take/1", "another one"});
+  const auto format = checked.text_attributes(root, "format");
+  if (!format || format->size() != 1 || !format->front().starts_with("kinalign.take/")) {
+    return Failure(Error{input.path(), 0, "a take that kinalign wrote", "HDF5 of another kind"});
+  }
+  if (format->front() != "kinalign.take/1") {
+    return Failure(
+        Error{input.path(), 0, "format kinalign.take/1", "\"" + shown(format->front()) + "\""});
   }
   KA_TRY(read_words(checked));
   header.frames = KA_TRY(checked.rows(root, "time_ns"));

@@ -15,6 +15,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <limits>
 #include <thread>
 
 using namespace kinalign;
@@ -231,16 +232,19 @@ TEST_CASE("streams that can't be told apart are refused") {
   CHECK(folder.empty());
 }
 
-TEST_CASE("what is no take is refused with a reason") {
+TEST_CASE("a take whose skeleton is not finite is refused") {
   const FreshFolder folder;
-  for (const std::string& bytes :
-       {std::string(), std::string("rubbish"), std::string(5000, '\0')}) {
-    folder.write("x.h5", bytes);
-    const auto read = read_through(folder / "x.h5");
-    REQUIRE_FALSE(read);
-    CHECK(read.error().file == folder / "x.h5");
-    CHECK(read.error().expected == "a file that HDF5 can read");
-  }
+  Take take = sample_take(2);
+  auto& skeleton = std::get<ClipGroup>(take.header.groups[0].kind).skeleton;
+  skeleton.rest_offsets[1][2] = std::numeric_limits<double>::infinity();
+  write_or_fail(folder / "a.h5", take);
+  CHECK(to_string(read_through(folder / "a.h5").error()) ==
+        (folder / "a.h5") + ": expected finite numbers, found another one in rest_offsets");
+  skeleton.rest_offsets[1][2] = 0.0;
+  skeleton.end_sites[0].offset[0] = std::numeric_limits<double>::quiet_NaN();
+  write_or_fail(folder / "b.h5", take);
+  CHECK(to_string(read_through(folder / "b.h5").error()) ==
+        (folder / "b.h5") + ": expected finite numbers, found another one in end_sites");
 }
 
 namespace {
