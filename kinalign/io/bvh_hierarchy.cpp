@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace kinalign {
 
@@ -187,6 +188,21 @@ class HierarchyParser {
   int offset_decimals_ = 0;
 };
 
+/// Names that differ: a repeated one counts on to a number that no other name has.
+std::vector<std::string> told_apart(const std::vector<std::string>& names) {
+  std::set<std::string> taken(names.begin(), names.end());
+  std::map<std::string_view, int> times;
+  std::vector<std::string> out;
+  for (const std::string& name : names) {
+    int& number = times[name];
+    std::string other = name;
+    while (++number > 1 && !taken.insert(other = name + "#" + std::to_string(number)).second) {
+    }
+    out.push_back(std::move(other));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::size_t BvhHierarchy::row_size() const {
@@ -204,15 +220,14 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
                      std::string_view name, Findings& findings) {
   Skeleton out;
   out.parents = hierarchy.parents;
-  std::map<std::string_view, int> seen;
-  for (const auto& joint : hierarchy.names) {
-    const int times = ++seen[joint];
-    out.joint_names.push_back(times == 1 ? joint : joint + "#" + std::to_string(times));
-    if (times == 1) continue;
+  out.joint_names = told_apart(hierarchy.names);
+  for (std::size_t j = 0; j < out.joint_names.size(); ++j) {
+    const std::string& written = hierarchy.names[j];
+    if (out.joint_names[j] == written) continue;
     findings.push_back(
         {Severity::warning,
-         Error{std::string(name), 0, "joint names that differ", "'" + shown(joint) + "' again"},
-         "read as '" + shown(out.joint_names.back()) + "'", ""});
+         Error{std::string(name), 0, "joint names that differ", "'" + shown(written) + "' again"},
+         "read as '" + shown(out.joint_names[j]) + "'", ""});
   }
   for (std::size_t j = 0; j < hierarchy.offsets.size(); ++j) {
     const Vec3 offset = hierarchy.offsets[j] * options.metres_per_unit;

@@ -156,6 +156,20 @@ TEST_CASE("a repeated name is told apart, and written as it was") {
   CHECK(written(*file).find("b#2") == std::string::npos);
 }
 
+TEST_CASE("a repeated name counts on to one that no other joint has") {
+  std::string joints;
+  for (const std::string name : {"b", "b", "b#2", "b", "b#2"}) {
+    joints += "JOINT " + name + "\n{\nOFFSET 1 0 0\n}\n";
+  }
+  const auto file = read("HIERARCHY\nROOT a\n{\nCHANNELS 1 Xrotation\n" + joints +
+                         "}\nMOTION\nFrames: 0\nFrame Time: 0.01\n");
+  REQUIRE(file);
+  CHECK(file->clip.skeleton.joint_names ==
+        std::vector<std::string>{"a", "b", "b#3", "b#2", "b#4", "b#2#2"});
+  CHECK(validate(file->clip.skeleton));
+  CHECK(file->findings.size() == 3);
+}
+
 TEST_CASE("several roots and zero frames are a skeleton") {
   const auto file = read(
       "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n}\n"
