@@ -119,13 +119,18 @@ class Child {
   Child& operator=(const Child&) = delete;
   ~Child() {
     ::close(pipe_);
-    if (!ended_) {
-      ::kill(id_, SIGKILL);
-      wait();
-    }
+    if (!ended_) end();
   }
 
   int pipe() const { return pipe_; }
+  /// Of one that has closed its end of the pipe, or is not to be listened to any more: how it
+  /// ended. One that ends by itself has done so when its pipe closes, and can't be killed then.
+  int end() {
+    ::kill(id_, SIGKILL);
+    return wait();
+  }
+
+ private:
   int wait() {
     int status = 0;
     while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
@@ -134,7 +139,6 @@ class Child {
     return status;
   }
 
- private:
   pid_t id_;
   int pipe_;
   bool ended_ = false;
@@ -186,7 +190,10 @@ class Inbox {
     while (pending_.size() - at >= head_size) {
       std::uint32_t size = 0;
       std::memcpy(&size, pending_.data() + at + 1, sizeof size);
-      if (size > message_most) return false;
+      if (size > message_most) {
+        strange_ = true;
+        return false;
+      }
       if (pending_.size() - at < head_size + size) break;
       const auto body = std::string_view(pending_).substr(at + head_size, size);
       const char kind = pending_[at];
@@ -200,17 +207,18 @@ class Inbox {
   }
 
   bool done() const { return done_; }
+  bool strange() const { return strange_; }
   const std::optional<Error>& error() const { return error_; }
 
  private:
   const std::function<Result<void>(std::string_view)>& receive_;
   std::string pending_;
   std::optional<Error> error_;
-  bool done_ = false;
+  bool done_ = false, strange_ = false;
 };
 
-/// Reads until the child closes its end. False: its time is up. Fails where a signal came that the
-/// program handles, which is Ctrl-C.
+/// Reads until the child closes its end or sends what no child of ours sends. False: its time is
+/// up. Fails where a signal came that the program handles, which is Ctrl-C.
 Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbox) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -258,7 +266,9 @@ Result<void> run_guarded(const GuardLimits& limits, const Error& blame,
   }
   if (inbox.error()) return Failure(*inbox.error());
   if (inbox.done()) return {};
-  return Failure(blamed(blame, cause(child.wait(), limits)));
+  const int status = child.end();
+  return Failure(blamed(blame, inbox.strange() ? "one that overran the program that read it"
+                                               : cause(status, limits)));
 }
 
 Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,

@@ -2,6 +2,8 @@
 #include "kinalign/io/guarded.h"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -88,6 +90,25 @@ TEST_CASE("a child that wants too much memory is an error" * doctest::skip(sanit
                 }) ==
         "take.h5: expected a take that HDF5 can read, found one that needs more than 256 MiB of "
         "memory");
+}
+
+TEST_CASE("a child that sends what no child of ours sends is ended, though it would go on") {
+  const std::function<Result<std::string>()> babble = []() -> Result<std::string> {
+    for (int pipe = 3; pipe < 1024; ++pipe) {  // ours is a pipe that no other program inherits
+      struct stat facts {};
+      if (::fstat(pipe, &facts) != 0 || !S_ISFIFO(facts.st_mode)) continue;
+      if ((::fcntl(pipe, F_GETFD) & FD_CLOEXEC) == 0) continue;
+      const std::string noise(1 << 20, '\xff');
+      while (::write(pipe, noise.data(), noise.size()) > 0) {
+      }
+    }
+    for (;;) ::pause();
+  };
+  GuardLimits limits;
+  limits.wall_seconds = 20;
+  CHECK(outcome(limits, babble) ==
+        "take.h5: expected a take that HDF5 can read, found one that overran the program that read "
+        "it");
 }
 
 TEST_CASE("more output than wanted ends the child") {
