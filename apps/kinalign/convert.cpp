@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
+#include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/io/bvh.h"
+#include "kinalign/io/bvh_copy.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_npz.h"
 #include "kinalign/motion/kinematics.h"
 
 #include <fmt/format.h>
-
-#include <cmath>
 
 namespace kinalign {
 
@@ -95,20 +94,16 @@ Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, bool st
       stream.data);
 }
 
-Result<void> put_bvh(const Job& job, const BvhFile& bvh) {
-  OutputFile out = KA_TRY(OutputFile::create(job.files, job.to, job.overwrite));
-  KA_TRY(write_bvh(bvh, [&out](std::string_view text) { return out.write(text); }));
-  return out.commit();
-}
+using WriteBvh = Result<Findings> (*)(FileSystem& files, const std::string& from,
+                                      const TextSink& sink);
 
-Result<void> bvh_to_bvh(const Job& job, const StreamOptions& options) {
-  const std::string text = KA_TRY(read_whole(job.files, job.from, SIZE_MAX));
-  if (!looks_like_bvh(text)) {
-    return Failure(Error{job.from, 1, "a BVH or a take, which alone can become a BVH",
-                         "'" + shown(std::string_view(text).substr(0, text.find('\n'))) + "'"});
-  }
-  const BvhFile bvh = KA_TRY(read_bvh(text, job.from, bvh_options(options)));
-  return put_bvh(job, bvh);
+/// What is to be said of what was written, line by line.
+Result<std::string> put_bvh(const Job& job, WriteBvh write) {
+  OutputFile out = KA_TRY(OutputFile::create(job.files, job.to, job.overwrite));
+  const auto sink = [&out](std::string_view text) { return out.write(text); };
+  const Findings findings = KA_TRY(write(job.files, job.from, sink));
+  KA_TRY(out.commit());
+  return finding_lines(findings);
 }
 
 // The two for takes run in a child process.
@@ -122,52 +117,30 @@ Result<void> take_to_npz(const Job& job) {
   return writer.finish();
 }
 
-Result<void> take_to_bvh(const Job& job) {
-  TakeReader reader = KA_TRY(TakeReader::open(job.files, job.from));
-  const auto& groups = reader.header().groups;
-  std::size_t g = 0;
-  while (g < groups.size() && !std::holds_alternative<ClipGroup>(groups[g].kind)) ++g;
-  if (g == groups.size()) {
-    return Failure(Error{job.from, 0, "a take with a skeleton's stream", "none"});
-  }
-  Clip clip;
-  clip.skeleton = std::get<ClipGroup>(groups[g].kind).skeleton;
-  ClipFrames& frames = clip.frames;
-  TakeSlab slab;
-  while (KA_TRY(reader.next(slab))) {
-    const auto& rows = std::get<ClipRows>(slab.rows[g]);
-    const auto append = [](auto& to, const auto& from) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    append(frames.stamps, slab.stamps);
-    append(frames.local_positions, rows.local_positions);
-    append(frames.local_rotations, rows.local_rotations);
-  }
-  const std::size_t steps = frames.size() > 1 ? frames.size() - 1 : 1;
-  const double length =
-      frames.size() > 1 ? seconds(frames.stamps.back() - frames.stamps.front()) : 1.0 / 60.0;
-  return put_bvh(job, bvh_from_clip(std::move(clip), length / static_cast<double>(steps)));
-}
-
 Failure other_ending(const Job& job) {
   return Failure(Error{job.to, 0, "a name that ends in .npz or .bvh", "another ending"});
 }
 
-Result<void> convert_take(const Job& job) {
+// Both return what is to be said of the result.
+
+Result<std::string> convert_take(const Job& job) {
   if (!job.to.ends_with(".npz") && !job.to.ends_with(".bvh")) return other_ending(job);
   const auto work = [&job]() -> Result<std::string> {
-    KA_TRY(job.to.ends_with(".npz") ? take_to_npz(job) : take_to_bvh(job));
+    if (job.to.ends_with(".bvh")) return put_bvh(job, take_to_bvh);
+    KA_TRY(take_to_npz(job));
     return std::string();
   };
-  KA_TRY(run_guarded(GuardLimits{}, blame(job.from), work));
-  return {};
+  return run_guarded(GuardLimits{}, blame(job.from), work);
 }
 
-Result<void> convert_stream(const Job& job, const Convert& o, const Progress& progress) {
-  if (job.to.ends_with(".bvh")) return bvh_to_bvh(job, KA_TRY(o.stream.stream({job.from})));
+Result<std::string> convert_stream(const Job& job, const Convert& o, const Progress& progress) {
+  if (job.to.ends_with(".bvh")) return put_bvh(job, copy_bvh);
   if (!job.to.ends_with(".npz")) return other_ending(job);
   const Recording input = KA_TRY(open_input(job.files, job.from, o.stream, progress));
-  if (input.streams.size() == 1) return stream_to_npz(job, input.streams.front(), o.store_double);
+  if (input.streams.size() == 1) {
+    KA_TRY(stream_to_npz(job, input.streams.front(), o.store_double));
+    return std::string();
+  }
   return Failure(
       Error{job.from, 0, "one stream's file", fmt::format("{} streams", input.streams.size())});
 }
@@ -177,14 +150,12 @@ Result<int> run(Convert& o, Call& call) {
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
   const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite()};
   KA_TRY(keep_inputs(job.to, {job.from}));
-  if (KA_TRY(is_take(job.files, job.from))) {
-    KA_TRY(convert_take(job));
-  } else {
-    KA_TRY(convert_stream(job, o, call.console.progress()));
-  }
-  call.console.print(harmless(job.to) + "\n");
+  const std::string said = KA_TRY(KA_TRY(is_take(job.files, job.from))
+                                      ? convert_take(job)
+                                      : convert_stream(job, o, call.console.progress()));
+  call.console.print(harmless(said + job.to + "\n"));
   call.console.print_json(R"({"written": true})");
-  return 0;
+  return said.empty() ? 0 : 1;
 }
 
 }  // namespace

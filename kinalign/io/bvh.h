@@ -105,10 +105,10 @@ using TextSink = std::function<Result<void>(std::string_view)>;
 
 /// Writes `values` in the file's decimals: read, write, read gives every channel exactly. A Clip
 /// made elsewhere gets its channels from bvh_from_clip first; nothing else computes on angles.
+/// Larger than memory: bvh_write.h, bvh_copy.h.
 Result<void> write_bvh(const BvhFile& file, const TextSink& sink);
 
-/// Channels for a clip made elsewhere: centimetres, Y up, position channels for roots and for
-/// joints that leave their offset by more than a micrometre, rotations Z X Y, six decimals.
+/// A clip made elsewhere with channels (BvhChannels of bvh_write.h).
 BvhFile bvh_from_clip(Clip clip, double frame_seconds);
 
 }  // namespace kinalign

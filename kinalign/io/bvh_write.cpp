@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/bvh_write.h"
+
 #include "kinalign/core/numbers.h"
-#include "kinalign/io/bvh.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 
 namespace kinalign {
 
@@ -79,88 +78,45 @@ class HierarchyText {
   std::vector<int> open_;
 };
 
-/// Angles a, b, c in degrees with rotation = Rz(a) Rx(b) Ry(c).
-std::array<double, 3> zxy_angles(const Quat& rotation) {
-  const Eigen::Matrix3d r = rotation.normalized().toRotationMatrix();
-  constexpr double degrees = 180.0 / std::numbers::pi;
-  const double sin_x = std::clamp(r(2, 1), -1.0, 1.0);
-  if (std::abs(sin_x) > 1.0 - 1e-12) {  // both other turns are about one axis: give it to z
-    return {std::atan2(r(1, 0), r(0, 0)) * degrees, std::asin(sin_x) * degrees, 0.0};
-  }
-  return {std::atan2(-r(0, 1), r(1, 1)) * degrees, std::asin(sin_x) * degrees,
-          std::atan2(-r(2, 0), r(2, 2)) * degrees};
-}
-
-constexpr double centimetres = 100.0;
-
-/// Whether a joint leaves its rest offset by more than a micrometre.
-bool moves(const Clip& clip, std::size_t j) {
-  const std::size_t joints = clip.skeleton.joints();
-  for (std::size_t t = 0; t < clip.frames.size(); ++t) {
-    const Vec3 at = vec3(std::span(clip.frames.local_positions), t * joints + j);
-    if ((at - clip.skeleton.rest_offsets[j]).norm() > 1e-6) return true;
-  }
-  return false;
-}
-
-BvhHierarchy hierarchy_of(const Clip& clip, double frame_seconds) {
-  BvhHierarchy h;
-  h.names = clip.skeleton.joint_names;
-  h.parents = clip.skeleton.parents;
-  for (std::size_t j = 0; j < h.names.size(); ++j) {
-    h.offsets.emplace_back(clip.skeleton.rest_offsets[j] * centimetres);
-    const bool positions = h.parents[j] < 0 || moves(clip, j);
-    h.channels.push_back(positions ? std::vector<Channel>{0, 1, 2, 5, 3, 4}
-                                   : std::vector<Channel>{5, 3, 4});
-  }
-  for (EndSite site : clip.skeleton.end_sites) {
-    site.offset *= centimetres;
-    h.end_sites.push_back(site);
-  }
-  h.frames = clip.frames.size();
-  h.frame_seconds = frame_seconds;
-  put(h.frame_time, frame_seconds, 7);
-  return h;
-}
-
 }  // namespace
 
-Result<void> write_bvh(const BvhFile& file, const TextSink& sink) {
+BvhWriter::BvhWriter(const BvhHierarchy& hierarchy, std::uint64_t frames, int decimals,
+                     TextSink sink)
+    : sink_(std::move(sink)),
+      row_size_(hierarchy.row_size()),
+      decimals_(decimals),
+      frames_(frames),
+      text_(HierarchyText(hierarchy).text() +
+            fmt::format("MOTION\nFrames: {}\nFrame Time: {}\n", frames, hierarchy.frame_time)) {}
+
+Result<void> BvhWriter::append(std::span<const double> values) {
   constexpr std::size_t piece = std::size_t{256} << 10;
-  const std::size_t row_size = file.hierarchy.row_size();
-  const std::size_t frames = row_size == 0 ? 0 : file.values.size() / row_size;
-  std::string text = HierarchyText(file.hierarchy).text();
-  text += fmt::format("MOTION\nFrames: {}\nFrame Time: {}\n", frames, file.hierarchy.frame_time);
-  for (std::size_t t = 0; t < frames; ++t) {
-    for (std::size_t c = 0; c < row_size; ++c) {
-      if (c > 0) text += ' ';
-      put(text, file.values[t * row_size + c], file.decimals);
+  for (std::size_t i = 0; i + row_size_ <= values.size() && row_size_ > 0; i += row_size_) {
+    for (std::size_t c = 0; c < row_size_; ++c) {
+      if (c > 0) text_ += ' ';
+      put(text_, values[i + c], decimals_);
     }
-    text += '\n';
-    if (text.size() < piece) continue;
-    KA_TRY(sink(text));
-    text.clear();
+    text_ += '\n';
+    ++written_;
+    if (text_.size() < piece) continue;
+    KA_TRY(sink_(text_));
+    text_.clear();
   }
-  return sink(text);
+  return {};
 }
 
-BvhFile bvh_from_clip(Clip clip, double frame_seconds) {
-  BvhFile file;
-  file.hierarchy = hierarchy_of(clip, frame_seconds);
-  const std::size_t joints = clip.skeleton.joints();
-  // Rounded to the written decimals, so that the text holds exactly these values.
-  const auto keep = [&file](double value) {
-    file.values.push_back(std::nearbyint(value * 1e6) / 1e6);
-  };
-  for (std::size_t i = 0; i < clip.frames.size() * joints; ++i) {
-    if (file.hierarchy.channels[i % joints].size() == 6) {
-      const Vec3 at = vec3(std::span<const double>(clip.frames.local_positions), i);
-      for (int k = 0; k < 3; ++k) keep(at[k] * centimetres);
-    }
-    for (const double angle : zxy_angles(quat(clip.frames.local_rotations, i))) keep(angle);
-  }
-  file.clip = std::move(clip);
-  return file;
+Result<void> BvhWriter::finish() {
+  if (written_ == frames_) return sink_(text_);
+  return Failure(
+      Error{"", 0, fmt::format("{} frames to write", frames_), std::to_string(written_)});
+}
+
+Result<void> write_bvh(const BvhFile& file, const TextSink& sink) {
+  const std::size_t row_size = file.hierarchy.row_size();
+  BvhWriter writer(file.hierarchy, row_size == 0 ? 0 : file.values.size() / row_size, file.decimals,
+                   sink);
+  KA_TRY(writer.append(file.values));
+  return writer.finish();
 }
 
 }  // namespace kinalign
