@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every BVH of ../shared/data against positions computed there in NumPy.
+// Every BVH of ../shared/data against positions computed in NumPy, there and here.
 #include "tests/shared_data.h"
+#include "tests/witness.h"
 
 #include "kinalign/io/bvh.h"
 #include "kinalign/motion/kinematics.h"
@@ -39,44 +40,69 @@ std::map<std::string, std::vector<Place>> reference(const std::string& path) {
   return places;
 }
 
-void compare(const std::string& folder, const std::string& reference_file) {
+/// How many files there were to compare.
+std::size_t compare(const std::string& folder, const std::string& reference_file) {
   std::size_t files = 0;
-  for (const auto& [name, places] : reference(folder + reference_file)) {
+  for (const auto& [name, places] : reference(reference_file)) {
     CAPTURE(name);
-    std::string path = folder + name;
-    if (!std::filesystem::exists(path)) path = folder + "edge/" + name;
     BvhOptions own_units;
     own_units.metres_per_unit = 1.0;
-    const auto file = read_bvh(bytes_in(path), name, own_units);
+    const auto file = read_bvh(bytes_in(folder + name), name, own_units);
     REQUIRE(file);
     const std::size_t joints = file->clip.skeleton.joints();
     std::vector<double> global(file->clip.frames.size() * joints * 3);
     forward_kinematics(file->clip.skeleton, file->clip.frames, global);
-    double worst = 0.0, reach = 1.0;
+    double worst = 0.0;
     for (const Place& place : places) {
       REQUIRE(place.frame < file->clip.frames.size());
       CHECK(file->clip.skeleton.joint_names[place.joint] == place.name);
       const Vec3 at = vec3(std::span<const double>(global), place.frame * joints + place.joint);
       worst = std::max(worst, (at - Vec3(place.x, place.y, place.z)).norm());
-      reach = std::max(reach, at.norm());
     }
     // The reference has 6 decimals of the file's unit; the bar is 1e-5 m, 1e-3 of a centimetre.
     CHECK(worst < 2e-6);
+    CHECK(places.size() >= joints);
     ++files;
   }
-  CHECK(files > 0);
+  return files;
+}
+
+/// The files with frames below ../shared/data.
+std::vector<std::string> files_with_frames() {
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(shared_path(""))) {
+    if (entry.path().extension() != ".bvh") continue;
+    const auto file = read_bvh(bytes_in(entry.path()), "any", {});
+    REQUIRE(file);
+    if (file->clip.frames.size() > 0) paths.push_back(entry.path().string());
+  }
+  return paths;
 }
 
 }  // namespace
 
 TEST_CASE("positions of real BVH files equal an independent kinematics" *
           doctest::skip(!shared_data())) {
-  compare(shared_path("bvh/"), "fk_reference.csv");
+  const std::string folder = shared_path("bvh/");
+  CHECK(compare(folder, folder + "fk_reference.csv") == 17);
 }
 
 TEST_CASE("positions of a Perception Neuron file with moving joints do too" *
           doctest::skip(!shared_data())) {
-  compare(shared_path("no_terms_stated/pn_bvh/"), "fk_reference.csv");
+  const std::string folder = shared_path("no_terms_stated/pn_bvh/");
+  CHECK(compare(folder, folder + "fk_reference.csv") == 1);
+}
+
+TEST_CASE("positions of every real BVH with frames equal another kinematics in NumPy" *
+          doctest::skip(!shared_data())) {
+  const std::vector<std::string> paths = files_with_frames();
+  CHECK(paths.size() >= 19);
+  const FreshFolder folder;
+  std::string list;
+  for (const std::string& path : paths) list += path + "\n";
+  folder.write("files.txt", list);
+  REQUIRE(run_witness("bvh_positions.py", folder.path()) == 0);
+  CHECK(compare("", folder / "positions.csv") == paths.size());
 }
 
 TEST_CASE("every real BVH reads, writes and reads again to the same numbers" *
