@@ -14,7 +14,8 @@
 using Target = int(const std::uint8_t* data, std::size_t size);
 extern "C" {
 Target fuzz_bvh, fuzz_layout, fuzz_manifest, fuzz_ntu_skeleton, fuzz_opensim_sto,
-    fuzz_parameters_json, fuzz_table, fuzz_trc, fuzz_xsens_text;
+    fuzz_parameters_json, fuzz_table, fuzz_take_hdf5, fuzz_trc, fuzz_ui_prmd_kinect,
+    fuzz_xsens_text;
 }
 
 namespace {
@@ -44,5 +45,7 @@ TEST_CASE("parameters: no fuzz input fails again") {
   replay("parameters_json", fuzz_parameters_json);
 }
 TEST_CASE("tables: no fuzz input fails again") { replay("table", fuzz_table); }
+TEST_CASE("takes: no fuzz input fails again") { replay("take_hdf5", fuzz_take_hdf5); }
 TEST_CASE("TRC: no fuzz input fails again") { replay("trc", fuzz_trc); }
+TEST_CASE("UI-PRMD: no fuzz input fails again") { replay("ui_prmd_kinect", fuzz_ui_prmd_kinect); }
 TEST_CASE("Xsens: no fuzz input fails again") { replay("xsens_text", fuzz_xsens_text); }
