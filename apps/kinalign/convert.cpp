@@ -94,14 +94,12 @@ Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, bool st
       stream.data);
 }
 
-using WriteBvh = Result<Findings> (*)(FileSystem& files, const std::string& from,
-                                      const TextSink& sink);
-
-/// What is to be said of what was written, line by line.
-Result<std::string> put_bvh(const Job& job, WriteBvh write) {
+/// `write(sink)`; what is to be said of what was written, line by line.
+template <class Write>
+Result<std::string> put_bvh(const Job& job, const Write& write) {
   OutputFile out = KA_TRY(OutputFile::create(job.files, job.to, job.overwrite));
   const auto sink = [&out](std::string_view text) { return out.write(text); };
-  const Findings findings = KA_TRY(write(job.files, job.from, sink));
+  const Findings findings = KA_TRY(write(sink));
   KA_TRY(out.commit());
   return finding_lines(findings);
 }
@@ -126,7 +124,8 @@ Failure other_ending(const Job& job) {
 Result<std::string> convert_take(const Job& job) {
   if (!job.to.ends_with(".npz") && !job.to.ends_with(".bvh")) return other_ending(job);
   const auto work = [&job]() -> Result<std::string> {
-    if (job.to.ends_with(".bvh")) return put_bvh(job, take_to_bvh);
+    const auto write = [&](const TextSink& sink) { return take_to_bvh(job.files, job.from, sink); };
+    if (job.to.ends_with(".bvh")) return put_bvh(job, write);
     KA_TRY(take_to_npz(job));
     return std::string();
   };
@@ -134,7 +133,10 @@ Result<std::string> convert_take(const Job& job) {
 }
 
 Result<std::string> convert_stream(const Job& job, const Convert& o, const Progress& progress) {
-  if (job.to.ends_with(".bvh")) return put_bvh(job, copy_bvh);
+  const auto copy = [&](const TextSink& sink) {
+    return copy_bvh(job.files, job.from, sink, progress);
+  };
+  if (job.to.ends_with(".bvh")) return put_bvh(job, copy);
   if (!job.to.ends_with(".npz")) return other_ending(job);
   const Recording input = KA_TRY(open_input(job.files, job.from, o.stream, progress));
   if (input.streams.size() == 1) {

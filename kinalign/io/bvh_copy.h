@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
 #include "kinalign/io/bvh.h"
 
 #include <string>
@@ -12,7 +13,8 @@ namespace kinalign {
 
 /// A file's own channels, values and decimals; every number stays as it is. Returns what was odd
 /// about the rows.
-Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const TextSink& sink);
+Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const TextSink& sink,
+                          const Progress& progress = {});
 
 /// The first skeleton's stream of a take. A BVH has a fixed step and marks nothing: a row that is
 /// not valid holds the pose of the last valid one (the first rows: of the first). Returns what got

@@ -26,8 +26,9 @@ struct Copied {
   std::size_t largest = 0;  // piece
 };
 
-Copied copied(const std::string& path,
-              Result<Findings> (*copy)(FileSystem&, const std::string&, const TextSink&)) {
+using Copy = std::function<Result<Findings>(FileSystem&, const std::string&, const TextSink&)>;
+
+Copied copied(const std::string& path, const Copy& copy) {
   PosixFiles files;
   Copied out;
   auto done = copy(files, path, [&](std::string_view text) -> Result<void> {
@@ -39,6 +40,10 @@ Copied copied(const std::string& path,
   if (!done) out.error = to_string(done.error());
   return out;
 }
+
+const Copy copy = [](FileSystem& files, const std::string& from, const TextSink& sink) {
+  return copy_bvh(files, from, sink);
+};
 
 /// Two joints; the second moves. Row i is valid where `valid[i]`; steps of `steps` ns.
 Take take_of(const std::vector<std::uint8_t>& valid, const std::vector<std::int64_t>& steps) {
@@ -87,7 +92,7 @@ TEST_CASE("a BVH is copied in pieces, number by number") {
   for (int i = 0; i < frames; ++i)
     rows += fmt::format("{} 90.50 -0.25 {:.2f} 720.5 0\n", i, 0.01 * i);
   const std::string text = head + fmt::format("MOTION\nFrames: {}\nFrame Time: 0.01\n", frames);
-  const auto made = copied(folder.write("a.bvh", text + rows), copy_bvh);
+  const auto made = copied(folder.write("a.bvh", text + rows), copy);
   CHECK(made.error == "");
   CHECK(made.findings.empty());
   CHECK(made.largest < (std::size_t{512} << 10));
@@ -98,17 +103,32 @@ TEST_CASE("a BVH is copied in pieces, number by number") {
   CHECK(first->values == second->values);
   CHECK(second->decimals == 2);
   CHECK(second->findings.empty());
-  CHECK(copied(folder.write("b.bvh", made.text), copy_bvh).text == made.text);
+  CHECK(copied(folder.write("b.bvh", made.text), copy).text == made.text);
+}
+
+TEST_CASE("copying a BVH stops when it is told to, in either pass") {
+  const FreshFolder folder;
+  const std::string path = folder.write("a.bvh", head + "MOTION\nFrames: 0\nFrame Time: 0.01\n");
+  PosixFiles files;
+  for (const std::string_view pass : {"reading", "writing"}) {
+    const auto stop = [&](std::string_view what, std::uint64_t, std::uint64_t) {
+      return what != pass;
+    };
+    const auto sink = [](std::string_view) -> Result<void> { return {}; };
+    const auto done = copy_bvh(files, path, sink, stop);
+    REQUIRE_FALSE(done);
+    CHECK(to_string(done.error()) == to_string(interruption(path)));
+  }
 }
 
 TEST_CASE("a BVH that lost its end is copied with the frames that are there, and says so") {
   const FreshFolder folder;
   const std::string text = head + "MOTION\nFrames: 3\nFrame Time: 0.01\n1 2 3 4 5 6\n1 2 3\n";
-  const auto made = copied(folder.write("a.bvh", text), copy_bvh);
+  const auto made = copied(folder.write("a.bvh", text), copy);
   CHECK(made.error == "");
   REQUIRE(made.findings.size() == 2);
   CHECK(made.text.find("Frames: 1\n") != std::string::npos);
-  CHECK(copied(folder.write("a.csv", "t,x\n1,2\n"), copy_bvh).error ==
+  CHECK(copied(folder.write("a.csv", "t,x\n1,2\n"), copy).error ==
         (folder / "a.csv") +
             ":1: expected a BVH or a take, which alone can become a BVH, found "
             "'t,x'");
