@@ -83,7 +83,8 @@ std::vector<std::string> changed_inputs(const Origin& origin, const Recording& r
       const bool same = std::any_of(
           origin.files.begin(), origin.files.end(),
           [&file](const InputFacts& f) { return f.name == file.name && f.sha256 == file.sha256; });
-      if (!same) changed.push_back(file.name);
+      const bool named = std::find(changed.begin(), changed.end(), file.name) != changed.end();
+      if (!same && !named) changed.push_back(file.name);
     }
   }
   return changed;

@@ -3,6 +3,7 @@
 #include "kinalign/io/hdf5_checks.h"
 #include "kinalign/io/hdf5_file.h"
 #include "kinalign/io/parameters_json.h"
+#include "kinalign/io/remembered_path.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_layout.h"
@@ -104,7 +105,7 @@ bool put_inputs(hid_t group, const std::vector<InputFacts>& files) {
   std::vector<std::string> hashes;
   std::vector<std::uint64_t> sizes;
   for (const InputFacts& file : files) {
-    names.emplace_back(file_name(file.name));
+    names.push_back(remembered_path(file.name));
     hashes.push_back(file.sha256);
     sizes.push_back(file.bytes);
   }

@@ -83,6 +83,32 @@ def a_take_is_remade_to_the_byte_and_one_changed_input_byte_is_named(folder):
 
 
 @case
+def a_changed_layout_is_named_and_files_of_one_name_are_told_apart(folder):
+    layout = ('name = "lab"\nheader = false\nrate_hz = 10\nmetres_per_unit = {}\n[joints]\nnames = ["a"]\n'
+              'fields = ["x", "y", "z"]\n')
+    manifest = ""
+    for name, row in (("one", "1,2,3\n"), ("two", "4,5,6\n")):
+        (folder / name).mkdir()
+        (folder / name / "p.csv").write_text(row * 20)
+        manifest += f'[stream.{name}]\nfile = "{name}/p.csv"\nlayout = "lab.toml"\n'
+    (folder / "recording.toml").write_text(manifest)
+    (folder / "lab.toml").write_text(layout.format(1))
+    take = folder / "t.h5"
+    aligned(folder / "recording.toml", take)
+    with h5py.File(take) as file:
+        assert [n.decode() for n in file["two"].attrs["input_names"]] == ["two/p.csv", "lab.toml"]
+    code, said = verified(take, folder)
+    assert (code, said["changed_inputs"]) == (0, []), said
+    (folder / "lab.toml").write_text(layout.format(0.5))
+    code, said = verified(take, folder)
+    assert code == 1 and set(said["changed_inputs"]) == {"lab.toml"}, said
+    (folder / "lab.toml").write_text(layout.format(1))
+    (folder / "two/p.csv").write_text("1,2,3\n" * 20)
+    code, said = verified(take, folder)
+    assert code == 1 and said["changed_inputs"] == ["two/p.csv"], said
+
+
+@case
 def one_parameter_altered_in_the_take_is_noticed(folder):
     manifest = samples.recording(folder / "r")
     take = folder / "t.h5"
