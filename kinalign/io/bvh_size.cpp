@@ -81,12 +81,15 @@ Findings judge_size(const Skeleton& skeleton, const BvhOptions& options, std::st
   const double hip = -extent.low[up];
   if (hip < 0.6 || hip > 1.3) {
     const Unit& unit = best_unit(hip / options.metres_per_unit);
+    const bool same = unit.metres == options.metres_per_unit;
     findings.push_back(
         {Severity::warning,
          Error{std::string(name), 0, "hips 0.6 to 1.3 m above the lowest joint of the rest pose",
                fmt::format("{:.3g} m", hip)},
-         "all lengths may be in another unit",
-         fmt::format("--metres-per-unit {} if the file is in {}", unit.metres, unit.name)});
+         same ? "no other usual unit fits better: a small or large person, or an odd rest pose"
+              : "all lengths may be in another unit",
+         same ? "--metres-per-unit if the file's unit is known to be another"
+              : fmt::format("--metres-per-unit {} if the file is in {}", unit.metres, unit.name)});
   }
   return findings;
 }

@@ -49,8 +49,8 @@ TEST_CASE("hips that are not 0.6 to 1.3 m high are a finding that proposes the u
     std::string found, repair;
   };
   for (const auto& [hip, metres, found, repair] :
-       {Case{59, 0.01, "0.59 m", "--metres-per-unit 0.01 if the file is in centimetres"},
-        Case{131, 0.01, "1.31 m", "--metres-per-unit 0.01 if the file is in centimetres"},
+       {Case{59, 0.01, "0.59 m", "--metres-per-unit if the file's unit is known to be another"},
+        Case{131, 0.01, "1.31 m", "--metres-per-unit if the file's unit is known to be another"},
         Case{0.9, 0.01, "0.009 m", "--metres-per-unit 1 if the file is in metres"},
         Case{900, 0.01, "9 m", "--metres-per-unit 0.001 if the file is in millimetres"},
         Case{36, 0.01, "0.36 m", "--metres-per-unit 0.0254 if the file is in inches"},
