@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/bvh_copy.h"
 
-#include "kinalign/core/file_version.h"
 #include "kinalign/io/bvh_values.h"
 #include "kinalign/io/bvh_write.h"
+#include "kinalign/io/unchanged.h"
 #include "kinalign/io/unknown_file.h"
 
 namespace kinalign {
@@ -62,10 +62,7 @@ Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const Text
     values.drop_frames();
     return {};
   }));
-  if (version_of(from) != version) {
-    return Failure(
-        Error{from, 0, "a file that stays as it is while it is read", "one that changed"});
-  }
+  KA_TRY(unchanged(from, version));
   KA_TRY(writer.finish());
   return findings;
 }

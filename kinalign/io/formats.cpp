@@ -9,6 +9,7 @@
 #include "kinalign/io/trc.h"
 #include "kinalign/io/ui_prmd_files.h"
 #include "kinalign/io/ui_prmd_kinect.h"
+#include "kinalign/io/unchanged.h"
 #include "kinalign/io/unknown_file.h"
 #include "kinalign/io/xsens_text.h"
 
@@ -97,7 +98,14 @@ FoundFormat table_format(TableLayout layout, const Source& source) {
 
 Result<FoundFormat> program_format(const Format& format, const Source& source) {
   FoundFormat out{std::string(format.name), [&format, source] { return format.make(source); }, {}};
-  if (format.further_files != nullptr) out.further_files = KA_TRY(format.further_files(source));
+  if (format.further_files == nullptr) return out;
+  out.further_files = KA_TRY(format.further_files(source));
+  std::vector<std::optional<FileVersion>> versions;
+  for (const std::string& path : out.further_files) versions.push_back(version_of(path));
+  out.make = [&format, source, paths = out.further_files, versions]() -> Result<AnyReader> {
+    for (std::size_t i = 0; i < paths.size(); ++i) KA_TRY(unchanged(paths[i], versions[i]));
+    return format.make(source);
+  };
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include "kinalign/core/hash.h"
 #include "kinalign/io/bvh_survey.h"
 #include "kinalign/io/formats.h"
+#include "kinalign/io/unchanged.h"
 
 #include <fmt/format.h>
 
@@ -26,12 +27,6 @@ ImuInput input_of(const ImuHeader& header, Passes<ImuSamples> passes) {
 }
 
 using Version = std::optional<FileVersion>;
-
-/// A take names its inputs' hashes: every pass has to see the bytes that were hashed.
-Result<void> unchanged(const std::string& path, const Version& version) {
-  if (version_of(path) == version) return {};
-  return Failure(Error{path, 0, "a file that stays as it is while it is read", "one that changed"});
-}
 
 /// A file in the middle of a pass.
 template <class R>

@@ -2,6 +2,7 @@
 #include "kinalign/io/bvh_copy.h"
 #include "kinalign/io/bvh_write.h"
 #include "kinalign/io/take_hdf5.h"
+#include "kinalign/io/unchanged.h"
 
 #include <fmt/format.h>
 
@@ -141,6 +142,7 @@ Result<void> check_size(const std::string& path, const ClipRows& rows) {
 }  // namespace
 
 Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const TextSink& sink) {
+  const auto version = version_of(from);
   TakeReader reader = KA_TRY(TakeReader::open(files, from));
   const Chosen chosen = KA_TRY(choose(reader.header(), from));
   const Skeleton skeleton = std::get<ClipGroup>(reader.header().groups[chosen.group].kind).skeleton;
@@ -162,10 +164,7 @@ Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const T
   }
   BvhWriter writer(channels.hierarchy(survey.rows, survey.step_s()), survey.rows, 6, sink);
   TakeReader again = KA_TRY(TakeReader::open(files, from));
-  if (again.header().frames != survey.rows) {
-    return Failure(
-        Error{from, 0, "a file that stays as it is while it is read", "one that changed"});
-  }
+  KA_TRY(unchanged(from, version));
   std::vector<double> values;
   KA_TRY(for_each_slab(again, chosen.group, [&](const auto& stamps, ClipRows& rows) {
     holder.hold(rows, stamps.size());

@@ -52,6 +52,22 @@ TEST_CASE("UI-PRMD's file of positions leads to its angles: by name, in a folder
   CHECK(found(only).further == std::vector{there});
 }
 
+TEST_CASE("UI-PRMD's file of angles has to stay as it was when it was found") {
+  const FreshFolder folder;
+  const std::string row = numbers(66, ',');
+  const std::string positions = folder.write("m_positions.txt", row);
+  folder.write("m_angles.txt", row);
+  PosixFiles files;
+  const auto format = find_format(files, {}, {positions, ""}, row);
+  REQUIRE(format);
+  CHECK(format->make());
+  const std::string angles = folder.write("m_angles.txt", row + row);
+  const auto again = format->make();
+  REQUIRE_FALSE(again);
+  CHECK(to_string(again.error()) ==
+        angles + ": expected a file that stays as it is while it is read, found one that changed");
+}
+
 TEST_CASE("numbers that could be UI-PRMD's are not, where no other file holds the angles") {
   const FreshFolder folder;
   const std::string lone = folder.write("sixtysix.txt", numbers(66, ','));
