@@ -139,41 +139,59 @@ Result<void> check_size(const std::string& path, const ClipRows& rows) {
   return Failure(Error{path, 0, "positions below 1e12 m", "larger ones"});
 }
 
-}  // namespace
+struct FirstPass {
+  FirstPass(Chosen stream, const Skeleton& skeleton)
+      : chosen(std::move(stream)),
+        channels(skeleton),
+        holder(skeleton.joints()),
+        row(3 * skeleton.joints()) {}
 
-Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const TextSink& sink) {
-  const auto version = version_of(from);
-  TakeReader reader = KA_TRY(TakeReader::open(files, from));
-  const Chosen chosen = KA_TRY(choose(reader.header(), from));
-  const Skeleton skeleton = std::get<ClipGroup>(reader.header().groups[chosen.group].kind).skeleton;
-  BvhChannels channels(skeleton);
-  PoseHolder holder(skeleton.joints());
+  Chosen chosen;
+  BvhChannels channels;
+  PoseHolder holder;
   ClipSurvey survey;
-  const std::size_t row = 3 * skeleton.joints();
-  KA_TRY(for_each_slab(reader, chosen.group, [&](const auto& stamps, ClipRows& rows) {
+  std::size_t row;  // values of a row's positions
+
+  void add(const std::vector<Time>& stamps, const ClipRows& rows) {
     survey.add(stamps, rows);
     for (std::size_t i = 0; i < stamps.size(); ++i) {
       if (!PoseHolder::is_valid(rows, i)) continue;
       holder.begin_with(rows, i);
       channels.see(std::span(rows.local_positions).subspan(i * row, row));
     }
-    return check_size(from, rows);
-  }));
-  if (survey.rows > 0 && survey.invalid == survey.rows) {
-    return Failure(Error{from, 0, "a valid row of " + chosen.name, "none"});
   }
-  BvhWriter writer(channels.hierarchy(survey.rows, survey.step_s()), survey.rows, 6, sink);
-  TakeReader again = KA_TRY(TakeReader::open(files, from));
+};
+
+Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  const Chosen chosen = KA_TRY(choose(reader.header(), path));
+  FirstPass pass(chosen, std::get<ClipGroup>(reader.header().groups[chosen.group].kind).skeleton);
+  KA_TRY(for_each_slab(reader, chosen.group, [&](const auto& stamps, const ClipRows& rows) {
+    pass.add(stamps, rows);
+    return check_size(path, rows);
+  }));
+  if (pass.survey.rows == 0 || pass.survey.invalid < pass.survey.rows) return pass;
+  return Failure(Error{path, 0, "a valid row of " + chosen.name, "none"});
+}
+
+}  // namespace
+
+Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const TextSink& sink) {
+  const auto version = version_of(from);
+  FirstPass pass = KA_TRY(look_through(files, from));
+  const ClipSurvey& survey = pass.survey;
+  BvhWriter writer(pass.channels.hierarchy(survey.rows, survey.step_s()), survey.rows, 6, sink);
+  TakeReader reader = KA_TRY(TakeReader::open(files, from));
   KA_TRY(unchanged(from, version));
   std::vector<double> values;
-  KA_TRY(for_each_slab(again, chosen.group, [&](const auto& stamps, ClipRows& rows) {
-    holder.hold(rows, stamps.size());
+  KA_TRY(for_each_slab(reader, pass.chosen.group, [&](const auto& stamps, ClipRows& rows) {
+    pass.holder.hold(rows, stamps.size());
     values.clear();
-    channels.append(rows.local_positions, rows.local_rotations, values);
+    pass.channels.append(rows.local_positions, rows.local_rotations, values);
     return writer.append(values);
   }));
   KA_TRY(writer.finish());
-  return lost(from, chosen, survey);
+  return lost(from, pass.chosen, survey);
 }
 
 }  // namespace kinalign
