@@ -45,8 +45,9 @@ class ManifestReader {
  public:
   explicit ManifestReader(std::string_view name) : name_(name) {}
 
-  Result<Manifest> read(const toml::table& top) {
+  Result<Manifest> read(const toml::table& top, const AlignOptions& unsaid) {
     Manifest out;
+    out.align = unsaid;
     for (const Entry& entry : in_file_order(top)) {
       if (entry.key == "subject") {
         out.subject = KA_TRY(text(entry));
@@ -252,7 +253,8 @@ class ManifestReader {
     std::vector<std::string> known;
     for (const StreamOptions& stream : manifest.streams) known.push_back(stream.name);
     const auto check = [&](const std::string& stream, const toml::node* where) -> Result<void> {
-      if (stream.empty() || std::find(known.begin(), known.end(), stream) != known.end()) return {};
+      if (stream.empty() || where == nullptr) return {};  // not of this file
+      if (std::find(known.begin(), known.end(), stream) != known.end()) return {};
       return at(*where, unknown_name(stream, "a stream of this file", known));
     };
     KA_TRY(check(manifest.align.reference, top["align"]["reference"].node()));
@@ -268,9 +270,10 @@ class ManifestReader {
 
 }  // namespace
 
-Result<Manifest> read_manifest(std::string_view toml, std::string_view name) {
+Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
+                               const AlignOptions& unsaid) {
   try {
-    return ManifestReader(name).read(toml::parse(toml, name));
+    return ManifestReader(name).read(toml::parse(toml, name), unsaid);
   } catch (const toml::parse_error& error) {
     const auto line = static_cast<std::int64_t>(error.source().begin.line);
     return Failure(Error{std::string(name), line, "TOML",

@@ -10,7 +10,9 @@
 namespace kinalign {
 
 /// Streams come in the order of the file. `name` appears in messages only; an unknown key, a wrong
-/// type or a value out of range is refused with its line and the nearest known key.
-Result<Manifest> read_manifest(std::string_view toml, std::string_view name);
+/// type or a value out of range is refused with its line and the nearest known key. `unsaid`: the
+/// values of what [align] does not state.
+Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
+                               const AlignOptions& unsaid = {});
 
 }  // namespace kinalign
