@@ -2,10 +2,10 @@
 #include "apps/kinalign/align_job.h"
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/inputs.h"
+#include "apps/kinalign/quick.h"
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/report_json.h"
 
@@ -16,112 +16,46 @@ namespace kinalign {
 
 namespace {
 
-/// The quick case without a manifest, and what overrides one.
+/// What to align, and what overrides a manifest.
 struct AlignVerb {
   std::vector<std::string> manifest;  // at most one
   AlignOptions options;
-
-  std::string mocap, kinect;
-  std::vector<std::string> points;  // NAME=FILE
-  std::vector<std::string> imu;     // NODE=FILE
-  std::string kinect_layout, imu_layout, root_node;
-  StreamOptions mocap_options;
-  SpaceOptions space;
-  std::vector<std::string> joints;  // JOINT=JOINT
+  QuickFlags quick;
 };
 
-Fields flags(AlignVerb& o) {
-  return {
-      {"mocap", "the reference: a BVH, or a file of points", &o.mocap},
-      {"kinect", "a file of Kinect joints", &o.kinect},
-      {"imu", "a node's file; may be repeated", &o.imu},
-      {"points", "a further file of points; may be repeated", &o.points},
-      {"kinect_layout", "layout of the Kinect file", &o.kinect_layout},
-      {"imu_layout", "layout of the nodes' files", &o.imu_layout},
-      {"root_node", "node into whose space all nodes are brought", &o.root_node},
-      {"start_ns", "stamp of the click that started the mocap, ns since 1970",
-       &o.mocap_options.start_ns, -4e18, 4e18},
-      {"metres_per_unit", "length of the mocap file's unit, m; 0: the format's own (BVH: 0.01)",
-       &o.mocap_options.metres_per_unit, 0.0, 1000.0},
-      {"up",
-       "the mocap file's up axis (BVH: y)",
-       &o.mocap_options.up,
-       -1e308,
-       1e308,
-       {"", "y", "z"}},
-      {"space",
-       "how the Kinect comes into the mocap's space",
-       &o.space.method,
-       -1e308,
-       1e308,
-       {"none", "paper", "fit"}},
-      {"rotation_y_deg", "of --space paper: turn about the y axis, degrees",
-       &o.space.rotation_y_deg, -360.0, 360.0},
-      {"joint", "of --space: a Kinect's and a mocap's joint that mean one place; may be repeated",
-       &o.joints}};
+Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& given) {
+  const bool quick = !o.quick.mocap.empty();
+  if (!o.manifest.empty()) KA_TRY(refuse_beside(o.manifest.front(), given));
+  if (o.manifest.empty() && !quick) {
+    return Failure(Error{"", 0, "either a recording.toml or --mocap FILE", "neither"});
+  }
+  if (quick) {
+    KA_TRY(refuse_alone(o.quick, given));
+    KA_TRY(quick_manifest(o.quick));
+  }
+  if (common.out.empty() && !common.dry_run) {
+    return Failure(Error{"-o", 0, "the take's file name, as in -o take.h5", "none"});
+  }
+  return {};
 }
 
 Usage describe_verb_options(AlignVerb& o) {
-  o.space.method = "fit";
   Usage usage;
   usage.positionals = {{"RECORDING", "recording.toml: streams, files, clocks", &o.manifest, 0, 1}};
-  usage.flags = flags(o);
+  usage.flags = o.quick.fields();
   usage.settings = describe(o.options);
-  usage.check = [&o](const Common& common) -> Result<void> {
-    const bool quick = !o.mocap.empty();
-    if (o.manifest.empty() != quick) {
-      return Failure(
-          Error{"", 0, "either a recording.toml or --mocap FILE", quick ? "both" : "neither"});
-    }
-    if (common.out.empty() && !common.dry_run) {
-      return Failure(Error{"-o", 0, "the take's file name, as in -o take.h5", "none"});
-    }
-    return {};
+  usage.check = [&o](const Common& common, const Sources& given) {
+    return check_use(o, common, given);
   };
   return usage;
 }
 
-Result<Manifest> quick_manifest(const AlignVerb& o) {
-  Manifest manifest;
-  const auto add = [&manifest](StreamOptions stream, std::string name, std::string file) {
-    stream.name = std::move(name);
-    stream.files = {{std::move(file), ""}};
-    manifest.streams.push_back(std::move(stream));
-  };
-  SpaceOptions space = o.space;
-  for (const std::string& joint : o.joints) {
-    space.joints.insert(KA_TRY(split_pair(joint, "--joint KINECT=MOCAP")));
-  }
-  add(o.mocap_options, "mocap", o.mocap);
-  StreamOptions kinect;
-  kinect.layout = o.kinect_layout;
-  if (!o.kinect.empty()) {
-    add(kinect, "kinect", o.kinect);
-    manifest.spaces["kinect"] = space;
-  }
-  for (const std::string& one : o.points) {
-    const auto [name, file] = KA_TRY(split_pair(one, "--points NAME=FILE"));
-    add({}, name, file);
-  }
-  StreamOptions nodes;
-  nodes.name = "imu";
-  nodes.layout = o.imu_layout;
-  nodes.root_node = o.root_node;
-  for (const std::string& one : o.imu) {
-    const auto [node, file] = KA_TRY(split_pair(one, "--imu NODE=FILE"));
-    nodes.files.push_back({file, node});
-  }
-  if (!nodes.files.empty()) manifest.streams.push_back(nodes);
-  return manifest;
-}
-
 Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
   if (o.manifest.empty()) {
-    Manifest manifest = KA_TRY(quick_manifest(o));
+    Manifest manifest = KA_TRY(quick_manifest(o.quick));
     manifest.align = o.options;
     return manifest;
   }
-  constexpr std::size_t longest = std::size_t{1} << 20;
   const std::string& path = o.manifest.front();
   KA_TRY(
       InputFile::open(call.surroundings.files, path));  // what it is comes before what it is named
@@ -130,8 +64,7 @@ Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
                          "a recording.toml (a single file goes behind --mocap, --kinect, ...)",
                          "another ending"});
   }
-  const std::string text = KA_TRY(read_whole(call.surroundings.files, path, longest));
-  Manifest manifest = KA_TRY(read_manifest(text, path));
+  Manifest manifest = KA_TRY(load_manifest(call.surroundings.files, path, o.options));
   copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
   return manifest;
 }
@@ -157,6 +90,7 @@ Result<int> run(AlignVerb& o, Call& call) {
   KA_TRY(keep_inputs(out, files_named(manifest, base)));
   const Recording recording =
       KA_TRY(open_recording(call.surroundings.files, manifest, base, progress, call.jobs));
+  if (o.manifest.empty()) KA_TRY(check_kinds(o.quick, recording));
   const AlignmentReport report =
       KA_TRY(align_to_file(call, recording, manifest, {out, call.common.overwrite()}));
   call.console.print(summary(report, out, call.console));

@@ -24,18 +24,24 @@ struct Contents {
   Json names;
 };
 
+/// "1 joint", "25 joints"
+std::string counted(std::size_t n, std::string_view what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
 Contents contents(const Skeleton& skeleton) {
-  return {"clip",
-          fmt::format("{} joints, {} end sites", skeleton.joints(), skeleton.end_sites.size()),
-          skeleton.joint_names};
+  return {
+      "clip",
+      counted(skeleton.joints(), "joint") + ", " + counted(skeleton.end_sites.size(), "end site"),
+      skeleton.joint_names};
 }
 
 Contents contents(const std::vector<std::string>& joints) {
-  return {"points", fmt::format("{} joints", joints.size()), joints};
+  return {"points", counted(joints.size(), "joint"), joints};
 }
 
 Contents contents(const std::vector<std::string>& nodes, const ImuContent& content) {
-  std::string parts = fmt::format("{} node{}:", nodes.size(), nodes.size() == 1 ? "" : "s");
+  std::string parts = counted(nodes.size(), "node") + ":";
   if (content.orientation) parts += " orientation,";
   if (content.acceleration) {
     parts += content.gravity ? " acceleration with gravity," : " acceleration without gravity,";
@@ -134,6 +140,11 @@ Result<std::string> take_facts(FileSystem& files, const std::string& path) {
 }
 
 }  // namespace
+
+std::string contents_line(const RecordedStream& stream) {
+  const Contents c = contents_of(stream);
+  return (c.kind == "imu" ? "nodes, " : c.kind + ", ") + c.parts;
+}
 
 Description describe_recording(const std::string& path, const Recording& recording) {
   Json out{{"file", path},

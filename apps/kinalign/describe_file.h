@@ -17,6 +17,9 @@ struct Description {
 
 Description describe_recording(const std::string& path, const Recording& recording);
 
+/// "points, 25 joints"
+std::string contents_line(const RecordedStream& stream);
+
 /// Opens the take in a child process.
 Result<Description> describe_take(FileSystem& files, const std::string& path);
 

@@ -23,6 +23,13 @@ Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
   return std::pair{text.substr(0, equals), text.substr(equals + 1)};
 }
 
+Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
+                               const AlignOptions& unsaid) {
+  constexpr std::size_t longest = std::size_t{1} << 20;
+  const std::string text = KA_TRY(read_whole(files, path, longest));
+  return read_manifest(text, path, unsaid);
+}
+
 Fields StreamFlags::fields() {
   Fields out = describe(options);
   out.push_back({"select", "rows of a table to take; may be repeated", &select});
@@ -43,9 +50,7 @@ Result<StreamOptions> StreamFlags::stream(const std::vector<std::string>& paths)
 Result<Recording> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
                              const Progress& progress) {
   if (path.ends_with(".toml")) {
-    constexpr std::size_t longest = std::size_t{1} << 20;
-    const std::string text = KA_TRY(read_whole(files, path, longest));
-    const Manifest manifest = KA_TRY(read_manifest(text, path));
+    const Manifest manifest = KA_TRY(load_manifest(files, path));
     return open_recording(files, manifest, std::string(folder(path)), progress);
   }
   Recording recording;

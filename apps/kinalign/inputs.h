@@ -34,6 +34,10 @@ struct StreamFlags {
   Result<StreamOptions> stream(const std::vector<std::string>& paths) const;
 };
 
+/// Reads a recording.toml; `unsaid`: what its [align] leaves open.
+Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
+                               const AlignOptions& unsaid = {});
+
 /// A manifest's recording, or a single stream's file as one.
 Result<Recording> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
                              const Progress& progress);

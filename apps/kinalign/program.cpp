@@ -64,7 +64,7 @@ class Run {
       KA_TRY(apply_settings(file, settable, verbs_, sources_));
     }
     KA_TRY(apply_environment(surroundings_, settable, sources_));
-    if (usage.check) KA_TRY(usage.check(common_));
+    if (usage.check) KA_TRY(usage.check(common_, sources_));
     return false;
   }
 

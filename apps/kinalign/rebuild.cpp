@@ -32,7 +32,7 @@ Usage describe_rebuild(Rebuild& o) {
   usage.positionals = {{"TAKE", "a take that kinalign wrote", &o.take}};
   usage.flags = {{"inputs", "folder of the files that the take was made from", &o.inputs},
                  {"verify", "compare every byte with the take; write nothing", &o.verify}};
-  usage.check = [&o](const Common& common) -> Result<void> {
+  usage.check = [&o](const Common& common, const Sources& /*given*/) -> Result<void> {
     if (o.inputs.empty()) {
       return Failure(Error{"--inputs", 0, "the folder of the take's inputs", "none"});
     }

@@ -19,6 +19,12 @@ class Console;
 struct Verb;
 struct Common;
 
+/// Where an option's value comes from; a later one wins.
+enum class Source { standard, user, project, environment, flag };
+
+/// By name of the option.
+using Sources = std::map<std::string, Source>;
+
 /// A command that works as it stands, and what it does.
 struct Example {
   std::string command, meaning;
@@ -38,8 +44,8 @@ struct Usage {
   std::vector<Positional> positionals;
   Fields flags;     // on the command line only; a vector of strings may be given as often as wanted
   Fields settings;  // also from KINALIGN_<NAME> and from the verb's table in kinalign.toml
-  /// What the parts can't say; its failures are wrong use.
-  std::function<Result<void>(const Common&)> check;
+  /// What the parts can't say; its failures are wrong use. `given`: what was said, and where.
+  std::function<Result<void>(const Common& common, const Sources& given)> check;
 };
 
 /// The flags that mean the same everywhere. A verb names those it takes (Page::common); config,
@@ -57,12 +63,6 @@ struct Common {
 
   Overwrite overwrite() const { return force ? Overwrite::yes : Overwrite::no; }
 };
-
-/// Where an option's value comes from; a later one wins.
-enum class Source { standard, user, project, environment, flag };
-
-/// By name of the option.
-using Sources = std::map<std::string, Source>;
 
 /// The machine as the program finds it: a test makes its own.
 struct Surroundings {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace kinalign {
@@ -23,13 +24,20 @@ Result<std::size_t> find_reference(const Recording& recording, const Manifest& m
       Error{"", 0, "a stream named as the reference", "'" + wanted + "', which is none"});
 }
 
+/// "kinect", or of nodes, whose streams share a name, "imu waist".
+std::string label(const RecordedStream& s) {
+  const auto* imu = std::get_if<ImuInput>(&s.data);
+  const bool one = imu != nullptr && imu->node_names.size() == 1;
+  return one ? s.name + " " + shown(imu->node_names.front()) : s.name;
+}
+
 std::string spans(const Recording& recording) {
   std::string text;
   for (const RecordedStream& s : recording.streams) {
     if (!text.empty()) text += ", ";
-    text +=
-        fmt::format("{} {:.3f} to {:.3f} s", s.name, 1e-9 * static_cast<double>(to_ns(first_of(s))),
-                    1e-9 * static_cast<double>(to_ns(last_of(s))));
+    text += fmt::format("{} {:.3f} to {:.3f} s", label(s),
+                        1e-9 * static_cast<double>(to_ns(first_of(s))),
+                        1e-9 * static_cast<double>(to_ns(last_of(s))));
   }
   return text;
 }
@@ -130,12 +138,21 @@ std::string space_of(const std::string& stream, const std::string& reference,
   return in.empty() || in == reference ? "take" : in;
 }
 
+/// "kinect.csv (points)": a stream's file and kind.
+std::string file_and_kind(const std::vector<InputFacts>& files, std::size_t kind) {
+  constexpr std::array<std::string_view, 3> kinds{"a skeleton", "points", "nodes"};
+  return fmt::format("{} ({})", files.empty() ? "memory" : files.front().name, kinds[kind]);
+}
+
 /// A further stream of nodes joins the group of its name.
 Result<void> join(TakeGroup& group, const RecordedStream& s) {
   auto* nodes = std::get_if<ImuGroup>(&group.kind);
   const auto* imu = std::get_if<ImuInput>(&s.data);
   if (nodes == nullptr || imu == nullptr) {
-    return Failure(Error{"", 0, "streams with names that differ", "'" + s.name + "' twice"});
+    return Failure(Error{
+        "", 0, "streams with names that differ",
+        fmt::format("'{}' twice: {} and {}", s.name, file_and_kind(group.files, group.kind.index()),
+                    file_and_kind(s.files, s.data.index()))});
   }
   if (!(nodes->content == imu->content)) {
     return Failure(Error{"", 0, "nodes of '" + s.name + "' that measure the same quantities",

@@ -37,7 +37,7 @@ inline Usage describe_mix(Mix& o) {
       {"double", "store 8-byte numbers", &o.store_double},
       {"interval_ms", "half-width, ms", &o.interval_ms, 0.0, 1000.0},
   };
-  usage.check = [&o](const Common&) -> Result<void> {
+  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     for (const std::string& one : o.imu) {
       if (one.find('=') == std::string::npos) return Failure(Error{"--imu", 0, "NODE=FILE", one});
     }
