@@ -21,6 +21,7 @@ class FaultyFiles final : public FileSystem {
   int code = ENOSPC;            // with this errno
   bool nameless = true;         // O_TMPFILE is there
   std::size_t most = SIZE_MAX;  // bytes a write takes
+  std::size_t first_read = 0;   // bytes the first read gives, the next ones one more each; 0: all
   int calls = 0;
 
   bool failed() const { return fail_at != 0 && calls >= fail_at; }
@@ -34,6 +35,7 @@ class FaultyFiles final : public FileSystem {
     return files_.open(path, flags, mode);
   }
   ssize_t read(int fd, void* data, std::size_t size) override {
+    if (first_read > 0) size = std::min(size, first_read++);
     return fails() ? -1 : files_.read(fd, data, size);
   }
   ssize_t write(int fd, const void* data, std::size_t size) override {

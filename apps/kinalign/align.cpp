@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/align_job.h"
 #include "apps/kinalign/console.h"
+#include "apps/kinalign/describe_file.h"
+#include "apps/kinalign/field_text.h"
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/quick.h"
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/align/plan.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/report_json.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -20,6 +27,7 @@ namespace {
 struct AlignVerb {
   std::vector<std::string> manifest;  // at most one
   AlignOptions options;
+  bool slerp = false;
   QuickFlags quick;
 };
 
@@ -33,6 +41,10 @@ Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& 
     KA_TRY(refuse_alone(o.quick, given));
     KA_TRY(quick_manifest(o.quick));
   }
+  const auto rotations = given.find("rotations");
+  if (o.slerp && rotations != given.end() && rotations->second == Source::flag) {
+    return Failure(Error{"--slerp", 0, "--rotations or --slerp", "both"});
+  }
   if (common.out.empty() && !common.dry_run) {
     return Failure(Error{"-o", 0, "the take's file name, as in -o take.h5", "none"});
   }
@@ -43,6 +55,7 @@ Usage describe_verb_options(AlignVerb& o) {
   Usage usage;
   usage.positionals = {{"RECORDING", "recording.toml: streams, files, clocks", &o.manifest, 0, 1}};
   usage.flags = o.quick.fields();
+  usage.flags.push_back({"slerp", "the same as --rotations slerp", &o.slerp});
   usage.settings = describe(o.options);
   usage.check = [&o](const Common& common, const Sources& given) {
     return check_use(o, common, given);
@@ -54,6 +67,7 @@ Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
   if (o.manifest.empty()) {
     Manifest manifest = KA_TRY(quick_manifest(o.quick));
     manifest.align = o.options;
+    if (o.slerp) manifest.align.rotations = "slerp";
     return manifest;
   }
   const std::string& path = o.manifest.front();
@@ -66,7 +80,49 @@ Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
   }
   Manifest manifest = KA_TRY(load_manifest(call.surroundings.files, path, o.options));
   copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
+  if (o.slerp) manifest.align.rotations = "slerp";
   return manifest;
+}
+
+/// What can be told only once the manifest is read.
+Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const Sources& given) {
+  const auto source = given.find("reference");
+  if (source == given.end() || source->second != Source::flag) return {};
+  std::vector<std::string> names;
+  for (const StreamOptions& stream : manifest.streams) names.push_back(stream.name);
+  const std::string& wanted = o.options.reference;
+  if (std::find(names.begin(), names.end(), wanted) == names.end()) {
+    return Failure(Error{"--reference", 0, "a stream: " + any_of(names), shown(wanted)});
+  }
+  const auto moved = manifest.spaces.find(wanted);
+  if (o.manifest.empty() && moved != manifest.spaces.end() && moved->second.method != "none") {
+    return Failure(Error{"--reference", 0, "--space none beside it: the reference is not moved",
+                         "--space " + moved->second.method});
+  }
+  return {};
+}
+
+/// The start that lays a stream of a fixed step beside the others, where none of it overlaps them.
+std::string start_advice(const AlignVerb& o, const Recording& recording, const Manifest& manifest) {
+  constexpr std::int64_t most = 4'000'000'000'000'000'000;
+  for (const RecordedStream& s : recording.streams) {
+    Time first = Time::min(), last = Time::max();
+    for (const RecordedStream& other : recording.streams) {
+      if (&other == &s) continue;
+      first = std::max(first, take_time(other.clock, other.survey.first));
+      last = std::min(last, take_time(other.clock, other.survey.last));
+    }
+    const Time own = take_time(s.clock, s.survey.first);
+    const bool apart = own > last || take_time(s.clock, s.survey.last) < first;
+    const bool told = std::abs(to_ns(own)) < most && std::abs(to_ns(first)) < most;
+    const bool quick = o.manifest.empty();
+    if (!s.step_ns || !apart || first > last || !told || (quick && s.name != "mocap")) continue;
+    const std::int64_t latency = to_ns(own) - options_of(manifest, s.name).start_ns.value_or(0);
+    const std::string where = quick ? "--start-ns {}" : "start_ns = {} in [stream." + s.name + "]";
+    return fmt::format(fmt::runtime(where), to_ns(first) - latency) +
+           " puts its first frame where the others have begun";
+  }
+  return "";
 }
 
 std::vector<std::string> advice(const Error& error) {
@@ -88,14 +144,25 @@ Result<int> run(AlignVerb& o, Call& call) {
   const std::string out = call.common.dry_run ? "" : call.common.out;
   KA_TRY(keep_inputs(out, o.manifest));
   KA_TRY(keep_inputs(out, files_named(manifest, base)));
+  for (const auto& use : {check_take_name(out), check_reference(o, manifest, call.sources)}) {
+    if (!use) return call.console.refuse(use.error());
+  }
   const Recording recording =
       KA_TRY(open_recording(call.surroundings.files, manifest, base, progress, call.jobs));
   if (o.manifest.empty()) KA_TRY(check_kinds(o.quick, recording));
+  for (const RecordedStream& stream : recording.streams) {
+    call.console.detail(harmless(read_as(stream)));
+  }
+  call.console.if_it_fails([start = start_advice(o, recording, manifest)](const Error& error) {
+    std::vector<std::string> lines = advice(error);
+    if (!start.empty()) lines.push_back(start);
+    return lines;
+  });
   const AlignmentReport report =
       KA_TRY(align_to_file(call, recording, manifest, {out, call.common.overwrite()}));
   call.console.print(summary(report, out, call.console));
-  call.console.print_json(report_json(report));
-  return 0;
+  call.console.print_json("{\"report\": " + report_json(report) + "}");
+  return code_of(report.findings);
 }
 
 }  // namespace
@@ -104,17 +171,19 @@ Verb align_verb() {
   return make_verb<AlignVerb>(
       {.name = "align",
        .summary = "raw files of one motion into a take: one grid, one space",
-       .text = "Streams are cut to the span they share and resampled onto the reference's stamps; "
-               "nothing is invented across a gap. The take is an HDF5 file that h5py and MATLAB "
-               "open, with the report and every parameter inside.",
+       .text =
+           "Streams are cut to the span they share and resampled onto the reference's stamps; "
+           "nothing is invented across a gap. The take is an HDF5 file that h5py and MATLAB "
+           "open, with the report and every parameter inside. Exit code 1 where it was done with "
+           "warnings.",
        .examples =
            {{"kinalign align demo/recording.toml -o demo/take.h5", "what the manifest says"},
-
-            {"kinalign align --mocap walk.bvh --start-ns 1790000000000000000 --kinect kinect.csv "
-             "-o take.h5",
+            {"kinalign align --mocap demo/mocap.bvh --start-ns 1790000000000000000 --kinect "
+             "demo/kinect.csv -o demo/quick.h5",
              "two files without a manifest; a BVH knows no time of day"},
-            {"kinalign align --mocap walk.bvh --imu waist=w.csv --imu wrist_left=l.csv "
-             "--root-node waist -o take.h5",
+            {"kinalign align --mocap demo/mocap.bvh --start-ns 1790000000000000000 --imu "
+             "waist=demo/imu_waist.csv --imu wrist_left=demo/imu_wrist_left.csv --root-node waist "
+             "-o demo/nodes.h5",
              "nodes, brought into the waist's space"}},
        .common = {"out", "force", "json", "dry_run", "jobs"}},
       describe_verb_options, run);

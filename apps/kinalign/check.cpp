@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/describe_file.h"
+#include "apps/kinalign/describe_report.h"
 #include "apps/kinalign/inputs.h"
+#include "apps/kinalign/program.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/align/judge.h"
+#include "kinalign/align/plan.h"
+#include "kinalign/align/space.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
 
@@ -23,10 +27,14 @@ Usage describe_check(Check& o) {
   Usage usage;
   usage.positionals = {{"FILE", "takes, recording.toml or streams' files", &o.files, 1, SIZE_MAX}};
   usage.flags = o.stream.fields();
+  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    KA_TRY(o.stream.stream({}));
+    return {};
+  };
   return usage;
 }
 
-/// Reads every row of a take, in the child.
+/// Reads every row of a take, in the child; its report.
 Result<std::string> read_through(FileSystem& files, const std::string& path) {
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   TakeSlab slab;
@@ -36,7 +44,7 @@ Result<std::string> read_through(FileSystem& files, const std::string& path) {
     return Failure(
         Error{path, 0, fmt::format("{} rows", reader.header().frames), std::to_string(rows)});
   }
-  return std::string();
+  return reader.report_json();
 }
 
 template <class Frames>
@@ -53,42 +61,71 @@ Result<void> read_through(const RecordedStream& stream) {
   return std::visit([](const auto& input) { return read_all(input.passes); }, stream.data);
 }
 
+/// What alignment would refuse before it touches a sample: joints, nodes, the common span.
+Findings check_plan(const std::string& path, const Input& input) {
+  const auto planned = [&input]() -> Result<void> {
+    const AlignPlan plan = KA_TRY(plan_alignment(input.recording, *input.manifest));
+    KA_TRY(plan_spaces(plan.header, *input.manifest, plan.streams[plan.reference].group));
+    return {};
+  }();
+  if (planned) return {};
+  Error error = planned.error();
+  if (error.file.empty()) error.file = path;
+  return {{Severity::error, std::move(error), "kinalign align makes no take of it", ""}};
+}
+
+/// A flag that the file has no use for is wrong use.
+Result<void> check_flags(const Check& o, const std::string& path, const RecordedStream* stream,
+                         Call& call) {
+  auto used = o.stream.check_use(path, stream, call.sources);
+  return used ? Result<void>{} : call.console.refuse(std::move(used).error());
+}
+
 Result<Findings> check_file(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   if (KA_TRY(is_take(files, path))) {
-    KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
-    return Findings{};
+    KA_TRY(check_flags(o, path, nullptr, call));
+    return report_findings(
+        KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); })));
   }
-  const Recording recording = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
+  if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
+  const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
+  if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
   Findings findings;
-  for (const RecordedStream& stream : recording.streams) {
+  for (const RecordedStream& stream : input.recording.streams) {
+    call.console.detail(harmless(read_as(stream)));
     KA_TRY(read_through(stream));
     const Findings stamps = judge_stamps(stream);
     findings.insert(findings.end(), stream.findings.begin(), stream.findings.end());
     findings.insert(findings.end(), stamps.begin(), stamps.end());
   }
+  if (!input.manifest) return findings;
+  const Findings plan = check_plan(path, input);
+  findings.insert(findings.end(), plan.begin(), plan.end());
   return findings;
 }
 
 Result<int> run(Check& o, Call& call) {
   Findings all;
+  bool usable = true;
   for (const std::string& path : o.files) {
     auto found = check_file(o, path, call);
     if (found) {
       all.insert(all.end(), found->begin(), found->end());
-    } else if (o.files.size() == 1) {
+    } else if (o.files.size() == 1 || call.console.refused() || interrupted()) {
       return Failure(std::move(found).error());
     } else {  // one file that can't be read must not hide what is wrong with the others
+      usable = false;
       all.push_back({Severity::error, std::move(found).error(), "the file can't be used", ""});
     }
   }
-  call.console.print(harmless(finding_lines(all)));
+  call.console.print(finding_lines(all, call.console));
   if (all.empty()) {
     call.console.print(fmt::format("{} file{} read, nothing found\n", o.files.size(),
                                    o.files.size() == 1 ? "" : "s"));
   }
   call.console.print_json("{\"findings\": " + findings_json(all) + "}");
-  return all.empty() ? 0 : 1;
+  return usable ? code_of(all) : failed;
 }
 
 }  // namespace
@@ -98,10 +135,11 @@ Verb check_verb() {
       {.name = "check",
        .summary = "what is wrong with a file, and what it means",
        .text =
-           "Reads every value. Exit code 1 where something was found, 3 where the file can't be "
-           "used.",
-       .examples = {{"kinalign check walk.bvh", "frames, unit, stamps"},
-                    {"kinalign check recordings/*.bvh --json", "many files, for programs"}},
+           "Reads every value; of a manifest also whether it can be aligned, of a take also what "
+           "its report says. Exit code 1 where there are warnings or errors, 3 where a file can't "
+           "be used.",
+       .examples = {{"kinalign check demo/mocap.bvh", "frames, unit, stamps"},
+                    {"kinalign check demo/*.csv --json", "many files, for programs"}},
        .common = {"json"}},
       describe_check, run);
 }

@@ -107,8 +107,9 @@ class Walk {
     std::size_t next = 0;
     std::size_t needed = 0;  // by the positionals behind the current one
     for (const Positional& place : usage_.positionals) needed += place.least;
+    if (plain_.size() < needed) needed = 0;  // the last ones are missing, not the first
     for (const Positional& place : usage_.positionals) {
-      needed -= place.least;
+      needed -= std::min(needed, place.least);
       for (std::size_t n = 0; n < place.most && next + needed < plain_.size(); ++n, ++next) {
         KA_TRY(place_word(place, plain_[next]));
       }
@@ -167,7 +168,6 @@ Fields common_fields(Common& common, const Page& page) {
       {"json", "print one JSON object and nothing else on stdout", &common.json},
       {"dry_run", "say what would be done and write nothing", &common.dry_run},
       {"jobs", "threads to use; 0: one a processor", &common.jobs, 0.0, 1024.0},
-      {"seed", "of random numbers: the same seed gives the same bytes", &common.seed, 0.0, 9e15},
   };
   Fields fields;
   for (const Field& field : choosable) {
@@ -177,7 +177,8 @@ Fields common_fields(Common& common, const Page& page) {
   fields.push_back(
       {"config", "settings to use instead of the project's kinalign.toml", &common.config});
   fields.push_back({"quiet", "print errors only", &common.quiet});
-  fields.push_back({"verbose", "say more on stderr", &common.verbose});
+  fields.push_back({"verbose", "say more: what each file was read as, names of joints and nodes",
+                    &common.verbose});
   fields.push_back({"color",
                     "colours: auto is on a terminal without NO_COLOR",
                     &common.color,
@@ -188,8 +189,7 @@ Fields common_fields(Common& common, const Page& page) {
 }
 
 bool is_common_setting(const std::string& name) {
-  return name == "jobs" || name == "seed" || name == "quiet" || name == "verbose" ||
-         name == "color";
+  return name == "jobs" || name == "quiet" || name == "verbose" || name == "color";
 }
 
 Result<Parsed> parse_words(const std::vector<std::string>& words, const Usage& usage,

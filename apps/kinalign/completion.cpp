@@ -29,9 +29,13 @@ Verb completion_verb() {
       {.name = "completion",
        .summary = "print a script that completes verbs and flags in a shell",
        .text = "",
-       .examples = {{"kinalign completion bash > ~/.bash_completion", "for new shells of bash"},
-                    {"kinalign completion fish > ~/.config/fish/completions/kinalign.fish",
-                     "for new shells of fish"}},
+       .examples =
+           {{"kinalign completion bash > ~/.local/share/bash-completion/completions/kinalign",
+             "for new shells of bash"},
+            {"kinalign completion zsh > ~/.zfunc/_kinalign",
+             "for new shells of zsh, where ~/.zfunc is a folder of its fpath"},
+            {"kinalign completion fish > ~/.config/fish/completions/kinalign.fish",
+             "for new shells of fish"}},
        .common = {}},
       describe, run);
 }

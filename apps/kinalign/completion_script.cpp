@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Completions of verbs, flags and choices for bash, zsh and fish; everything else completes to
-// file names.
+// Completions of verbs, flags, choices and layouts for bash, zsh and fish; everything else
+// completes to file names.
 #include "apps/kinalign/command_line.h"
 #include "apps/kinalign/field_text.h"
 #include "apps/kinalign/help.h"
+
+#include "kinalign/io/formats.h"
 
 #include <fmt/format.h>
 
@@ -36,6 +38,13 @@ void for_each_verb(const std::vector<Verb>& verbs, Use&& use) {
   }
 }
 
+/// Words that a flag may be given; none: any, or a file.
+std::vector<std::string> values_of(const Field& field) {
+  if (field.name != "layout" && !field.name.ends_with("_layout")) return field.choices;
+  const auto names = format_names();
+  return {names.begin(), names.end()};
+}
+
 std::string verb_names(const std::vector<Verb>& verbs) {
   std::vector<std::string> names;
   names.reserve(verbs.size());
@@ -56,15 +65,15 @@ std::string bash_script(const std::vector<Verb>& verbs) {
     std::vector<std::string> words{"--help"};
     for (const Field& field : fields) {
       words.push_back(flag_of(field.name));
-      if (!field.choices.empty()) {
-        cases += fmt::format("    '{} {}') words='{}' ;;\n", page.name, flag_of(field.name),
-                             joined(field.choices));
-      }
+      if (is_switch(field)) continue;
+      const std::string letter = field.name == "out" ? fmt::format("|'{} -o'", page.name) : "";
+      cases += fmt::format("    '{} {}'{}) words='{}' ;;\n", page.name, flag_of(field.name), letter,
+                           joined(values_of(field)));
     }
     std::string choices;
-    for (const Positional& place : usage.positionals) choices += " " + joined(place.choices);
-    cases += fmt::format("    '{} '*) words='{}{}' ;;\n", page.name, joined(words),
-                         choices == " " ? "" : choices);
+    for (const Positional& place : usage.positionals) choices += joined(place.choices);
+    cases += fmt::format("    '{} '*) [[ $word == -* ]] && words='{}' || words='{}' ;;\n",
+                         page.name, joined(words), choices);
   });
   return fmt::format(
       "# bash completion of kinalign\n_kinalign() {{\n"
@@ -90,8 +99,9 @@ std::string zsh_script(const std::vector<Verb>& verbs) {
           std::holds_alternative<std::vector<std::string>*>(field.value) ? "*" : "";
       cases +=
           fmt::format(" \\\n      '{}{}[{}]", many, flag_of(field.name), quotable(field.meaning));
-      if (!field.choices.empty()) {
-        cases += fmt::format(":value:({})", joined(field.choices));
+      const std::string values = joined(values_of(field));
+      if (!values.empty()) {
+        cases += fmt::format(":value:({})", values);
       } else if (!is_switch(field)) {
         cases += ":value:_files";
       }
@@ -120,8 +130,10 @@ std::string fish_script(const std::vector<Verb>& verbs) {
         fmt::format("complete -c kinalign -n '__fish_seen_subcommand_from {}'", page.name);
     for (const Field& field : fields) {
       text += fmt::format("{} -l {}", within, flag_of(field.name).substr(2));
-      if (!field.choices.empty()) text += fmt::format(" -x -a '{}'", joined(field.choices));
+      const std::string values = joined(values_of(field));
+      if (!field.choices.empty()) text += " -x";
       if (field.choices.empty() && !is_switch(field)) text += " -r";
+      if (!values.empty()) text += fmt::format(" -a '{}'", values);
       text += fmt::format(" -d '{}'\n", quotable(field.meaning));
     }
     for (const Positional& place : usage.positionals) {

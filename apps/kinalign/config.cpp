@@ -63,7 +63,7 @@ Result<std::vector<InForce>> all_in_force(const Call& call) {
   std::vector<InForce> all;
   Common common = call.common;
   Fields everywhere = common_fields(
-      common, {.name = "", .summary = "", .text = "", .examples = {}, .common = {"jobs", "seed"}});
+      common, {.name = "", .summary = "", .text = "", .examples = {}, .common = {"jobs"}});
   std::erase_if(everywhere, [](const Field& field) { return !is_common_setting(field.name); });
   list(everywhere, "", call.sources, files, all);
   for (const Verb& verb : call.verbs) KA_TRY(list_verb(verb, call, files, all));
@@ -103,7 +103,7 @@ Verb config_verb() {
                "~/.config/kinalign/config.toml.",
        .examples = {{"kinalign config", "all settings of all verbs"},
                     {"kinalign config --json", "the same for programs"}},
-       .common = {"json", "jobs", "seed"}},
+       .common = {"json", "jobs"}},
       describe, run);
 }
 

@@ -53,6 +53,47 @@ bool colour_wanted(const Surroundings& surroundings, const Common& common, bool 
          surroundings.variable("TERM") != "dumb";
 }
 
+/// Places on a terminal: a character each, none for a colour.
+std::size_t places(std::string_view text) {
+  std::size_t count = 0;
+  bool colour = false;
+  for (const char c : text) {
+    if (c == '\x1b') colour = true;
+    const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // of a UTF-8 character
+    if (!colour && !goes_on) ++count;
+    if (c == 'm') colour = false;
+  }
+  return count;
+}
+
+/// Where a line's text begins: behind "  space  ", "warning  ".
+std::size_t text_column(std::string_view line) {
+  constexpr std::size_t most = 24;
+  const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
+  const std::size_t gap = line.find("  ", begin);
+  if (gap == std::string_view::npos) return begin + 2;
+  const std::size_t column = places(line.substr(0, line.find_first_not_of(' ', gap)));
+  return column < most ? column : begin + 2;
+}
+
+std::string broken_line(std::string_view line, std::size_t width) {
+  const std::size_t indent = text_column(line);
+  if (places(line) <= width || indent + 20 > width) return std::string(line);
+  std::string out(line.substr(0, line.find_first_not_of(' ')));
+  line.remove_prefix(out.size());
+  std::size_t at = out.size();
+  while (!line.empty()) {
+    const std::size_t blanks = std::min(line.find_first_not_of(' '), line.size());
+    const std::string_view word = line.substr(blanks, line.find(' ', blanks) - blanks);
+    const bool fits = at + blanks + places(word) <= width || at <= indent;
+    out += fits ? std::string(blanks, ' ') : "\n" + std::string(indent, ' ');
+    at = (fits ? at + blanks : indent) + places(word);
+    out += word;
+    line.remove_prefix(blanks + word.size());
+  }
+  return out;
+}
+
 std::string rate_text(double per_s) {
   if (per_s >= 1e9) return fmt::format("{:.1f} G/s", per_s / 1e9);
   if (per_s >= 1e6) return fmt::format("{:.1f} M/s", per_s / 1e6);
@@ -82,6 +123,16 @@ std::string progress_line(std::string_view what, std::uint64_t done, std::uint64
   return line.substr(0, width);
 }
 
+std::string broken(std::string_view lines, std::size_t width) {
+  std::string out;
+  while (!lines.empty()) {
+    const std::string_view line = lines.substr(0, lines.find('\n'));
+    lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+    out += broken_line(line, width) + "\n";
+  }
+  return out;
+}
+
 void take_signals() {
   ctrl_c = 0;
   struct sigaction action {};
@@ -109,7 +160,8 @@ Console::~Console() {
 }
 
 void Console::print(std::string_view text) {
-  if (!common_.quiet && !common_.json) put(text);
+  if (common_.quiet || common_.json) return;
+  put(surroundings_.out_is_terminal ? broken(text, width_of(surroundings_.out)) : text);
 }
 
 void Console::print_json(std::string_view object, int version) {
@@ -146,6 +198,15 @@ Progress Console::progress() {
     if (progress_) show_progress(what, done, total);
     return !interrupted();
   };
+}
+
+Failure Console::refuse(Error error) {
+  refused_ = true;
+  if_it_fails([verb = verb_](const Error&) {
+    return std::vector<std::string>{"kinalign " + verb +
+                                    " --help shows what it takes, with examples"};
+  });
+  return Failure(std::move(error));
 }
 
 void Console::report(const Error& error) {

@@ -18,6 +18,12 @@ namespace kinalign {
 
 enum class Colour { plain, good, warning, bad, mocap, kinect, imu };
 
+/// The colour that a finding's word has.
+constexpr Colour colour_of(Severity severity) {
+  if (severity == Severity::note) return Colour::plain;
+  return severity == Severity::warning ? Colour::warning : Colour::bad;
+}
+
 /// Lines under an error: what was left undone, what to do next.
 using Advice = std::function<std::vector<std::string>(const Error&)>;
 
@@ -28,7 +34,8 @@ class Console {
   Console& operator=(const Console&) = delete;
   ~Console();
 
-  /// A piece of the result, for people: on stdout, as it stands. Silent with --quiet and --json.
+  /// A piece of the result, whole lines for people: on stdout, as it stands, on a terminal with
+  /// lines no wider than that. Silent with --quiet and --json.
   void print(std::string_view text);
 
   /// What --json asks for: `object` is the text "{...}" of a JSON object, which gets
@@ -55,6 +62,10 @@ class Console {
   /// To be said if the verb fails; the last call counts.
   void if_it_fails(Advice advice) { advice_ = std::move(advice); }
 
+  /// Wrong use that only the files show: the failure to return, with the exit code of wrong use.
+  Failure refuse(Error error);
+  bool refused() const { return refused_; }
+
   /// Says what went wrong and what was advised.
   void report(const Error& error);
 
@@ -73,6 +84,7 @@ class Console {
   const Common& common_;
   std::string verb_;
   Advice advice_;
+  bool refused_ = false;
   bool colour_out_ = false, colour_err_ = false, progress_ = false;
   std::string held_;    // for stdout
   int fault_ = 0;       // errno of stdout
@@ -84,6 +96,10 @@ class Console {
 /// "align  43 %  1.2 M/s  12 s left": of a job that has run for `elapsed_s`, cut to `width`.
 std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
                           double elapsed_s, std::size_t width);
+
+/// Whole lines, each broken at blanks where it is wider than `width`; what goes on stands below the
+/// line's second column or, where there is none, two blanks further in. Colours have no width.
+std::string broken(std::string_view lines, std::size_t width);
 
 /// From here on the first Ctrl-C is only noted, and a reader of stdout that goes away is no signal.
 void take_signals();

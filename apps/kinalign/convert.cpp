@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
-#include "apps/kinalign/describe_file.h"
+#include "apps/kinalign/describe_report.h"
 #include "apps/kinalign/inputs.h"
+#include "apps/kinalign/json_text.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/io/bvh_copy.h"
+#include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_npz.h"
 #include "kinalign/motion/kinematics.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace kinalign {
 
@@ -27,6 +30,17 @@ Usage describe_convert(Convert& o) {
                        {"OUT", "a new file; its ending, .npz or .bvh, decides", &o.to}};
   usage.flags = o.stream.fields();
   usage.flags.push_back({"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double});
+  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    const std::string& to = o.to.front();
+    if (!to.ends_with(".npz") && !to.ends_with(".bvh")) {
+      return Failure(Error{to, 0, "a name that ends in .npz or .bvh", "another ending"});
+    }
+    if (o.store_double && to.ends_with(".bvh")) {
+      return Failure(Error{"--double", 0, "a new file that ends in .npz", shown(to)});
+    }
+    KA_TRY(o.stream.stream({}));
+    return {};
+  };
   return usage;
 }
 
@@ -34,6 +48,7 @@ struct Job {
   FileSystem& files;
   std::string from, to;
   Overwrite overwrite;
+  bool store_double = false;
 };
 
 /// Rows of a stream as a take would hold them.
@@ -80,10 +95,10 @@ Result<void> write_rows(const Input& input, const Passes<Frames>& passes, TakeNp
   return writer.finish();
 }
 
-Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, bool store_double) {
+Result<void> stream_to_npz(const Job& job, const RecordedStream& stream) {
   TakeHeader header;
   header.frames = stream.survey.samples;
-  header.parameters.align.store_double = store_double;
+  header.parameters.align.store_double = job.store_double;
   return std::visit(
       [&](const auto& input) -> Result<void> {
         header.groups = {{stream.name, group_of(input), false, false, stream.files}};
@@ -94,70 +109,86 @@ Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, bool st
       stream.data);
 }
 
-/// `write(sink)`; what is to be said of what was written, line by line.
+/// `write(sink)` into a new file; what it found.
 template <class Write>
-Result<std::string> put_bvh(const Job& job, const Write& write) {
+Result<Findings> put_bvh(const Job& job, const Write& write) {
   OutputFile out = KA_TRY(OutputFile::create(job.files, job.to, job.overwrite));
-  const auto sink = [&out](std::string_view text) { return out.write(text); };
-  const Findings findings = KA_TRY(write(sink));
+  Findings findings = KA_TRY(write([&out](std::string_view text) { return out.write(text); }));
   KA_TRY(out.commit());
-  return finding_lines(findings);
+  return findings;
 }
 
 // The two for takes run in a child process.
 
 Result<void> take_to_npz(const Job& job) {
   TakeReader reader = KA_TRY(TakeReader::open(job.files, job.from));
-  auto writer = KA_TRY(TakeNpzWriter::create(job.files, job.to, job.overwrite, reader.header(),
-                                             NpzNames::by_stream));
+  TakeHeader header = reader.header();
+  if (job.store_double) header.parameters.align.store_double = true;
+  auto writer =
+      KA_TRY(TakeNpzWriter::create(job.files, job.to, job.overwrite, header, NpzNames::by_stream));
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) KA_TRY(writer.append(slab));
   return writer.finish();
 }
 
-Failure other_ending(const Job& job) {
-  return Failure(Error{job.to, 0, "a name that ends in .npz or .bvh", "another ending"});
-}
-
-// Both return what is to be said of the result.
-
-Result<std::string> convert_take(const Job& job) {
-  if (!job.to.ends_with(".npz") && !job.to.ends_with(".bvh")) return other_ending(job);
+/// What was found comes out of the child as a report's JSON.
+Result<Findings> convert_take(const Job& job) {
   const auto work = [&job]() -> Result<std::string> {
-    const auto write = [&](const TextSink& sink) { return take_to_bvh(job.files, job.from, sink); };
-    if (job.to.ends_with(".bvh")) return put_bvh(job, write);
-    KA_TRY(take_to_npz(job));
-    return std::string();
+    Findings findings;
+    if (job.to.ends_with(".npz")) {
+      KA_TRY(take_to_npz(job));
+    } else {
+      findings = KA_TRY(put_bvh(job, [&job](const TextSink& sink) {
+        return take_to_bvh(job.files, job.from, sink);
+      }));
+    }
+    return "{\"findings\": " + findings_json(findings) + "}";
   };
-  return run_guarded(GuardLimits{}, blame(job.from), work);
+  return report_findings(KA_TRY(run_guarded(GuardLimits{}, blame(job.from), work)), job.from);
 }
 
-Result<std::string> convert_stream(const Job& job, const Convert& o, const Progress& progress) {
-  const auto copy = [&](const TextSink& sink) {
-    return copy_bvh(job.files, job.from, sink, progress);
-  };
-  if (job.to.ends_with(".bvh")) return put_bvh(job, copy);
-  if (!job.to.ends_with(".npz")) return other_ending(job);
-  const Recording input = KA_TRY(open_input(job.files, job.from, o.stream, progress));
-  if (input.streams.size() == 1) {
-    KA_TRY(stream_to_npz(job, input.streams.front(), o.store_double));
-    return std::string();
+/// A flag that the input has no use for is wrong use.
+Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& call) {
+  auto used = o.stream.check_use(o.from.front(), stream, call.sources);
+  return used ? Result<void>{} : call.console.refuse(std::move(used).error());
+}
+
+Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
+  if (job.from.ends_with(".toml")) {
+    return call.console.refuse(Error{job.from, 0, "a take, or one stream's file", "a manifest"});
   }
-  return Failure(
-      Error{job.from, 0, "one stream's file", fmt::format("{} streams", input.streams.size())});
+  const Input input = KA_TRY(open_input(job.files, job.from, o.stream, call.console.progress()));
+  const RecordedStream& stream = input.recording.streams.front();
+  KA_TRY(check_flags(o, &stream, call));
+  call.console.detail(harmless(read_as(stream)));
+  if (job.to.ends_with(".bvh")) {
+    return put_bvh(job, [&](const TextSink& sink) {
+      return copy_bvh(job.files, job.from, sink, call.console.progress());
+    });
+  }
+  KA_TRY(stream_to_npz(job, stream));
+  return stream.findings;
 }
 
 Result<int> run(Convert& o, Call& call) {
   call.console.if_it_fails(
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
-  const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite()};
+  const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite(),
+                o.store_double};
   KA_TRY(keep_inputs(job.to, {job.from}));
-  const std::string said = KA_TRY(KA_TRY(is_take(job.files, job.from))
-                                      ? convert_take(job)
-                                      : convert_stream(job, o, call.console.progress()));
-  call.console.print(harmless(said + job.to + "\n"));
-  call.console.print_json(R"({"written": true})");
-  return said.empty() ? 0 : 1;
+  Findings findings;
+  if (KA_TRY(is_take(job.files, job.from))) {
+    KA_TRY(check_flags(o, nullptr, call));
+    findings = KA_TRY(convert_take(job));
+  } else {
+    findings = KA_TRY(convert_stream(job, o, call));
+  }
+  call.console.print(harmless(job.to) + "\n" + finding_lines(findings, call.console));
+  call.console.print_json(json_text(nlohmann::ordered_json{
+      {"written", true},
+      {"file", job.to},
+      {"findings", nlohmann::ordered_json::parse(findings_json(findings))}}));
+  return code_of(findings);
 }
 
 }  // namespace
@@ -166,11 +197,14 @@ Verb convert_verb() {
   return make_verb<Convert>(
       {.name = "convert",
        .summary = "one format into another",
-       .text = "From a take to .npz or .bvh, from any stream's file to .npz, from .bvh to .bvh.",
-       .examples = {{"kinalign convert walk.bvh walk.npz",
+       .text =
+           "From a take to .npz or .bvh, from any stream's file to .npz, from .bvh to .bvh. Exit "
+           "code 1 where it was done with warnings.",
+       .examples = {{"kinalign convert demo/mocap.bvh demo/mocap.npz",
                      "positions, local_positions, local_rotations, joint_names, ... for NumPy"},
-                    {"kinalign convert take.h5 take.npz", "all streams of a take"},
-                    {"kinalign convert take.h5 mocap.bvh", "the take's skeleton stream"}},
+                    {"kinalign convert demo/take.h5 demo/take.npz", "all streams of a take"},
+                    {"kinalign convert demo/take.h5 demo/aligned.bvh",
+                     "the take's skeleton stream"}},
        .common = {"force", "json"}},
       describe_convert, run);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/describe_file.h"
 
+#include "apps/kinalign/console.h"
 #include "apps/kinalign/describe_report.h"
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/json_text.h"
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace kinalign {
 
@@ -86,11 +88,27 @@ double seconds_of(const StampSurvey& survey) {
   return 1e-9 * static_cast<double>((survey.last - survey.first).count());
 }
 
-std::string stream_line(const RecordedStream& s, const Contents& c) {
+/// " (25 on the whole)" where the median step is not what comes of all.
+std::string mean_rate_text(const RecordedStream& s) {
+  const double length = seconds_of(s.survey), rate = rate_hz(s);
+  if (!(length > 0.0)) return "";
+  const double mean = static_cast<double>(s.survey.kept() - 1) / length;
+  return std::abs(mean - rate) < 0.1 * rate ? "" : fmt::format(" ({:.4g} on the whole)", mean);
+}
+
+std::string stream_lines(const RecordedStream& s, const Contents& c, Names names) {
+  const bool one_node = c.kind == "imu" && c.names.size() == 1;
   std::string line =
-      fmt::format("  {:<8} {}: {} samples over {:.3f} s at {:.4g} Hz; {}\n", s.name,
-                  c.kind == "imu" ? shown(c.names.front().get<std::string>()) : c.kind,
-                  s.survey.samples, seconds_of(s.survey), rate_hz(s), c.parts);
+      fmt::format("  {:<8} {}: {} samples over {:.3f} s at {:.4g} Hz{}; {}\n", s.name,
+                  one_node ? shown(c.names.front().get<std::string>()) : c.kind, s.survey.samples,
+                  seconds_of(s.survey), rate_hz(s), mean_rate_text(s), c.parts);
+  if (s.survey.kept() > 0) {
+    line +=
+        fmt::format("           from {} to {} ns\n", to_ns(s.survey.first), to_ns(s.survey.last));
+  }
+  if (names == Names::yes || (c.kind == "imu" && !one_node)) {
+    line += name_lines(c.names.get<std::vector<std::string>>());
+  }
   if (s.survey.kept() < s.survey.samples) {
     line += fmt::format("           {} stamps repeat, {} step back, {} leap ahead\n",
                         s.survey.duplicates, s.survey.backward, s.survey.ahead);
@@ -146,7 +164,12 @@ std::string contents_line(const RecordedStream& stream) {
   return (c.kind == "imu" ? "nodes, " : c.kind + ", ") + c.parts;
 }
 
-Description describe_recording(const std::string& path, const Recording& recording) {
+std::string read_as(const RecordedStream& stream) {
+  return fmt::format("{}: read as {}, {} samples", stream.files.front().name, contents_line(stream),
+                     stream.survey.samples);
+}
+
+Description describe_recording(const std::string& path, const Recording& recording, Names names) {
   Json out{{"file", path},
            {"kind", "recording"},
            {"subject", recording.subject},
@@ -157,7 +180,7 @@ Description describe_recording(const std::string& path, const Recording& recordi
   for (const RecordedStream& s : recording.streams) {
     const Contents c = contents_of(s);
     out["streams"].push_back(stream_json(s, c));
-    text += stream_line(s, c);
+    text += stream_lines(s, c, names);
     findings += s.findings.size();
   }
   if (findings > 0) {
@@ -167,20 +190,21 @@ Description describe_recording(const std::string& path, const Recording& recordi
   return {std::move(text), json_text(out)};
 }
 
-Result<Description> describe_take(FileSystem& files, const std::string& path) {
+Result<Description> describe_take(FileSystem& files, const std::string& path, Names names) {
   const std::string json =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return take_facts(files, path); }));
-  return Description{take_text(json), json};
+  return Description{take_text(json, names), json};
 }
 
-std::string finding_lines(Findings findings) {
+std::string finding_lines(Findings findings, const Console& console) {
   std::stable_sort(findings.begin(), findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
   std::string text;
   for (const Finding& finding : findings) {
-    text += fmt::format("{:<8} {}\n", to_string(finding.severity), to_string(finding.what));
-    text += "         " + finding.meaning + "\n";
-    if (!finding.repair.empty()) text += "         " + finding.repair + "\n";
+    const std::string word = fmt::format("{:<8}", to_string(finding.severity));
+    text += console.paint(colour_of(finding.severity), word) + " ";
+    text += harmless(to_string(finding.what) + "\n         " + finding.meaning + "\n");
+    if (!finding.repair.empty()) text += harmless("         " + finding.repair + "\n");
   }
   return text;
 }

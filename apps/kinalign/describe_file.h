@@ -15,15 +15,22 @@ struct Description {
   std::string json;  // an object
 };
 
-Description describe_recording(const std::string& path, const Recording& recording);
+/// Whether every joint's and node's name stands there: --verbose.
+enum class Names { no, yes };
+
+Description describe_recording(const std::string& path, const Recording& recording, Names names);
 
 /// "points, 25 joints"
 std::string contents_line(const RecordedStream& stream);
 
-/// Opens the take in a child process.
-Result<Description> describe_take(FileSystem& files, const std::string& path);
+/// "kinect.csv: read as points, 25 joints, 1785 samples"
+std::string read_as(const RecordedStream& stream);
 
-/// "warning walk.bvh:12: expected ...": lines of what was found, worst first.
-std::string finding_lines(Findings findings);
+/// Opens the take in a child process.
+Result<Description> describe_take(FileSystem& files, const std::string& path, Names names);
+
+/// "warning walk.bvh:12: expected ...": lines of what was found, worst first, harmless and in the
+/// console's colours.
+std::string finding_lines(Findings findings, const Console& console);
 
 }  // namespace kinalign

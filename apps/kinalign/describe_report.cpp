@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/describe_report.h"
 
+#include "apps/kinalign/help.h"
 #include "apps/kinalign/summary.h"
 
 #include "kinalign/core/error.h"
@@ -78,7 +79,9 @@ std::string head_text(const Json& take, const Json& report) {
   text += "\n";
   const std::string subject = text_at(take, "subject"), action = text_at(take, "action");
   if (!subject.empty() || !action.empty()) {
-    text += fmt::format("  subject {}, action {}\n", subject, action);
+    text += subject.empty() ? "" : "  subject " + subject;
+    text += action.empty() ? "" : (subject.empty() ? "  action " : ", action ") + action;
+    text += "\n";
   }
   return text + span_text(report);
 }
@@ -108,10 +111,19 @@ std::string quality_text(const Json& s) {
                             1e-6 * number_at(s, "worst_nearest_ns"));
 }
 
-std::string stream_text(const Json& stream, const Json& report) {
+std::vector<std::string> texts_at(const Json& json, const char* key) {
+  std::vector<std::string> out;
+  for (const Json& one : list_at(json, key)) {
+    if (one.is_string()) out.push_back(one.get<std::string>());
+  }
+  return out;
+}
+
+std::string stream_text(const Json& stream, const Json& report, Names names) {
   const std::string name = text_at(stream, "name");
   std::string text =
       fmt::format("  {:<8} {}: {}\n", name, text_at(stream, "kind"), text_at(stream, "parts"));
+  if (names == Names::yes) text += name_lines(texts_at(stream, "names"));
   for (const Json& file : list_at(stream, "files")) {
     text += fmt::format("           {}  sha256 {}...\n", text_at(file, "name"),
                         text_at(file, "sha256").substr(0, 12));
@@ -145,14 +157,41 @@ std::string finding_text(const Json& finding) {
                      text_at(finding, "meaning"));
 }
 
+/// A finding of the report, as alignment made it.
+Finding finding_of(const Json& finding) {
+  const std::string severity = text_at(finding, "severity");
+  Finding out;
+  if (severity == "note") out.severity = Severity::note;
+  if (severity == "error") out.severity = Severity::error;
+  out.what = {text_at(finding, "file"), static_cast<std::int64_t>(count_at(finding, "line")),
+              text_at(finding, "expected"), text_at(finding, "found")};
+  out.meaning = text_at(finding, "meaning");
+  out.repair = text_at(finding, "repair");
+  return out;
+}
+
 }  // namespace
 
-std::string take_text(const std::string& json) {
+std::string name_lines(const std::vector<std::string>& names) {
+  constexpr std::size_t indent = 11;
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + shown(name);
+  return text.empty() ? "" : std::string(indent, ' ') + wrapped(text, indent) + "\n";
+}
+
+Findings report_findings(const std::string& report) {
+  const Json json = Json::parse(report, nullptr, false);
+  Findings out;
+  for (const Json& finding : list_at(json, "findings")) out.push_back(finding_of(finding));
+  return out;
+}
+
+std::string take_text(const std::string& json, Names names) {
   const Json take = Json::parse(json, nullptr, false);
   const Json none = Json::object();
   const Json& report = take.is_object() && take.contains("report") ? take["report"] : none;
   std::string text = head_text(take, report);
-  for (const Json& stream : list_at(take, "streams")) text += stream_text(stream, report);
+  for (const Json& stream : list_at(take, "streams")) text += stream_text(stream, report, names);
   for (const Json& space : list_at(report, "spaces")) text += space_text(space);
   for (const Json& finding : list_at(report, "findings")) text += finding_text(finding);
   return text;

@@ -3,11 +3,22 @@
 // it is trusted, what is not of its type is left out.
 #pragma once
 
+#include "apps/kinalign/describe_file.h"
+
+#include "kinalign/core/error.h"
+
 #include <string>
+#include <vector>
 
 namespace kinalign {
 
 /// `json`: what `kinalign info take.h5 --json` prints.
-std::string take_text(const std::string& json);
+std::string take_text(const std::string& json, Names names);
+
+/// What a report of schema kinalign.report/1 says was found.
+Findings report_findings(const std::string& report);
+
+/// Lines of names below a stream's.
+std::string name_lines(const std::vector<std::string>& names);
 
 }  // namespace kinalign

@@ -12,28 +12,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t width = 96;
 constexpr std::size_t column = 28;  // where meanings begin
-
-/// `text` in lines of at most `width` characters, those behind the first one moved to `indent`.
-std::string wrapped(std::string_view text, std::size_t indent) {
-  std::string out;
-  std::size_t at = indent;
-  while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(text.size(), word.size() + 1));
-    if (at > indent && at + 1 + word.size() > width) {
-      out += "\n" + std::string(indent, ' ');
-      at = indent;
-    } else if (at > indent) {
-      out += " ";
-      ++at;
-    }
-    out += word;
-    at += word.size();
-  }
-  return out;
-}
 
 std::string line_of(const std::string& left, const std::string& meaning) {
   std::string line = "  " + left;
@@ -56,6 +35,25 @@ std::string lines_of(const Fields& fields, const std::string& head) {
 }
 
 }  // namespace
+
+std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {
+  std::string out;
+  std::size_t at = indent;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (at > indent && at + 1 + word.size() > width) {
+      out += "\n" + std::string(indent, ' ');
+      at = indent;
+    } else if (at > indent) {
+      out += " ";
+      ++at;
+    }
+    out += word;
+    at += word.size();
+  }
+  return out;
+}
 
 std::string program_version() { return KINALIGN_VERSION; }
 

@@ -4,9 +4,6 @@
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/io/manifest_toml.h"
-#include "kinalign/io/open_recording.h"
-
 namespace kinalign {
 
 namespace {
@@ -20,18 +17,30 @@ Usage describe_info(Info& o) {
   Usage usage;
   usage.positionals = {{"FILE", "a take, a recording.toml or a stream's file", &o.file}};
   usage.flags = o.stream.fields();
+  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    KA_TRY(o.stream.stream({}));
+    return {};
+  };
   return usage;
 }
 
 Result<int> run(Info& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.file.front();
+  const Names names = call.common.verbose ? Names::yes : Names::no;
+  const auto check_use = [&](const RecordedStream* stream) -> Result<void> {
+    auto used = o.stream.check_use(path, stream, call.sources);
+    return used ? Result<void>{} : call.console.refuse(std::move(used).error());
+  };
   Description found;
   if (KA_TRY(is_take(files, path))) {
-    found = KA_TRY(describe_take(files, path));
+    KA_TRY(check_use(nullptr));
+    found = KA_TRY(describe_take(files, path, names));
   } else {
-    const Recording recording = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
-    found = describe_recording(path, recording);
+    if (path.ends_with(".toml")) KA_TRY(check_use(nullptr));
+    const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
+    if (!input.manifest) KA_TRY(check_use(&input.recording.streams.front()));
+    found = describe_recording(path, input.recording, names);
   }
   call.console.print(harmless(found.text));
   call.console.print_json(found.json);
@@ -46,8 +55,9 @@ Verb info_verb() {
        .summary = "what is in a file",
        .text = "Reads the whole file once. A take is opened in a process of its "
                "own, with limits: HDF5 files from outside can crash the library.",
-       .examples = {{"kinalign info walk.bvh", "joints, frames, rate"},
-                    {"kinalign info take.h5 --json", "everything, with the report"}},
+       .examples = {{"kinalign info demo/mocap.bvh", "joints, frames, rate"},
+                    {"kinalign info demo/mocap.bvh -v", "with the joints' names"},
+                    {"kinalign info demo/take.h5 --json", "everything, with the report"}},
        .common = {"json"}},
       describe_info, run);
 }

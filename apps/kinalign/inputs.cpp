@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/inputs.h"
 
+#include "apps/kinalign/describe_file.h"
+#include "apps/kinalign/field_text.h"
+
 #include "kinalign/core/file_version.h"
 #include "kinalign/core/files.h"
 #include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/open_recording.h"
+
+#include <algorithm>
+#include <array>
 
 namespace kinalign {
 
@@ -31,9 +37,39 @@ Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
 }
 
 Fields StreamFlags::fields() {
+  constexpr std::array<std::string_view, 5> of_alignment{"clock", "offset_ms", "drift_ppm",
+                                                         "interval_ms", "root_node"};
   Fields out = describe(options);
+  std::erase_if(out, [&](const Field& field) {
+    return std::find(of_alignment.begin(), of_alignment.end(), field.name) != of_alignment.end();
+  });
   out.push_back({"select", "rows of a table to take; may be repeated", &select});
   return out;
+}
+
+Result<void> StreamFlags::check_use(const std::string& path, const RecordedStream* stream,
+                                    const Sources& given) const {
+  using Useless = std::vector<std::string_view>;
+  const Useless clip{"select", "rate_hz"}, points{"end_ns", "click_latency_ms"},
+      nodes{"end_ns", "click_latency_ms", "metres_per_unit"};
+  for (const auto& [name, source] : given) {
+    const auto is = [&name](std::string_view other) { return name == other; };
+    if (source != Source::flag) continue;
+    if (stream == nullptr) {
+      StreamFlags mine;
+      const Fields own = mine.fields();
+      if (std::none_of(own.begin(), own.end(), [&](const Field& f) { return is(f.name); }))
+        continue;
+      return Failure(Error{flag_of(name), 0, "a stream's own file",
+                           shown(path) + ", which says such things itself"});
+    }
+    const std::size_t kind = stream->data.index();
+    const Useless& useless = kind == 0 ? clip : kind == 1 ? points : nodes;
+    if (std::none_of(useless.begin(), useless.end(), is)) continue;
+    return Failure(Error{flag_of(name), 0, "a file that has a use for it",
+                         shown(path) + ": " + contents_line(*stream)});
+  }
+  return {};
 }
 
 Result<StreamOptions> StreamFlags::stream(const std::vector<std::string>& paths) const {
@@ -41,22 +77,63 @@ Result<StreamOptions> StreamFlags::stream(const std::vector<std::string>& paths)
   if (out.name.empty()) out.name = "stream";
   for (const std::string& path : paths) out.files.push_back({path, ""});
   for (const std::string& one : select) {
-    const auto [column, value] = KA_TRY(split_pair(one, "--select COLUMN=VALUE"));
+    const auto [column, value] = KA_TRY(split_pair(one, "COLUMN=VALUE").map_error([](Error error) {
+      error.file = "--select";
+      return error;
+    }));
     out.select[column] = value;
   }
   return out;
 }
 
-Result<Recording> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
-                             const Progress& progress) {
+Result<Input> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
+                         const Progress& progress) {
+  Input input;
   if (path.ends_with(".toml")) {
-    const Manifest manifest = KA_TRY(load_manifest(files, path));
-    return open_recording(files, manifest, std::string(folder(path)), progress);
+    input.manifest = KA_TRY(load_manifest(files, path));
+    input.recording =
+        KA_TRY(open_recording(files, *input.manifest, std::string(folder(path)), progress));
+    return input;
   }
-  Recording recording;
   const StreamOptions options = KA_TRY(flags.stream({path}));
-  recording.streams = KA_TRY(open_streams(files, {options}, progress));
-  return recording;
+  input.recording.streams = KA_TRY(open_streams(files, {options}, progress));
+  return input;
+}
+
+int code_of(const Findings& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& f) { return f.severity != Severity::note; })
+             ? 1
+             : 0;
+}
+
+Result<void> check_take_name(const std::string& out) {
+  for (const std::string_view ending : {".npz", ".csv", ".bvh"}) {
+    if (!out.ends_with(ending)) continue;
+    return Failure(Error{"-o", 0,
+                         "a name for an HDF5 file, as take.h5 (kinalign convert makes .npz and "
+                         ".bvh of a take)",
+                         shown(file_name(out))});
+  }
+  return {};
+}
+
+Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
+                                                      const std::string& b) {
+  InputFile one = KA_TRY(InputFile::open(files, a)), other = KA_TRY(InputFile::open(files, b));
+  std::string_view p, q;  // what is left of both pieces, which may differ in length
+  for (std::uint64_t at = 0;;) {
+    if (p.empty()) p = KA_TRY(one.next());
+    if (q.empty()) q = KA_TRY(other.next());
+    if (p.empty() && q.empty()) return std::optional<std::uint64_t>{};
+    const std::size_t both = std::min(p.size(), q.size());
+    const auto differ = std::mismatch(p.begin(), p.begin() + both, q.begin());
+    const auto same = static_cast<std::size_t>(differ.first - p.begin());
+    at += same;
+    if (same < both || both == 0) return std::optional(at);
+    p.remove_prefix(both);
+    q.remove_prefix(both);
+  }
 }
 
 Result<void> keep_inputs(const std::string& out, const std::vector<std::string>& inputs) {

@@ -10,6 +10,7 @@
 #include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,12 +25,17 @@ Result<bool> is_take(FileSystem& files, const std::string& path);
 Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
                                                        std::string_view expected);
 
-/// Options of a single stream as flags: those of describe(StreamOptions) and --select COLUMN=VALUE.
+/// Options of a single stream as flags: those of describe(StreamOptions) that its reader uses, and
+/// --select COLUMN=VALUE.
 struct StreamFlags {
   StreamOptions options;
   std::vector<std::string> select;
 
   Fields fields();
+  /// The failure of a flag that the file has no use for: of a stream, or (nullptr) of a take or a
+  /// manifest.
+  Result<void> check_use(const std::string& path, const RecordedStream* stream,
+                         const Sources& given) const;
   /// The options with their files and selections.
   Result<StreamOptions> stream(const std::vector<std::string>& paths) const;
 };
@@ -39,8 +45,22 @@ Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
                                const AlignOptions& unsaid = {});
 
 /// A manifest's recording, or a single stream's file as one.
-Result<Recording> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
-                             const Progress& progress);
+struct Input {
+  Recording recording;
+  std::optional<Manifest> manifest;
+};
+Result<Input> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
+                         const Progress& progress);
+
+/// The exit code of a job that was done: 1 where a warning or an error was found, notes are none.
+int code_of(const Findings& findings);
+
+/// Fails where a take would get the ending of another format.
+Result<void> check_take_name(const std::string& out);
+
+/// Byte of the first difference; nothing where two files are the same.
+Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
+                                                      const std::string& b);
 
 /// Fails where `out` is one of `inputs`, under whatever name: no --force replaces what was measured
 /// by what is made of it.

@@ -84,6 +84,7 @@ class Run {
     if (!code) console_->report(code.error());
     const Result<void> written = console_->finish();
     if (!written) console_->report(written.error());
+    if (!code && console_->refused()) return wrong_use;
     return code && written ? *code : failed;
   }
 

@@ -40,6 +40,7 @@ Usage describe_rebuild(Rebuild& o) {
       return Failure(Error{"-o", 0, "either the new take's file name or --verify",
                            o.verify ? "both" : "neither"});
     }
+    KA_TRY(check_take_name(common.out));
     return {};
   };
   return usage;
@@ -64,15 +65,20 @@ Result<std::string> origin_json(FileSystem& files, const std::string& path) {
 }
 
 Result<Origin> origin_of(FileSystem& files, const std::string& path) {
-  const auto json = nlohmann::json::parse(
-      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return origin_json(files, path); })));
-  Origin origin;
-  origin.software = json["software"].get<std::string>();
-  origin.parameters = KA_TRY(parse_parameters_json(json["parameters"].get<std::string>()));
-  for (const auto& file : json["files"]) {
-    origin.files.push_back({file[0].get<std::string>(), file[1].get<std::string>(), 0});
+  const std::string text =
+      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return origin_json(files, path); }));
+  try {  // what a child says is not trusted either
+    const auto json = nlohmann::json::parse(text);
+    Origin origin;
+    origin.software = json.at("software").get<std::string>();
+    origin.parameters = KA_TRY(parse_parameters_json(json.at("parameters").get<std::string>()));
+    for (const auto& file : json.at("files")) {
+      origin.files.push_back({file.at(0).get<std::string>(), file.at(1).get<std::string>(), 0});
+    }
+    return origin;
+  } catch (const nlohmann::json::exception&) {
+    return Failure(Error{path, 0, "a take that says how it was made", "another answer"});
   }
-  return origin;
 }
 
 /// Inputs whose bytes are not those of the take's making.
@@ -88,22 +94,6 @@ std::vector<std::string> changed_inputs(const Origin& origin, const Recording& r
     }
   }
   return changed;
-}
-
-/// Byte of the first difference; nothing where two files are the same.
-Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
-                                                      const std::string& b) {
-  InputFile one = KA_TRY(InputFile::open(files, a)), other = KA_TRY(InputFile::open(files, b));
-  for (std::uint64_t at = 0;;) {
-    const std::string_view p = KA_TRY(one.next()), q = KA_TRY(other.next());
-    const std::size_t both = std::min(p.size(), q.size());
-    const auto differ =
-        std::mismatch(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(both), q.begin());
-    const auto same = static_cast<std::uint64_t>(differ.first - p.begin());
-    if (same < both || p.size() != q.size()) return std::optional(at + same);
-    if (p.empty()) return std::optional<std::uint64_t>{};
-    at += both;
-  }
 }
 
 /// A folder that goes with everything in it.
@@ -131,27 +121,56 @@ class Scratch {
   std::string name_;
 };
 
-Result<int> verify(const std::string& take, const Recording& recording, const Origin& origin,
-                   Call& call) {
-  FileSystem& files = call.surroundings.files;
+/// What --verify found; all empty: the same bytes from the same inputs.
+struct Verdict {
+  std::optional<std::uint64_t> difference;  // the first byte that differs
+  std::optional<Error> failure;             // why it can't be made again
+  std::vector<std::string> changed;         // inputs
+  bool same() const { return !difference && !failure; }
+};
+
+Result<Verdict> compare(const std::string& take, const Result<Recording>& recording,
+                        const Origin& origin, Call& call) {
+  Verdict out;
+  if (!recording) {
+    if (interrupted()) return Failure(recording.error());
+    out.failure = recording.error();
+    return out;
+  }
+  out.changed = changed_inputs(origin, *recording);
   const Scratch scratch = KA_TRY(Scratch::make());
   const std::string again = scratch.name() + "/take.h5";
-  KA_TRY(align_to_file(call, recording, origin.parameters, {again, Overwrite::no}));
-  const auto difference = KA_TRY(first_difference(files, take, again));
-  const auto changed = changed_inputs(origin, recording);
+  auto made = align_to_file(call, *recording, origin.parameters, {again, Overwrite::no});
+  if (!made) {
+    const bool ours = interrupted() || made.error().file.starts_with(scratch.name());
+    if (ours) return Failure(std::move(made).error());
+    out.failure = std::move(made).error();
+  } else {
+    out.difference = KA_TRY(first_difference(call.surroundings.files, take, again));
+  }
+  return out;
+}
+
+std::string changed_line(const std::string& name) {
+  return harmless(name + " is not the file that the take was made from");
+}
+
+int say(const std::string& take, const Verdict& verdict, const Origin& origin, Call& call) {
   nlohmann::ordered_json json{{"take", take},
-                              {"same", !difference},
+                              {"same", verdict.same()},
                               {"software", origin.software},
-                              {"changed_inputs", changed}};
+                              {"changed_inputs", verdict.changed}};
   std::string text = fmt::format("{}: every byte agrees\n", take);
-  if (difference) {
-    text = fmt::format("{}: differs from byte {} on\n", take, *difference);
-    json["first_difference"] = *difference;
+  if (verdict.difference) {
+    text = fmt::format("{}: differs from byte {} on\n", take, *verdict.difference);
+    json["first_difference"] = *verdict.difference;
+  } else if (verdict.failure) {
+    text =
+        fmt::format("{}: differs: cannot be made again: {}\n", take, to_string(*verdict.failure));
+    json["failure"] = to_string(*verdict.failure);
   }
-  for (const std::string& name : changed) {
-    text += fmt::format("  {} is not the file that the take was made from\n", name);
-  }
-  if (difference && changed.empty()) {
+  for (const std::string& name : verdict.changed) text += "  " + changed_line(name) + "\n";
+  if (verdict.difference && verdict.changed.empty()) {
     text += fmt::format(
         "  the inputs are the same; the take was changed, or another version than {} "
         "remade it\n",
@@ -159,7 +178,21 @@ Result<int> verify(const std::string& take, const Recording& recording, const Or
   }
   call.console.print(harmless(text));
   call.console.print_json(json_text(json));
-  return difference ? 1 : 0;
+  return verdict.same() ? 0 : 1;
+}
+
+Result<int> write_again(const Recording& recording, const Origin& origin, Call& call) {
+  const std::string& out = call.common.out;
+  const std::vector<std::string> changed = changed_inputs(origin, recording);
+  for (const std::string& name : changed) {
+    call.console.note("kinalign rebuild: warning: " + changed_line(name));
+  }
+  const AlignmentReport report =
+      KA_TRY(align_to_file(call, recording, origin.parameters, {out, call.common.overwrite()}));
+  call.console.print(summary(report, out, call.console));
+  call.console.print_json(json_text(nlohmann::ordered_json{
+      {"written", true}, {"frames", report.frames}, {"changed_inputs", changed}}));
+  return changed.empty() ? code_of(report.findings) : 1;
 }
 
 Result<int> run(Rebuild& o, Call& call) {
@@ -167,15 +200,14 @@ Result<int> run(Rebuild& o, Call& call) {
   const std::string& take = o.take.front();
   const Origin origin = KA_TRY(origin_of(files, take));
   const std::string base = o.inputs.ends_with('/') ? o.inputs : o.inputs + "/";
-  const Recording recording =
-      KA_TRY(open_recording(files, origin.parameters, base, call.console.progress(), call.jobs));
-  if (o.verify) return verify(take, recording, origin, call);
-  KA_TRY(keep_inputs(call.common.out, files_named(origin.parameters, base)));
-  const AlignmentReport report = KA_TRY(align_to_file(call, recording, origin.parameters,
-                                                      {call.common.out, call.common.overwrite()}));
-  call.console.print(summary(report, call.common.out, call.console));
-  call.console.print_json(fmt::format("{{\"written\": true, \"frames\": {}}}", report.frames));
-  return 0;
+  const std::vector<std::string> inputs = files_named(origin.parameters, base);
+  KA_TRY(keep_inputs(call.common.out, inputs));
+  // An input that is not there is no difference: nothing can be said.
+  for (const std::string& input : inputs) KA_TRY(InputFile::open(files, input));
+  Result<Recording> recording =
+      open_recording(files, origin.parameters, base, call.console.progress(), call.jobs);
+  if (o.verify) return say(take, KA_TRY(compare(take, recording, origin, call)), origin, call);
+  return write_again(KA_TRY(std::move(recording)), origin, call);
 }
 
 }  // namespace
@@ -184,10 +216,13 @@ Verb rebuild_verb() {
   return make_verb<Rebuild>(
       {.name = "rebuild",
        .summary = "make a take again from its inputs, compare every byte",
-       .text = "A take holds every parameter that made it and the SHA-256 of every input.",
-       .examples = {{"kinalign rebuild take.h5 --inputs recordings --verify",
+       .text =
+           "A take holds every parameter that made it and the SHA-256 of every input. Exit code 1 "
+           "where an input is not the one that the take was made from, or where it was made with "
+           "warnings.",
+       .examples = {{"kinalign rebuild demo/take.h5 --inputs demo --verify",
                      "exit code 0: the same bytes; 1: not"},
-                    {"kinalign rebuild take.h5 --inputs recordings -o again.h5",
+                    {"kinalign rebuild demo/take.h5 --inputs demo -o demo/again.h5",
                      "writes it again"}},
        .common = {"out", "force", "json", "jobs"}},
       describe_rebuild, run);

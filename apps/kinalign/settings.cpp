@@ -112,7 +112,7 @@ Result<void> check_name(const SettingsFile& file, const Setting& setting, const 
                         const std::vector<Verb>& verbs) {
   std::vector<std::string> known;
   if (setting.verb.empty()) {
-    known = {"jobs", "seed", "quiet", "verbose", "color"};
+    known = {"jobs", "quiet", "verbose", "color"};
     return is_common_setting(setting.name)
                ? Result<void>{}
                : unknown(file, setting, known, "a setting of all verbs");

@@ -146,9 +146,7 @@ std::string finding_lines(const Findings& findings, const Console& console) {
   std::string text;
   for (std::size_t k = 0; k < std::min(most, findings.size()); ++k) {
     const Finding& finding = findings[k];
-    const Colour colour = finding.severity == Severity::note      ? Colour::plain
-                          : finding.severity == Severity::warning ? Colour::warning
-                                                                  : Colour::bad;
+    const Colour colour = colour_of(finding.severity);
     const std::string repair = finding.repair.empty() ? "" : "; " + finding.repair;
     text += fmt::format("  {}  {}: {}{}\n", console.paint(colour, to_string(finding.severity)),
                         harmless(to_string(finding.what)), finding.meaning, repair);

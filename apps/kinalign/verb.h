@@ -56,7 +56,6 @@ struct Common {
   bool json = false;
   bool dry_run = false;
   std::int64_t jobs = 0;  // as given: 0 is the number of processors; Call::jobs is never 0
-  std::int64_t seed = 1;
   std::string config;
   bool quiet = false, verbose = false;
   std::string color = "auto";
@@ -89,7 +88,7 @@ struct Page {
   std::string summary;              // one line, for the list of verbs
   std::string text;                 // what more there is to know; may be empty
   std::vector<Example> examples;    // the first one opens the help page
-  std::vector<std::string> common;  // of out, force, json, dry_run, jobs, seed: those it takes
+  std::vector<std::string> common;  // of out, force, json, dry_run, jobs: those it takes
 };
 
 struct Verb {

@@ -44,6 +44,18 @@ def kinalign(*words, cwd=None, memory=1 << 30, file_size=None, seconds=60, prefi
                           preexec_fn=limits(memory, file_size), env={**os.environ, **(env or {})})
 
 
+def unique(pairs):
+    """An object of JSON whose names differ."""
+    names = [name for name, _ in pairs]
+    assert len(set(names)) == len(names), f"a name stands twice: {names}"
+    return dict(pairs)
+
+
+def parsed(text):
+    """JSON that any reader takes for the same."""
+    return json.loads(text, object_pairs_hook=unique)
+
+
 def law(done, words, out=None):
     """What holds for every call with files of any content."""
     err = done.stderr.decode("utf-8", "backslashreplace")
@@ -60,7 +72,7 @@ def law(done, words, out=None):
     elif done.returncode in (0, 1):
         assert err == "", "stderr of a success: " + said
         if "--json" in words:
-            json.loads(done.stdout.decode("utf-8"))
+            parsed(done.stdout.decode("utf-8"))
     return said
 
 
@@ -72,6 +84,21 @@ def refused(*words, naming, out=None, **how):
     first = done.stderr.decode("utf-8", "replace").splitlines()[0]
     assert first.startswith(f"kinalign {words[0]}: {naming}"), f"not {naming}: {said}"
     return first
+
+
+def done_with(code, *words, **how):
+    """What a call said that ends with this exit code: stdout, stderr."""
+    done = kinalign(*words, **how)
+    said = law(done, words)
+    assert done.returncode == code, said
+    return done.stdout.decode(), done.stderr.decode()
+
+
+def wrong(*words, says, **how):
+    """Wrong use: exit code 2, and the first line."""
+    _, err = done_with(2, *words, **how)
+    first = err.splitlines()[0]
+    assert first == f"kinalign {words[0]}: {says}", f"{first}\nnot {says}"
 
 
 def demo(folder, seconds=1, seed=1):

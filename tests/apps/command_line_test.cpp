@@ -62,6 +62,15 @@ TEST_CASE("words that are no flags go to the positionals, behind -- all of them"
   CHECK(after({}).message == "expected FILE (a file to mix), found nothing in its place");
 }
 
+TEST_CASE("of two words the one that is missing is named") {
+  std::vector<std::string> from, to;
+  Usage usage;
+  usage.positionals = {{"IN", "a file", &from}, {"OUT", "a new file", &to}};
+  const auto parsed = parse_words({"a"}, usage, {});
+  REQUIRE_FALSE(parsed);
+  CHECK(to_string(parsed.error()) == "expected OUT (a new file), found nothing in its place");
+}
+
 TEST_CASE("a word too many is refused by name") {
   CHECK(after({"1", "2", "3", "4", "5", "6", "7", "8", "9", "10"}).message ==
         "expected no further word, found 10");

@@ -97,6 +97,25 @@ TEST_CASE("the progress line gives rate and time left, cut to the terminal") {
   CHECK(progress_line("reading", 250'000'000, 1'000'000'000, 2.0, 12) == "reading  25 ");
 }
 
+TEST_CASE("long lines are broken on a terminal, below the second column, and nowhere else") {
+  const std::string red = "\x1b[31mthree\x1b[0m";
+  CHECK(broken("  space  one two " + red + " four\nshort\n", 30) ==
+        "  space  one two " + red + " four\nshort\n");
+  CHECK(broken("  space  one two " + red + " ± ± four five six\n", 30) ==
+        "  space  one two " + red + " ± ±\n         four five six\n");
+  CHECK(broken("one two three four five six seven\n", 24) ==
+        "one two three four five\n  six seven\n");
+  CHECK(broken("no_blank_at_all_in_this_one_long_word\n", 30) ==
+        "no_blank_at_all_in_this_one_long_word\n");
+  const auto job = [](Mix&, Call& call) -> Result<int> {
+    call.console.print("word " + std::string(60, 'x') + " " + std::string(60, 'y') + "\n");
+    return 0;
+  };
+  CHECK(Machine{.out_is_terminal = true}.run(job, {"mix", "a"}).out ==
+        "word " + std::string(60, 'x') + "\n  " + std::string(60, 'y') + "\n");
+  CHECK(Machine{}.run(job, {"mix", "a"}).out.find(" y") != std::string::npos);
+}
+
 TEST_CASE("Ctrl-C stops a job through its progress and leaves no half file") {
   const auto folder =
       std::filesystem::temp_directory_path() / ("kinalign_stop_" + std::to_string(::getpid()));

@@ -20,9 +20,11 @@ def made(manifest, out, *flags):
     words = ("align", manifest, "-o", out, "--force", "--json", *flags)
     done = kinalign(*words)
     said = law(done, words)
-    assert done.returncode == 0, said
-    assert kinalign("check", out).returncode == 0, "check finds fault with it"
-    return json.loads(done.stdout)
+    report = json.loads(done.stdout)["report"]
+    code = int(any(f["severity"] != "note" for f in report["findings"]))
+    assert done.returncode == code, said
+    assert kinalign("check", out).returncode == code, "check finds other faults with it"
+    return report
 
 
 def arrays(path):

@@ -50,11 +50,8 @@ inline Usage describe_mix(Mix& o) {
 using Job = std::function<Result<int>(Mix&, Call&)>;
 
 inline Verb mix_verb(const Job& job) {
-  Page page{"mix",
-            "mix files",
-            "",
-            {{"kinalign mix a.bvh", "mixes"}},
-            {"out", "force", "json", "jobs", "seed"}};
+  Page page{
+      "mix", "mix files", "", {{"kinalign mix a.bvh", "mixes"}}, {"out", "force", "json", "jobs"}};
   return {page, [job](const auto& fill, const auto& call) -> Result<int> {
             Mix options;
             Usage usage = describe_mix(options);

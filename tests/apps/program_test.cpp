@@ -146,7 +146,8 @@ TEST_CASE("every verb has a summary and an example that begins with the program'
   }
 }
 
-TEST_CASE("bash completes verbs, flags and choices of the program as built") {
+TEST_CASE(
+    "bash completes verbs, flags, choices and layouts of the program as built, files elsewhere") {
   const std::string program = KINALIGN_BINARY_DIR "/apps/kinalign/kinalign";
   const std::string script =
       "source <('" + program +
@@ -155,7 +156,10 @@ TEST_CASE("bash completes verbs, flags and choices of the program as built") {
       "}\n"
       "[ \"$(ask kinalign conf)\" = config ] && [ \"$(ask kinalign config --js)\" = --json ] &&\n"
       "[ \"$(ask kinalign config --color a)\" = 'auto always' ] &&\n"
-      "[ \"$(ask kinalign completion z)\" = zsh ]";
+      "[ \"$(ask kinalign completion z)\" = zsh ] &&\n"
+      "[ -z \"$(ask kinalign align --kinect '')$(ask kinalign align -o '')$(ask kinalign info "
+      "'')\" ] &&\n"
+      "[ \"$(ask kinalign align --kinect-layout keraal_k)\" = keraal_kinect ]";
   const FreshFolder folder;
   const std::string file = folder.write("ask.sh", script);
   CHECK(std::system(("bash '" + file + "'").c_str()) == 0);

@@ -20,7 +20,7 @@ def bvh(frames=4, step="0.0333333"):
 
 def kinect(rows=4, start=0):
     head = "time_ns" + "".join(f",{j}_x,{j}_y,{j}_z,{j}_state" for j in JOINTS)
-    body = "".join(f"{start + i * STEP}" + "".join(f",{-0.1 * j:.3f},1.{j},2.{i},2" for j in range(25))
+    body = "".join(f"{start + i * STEP}" + "".join(f",{0.1 * j - 1:.3f},1.{j},2.{i},2" for j in range(25))
                    + "\n" for i in range(rows))
     return f"{head}\n{body}"
 

@@ -1,30 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each verb takes, refuses, finds and answers with: exit codes, messages, JSON.
+"""What each verb finds and answers with: exit codes, lines, JSON.
 verbs_check.py BUILD_FOLDER [CASE...]"""
 import json
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-import h5py
-
 import samples
-from cases import case, demo, kinalign, law, main, refused
-
-
-def done_with(code, *words, **how):
-    """What a call said that ends with this exit code: stdout, stderr."""
-    done = kinalign(*words, **how)
-    said = law(done, words)
-    assert done.returncode == code, said
-    return done.stdout.decode(), done.stderr.decode()
-
-
-def wrong(*words, says, **how):
-    """Wrong use: exit code 2, and the first line."""
-    _, err = done_with(2, *words, **how)
-    first = err.splitlines()[0]
-    assert first == f"kinalign {words[0]}: {says}", f"{first}\nnot {says}"
+from cases import case, done_with, kinalign, main, parsed, refused
 
 
 def rows_dropped(path, rows):
@@ -33,97 +16,167 @@ def rows_dropped(path, rows):
     path.write_text("\n".join(l for i, l in enumerate(lines) if i not in rows) + "\n")
 
 
-@case
-def a_quick_flag_beside_a_manifest_is_refused_with_the_key_that_says_it(folder):
+def with_warning(folder):
+    """A recording with one row of the mocap cut short, which is a warning, and what makes a take of it."""
     manifest = samples.recording(folder)
-    begin = ("align", manifest, "-o", folder / "t.h5")
-    for flag, value, key in (("--mocap", "a.bvh", "file in [stream.mocap]"),
-                             ("--kinect", "k.csv", "file in [stream.kinect]"),
-                             ("--imu", "waist=w.csv", "files in [stream.imu]"),
-                             ("--points", "a=b.csv", "file in [stream.NAME]"),
-                             ("--kinect-layout", "kinect", "layout in [stream.kinect]"),
-                             ("--imu-layout", "imu", "layout in [stream.imu]"),
-                             ("--root-node", "waist", "root_node in [stream.imu]"),
-                             ("--start-ns", "0", "start_ns in [stream.mocap]"),
-                             ("--metres-per-unit", "1", "metres_per_unit in [stream.mocap]"),
-                             ("--up", "z", "up in [stream.mocap]"),
-                             ("--space", "none", "method in [space.kinect]"),
-                             ("--rotation-y-deg", "3", "rotation_y_deg in [space.kinect]"),
-                             ("--joint", "A=B", "joints in [space.kinect]")):
-        _, err = done_with(2, *begin, flag, value)
-        assert err.startswith(f"kinalign align: {flag}: expected {key} of "), err
-        assert "found a flag beside the manifest\n" in err, err
-    done_with(0, *begin, "--gap-ms", "50", "--rotations", "slerp", "--double", "--reference", "mocap")
+    text = (folder / "mocap.bvh").read_text().rstrip("\n")
+    (folder / "mocap.bvh").write_text(text[:text.rindex(" ")] + "\n")
+    return manifest
 
 
 @case
-def a_flag_without_the_file_it_is_for_is_refused(folder):
-    samples.recording(folder)
-    begin = ("align", "--mocap", folder / "mocap.bvh", "-o", folder / "t.h5")
-    for flag, value in (("--space", "paper"), ("--joint", "A=B"), ("--kinect-layout", "kinect")):
-        wrong(*begin, flag, value, says=f"{flag}: expected --kinect, which it is for, found none")
-    for flag, value in (("--imu-layout", "imu"), ("--root-node", "waist")):
-        wrong(*begin, flag, value, says=f"{flag}: expected --imu, which it is for, found none")
-    wrong(*begin, "--kinect", folder / "kinect.csv", "--rotation-y-deg", "3",
-          says="--rotation-y-deg: expected --space paper, which it is for, found --space fit")
+def what_was_done_with_a_warning_is_done_with_exit_code_1(folder):
+    manifest = with_warning(folder)
+    take = folder / "t.h5"
+    out, _ = done_with(1, "align", manifest, "-o", take)
+    assert "warning  " in out, out
+    out, _ = done_with(1, "check", take)
+    assert out.startswith("warning  mocap.bvh") and "incomplete last frame" in out, out
+    done_with(1, "check", manifest)
+    done_with(0, "rebuild", take, "--inputs", folder, "--verify")
+    done_with(1, "rebuild", take, "--inputs", folder, "-o", folder / "again.h5")
+    assert (folder / "again.h5").read_bytes() == take.read_bytes()
+    for out in ("o.npz", "o.bvh"):
+        said, _ = done_with(1, "convert", folder / "mocap.bvh", folder / out)
+        assert said.startswith(f"{folder / out}\nwarning  ") and (folder / out).exists(), said
+    said, _ = done_with(1, "convert", folder / "mocap.bvh", folder / "p.npz", "--json")
+    said = json.loads(said)
+    assert said["file"] == str(folder / "p.npz") and len(said["findings"]) == 2, said
 
 
 @case
-def a_flag_whose_value_is_no_pair_is_wrong_use(folder):
-    samples.recording(folder)
-    begin = ("align", "--mocap", folder / "mocap.bvh", "-o", folder / "t.h5")
-    wrong(*begin, "--imu", "w.csv", says="--imu: expected NODE=FILE, found 'w.csv'")
-    wrong(*begin, "--points", "w.csv", says="--points: expected NAME=FILE, found 'w.csv'")
-    wrong(*begin, "--kinect", "k.csv", "--joint", "A:B", says="--joint: expected KINECT=MOCAP, found 'A:B'")
-    wrong(*begin, "--points", "mocap=w.csv", says="--points: expected a name that no other stream has, found mocap")
-
-
-@case
-def a_file_of_another_kind_than_its_flag_is_named(folder):
-    samples.recording(folder)
-    k, i, m = folder / "kinect.csv", folder / "imu.csv", folder / "mocap.bvh"
-    for flags, naming in ((("--mocap", m, "--imu", f"waist={k}"),
-                           f"{k}: expected a file of nodes for --imu waist, found points, 25 joints"),
-                          (("--mocap", m, "--kinect", i),
-                           f"{i}: expected points for --kinect, found nodes, 1 node: orientation, "
-                           "acceleration with gravity, angular velocity"),
-                          (("--mocap", m, "--kinect", m),
-                           f"{m}: expected points for --kinect, found clip, 2 joints, 1 end site"),
-                          (("--mocap", i),
-                           f"{i}: expected a skeleton's file or points for --mocap, found nodes")):
-        refused("align", *flags, "-o", folder / "t.h5", naming=naming, out=folder / "t.h5")
-    done_with(0, "align", "--mocap", k, "--points", f"second={k}", "--imu", f"waist={i}", "-o", folder / "t.h5")
-
-
-@case
-def a_manifests_stream_may_have_any_name_and_two_kinds_of_one_name_are_told(folder):
+def notes_are_told_and_leave_exit_code_0(folder):
     manifest = samples.recording(folder)
-    text = '[stream.kinect]\nfile = "mocap.bvh"\nstart_ns = 0\n[stream.imu]\nfile = "kinect.csv"\n'
-    manifest.write_text(text)
-    done_with(0, "align", manifest, "-o", folder / "t.h5")
-    manifest.write_text(text.replace('file = "kinect.csv"', 'files = ["kinect.csv", "imu.csv"]'))
-    refused("align", manifest, "-o", folder / "u.h5", naming="expected streams with names that differ, found 'imu' "
-            "twice: kinect.csv (points) and imu.csv (nodes)", out=folder / "u.h5")
+    lines = (folder / "kinect.csv").read_text().splitlines()
+    (folder / "kinect.csv").write_text("\n".join([*lines, lines[-1]]) + "\n")
+    for words in (("check", folder / "kinect.csv"), ("align", manifest, "-o", folder / "t.h5")):
+        out, _ = done_with(0, *words)
+        assert "note  " in out, out
 
 
 @case
-def settings_say_what_the_manifest_leaves_open(folder):
+def check_refuses_a_manifest_as_align_does(folder):
     manifest = samples.recording(folder)
-    (folder / "kinalign.toml").write_text("[align]\ngap_ms = 600\nrotations = \"slerp\"\ndouble = true\n")
+    good = manifest.read_text()
+    for old, new, found in (('method = "paper"', 'method = "fit"\njoints = { SpineBase = "Hps" }',
+                             "expected a joint of 'mocap', found 'Hps'"),
+                            ("start_ns = 0", "start_ns = 9000000000", "expected streams that overlap in time"),
+                            ('file = "imu.csv"', 'file = "imu.csv"\nroot_node = "waste"',
+                             "expected a node of 'imu' as root_node, found 'waste'")):
+        assert old in good
+        manifest.write_text(good.replace(old, new))
+        refused("align", manifest, "-o", folder / "t.h5", naming=found.split(",")[0])
+        out, _ = done_with(1, "check", manifest)
+        assert out.startswith(f"error    {manifest}: {found}"), out
+        assert "kinalign align makes no take of it" in out, out
 
-    def in_force(*flags, **env):
-        done_with(0, "align", manifest, "-o", folder / "t.h5", "--force", *flags, cwd=folder, env=env)
-        with h5py.File(folder / "t.h5") as take:
-            said = json.loads(take["parameters_json"][()].decode().rstrip("\0"))["align"]
-        return said["gap_ms"], said["rotations"], said["double"], said["reference"]
 
-    assert in_force() == (600, "slerp", True, "mocap")
-    manifest.write_text(samples.manifest().replace("[align]\n", "[align]\ngap_ms = 70\n"))
-    assert in_force() == (70, "slerp", True, "mocap")
-    assert in_force(KINALIGN_GAP_MS="80") == (80, "slerp", True, "mocap")
-    assert in_force("--gap-ms", "90", KINALIGN_GAP_MS="80") == (90, "slerp", True, "mocap")
-    (folder / "kinalign.toml").write_text("[align]\nreference = \"kinect\"\n")
-    assert in_force()[3] == "mocap"
+@case
+def one_unusable_file_among_many_is_exit_code_3_and_the_others_are_told(folder):
+    samples.recording(folder)
+    done = kinalign("check", folder / "absent.bvh", folder / "mocap.bvh", "--json")
+    said = json.loads(done.stdout)
+    assert done.returncode == 3 and len(said["findings"]) == 1, done.stdout
+    done = kinalign("check", folder / "absent.bvh", with_warning(folder / "w"))
+    assert done.returncode == 3 and b"absent.bvh" in done.stdout and b"mocap.bvh" in done.stdout, done.stdout
+
+
+@case
+def a_rebuild_from_other_inputs_says_which_ones_and_writes(folder):
+    manifest = samples.recording(folder)
+    take, again = folder / "t.h5", folder / "again.h5"
+    done_with(0, "align", manifest, "-o", take)
+    (folder / "kinect.csv").write_text(samples.kinect(4).replace("1.3", "1.4", 1))
+    done = kinalign("rebuild", take, "--inputs", folder, "-o", again)
+    assert done.returncode == 1 and again.exists(), done.stderr
+    assert done.stderr.decode() == ("kinalign rebuild: warning: kinect.csv is not the file that the take was made "
+                                    "from\n"), done.stderr
+    done = kinalign("rebuild", take, "--inputs", folder, "-o", again, "--force", "--json")
+    assert json.loads(done.stdout)["changed_inputs"] == ["kinect.csv"] and done.returncode == 1, done.stdout
+
+
+@case
+def a_take_that_cannot_be_made_again_differs(folder):
+    manifest = samples.recording(folder)
+    take = folder / "t.h5"
+    done_with(0, "align", manifest, "-o", take)
+    verify = ("rebuild", take, "--inputs", folder, "--verify")
+    (folder / "kinect.csv").write_text(samples.kinect(4).replace("1.3,", "x,", 1))
+    out, _ = done_with(1, *verify)
+    assert out.startswith(f"{take}: differs: cannot be made again: {folder}/kinect.csv:2: expected "), out
+    (folder / "kinect.csv").write_text(samples.kinect(4, 9_000_000_000))
+    out, _ = done_with(1, *verify)
+    assert "differs: cannot be made again: expected streams that overlap" in out, out
+    assert "kinect.csv is not the file that the take was made from" in out, out
+    said = json.loads(done_with(1, *verify, "--json")[0])
+    assert said["same"] is False and "overlap" in said["failure"], said
+    (folder / "kinect.csv").unlink()
+    refused(*verify, naming=folder / "kinect.csv")
+
+
+@case
+def every_verbs_JSON_is_one_object_of_its_schema_in_which_no_name_stands_twice(folder):
+    manifest = samples.recording(folder)
+    take = folder / "t.h5"
+    for words in (("align", manifest, "-o", take), ("info", folder / "mocap.bvh"), ("info", manifest),
+                  ("info", take), ("check", take, manifest), ("convert", take, folder / "t.npz"),
+                  ("convert", folder / "imu.csv", folder / "i.npz"),
+                  ("rebuild", take, "--inputs", folder, "--verify"),
+                  ("rebuild", take, "--inputs", folder, "-o", folder / "u.h5"), ("config",)):
+        out, _ = done_with(0, *words, "--json")
+        said = parsed(out)
+        assert list(said)[0] == "schema" and said["schema"] == f"kinalign.{words[0]}/1", out[:200]
+        if words[0] == "align":
+            assert said["report"]["schema"] == "kinalign.report/1" and said["report"]["frames"] == 4, out
+
+
+@case
+def verbose_lists_names_and_says_what_each_file_was_read_as(folder):
+    manifest = samples.recording(folder)
+    take = folder / "t.h5"
+    done = kinalign("align", manifest, "-o", take, "-v")
+    assert done.stderr.decode().splitlines() == [
+        "mocap.bvh: read as clip, 2 joints, 1 end site, 4 samples",
+        "kinect.csv: read as points, 25 joints, 4 samples",
+        "imu.csv: read as nodes, 1 node: orientation, acceleration with gravity, angular velocity, 4 samples",
+    ], done.stderr
+    for file in (folder / "mocap.bvh", take):
+        out, _ = done_with(0, "info", file, "-v")
+        assert "           Hips, Spine\n" in out, out
+        assert "Hips, Spine" not in done_with(0, "info", file)[0]
+
+
+@case
+def info_gives_first_and_last_stamp_and_the_mean_rate_where_it_is_another(folder):
+    samples.recording(folder)
+    out, _ = done_with(0, "info", folder / "imu.csv")
+    assert "           from 0 to 99999999 ns\n" in out and "on the whole" not in out, out
+    (folder / "kinect.csv").write_text(samples.kinect(40))
+    rows_dropped(folder / "kinect.csv", range(10, 30))
+    out, _ = done_with(0, "info", folder / "kinect.csv")
+    assert "at 30 Hz (14.62 on the whole); 25 joints" in out, out
+    (folder / "imus.sto").write_text(samples.sto())
+    out, _ = done_with(0, "info", folder / "imus.sto")
+    assert "  stream   imu: 2 samples" in out and "           torso_imu, pelvis_imu\n" in out, out
+
+
+@case
+def streams_that_miss_each_other_are_answered_with_the_start_that_joins_them(folder):
+    manifest = samples.recording(folder)
+    start = 1_790_000_000_000_000_000
+    (folder / "kinect.csv").write_text(samples.kinect(4, start))
+    begin = ("align", "--mocap", folder / "mocap.bvh", "--kinect", folder / "kinect.csv", "-o", folder / "t.h5")
+    _, err = done_with(3, *begin)
+    assert f"  --start-ns {start} puts its first frame where the others have begun\n" in err, err
+    done_with(0, *begin, "--start-ns", start, "--space", "none")
+    (folder / "imu.csv").write_text(samples.imu(4, start))
+    manifest.write_text(samples.manifest().replace("start_ns = 0", "start_ns = 5\nclick_latency_ms = 1"))
+    _, err = done_with(3, "align", manifest, "-o", folder / "u.h5")
+    assert "imu imu " in err, err
+    said = f"start_ns = {start - 1_000_000} in [stream.mocap]"
+    assert f"  {said} puts its first frame where the others have begun\n" in err, err
+    manifest.write_text(manifest.read_text().replace("start_ns = 5", f"start_ns = {start - 1_000_000}"))
+    done_with(0, "align", manifest, "-o", folder / "u.h5")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/inputs.h"
+
+#include "tests/faulty_files.h"
+#include "tests/folder.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+TEST_CASE("two files are compared byte by byte, however short the reads are") {
+  const FreshFolder folder;
+  std::string text(5000, 'a');
+  const std::string a = folder.write("a", text), b = folder.write("b", text);
+  text[4321] = 'b';
+  const std::string c = folder.write("c", text), longer = folder.write("d", text + "a");
+  for (const std::size_t first : {0, 1, 7}) {
+    CAPTURE(first);
+    FaultyFiles files;
+    files.first_read = first;
+    CHECK_FALSE(first_difference(files, a, b).value());
+    CHECK(first_difference(files, a, c).value() == 4321);
+    CHECK(first_difference(files, c, longer).value() == 5000);
+    CHECK(first_difference(files, longer, c).value() == 5000);
+  }
+}
+
+TEST_CASE("notes do not make an exit code of 1, warnings and errors do") {
+  CHECK(code_of({}) == 0);
+  CHECK(code_of({{Severity::note, {}, "", ""}}) == 0);
+  CHECK(code_of({{Severity::note, {}, "", ""}, {Severity::warning, {}, "", ""}}) == 1);
+  CHECK(code_of({{Severity::error, {}, "", ""}}) == 1);
+}
