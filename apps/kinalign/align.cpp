@@ -136,23 +136,28 @@ std::vector<std::string> advice(const Error& error) {
   return lines;
 }
 
+Result<Recording> open_files(const AlignVerb& o, const Manifest& manifest, const std::string& base,
+                             Call& call) {
+  Recording recording = KA_TRY(
+      open_recording(call.surroundings.files, manifest, base, call.console.progress(), call.jobs));
+  for (const RecordedStream& stream : recording.streams) {
+    call.console.detail(harmless(read_as(stream)));
+  }
+  if (o.manifest.empty()) KA_TRY(check_kinds(o.quick, recording));
+  return recording;
+}
+
 Result<int> run(AlignVerb& o, Call& call) {
   call.console.if_it_fails(advice);
   const Manifest manifest = KA_TRY(manifest_of(o, call));
   const std::string base = o.manifest.empty() ? "" : std::string(folder(o.manifest.front()));
-  const Progress progress = call.console.progress();
   const std::string out = call.common.dry_run ? "" : call.common.out;
   KA_TRY(keep_inputs(out, o.manifest));
   KA_TRY(keep_inputs(out, files_named(manifest, base)));
   for (const auto& use : {check_take_name(out), check_reference(o, manifest, call.sources)}) {
     if (!use) return call.console.refuse(use.error());
   }
-  const Recording recording =
-      KA_TRY(open_recording(call.surroundings.files, manifest, base, progress, call.jobs));
-  if (o.manifest.empty()) KA_TRY(check_kinds(o.quick, recording));
-  for (const RecordedStream& stream : recording.streams) {
-    call.console.detail(harmless(read_as(stream)));
-  }
+  const Recording recording = KA_TRY(open_files(o, manifest, base, call));
   call.console.if_it_fails([start = start_advice(o, recording, manifest)](const Error& error) {
     std::vector<std::string> lines = advice(error);
     if (!start.empty()) lines.push_back(start);

@@ -81,27 +81,31 @@ Result<void> check_flags(const Check& o, const std::string& path, const Recorded
   return used ? Result<void>{} : call.console.refuse(std::move(used).error());
 }
 
+Result<Findings> check_take(const Check& o, const std::string& path, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  KA_TRY(check_flags(o, path, nullptr, call));
+  const std::string report =
+      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
+  return report_findings(report, path);
+}
+
 Result<Findings> check_file(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
-  if (KA_TRY(is_take(files, path))) {
-    KA_TRY(check_flags(o, path, nullptr, call));
-    return report_findings(
-        KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); })));
-  }
+  if (KA_TRY(is_take(files, path))) return check_take(o, path, call);
   if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
   const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
   if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
   Findings findings;
+  const auto add = [&findings](const Findings& some) {
+    findings.insert(findings.end(), some.begin(), some.end());
+  };
   for (const RecordedStream& stream : input.recording.streams) {
     call.console.detail(harmless(read_as(stream)));
     KA_TRY(read_through(stream));
-    const Findings stamps = judge_stamps(stream);
-    findings.insert(findings.end(), stream.findings.begin(), stream.findings.end());
-    findings.insert(findings.end(), stamps.begin(), stamps.end());
+    add(stream.findings);
+    add(judge_stamps(stream));
   }
-  if (!input.manifest) return findings;
-  const Findings plan = check_plan(path, input);
-  findings.insert(findings.end(), plan.begin(), plan.end());
+  if (input.manifest) add(check_plan(path, input));
   return findings;
 }
 

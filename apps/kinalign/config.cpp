@@ -98,9 +98,10 @@ Verb config_verb() {
   return make_verb<Config>(
       {.name = "config",
        .summary = "print the settings in force and where each comes from",
-       .text = "A flag wins over KINALIGN_<NAME> in the environment, that over the nearest "
-               "kinalign.toml in the current folder or above it, that over "
-               "~/.config/kinalign/config.toml.",
+       .text =
+           "A flag wins over KINALIGN_<NAME> in the environment, that over what a manifest states, "
+           "that over the nearest kinalign.toml in the current folder or above it, that over "
+           "~/.config/kinalign/config.toml.",
        .examples = {{"kinalign config", "all settings of all verbs"},
                     {"kinalign config --json", "the same for programs"}},
        .common = {"json", "jobs"}},

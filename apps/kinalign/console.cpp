@@ -94,11 +94,12 @@ std::string broken_line(std::string_view line, std::size_t width) {
   return out;
 }
 
-std::string rate_text(double per_s) {
-  if (per_s >= 1e9) return fmt::format("{:.1f} G/s", per_s / 1e9);
-  if (per_s >= 1e6) return fmt::format("{:.1f} M/s", per_s / 1e6);
-  if (per_s >= 1e3) return fmt::format("{:.1f} k/s", per_s / 1e3);
-  return fmt::format("{:.0f} /s", per_s);
+/// Files are read by bytes, all else goes by frames.
+std::string rate_text(std::string_view what, double per_s) {
+  if (what != "reading") return fmt::format("{:.0f} frames/s", per_s);
+  if (per_s >= 1e9) return fmt::format("{:.1f} GB/s", per_s / 1e9);
+  if (per_s >= 1e6) return fmt::format("{:.1f} MB/s", per_s / 1e6);
+  return fmt::format("{:.1f} kB/s", per_s / 1e3);
 }
 
 std::string time_text(double s) {
@@ -117,7 +118,7 @@ std::string progress_line(std::string_view what, std::uint64_t done, std::uint64
   const auto all = static_cast<double>(total);
   if (total > 0) line += fmt::format("  {:.0f} %", 100 * std::min(1.0, doing / all));
   if (done > 0 && elapsed_s > 0.5) {
-    line += "  " + rate_text(doing / elapsed_s);
+    line += "  " + rate_text(what, doing / elapsed_s);
     if (total > done) line += fmt::format("  {} left", time_text(elapsed_s * (all / doing - 1)));
   }
   return line.substr(0, width);

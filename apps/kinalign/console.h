@@ -93,7 +93,7 @@ class Console {
   Clock::time_point began_{}, drawn_{};
 };
 
-/// "align  43 %  1.2 M/s  12 s left": of a job that has run for `elapsed_s`, cut to `width`.
+/// "reading  43 %  1.2 MB/s  12 s left": of a job that has run for `elapsed_s`, cut to `width`.
 std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
                           double elapsed_s, std::size_t width);
 

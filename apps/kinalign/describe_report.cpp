@@ -179,8 +179,11 @@ std::string name_lines(const std::vector<std::string>& names) {
   return text.empty() ? "" : std::string(indent, ' ') + wrapped(text, indent) + "\n";
 }
 
-Findings report_findings(const std::string& report) {
+Result<Findings> report_findings(const std::string& report, const std::string& path) {
   const Json json = Json::parse(report, nullptr, false);
+  if (json.is_discarded()) {
+    return Failure(Error{path, 0, "a report as JSON", "a text that is none"});
+  }
   Findings out;
   for (const Json& finding : list_at(json, "findings")) out.push_back(finding_of(finding));
   return out;

@@ -15,8 +15,8 @@ namespace kinalign {
 /// `json`: what `kinalign info take.h5 --json` prints.
 std::string take_text(const std::string& json, Names names);
 
-/// What a report of schema kinalign.report/1 says was found.
-Findings report_findings(const std::string& report);
+/// What a report of schema kinalign.report/1 says was found; `path` is its take's.
+Result<Findings> report_findings(const std::string& report, const std::string& path);
 
 /// Lines of names below a stream's.
 std::string name_lines(const std::vector<std::string>& names);

@@ -70,11 +70,15 @@ std::string man_page(const std::vector<Verb>& verbs) {
   text += ".SH FLAGS OF EVERY VERB\n" + items(common_fields(common, Page{}));
   text += item("-h, --help", "the verb's page");
   text +=
-      ".SH SETTINGS\nA flag wins over KINALIGN_<NAME> in the environment, that over the nearest "
-      "kinalign.toml in the\ncurrent folder or above it, that over\n.I "
+      ".SH SETTINGS\nA flag wins over KINALIGN_<NAME> in the environment, that over what a "
+      "manifest "
+      "states, that over\nthe nearest kinalign.toml in the current folder or above it, that "
+      "over\n.I "
       "~/.config/kinalign/config.toml.\n.B kinalign config\nprints what is in force and whence.\n"
       ".SH EXIT STATUS\n";
-  text += item("0", "done") + item("1", "findings") + item("2", "wrong use");
+  text += item("0", "done") +
+          item("1", "done, with warnings or errors found; rebuild: not the same") +
+          item("2", "wrong use");
   text += item("3", "input or output") + item("130", "stopped by Ctrl-C; no half file is left");
   return text;
 }

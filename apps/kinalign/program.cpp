@@ -122,7 +122,8 @@ int unknown_verb(const std::vector<Verb>& verbs, const std::string& word,
     return std::vector<std::string>{(near.empty() ? "" : near + " ") +
                                     "kinalign --help lists the verbs"};
   });
-  console.report(Error{"", 0, "a known verb", shown(word)});
+  const bool flag = word.starts_with('-');
+  console.report(Error{"", 0, flag ? "a verb before its flags" : "a known verb", shown(word)});
   return wrong_use;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Options that need not be typed each time. Flags win over KINALIGN_<NAME> in the environment, that
-// over the project's kinalign.toml (in the current folder or the nearest one above it), that over
-// the user's ~/.config/kinalign/config.toml.
+// over a manifest's [align], that over the project's kinalign.toml (in the current folder or the
+// nearest one above it), that over the user's ~/.config/kinalign/config.toml.
 #pragma once
 
 #include "apps/kinalign/verb.h"

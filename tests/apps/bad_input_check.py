@@ -92,7 +92,7 @@ def a_take_whose_report_is_no_JSON_is_refused(folder):
     take = folder / "t.h5"
     assert kinalign("align", samples.recording(folder), "-o", take).returncode == 0
     take.write_bytes(take.read_bytes().replace(b'{\n  "schema": "kinalign.report/1"', b'{\n  "schema": [kinalign.report/1"'))
-    for words in (("info", take), ("info", take, "--json")):
+    for words in (("info", take), ("info", take, "--json"), ("check", take)):
         refused(*words, naming=take)
 
 

@@ -91,8 +91,9 @@ TEST_CASE("the progress line stands on a terminal only and is gone when the job 
 
 TEST_CASE("the progress line gives rate and time left, cut to the terminal") {
   CHECK(progress_line("reading", 250'000'000, 1'000'000'000, 2.0, 80) ==
-        "reading  25 %  125.0 M/s  6 s left");
-  CHECK(progress_line("frames", 100, 36'000, 10.0, 80) == "frames  0 %  10 /s  1 h 00 min left");
+        "reading  25 %  125.0 MB/s  6 s left");
+  CHECK(progress_line("aligning", 100, 36'000, 10.0, 80) ==
+        "aligning  0 %  10 frames/s  1 h 00 min left");
   CHECK(progress_line("reading", 5, 0, 0.1, 80) == "reading");
   CHECK(progress_line("reading", 250'000'000, 1'000'000'000, 2.0, 12) == "reading  25 ");
 }

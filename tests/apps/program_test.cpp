@@ -43,6 +43,12 @@ TEST_CASE("an unknown verb is answered with the nearest known one") {
         "  did you mean mix? kinalign --help lists the verbs\n");
 }
 
+TEST_CASE("a flag in front of the verb is told where it belongs") {
+  CHECK(Machine{}
+            .run(nothing, {"--json", "mix"})
+            .err.starts_with("kinalign: expected a verb before its flags, found --json\n"));
+}
+
 TEST_CASE("without a verb the list of verbs goes to stderr") {
   const Outcome outcome = Machine{}.run(nothing, {});
   CHECK(outcome.code == 2);

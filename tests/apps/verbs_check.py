@@ -3,11 +3,13 @@
 verbs_check.py BUILD_FOLDER [CASE...]"""
 import json
 import pathlib
+import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import cases
 import samples
-from cases import case, done_with, kinalign, main, parsed, refused
+from cases import case, demo, done_with, kinalign, main, parsed, refused
 
 
 def rows_dropped(path, rows):
@@ -177,6 +179,26 @@ def streams_that_miss_each_other_are_answered_with_the_start_that_joins_them(fol
     assert f"  {said} puts its first frame where the others have begun\n" in err, err
     manifest.write_text(manifest.read_text().replace("start_ns = 5", f"start_ns = {start - 1_000_000}"))
     done_with(0, "align", manifest, "-o", folder / "u.h5")
+
+
+@case
+def every_example_of_a_help_page_runs_as_it_stands_beside_a_new_demo(folder):
+    demo(folder / "demo", seconds=2)
+    place = {"PATH": f"{cases.PROGRAM.parent}:/usr/bin:/bin", "HOME": str(folder)}
+    for verb in ("align", "info", "check", "convert", "rebuild", "config"):
+        page, _ = done_with(0, verb, "--help")
+        examples = [l.strip() for l in page.split(f"\n{verb}: ")[0].splitlines() if l.startswith("  kinalign ")]
+        assert examples, page
+        for command in examples:
+            done = subprocess.run(["bash", "-c", command], cwd=folder, env=place, capture_output=True, check=False)
+            assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+
+
+@case
+def warnings_are_coloured_by_check_as_by_align(folder):
+    (folder / "mocap.bvh").write_text(samples.bvh().replace("Frames: 4", "Frames: 5"))
+    done = kinalign("check", folder / "mocap.bvh", "--color", "always")
+    assert done.stdout.startswith(b"\x1b[33mwarning \x1b[0m "), done.stdout
 
 
 if __name__ == "__main__":
