@@ -119,8 +119,8 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     if (!s.step_ns || !apart || first > last || !told || (quick && s.name != "mocap")) continue;
     const std::int64_t latency = to_ns(own) - options_of(manifest, s.name).start_ns.value_or(0);
     const std::string where = quick ? "--start-ns {}" : "start_ns = {} in [stream." + s.name + "]";
-    return fmt::format(fmt::runtime(where), to_ns(first) - latency) +
-           " puts its first frame where the others have begun";
+    return fmt::format(fmt::runtime(where), to_ns(first) - latency) + " puts the first frame of " +
+           shown(s.name) + " where the others have begun";
   }
   return "";
 }
@@ -130,6 +130,7 @@ std::vector<std::string> advice(const Error& error) {
   if (error.file.empty()) {
     lines.push_back(
         "kinalign align --help shows the flags, docs/formats/recording_toml.md the keys");
+    if (const std::string names = name_advice(error); !names.empty()) lines.push_back(names);
   } else if (error.line > 0 && !error.file.ends_with(".toml")) {
     lines.push_back("kinalign check " + error.file + " lists all that is wrong with it");
   }

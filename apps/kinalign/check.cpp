@@ -71,7 +71,8 @@ Findings check_plan(const std::string& path, const Input& input) {
   if (planned) return {};
   Error error = planned.error();
   if (error.file.empty()) error.file = path;
-  return {{Severity::error, std::move(error), "kinalign align makes no take of it", ""}};
+  const std::string repair = name_advice(error);
+  return {{Severity::error, std::move(error), "kinalign align makes no take of it", repair}};
 }
 
 /// A flag that the file has no use for is wrong use.

@@ -248,7 +248,12 @@ void Console::erase_progress() {
 void Console::say(std::string_view line, Colour colour) {
   erase_progress();
   flush();
-  write_all(surroundings_.err, painted(colour_err_, colour, line) + "\n");
+  std::string text(line);
+  if (surroundings_.err_is_terminal && !line.empty()) {
+    text = broken(line, width_of(surroundings_.err));
+    text.pop_back();
+  }
+  write_all(surroundings_.err, painted(colour_err_, colour, text) + "\n");
 }
 
 void Console::flush() {

@@ -173,10 +173,10 @@ Finding finding_of(const Json& finding) {
 }  // namespace
 
 std::string name_lines(const std::vector<std::string>& names) {
-  constexpr std::size_t indent = 11;
+  constexpr std::size_t indent = 11, width = 80;
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + shown(name);
-  return text.empty() ? "" : std::string(indent, ' ') + wrapped(text, indent) + "\n";
+  return text.empty() ? "" : std::string(indent, ' ') + wrapped(text, indent, width) + "\n";
 }
 
 Result<Findings> report_findings(const std::string& report, const std::string& path) {

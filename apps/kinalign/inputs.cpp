@@ -118,6 +118,12 @@ Result<void> check_take_name(const std::string& out) {
   return {};
 }
 
+std::string name_advice(const Error& error) {
+  const bool name =
+      error.expected.starts_with("a joint of '") || error.expected.starts_with("a node of '");
+  return name ? "kinalign info FILE -v lists the names of joints and nodes" : "";
+}
+
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b) {
   InputFile one = KA_TRY(InputFile::open(files, a)), other = KA_TRY(InputFile::open(files, b));

@@ -58,6 +58,9 @@ int code_of(const Findings& findings);
 /// Fails where a take would get the ending of another format.
 Result<void> check_take_name(const std::string& out);
 
+/// Where the names stand, for an error about a joint or a node that is not there; else empty.
+std::string name_advice(const Error& error);
+
 /// Byte of the first difference; nothing where two files are the same.
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b);

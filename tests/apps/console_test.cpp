@@ -114,6 +114,11 @@ TEST_CASE("long lines are broken on a terminal, below the second column, and now
   };
   CHECK(Machine{.out_is_terminal = true}.run(job, {"mix", "a"}).out ==
         "word " + std::string(60, 'x') + "\n  " + std::string(60, 'y') + "\n");
+  const auto fails = [](Mix&, Call&) -> Result<int> {
+    return Failure(Error{"", 0, std::string(70, 'x'), "y"});
+  };
+  CHECK(Machine{.err_is_terminal = true}.run(fails, {"mix", "a"}).err ==
+        "\x1b[31mkinalign mix: expected\n  " + std::string(70, 'x') + ", found\n  y\x1b[0m\n");
   CHECK(Machine{}.run(job, {"mix", "a"}).out.find(" y") != std::string::npos);
 }
 

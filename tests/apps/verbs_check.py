@@ -71,6 +71,7 @@ def check_refuses_a_manifest_as_align_does(folder):
         out, _ = done_with(1, "check", manifest)
         assert out.startswith(f"error    {manifest}: {found}"), out
         assert "kinalign align makes no take of it" in out, out
+        assert ("kinalign info FILE -v lists" in out) == ("overlap" not in found), out
 
 
 @case
@@ -169,14 +170,14 @@ def streams_that_miss_each_other_are_answered_with_the_start_that_joins_them(fol
     (folder / "kinect.csv").write_text(samples.kinect(4, start))
     begin = ("align", "--mocap", folder / "mocap.bvh", "--kinect", folder / "kinect.csv", "-o", folder / "t.h5")
     _, err = done_with(3, *begin)
-    assert f"  --start-ns {start} puts its first frame where the others have begun\n" in err, err
+    assert f"  --start-ns {start} puts the first frame of mocap where the others have begun\n" in err, err
     done_with(0, *begin, "--start-ns", start, "--space", "none")
     (folder / "imu.csv").write_text(samples.imu(4, start))
     manifest.write_text(samples.manifest().replace("start_ns = 0", "start_ns = 5\nclick_latency_ms = 1"))
     _, err = done_with(3, "align", manifest, "-o", folder / "u.h5")
     assert "imu imu " in err, err
     said = f"start_ns = {start - 1_000_000} in [stream.mocap]"
-    assert f"  {said} puts its first frame where the others have begun\n" in err, err
+    assert f"  {said} puts the first frame of mocap where the others have begun\n" in err, err
     manifest.write_text(manifest.read_text().replace("start_ns = 5", f"start_ns = {start - 1_000_000}"))
     done_with(0, "align", manifest, "-o", folder / "u.h5")
 
