@@ -53,7 +53,7 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
   const Useless clip{"select", "rate_hz"}, points{"end_ns", "click_latency_ms"},
       nodes{"end_ns", "click_latency_ms", "metres_per_unit"};
   for (const auto& [name, source] : given) {
-    const auto is = [&name](std::string_view other) { return name == other; };
+    const auto is = [&name = name](std::string_view other) { return name == other; };
     if (source != Source::flag) continue;
     if (stream == nullptr) {
       StreamFlags mine;
