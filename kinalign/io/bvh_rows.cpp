@@ -46,6 +46,7 @@ Result<void> BvhRows::feed(std::string_view piece, Findings& findings) {
     const std::string word = std::move(carry_);
     carry_.clear();
     KA_TRY(parse(word.data(), word.data() + word.size(), findings));
+    if (ended_) return {};
   }
   std::size_t end = piece.size();
   while (end > 0 && !is_blank(piece[end - 1])) --end;

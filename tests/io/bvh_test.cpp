@@ -102,6 +102,21 @@ TEST_CASE("text behind the frames that were promised is left out with a finding"
         "walk.bvh:15: expected the end of the file, found 'MOTION'");
 }
 
+TEST_CASE("text behind the frames is left out wherever the file is cut into pieces") {
+  const std::string text =
+      one_joint + "MOTION\nFrames: 1\nFrame Time: 0.01\n0 90 0 0 0 0\n6m\n0\nm\n0\n";
+  for (std::size_t cut = 0; cut <= text.size(); ++cut) {
+    CAPTURE(cut);
+    const auto reader = make_bvh_reader({}, "walk.bvh");
+    ClipFrames frames;
+    REQUIRE(reader->feed(std::string_view(text).substr(0, cut), frames));
+    REQUIRE(reader->feed(std::string_view(text).substr(cut), frames));
+    REQUIRE(reader->finish(frames));
+    CHECK(frames.size() == 1);
+    CHECK(reader->findings.size() == 1);
+  }
+}
+
 TEST_CASE("a hierarchy that can't be understood is refused where it goes wrong") {
   CHECK(fault("") == "walk.bvh:1: expected HIERARCHY, found the end of the file");
   CHECK(fault("\x7f"
