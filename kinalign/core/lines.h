@@ -47,6 +47,8 @@ class LineSplitter {
   }
 
   std::int64_t number() const { return number_; }
+  /// The text so far ends within a line.
+  bool within_line() const { return !carry_.empty(); }
 
  private:
   template <class Use>

@@ -3,6 +3,7 @@
 
 #include "kinalign/core/numbers.h"
 #include "kinalign/io/bvh_words.h"
+#include "kinalign/io/named_lines.h"
 
 #include <fmt/format.h>
 
@@ -55,6 +56,7 @@ Result<void> BvhRows::feed(std::string_view piece, Findings& findings) {
 }
 
 Result<void> BvhRows::finish(Findings& findings) {
+  if (!carry_.empty() && !ended_) findings.push_back(unended_finding(head_.name, head_.line));
   KA_TRY(feed("\n", findings));  // ends the last number
   const std::size_t left = count_ % head_.row_size;
   if (left == 0) return {};

@@ -75,7 +75,8 @@ Findings judge_size(const Skeleton& skeleton, const BvhOptions& options, std::st
         {Severity::warning,
          Error{std::string(name), 0, fmt::format("a rest pose that stands along {}", "xyz"[up]),
                fmt::format("one that lies along {}", "xyz"[other])},
-         "the person is read as lying", fmt::format("--up {} turns it upright", "xyz"[other])});
+         "the person is read as lying",
+         fmt::format("--up {0} (up = \"{0}\" in a manifest) turns it upright", "xyz"[other])});
     up = other;
   }
   const double hip = -extent.low[up];
@@ -88,8 +89,12 @@ Findings judge_size(const Skeleton& skeleton, const BvhOptions& options, std::st
                fmt::format("{:.3g} m", hip)},
          same ? "no other usual unit fits better: a small or large person, or an odd rest pose"
               : "all lengths may be in another unit",
-         same ? "--metres-per-unit if the file's unit is known to be another"
-              : fmt::format("--metres-per-unit {} if the file is in {}", unit.metres, unit.name)});
+         same ? "--metres-per-unit (metres_per_unit in a manifest) if the file's unit is known to "
+                "be "
+                "another"
+              : fmt::format("--metres-per-unit {0} (metres_per_unit = {0} in a manifest) if the "
+                            "file is in {1}",
+                            unit.metres, unit.name)});
   }
   return findings;
 }

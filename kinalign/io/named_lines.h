@@ -11,6 +11,13 @@
 
 namespace kinalign {
 
+/// The file ends in the middle of a line that could be read.
+inline Finding unended_finding(const std::string& file, std::int64_t line) {
+  return {Severity::note,
+          Error{file, line, "a line end behind the last value", "the end of the file"},
+          "if the file was cut there, the last value is only the beginning of the true one", ""};
+}
+
 class NamedLines {
  public:
   explicit NamedLines(std::string_view file) : file_(file) {}
@@ -23,13 +30,17 @@ class NamedLines {
   }
 
   /// The file has ended. Where its last line has no line end and can't be used, `incomplete` says
-  /// so and the result is good: the writer was cut off.
+  /// so and the result is good: the writer was cut off. Where it can be used, a note says that its
+  /// last value may be half a value.
   template <class Use>
   Result<void> finish(Use&& use, Findings& incomplete) {
+    const bool unended = lines_.within_line();
     auto last = placed(lines_.finish([&](std::string_view line) { return use(unmarked(line)); }));
     if (!last) {
       incomplete.push_back({Severity::warning, std::move(last).error(),
                             "the last line is incomplete and was dropped", ""});
+    } else if (unended) {
+      incomplete.push_back(unended_finding(file_, lines_.number()));
     }
     return {};
   }
@@ -42,6 +53,7 @@ class NamedLines {
 
   /// An error of the line that was read last.
   Error error(std::string expected, std::string found) const {
+    if (found.empty()) found = "nothing";
     return {file_, lines_.number(), std::move(expected), std::move(found)};
   }
 

@@ -266,6 +266,12 @@ bool deeper_than(std::string_view json, int most) {
   return false;
 }
 
+/// A take from outside must not make us read what lies elsewhere.
+Result<void> check_path(const std::string& path) {
+  if (remembered_path(path) == path) return {};
+  return Failure(Error{"", 0, "a path below the folder of the inputs", "'" + shown(path) + "'"});
+}
+
 }  // namespace
 
 std::string parameters_json(const Manifest& manifest) {
@@ -289,7 +295,12 @@ Result<Manifest> parse_parameters_json(std::string_view json) {
     return Failure(
         Error{"", 0, "parameters as JSON", json.empty() ? "an empty text" : shown(json)});
   }
-  return manifest_from(parsed);
+  Manifest manifest = KA_TRY(manifest_from(parsed));
+  for (const StreamOptions& stream : manifest.streams) {
+    KA_TRY(check_path(stream.layout));
+    for (const StreamFile& file : stream.files) KA_TRY(check_path(file.path));
+  }
+  return manifest;
 }
 
 Manifest without_folders(Manifest manifest) {

@@ -39,6 +39,14 @@ Findings judged(const std::string& text, double metres_per_unit, bool z_up) {
   return file->findings;
 }
 
+const std::string same_unit =
+    "--metres-per-unit (metres_per_unit in a manifest) if the file's unit is known to be another";
+
+std::string other_unit(const std::string& metres, const std::string& name) {
+  return "--metres-per-unit " + metres + " (metres_per_unit = " + metres +
+         " in a manifest) if the file is in " + name;
+}
+
 }  // namespace
 
 TEST_CASE("hips that are not 0.6 to 1.3 m high are a finding that proposes the unit") {
@@ -49,14 +57,12 @@ TEST_CASE("hips that are not 0.6 to 1.3 m high are a finding that proposes the u
     std::string found, repair;
   };
   for (const auto& [hip, metres, found, repair] :
-       {Case{59, 0.01, "0.59 m", "--metres-per-unit if the file's unit is known to be another"},
-        Case{131, 0.01, "1.31 m", "--metres-per-unit if the file's unit is known to be another"},
-        Case{0.9, 0.01, "0.009 m", "--metres-per-unit 1 if the file is in metres"},
-        Case{900, 0.01, "9 m", "--metres-per-unit 0.001 if the file is in millimetres"},
-        Case{36, 0.01, "0.36 m", "--metres-per-unit 0.0254 if the file is in inches"},
-        Case{16, 0.01, "0.16 m",
-             "--metres-per-unit 0.056444 if the file is in CMU units of 5.64 cm"},
-        Case{90, 1.0, "90 m", "--metres-per-unit 0.01 if the file is in centimetres"}}) {
+       {Case{59, 0.01, "0.59 m", same_unit}, Case{131, 0.01, "1.31 m", same_unit},
+        Case{0.9, 0.01, "0.009 m", other_unit("1", "metres")},
+        Case{900, 0.01, "9 m", other_unit("0.001", "millimetres")},
+        Case{36, 0.01, "0.36 m", other_unit("0.0254", "inches")},
+        Case{16, 0.01, "0.16 m", other_unit("0.056444", "CMU units of 5.64 cm")},
+        Case{90, 1.0, "90 m", other_unit("0.01", "centimetres")}}) {
     CAPTURE(hip);
     const Findings findings = judged(person(hip, "y"), metres, false);
     REQUIRE(findings.size() == 1);
@@ -73,10 +79,10 @@ TEST_CASE("a rest pose that lies is a finding that proposes the other axis, eith
   REQUIRE(z_as_y.size() == 1);  // and no unit: it is judged along the axis the person stands on
   CHECK(to_string(z_as_y[0].what) ==
         "p.bvh: expected a rest pose that stands along y, found one that lies along z");
-  CHECK(z_as_y[0].repair == "--up z turns it upright");
+  CHECK(z_as_y[0].repair == "--up z (up = \"z\" in a manifest) turns it upright");
   const Findings y_as_z = judged(person(90, "y"), 0.01, true);
   REQUIRE(y_as_z.size() == 1);
-  CHECK(y_as_z[0].repair == "--up y turns it upright");
+  CHECK(y_as_z[0].repair == "--up y (up = \"y\" in a manifest) turns it upright");
   CHECK(judged(person(90, "z"), 0.01, true).empty());
   CHECK(judged(person(900, "z"), 0.01, false).size() == 2);
 }
