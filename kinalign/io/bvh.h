@@ -96,7 +96,7 @@ class BvhPoser {
 /// A reader in pieces (reader.h). Values are counted, not lines: a wrong frame count or an
 /// incomplete last frame is a finding. But where the first frames stand on a line each, a line
 /// that shifts the following frames is an error, not a wrapped row.
-std::unique_ptr<ClipReader> make_bvh_reader(const BvhOptions& options, std::string name);
+std::unique_ptr<ClipReader> make_bvh_reader(const BvhOptions& options, const std::string& name);
 
 /// Reads a whole file. `name` appears in messages only. Memory goes by the values present.
 Result<BvhFile> read_bvh(std::string_view text, std::string_view name, const BvhOptions& options);

@@ -16,6 +16,7 @@ class BvhReader final : public ClipReader {
         values_(name, [this](const BvhHierarchy& h) { begin(h); }) {}
   BvhReader(const BvhReader&) = delete;  // values_ knows where it lies
   BvhReader& operator=(const BvhReader&) = delete;
+  ~BvhReader() override = default;
 
   Result<void> feed(std::string_view piece, ClipFrames& out) override {
     KA_TRY(values_.feed(piece, findings));
@@ -65,7 +66,7 @@ class BvhReader final : public ClipReader {
 
 }  // namespace
 
-std::unique_ptr<ClipReader> make_bvh_reader(const BvhOptions& options, std::string name) {
+std::unique_ptr<ClipReader> make_bvh_reader(const BvhOptions& options, const std::string& name) {
   return std::make_unique<BvhReader>(options, name);
 }
 
