@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files: read in pieces, written beside and moved into place. All system calls go through
-// FileSystem, so that a test can make any one of them fail.
+// Files: read in pieces, written beside and moved into place. Every call that opens, reads, writes,
+// syncs or places a file goes through FileSystem, so that a test can make any one of them fail;
+// questions about a file (fstat, lstat) do not.
 #pragma once
 
 #include "kinalign/core/error.h"
