@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """clang-tidy on the files of kinalign/ and apps/ that are not as they were when they passed.
 
-A file has passed as it stands when <BUILD>/../tidy/ holds a stamp of its text, of every header of
-ours that it reaches, and of .clang-tidy. So an unchanged tree costs nothing, and after a commit that
+A file has passed as it stands when <BUILD>/../tidy/ holds a stamp of its code (comments do not count,
+but for NOLINT), of every header of ours that it reaches, and of .clang-tidy. So an unchanged tree costs nothing, and after a commit that
 passed only what changed since then is looked at. A fresh clone has no stamps: with --changed the
 commit before HEAD is taken to have passed, without it every file is looked at.
 Usage: tidy.py BUILD [--jobs N] [--changed]
@@ -18,6 +18,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
+COMMENT = re.compile(r"//(?!.*NOLINT).*")
 
 
 def reached(path, seen):
@@ -34,7 +35,8 @@ def stamp(path):
     """Changes when anything changes that clang-tidy sees of ours."""
     digest = hashlib.sha256((ROOT / ".clang-tidy").read_bytes())
     for part in sorted(reached(path, set())):
-        digest.update(str(part.relative_to(ROOT)).encode() + b"\0" + part.read_bytes())
+        code = " ".join(COMMENT.sub("", part.read_text()).split())
+        digest.update(f"{part.relative_to(ROOT)}\0{code}\0".encode())
     return digest.hexdigest()
 
 
