@@ -37,14 +37,14 @@ one() { # TARGET
   local corpus=build/fuzz/corpus/$1 seeds=build/fuzz/seeds/$1 found=build/fuzz/finds/$1 log=build/fuzz/$1.log
   rm -rf "$seeds" && mkdir -p "$corpus" "$seeds" "$found"
   seeds "$1" "$seeds"
-  local TIMEFORMAT=%U left=$((minutes * 60)) executions=0 cpu=0 spent finds
+  local TIMEFORMAT='%U %S' left=$((minutes * 60)) executions=0 cpu=0 spent finds
   : >"$log"
   while ((left > 0)); do
     { time "build/fuzz/fuzz/$1" -max_total_time="$left" -timeout=20 -rss_limit_mb=3072 -max_len=65536 \
       -print_final_stats=1 -artifact_prefix="$found/" "$corpus" "$seeds" >"$log.run" 2>&1; } 2>"$log.time" || left=0
     cat "$log.run" >>"$log"
-    spent=$(cut -d. -f1 "$log.time")
-    cpu=$((cpu + spent)) left=$((left - spent - 1))
+    spent=$(awk '{print int($1 + $2)}' "$log.time")
+    cpu=$((cpu + spent)) left=$((left - spent))
     executions=$((executions + $(sed -n 's/^stat::number_of_executed_units: *//p' "$log.run" | tail -1)))
   done
   rm -f "$log.run" "$log.time"

@@ -138,9 +138,8 @@ Result<Findings> convert_take(const Job& job) {
     if (job.to.ends_with(".npz")) {
       KA_TRY(take_to_npz(job));
     } else {
-      findings = KA_TRY(put_bvh(job, [&job](const TextSink& sink) {
-        return take_to_bvh(job.files, job.from, sink);
-      }));
+      findings = KA_TRY(put_bvh(
+          job, [&job](const TextSink& sink) { return take_to_bvh(job.files, job.from, sink); }));
     }
     return "{\"findings\": " + findings_json(findings) + "}";
   };

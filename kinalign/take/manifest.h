@@ -53,8 +53,7 @@ struct SpaceOptions {
   double magnification = 1.0;       // paper: m
   std::vector<double> rotation;     // given: w,x,y,z
   std::vector<double> translation;  // given: m
-  std::map<std::string, std::string>
-      joints;  // this stream's joint -> the other's
+  std::map<std::string, std::string> joints;           // this stream's joint -> the other's
   std::string root = "SpineBase", onto_root = "Hips";  // paper: the joints that are put together
 };
 
