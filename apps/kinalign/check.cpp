@@ -97,16 +97,13 @@ Result<Findings> check_file(const Check& o, const std::string& path, Call& call)
   const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
   if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
   Findings findings;
-  const auto add = [&findings](const Findings& some) {
-    findings.insert(findings.end(), some.begin(), some.end());
-  };
   for (const RecordedStream& stream : input.recording.streams) {
     call.console.detail(harmless(read_as(stream)));
     KA_TRY(read_through(stream));
-    add(stream.findings);
-    add(judge_stamps(stream));
+    append(findings, stream.findings);
+    append(findings, judge_stamps(stream));
   }
-  if (input.manifest) add(check_plan(path, input));
+  if (input.manifest) append(findings, check_plan(path, input));
   return findings;
 }
 
@@ -116,7 +113,7 @@ Result<int> run(Check& o, Call& call) {
   for (const std::string& path : o.files) {
     auto found = check_file(o, path, call);
     if (found) {
-      all.insert(all.end(), found->begin(), found->end());
+      append(all, *found);
     } else if (o.files.size() == 1 || call.console.refused() || interrupted()) {
       return Failure(std::move(found).error());
     } else {  // one file that can't be read must not hide what is wrong with the others

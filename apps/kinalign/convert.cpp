@@ -5,11 +5,11 @@
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/align/own_rows.h"
 #include "kinalign/io/bvh_copy.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_npz.h"
-#include "kinalign/motion/kinematics.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -53,21 +53,10 @@ struct Job {
 
 /// Rows of a stream as a take would hold them.
 ClipRows rows_of(const ClipInput& input, ClipFrames& block) {
-  ClipRows rows;
-  rows.positions.resize(block.size() * input.skeleton.joints() * 3);
-  forward_kinematics(input.skeleton, block, rows.positions);
-  rows.local_positions = std::move(block.local_positions);
-  rows.local_rotations = std::move(block.local_rotations);
-  return rows;
+  return own_rows(input.skeleton, std::move(block));
 }
 
-PointRows rows_of(const PointInput&, PointFrames& block) {
-  PointRows rows;
-  rows.positions = std::move(block.positions);
-  for (const Tracking state : block.state) rows.valid.push_back(state != Tracking::missing ? 1 : 0);
-  rows.state = std::move(block.state);
-  return rows;
-}
+PointRows rows_of(const PointInput&, PointFrames& block) { return own_rows(std::move(block)); }
 
 ImuRows rows_of(const ImuInput&, ImuSamples& block) {
   return {std::move(block.orientation),

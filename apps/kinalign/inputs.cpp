@@ -8,6 +8,7 @@
 #include "kinalign/core/files.h"
 #include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/remembered_path.h"
 
 #include <algorithm>
 #include <array>
@@ -154,9 +155,7 @@ Result<void> keep_inputs(const std::string& out, const std::vector<std::string>&
 
 std::vector<std::string> files_named(const Manifest& manifest, const std::string& folder) {
   std::vector<std::string> paths;
-  const auto add = [&](const std::string& path) {
-    paths.push_back(path.starts_with('/') ? path : folder + path);
-  };
+  const auto add = [&](const std::string& path) { paths.push_back(path_in(folder, path)); };
   for (const StreamOptions& stream : manifest.streams) {
     for (const StreamFile& file : stream.files) add(file.path);
     if (stream.layout.ends_with(".toml")) add(stream.layout);

@@ -63,7 +63,7 @@ constexpr std::size_t clip = 0, points = 1, nodes = 2;
 
 /// What a flag's file has to be.
 struct Wanted {
-  std::string flag;
+  std::string flag, path;
   std::vector<std::size_t> kinds;
   std::string expected;
 };
@@ -71,24 +71,15 @@ struct Wanted {
 /// In the order of quick_manifest's files.
 std::vector<Wanted> wanted_kinds(const QuickFlags& flags) {
   const std::vector<std::size_t> bodies{clip, points};
-  std::vector<Wanted> out{{"--mocap", bodies, "a skeleton's file or points"}};
-  if (!flags.kinect.empty()) out.push_back({"--kinect", {points}, "points"});
-  for (const std::string& one : flags.points) {
-    out.push_back({"--points " + one.substr(0, one.find('=')), bodies, "points"});
-  }
-  for (const std::string& one : flags.imu) {
-    out.push_back({"--imu " + one.substr(0, one.find('=')), {nodes}, "a file of nodes"});
-  }
-  return out;
-}
-
-/// The files in the same order.
-std::vector<std::string> paths_of(const QuickFlags& flags) {
-  std::vector<std::string> out{flags.mocap};
-  if (!flags.kinect.empty()) out.push_back(flags.kinect);
-  for (const auto* pairs : {&flags.points, &flags.imu}) {
-    for (const std::string& one : *pairs) out.push_back(one.substr(one.find('=') + 1));
-  }
+  std::vector<Wanted> out{{"--mocap", flags.mocap, bodies, "a skeleton's file or points"}};
+  if (!flags.kinect.empty()) out.push_back({"--kinect", flags.kinect, {points}, "points"});
+  const auto add = [&out](const std::string& flag, const std::string& pair,
+                          const std::vector<std::size_t>& kinds, const std::string& expected) {
+    const std::size_t equals = pair.find('=');
+    out.push_back({flag + " " + pair.substr(0, equals), pair.substr(equals + 1), kinds, expected});
+  };
+  for (const std::string& one : flags.points) add("--points", one, bodies, "points");
+  for (const std::string& one : flags.imu) add("--imu", one, {nodes}, "a file of nodes");
   return out;
 }
 
@@ -179,13 +170,12 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
 
 Result<void> check_kinds(const QuickFlags& flags, const Recording& recording) {
   const std::vector<Wanted> wanted = wanted_kinds(flags);
-  const std::vector<std::string> paths = paths_of(flags);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const RecordedStream& stream = recording.streams[i];
     const auto& kinds = wanted[i].kinds;
     if (std::find(kinds.begin(), kinds.end(), stream.data.index()) != kinds.end()) continue;
-    return Failure(
-        Error{paths[i], 0, wanted[i].expected + " for " + wanted[i].flag, contents_line(stream)});
+    return Failure(Error{wanted[i].path, 0, wanted[i].expected + " for " + wanted[i].flag,
+                         contents_line(stream)});
   }
   return {};
 }

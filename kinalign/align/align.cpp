@@ -17,8 +17,6 @@ namespace kinalign {
 
 namespace {
 
-void add(Findings& all, const Findings& more) { all.insert(all.end(), more.begin(), more.end()); }
-
 /// The groups that fits need: their own and the ones they are fitted onto.
 std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size_t groups) {
   std::vector<bool> out(groups, false);
@@ -72,16 +70,15 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
   AlignmentReport report;
   report.frames = plan.header.frames;
   report.reference = recording.streams[plan.reference].name;
-  const ResampleRule& grid = plan.streams[plan.reference].rule;
-  report.rate_hz = grid.step_ns > 0 ? 1e9 / static_cast<double>(grid.step_ns) : 0.0;
+  report.rate_hz = plan.streams[plan.reference].rule.rate_hz();
   for (const RecordedStream& s : recording.streams) {
     for (Finding finding : s.findings) {  // a take shall not depend on where its inputs lay
       finding.what.file = file_name(finding.what.file);
       report.findings.push_back(std::move(finding));
     }
-    add(report.findings, judge_stamps(s));
+    append(report.findings, judge_stamps(s));
   }
-  add(report.findings, judge_spaces(plan.header));
+  append(report.findings, judge_spaces(plan.header));
   return report;
 }
 
@@ -145,7 +142,7 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   }
   out.survey = s.survey;
   const ResampleRule& rule = job.plan.streams[i].rule;
-  out.rate_hz = rule.step_ns > 0 ? 1e9 / static_cast<double>(rule.step_ns) : 0.0;
+  out.rate_hz = rule.rate_hz();
   out.gap_ns = rule.gap_ns;
   out.gaps = gaps.gaps;
   out.gap_time_ns = gaps.time_ns;
@@ -168,11 +165,11 @@ void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
   for (std::size_t i = 0; i < job.recording.streams.size(); ++i) {
     const RecordedStream& stream = job.recording.streams[i];
     report.streams.push_back(report_stream(job, slabs, counts, i));
-    add(report.findings, judge_content(stream, slabs.count(i), report.rate_hz));
+    append(report.findings, judge_content(stream, slabs.count(i), report.rate_hz));
   }
   for (std::size_t k = 0; k < job.spaces.size(); ++k) {
     report.spaces.push_back(counts.residuals[k].report(job.spaces[k], job.plan.header));
-    add(report.findings, judge_residual(report.spaces.back()));
+    append(report.findings, judge_residual(report.spaces.back()));
   }
   std::stable_sort(report.findings.begin(), report.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });

@@ -27,9 +27,9 @@ struct CarriedContent {
 };
 
 /// Adds channels first, first + 1, first + 2 of the raw samples between the second row and the last
-/// but one: between rows stands the cubic
-/// through the four around, as nearly any user of the take would read it. A sine of a tenth of the
-/// grid's rate loses 0.3 % of its rms, of a quarter 8 %, of a third 22 %, of half all of it.
+/// but one: between rows stands the cubic through the four around, as nearly any user of the take
+/// would read it. A sine of a tenth of the grid's rate loses 0.3 % of its rms, of a quarter 8 %, of
+/// a third 22 %, of half all of it.
 void add_content(const Knots& raw, const Knots& rows, std::size_t first, CarriedContent& content);
 
 /// What the figures are of, for the message.

@@ -55,8 +55,7 @@ Findings judge_stamps(const RecordedStream& s) {
          many ? "the device's clock was set back: cut the file there, or stamp it by rate_hz"
               : "look at the device's clock if there are many"});
   }
-  const Findings bursts = judge_rate(s, file);
-  out.insert(out.end(), bursts.begin(), bursts.end());
+  append(out, judge_rate(s, file));
   return out;
 }
 
@@ -68,8 +67,7 @@ Findings judge_content(const RecordedStream& s, const ResampleCount& count, doub
   Findings out;
   const auto add = [&](const std::vector<CarriedContent>& contents, const std::string& quantity,
                        const std::vector<std::string>& parts, double noise) {
-    const Findings found = judge_content(contents, {s.name, quantity, parts, grid_hz, noise});
-    out.insert(out.end(), found.begin(), found.end());
+    append(out, judge_content(contents, {s.name, quantity, parts, grid_hz, noise}));
   };
   if (const auto* points = std::get_if<PointInput>(&s.data)) {
     add(count.positions, "position", points->joint_names, points_m);

@@ -29,6 +29,7 @@ struct ResampleRule {
   bool finer = false;                     // than the grid: what that can't carry is measured
 
   GapCount gap_count() const { return {gap_ns, begin_ns, end_ns}; }
+  double rate_hz() const { return step_ns > 0 ? 1e9 / static_cast<double>(step_ns) : 0.0; }
   Reach reach() const { return {knots_felt, gap_ns}; }
 };
 

@@ -2,8 +2,8 @@
 #include "kinalign/align/slabs.h"
 
 #include "kinalign/align/nodes.h"
+#include "kinalign/align/own_rows.h"
 #include "kinalign/core/parallel.h"
-#include "kinalign/motion/kinematics.h"
 
 #include <algorithm>
 
@@ -69,22 +69,6 @@ struct ReferenceSlab {
 using AnyRows = std::variant<std::monostate, ReferenceRows<ClipFrames>, ReferenceRows<PointFrames>,
                              PointResampler, ImuResampler, ClipResampler>;
 
-void fill_positions(const Skeleton& skeleton, ClipRows& rows, std::size_t count) {
-  ClipFrames frames;
-  frames.stamps.resize(count);
-  frames.local_positions.swap(rows.local_positions);
-  frames.local_rotations.swap(rows.local_rotations);
-  rows.positions.resize(count * skeleton.joints() * 3);
-  forward_kinematics(skeleton, frames, rows.positions);
-  rows.local_positions.swap(frames.local_positions);
-  rows.local_rotations.swap(frames.local_rotations);
-  if (rows.valid.empty()) return;
-  const std::size_t width = skeleton.joints() * 3;
-  for (std::size_t r = 0; r < count; ++r) {
-    if (rows.valid[r] == 0) std::fill_n(&rows.positions[r * width], width, 0.0);
-  }
-}
-
 }  // namespace
 
 struct SlabMaker::State {
@@ -142,18 +126,11 @@ void SlabMaker::State::put_reference(ReferenceSlab& reference, TakeSlab& slab) c
   const std::size_t group = plan->streams[plan->reference].group;
   for (const std::int64_t t : reference.grid) slab.stamps.push_back(utc_time(t));
   if (auto* clip = std::get_if<ClipFrames>(&reference.rows)) {
-    ClipRows& rows = slab.rows[group].emplace<ClipRows>();
-    rows.local_positions = std::move(clip->local_positions);
-    rows.local_rotations = std::move(clip->local_rotations);
-    fill_positions(std::get<ClipGroup>(plan->header.groups[group].kind).skeleton, rows,
-                   slab.stamps.size());
-    return;
+    const auto& clip_group = std::get<ClipGroup>(plan->header.groups[group].kind);
+    slab.rows[group] = own_rows(clip_group.skeleton, std::move(*clip));
+  } else {
+    slab.rows[group] = own_rows(std::move(std::get<PointFrames>(reference.rows)));
   }
-  auto& points = std::get<PointFrames>(reference.rows);
-  PointRows& rows = slab.rows[group].emplace<PointRows>();
-  rows.positions = std::move(points.positions);
-  for (const Tracking state : points.state) rows.valid.push_back(state != Tracking::missing);
-  rows.state = std::move(points.state);
 }
 
 Result<void> SlabMaker::State::other_rows(std::size_t i, std::span<const std::int64_t> grid,

@@ -17,11 +17,10 @@ const TimeModelPiece& piece_at(const TimeModel& model, Time stamp) {
   return behind == model.pieces.begin() ? model.pieces.front() : *(behind - 1);
 }
 
-/// later - earlier, ns, also where that is more than a Duration holds.
-double since(Time earlier, Time later) {
-  const auto ahead =
-      static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
-  return later < earlier ? -static_cast<double>(-ahead) : static_cast<double>(ahead);
+/// ns, as a double: a span of two stamps may be longer than a Duration.
+double since(Time begin, Time stamp) {
+  return stamp < begin ? -static_cast<double>(step_between(stamp, begin))
+                       : static_cast<double>(step_between(begin, stamp));
 }
 
 }  // namespace

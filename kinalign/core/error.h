@@ -44,6 +44,10 @@ struct Finding {
 
 using Findings = std::vector<Finding>;
 
+inline void append(Findings& all, const Findings& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
 /// "warning" as people and JSON read it.
 std::string_view to_string(Severity severity);
 

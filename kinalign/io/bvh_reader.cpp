@@ -42,8 +42,7 @@ class BvhReader final : public ClipReader {
  private:
   void begin(const BvhHierarchy& hierarchy) {
     skeleton_ = skeleton_of(hierarchy, options_, name_, findings);
-    const Findings size = judge_size(skeleton_, options_, name_);
-    findings.insert(findings.end(), size.begin(), size.end());
+    append(findings, judge_size(skeleton_, options_, name_));
     poser_.emplace(hierarchy, options_);
   }
 

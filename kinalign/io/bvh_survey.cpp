@@ -126,8 +126,7 @@ Result<BvhSurvey> survey_bvh(FileSystem& files, const std::string& path, const B
   } else {
     out.findings = std::move(counted.findings);
     out.skeleton = skeleton_of(counted.hierarchy, options, path, out.findings);
-    const Findings size = judge_size(out.skeleton, options, path);
-    out.findings.insert(out.findings.end(), size.begin(), size.end());
+    append(out.findings, judge_size(out.skeleton, options, path));
   }
   out.facts = std::move(counted.facts);
   out.step_ns = counted.hierarchy.frame_seconds * 1e9;

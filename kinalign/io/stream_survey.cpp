@@ -136,8 +136,7 @@ Result<RecordedStream> survey_bvh_file(const SurveyJob& job, const std::string& 
   out.findings = made.findings;
   out.data =
       input_of(made.skeleton, passes_of<ClipReader>(*job.files, path, job.version, format.make));
-  const Findings clicks = judge_clicks(*job.options, out);
-  out.findings.insert(out.findings.end(), clicks.begin(), clicks.end());
+  append(out.findings, judge_clicks(*job.options, out));
   return out;
 }
 

@@ -100,7 +100,7 @@ class UiPrmdReader final : public PointReader {
     KA_TRY(read_ ? lines_.finish(use, findings) : lines_.finish(use));
     if (!read_) return Failure(lines_.error("rows of 66 numbers", "the end of the file"));
     auto more = KA_TRY(count_angles_left());
-    findings.insert(findings.end(), angle_rows_.findings.begin(), angle_rows_.findings.end());
+    append(findings, angle_rows_.findings);
     report(without_angles_, lines_.file(), angles_file_);
     report(more, angles_file_, lines_.file());
     return {};

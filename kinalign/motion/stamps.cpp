@@ -16,11 +16,6 @@ std::size_t class_of(std::uint64_t step) {
   return (std::size_t{bits} << 6) + (fraction & 63);
 }
 
-/// later - earlier, also where that is more than a Duration holds.
-std::uint64_t step_between(Time earlier, Time later) {
-  return static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
-}
-
 constexpr std::uint64_t longest_first = 1'000'000'000;  // ns; a longer first step may be a slip
 constexpr std::uint64_t longest_ratio = 4;              // and a later one of so many usual steps
 

@@ -22,6 +22,11 @@ using NodeTime = std::chrono::time_point<NodeClock, Duration>;
 constexpr std::int64_t to_ns(Time t) { return t.time_since_epoch().count(); }
 constexpr Time utc_time(std::int64_t ns) { return Time{Duration{ns}}; }
 
+/// later - earlier, ns, also where that is more than a Duration holds.
+constexpr std::uint64_t step_between(Time earlier, Time later) {
+  return static_cast<std::uint64_t>(to_ns(later)) - static_cast<std::uint64_t>(to_ns(earlier));
+}
+
 /// For arithmetic: seconds from a nearby origin, never from 1970 (a double keeps 0.24 us there).
 constexpr double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
 

@@ -79,10 +79,8 @@ TEST_CASE("points of many slabs are one spline's, also of a joint that was seldo
     seen.push_back(stamps[t]);
     some.insert(some.end(), cell(1).begin(), cell(1).end());
   }
-  RecordedStream other = recorded("kinect", kinect);
-  std::get<PointInput>(other.data).passes = [&]() -> Result<Pass<PointFrames>> {
-    return in_blocks(kinect.frames, block_rows);
-  };
+  const RecordedStream other =
+      read_in_blocks(recorded("kinect", kinect), kinect.frames, block_rows);
   Recording recording;
   recording.streams = {grid(), other};
   Manifest manifest;
@@ -110,10 +108,7 @@ TEST_CASE("a clip of many slabs is one curve's: places to 1e-12 m, turns to 1e-9
       clip.frames.local_rotations.push_back(part);
     }
   }
-  RecordedStream other = recorded("mocap", clip);
-  std::get<ClipInput>(other.data).passes = [&]() -> Result<Pass<ClipFrames>> {
-    return in_blocks(clip.frames, block_rows);
-  };
+  const RecordedStream other = read_in_blocks(recorded("mocap", clip), clip.frames, block_rows);
   Recording recording;
   recording.streams = {grid(), other};
   const auto take = align(recording, {});
@@ -144,10 +139,7 @@ TEST_CASE("nodes of many slabs are one spline's across every loss shorter than t
     const auto a = vec3(node.samples.acceleration, t);
     values.insert(values.end(), a.begin(), a.end());
   }
-  RecordedStream other = recorded("imu", node);
-  std::get<ImuInput>(other.data).passes = [&]() -> Result<Pass<ImuSamples>> {
-    return in_blocks(node.samples, block_rows);
-  };
+  const RecordedStream other = read_in_blocks(recorded("imu", node), node.samples, block_rows);
   Recording recording;
   recording.streams = {grid(), other};
   Manifest manifest;
@@ -185,10 +177,8 @@ TEST_CASE("distances to raw samples are told up to ten seconds") {
   auto stamps = every(30 * ms, 100);
   for (const Time t : every(30 * ms, 100, 60'000 * ms)) stamps.push_back(t);
   PointStream kinect = points({"a"}, stamps, wander);
-  RecordedStream other = recorded("kinect", kinect);
-  std::get<PointInput>(other.data).passes = [&]() -> Result<Pass<PointFrames>> {
-    return in_blocks(kinect.frames, block_rows);
-  };
+  const RecordedStream other =
+      read_in_blocks(recorded("kinect", kinect), kinect.frames, block_rows);
   Recording recording;
   recording.streams = {recorded("points", points({"a"}, every(10 * ms, 6290), wander)), other};
   const auto take = align(recording, {});

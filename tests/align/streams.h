@@ -10,6 +10,8 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 namespace kinalign::test {
@@ -87,6 +89,19 @@ Pass<Frames> in_blocks(const Frames& all, std::size_t size) {
     at += count;
     return true;
   };
+}
+
+/// The stream read so in every pass; `all` must outlive it.
+template <class Frames>
+RecordedStream read_in_blocks(RecordedStream stream, const Frames& all, std::size_t size) {
+  std::visit(
+      [&](auto& input) {
+        if constexpr (std::is_same_v<decltype(input.passes), Passes<Frames>>) {
+          input.passes = [&all, size]() -> Result<Pass<Frames>> { return in_blocks(all, size); };
+        }
+      },
+      stream.data);
+  return stream;
 }
 
 }  // namespace kinalign::test

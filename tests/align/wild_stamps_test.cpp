@@ -90,10 +90,7 @@ TEST_CASE("a gap of the reference between two blocks is counted") {
   auto stamps = every(10 * ms, 2048);
   for (const Time t : every(10 * ms, 100, 30'000 * ms)) stamps.push_back(t);
   const PointStream all = points({"a"}, stamps, wander);
-  RecordedStream reference = recorded("points", all);
-  std::get<PointInput>(reference.data).passes = [&all]() -> Result<Pass<PointFrames>> {
-    return in_blocks(all.frames, 2048);
-  };
+  const RecordedStream reference = read_in_blocks(recorded("points", all), all.frames, 2048);
   Recording recording;
   recording.streams = {reference};
   const auto take = align(recording, {});

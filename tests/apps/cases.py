@@ -8,23 +8,15 @@ import resource
 import signal
 import subprocess
 import sys
-import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
+from run_cases import Skip, case, run_cases  # noqa: F401 - Skip and case are handed on
 
 BUILD = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/dev").resolve()
 PROGRAM = BUILD / "apps/kinalign/kinalign"
 DEMO = BUILD / "tools/kinalign_demo_recording"
 SANITIZED = BUILD.name in ("asan", "tsan")  # sanitizers reserve terabytes of addresses
 LONG = bool(os.environ.get("KINALIGN_LONG_TESTS"))  # the same sweeps, finer
-CASES = []
-
-
-def case(function):
-    CASES.append(function)
-    return function
-
-
-class Skip(Exception):
-    """What the case needs and this machine does not have."""
 
 
 def limits(memory, file_size):
@@ -108,25 +100,5 @@ def demo(folder, seconds=1, seed=1):
 
 
 def main():
-    log = os.environ.get("KINALIGN_TEST_LOG")
-    wanted = sys.argv[2:]
-    failed = False
     signal.signal(signal.SIGPIPE, signal.SIG_IGN)
-    for one in CASES:
-        name = one.__name__.replace("_", " ")
-        if wanted and one.__name__ not in wanted:
-            continue
-        with tempfile.TemporaryDirectory(prefix="kinalign apps ") as folder:
-            try:
-                one(pathlib.Path(folder))
-                outcome = "passed"
-            except Skip as reason:
-                outcome, name = "skipped", f"{name}\t{reason}"
-            except (AssertionError, subprocess.SubprocessError, OSError) as error:
-                outcome = "failed"
-                failed = True
-                print(f"{name}: {error}")
-        if log:
-            with open(log, "a", encoding="utf-8") as out:
-                out.write(f"{outcome}\t{name}\n")
-    return 1 if failed else 0
+    return run_cases("kinalign apps ", sys.argv[2:])

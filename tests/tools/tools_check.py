@@ -1,18 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tools' own cases, counted like the others: a sentence, a small tree, the exact outcome."""
-import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-CASES = []
-
-
-def case(function):
-    CASES.append(function)
-    return function
+sys.path.insert(0, str(ROOT / "tests"))
+from run_cases import case, run_cases
 
 
 def put(folder, name, text):
@@ -125,23 +119,4 @@ def dev_names_its_verbs_and_refuses_others(folder):
     assert code == 2 and "usage" in text
 
 
-def main():
-    log = os.environ.get("KINALIGN_TEST_LOG")
-    failed = False
-    for one in CASES:
-        name = one.__name__.replace("_", " ")
-        with tempfile.TemporaryDirectory(prefix="kinalign tools ") as folder:
-            try:
-                one(folder)
-                outcome = "passed"
-            except AssertionError as error:
-                outcome = "failed"
-                failed = True
-                print(f"{name}: {error}")
-        if log:
-            with open(log, "a", encoding="utf-8") as out:
-                out.write(f"{outcome}\t{name}\n")
-    return 1 if failed else 0
-
-
-sys.exit(main())
+sys.exit(run_cases("kinalign tools "))
