@@ -132,7 +132,7 @@ std::vector<std::string> advice(const Error& error) {
         "kinalign align --help shows the flags, docs/formats/recording_toml.md the keys");
     if (const std::string names = name_advice(error); !names.empty()) lines.push_back(names);
   } else if (error.line > 0 && !error.file.ends_with(".toml")) {
-    lines.push_back("kinalign check " + error.file + " lists all that is wrong with it");
+    lines.push_back("kinalign check " + error.file + " says what else is odd in it, up to there");
   }
   return lines;
 }
@@ -166,6 +166,7 @@ Result<int> run(AlignVerb& o, Call& call) {
   });
   const AlignmentReport report =
       KA_TRY(align_to_file(call, recording, manifest, {out, call.common.overwrite()}));
+  call.console.wrote(out);
   call.console.print(summary(report, out, call.console));
   call.console.print_json("{\"report\": " + report_json(report) + "}");
   return code_of(report.findings);

@@ -3,6 +3,8 @@
 
 #include "apps/kinalign/field_text.h"
 
+#include "kinalign/core/nearest_name.h"
+
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -198,7 +200,7 @@ Result<Parsed> parse_words(const std::vector<std::string>& words, const Usage& u
 }
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
-  const std::string near = nearest(word, known);
+  const std::string near = nearest_name(word, known);
   return near.empty() ? "" : "did you mean " + near + "?";
 }
 

@@ -210,6 +210,13 @@ Failure Console::refuse(Error error) {
   return Failure(std::move(error));
 }
 
+void Console::wrote(const std::string& path) {
+  if (path.empty()) return;
+  if_it_fails([path](const Error&) {
+    return std::vector<std::string>{harmless(path) + " is written all the same, and whole"};
+  });
+}
+
 void Console::report(const Error& error) {
   const std::string name = verb_.empty() ? "kinalign" : "kinalign " + verb_;
   complain(name + ": " + to_string(error));

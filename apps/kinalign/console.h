@@ -61,6 +61,8 @@ class Console {
 
   /// To be said if the verb fails; the last call counts.
   void if_it_fails(Advice advice) { advice_ = std::move(advice); }
+  /// Whatever fails from here on, the file is there. An empty path: there is none.
+  void wrote(const std::string& path);
 
   /// Wrong use that only the files show: the failure to return, with the exit code of wrong use.
   Failure refuse(Error error);

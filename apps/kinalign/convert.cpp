@@ -171,6 +171,7 @@ Result<int> run(Convert& o, Call& call) {
   } else {
     findings = KA_TRY(convert_stream(job, o, call));
   }
+  call.console.wrote(job.to);
   call.console.print(harmless(job.to) + "\n" + finding_lines(findings, call.console));
   call.console.print_json(json_text(nlohmann::ordered_json{
       {"written", true},

@@ -131,8 +131,8 @@ std::string stream_text(const Json& stream, const Json& report, Names names) {
   if (name == text_at(report, "reference")) return text + "           the reference\n";
   for (const Json& s : list_at(report, "streams")) {
     if (text_at(s, "stream") != name) continue;
-    const std::string node = text_at(s, "node");
-    text += "           " + (node.empty() ? "" : node + ": ") + quality_text(s);
+    const std::string nodes = fmt::format("{}", fmt::join(texts_at(s, "nodes"), ", "));
+    text += "           " + (nodes.empty() ? "" : nodes + ": ") + quality_text(s);
   }
   return text;
 }

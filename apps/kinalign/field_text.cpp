@@ -161,33 +161,6 @@ std::string flag_of(std::string_view name) {
 
 std::string variable_of(std::string_view name) { return "KINALIGN_" + capitals(name); }
 
-std::string nearest(std::string_view word, const std::vector<std::string>& known) {
-  std::string best;
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
-  for (const std::string& other : known) {
-    // Optimal string alignment: three rows of the table of distances between beginnings.
-    std::vector<std::size_t> before(other.size() + 1), row(other.size() + 1), two_before(row);
-    for (std::size_t j = 0; j <= other.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= word.size(); ++i) {
-      two_before.swap(before);
-      before.swap(row);
-      row[0] = i;
-      for (std::size_t j = 1; j <= other.size(); ++j) {
-        const std::size_t changed = before[j - 1] + (word[i - 1] == other[j - 1] ? 0 : 1);
-        row[j] = std::min({before[j] + 1, row[j - 1] + 1, changed});
-        const bool swapped =
-            i > 1 && j > 1 && word[i - 1] == other[j - 2] && word[i - 2] == other[j - 1];
-        if (swapped) row[j] = std::min(row[j], two_before[j - 2] + 1);
-      }
-    }
-    if (row[other.size()] < least) {
-      least = row[other.size()];
-      best = other;
-    }
-  }
-  return best;
-}
-
 std::string any_of(const std::vector<std::string>& words) {
   std::string text;
   std::size_t left = words.size();

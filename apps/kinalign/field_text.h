@@ -30,10 +30,6 @@ std::string flag_of(std::string_view name);
 /// "KINALIGN_GAP_MS" of gap_ms.
 std::string variable_of(std::string_view name);
 
-/// The known word nearest to `word`, by single letters put in, left out, changed or swapped; empty
-/// where none is near.
-std::string nearest(std::string_view word, const std::vector<std::string>& known);
-
 /// "a, b or c"
 std::string any_of(const std::vector<std::string>& words);
 

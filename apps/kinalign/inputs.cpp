@@ -51,7 +51,7 @@ Fields StreamFlags::fields() {
 Result<void> StreamFlags::check_use(const std::string& path, const RecordedStream* stream,
                                     const Sources& given) const {
   using Useless = std::vector<std::string_view>;
-  const Useless clip{"select", "rate_hz"}, points{"end_ns", "click_latency_ms"},
+  const Useless clip{"rate_hz"}, points{"end_ns", "click_latency_ms"},
       nodes{"end_ns", "click_latency_ms", "metres_per_unit"};
   for (const auto& [name, source] : given) {
     const auto is = [&name = name](std::string_view other) { return name == other; };

@@ -189,6 +189,7 @@ Result<int> write_again(const Recording& recording, const Origin& origin, Call& 
   }
   const AlignmentReport report =
       KA_TRY(align_to_file(call, recording, origin.parameters, {out, call.common.overwrite()}));
+  call.console.wrote(out);
   call.console.print(summary(report, out, call.console));
   call.console.print_json(json_text(nlohmann::ordered_json{
       {"written", true}, {"frames", report.frames}, {"changed_inputs", changed}}));

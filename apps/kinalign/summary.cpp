@@ -35,9 +35,7 @@ void add(Group& group, const StreamReport& s) {
   } else if (sum.worst_interval_ns) {
     sum.worst_interval_ns = std::max(*sum.worst_interval_ns, *s.worst_interval_ns);
   }
-  if (!s.node.empty()) {
-    group.nodes += 1 + static_cast<std::size_t>(std::count(s.node.begin(), s.node.end(), ','));
-  }
+  group.nodes += s.nodes.size();
   group.parts.push_back(s);
 }
 
@@ -70,7 +68,8 @@ template <class Measure>
 std::string worst_node(const Group& group, Measure measure) {
   const auto less = [measure](const auto& a, const auto& b) { return measure(a) < measure(b); };
   const auto [least, most] = std::minmax_element(group.parts.begin(), group.parts.end(), less);
-  return measure(*least) == measure(*most) ? "" : ", worst node: " + most->node;
+  if (measure(*least) == measure(*most)) return "";
+  return fmt::format(", worst node: {}", fmt::join(most->nodes, ", "));
 }
 
 std::string time_text(const Group& group, const Console& console) {

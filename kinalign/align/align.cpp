@@ -135,11 +135,7 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   const RecordedStream& s = job.recording.streams[i];
   StreamReport out;
   out.stream = s.name;
-  if (const auto* imu = std::get_if<ImuInput>(&s.data)) {
-    for (const std::string& node : imu->node_names) {
-      out.node += (out.node.empty() ? "" : ", ") + node;
-    }
-  }
+  if (const auto* imu = std::get_if<ImuInput>(&s.data)) out.nodes = imu->node_names;
   out.survey = s.survey;
   const ResampleRule& rule = job.plan.streams[i].rule;
   out.rate_hz = rule.rate_hz();

@@ -17,12 +17,14 @@ Findings judge_rate(const RecordedStream& s, const std::string& file) {
                mean = static_cast<double>(to_ns(survey.last) - to_ns(survey.first)) /
                       static_cast<double>(survey.kept() - 1);
   if (mean < 2.0 * median) return {};
+  constexpr double gap_steps = 3.0;  // as for a steady rate
   return {{Severity::warning,
            Error{file, 0, fmt::format("steps near their median of {:.3g} ms", 1e-6 * median),
                  fmt::format("a mean of {:.3g} ms", 1e-6 * mean)},
            "stretches longer than three median steps are taken for gaps",
-           "where samples come in bursts, say the device's rate_hz (or gap_ms); else many are "
-           "missing"}};
+           fmt::format("where samples come in bursts, say rate_hz = {:.3g} or gap_ms = {:.3g}; "
+                       "else many are missing",
+                       1e9 / mean, gap_steps * 1e-6 * mean)}};
 }
 
 }  // namespace

@@ -42,13 +42,21 @@ std::string spans(const Recording& recording) {
   return text;
 }
 
+/// What the reader of a stream without samples found wrong, where it found anything.
+Error no_samples(const RecordedStream& s) {
+  const auto worst =
+      std::max_element(s.findings.begin(), s.findings.end(),
+                       [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
+  if (worst != s.findings.end() && worst->severity == Severity::error) return worst->what;
+  return {s.files.empty() ? "" : s.files.front().name, 0,
+          "at least one sample for stream '" + s.name + "'", "none"};
+}
+
 Result<void> find_span(const Recording& recording, AlignPlan& plan) {
   plan.begin = Time::min();
   plan.end = Time::max();
   for (const RecordedStream& s : recording.streams) {
-    if (s.survey.kept() == 0) {
-      return Failure(Error{"", 0, "at least one sample in stream '" + s.name + "'", "none"});
-    }
+    if (s.survey.kept() == 0) return Failure(no_samples(s));
     plan.begin = std::max(plan.begin, first_of(s));
     plan.end = std::min(plan.end, last_of(s));
   }

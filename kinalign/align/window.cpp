@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/window.h"
 
-#include <tuple>
+#include "kinalign/motion/frame_arrays.h"
 
 namespace kinalign {
 
@@ -24,25 +24,6 @@ void drop(std::vector<T>& array, std::size_t rows, std::size_t count) {
 template <class T>
 void drop_back(std::vector<T>& array, std::size_t rows) {
   array.resize(array.size() - array.size() / rows);
-}
-
-/// The arrays of a block, each [rows] of something.
-template <class Frames>
-constexpr std::tuple<> arrays;
-template <>
-constexpr auto arrays<ClipFrames> = std::tuple(&ClipFrames::stamps, &ClipFrames::local_positions,
-                                               &ClipFrames::local_rotations);
-template <>
-constexpr auto arrays<PointFrames> = std::tuple(&PointFrames::stamps, &PointFrames::positions,
-                                                &PointFrames::state);
-template <>
-constexpr auto arrays<ImuSamples> = std::tuple(&ImuSamples::stamps, &ImuSamples::orientation,
-                                               &ImuSamples::acceleration,
-                                               &ImuSamples::angular_velocity, &ImuSamples::valid);
-
-template <class Frames, class Use>
-void for_each_array(Use&& use) {
-  std::apply([&use](auto... array) { (use(array), ...); }, arrays<Frames>);
 }
 
 }  // namespace

@@ -33,7 +33,9 @@ struct Format {
   std::string_view name;
   bool (*looks)(std::string_view head, std::string_view path);
   Result<AnyReader> (*make)(const Source& source);
-  Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;  // if any
+  std::string_view selects = "";  // the one name that `select` may have here
+  Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;      // if any
+  Result<BvhSurvey> (*survey)(const Source& source, const Progress& progress) = nullptr;  // if own
 };
 
 /// A format that is known whatever the file's name is.
@@ -42,8 +44,13 @@ bool by_content(std::string_view head, std::string_view) {
   return looks(head);
 }
 
+/// One of a pair of files. Angles, of the Kinect or of the optical system, would be wrong points if
+/// they were read by themselves: the reader refuses them.
 bool is_ui_prmd(std::string_view head, std::string_view path) {
-  return looks_like_ui_prmd_kinect(head) && named_as_ui_prmd_positions(path);
+  if (named_as_ui_prmd_positions(path)) return looks_like_ui_prmd_kinect(head);
+  return named_as_ui_prmd_angles(path) &&
+         (looks_like_ui_prmd_kinect(head) ||
+          matches(*parse_layout(*builtin_layout("ui_prmd_vicon"), "ui_prmd_vicon"), head));
 }
 
 Result<std::vector<std::string>> ui_prmd_files(const Source& source) {
@@ -61,6 +68,10 @@ constexpr std::array<Format, 6> formats{{
     {"bvh", by_content<looks_like_bvh>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_bvh_reader(bvh_options(s.options), s.file.path));
+     },
+     "", nullptr,
+     [](const Source& s, const Progress& progress) {
+       return survey_bvh(*s.files, s.file.path, bvh_options(s.options), progress);
      }},
     {"trc", by_content<looks_like_trc>,
      [](const Source& s) -> Result<AnyReader> {
@@ -77,8 +88,9 @@ constexpr std::array<Format, 6> formats{{
     {"ntu", by_content<looks_like_ntu_skeleton>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_ntu_skeleton_reader(s.options, s.file.path));
-     }},
-    {"ui_prmd_kinect", is_ui_prmd, make_ui_prmd, ui_prmd_files},
+     },
+     "body"},
+    {"ui_prmd_kinect", is_ui_prmd, make_ui_prmd, "", ui_prmd_files},
 }};
 
 Result<AnyReader> make_table_reader(const TableLayout& layout, const Source& source) {
@@ -93,11 +105,33 @@ FoundFormat table_format(TableLayout layout, const Source& source) {
   std::string name = layout.name;
   return {std::move(name),
           [layout = std::move(layout), source] { return make_table_reader(layout, source); },
+          {},
           {}};
 }
 
+/// A choice that a format does not know would be ignored in silence.
+Result<void> check_selection(const Format& format, const Source& source) {
+  for (const auto& [name, value] : source.options.select) {
+    if (name == format.selects) continue;
+    const std::string known(format.selects);
+    return Failure(Error{source.file.path, 0,
+                         known.empty()
+                             ? "no select for a file of format " + std::string(format.name)
+                             : "select by " + known,
+                         shown(name) + " = " + shown(value)});
+  }
+  return {};
+}
+
 Result<FoundFormat> program_format(const Format& format, const Source& source) {
-  FoundFormat out{std::string(format.name), [&format, source] { return format.make(source); }, {}};
+  KA_TRY(check_selection(format, source));
+  FoundFormat out{
+      std::string(format.name), [&format, source] { return format.make(source); }, {}, {}};
+  if (format.survey != nullptr) {
+    out.survey = [&format, source](const Progress& progress) {
+      return format.survey(source, progress);
+    };
+  }
   if (format.further_files == nullptr) return out;
   out.further_files = KA_TRY(format.further_files(source));
   std::vector<std::optional<FileVersion>> versions;
@@ -137,13 +171,6 @@ Result<FoundFormat> named_format(const Source& source) {
   return out;
 }
 
-/// A file of angles, of the Kinect or of the optical system, read by itself would be wrong points.
-bool is_ui_prmd_angles(std::string_view head, std::string_view path) {
-  if (!named_as_ui_prmd_angles(path)) return false;
-  return looks_like_ui_prmd_kinect(head) ||
-         matches(*parse_layout(*builtin_layout("ui_prmd_vicon"), "ui_prmd_vicon"), head);
-}
-
 }  // namespace
 
 std::vector<std::string_view> format_names() {
@@ -161,11 +188,6 @@ Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
   if (!options.layout.empty()) return named_format(source);
   for (const Format& format : formats) {
     if (format.looks(head, file.path)) return program_format(format, source);
-  }
-  if (is_ui_prmd_angles(head, file.path)) {
-    return Failure(Error{file.path, 0,
-                         "UI-PRMD's file of positions, ..._positions.txt; it leads to the angles",
-                         "the file of angles"});
   }
   std::optional<TableLayout> named;  // the first one that knows the columns, if not the rows
   for (const std::string_view name : builtin_layout_names()) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/io/bvh_survey.h"
 #include "kinalign/io/reader.h"
 #include "kinalign/take/manifest.h"
 
@@ -15,11 +17,14 @@ namespace kinalign {
 
 /// Makes a fresh reader for each pass over a file.
 using MakeReader = std::function<Result<AnyReader>()>;
+/// A first pass of a format's own, quicker than one that reads every row.
+using SurveyClip = std::function<Result<BvhSurvey>(const Progress& progress)>;
 
 struct FoundFormat {
   std::string name;  // "bvh", "trc", or a layout's
   MakeReader make;
   std::vector<std::string> further_files;  // that the reader opens itself
+  SurveyClip survey;                       // empty: rows are read
 };
 
 /// Decides by `options.layout` (a format's name, a built-in layout's, or the path of a layout) or,

@@ -57,7 +57,7 @@ std::string packed(const Error& error) {
 }
 
 /// Bytes of address space in use.
-rlim_t mapped_bytes() {
+[[maybe_unused]] rlim_t mapped_bytes() {
   unsigned long pages = 0;
   std::FILE* file = std::fopen("/proc/self/statm", "re");
   if (file == nullptr) return 0;

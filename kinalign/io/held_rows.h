@@ -3,31 +3,9 @@
 #pragma once
 
 #include "kinalign/io/row_stamps.h"
-#include "kinalign/motion/streams.h"
-
-#include <vector>
+#include "kinalign/motion/frame_arrays.h"
 
 namespace kinalign {
-
-template <class T>
-void move_behind(std::vector<T>& from, std::vector<T>& to) {
-  to.insert(to.end(), from.begin(), from.end());
-  from.clear();
-}
-
-inline void move_behind(PointFrames& from, PointFrames& to) {
-  move_behind(from.stamps, to.stamps);
-  move_behind(from.positions, to.positions);
-  move_behind(from.state, to.state);
-}
-
-inline void move_behind(ImuSamples& from, ImuSamples& to) {
-  move_behind(from.stamps, to.stamps);
-  move_behind(from.orientation, to.orientation);
-  move_behind(from.acceleration, to.acceleration);
-  move_behind(from.angular_velocity, to.angular_velocity);
-  move_behind(from.valid, to.valid);
-}
 
 template <class Frames>
 class HeldRows {
@@ -39,7 +17,11 @@ class HeldRows {
   void release(const RowStamps& stamps, Frames& out) {
     if (held_.stamps.empty() || !stamps.settled()) return;
     stamps.restamp(held_.stamps);
-    move_behind(held_, out);
+    for_each_array<Frames>([&](auto array) {
+      auto& to = out.*array;
+      to.insert(to.end(), (held_.*array).begin(), (held_.*array).end());
+    });
+    held_ = {};
   }
 
  private:

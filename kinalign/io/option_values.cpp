@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/option_values.h"
 
+#include "kinalign/core/nearest_name.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -92,20 +94,15 @@ struct Assigner {
   }
 };
 
-/// Letters to insert, remove or replace (Levenshtein).
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t corner = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = corner + (a[i] == b[j] ? 0 : 1);
-      corner = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, corner + 1});
-    }
+/// "a, b, c, ..."
+std::string first_of(const std::vector<std::string>& known) {
+  constexpr std::size_t most = 8;
+  std::string list;
+  for (std::size_t i = 0; i < known.size() && i < most; ++i) {
+    list += (i > 0 ? ", " : "") + shown(known[i]);
   }
-  return row.back();
+  if (known.size() > most) list += ", ...";
+  return known.empty() ? "none" : list;
 }
 
 }  // namespace
@@ -135,12 +132,9 @@ const Field* find_field(const Fields& fields, std::string_view name) {
 
 Error unknown_name(std::string_view name, const std::string& what,
                    const std::vector<std::string>& known) {
-  const std::string_view start = name.substr(0, 64);
-  const auto nearest = std::min_element(
-      known.begin(), known.end(),
-      [&](const auto& a, const auto& b) { return distance(start, a) < distance(start, b); });
-  const std::string hint = nearest == known.end() ? "" : " (nearest: " + *nearest + ")";
-  return {"", 0, what + hint, "\"" + shown(name) + "\""};
+  const std::string nearest = nearest_name(name, known);
+  const std::string hint = nearest.empty() ? "known: " + first_of(known) : "nearest: " + nearest;
+  return {"", 0, what + " (" + hint + ")", "\"" + shown(name) + "\""};
 }
 
 }  // namespace kinalign

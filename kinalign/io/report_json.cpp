@@ -22,7 +22,7 @@ Json survey_json(const StampSurvey& survey) {
 
 Json stream_json(const StreamReport& stream) {
   Json out = {{"stream", stream.stream}};
-  if (!stream.node.empty()) out["node"] = stream.node;
+  if (!stream.nodes.empty()) out["nodes"] = stream.nodes;
   out["stamps"] = survey_json(stream.survey);
   out["rate_hz"] = stream.rate_hz;
   out["gap_ns"] = stream.gap_ns;

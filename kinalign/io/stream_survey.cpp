@@ -2,9 +2,9 @@
 #include "kinalign/io/stream_survey.h"
 
 #include "kinalign/core/hash.h"
-#include "kinalign/io/bvh_survey.h"
 #include "kinalign/io/formats.h"
 #include "kinalign/io/unchanged.h"
+#include "kinalign/io/value_survey.h"
 
 #include <fmt/format.h>
 
@@ -66,13 +66,14 @@ Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const 
       };
 }
 
-/// The first pass: hashes the file and surveys its stamps, rows are thrown away.
+/// The first pass: hashes the file and surveys its stamps and sizes, rows are thrown away.
 template <class R>
 Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_view head,
                               const FoundFormat& format, std::unique_ptr<R> reader) {
   Sha256 hash;
   StampSurveyor surveyor;
   typename R::Frames block;
+  auto sizes = sizes_of(block);
   std::uint64_t bytes = 0;
   std::string_view piece = head;
   while (!piece.empty()) {
@@ -80,6 +81,7 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
     hash.update(piece);
     KA_TRY(reader->feed(piece, block));
     surveyor.add(block.stamps);
+    sizes.add(block);
     block = {};
     if (!go_on(*job.progress, "reading", bytes, file.size())) {
       return Failure(interruption(file.path()));
@@ -88,6 +90,7 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   }
   KA_TRY(reader->finish(block));
   surveyor.add(block.stamps);
+  sizes.add(block);
   RecordedStream out;
   out.name = job.options->name;
   out.data =
@@ -95,6 +98,7 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   out.survey = surveyor.result();
   out.files.push_back({std::string(file_name(file.path())), hash.hex(), bytes});
   out.findings = std::move(reader->findings);
+  append(out.findings, sizes.judge(*reader->header(), file.path()));
   return out;
 }
 
@@ -124,10 +128,9 @@ Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
            "the true step may differ from the file's, or frames are missing"}};
 }
 
-Result<RecordedStream> survey_bvh_file(const SurveyJob& job, const std::string& path,
-                                       const FoundFormat& format) {
-  const BvhSurvey made =
-      KA_TRY(survey_bvh(*job.files, path, bvh_options(*job.options), *job.progress));
+Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path,
+                                   const FoundFormat& format) {
+  const BvhSurvey made = KA_TRY(format.survey(*job.progress));
   RecordedStream out;
   out.name = job.options->name;
   out.survey = made.survey;
@@ -148,8 +151,8 @@ Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) 
   const FoundFormat format = KA_TRY(find_format(*job.files, *job.options, named, head));
   SurveyedFile out;
   out.paths = {named.path};
-  if (format.name == "bvh") {
-    out.stream = KA_TRY(survey_bvh_file(job, named.path, format));
+  if (format.survey) {
+    out.stream = KA_TRY(survey_clip(job, named.path, format));
   } else {
     AnyReader reader = KA_TRY(format.make());
     out.stream = KA_TRY(std::visit(

@@ -78,16 +78,12 @@ class Layout {
     KA_TRY(whole(group, "parents", {H5T_STD_I32LE, {joints}}, skeleton.parents.data()));
     KA_TRY(whole(group, "rest_offsets", {H5T_IEEE_F64LE, {joints, 3}}, skeleton.rest_offsets.data(),
                  "m"));
-    std::vector<int> parents;
-    std::vector<Vec3> offsets;
-    for (const EndSite& site : skeleton.end_sites) {
-      parents.push_back(site.parent);
-      offsets.push_back(site.offset);
-    }
-    const Handle sites = hdf5::create_group(group, "end_sites");
-    if (!sites.good()) return hdf5::failure(bytes_, can_hold);
-    KA_TRY(whole(sites.id(), "parents", {H5T_STD_I32LE, {parents.size()}}, parents.data()));
-    return whole(sites.id(), "offsets", {H5T_IEEE_F64LE, {offsets.size(), 3}}, offsets.data(), "m");
+    const EndSiteArrays sites = end_site_arrays(skeleton);
+    const std::size_t count = sites.parents.size();
+    const Handle made = hdf5::create_group(group, "end_sites");
+    if (!made.good()) return hdf5::failure(bytes_, can_hold);
+    KA_TRY(whole(made.id(), "parents", {H5T_STD_I32LE, {count}}, sites.parents.data()));
+    return whole(made.id(), "offsets", {H5T_IEEE_F64LE, {count, 3}}, sites.offsets.data(), "m");
   }
 
   /// A failed write, which HDF5 was not told of.

@@ -78,6 +78,15 @@ Result<void> check_names(const std::vector<std::string>& names, const std::strin
 
 }  // namespace
 
+EndSiteArrays end_site_arrays(const Skeleton& skeleton) {
+  EndSiteArrays out;
+  for (const EndSite& site : skeleton.end_sites) {
+    out.parents.push_back(site.parent);
+    out.offsets.push_back(site.offset);
+  }
+  return out;
+}
+
 std::size_t size_of(Stored stored) {
   switch (stored) {
     case Stored::float32:

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/take/take.h"
+#include "kinalign/take/row_arrays.h"
 
 #include <bit>
 #include <cstdint>
@@ -16,6 +16,13 @@
 #include <vector>
 
 namespace kinalign {
+
+/// A skeleton's end sites as they are stored.
+struct EndSiteArrays {
+  std::vector<int> parents;   // [E]
+  std::vector<Vec3> offsets;  // [E] m
+};
+EndSiteArrays end_site_arrays(const Skeleton& skeleton);
 
 /// How numbers are stored; computed are they in double.
 enum class Precision { single, full };
@@ -58,26 +65,10 @@ AnyRows rows_for(const TakeGroup& group);
 /// not), in the order of columns_of; also for the arrays that this stream leaves empty.
 template <class Rows, class Use>
 Result<void> for_each_array(Rows& rows, Use&& use) {
-  using Kind = std::remove_const_t<Rows>;
   Result<void> done;
-  const auto next = [&done, &use](std::string_view name, auto& values) {
-    if (done) done = use(name, values);
-  };
-  if constexpr (std::is_same_v<Kind, ImuRows>) {
-    next("orientation", rows.orientation);
-    next("acceleration", rows.acceleration);
-    next("angular_velocity", rows.angular_velocity);
-  } else {
-    next("positions", rows.positions);
-  }
-  if constexpr (std::is_same_v<Kind, ClipRows>) {
-    next("local_positions", rows.local_positions);
-    next("local_rotations", rows.local_rotations);
-  }
-  if constexpr (std::is_same_v<Kind, PointRows>) next("state", rows.state);
-  next("valid", rows.valid);
-  next("nearest_raw_ns", rows.distance.nearest_raw_ns);
-  next("time_interval_ns", rows.distance.time_interval_ns);
+  for_each_column<std::remove_const_t<Rows>>([&](std::string_view name, auto of) {
+    if (done) done = use(name, of(rows));
+  });
   return done;
 }
 

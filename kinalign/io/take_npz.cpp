@@ -2,6 +2,8 @@
 #include "kinalign/io/take_npz.h"
 
 #include <cassert>
+#include <set>
+#include <string_view>
 #include <utility>
 
 namespace kinalign {
@@ -27,6 +29,11 @@ struct Members {
     NpzTexts made = npz_texts(name, texts);
     add(std::move(made.array), made.bytes);
   }
+  void add_vectors(const std::string& name, const std::vector<Vec3>& vectors) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    const std::span numbers(reinterpret_cast<const double*>(vectors.data()), 3 * vectors.size());
+    add(npz_numbers(name, Stored::float64, {vectors.size(), 3}), bytes_of(numbers));
+  }
   template <class Value>
   void add_numbers(const std::string& name, Stored stored, std::vector<std::uint64_t> shape,
                    const std::vector<Value>& values) {
@@ -34,27 +41,15 @@ struct Members {
   }
 };
 
-std::vector<double> numbers_of(const std::vector<Vec3>& vectors) {
-  std::vector<double> out;
-  for (const Vec3& v : vectors) out.insert(out.end(), {v.x(), v.y(), v.z()});
-  return out;
-}
-
 void add_skeleton(Members& members, const std::string& prefix, const Skeleton& skeleton) {
   const std::uint64_t joints = skeleton.joints();
   members.add_texts(prefix + "joint_names", skeleton.joint_names);
   members.add_numbers(prefix + "parents", Stored::int32, {joints}, skeleton.parents);
-  members.add_numbers(prefix + "rest_offsets", Stored::float64, {joints, 3},
-                      numbers_of(skeleton.rest_offsets));
-  std::vector<int> parents;
-  std::vector<Vec3> offsets;
-  for (const EndSite& site : skeleton.end_sites) {
-    parents.push_back(site.parent);
-    offsets.push_back(site.offset);
-  }
-  members.add_numbers(prefix + "end_sites_parents", Stored::int32, {parents.size()}, parents);
-  members.add_numbers(prefix + "end_sites_offsets", Stored::float64, {offsets.size(), 3},
-                      numbers_of(offsets));
+  members.add_vectors(prefix + "rest_offsets", skeleton.rest_offsets);
+  const EndSiteArrays sites = end_site_arrays(skeleton);
+  members.add_numbers(prefix + "end_sites_parents", Stored::int32, {sites.parents.size()},
+                      sites.parents);
+  members.add_vectors(prefix + "end_sites_offsets", sites.offsets);
 }
 
 void add_names(Members& members, const std::string& prefix, const TakeGroup& group) {
@@ -65,6 +60,18 @@ void add_names(Members& members, const std::string& prefix, const TakeGroup& gro
   } else {
     members.add_texts(prefix + "node_names", std::get<ImuGroup>(group.kind).node_names);
   }
+}
+
+/// A stream's name and an array's may make the same member as another stream's.
+Result<void> check_names(const std::vector<NpzArray>& arrays, const std::string& path) {
+  std::set<std::string_view> seen;
+  for (const NpzArray& array : arrays) {
+    if (seen.insert(array.name).second) continue;
+    return Failure(Error{path, 0,
+                         "streams whose arrays can be told apart (STREAM_ARRAY.npy): rename one",
+                         "'" + shown(array.name) + "' twice"});
+  }
+  return {};
 }
 
 }  // namespace
@@ -90,6 +97,7 @@ Result<TakeNpzWriter> TakeNpzWriter::create(FileSystem& files, std::string path,
     }
     add_names(members, prefix, group);
   }
+  KA_TRY(check_names(members.arrays, path));
   TakeNpzWriter out(KA_TRY(NpzWriter::create(files, std::move(path), overwrite, members.arrays)),
                     std::move(groups));
   for (const Fixed& fixed : members.fixed) {

@@ -32,8 +32,8 @@ struct SpaceReport {
 };
 
 struct StreamReport {
-  std::string stream;  // the take's group
-  std::string node;    // of streams that share a group
+  std::string stream;              // the take's group
+  std::vector<std::string> nodes;  // of the group's, those that this stream measures
   StampSurvey survey;
   double rate_hz = 0.0;               // from the median step
   std::int64_t gap_ns = 0;            // longer stretches are gaps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/take/take.h"
+#include "kinalign/take/row_arrays.h"
 
 #include <type_traits>
 
@@ -18,20 +18,8 @@ void append_rows(TakeSlab& all, const TakeSlab& slab) {
     std::visit(
         [&](auto& to) {
           const auto& from = std::get<std::remove_reference_t<decltype(to)>>(slab.rows[g]);
-          join(to.valid, from.valid);
-          join(to.distance.nearest_raw_ns, from.distance.nearest_raw_ns);
-          join(to.distance.time_interval_ns, from.distance.time_interval_ns);
-          if constexpr (requires { to.positions; }) join(to.positions, from.positions);
-          if constexpr (requires { to.state; }) join(to.state, from.state);
-          if constexpr (requires { to.local_positions; }) {
-            join(to.local_positions, from.local_positions);
-            join(to.local_rotations, from.local_rotations);
-          }
-          if constexpr (requires { to.orientation; }) {
-            join(to.orientation, from.orientation);
-            join(to.acceleration, from.acceleration);
-            join(to.angular_velocity, from.angular_velocity);
-          }
+          for_each_column<std::remove_reference_t<decltype(to)>>(
+              [&](const char*, auto of) { join(of(to), of(from)); });
         },
         all.rows[g]);
   }

@@ -323,3 +323,19 @@ TEST_CASE("samples in bursts are a warning, and rate_hz tells the true period") 
   REQUIRE(told);
   CHECK(told->report.streams[1].invalid == 0);
 }
+
+TEST_CASE("a stream without samples is refused with what its reader found wrong, if it did") {
+  Recording recording =
+      two(points(joints, every(10 * ms, 100), wander), points(joints, every(30 * ms, 0), wander));
+  const auto refusal = [&recording] {
+    const auto take = align(recording, {});
+    return take ? "" : to_string(take.error());
+  };
+  CHECK(refusal() == "expected at least one sample for stream 'kinect', found none");
+  recording.streams[1].files = {{"kinect.csv", "", 0}};
+  CHECK(refusal() == "kinect.csv: expected at least one sample for stream 'kinect', found none");
+  recording.streams[1].findings = {
+      {Severity::error, Error{"k.csv", 0, "rows of body 3", "none"}, "the stream is empty", ""},
+      {Severity::note, Error{"k.csv", 0, "less", "more"}, "", ""}};
+  CHECK(refusal() == "k.csv: expected rows of body 3, found none");
+}

@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import cases
 import samples
 from cases import LONG, Skip, case, demo, kinalign, law, main, refused
 
@@ -255,6 +256,25 @@ def a_full_disk_is_said_and_leaves_nothing(folder):
         for room in (0, 1, 100, 300):
             refused(*words, folder / out, naming=folder / out, out=folder / out, file_size=room)
             assert list((folder / "o").iterdir()) == [], "a stray file"
+
+
+@case
+def of_what_is_written_a_full_stdout_takes_nothing_back(folder):
+    """FACE: what failed, what was left undone."""
+    manifest = samples.recording(folder / "r")
+    take, again, npz = (folder / name for name in ("t.h5", "again.h5", "t.npz"))
+    for words, out in ((("align", manifest, "-o", take), take),
+                       (("rebuild", take, "--inputs", folder / "r", "-o", again), again),
+                       (("convert", take, npz), npz)):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([str(cases.PROGRAM), *map(str, words)], stdout=full, check=False,
+                                  stderr=subprocess.PIPE, text=True)
+        assert done.returncode == 3, done
+        assert done.stderr == (
+            f"kinalign {words[0]}: standard output: expected room to write, found No space left on "
+            f"device\n  {out} is written all the same, and whole\n"), done.stderr
+        assert out.exists()
+    assert take.read_bytes() == again.read_bytes()
 
 
 @case

@@ -109,14 +109,6 @@ TEST_CASE("a flag without its value is refused, also in front of the next flag")
         "--gap-ms: expected a value behind it (NUMBER), found --double");
 }
 
-TEST_CASE("nearest counts letters put in, left out, changed and swapped") {
-  const std::vector<std::string> verbs{"align", "info", "check", "convert"};
-  CHECK(nearest("algin", verbs) == "align");
-  CHECK(nearest("convrt", verbs) == "convert");
-  CHECK(nearest("inof", verbs) == "info");
-  CHECK(nearest("time-server", verbs).empty());
-}
-
 TEST_CASE("what was given wins over what a file said in the meantime, and only that") {
   Mix flags;
   Mix manifest;

@@ -145,8 +145,8 @@ def one_stream_alone_is_a_take(folder):
         assert report["frames"] == frames
     refused("align", put(folder, only=samples.imu()), "-o", folder / "x.h5", naming="expected a clip or points",
             out=folder / "x.h5")
-    refused("align", put(folder, only=samples.bvh(0)), "-o", folder / "x.h5", naming="expected at least one",
-            out=folder / "x.h5")
+    refused("align", put(folder, only=samples.bvh(0)), "-o", folder / "x.h5",
+            naming="only.bvh: expected at least one", out=folder / "x.h5")
 
 
 @case
@@ -223,9 +223,9 @@ def when_the_root_node_is_lost_the_report_counts_all_nodes(folder):
         names = list(take["imu/node_names"].asstr())
     assert (valid == 0).any(0).all()
     for stream in report["streams"]:
-        if "node" in stream:
-            lost = np.count_nonzero(valid[:, names.index(stream["node"])] == 0)
-            assert stream["invalid"] == lost, (stream["node"], stream["invalid"], lost)
+        if "nodes" in stream:
+            lost = np.count_nonzero(valid[:, [names.index(node) for node in stream["nodes"]]] == 0)
+            assert stream["invalid"] == lost, (stream["nodes"], stream["invalid"], lost)
 
 
 @case

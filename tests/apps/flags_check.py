@@ -142,7 +142,7 @@ def flags_that_a_file_has_no_use_for_are_refused(folder):
     take, bvh = folder / "t.h5", folder / "mocap.bvh"
     done_with(0, "align", manifest, "-o", take)
     for file, flags in ((take, ("--layout", "kinect")), (take, ("--metres-per-unit", "3")),
-                        (manifest, ("--up", "z")), (bvh, ("--select", "a=b")), (bvh, ("--rate-hz", "5")),
+                        (manifest, ("--up", "z")), (bvh, ("--rate-hz", "5")),
                         (folder / "kinect.csv", ("--end-ns", "5")), (folder / "imu.csv", ("--metres-per-unit", "5"))):
         verbs = [("info", file), ("check", file)]
         if file != manifest:
@@ -153,6 +153,8 @@ def flags_that_a_file_has_no_use_for_are_refused(folder):
             assert not (folder / "o.npz").exists()
     _, err = done_with(2, "info", bvh, "--root-node", "x")
     assert "expected a known flag" in err, err
+    said = refused("info", bvh, "--select", "a=b", naming=bvh)
+    assert said.endswith(": expected no select for a file of format bvh, found a = b"), said
     wrong("info", bvh, "--select", "a", says="--select: expected COLUMN=VALUE, found 'a'")
     done_with(0, "info", bvh, "--up", "z", "--start-ns", "5")
 

@@ -86,7 +86,7 @@ def taken(folder, seconds, *flags, seed=1):
 
 def streams(take):
     report = json.loads(take["report_json"][()].decode().rstrip("\0"))
-    return report, {(s["stream"], s.get("node", "")): s for s in report["streams"]}
+    return report, {(s["stream"], ", ".join(s.get("nodes", []))): s for s in report["streams"]}
 
 
 def check_kinect(folder, take, tolerance):

@@ -9,10 +9,10 @@ using namespace kinalign;
 
 namespace {
 
-StreamReport stream(const std::string& name, const std::string& node, std::uint64_t bridged) {
+StreamReport stream(const std::string& name, std::vector<std::string> nodes, std::uint64_t bridged) {
   StreamReport s;
   s.stream = name;
-  s.node = node;
+  s.nodes = std::move(nodes);
   s.samples = 1000;
   s.bridged = bridged;
   return s;
@@ -23,8 +23,8 @@ AlignmentReport report() {
   report.frames = 3601;
   report.rate_hz = 60.0;
   report.reference = "mocap";
-  report.streams = {stream("mocap", "", 0), stream("kinect", "", 0), stream("imu", "waist", 20),
-                    stream("imu", "wrist", 40)};
+  report.streams = {stream("mocap", {}, 0), stream("kinect", {}, 0), stream("imu", {"waist"}, 20),
+                    stream("imu", {"wrist, left"}, 40)};
   report.streams[1].worst_interval_ns = 0;
   report.streams[1].gaps = 1;
   report.streams[1].gap_time_ns = 300'000'000;
@@ -50,8 +50,8 @@ std::string plain(const AlignmentReport& report, const std::string& out,
 TEST_CASE("the summary is a line on time and one per group with losses, the worst first") {
   CHECK(plain(report(), "take.h5") ==
         "take.h5: 1 min 00 s, 3,601 frames at 60 Hz, mocap + kinect + imu (2 nodes)\n"
-        "  time   imu (2 nodes) ± 3.6 ms, worst node: wrist   kinect shared clock\n"
-        "  gaps   imu 3.0 % interpolated over loss, worst node: wrist\n"
+        "  time   imu (2 nodes) ± 3.6 ms, worst node: wrist, left   kinect shared clock\n"
+        "  gaps   imu 3.0 % interpolated over loss, worst node: wrist, left\n"
         "  gaps   kinect 1 gap (0.30 s, marked), 0.5 % invalid\n"
         "  see    kinalign info take.h5\n");
 }

@@ -12,11 +12,9 @@
 #include <vector>
 
 using Target = int(const std::uint8_t* data, std::size_t size);
-extern "C" {
-Target fuzz_bvh, fuzz_layout, fuzz_manifest, fuzz_ntu_skeleton, fuzz_opensim_sto,
-    fuzz_parameters_json, fuzz_table, fuzz_take_hdf5, fuzz_trc, fuzz_ui_prmd_kinect,
-    fuzz_xsens_text;
-}
+#define TARGET(name) extern "C" Target fuzz_##name;
+KINALIGN_FUZZ_TARGETS
+#undef TARGET
 
 namespace {
 
@@ -36,16 +34,6 @@ void replay(const std::string& name, Target* target) {
 
 }  // namespace
 
-TEST_CASE("BVH: no fuzz input fails again") { replay("bvh", fuzz_bvh); }
-TEST_CASE("layouts: no fuzz input fails again") { replay("layout", fuzz_layout); }
-TEST_CASE("manifests: no fuzz input fails again") { replay("manifest", fuzz_manifest); }
-TEST_CASE("NTU: no fuzz input fails again") { replay("ntu_skeleton", fuzz_ntu_skeleton); }
-TEST_CASE("OpenSim: no fuzz input fails again") { replay("opensim_sto", fuzz_opensim_sto); }
-TEST_CASE("parameters: no fuzz input fails again") {
-  replay("parameters_json", fuzz_parameters_json);
-}
-TEST_CASE("tables: no fuzz input fails again") { replay("table", fuzz_table); }
-TEST_CASE("takes: no fuzz input fails again") { replay("take_hdf5", fuzz_take_hdf5); }
-TEST_CASE("TRC: no fuzz input fails again") { replay("trc", fuzz_trc); }
-TEST_CASE("UI-PRMD: no fuzz input fails again") { replay("ui_prmd_kinect", fuzz_ui_prmd_kinect); }
-TEST_CASE("Xsens: no fuzz input fails again") { replay("xsens_text", fuzz_xsens_text); }
+#define TARGET(name) \
+  TEST_CASE(#name ": no fuzz input fails again") { replay(#name, fuzz_##name); }
+KINALIGN_FUZZ_TARGETS

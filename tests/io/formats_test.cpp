@@ -105,3 +105,22 @@ TEST_CASE("a file of no known kind: what it is, and what to do with a table") {
   CHECK(said(std::string(300, 'x')) == known + "'" + std::string(40, 'x') + "...'");
   CHECK(said("") == (folder / "f") + ": expected a recording's file, found an empty file");
 }
+
+TEST_CASE("a choice of rows that a format does not know is refused, not ignored") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string trc = folder.write("walk.trc", "PathFileType\t4\t(X/Y/Z)\twalk.trc\n");
+  const std::string ntu = folder.write("a.skeleton", "1\n0\n");
+  const auto refusal = [&](const std::string& path, const std::string& layout,
+                           const std::string& column) {
+    StreamOptions options;
+    options.layout = layout;
+    options.select = {{column, "2"}};
+    const auto format = find_format(files, options, {path, ""}, bytes_in(path));
+    return format ? "" : to_string(format.error());
+  };
+  CHECK(refusal(trc, "", "subject") ==
+        trc + ": expected no select for a file of format trc, found subject = 2");
+  CHECK(refusal(ntu, "ntu", "person") == ntu + ": expected select by body, found person = 2");
+  CHECK(refusal(ntu, "ntu", "body").empty());
+}

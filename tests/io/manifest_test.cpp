@@ -135,9 +135,9 @@ TEST_CASE("a stream that is spoken of must be there and have files") {
   CHECK(error_of(mocap + "[align]\nreference = \"mocab\"\n") ==
         "recording.toml:4: expected a stream of this file (nearest: mocap), found \"mocab\"");
   CHECK(error_of(mocap + "[space.kinect]\nmethod = \"fit\"\n") ==
-        "recording.toml:3: expected a stream of this file (nearest: mocap), found \"kinect\"");
+        "recording.toml:3: expected a stream of this file (known: mocap), found \"kinect\"");
   CHECK(error_of(mocap + "[space.mocap]\nonto = \"x\"\n") ==
-        "recording.toml:4: expected a stream of this file (nearest: mocap), found \"x\"");
+        "recording.toml:4: expected a stream of this file (known: mocap), found \"x\"");
   CHECK(error_of("[stream.mocap]\nrate_hz = 60\n") ==
         "recording.toml:1: expected file or files in [stream.mocap], found none");
 }

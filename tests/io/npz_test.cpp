@@ -120,3 +120,17 @@ TEST_CASE("texts become numpy's UTF-32, a stray byte stands for itself") {
   const std::u32string expected = {U'a', 0, U'H', 0xe4, 0xff, 0, 0xe2, 0x82, 0, 0};
   CHECK((texts.bytes == bytes_of(std::span<const char32_t>(expected))));
 }
+
+TEST_CASE("streams whose arrays would share a name in the file are refused") {
+  const FreshFolder folder;
+  PosixFiles files;
+  Take take = sample_take(2);
+  take.header.groups[1].name = take.header.groups[0].name + "_local";
+  const auto written = write(files, folder / "a.npz", take, NpzNames::by_stream);
+  REQUIRE(!written);
+  CHECK(to_string(written.error()) ==
+        (folder / "a.npz") +
+            ": expected streams whose arrays can be told apart (STREAM_ARRAY.npy): rename one, "
+            "found 'mocap_local_positions' twice");
+  CHECK(folder.empty());
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/core/nearest_name.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace kinalign {
+
+namespace {
+
+/// Optimal string alignment: three rows of the table of distances between beginnings.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), row(b.size() + 1), two_before(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    two_before.swap(before);
+    before.swap(row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t changed = before[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({before[j] + 1, row[j - 1] + 1, changed});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], two_before[j - 2] + 1);
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t longest = 64;  // of a name that a file may make as long as it likes
+  const std::string_view start = name.substr(0, longest);
+  std::string best;
+  std::size_t least = std::max<std::size_t>(1, start.size() / 3) + 1;
+  for (const std::string& other : known) {
+    const std::size_t letters = distance(start, other);
+    if (letters >= least) continue;
+    least = letters;
+    best = other;
+  }
+  return best;
+}
+
+}  // namespace kinalign

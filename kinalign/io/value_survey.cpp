@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/value_survey.h"
+
+#include "kinalign/motion/arrays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint64_t enough = 10;  // points for a person, frames or samples for a mean
+
+/// Bounds chosen wide: a metre taken for a centimetre or the other way round lies outside, children
+/// and two people in one volume lie inside.
+constexpr double smallest_m = 0.2, largest_m = 20.0;
+/// A node at rest reads 9.8 m/s2, shanks of runners 20 in the mean.
+constexpr double least_with_gravity = 6.0, most_acceleration = 40.0;
+/// Limbs turn by 1 to 5 rad/s in the mean; degrees read as radians are 57 times more.
+constexpr double most_angular_velocity = 12.0;
+
+/// The power of ten that brings a size nearest to a person's.
+double times_too_large(double size_m) {
+  return std::pow(10.0, std::round(std::log10(size_m / 1.7)));
+}
+
+}  // namespace
+
+void PointSizes::add(const PointFrames& block) {
+  if (block.size() == 0) return;
+  const std::size_t joints = block.state.size() / block.size();
+  for (std::size_t t = 0; t < block.size(); ++t) {
+    Vec3 low = Vec3::Constant(1e300), high = -low;
+    std::uint64_t seen = 0;
+    for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
+      if (block.state[cell] == Tracking::missing) continue;
+      const auto at = vec3(block.positions, cell);
+      low = low.cwiseMin(at);
+      high = high.cwiseMax(at);
+      ++seen;
+    }
+    if (seen < enough) continue;
+    ++frames_;
+    diagonals_m_ += (high - low).norm();
+  }
+}
+
+Findings PointSizes::judge(const PointHeader&, const std::string& file) const {
+  if (frames_ < enough) return {};
+  const double size = diagonals_m_ / static_cast<double>(frames_);
+  if (size >= smallest_m && size <= largest_m) return {};
+  const Error what{file, 0, "the points of a frame 0.2 to 20 m apart",
+                   fmt::format("{:.3g} m", size)};
+  if (!(size > 0.0)) return {{Severity::warning, what, "they all lie in one place", ""}};
+  const double times = times_too_large(size);
+  return {
+      {Severity::warning, what,
+       times > 1.0 ? fmt::format("lengths are about {:g} times too large", times)
+                   : fmt::format("lengths are about {:g} times too small", 1.0 / times),
+       fmt::format("--metres-per-unit (metres_per_unit in a manifest or layout) {:g} times that "
+                   "now taken",
+                   1.0 / times)}};
+}
+
+double ImuSizes::Norms::deviation() const {
+  return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean() * mean()));
+}
+
+void ImuSizes::add(std::span<const double> vectors, const ImuSamples& block, Norms& norms) {
+  for (std::size_t cell = 0; 3 * cell < vectors.size(); ++cell) {
+    if (block.valid[cell] == 0) continue;
+    const double square = vec3(vectors, cell).squaredNorm();
+    ++norms.count;
+    norms.sum += std::sqrt(square);
+    norms.squares += square;
+  }
+}
+
+void ImuSizes::add(const ImuSamples& block) {
+  add(block.acceleration, block, acceleration_);
+  add(block.angular_velocity, block, angular_velocity_);
+}
+
+Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const {
+  const bool gravity = header.content.gravity;
+  Findings out;
+  const auto find = [&](const char* expected, const std::string& found, const char* advice) {
+    out.push_back(
+        {Severity::warning, Error{file, 0, expected, found}, "read as they stand there", advice});
+  };
+  if (acceleration_.count >= enough) {
+    const double mean = acceleration_.mean();
+    const std::string found = fmt::format("{:.3g} m/s2", mean);
+    // A limb without gravity stands still and jerks in turn; with it the mean is 9.8 and steady.
+    const bool steady = mean > 8.5 && mean < 12.0 && acceleration_.deviation() < 0.5 * mean;
+    if (mean > most_acceleration || (gravity && mean < least_with_gravity)) {
+      find(gravity ? "accelerations with gravity of 6 to 40 m/s2 in the mean"
+                   : "accelerations of at most 40 m/s2 in the mean",
+           found,
+           "acceleration_unit = \"g\" (or \"m/s2\"), or gravity = false, in a layout of the file");
+    } else if (!gravity && steady) {
+      find("accelerations without gravity", found + " in the mean",
+           "gravity = true in a layout of the file, where it stands in them");
+    }
+  }
+  if (angular_velocity_.count >= enough && angular_velocity_.mean() > most_angular_velocity) {
+    find("turns of at most 12 rad/s in the mean",
+         fmt::format("{:.3g} rad/s", angular_velocity_.mean()),
+         "angular_velocity_unit = \"deg/s\" in a layout of the file");
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// How large a stream's values are, from the pass that surveys its stamps: enough to see a unit that
+// can't be right. BVHs are judged by their rest pose instead (bvh_size.cpp).
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/io/reader.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace kinalign {
+
+class PointSizes {
+ public:
+  void add(const PointFrames& block);
+  /// A finding where the points of a frame lie too near or too far apart for a person.
+  Findings judge(const PointHeader& header, const std::string& file) const;
+
+ private:
+  std::uint64_t frames_ = 0;  // with enough points to be a person
+  double diagonals_m_ = 0.0;  // of the boxes around them, their sum
+};
+
+class ImuSizes {
+ public:
+  void add(const ImuSamples& block);
+  /// Findings where accelerations can't be m/s2 with (or without) gravity, or rates not rad/s.
+  Findings judge(const ImuHeader& header, const std::string& file) const;
+
+ private:
+  struct Norms {
+    std::uint64_t count = 0;
+    double sum = 0.0, squares = 0.0;
+
+    double mean() const { return sum / static_cast<double>(count); }
+    double deviation() const;
+  };
+  static void add(std::span<const double> vectors, const ImuSamples& block, Norms& norms);
+
+  Norms acceleration_, angular_velocity_;
+};
+
+/// A skeleton's rest pose says more than its frames do: it is judged where it is read.
+struct ClipSizes {
+  void add(const ClipFrames&) {}
+  Findings judge(const Skeleton&, const std::string&) const { return {}; }
+};
+
+/// The sizes to take of frames of a kind.
+inline PointSizes sizes_of(const PointFrames&) { return {}; }
+inline ImuSizes sizes_of(const ImuSamples&) { return {}; }
+inline ClipSizes sizes_of(const ClipFrames&) { return {}; }
+
+}  // namespace kinalign

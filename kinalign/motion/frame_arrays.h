@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arrays of a block of frames, said once for all that treat them alike.
+#pragma once
+
+#include "kinalign/motion/clip.h"
+#include "kinalign/motion/streams.h"
+
+#include <tuple>
+
+namespace kinalign {
+
+/// Members of Frames, each [T] of something.
+template <class Frames>
+constexpr std::tuple<> frame_arrays;
+template <>
+inline constexpr auto frame_arrays<ClipFrames> = std::tuple(&ClipFrames::stamps,
+                                                            &ClipFrames::local_positions,
+                                                            &ClipFrames::local_rotations);
+template <>
+inline constexpr auto frame_arrays<PointFrames> = std::tuple(&PointFrames::stamps,
+                                                             &PointFrames::positions,
+                                                             &PointFrames::state);
+template <>
+inline constexpr auto frame_arrays<ImuSamples> = std::tuple(&ImuSamples::stamps,
+                                                            &ImuSamples::orientation,
+                                                            &ImuSamples::acceleration,
+                                                            &ImuSamples::angular_velocity,
+                                                            &ImuSamples::valid);
+
+/// Calls use(member) for each.
+template <class Frames, class Use>
+void for_each_array(Use&& use) {
+  std::apply([&use](auto... array) { (use(array), ...); }, frame_arrays<Frames>);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/core/nearest_name.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+TEST_CASE("the nearest name counts letters put in, left out, changed and swapped") {
+  const std::vector<std::string> verbs{"align", "info", "check", "convert"};
+  CHECK(nearest_name("algin", verbs) == "align");
+  CHECK(nearest_name("convrt", verbs) == "convert");
+  CHECK(nearest_name("chack", verbs) == "check");
+  CHECK(nearest_name("inof", verbs) == "info");
+}
+
+TEST_CASE("a name that is like none has no nearest one") {
+  CHECK(nearest_name("time-server", {"align", "info"}).empty());
+  CHECK(nearest_name("align", {}).empty());
+}
+
+TEST_CASE("of a long name from a file only the beginning is compared") {
+  CHECK(nearest_name(std::string(1 << 20, 'a'), {std::string(64, 'a')}) == std::string(64, 'a'));
+}

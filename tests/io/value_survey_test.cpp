@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which units can't be right, and which are left alone.
+#include "kinalign/io/value_survey.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace kinalign;
+
+namespace {
+
+constexpr std::size_t rows = 40;
+
+/// Joints of someone 1.7 m tall who walks away, in a file whose unit is taken for `metres`.
+std::string said_of_person(double metres, std::size_t joints = 25) {
+  PointFrames block;
+  for (std::size_t t = 0; t < rows; ++t) {
+    block.stamps.push_back(utc_time(static_cast<std::int64_t>(t)));
+    for (std::size_t j = 0; j < joints; ++j) {
+      const double height = 1.7 * static_cast<double>(j) / static_cast<double>(joints - 1);
+      const double values[] = {0.0, height, 0.1 * static_cast<double>(t)};
+      for (const double value : values) block.positions.push_back(value * metres);
+      block.state.push_back(Tracking::tracked);
+    }
+  }
+  PointSizes sizes;
+  sizes.add(block);
+  const Findings findings = sizes.judge({}, "k.csv");
+  return findings.empty() ? "" : to_string(findings[0].what) + "; " + findings[0].meaning;
+}
+
+/// Nodes that read `acceleration` (m/s2, its own third up and down) and `rate` (rad/s).
+std::string said_of_node(double acceleration, double rate, bool gravity, double swing = 0.3) {
+  ImuSamples block;
+  for (std::size_t t = 0; t < rows; ++t) {
+    block.stamps.push_back(utc_time(static_cast<std::int64_t>(t)));
+    const double a = acceleration * (1.0 + swing * std::sin(static_cast<double>(t)));
+    block.acceleration.insert(block.acceleration.end(), {0.0, a, 0.0});
+    block.angular_velocity.insert(block.angular_velocity.end(), {rate, 0.0, 0.0});
+    block.valid.push_back(1);
+  }
+  ImuSizes sizes;
+  sizes.add(block);
+  const Findings findings = sizes.judge({{"waist"}, {false, true, true, gravity}}, "w.csv");
+  std::string all;
+  for (const Finding& finding : findings) all += to_string(finding.what) + "\n";
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("joints of a person who is a kilometre or a millimetre tall are in another unit") {
+  CHECK(said_of_person(1.0).empty());
+  CHECK(said_of_person(0.5).empty());  // a child
+  CHECK(said_of_person(1000.0) ==
+        "k.csv: expected the points of a frame 0.2 to 20 m apart, found 1.7e+03 m; lengths are "
+        "about 1000 times too large");
+  CHECK(said_of_person(0.01) ==
+        "k.csv: expected the points of a frame 0.2 to 20 m apart, found 0.017 m; lengths are about "
+        "100 times too small");
+  CHECK(said_of_person(0.0) ==
+        "k.csv: expected the points of a frame 0.2 to 20 m apart, found 0 m; they all lie in one "
+        "place");
+}
+
+TEST_CASE("fewer points than a person has may be as near to each other as they like") {
+  CHECK(said_of_person(0.01, 9).empty());
+}
+
+TEST_CASE("accelerations in g, or with gravity where none should be, are told apart from m/s2") {
+  CHECK(said_of_node(9.81, 1.0, true).empty());
+  CHECK(said_of_node(20.0, 5.0, true).empty());  // a shank that runs
+  CHECK(
+      said_of_node(1.0, 1.0, true) ==
+      "w.csv: expected accelerations with gravity of 6 to 40 m/s2 in the mean, found 1.01 m/s2\n");
+  CHECK(said_of_node(96.0, 1.0, true) ==
+        "w.csv: expected accelerations with gravity of 6 to 40 m/s2 in the mean, found 96.8 m/s2\n");
+  CHECK(said_of_node(2.0, 1.0, false).empty());
+  CHECK(said_of_node(9.81, 1.0, false) ==
+        "w.csv: expected accelerations without gravity, found 9.89 m/s2 in the mean\n");
+  CHECK(said_of_node(9.81, 1.0, false, 2.0).empty());  // jerks of a runner, gravity removed
+}
+
+TEST_CASE("turns in degrees per second are told apart from radians") {
+  CHECK(said_of_node(9.81, 57.3, true) ==
+        "w.csv: expected turns of at most 12 rad/s in the mean, found 57.3 rad/s\n");
+}
+
+TEST_CASE("samples that were not seen count for nothing, and too few say nothing") {
+  PointFrames missing;
+  missing.stamps.assign(rows, Time{});
+  missing.positions.assign(rows * 75, 0.0);
+  missing.state.assign(rows * 25, Tracking::missing);
+  PointSizes points;
+  points.add(missing);
+  CHECK(points.judge({}, "k.csv").empty());
+  ImuSamples lost;
+  lost.stamps.assign(rows, Time{});
+  lost.acceleration.assign(rows * 3, 0.0);
+  lost.valid.assign(rows, 0);
+  ImuSizes nodes;
+  nodes.add(lost);
+  CHECK(nodes.judge({{"waist"}, {false, true, false, true}}, "w.csv").empty());
+}
