@@ -52,8 +52,9 @@ Findings PointSizes::judge(const PointHeader&, const std::string& file) const {
   if (frames_ < enough) return {};
   const double size = diagonals_m_ / static_cast<double>(frames_);
   if (size >= smallest_m && size <= largest_m) return {};
-  const Error what{file, 0, "the points of a frame 0.2 to 20 m apart",
-                   fmt::format("{:.3g} m", size)};
+  const std::string found =
+      size < 1000.0 ? fmt::format("{:.3g} m", size) : fmt::format("{:.0f} m", size);
+  const Error what{file, 0, "the points of a frame 0.2 to 20 m apart", found};
   if (!(size > 0.0)) return {{Severity::warning, what, "they all lie in one place", ""}};
   const double times = times_too_large(size);
   return {

@@ -54,7 +54,7 @@ TEST_CASE("joints of a person who is a kilometre or a millimetre tall are in ano
   CHECK(said_of_person(1.0).empty());
   CHECK(said_of_person(0.5).empty());  // a child
   CHECK(said_of_person(1000.0) ==
-        "k.csv: expected the points of a frame 0.2 to 20 m apart, found 1.7e+03 m; lengths are "
+        "k.csv: expected the points of a frame 0.2 to 20 m apart, found 1700 m; lengths are "
         "about 1000 times too large");
   CHECK(said_of_person(0.01) ==
         "k.csv: expected the points of a frame 0.2 to 20 m apart, found 0.017 m; lengths are about "
@@ -74,8 +74,9 @@ TEST_CASE("accelerations in g, or with gravity where none should be, are told ap
   CHECK(
       said_of_node(1.0, 1.0, true) ==
       "w.csv: expected accelerations with gravity of 6 to 40 m/s2 in the mean, found 1.01 m/s2\n");
-  CHECK(said_of_node(96.0, 1.0, true) ==
-        "w.csv: expected accelerations with gravity of 6 to 40 m/s2 in the mean, found 96.8 m/s2\n");
+  CHECK(
+      said_of_node(96.0, 1.0, true) ==
+      "w.csv: expected accelerations with gravity of 6 to 40 m/s2 in the mean, found 96.8 m/s2\n");
   CHECK(said_of_node(2.0, 1.0, false).empty());
   CHECK(said_of_node(9.81, 1.0, false) ==
         "w.csv: expected accelerations without gravity, found 9.89 m/s2 in the mean\n");
