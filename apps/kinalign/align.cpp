@@ -114,7 +114,8 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     }
     const Time own = take_time(s.clock, s.survey.first);
     const bool apart = own > last || take_time(s.clock, s.survey.last) < first;
-    const bool told = std::abs(to_ns(own)) < most && std::abs(to_ns(first)) < most;
+    const auto near = [](Time t) { return to_ns(t) > -most && to_ns(t) < most; };
+    const bool told = near(own) && near(first);
     const bool quick = o.manifest.empty();
     if (!s.step_ns || !apart || first > last || !told || (quick && s.name != "mocap")) continue;
     const std::int64_t latency = to_ns(own) - options_of(manifest, s.name).start_ns.value_or(0);

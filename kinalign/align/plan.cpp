@@ -73,9 +73,7 @@ std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, b
   std::uint64_t low = 0, high = s.survey.samples;
   while (low < high) {
     const std::uint64_t middle = low + (high - low) / 2;
-    const Time stamp =
-        s.survey.first + Duration{std::llround(static_cast<double>(middle) * step_ns)};
-    const Time t = take_time(s.clock, stamp);
+    const Time t = take_time(s.clock, frame_stamp(s.survey.first, step_ns, middle));
     if (t < bound || (behind && t == bound)) {
       low = middle + 1;
     } else {
@@ -112,11 +110,17 @@ Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPla
       reference.data);
 }
 
+/// A step as a whole number of which a few still fit into 64 bits: 30 years at most.
+std::int64_t step_of(double ns) {
+  constexpr double longest = 1e18;
+  return std::llround(std::min(ns, longest));
+}
+
 ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
                      const AlignOptions& options) {
   ResampleRule rule;
-  rule.step_ns = s.step_ns ? std::llround(*s.step_ns) : s.survey.median_step_ns;
-  if (stream.rate_hz > 0.0) rule.step_ns = std::llround(1e9 / stream.rate_hz);
+  rule.step_ns = step_of(s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns)));
+  if (stream.rate_hz > 0.0) rule.step_ns = step_of(1e9 / stream.rate_hz);
   rule.gap_ns = options.gap_ms > 0.0 ? std::llround(options.gap_ms * 1e6) : 3 * rule.step_ns;
   // Stamps rounded to a milli- or microsecond make three steps a little longer than three medians.
   if (options.gap_ms == 0.0) rule.gap_ns += rule.step_ns / 10;

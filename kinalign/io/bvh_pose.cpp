@@ -2,6 +2,7 @@
 // From rows of BVH channels to local positions and rotations.
 #include "kinalign/io/bvh.h"
 #include "kinalign/motion/kinematics.h"
+#include "kinalign/motion/stamps.h"
 
 #include <algorithm>
 #include <array>
@@ -109,8 +110,7 @@ void BvhPoser::append(std::span<const double> values, ClipFrames& out) {
   out.local_positions.resize((before + frames) * joints * 3);
   out.local_rotations.resize((before + frames) * joints * 4);
   for (std::size_t i = 0; i < frames; ++i) {
-    const double since = std::min(static_cast<double>(frames_++) * frame_ns_, 4e18);
-    out.stamps.push_back(options_.start + Duration{std::llround(since)});
+    out.stamps.push_back(frame_stamp(options_.start, frame_ns_, frames_++));
   }
   // All joints of a few frames, then the next few: rows stay in the first cache.
   for (std::size_t first = 0; first < frames; first += euler_frames) {

@@ -3,6 +3,7 @@
 
 #include "kinalign/core/hash.h"
 #include "kinalign/io/bvh_head.h"
+#include "kinalign/motion/stamps.h"
 #include "kinalign/motion/targets.h"
 
 #include <algorithm>
@@ -91,7 +92,7 @@ StampSurvey survey_of(const BvhOptions& options, double step_ns, std::uint64_t f
   survey.samples = frames;
   survey.first = survey.last = options.start;
   if (frames == 0) return survey;
-  survey.last += Duration{std::llround(static_cast<double>(frames - 1) * step_ns)};
+  survey.last = frame_stamp(options.start, step_ns, frames - 1);
   survey.median_step_ns = frames > 1 ? std::llround(step_ns) : 0;
   return survey;
 }

@@ -74,8 +74,9 @@ std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale) 
 }
 
 std::int64_t stamp_at_rate(std::uint64_t index, double rate_hz) {
-  const double ns = static_cast<double>(index) * 1e9 / rate_hz;
-  return ns < 9e18 ? std::llround(ns) : INT64_MAX / 2;
+  constexpr double furthest =
+      4.5e18;  // refused as a stamp, and still added to one without overflow
+  return std::llround(std::min(static_cast<double>(index) * 1e9 / rate_hz, furthest));
 }
 
 RowStamps::RowStamps(bool column, double rate_hz, std::optional<std::int64_t> start_ns)

@@ -25,6 +25,11 @@ std::int64_t held(std::uint64_t ns) {
 
 }  // namespace
 
+Time frame_stamp(Time first, double step_ns, std::uint64_t frame) {
+  constexpr double furthest = 4e18;
+  return first + Duration{std::llround(std::min(static_cast<double>(frame) * step_ns, furthest))};
+}
+
 StampFate StampRule::judge(Time stamp) {
   if (!last_) {
     last_ = stamp;

@@ -11,6 +11,9 @@
 
 namespace kinalign {
 
+/// The stamp of a frame of a fixed step. Later than 4e18 ns after the first, 126 years, is none.
+Time frame_stamp(Time first, double step_ns, std::uint64_t frame);
+
 /// What becomes of a sample, by its stamp and the ones before it.
 enum class StampFate {
   kept,

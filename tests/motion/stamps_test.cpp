@@ -140,3 +140,10 @@ TEST_CASE("stamps from one end of time to the other are surveyed without overflo
   CHECK(found.backward == 1);
   CHECK(found.largest_step_back_ns == INT64_MAX);  // as much as there is room for
 }
+
+TEST_CASE("frames of a fixed step are counted from the first, and end before time does") {
+  const Time first = utc_time(1'790'000'000'000'000'000);
+  CHECK(frame_stamp(first, 1e9 / 60.0, 60) - first == Duration{1'000'000'000});
+  CHECK(frame_stamp(first, 1e9 / 60.0, 1) - first == Duration{16'666'667});
+  CHECK(frame_stamp(first, 1e13, 1'000'000'000) - first == Duration{4'000'000'000'000'000'000});
+}
