@@ -109,8 +109,7 @@ Result<void> RowParser::read_cells(const char* at, const char* end) {
 }
 
 Result<void> RowParser::nothing_behind(const char* at, const char* end) const {
-  at = std::find_if_not(at, end, [this](char c) { return pads(c) || delimits(c); });
-  if (at == end) return {};
+  if (std::all_of(at, end, [this](char c) { return pads(c) || delimits(c); })) return {};
   return wrong_count(columns_.size() + split_cells(between(at, end), delimiter_).size());
 }
 
