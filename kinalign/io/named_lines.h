@@ -34,21 +34,22 @@ class NamedLines {
   /// last value may be half a value.
   template <class Use>
   Result<void> finish(Use&& use, Findings& incomplete) {
-    const bool unended = lines_.within_line();
-    auto last = placed(lines_.finish([&](std::string_view line) { return use(unmarked(line)); }));
+    auto last = finish_head(std::forward<Use>(use), incomplete);
     if (!last) {
       incomplete.push_back({Severity::warning, std::move(last).error(),
                             "the last line is incomplete and was dropped", ""});
-    } else if (unended) {
-      incomplete.push_back(unended_finding(file_, lines_.number()));
     }
     return {};
   }
 
-  /// The same where an incomplete last line is a failure.
+  /// The same where the file ended in its head, without which there is nothing: an incomplete last
+  /// line is a failure.
   template <class Use>
-  Result<void> finish(Use&& use) {
-    return placed(lines_.finish([&](std::string_view line) { return use(unmarked(line)); }));
+  Result<void> finish_head(Use&& use, Findings& incomplete) {
+    const bool unended = lines_.within_line();
+    KA_TRY(placed(lines_.finish([&](std::string_view line) { return use(unmarked(line)); })));
+    if (unended) incomplete.push_back(unended_finding(file_, lines_.number()));
+    return {};
   }
 
   /// An error of the line that was read last.

@@ -60,7 +60,7 @@ class NtuReader final : public PointReader {
 
   Result<void> finish(PointFrames& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish(use));
+    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!header_) return Failure(lines_.error("the number of frames", "the end of the file"));
     report();
     return {};

@@ -28,7 +28,7 @@ class StoReader final : public ImuReader {
 
   Result<void> finish(ImuSamples& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish(use));
+    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!header_) return Failure(lines_.error("the head of a .sto file", "the end of the file"));
     stamps_.settle();
     held_.release(stamps_, out);

@@ -145,7 +145,7 @@ class TableReader final : public Builder::ReaderType {
 
   Result<void> finish(Frames& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(header_ ? lines_.finish(use, this->findings) : lines_.finish(use));
+    KA_TRY(header_ ? lines_.finish(use, this->findings) : lines_.finish_head(use, this->findings));
     if (!header_) {
       return Failure(lines_.error("a table of layout " + layout_.name, "the end of the file"));
     }

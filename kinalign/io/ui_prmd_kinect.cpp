@@ -97,7 +97,7 @@ class UiPrmdReader final : public PointReader {
 
   Result<void> finish(PointFrames& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(read_ ? lines_.finish(use, findings) : lines_.finish(use));
+    KA_TRY(read_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!read_) return Failure(lines_.error("rows of 66 numbers", "the end of the file"));
     auto more = KA_TRY(count_angles_left());
     append(findings, angle_rows_.findings);

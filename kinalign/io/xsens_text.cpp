@@ -73,7 +73,7 @@ class XsensReader final : public ImuReader {
 
   Result<void> finish(ImuSamples& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish(use));
+    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!header_) return Failure(lines_.error("rows of an Xsens export", "the end of the file"));
     if (packets_.lost() > 0) {
       findings.push_back(
