@@ -6,7 +6,9 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <string>
+#include <vector>
 
 using namespace kinalign;
 
@@ -48,6 +50,49 @@ TEST_CASE("a .sto file of other things is an error") {
   CHECK(read_sto(head + "1\t1,0,0,0\n").error == "a.sto:8: expected 3 cells, found 2");
   CHECK(read_sto(head + "1\t1,0,0\t1,0,0,0\n").error ==
         "a.sto:8: expected w,x,y,z for torso_imu, found 1,0,0");
+}
+
+TEST_CASE("names and stamps of a .sto file are refused where they are none") {
+  const std::string begin = "DataType=Quaternion\nendheader\n";
+  const std::vector<std::array<std::string, 2>> refused{
+      {begin + "seconds\ta_imu\n", "a.sto:3: expected time and names of nodes, found seconds"},
+      {begin + "time\n", "a.sto:3: expected time and names of nodes, found time"},
+      {begin + "\t\n" + "time\ta_imu\nnoon\t1,0,0,0\n",
+       "a.sto:5: expected a time in seconds, found noon"},
+      {begin + "time\ta_imu\n5e9\t1,0,0,0\n", "a.sto:4: expected a time in seconds, found 5e9"},
+      {begin + "time\ta_imu\n1\t1,0,0,0,0\n",
+       "a.sto:4: expected w,x,y,z for a_imu, found 1,0,0,0,0"},
+      {begin + "time\ta_imu\n1\t1,0,0,x\n", "a.sto:4: expected w,x,y,z for a_imu, found 1,0,0,x"},
+      {begin, "a.sto:2: expected the head of a .sto file, found the end of the file"}};
+  for (const auto& [text, message] : refused) {
+    CAPTURE(text);
+    CHECK(read_sto(text).error == message);
+  }
+}
+
+TEST_CASE("a node without an orientation in a row is invalid there, the others are not") {
+  const auto read = read_sto(head + "1\t\t1,0,0,0\n2\t1,,0,0\t1,0,0,0\n3\t0,0,0,0\t1,0,0,0\n");
+  CHECK(read.error == "");
+  CHECK(read.rows.valid == std::vector<std::uint8_t>{0, 1, 0, 1, 0, 1});
+  REQUIRE(read.findings.size() == 1);
+  CHECK(read.findings[0].severity == Severity::note);
+  CHECK(text_of(read.findings[0]) ==
+        "a.sto: expected quaternions of length 1, found 1 of 6 samples with a zero one");
+  CHECK(read.findings[0].meaning == "these samples are invalid");
+}
+
+TEST_CASE("quaternions of another length are brought to 1, with a finding from two percent on") {
+  const auto read = read_sto(head + "1\t2,0,0,0\t1.019,0,0,0\n2\t0,0.97,0,0\t0,0,0,1e-7\n");
+  REQUIRE(read.findings.size() == 2);
+  CHECK(read.findings[1].severity == Severity::warning);
+  CHECK(text_of(read.findings[1]) ==
+        "a.sto: expected quaternions of length 1, found 2 of 4 off by more than 2 %");
+  CHECK(read.findings[1].meaning == "they were brought to length 1");
+  CHECK(read.findings[1].repair == "check that the layout names the right columns");
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+    CHECK(quat(read.rows.orientation, i).norm() == doctest::Approx(1.0).epsilon(1e-15));
+  }
+  CHECK(read.rows.valid == std::vector<std::uint8_t>{1, 1, 1, 0});
 }
 
 TEST_CASE("rows of a .sto file do not depend on where it is cut into pieces") {

@@ -67,6 +67,87 @@ TEST_CASE("a head of a TRC file that can't be understood is an error with its li
         "walk.trc:5: expected 3 labels X1, Y1, Z1, ..., found ??X1?Y1");
 }
 
+TEST_CASE("a TRC file says its unit and its counts where its keys stand, or is refused") {
+  const std::string rest =
+      "Frame#\tTime\tHEAD\t\t\tR.TOE\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n1\t0\t1\t2\t3\t4\t5\t6\n";
+  const auto with_facts = [&](const std::string& keys, const std::string& facts) {
+    return read_trc("PathFileType\n" + keys + "\n" + facts + "\n" + rest);
+  };
+  CHECK(with_facts("NumFrames\tUnits", "many\tmm").error ==
+        "walk.trc:3: expected a number of frames, found many");
+  CHECK(with_facts("NumFrames\tUnit", "1\tmm").error ==
+        "walk.trc:3: expected Units among the keys of line 2, found none");
+  CHECK(with_facts("NumFrames\tUnits", "1").error ==
+        "walk.trc:3: expected Units among the keys of line 2, found none");
+  CHECK(with_facts("Units\tNumMarkers\tNumFrames", "cm\t2\t1").findings.empty());
+  const auto more = with_facts("Units\tNumMarkers\tNumFrames", "cm\t9\t1");
+  REQUIRE(more.findings.size() == 1);
+  CHECK(text_of(more.findings[0]) == "walk.trc:4: expected 9 names of markers, found 2");
+  CHECK(more.findings[0].meaning == "the named markers were read");
+  CHECK(more.header.joint_names == std::vector<std::string>{"HEAD", "R.TOE"});
+  CHECK(read_trc("PathFileType\nUnits\nm\nFrame\tTime\tHEAD\n").error ==
+        "walk.trc:4: expected Frame#, Time and names of markers, found Frame");
+  CHECK(read_trc("PathFileType\nUnits\nm\nFrame#\tTime\n").error ==
+        "walk.trc:4: expected Frame#, Time and names of markers, found Frame#");
+}
+
+TEST_CASE("a TRC file's unit is a length, and the user's word on unit, axis and start wins") {
+  struct Unit {
+    const char* name;
+    double metres;
+  };
+  const std::string row = "1\t2.5\t100\t200\t300\t0\t0\t0\n";
+  for (const Unit& unit : {Unit{"mm", 0.001}, Unit{"cm", 0.01}, Unit{"m", 1.0}}) {
+    CAPTURE(unit.name);
+    const auto read = read_trc(head("1", unit.name) + row);
+    CHECK(read.rows.positions ==
+          std::vector<double>{100 * unit.metres, 200 * unit.metres, 300 * unit.metres, 0, 0, 0});
+  }
+  StreamOptions options;
+  options.up = "z";
+  options.metres_per_unit = 2;
+  options.start_ns = 77;
+  const auto read = read_trc(head("2") + row + "2\t2.75\t1\t2\t3\t4\t5\t6\n", options);
+  CHECK(read.rows.positions == std::vector<double>{200, 600, -400, 0, 0, 0, 2, 6, -4, 8, 12, -10});
+  CHECK(read.rows.stamps == std::vector<Time>{utc_time(77), utc_time(250'000'077)});
+}
+
+TEST_CASE("of a marker with one number missing nothing is kept") {
+  const auto read = read_trc(head("1") + "1\t0\t1\t\t3\t4\t5\tnan\n");
+  CHECK(read.rows.state == std::vector<Tracking>{Tracking::missing, Tracking::missing});
+  CHECK(read.rows.positions == std::vector<double>(6, 0.0));
+}
+
+TEST_CASE("a TRC file that was cut off ends with its last whole line") {
+  const std::string row = "1\t0\t1\t2\t3\t4\t5\t6\n";
+  const auto cut = read_trc(head("2") + row + "2\t0.01\t1\t2");
+  CHECK(cut.error == "");
+  CHECK(cut.rows.size() == 1);
+  REQUIRE(cut.findings.size() == 2);
+  CHECK(text_of(cut.findings[0]) == "walk.trc:8: expected 8 cells, found 4");
+  CHECK(cut.findings[0].meaning == "the last line is incomplete and was dropped");
+  CHECK(text_of(cut.findings[1]) == "walk.trc:3: expected 2 frames, found 1");
+  const auto unsure = read_trc(head("1") + row.substr(0, row.size() - 1));
+  CHECK(unsure.rows.size() == 1);
+  REQUIRE(unsure.findings.size() == 1);
+  CHECK(text_of(unsure.findings[0]) ==
+        "walk.trc:7: expected a line end behind the last value, found the end of the file");
+}
+
+TEST_CASE("a TRC file whose time stands still is said, and stamped by a rate where one is known") {
+  std::string text = head("3");
+  for (int i = 1; i <= 3; ++i) text += std::to_string(i) + "\t4\t1\t2\t3\t4\t5\t6\n";
+  const auto stuck = read_trc(text);
+  REQUIRE(stuck.findings.size() == 1);
+  CHECK(text_of(stuck.findings[0]) ==
+        "walk.trc: expected stamps that move, found the same stamp in the first 3 rows");
+  StreamOptions options;
+  options.rate_hz = 100;
+  CHECK(read_trc(text, options).rows.stamps == std::vector<Time>{utc_time(4'000'000'000),
+                                                                 utc_time(4'010'000'000),
+                                                                 utc_time(4'020'000'000)});
+}
+
 TEST_CASE("rows of a TRC file do not depend on where it is cut into pieces") {
   check_pieces([] { return make_trc_reader({}, "t"); },
                head("3") + "1\t0\t1\t2\t3\t\t\t\r\n2\t.01\t1\t2\t3\t4\t5\t6\n3\t0.02\t1");

@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <vector>
 
 using namespace kinalign;
 
@@ -62,6 +63,56 @@ TEST_CASE("rows without a counterpart are dropped with a finding") {
   CHECK(read_pair("1,2\n", one).error == "p.txt:1: expected 66 cells, found 2");
   CHECK(read_pair("", one).error ==
         "p.txt: expected rows of 66 numbers, found the end of the file");
+}
+
+TEST_CASE("an empty cell of either file of UI-PRMD is refused with its line") {
+  const std::string one = row("1,2,3", "1");
+  CHECK(read_pair(one + row("1,,3", "1"), one + one).error ==
+        "p.txt:2: expected 66 offsets, found an empty cell");
+  CHECK(read_pair(one + one, one + row("1,nan,3", "1")).error ==
+        "a.txt:2: expected 66 angles, found an empty cell");
+  CHECK(read_pair(row("x,2,3", "1"), one).error ==
+        "p.txt:1: expected a number in column 1, found x");
+  CHECK(read_pair(one, row("1,2,3", "y")).error ==
+        "a.txt:1: expected a number in column 4, found y");
+}
+
+TEST_CASE("a fault behind the last offset is one of the angles' file all the same") {
+  const std::string one = row("1,2,3", "1");
+  CHECK(read_pair(one, one + "1,2\n" + one).error == "a.txt:2: expected 66 cells, found 2");
+}
+
+TEST_CASE("rate, start, unit and axis of UI-PRMD's files are the user's where given") {
+  StreamOptions options;
+  options.rate_hz = 10;
+  options.start_ns = 5;
+  options.metres_per_unit = 2;
+  options.up = "z";
+  const std::string one = row("1,2,3", "0");
+  const auto read = read_all(
+      make_ui_prmd_kinect_reader(options, "p.txt", "a.txt", in_pieces(one + one, 9)), one + one);
+  CHECK(read.rows.stamps == std::vector<Time>{utc_time(5), utc_time(100'000'005)});
+  CHECK(Vec3(read.rows.positions.data()) == Vec3(2, 6, -4));
+  const auto usual = read_pair(one + one, one + one);
+  CHECK(usual.rows.stamps == std::vector<Time>{utc_time(0), utc_time(33'333'333)});
+  CHECK(Vec3(usual.rows.positions.data()) == Vec3(0.01, 0.02, 0.03));
+}
+
+TEST_CASE("each joint turns all that hang on it and nothing else") {
+  // The upper arm turned by 90 degrees about z: what follows it turns, the arm's own place does
+  // not.
+  const std::size_t upper_arm_left = 7;
+  std::vector<double> offsets(66, 0.0), angles(66, 0.0), places(66);
+  for (std::size_t j = 0; j < 22; ++j) offsets[3 * j] = 1.0;  // along x
+  angles[3 * upper_arm_left + 2] = 90.0;
+  ui_prmd_places(offsets, angles, places);
+  const auto place = [&](std::size_t j) { return Vec3(vec3(std::span<const double>(places), j)); };
+  CHECK((place(7) - Vec3(5, 0, 0)).norm() < 1e-12);   // waist, spine, chest, collar, arm
+  CHECK((place(8) - Vec3(5, 1, 0)).norm() < 1e-12);   // its forearm
+  CHECK((place(9) - Vec3(5, 2, 0)).norm() < 1e-12);   // its hand
+  CHECK((place(12) - Vec3(6, 0, 0)).norm() < 1e-12);  // the other forearm
+  CHECK((place(5) - Vec3(6, 0, 0)).norm() < 1e-12);   // the head's tip
+  CHECK((place(17) - Vec3(5, 0, 0)).norm() < 1e-12);  // the toes
 }
 
 TEST_CASE("places do not depend on where the offsets are cut into pieces") {

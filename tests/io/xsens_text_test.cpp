@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <string>
 
@@ -105,6 +106,100 @@ TEST_CASE("an Xsens export that can't be understood is an error with its line") 
         "MT_01_00B421E6.txt:3: expected a whole PacketCounter, found 1.500000");
   CHECK(read_xsens(rate + "PacketCounter,Roll,Pitch,Yaw\n1,1,2\n").error ==
         "MT_01_00B421E6.txt:3: expected 4 cells, found 3");
+}
+
+TEST_CASE("the node is the user's name, else the device's id, else the file's name") {
+  struct Named {
+    const char *file, *node, *expected;
+  };
+  const std::string text = rate + "PacketCounter,Roll,Pitch,Yaw\n1,0,0,0\n";
+  for (const Named& one :
+       {Named{"MT_01_00B421E6.txt", "waist", "waist"},
+        Named{"a/MT_012005D6_009-001_00b421e6.txt", "", "00b421e6"},
+        Named{"00B421E6.txt", "", "00B421E6"}, Named{"a.b/left_shank.txt", "", "left_shank"},
+        Named{"MT_01_00B421EG.txt", "", "MT_01_00B421EG"}}) {
+    CAPTURE(one.file);
+    const auto read = read_all(make_xsens_text_reader({}, one.file, one.node), text);
+    CHECK(read.header.node_names == std::vector<std::string>{one.expected});
+  }
+}
+
+TEST_CASE("a packet counter of 16 bits counts on through its wraps, lost packets are gaps") {
+  const auto counters = [](const std::vector<std::uint64_t>& values) {
+    std::string text = rate + "PacketCounter,Acc_X,Acc_Y,Acc_Z\n";
+    for (const std::uint64_t value : values) text += std::to_string(value) + ",1,2,3\n";
+    return read_xsens(text);
+  };
+  const auto packets = [](const Read<ImuReader>& read) {
+    std::vector<std::int64_t> out;
+    for (const Time stamp : read.rows.stamps) out.push_back(to_ns(stamp) / 10'000'000);
+    return out;
+  };
+  using Packets = std::vector<std::int64_t>;
+  CHECK(packets(counters({65535, 0, 1})) == Packets{65535, 65536, 65537});
+  CHECK(packets(counters({65530, 3, 65533})) == Packets{65530, 65539, 65533 + 65536});
+  CHECK(packets(counters({70000, 70002})) == Packets{70000, 70002});  // of 32 bits
+  const auto lost = counters({10, 11, 15, 16, 20});
+  CHECK(packets(lost) == Packets{10, 11, 15, 16, 20});
+  REQUIRE(lost.findings.size() == 1);
+  CHECK(lost.findings[0].severity == Severity::note);
+  CHECK(text_of(lost.findings[0]) == "MT_01_00B421E6.txt: expected every packet, found 6 lost");
+  CHECK(lost.findings[0].meaning == "they are gaps");
+  CHECK(counters({10, 11, 12}).findings.empty());
+}
+
+TEST_CASE("of several orientations the quaternion is taken, then the matrix, then the angles") {
+  const std::string names =
+      "PacketCounter,Roll,Pitch,Yaw,Mat[1][1],Mat[1][2],Mat[1][3],Mat[2][1],Mat[2][2],Mat[2][3],"
+      "Mat[3][1],Mat[3][2],Mat[3][3],Quat_q0,Quat_q1,Quat_q2,Quat_q3\n";
+  const std::string angles = "0,0,90", matrix = "-1,0,0,0,-1,0,0,0,1", none3 = ",,",
+                    none9 = ",,,,,,,,", none4 = ",,,";
+  StreamOptions options;
+  options.up = "y";  // leaves the world as it stands
+  const auto x_goes = [&](const std::string& cells) {
+    const auto read = read_xsens(rate + names + "1," + cells + "\n", options);
+    REQUIRE(read.error == "");
+    return turned_axis(read, Vec3::UnitX());
+  };
+  CHECK((x_goes(angles + "," + none9 + "," + none4) - Vec3::UnitY()).norm() < 1e-15);
+  CHECK((x_goes(angles + "," + matrix + "," + none4) + Vec3::UnitX()).norm() < 1e-15);
+  CHECK((x_goes(angles + "," + matrix + ",1,0,0,0") - Vec3::UnitX()).norm() < 1e-15);
+  CHECK((x_goes(none3 + "," + matrix + "," + none4) + Vec3::UnitX()).norm() < 1e-15);
+}
+
+TEST_CASE("a sample that lost a part of what its first row had is not valid") {
+  const auto read =
+      read_xsens(rate +
+                 "PacketCounter,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z,Roll,Pitch,Yaw\n"
+                 "1,1,2,3,4,5,6,0,0,0\n2,1,,3,4,5,6,0,0,0\n3,1,2,3,4,5,,0,0,0\n4,1,2,3,4,5,6,0,,0\n"
+                 "5,1,2,3,4,5,6,0,0,0\n");
+  CHECK(read.error == "");
+  CHECK(read.rows.valid == std::vector<std::uint8_t>{1, 0, 0, 0, 1});
+  CHECK(read.rows.angular_velocity ==
+        std::vector<double>{4, 5, 6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 5, 6});
+}
+
+TEST_CASE("a row without its counter, a line of no names and an odd rate are refused") {
+  const std::string names = "PacketCounter,Roll,Pitch,Yaw\n";
+  const std::string file = "MT_01_00B421E6.txt:";
+  const std::vector<std::array<std::string, 2>> refused{
+      {rate + names + ",1,2,3\n", "3: expected a whole PacketCounter, found an empty cell"},
+      {rate + names + "-1,1,2,3\n", "3: expected a whole PacketCounter, found -1.000000"},
+      {rate + names + "4294967296,1,2,3\n",
+       "3: expected a whole PacketCounter, found 4294967296.000000"},
+      {rate + names + "1,a,2,3\n", "3: expected a number in column 2, found a"},
+      {rate + "PacketCounter\n", "2: expected names of columns, found PacketCounter"},
+      {"// Update Rate: 0Hz\n", "1: expected Update Rate: 100.0Hz, found // Update Rate: 0Hz"},
+      {"// Update Rate: 1e7Hz\n", "1: expected Update Rate: 100.0Hz, found // Update Rate: 1e7Hz"},
+      {"// Update Rate:\n", "1: expected Update Rate: 100.0Hz, found // Update Rate:"}};
+  for (const auto& [text, message] : refused) {
+    CAPTURE(text);
+    CHECK(read_xsens(text).error == file + message);
+  }
+  StreamOptions slow;
+  slow.rate_hz = 1e-3;
+  CHECK(read_xsens(names + "4294967295,1,2,3\n", slow).error ==
+        file + "2: expected a stamp inside +-4e18 ns, found 4294967295 packets");
 }
 
 TEST_CASE("rows of an Xsens export do not depend on where it is cut into pieces") {
