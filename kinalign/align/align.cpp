@@ -53,16 +53,31 @@ Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
   return {};
 }
 
-/// Adds what is not valid of each stream of nodes in the end: a row without the root has none.
-void count_nodes(const Recording& recording, const AlignPlan& plan, const TakeSlab& slab,
-                 std::vector<std::uint64_t>& invalid) {
-  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
-    const auto* imu = std::get_if<ImuInput>(&recording.streams[i].data);
-    if (imu == nullptr) continue;
-    const StreamPlan& stream = plan.streams[i];
-    const auto& nodes = std::get<ImuGroup>(plan.header.groups[stream.group].kind).node_names;
-    invalid[i] += count_invalid(std::get<ImuRows>(slab.rows[stream.group]),
-                                {stream.first_node, nodes.size()}, imu->node_names.size());
+/// What a take's rows of a stream say of themselves in the end: a row without the root of its
+/// nodes, or of the paper's method, has lost all its samples by then.
+struct Marks {
+  std::uint64_t invalid = 0, inferred = 0;
+};
+
+template <class Value>
+std::uint64_t count_of(const std::vector<Value>& values, Value value) {
+  return static_cast<std::uint64_t>(std::count(values.begin(), values.end(), value));
+}
+
+/// Adds those of a stream that was resampled.
+void add_marks(const TakeSlab& slab, const RecordedStream& s, const StreamPlan& stream,
+               Marks& marks) {
+  const auto& rows = slab.rows[stream.group];
+  if (const auto* clip = std::get_if<ClipRows>(&rows)) {
+    marks.invalid += count_of(clip->valid, std::uint8_t{0});
+  } else if (const auto* points = std::get_if<PointRows>(&rows)) {
+    marks.invalid += count_of(points->valid, std::uint8_t{0});
+    marks.inferred += count_of(points->state, Tracking::inferred);
+  } else {
+    const auto& imu = std::get<ImuRows>(rows);
+    const std::size_t all = imu.valid.size() / slab.stamps.size();
+    marks.invalid +=
+        count_invalid(imu, {stream.first_node, all}, std::get<ImuInput>(s.data).node_names.size());
   }
 }
 
@@ -85,16 +100,16 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
 /// What is counted while the slabs go by.
 struct Counts {
   std::uint64_t rows = 0;
-  Time begin{}, end{};                       // first and last row
-  std::vector<ResidualSums> residuals;       // [spaces]
-  std::vector<std::uint64_t> invalid_nodes;  // [streams] in the end; 0 where it is none of nodes
+  Time begin{}, end{};                  // first and last row
+  std::vector<ResidualSums> residuals;  // [spaces]
+  std::vector<Marks> marks;             // [streams] none of the reference
 };
 
 Counts no_counts(const Recording& recording, const std::vector<SpacePlan>& spaces) {
   Counts out;
   out.residuals.reserve(spaces.size());
   for (const SpacePlan& space : spaces) out.residuals.emplace_back(space.pairs.size());
-  out.invalid_nodes.resize(recording.streams.size());
+  out.marks.resize(recording.streams.size());
   return out;
 }
 
@@ -122,7 +137,10 @@ Result<void> pass_slab(const Job& job, TakeSlab& slab, const TakeSink& sink,
   for (std::size_t k = 0; k < job.spaces.size(); ++k) {
     counts.residuals[k].transform(job.spaces[k], slab);
   }
-  count_nodes(job.recording, job.plan, slab, counts.invalid_nodes);
+  for (std::size_t i = 0; i < counts.marks.size(); ++i) {
+    if (i == job.plan.reference) continue;
+    add_marks(slab, job.recording.streams[i], job.plan.streams[i], counts.marks[i]);
+  }
   KA_TRY(sink.rows(slab));
   if (go_on(progress, "aligning", counts.rows, job.plan.header.frames)) return {};
   return Failure(interruption());
@@ -143,8 +161,8 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   out.gaps = gaps.gaps;
   out.gap_time_ns = gaps.time_ns;
   out.samples = count.samples;
-  out.invalid = count.invalid + counts.invalid_nodes[i];
-  out.inferred = count.inferred;
+  out.invalid = counts.marks[i].invalid;
+  out.inferred = counts.marks[i].inferred;
   out.bridged = count.bridged;
   out.worst_nearest_ns = count.worst_nearest_ns;
   for (const TimeModelPiece& piece : s.clock.pieces) {

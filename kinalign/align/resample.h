@@ -35,8 +35,7 @@ struct ResampleRule {
 
 /// What resampling saw, summed over calls.
 struct ResampleCount {
-  std::uint64_t samples = 0, inferred = 0, bridged = 0;
-  std::uint64_t invalid = 0;  // not of nodes: a row without its root becomes so later
+  std::uint64_t samples = 0, bridged = 0;
   std::int64_t worst_nearest_ns = 0;
   // Only where the rule says finer:
   std::vector<CarriedContent> positions;                       // [J]

@@ -64,7 +64,6 @@ Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& o
     count_.worst_nearest_ns = std::max(count_.worst_nearest_ns, near.nearest_raw_ns[r]);
   }
   count_.samples += grid.size();
-  count_.invalid += static_cast<std::uint64_t>(std::count(out.valid.begin(), out.valid.end(), 0));
   out.distance.nearest_raw_ns = std::move(near.nearest_raw_ns);
   return {};
 }

@@ -97,7 +97,6 @@ struct Between {
 /// The state of a joint there, counted.
 Tracking judge(const Between& between, bool valid, ResampleCount& count) {
   if (!valid) return Tracking::missing;
-  count.inferred += between.lesser == Tracking::inferred ? 1 : 0;
   count.bridged += between.lost || between.lesser == Tracking::missing ? 1 : 0;
   count.worst_nearest_ns = std::max(count.worst_nearest_ns, between.nearest_ns);
   return between.lesser;
@@ -153,7 +152,6 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
     }
   }
   count_.samples += out.valid.size();
-  count_.invalid += static_cast<std::uint64_t>(std::count(out.valid.begin(), out.valid.end(), 0));
   return {};
 }
 
