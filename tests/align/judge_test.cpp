@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a person is told of an alignment: each finding whole, with what it means and what mends it,
+// and the figures at which it begins.
+#include "kinalign/align/judge.h"
+
+#include "kinalign/align/resample.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+namespace {
+
+std::string whole(const Finding& f) {
+  return std::string(to_string(f.severity)) + ": " + to_string(f.what) + "; " + f.meaning + "; " +
+         f.repair;
+}
+
+RecordedStream kinect() {
+  RecordedStream out;
+  out.name = "kinect";
+  out.data = PointInput{{"SpineBase", "Head"}, {}};
+  out.survey.samples = 1000;
+  out.survey.first = utc_time(0);
+  out.survey.last = utc_time(32'967'000'000);
+  out.survey.median_step_ns = 33'000'000;
+  return out;
+}
+
+/// `samples` of a sine's share: rms 1 of which `lost` is not carried.
+CarriedContent carried(double rms, double lost) {
+  CarriedContent out;
+  out.samples = 100;
+  out.squares = 100 * rms * rms;
+  out.lost = 100 * lost * lost;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("sound stamps are no finding") { CHECK(judge_stamps(kinect()).empty()); }
+
+TEST_CASE("stamps that repeat are a note, those that ran ahead or back a warning, in the file") {
+  RecordedStream s = kinect();
+  s.files = {{"k.csv", "", 0}, {"lab.toml", "", 0}};
+  s.survey.duplicates = 3;
+  s.survey.ahead = 2;
+  s.survey.backward = 50;
+  s.survey.largest_step_back_ns = 1'500'000'000;
+  const Findings found = judge_stamps(s);
+  REQUIRE(found.size() == 3);
+  CHECK(whole(found[0]) ==
+        "note: k.csv: expected stamps that rise, found 3 that repeat the one before; these samples "
+        "were left out; ");
+  CHECK(whole(found[1]) ==
+        "warning: k.csv: expected stamps that go on from one another, found 2 far ahead of the "
+        "ones around; these samples were left out; ");
+  CHECK(whole(found[2]) ==
+        "warning: k.csv: expected stamps that rise, found 50 of 1000 that step back, by up to "
+        "1.500 s; these samples were left out; look at the device's clock if there are many");
+}
+
+TEST_CASE("from one sample in twenty on, a clock that stepped back is an error") {
+  RecordedStream s = kinect();
+  s.survey.backward = 51;
+  s.survey.largest_step_back_ns = 3'600'000'000'000;
+  const Findings found = judge_stamps(s);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "error: kinect: expected stamps that rise, found 51 of 1000 that step back, by up to "
+        "3600.000 s; these samples were left out; the device's clock was set back: cut the file "
+        "there, or stamp it by rate_hz");
+}
+
+TEST_CASE("steps of twice their median on average are bursts or losses, in streams with stamps") {
+  RecordedStream s = kinect();
+  s.survey.last = utc_time(65'934'000'000);
+  const Findings found = judge_stamps(s);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: kinect: expected steps near their median of 33 ms, found a mean of 66 ms; "
+        "stretches longer than three median steps are taken for gaps; where samples come in "
+        "bursts, say the device's rate_hz (or gap_ms); else many are missing");
+  s.survey.last = utc_time(65'933'000'000);
+  CHECK(judge_stamps(s).empty());
+  s.survey.last = utc_time(65'934'000'000);
+  s.step_ns = 33e6;  // a file that states its step
+  CHECK(judge_stamps(s).empty());
+  s.step_ns.reset();
+  s.survey.samples = 9;  // too few to tell
+  CHECK(judge_stamps(s).empty());
+}
+
+TEST_CASE("a grid that loses more than a tenth of a joint's motion names the worst joint") {
+  ResampleCount count;
+  count.positions = {carried(0.1, 0.02), carried(0.1, 0.03)};
+  const Findings found = judge_content(kinect(), count, 29.97);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: kinect: expected a grid that carries the stream's content, found 30 % of the rms "
+        "of Head's position beyond what a 29.97 Hz grid carries; fast changes between the take's "
+        "rows are lost or look slower than they were; choose a faster stream as the reference, or "
+        "read this stream's own file for them");
+  count.positions = {carried(0.1, 0.0099), carried(0.0, 0.0)};
+  CHECK(judge_content(kinect(), count, 29.97).empty());
+  count.positions = {carried(0.002, 0.0019), carried(0.0, 0.0)};  // a Kinect's own noise
+  CHECK(judge_content(kinect(), count, 29.97).empty());
+}
+
+TEST_CASE("of nodes both quantities are judged, each against a sensor's own noise") {
+  RecordedStream imu = kinect();
+  imu.name = "imu";
+  imu.data = ImuInput{{"waist", "wrist_left"}, {}, {}};
+  ResampleCount count;
+  count.acceleration = {carried(0.06, 0.049), carried(0.06, 0.051)};
+  count.angular_velocity = {carried(0.02, 0.011), carried(0.02, 0.009)};
+  const Findings found = judge_content(imu, count, 60.0);
+  REQUIRE(found.size() == 2);
+  CHECK(found[0].what.found ==
+        "85 % of the rms of wrist_left's acceleration beyond what a 60 Hz grid carries");
+  CHECK(found[1].what.found ==
+        "55 % of the rms of waist's angular velocity beyond what a 60 Hz grid carries");
+}
+
+TEST_CASE("points that nobody placed say how to place them; what was said is not asked again") {
+  TakeHeader header;
+  header.groups = {{"mocap", ClipGroup{}, false, false, {}, "take"},
+                   {"kinect", PointGroup{}, true, false, {}, "kinect"},
+                   {"imu", ImuGroup{}, true, false, {}, "imu"}};
+  const Findings found = judge_spaces(header);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "note: expected a space for 'kinect', found none; its positions stay in its own space; "
+        "[space.kinect] method = \"fit\" (or \"none\", if so meant)");
+  header.parameters.spaces["kinect"].method = "none";
+  CHECK(judge_spaces(header).empty());
+}
+
+TEST_CASE("joints more than 30 cm rms from their counterparts are a warning with the distance") {
+  SpaceReport space;
+  space.stream = "kinect";
+  space.onto = "mocap";
+  space.after_m = 0.3;
+  CHECK(judge_residual(space).empty());
+  space.after_m = 0.4567;
+  const Findings found = judge_residual(space);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: expected 'kinect' on 'mocap' to less than 30 cm rms, found 45.7 cm; the "
+        "positions are not to be trusted; are both the same motion, at the same time, of the same "
+        "units and joints?");
+}

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can't be aligned is refused before anything is made, with the names that the user gave.
+#include "tests/align/two_streams.h"
+
+#include "kinalign/align/align.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+using namespace kinalign::test;
+
+namespace {
+
+PointStream hundred() { return points(joints, every(10 * ms, 100), wander); }
+
+ImuStream node(const std::string& name) {
+  return nodes({name}, every(10 * ms, 100), [](std::size_t, double) { return Quat::Identity(); });
+}
+
+Clip skeleton() {
+  Clip clip;
+  clip.skeleton = {{"Hips"}, {-1}, {Vec3::Zero()}, {}};
+  clip.frames.stamps = every(10 * ms, 100);
+  clip.frames.local_positions.assign(300, 0.0);
+  for (int i = 0; i < 100; ++i) {
+    for (const double part : {1.0, 0.0, 0.0, 0.0}) clip.frames.local_rotations.push_back(part);
+  }
+  return clip;
+}
+
+Recording of(std::vector<RecordedStream> streams) { return {"", "", std::move(streams)}; }
+
+StreamOptions told(const std::string& name) {
+  StreamOptions out;
+  out.name = name;
+  return out;
+}
+
+std::string fault(const Recording& recording, const Manifest& manifest = {}) {
+  const auto take = align(recording, manifest);
+  return take ? "none" : to_string(take.error());
+}
+
+/// Of a manifest that says of "kinect" what `space` says.
+std::string fault_of_space(const SpaceOptions& space, PointStream kinect = hundred()) {
+  Manifest manifest;
+  manifest.spaces["kinect"] = space;
+  return fault(two(hundred(), std::move(kinect)), manifest);
+}
+
+SpaceOptions by(const std::string& method) {
+  SpaceOptions out;
+  out.method = method;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("the reference is a stream of the recording, and no nodes") {
+  CHECK(fault(of({})) == "expected at least one stream, found none");
+  Manifest manifest;
+  manifest.align.reference = "mocap";
+  CHECK(fault(two(hundred(), hundred()), manifest) ==
+        "expected a stream named as the reference, found 'mocap', which is none");
+  CHECK(fault(of({recorded("imu", node("waist")), recorded("kinect", hundred())})) ==
+        "expected a clip or points as the reference, found nodes");
+}
+
+TEST_CASE("a stream without a sample, or none of the reference in the span, is refused") {
+  CHECK(fault(two(hundred(), points(joints, {}, wander))) ==
+        "expected at least one sample in stream 'kinect', found none");
+  CHECK(fault(two(points(joints, every(1000 * ms, 2), wander),
+                  points(joints, every(10 * ms, 21, 400 * ms), wander))) ==
+        "expected frames of 'optical' in the common span, found none; optical 0.000 to 1.000 s, "
+        "kinect 0.400 to 0.600 s");
+  auto late = recorded("imu", node("waist"));
+  late.clock.pieces.front().offset = Duration{5000 * ms};
+  CHECK(fault(of({recorded("optical", hundred()), late})) ==
+        "expected streams that overlap in time (see start_ns and offset_ms), found optical 0.000 "
+        "to 0.990 s, imu waist 5.000 to 5.990 s");
+}
+
+TEST_CASE("streams share a name only where they are nodes that measure the same") {
+  auto named = recorded("kinect", skeleton());
+  named.files = {{"walk.bvh", "", 0}};
+  CHECK(fault(of({recorded("kinect", hundred()), named})) ==
+        "expected streams with names that differ, found 'kinect' twice: memory (points) and "
+        "walk.bvh (a skeleton)");
+  CHECK(fault(of({recorded("optical", hundred()), recorded("imu", node("waist")),
+                  recorded("imu", hundred())})) ==
+        "expected streams with names that differ, found 'imu' twice: memory (nodes) and memory "
+        "(points)");
+  CHECK(fault(of({recorded("optical", hundred()), recorded("imu", node("waist")),
+                  recorded("imu", node("waist"))})) ==
+        "expected nodes with names that differ, found 'waist' twice");
+  ImuStream without_gravity = node("wrist_left");
+  without_gravity.content.gravity = false;
+  CHECK(fault(of({recorded("optical", hundred()), recorded("imu", node("waist")),
+                  recorded("imu", without_gravity)})) ==
+        "expected nodes of 'imu' that measure the same quantities, found 'wrist_left', which "
+        "measures others");
+}
+
+TEST_CASE("rate_hz is no word on a file that states its step") {
+  auto stepped = recorded("mocap", skeleton());
+  stepped.step_ns = 10.0 * ms;
+  Manifest manifest;
+  manifest.streams = {told("mocap")};
+  manifest.streams[0].rate_hz = 62.5;
+  CHECK(fault(of({stepped}), manifest) ==
+        "expected no rate_hz for 'mocap', whose file states its step, found rate_hz = 62.5");
+}
+
+TEST_CASE("a root node is one of the nodes and has an orientation") {
+  Manifest manifest;
+  manifest.streams = {told("imu")};
+  manifest.streams[0].root_node = "hip";
+  const auto recording = [](ImuStream imu) {
+    return of({recorded("optical", hundred()), recorded("imu", std::move(imu))});
+  };
+  CHECK(fault(recording(node("waist")), manifest) ==
+        "expected a node of 'imu' as root_node, found 'hip'");
+  ImuStream unturned = node("hip");
+  unturned.content.orientation = false;
+  unturned.samples.orientation.clear();
+  CHECK(fault(recording(unturned), manifest) ==
+        "expected orientations in 'imu', for root_node, found none");
+}
+
+TEST_CASE("only points are brought onto another stream, and that one stays where it is") {
+  Manifest manifest;
+  manifest.spaces["imu"] = by("fit");
+  CHECK(fault(of({recorded("optical", hundred()), recorded("imu", node("waist"))}), manifest) ==
+        "expected a stream with joints in [space], found 'imu'");
+  manifest.spaces = {{"mocap", by("fit")}};
+  CHECK(fault(of({recorded("optical", hundred()), recorded("mocap", skeleton())}), manifest) ==
+        "expected points to be brought onto another stream, found 'mocap'");
+  manifest.spaces = {{"optical", by("fit")}};
+  CHECK(fault(two(hundred(), hundred()), manifest) ==
+        "expected points to be brought onto another stream, found 'optical'");
+  SpaceOptions onto_nothing = by("fit");
+  onto_nothing.onto = "vicon";
+  CHECK(fault_of_space(onto_nothing) == "expected a stream with joints in [space], found 'vicon'");
+  manifest.spaces = {{"kinect", by("fit")}, {"second", by("fit")}};
+  manifest.spaces["second"].onto = "kinect";
+  CHECK(fault(of({recorded("optical", hundred()), recorded("kinect", hundred()),
+                  recorded("second", hundred())}),
+              manifest) ==
+        "expected 'second' onto a stream that is not moved itself, found 'kinect'");
+}
+
+TEST_CASE("joints that a manifest names are there on both sides") {
+  SpaceOptions space = by("fit");
+  space.joints = {{"Nose", "Head"}};
+  CHECK(fault_of_space(space) == "expected a joint of 'kinect', found 'Nose'");
+  space.joints = {{"Head", "Nose"}};
+  CHECK(fault_of_space(space) == "expected a joint of 'optical', found 'Nose'");
+  CHECK(fault_of_space(by("paper")) == "expected a joint of 'optical', found 'Hips'");
+  space = by("paper");
+  space.root = "Pelvis";
+  CHECK(fault_of_space(space) == "expected a joint of 'kinect', found 'Pelvis'");
+}
+
+TEST_CASE("a fit needs three named joints, and three places that stand on no line") {
+  SpaceOptions space = by("fit");
+  space.joints = {{"Head", "Head"}, {"HandLeft", "HandLeft"}};
+  CHECK(fault_of_space(space) ==
+        "expected three named joints or more for a fit (joints = { ... }), found 2");
+  const auto on_a_line = [](std::size_t j, double) {
+    return Vec3(static_cast<double>(j), 2.0, -static_cast<double>(j));
+  };
+  CHECK(fault_of_space(by("fit"), points(joints, every(10 * ms, 100), on_a_line)) ==
+        "kinect: expected points that do not lie on one line, found a line");
+  auto never_seen = hundred();
+  never_seen.frames.state.assign(never_seen.frames.state.size(), Tracking::inferred);
+  CHECK(fault_of_space(by("fit"), never_seen) ==
+        "kinect: expected three pairs of points for a rigid fit, found 0");
+}
+
+TEST_CASE("a given rotation is one") {
+  SpaceOptions space = by("given");
+  space.rotation = {0.1, 0.0, 0.0, 0.0};
+  CHECK(fault_of_space(space) ==
+        "expected a unit quaternion w,x,y,z as rotation, found another length");
+  space.rotation = {};
+  CHECK(fault_of_space(space) == "none");  // the identity
+}
+
+TEST_CASE("a reference that is shorter when it is read again is an error, never a shorter take") {
+  const PointFrames shorter = points(joints, every(10 * ms, 90), wander).frames;
+  const auto reference = read_in_blocks(recorded("optical", hundred()), shorter, 40);
+  CHECK(fault(of({reference, recorded("kinect", hundred())})) ==
+        "optical: expected 100 frames, as in the first reading, found 90");
+}
