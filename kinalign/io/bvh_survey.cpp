@@ -3,6 +3,7 @@
 
 #include "kinalign/core/hash.h"
 #include "kinalign/io/bvh_head.h"
+#include "kinalign/io/bvh_words.h"
 #include "kinalign/motion/stamps.h"
 #include "kinalign/motion/targets.h"
 
@@ -43,13 +44,14 @@ class WordCount {
     last_ = piece.back();
   }
   std::uint64_t words() const { return words_; }
+  bool within_word() const { return !is_blank(last_); }
 
  private:
   char last_ = ' ';
   std::uint64_t words_ = 0;
 };
 
-/// What the file promises, where it keeps the promise by number of words.
+/// What the file promises, where it keeps the promise by number of words and ends behind the last.
 struct Counted {
   BvhHierarchy hierarchy;
   Findings findings;
@@ -81,7 +83,7 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
   if (!in_rows) KA_TRY(head.finish(out.findings));
   out.facts = {std::string(file_name(path)), hash.hex(), bytes};
   const std::uint64_t row_size = head.hierarchy.row_size();
-  out.kept = in_rows && row_size > 0 && words.words() % row_size == 0 &&
+  out.kept = in_rows && row_size > 0 && !words.within_word() && words.words() % row_size == 0 &&
              words.words() / row_size == head.hierarchy.frames;
   out.hierarchy = std::move(head.hierarchy);
   return out;

@@ -19,7 +19,8 @@ struct BvhSurvey {
   Findings findings;
 };
 
-/// The numbers are read only where counting words does not give the frames that the file promises.
+/// The numbers are read only where counting words does not give the frames that the file promises,
+/// or where the file ends within the last one.
 Result<BvhSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
                              const Progress& progress);
 
