@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/layout_keys.h"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@ std::int64_t line_of(const toml::source_region& region) {
 }
 
 std::string as_text(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
   std::ostringstream out;
   node.visit([&out](const auto& value) {
     if constexpr (!toml::is_table<decltype(value)> && !toml::is_array<decltype(value)>)
@@ -123,7 +125,7 @@ Result<double> LayoutKeys::positive(std::string_view key, double otherwise) cons
   if (const auto number = node.value<double>(); node.is_number() && number) {
     if (*number >= 1e-9 && *number <= 1e9) return *number;
   }
-  return wrong(key, std::string(key) + " = a number above 0");
+  return wrong(key, std::string(key) + " = a number from 1e-9 to 1e9");
 }
 
 Result<std::vector<double>> LayoutKeys::numbers(std::string_view key) const {

@@ -89,7 +89,7 @@ TEST_CASE("an error in a layout names line, what is possible and what stands the
   CHECK(fault_of("name = 'a'\ndelimiter = 'colon'\n" + members) ==
         "odd.toml:2: expected delimiter = one of comma, semicolon, tab, blank, found colon");
   CHECK(fault_of("name = 'a'\nrate_hz = -3\n" + members) ==
-        "odd.toml:2: expected rate_hz = a number above 0, found -3");
+        "odd.toml:2: expected rate_hz = a number from 1e-9 to 1e9, found -3");
   CHECK(fault_of("name = 'a'\nheader = 1\n" + members) ==
         "odd.toml:2: expected header = true or false, found 1");
   CHECK(fault_of("name = 'a'\nskip_lines = -1\n" + members) ==
