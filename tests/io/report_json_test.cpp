@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// A report as JSON, whole: what reads it elsewhere has nothing but these words.
+#include "kinalign/io/report_json.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+namespace {
+
+AlignmentReport small_report() {
+  AlignmentReport report;
+  report.frames = 120;
+  report.begin = utc_time(1'700'000'000'000'000'001);
+  report.end = utc_time(1'700'000'001'983'333'334);
+  report.rate_hz = 60.0;
+  report.reference = "mocap";
+  StreamReport imu;
+  imu.stream = "imu";
+  imu.node = "waist";
+  imu.survey = {31, 1, 2, 3, 4'000'000, utc_time(5), utc_time(6), 66'666'667};
+  imu.rate_hz = 15.0;
+  imu.gap_ns = 206'666'668;
+  imu.gaps = 7;
+  imu.gap_time_ns = 8;
+  imu.samples = 120;
+  imu.invalid = 9;
+  imu.inferred = 10;
+  imu.bridged = 11;
+  imu.worst_nearest_ns = 12;
+  imu.worst_interval_ns = 13;
+  report.streams = {imu};
+  SpaceReport space;
+  space.stream = "kinect";
+  space.onto = "mocap";
+  space.method = "fit";
+  space.transform.rotation = Quat(0.5, 0.5, -0.5, 0.5);
+  space.transform.translation = Vec3(1.5, 0.0, -0.25);
+  space.before_m = 2.5;
+  space.after_m = 0.0625;
+  space.joints = {{"Head", "Head\"s", 100, 2.0, 0.125}};
+  report.spaces = {space};
+  report.findings = {{Severity::error, {"k.csv", 3, "a", "b"}, "c", "d"}};
+  return report;
+}
+
+const std::string whole = R"({
+  "schema": "kinalign.report/1",
+  "frames": 120,
+  "begin_ns": 1700000000000000001,
+  "end_ns": 1700000001983333334,
+  "rate_hz": 60.0,
+  "reference": "mocap",
+  "streams": [
+    {
+      "stream": "imu",
+      "node": "waist",
+      "stamps": {
+        "samples": 31,
+        "duplicates": 1,
+        "backward": 2,
+        "ahead": 3,
+        "largest_step_back_ns": 4000000,
+        "first_ns": 5,
+        "last_ns": 6,
+        "median_step_ns": 66666667
+      },
+      "rate_hz": 15.0,
+      "gap_ns": 206666668,
+      "gaps": 7,
+      "gap_time_ns": 8,
+      "samples": 120,
+      "invalid": 9,
+      "inferred": 10,
+      "bridged": 11,
+      "worst_nearest_ns": 12,
+      "worst_interval_ns": 13
+    }
+  ],
+  "spaces": [
+    {
+      "stream": "kinect",
+      "onto": "mocap",
+      "method": "fit",
+      "rotation": [
+        0.5,
+        0.5,
+        -0.5,
+        0.5
+      ],
+      "translation_m": [
+        1.5,
+        0.0,
+        -0.25
+      ],
+      "magnification": 1.0,
+      "before_m": 2.5,
+      "after_m": 0.0625,
+      "joints": [
+        {
+          "joint": "Head",
+          "onto": "Head\"s",
+          "rows": 100,
+          "before_m": 2.0,
+          "after_m": 0.125
+        }
+      ]
+    }
+  ],
+  "findings": [
+    {
+      "severity": "error",
+      "file": "k.csv",
+      "line": 3,
+      "expected": "a",
+      "found": "b",
+      "meaning": "c",
+      "repair": "d"
+    }
+  ]
+}
+)";
+
+}  // namespace
+
+TEST_CASE("a report is JSON of its schema, every figure under its unit") {
+  CHECK(report_json(small_report()) == whole);
+}
+
+TEST_CASE("what is not known is absent, not zero") {
+  AlignmentReport report = small_report();
+  report.streams[0].node = "";
+  report.streams[0].worst_interval_ns.reset();
+  const std::string json = report_json(report);
+  CHECK(json.find("\"node\"") == std::string::npos);
+  CHECK(json.find("worst_interval_ns") == std::string::npos);
+}
+
+TEST_CASE("a report of nothing has empty lists") {
+  const std::string json = report_json({});
+  for (const char* list : {"\"streams\": []", "\"spaces\": []", "\"findings\": []"}) {
+    CAPTURE(list);
+    CHECK(json.find(list) != std::string::npos);
+  }
+  CHECK(findings_json({}) == "[]\n");
+}
+
+TEST_CASE("bytes that are no UTF-8 are shown as such: the report stays JSON") {
+  const Findings findings{{Severity::note, {"k\xff.csv", 0, "a", "b"}, "", ""}};
+  CHECK(findings_json(findings).find("\"file\": \"k\xef\xbf\xbd.csv\"") != std::string::npos);
+}
