@@ -68,7 +68,7 @@ TEST_CASE("the reference is a stream of the recording, and no nodes") {
 
 TEST_CASE("a stream without a sample, or none of the reference in the span, is refused") {
   CHECK(fault(two(hundred(), points(joints, {}, wander))) ==
-        "expected at least one sample in stream 'kinect', found none");
+        "expected at least one sample for stream 'kinect', found none");
   CHECK(fault(two(points(joints, every(1000 * ms, 2), wander),
                   points(joints, every(10 * ms, 21, 400 * ms), wander))) ==
         "expected frames of 'optical' in the common span, found none; optical 0.000 to 1.000 s, "

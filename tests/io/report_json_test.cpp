@@ -17,7 +17,7 @@ AlignmentReport small_report() {
   report.reference = "mocap";
   StreamReport imu;
   imu.stream = "imu";
-  imu.node = "waist";
+  imu.nodes = {"waist"};
   imu.survey = {31, 1, 2, 3, 4'000'000, utc_time(5), utc_time(6), 66'666'667};
   imu.rate_hz = 15.0;
   imu.gap_ns = 206'666'668;
@@ -54,7 +54,9 @@ const std::string whole = R"({
   "streams": [
     {
       "stream": "imu",
-      "node": "waist",
+      "nodes": [
+        "waist"
+      ],
       "stamps": {
         "samples": 31,
         "duplicates": 1,
@@ -129,10 +131,10 @@ TEST_CASE("a report is JSON of its schema, every figure under its unit") {
 
 TEST_CASE("what is not known is absent, not zero") {
   AlignmentReport report = small_report();
-  report.streams[0].node = "";
+  report.streams[0].nodes.clear();
   report.streams[0].worst_interval_ns.reset();
   const std::string json = report_json(report);
-  CHECK(json.find("\"node\"") == std::string::npos);
+  CHECK(json.find("\"nodes\"") == std::string::npos);
   CHECK(json.find("worst_interval_ns") == std::string::npos);
 }
 
