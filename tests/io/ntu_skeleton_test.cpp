@@ -110,13 +110,13 @@ TEST_CASE("a number of the wrong kind in a skeleton file is refused with its lin
 TEST_CASE("a joint's state is the device's, and a joint without a place is missing") {
   std::string text = "1\n1\n7 0 1 1 1 0 0 0.1 -0.2 2\n25\n";
   for (int j = 0; j < 25; ++j) {
-    text += (j == 3 ? "nan" : "1") + std::string(" 1 2 0 0 0 0 0 0 0 0 ") + std::to_string(j % 3) +
+    text += (j == 4 ? "nan" : "1") + std::string(" 1 2 0 0 0 0 0 0 0 0 ") + std::to_string(j % 3) +
             "\n";
   }
   const auto read = read_ntu(text);
   CHECK(read.error == "");
   for (std::size_t j = 0; j < 25; ++j) {
-    CHECK(read.rows.state[j] == (j == 3 ? Tracking::missing : static_cast<Tracking>(j % 3)));
+    CHECK(read.rows.state[j] == (j == 4 ? Tracking::missing : static_cast<Tracking>(j % 3)));
   }
 }
 

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -99,20 +101,35 @@ TEST_CASE("rate, start, unit and axis of UI-PRMD's files are the user's where gi
 }
 
 TEST_CASE("each joint turns all that hang on it and nothing else") {
-  // The upper arm turned by 90 degrees about z: what follows it turns, the arm's own place does
-  // not.
-  const std::size_t upper_arm_left = 7;
-  std::vector<double> offsets(66, 0.0), angles(66, 0.0), places(66);
+  const std::vector<std::vector<std::string>> chains{
+      {"Waist", "Spine", "Chest", "Neck", "Head", "HeadTip"},
+      {"Waist", "Spine", "Chest", "CollarLeft", "UpperArmLeft", "ForearmLeft", "HandLeft"},
+      {"Waist", "Spine", "Chest", "CollarRight", "UpperArmRight", "ForearmRight", "HandRight"},
+      {"Waist", "UpperLegLeft", "LowerLegLeft", "FootLeft", "ToesLeft"},
+      {"Waist", "UpperLegRight", "LowerLegRight", "FootRight", "ToesRight"}};
+  const std::string one = row("1,0,0", "1");
+  const auto names = read_pair(one, one).header.joint_names;
+  REQUIRE(names.size() == 22);
+  std::vector<double> offsets(66, 0.0), straight(66), turned(66);
   for (std::size_t j = 0; j < 22; ++j) offsets[3 * j] = 1.0;  // along x
-  angles[3 * upper_arm_left + 2] = 90.0;
-  ui_prmd_places(offsets, angles, places);
-  const auto place = [&](std::size_t j) { return Vec3(vec3(std::span<const double>(places), j)); };
-  CHECK((place(7) - Vec3(5, 0, 0)).norm() < 1e-12);   // waist, spine, chest, collar, arm
-  CHECK((place(8) - Vec3(5, 1, 0)).norm() < 1e-12);   // its forearm
-  CHECK((place(9) - Vec3(5, 2, 0)).norm() < 1e-12);   // its hand
-  CHECK((place(12) - Vec3(6, 0, 0)).norm() < 1e-12);  // the other forearm
-  CHECK((place(5) - Vec3(6, 0, 0)).norm() < 1e-12);   // the head's tip
-  CHECK((place(17) - Vec3(5, 0, 0)).norm() < 1e-12);  // the toes
+  ui_prmd_places(offsets, std::vector<double>(66, 0.0), straight);
+  for (std::size_t j = 0; j < 22; ++j) {
+    CAPTURE(names[j]);
+    std::vector<double> angles(66, 0.0);
+    angles[3 * j + 2] = 90.0;  // about z
+    ui_prmd_places(offsets, angles, turned);
+    std::set<std::string> moved, behind;
+    for (std::size_t k = 0; k < 22; ++k) {
+      const Vec3 apart =
+          vec3(std::span<const double>(turned), k) - vec3(std::span<const double>(straight), k);
+      if (apart.norm() > 0.1) moved.insert(names[k]);
+    }
+    for (const auto& chain : chains) {
+      const auto at = std::find(chain.begin(), chain.end(), names[j]);
+      if (at != chain.end()) behind.insert(at + 1, chain.end());
+    }
+    CHECK(moved == behind);
+  }
 }
 
 TEST_CASE("places do not depend on where the offsets are cut into pieces") {
