@@ -71,7 +71,7 @@ Result<void> check_names(const std::vector<std::string>& names, const std::strin
   std::set<std::string_view> seen;
   for (const std::string& name : names) {
     if (name.empty() || name.find('\0') != std::string::npos) return bad_name(what, name);
-    if (!seen.insert(name).second) return bad_name(what + " once only", name);
+    if (!seen.insert(name).second) return bad_name(what + ", once only", name);
   }
   return {};
 }
@@ -147,14 +147,14 @@ Result<void> validate(const TakeHeader& header) {
     }
     if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
       KA_TRY(validate(clip->skeleton));
-      KA_TRY(check_names(clip->skeleton.joint_names, "a name for each joint,"));
+      KA_TRY(check_names(clip->skeleton.joint_names, "a name for each joint"));
     } else if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
-      KA_TRY(check_names(points->joint_names, "a name for each joint,"));
+      KA_TRY(check_names(points->joint_names, "a name for each joint"));
     } else {
-      KA_TRY(check_names(std::get<ImuGroup>(group.kind).node_names, "a name for each node,"));
+      KA_TRY(check_names(std::get<ImuGroup>(group.kind).node_names, "a name for each node"));
     }
   }
-  return check_names(names, "a name for each stream,");
+  return check_names(names, "a name for each stream");
 }
 
 void NumberStore::check_numbers([[maybe_unused]] std::span<const double> values) {
