@@ -77,13 +77,23 @@ TEST_CASE("the doubt about a stamp stands beside it: none only where the clock w
   CHECK(known.report.streams[1].worst_interval_ns == 3'500'000);
 }
 
-TEST_CASE("the reference is its own samples: no distance, no doubt, nothing to be valid") {
-  const Take take = seen_through({});
-  CHECK_FALSE(take.header.groups[0].resampled);
-  CHECK_FALSE(take.header.groups[0].interval_known);
-  CHECK(rows(take, 0).distance.nearest_raw_ns.empty());
-  CHECK(rows(take, 0).distance.time_interval_ns.empty());
-  CHECK(take.header.groups[1].resampled);
+TEST_CASE(
+    "the reference is its own samples: no distance, no doubt, nothing to be valid or counted") {
+  PointStream optical = points(joints, every(10 * ms, 100), wander);
+  optical.frames.state[5] = Tracking::missing;
+  Recording recording = two(optical, points(joints, every(30 * ms, 34), wander));
+  for (RecordedStream& stream : recording.streams) stream.clock = shared_clock();
+  const auto take = align(recording, own_space());
+  REQUIRE(take);
+  CHECK_FALSE(take->header.groups[0].resampled);
+  CHECK_FALSE(take->header.groups[0].interval_known);
+  CHECK(rows(*take, 0).distance.nearest_raw_ns.empty());
+  CHECK(rows(*take, 0).distance.time_interval_ns.empty());
+  CHECK(rows(*take, 0).valid[5] == 0);
+  CHECK(take->report.streams[0].samples == 0);
+  CHECK(take->report.streams[0].invalid == 0);
+  CHECK(take->header.groups[1].resampled);
+  CHECK(take->header.groups[1].interval_known);
 }
 
 TEST_CASE("pieces of a clock serve the stamps from their beginning on") {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/coarse_grid.h"
+
 #include "tests/align/streams.h"
 
 #include "kinalign/align/align.h"
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <numbers>
 
 using namespace kinalign;
@@ -56,4 +59,46 @@ TEST_CASE("between them the share grows with the frequency") {
 TEST_CASE("noise of the sensor's own size is no loss, nor is anything on a finer grid") {
   CHECK(findings_of(40.0, 0.05, 60.0).empty());
   CHECK(findings_of(40.0, 2.0, 200.0).empty());
+}
+
+TEST_CASE("a sine loses what the cubic between the rows can't follow, by its share of their rate") {
+  struct Share {
+    double of_rate, lost;
+  };
+  constexpr double grid_s = 0.02, raw_s = 0.001;
+  std::vector<double> at, rows, times, values;
+  for (const Share& one :
+       {Share{0.1, 0.003}, Share{0.25, 0.08}, Share{1.0 / 3.0, 0.22}, Share{0.5, 1.0}}) {
+    CAPTURE(one.of_rate);
+    const auto sine = [&](double t) {
+      const double at_zero = one.of_rate == 0.5 ? 0.0 : 0.4;  // half the rate: rows see nothing
+      return 3.0 + std::sin(2.0 * std::numbers::pi * one.of_rate / grid_s * t + at_zero);
+    };
+    at.clear(), rows.clear(), times.clear(), values.clear();
+    for (int i = 0; i < 600; ++i) {
+      at.push_back(grid_s * i);
+      for (const double x : {sine(at.back()), 5.0, 0.0}) rows.push_back(x);
+    }
+    for (int i = 0; i < 12'000; ++i) {
+      times.push_back(raw_s * i);
+      for (const double x : {sine(times.back()), 5.0, 0.0}) values.push_back(x);
+    }
+    CarriedContent content;
+    add_content({times, values, 3}, {at, rows, 3}, 0, content);
+    CHECK(content.variation() == doctest::Approx(std::sqrt(0.5)).epsilon(0.01));
+    CHECK(content.missing() / content.variation() == doctest::Approx(one.lost).epsilon(0.05));
+  }
+}
+
+TEST_CASE("content is judged between the second row and the last but one, from four rows on") {
+  const std::vector<double> times{0, 1, 2, 3, 4, 5}, values(18, 1.0);
+  const auto samples = [&](const std::vector<double>& at) {
+    CarriedContent content;
+    const std::vector<double> rows(3 * at.size(), 1.0);
+    add_content({times, values, 3}, {at, rows, 3}, 0, content);
+    return content.samples;
+  };
+  CHECK(samples({0, 1, 4, 5}) == 3);  // 1, 2, 3
+  CHECK(samples({0, 2, 5}) == 0);
+  CHECK(samples({-9, -8, 8, 9}) == 6);
 }
