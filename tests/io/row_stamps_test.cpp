@@ -48,6 +48,21 @@ using Stamps = std::vector<std::int64_t>;
 
 }  // namespace
 
+TEST_CASE("stamps are read to the nanosecond") {
+  CHECK(parse_stamp("1642700848.123456789", in_s) == 1'642'700'848'123'456'789);
+  CHECK(parse_stamp("-0.5", in_s) == -500'000'000);
+  CHECK(parse_stamp(".25", in_s) == 250'000'000);
+  CHECK(parse_stamp("1e-3", in_s) == 1'000'000);
+  CHECK(parse_stamp("0.0000000005", in_s) == 1);
+  CHECK(parse_stamp("63562205247984", {1'000'000, year_1_s}) == 1'426'608'447'984'000'000);
+  CHECK(parse_stamp("31867373716", in_ticks) == 3'186'737'371'600);
+  CHECK_FALSE(parse_stamp("", in_s));
+  CHECK_FALSE(parse_stamp("nan", in_s));
+  CHECK_FALSE(parse_stamp(".", in_s));
+  CHECK_FALSE(parse_stamp("12 13", in_s));
+  CHECK_FALSE(parse_stamp("4000000001", in_s));
+}
+
 TEST_CASE("every stamp comes back to the nanosecond from its digits, in any unit") {
   for (const std::uint64_t seed : fresh_seeds(500)) {
     CAPTURE(seed);

@@ -288,19 +288,3 @@ TEST_CASE("LSL-Kinect's confidences become states") {
   CHECK(read.rows.state[2] == Tracking::tracked);
   CHECK(to_ns(read.rows.stamps[0]) == 1'594'038'000'123'250'000);
 }
-
-TEST_CASE("stamps are read to the nanosecond") {
-  constexpr TimeScale seconds{1'000'000'000, 0};
-  CHECK(parse_stamp("1642700848.123456789", seconds) == 1'642'700'848'123'456'789);
-  CHECK(parse_stamp("-0.5", seconds) == -500'000'000);
-  CHECK(parse_stamp(".25", seconds) == 250'000'000);
-  CHECK(parse_stamp("1e-3", seconds) == 1'000'000);
-  CHECK(parse_stamp("0.0000000005", seconds) == 1);
-  CHECK(parse_stamp("63562205247984", {1'000'000, year_1_s}) == 1'426'608'447'984'000'000);
-  CHECK(parse_stamp("31867373716", {100, 0}) == 3'186'737'371'600);
-  CHECK_FALSE(parse_stamp("", seconds));
-  CHECK_FALSE(parse_stamp("nan", seconds));
-  CHECK_FALSE(parse_stamp(".", seconds));
-  CHECK_FALSE(parse_stamp("12 13", seconds));
-  CHECK_FALSE(parse_stamp("4000000001", seconds));
-}
