@@ -173,6 +173,31 @@ TEST_CASE("of a take whose rows are all invalid no BVH is made") {
   CHECK(copied(path, take_to_bvh).error == path + ": expected a valid row of mocap, found none");
 }
 
+TEST_CASE("of a take that holds no skeleton's stream, or places beyond measure, no BVH is made") {
+  const FreshFolder folder;
+  Take points = take_of({1, 1}, {10'000'000});
+  points.header.groups = {{"kinect", PointGroup{{"Head"}}, false, false, {}}};
+  points.all.rows = {
+      PointRows{std::vector<double>(6, 1.0), {Tracking::tracked, Tracking::tracked}, {1, 1}, {}}};
+  CHECK(copied(written(folder, points), take_to_bvh).error ==
+        (folder / "take.h5") + ": expected a take with a skeleton's stream, found none");
+  Take far = take_of({1, 1}, {10'000'000});
+  std::get<ClipRows>(far.all.rows[0]).local_positions[7] = -1e12;
+  CHECK(copied(written(folder, far), take_to_bvh).error ==
+        (folder / "take.h5") + ": expected positions below 1e12 m, found larger ones");
+}
+
+TEST_CASE("of several skeletons the first is written, and the note says what holds them all") {
+  const FreshFolder folder;
+  const auto made = copied(written(folder, take_of({1, 1, 1}, {10'000'000})), take_to_bvh);
+  REQUIRE(made.findings.size() == 1);
+  CHECK(made.findings[0].severity == Severity::note);
+  CHECK(to_string(made.findings[0].what) ==
+        (folder / "take.h5") + ": expected one skeleton's stream, found mocap, suit");
+  CHECK(made.findings[0].meaning == "mocap was written");
+  CHECK(made.findings[0].repair == "convert to .npz holds them all");
+}
+
 TEST_CASE("stamps that no fixed step has are a finding") {
   const FreshFolder folder;
   const auto made =

@@ -5,9 +5,12 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 using namespace kinalign;
 
@@ -149,6 +152,40 @@ TEST_CASE("parameters with unknown keys, wrong types or wild values are refused"
         "expected an option's value at streams[0].start_ns, found a JSON number");
   CHECK(error_of(with_schema(R"("streams": [{"files": [{"path": 3}]}])")) ==
         "expected a text at streams[0].files.path, found a JSON number");
+}
+
+TEST_CASE("each value of the parameters has its type, and the message its place") {
+  const std::vector<std::array<std::string, 2>> refused{
+      {R"("subject": 3)", "a text at subject, found a JSON number"},
+      {R"("streams": {})", "a list at streams, found a JSON object"},
+      {R"("streams": [[]])", "an object at streams[0], found a JSON array"},
+      {R"("streams": [{}, {"name": null}])", "a text at streams[1].name, found a JSON null"},
+      {R"("streams": [{"files": "a"}])", "a list at streams[0].files, found a JSON string"},
+      {R"("streams": [{"files": ["a"]}])",
+       "a list of objects at streams[0].files, found a JSON string"},
+      {R"("streams": [{"files": [{"nod": "a"}]}])",
+       "a known key at streams[0].files (nearest: node), found \"nod\""},
+      {R"("streams": [{"select": {"id": 1}}])",
+       "a text at streams[0].select.id, found a JSON number"},
+      {R"("streams": [{"mounting": {"w": 1}}])",
+       "a list of numbers at streams[0].mounting.w, found a JSON number"},
+      {R"("streams": [{"mounting": {"w": [1, 0, 0, "0"]}}])",
+       "a list of numbers at streams[0].mounting.w, found a JSON string"},
+      {R"("streams": [{"up": {}}])", "an option's value at streams[0].up, found a JSON object"},
+      {R"("streams": [{"clock": ["shared", 3]}])",
+       "an option's value at streams[0].clock, found a JSON array"},
+      {R"("spaces": [])", "an object at spaces, found a JSON array"},
+      {R"("spaces": {"k": 3})", "an object at spaces.k, found a JSON number"},
+      {R"("spaces": {"k": {"joints": []}})", "an object at spaces.k.joints, found a JSON array"},
+      {R"("spaces": {"k": {"root": null}})", "a value at spaces.k.root, found a JSON null"},
+      {R"("align": "fast")", "an object at align, found a JSON string"}};
+  for (const auto& [rest, message] : refused) {
+    CAPTURE(rest);
+    CHECK(error_of(with_schema(rest)) == "expected " + message);
+  }
+  CHECK(error_of("") == "expected parameters as JSON, found an empty text");
+  CHECK(error_of(with_schema(R"("streams": [{"start_ns": null, "interval_ms": null}])")) == "none");
+  CHECK(error_of(with_schema(R"("spaces": {"k": {"rotation": [], "translation": []}})")) == "none");
 }
 
 TEST_CASE("paths that lead out of the inputs' folder are refused: the take may be a stranger's") {

@@ -36,6 +36,24 @@ TEST_CASE("rows are selected by a column, numbers by their value") {
         "p.csv:1: expected a column of the file to select by (nearest: who), found \"whom\"");
 }
 
+TEST_CASE("what a wrong selection means and what mends it is said with it") {
+  const std::string layout = std::string("name = 's'\nrate_hz = 1\nbody = 'id'\n[joints]\n") +
+                             "names = ['A']\nfields = { x = 'x', y = 'y', z = 'z' }\n";
+  const std::string text = "id,x,y,z\n7,1,0,0\n,2,0,0\n";
+  StreamOptions options;
+  options.select = {{"id", "9"}};
+  const auto none = read_point(layout, text, options);
+  REQUIRE(none.findings.size() == 1);
+  CHECK(text_of(none.findings[0]) ==
+        "p.csv: expected rows of id 9, found none among 2, which are of id 7, nothing");
+  CHECK(none.findings[0].meaning == "the stream is empty");
+  CHECK(none.findings[0].repair == "select values that are there");
+  const auto mixed = read_point(layout, text, {});
+  REQUIRE(mixed.findings.size() == 1);
+  CHECK(mixed.findings[0].severity == Severity::warning);
+  CHECK(mixed.findings[0].meaning == "rows of several bodies are mixed in one stream");
+}
+
 TEST_CASE("a selection that takes no row is an error that names what is there") {
   const std::string layout = std::string("name = 's'\nrate_hz = 1\n[joints]\nnames = ['A']\n") +
                              "fields = { x = 'x', y = 'y', z = 'z' }\n";
