@@ -13,7 +13,7 @@ std::vector<double> rotations_at(RotationCurve curve, std::span<const double> ti
     slerp_at(times, knots, at, out);
   } else {
     const RotationKnots rotations{times, knots};
-    rotation_spline_at(rotations, rotation_spline_rates(rotations), at, out);
+    rotation_spline_at(rotations, at, out);
   }
   return out;
 }

@@ -1,135 +1,139 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rotation spline between its knots, 64 samples at a time.
+// Sixty-four samples at a time, four numbers of a sample side by side; the angles' polynomials,
+// eight samples side by side.
+#include "kinalign/motion/rotation_curve.h"
+
 #include "kinalign/motion/rotation.h"
-#include "kinalign/motion/rotation_intervals.h"
-#include "kinalign/motion/rotation_spline.h"
 #include "kinalign/motion/targets.h"
+#include "kinalign/motion/vector_lanes.h"
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 namespace kinalign {
 
 namespace {
 
-/// The rotation vector from an interval's left knot, of the fraction u of the interval that has
-/// passed: u (one + u (two + u three)).
-struct Cubic {
-  Vec3 one, two, three;
+using Four = std::array<double, 4>;
+
+/// The curve in each interval. Where the fraction u of it has passed, the rotation vector from the
+/// left knot is c = u (c1 + u (c2 + u c3)) and the rotation
+///   knot (cos(|c|/2) + sin(|c|/2)/|c| c) = cos(|c|/2) knot + sin(|c|/2)/|c| (knot c),
+/// quaternions all. What stands here is knot c1, knot c2 and knot c3: so a sample needs no product
+/// of quaternions, and knot c is as long as c.
+struct Cubics {
+  explicit Cubics(std::size_t n)
+      : one(std::make_unique_for_overwrite<Four[]>(n)),
+        two(std::make_unique_for_overwrite<Four[]>(n)),
+        three(std::make_unique_for_overwrite<Four[]>(n)) {}
+
+  std::unique_ptr<Four[]> one, two, three;  // [n]
 };
 
-std::vector<Cubic> cubics(const RotationIntervals& intervals, std::span<const double> rates) {
-  std::vector<Cubic> out(intervals.size());
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    const Vec3 r = intervals.r(k), end = vec3(rates, k + 1);
-    const Vec3 cross = r.cross(end);
-    const Vec3 begins = intervals.length[k] * vec3(rates, k);
-    const Vec3 ends =
-        intervals.length[k] * (end + 0.5 * cross + intervals.back2[k] * r.cross(cross));
-    out[k] = {begins, 3.0 * r - 2.0 * begins - ends, begins + ends - 2.0 * r};
+KA_INLINE void multiply(const double* q, const Vector& v, Four& to) {
+  to[0] = -q[1] * v.x - q[2] * v.y - q[3] * v.z;
+  to[1] = q[0] * v.x + q[2] * v.z - q[3] * v.y;
+  to[2] = q[0] * v.y + q[3] * v.x - q[1] * v.z;
+  to[3] = q[0] * v.z + q[1] * v.y - q[2] * v.x;
+}
+
+struct ColumnView {
+  const double *x, *y, *z;
+
+  explicit ColumnView(const Columns& c) : x(c[0].data()), y(c[1].data()), z(c[2].data()) {}
+  KA_INLINE Vector operator[](std::size_t k) const { return {x[k], y[k], z[k]}; }
+};
+
+KA_EVERY_PROCESSOR
+void multiply(const RotationCurve& curve, const Cubics& to) {
+  const std::size_t n = curve.intervals.size();
+  const double *q = curve.knots.rotations.data(), *length = curve.intervals.length.data();
+  const ColumnView vector(curve.intervals.vector);
+  const ColumnView begin(curve.slopes.begin), end(curve.slopes.end);
+  Four *one = to.one.get(), *two = to.two.get(), *three = to.three.get();
+#pragma GCC ivdep
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vector r = vector[k], begins = length[k] * begin[k], ends = length[k] * end[k];
+    multiply(q + 4 * k, begins, one[k]);
+    multiply(q + 4 * k, 3.0 * r - 2.0 * begins - ends, two[k]);
+    multiply(q + 4 * k, begins + ends - 2.0 * r, three[k]);
   }
-  return out;
 }
 
 constexpr std::size_t block = 64;
-using Lane = std::array<double, block>;
 
-struct Samples {
-  Lane fraction;
-  std::array<Lane, 9> cubic;
-  std::array<Lane, 4> knot;
-  std::array<Lane, 4> rotation;
-  Lane square;  // of the rotation vector from the knot
+struct alignas(64) Samples {
+  std::array<std::size_t, block> interval;
+  std::array<double, block> fraction;
+  std::array<Four, block> vector;    // knot c / u
+  std::array<double, block> square;  // of c
+  std::array<double, block> knot_weight, vector_weight;
 };
 
-void load(Samples& s, std::size_t i, const Cubic& cubic, const double* knot) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto axis = static_cast<Eigen::Index>(k);
-    s.cubic[k][i] = cubic.one[axis];
-    s.cubic[3 + k][i] = cubic.two[axis];
-    s.cubic[6 + k][i] = cubic.three[axis];
+KA_EVERY_PROCESSOR
+void place(const Cubics& curve, Samples& s) {
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::size_t n = s.interval[i];
+    const Four &one = curve.one[n], &two = curve.two[n], &three = curve.three[n];
+    const double u = s.fraction[i];
+    Four v;
+    for (std::size_t k = 0; k < 4; ++k) v[k] = one[k] + u * (two[k] + u * three[k]);
+    s.vector[i] = v;
+    s.square[i] = u * u * ((v[0] * v[0] + v[2] * v[2]) + (v[1] * v[1] + v[3] * v[3]));
   }
-  for (std::size_t k = 0; k < 4; ++k) s.knot[k][i] = knot[k];
 }
 
 KA_EVERY_PROCESSOR
-void turn(Samples& s) {
+void weigh(Samples& s) {
   for (std::size_t i = 0; i < block; ++i) {
-    const double u = s.fraction[i];
-    const double rx = u * (s.cubic[0][i] + u * (s.cubic[3][i] + u * s.cubic[6][i]));
-    const double ry = u * (s.cubic[1][i] + u * (s.cubic[4][i] + u * s.cubic[7][i]));
-    const double rz = u * (s.cubic[2][i] + u * (s.cubic[5][i] + u * s.cubic[8][i]));
-    s.square[i] = rx * rx + ry * ry + rz * rz;
     const RotationParts parts = rotation_parts(s.square[i]);
-    const double x = parts.vector * rx, y = parts.vector * ry, z = parts.vector * rz;
-    const double kw = s.knot[0][i], kx = s.knot[1][i], ky = s.knot[2][i], kz = s.knot[3][i];
-    s.rotation[0][i] = kw * parts.w - kx * x - ky * y - kz * z;
-    s.rotation[1][i] = kw * x + kx * parts.w + ky * z - kz * y;
-    s.rotation[2][i] = kw * y - kx * z + ky * parts.w + kz * x;
-    s.rotation[3][i] = kw * z + kx * y - ky * x + kz * parts.w;
+    s.knot_weight[i] = parts.w;
+    s.vector_weight[i] = s.fraction[i] * parts.vector;
   }
 }
 
-void store(const Samples& s, std::size_t count, double* out) {
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!(s.square[i] <= most_rotation_parts)) {  // rare: more than a whole turn between two knots
-      const double u = s.fraction[i];
-      Vec3 r;
-      for (std::size_t k = 0; k < 3; ++k) {
-        r[static_cast<Eigen::Index>(k)] =
-            u * (s.cubic[k][i] + u * (s.cubic[3 + k][i] + u * s.cubic[6 + k][i]));
-      }
-      const Quat knot(s.knot[0][i], s.knot[1][i], s.knot[2][i], s.knot[3][i]);
-      put_quat({out + 4 * i, 4}, 0, knot * rotation(r));
-      continue;
+KA_EVERY_PROCESSOR
+void blend(const Samples& s, std::size_t count, const double* knots, double* out) {
+  for (std::size_t i = 0; i < count; ++i, out += 4) {
+    const double* knot = knots + 4 * s.interval[i];
+#pragma GCC ivdep
+    for (std::size_t k = 0; k < 4; ++k) {
+      out[k] = s.knot_weight[i] * knot[k] + s.vector_weight[i] * s.vector[i][k];
     }
-    for (std::size_t k = 0; k < 4; ++k) out[4 * i + k] = s.rotation[k][i];
   }
 }
 
-void fill(const RotationKnots& knots, std::span<const double> rates, std::span<const double> at,
-          double* out) {
-  const auto& t = knots.times;
-  const std::vector<Cubic> curve = cubics(RotationIntervals(knots), rates);
+/// Rare: more than a whole turn between two knots, where the weights do not hold.
+void turn_far(const Samples& s, std::size_t count, std::span<const double> knots, double* out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (s.square[i] <= most_rotation_parts) continue;
+    const Quat knot = quat(knots, s.interval[i]), vector = quat(s.vector[i], 0);
+    const Vec3 c = s.fraction[i] * (knot.conjugate() * vector).vec();
+    put_quat({out + 4 * i, 4}, 0, knot * rotation(c));
+  }
+}
+
+}  // namespace
+
+void rotation_curve_at(const RotationCurve& curve, std::span<const double> at,
+                       std::span<double> out) {
+  const auto& t = curve.knots.times;
+  const Cubics in(curve.intervals.size());
+  multiply(curve, in);
   Samples samples{};
   std::size_t k = 0;
   for (std::size_t first = 0; first < at.size(); first += block) {
     const std::size_t count = std::min(block, at.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       while (k + 2 < t.size() && at[first + i] >= t[k + 1]) ++k;
+      samples.interval[i] = k;
       samples.fraction[i] = (at[first + i] - t[k]) / (t[k + 1] - t[k]);
-      load(samples, i, curve[k], &knots.rotations[4 * k]);
     }
-    turn(samples);
-    store(samples, count, out + 4 * first);
-  }
-}
-
-constexpr std::size_t window = 1024;  // intervals at a time: little memory, which stays in cache
-
-}  // namespace
-
-void rotation_spline_at(const RotationKnots& knots, std::span<const double> rates,
-                        std::span<const double> at, std::span<double> out) {
-  const auto& t = knots.times;
-  if (t.size() == 1) {
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      std::copy_n(knots.rotations.begin(), 4, &out[4 * i]);
-    }
-    return;
-  }
-  std::size_t sample = 0;
-  for (std::size_t first = 0; first + 1 < t.size() && sample < at.size(); first += window) {
-    const std::size_t count = std::min(window + 1, t.size() - first);
-    const bool last = first + count == t.size();
-    std::size_t end = at.size();
-    if (!last) {
-      const auto behind = std::lower_bound(at.begin(), at.end(), t[first + count - 1]);
-      end = static_cast<std::size_t>(behind - at.begin());
-    }
-    fill({t.subspan(first, count), knots.rotations.subspan(4 * first, 4 * count)},
-         rates.subspan(3 * first, 3 * count), at.subspan(sample, end - sample), &out[4 * sample]);
-    sample = end;
+    place(in, samples);
+    weigh(samples);
+    blend(samples, count, curve.knots.rotations.data(), &out[4 * first]);
+    turn_far(samples, count, curve.knots.rotations, &out[4 * first]);
   }
 }
 

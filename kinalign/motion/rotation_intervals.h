@@ -2,8 +2,8 @@
 // The intervals between neighbouring rotations, as the rotation spline sees them; its own header.
 #pragma once
 
-#include "kinalign/motion/arrays.h"
 #include "kinalign/motion/rotation_spline.h"
+#include "kinalign/motion/trigonometry.h"
 
 #include <array>
 #include <vector>
@@ -12,21 +12,55 @@ namespace kinalign {
 
 using Columns = std::array<std::vector<double>, 3>;  // x, y, z apart: loops become vector code
 
-/// Of each interval the rotation vector r from its left knot to its right one, and what depends on
-/// its length alone: with W(r), which turns the derivative of a rotation vector into an angular
-/// rate,
-///   W(r) v = v - rate1 r x v + rate2 r x (r x v)
-///   W(r)^-1 v = v + 1/2 r x v + back2 r x (r x v)
-/// and the part of the angular acceleration that is quadratic in the derivative v of r
-///   b = (r . v) (bend1 c + bend2 r x c) + rate2 v x c, where c = r x v.
+/// Of each of n intervals its length and the rotation vector from its left knot to its right one.
 struct RotationIntervals {
-  std::vector<double> length;                             // [n] s
-  Columns vector;                                         // [n] r, at most pi long
-  std::vector<double> rate1, rate2, back2, bend1, bend2;  // [n]
+  std::vector<double> length;  // [n] s
+  Columns vector;              // [n] at most pi long
 
-  explicit RotationIntervals(const RotationKnots& knots);
   std::size_t size() const { return length.size(); }
-  Vec3 r(std::size_t i) const { return {vector[0][i], vector[1][i], vector[2][i]}; }
 };
+
+/// Fills `to` with the intervals between `knots`, two at least, whatever stood in it.
+void measure_intervals(const RotationKnots& knots, RotationIntervals& to);
+
+/// The derivatives of each interval's rotation vector where it begins and where it ends, rad/s.
+struct RotationSlopes {
+  Columns begin, end;  // [n]
+};
+
+/// What depends on the length of a rotation vector r alone. Let H be the rotation by r / 2 and D
+/// keep what is along r and shrink what is across it:
+///   H = half_w + half_r r (as a quaternion),  D v = across v + along (r . v) r.
+/// W(r), which turns the derivative of a rotation vector into an angular rate, is H^-1 D; and of
+/// the angular acceleration the part that is quadratic in the angular rate w is
+///   b(r, w) = (square |w|^2 + product (r . w)^2) r - mixed (r . w) w.
+struct TurnParts {
+  double half_w, half_r;
+  double across, along;
+  double square, product, mixed;
+};
+
+/// From the squared length x, up to pi^2; no difference of nearly equal numbers.
+KA_INLINE TurnParts turn_parts(double x) {
+  constexpr auto cosine_rest = alternating_series<8>(2), sine_rest = alternating_series<8>(3);
+  constexpr auto product = [] {
+    auto c = alternating_series<11>(6);
+    for (std::size_t k = 0; k < c.size(); ++k) c[k] = 4.0 * c[k] - alternating_series<11>(5)[k];
+    return c;
+  }();
+  const double y = x / 16.0;  // a quarter of the angle, squared
+  const double c = polynomial(cosine_rest, y), s = polynomial(sine_rest, y);
+  const double cosine = 1.0 - y * c, sine = 1.0 - y * s;  // of it; the sine over its argument
+  const double across = cosine * sine, along = (c + s - y * c * s) / 16.0;
+  const double sagitta = sine * sine / 8.0;  // (1 - cosine of half the angle) / x
+  const double widen = 1.0 / across;
+  return {cosine,
+          sine / 4.0,
+          across,
+          along,
+          (along + sagitta * (1.0 - x * along)) * widen * widen,
+          polynomial(product, x) * widen * widen,
+          2.0 * (sagitta - along) * widen};
+}
 
 }  // namespace kinalign

@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <span>
-#include <vector>
 
 namespace kinalign {
 
@@ -25,12 +24,8 @@ struct RotationKnots {
   std::span<const double> rotations;
 };
 
-/// Angular rates [T,3] rad/s at the knots, in the body's space, of the curve that is twice
-/// continuously differentiable.
-std::vector<double> rotation_spline_rates(const RotationKnots& knots);
-
 /// Fills `out` [N,4] with the curve's rotations at rising times within the knots' range.
-void rotation_spline_at(const RotationKnots& knots, std::span<const double> rates,
-                        std::span<const double> at, std::span<double> out);
+void rotation_spline_at(const RotationKnots& knots, std::span<const double> at,
+                        std::span<double> out);
 
 }  // namespace kinalign

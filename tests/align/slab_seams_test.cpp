@@ -119,7 +119,7 @@ TEST_CASE("a clip of many slabs is one curve's: places to 1e-12 m, turns to 1e-9
   const auto times = seconds(stamps), at = seconds(take->all.stamps);
   const RotationKnots knots{times, clip.frames.local_rotations};
   std::vector<double> turned(4 * at.size());
-  rotation_spline_at(knots, rotation_spline_rates(knots), at, turned);
+  rotation_spline_at(knots, at, turned);
   CHECK(farthest(rows.local_rotations, 1, 0, turned, 4) < 1e-9);
 }
 

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+// The slopes of many near knots. Two things make them cheap.
+//
+// W(r) = H^-1 D is nearly a turn by half of r. So rates are written in spaces that follow the knots
+// at half their turn: z[k] = H(r[0]) ... H(r[k-1]) w[k], and r likewise. In the system of
+// rotation_slopes.h this leaves D for W and z for w. With D - 1, D^-1 - 1 and b, all of the order
+// of |r|^2 / 24, on the right side, where they are iterated, the left side is the same tridiagonal
+// system of plain numbers for each of x, y and z. Knots 0.3 rad apart: each sweep leaves 1/300.
+//
+// The rows of such a system depend on each other one after the other. So the knots are cut into
+// eight pieces, which are swept side by side as vector code. A piece begins from what the one
+// before it had found in the last sweep; what it should have begun from is known at the end of the
+// sweep, and the change fades within a few rows.
+#include "kinalign/motion/rotation_slopes.h"
+#include "kinalign/motion/targets.h"
+#include "kinalign/motion/vector_lanes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+
+namespace kinalign {
+
+namespace {
+
+/// A knot of each piece and the interval before it.
+struct alignas(64) Row {
+  VectorLanes r;
+  Lane length, per_second;            // s; 1/s
+  Lane square, product, mixed;        // of b
+  Lane left, left_r, right, right_r;  // 2/h (1 - D) v = left v - left_r (r . v) r; 2/h (D^-1 - 1)
+  Lane along, widen;                  // D^-1 v = widen (v - along (r . v) r)
+  QuaternionLanes turn;               // H ... H: from the knot's space to its piece's
+  Lane scale, before, after;          // z = scale * right side - before z[k-1] - after z[k+1]
+  VectorLanes constant;               // of the right side
+  VectorLanes solution, rate;         // z, without and with `after`
+};
+
+/// Rows [1, size - 1) of each piece are unknown, the outer two are its neighbours' or given.
+struct Pieces {
+  std::size_t stride = 0;  // knots from one piece's first row to the next one's
+  std::size_t size = 0;
+  std::unique_ptr<Row[]> rows;
+
+  Row& first() const { return rows[0]; }
+  Row& last() const { return rows[size - 1]; }
+};
+
+// Rows at either end of a piece in which a change beyond it fades: to 2^-32 at least.
+constexpr std::size_t seam = 32;
+
+void gather(const RotationIntervals& in, const Pieces& to) {
+  for (std::size_t j = 1; j < to.size; ++j) {
+    Row& row = to.rows[j];
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const std::size_t k = i * to.stride + j - 1;
+      row.length[i] = in.length[k];
+      for (std::size_t axis = 0; axis < 3; ++axis) row.r[axis][i] = in.vector[axis][k];
+    }
+    row.rate = {};
+  }
+}
+
+KA_INLINE void measure(const Row& before, Row& row, std::size_t i) {
+  const Quaternion turn = load(before.turn, i);
+  const Vector r = load(row.r, i);
+  const double x = dot(r, r);
+  const TurnParts parts = turn_parts(x);
+  store(turned(turn, r), row.r, i);
+  store(turn * Quaternion{parts.half_w, parts.half_r * r}, row.turn, i);
+  row.per_second[i] = 1.0 / row.length[i];
+  row.square[i] = parts.square;
+  row.product[i] = parts.product;
+  row.mixed[i] = parts.mixed;
+  row.along[i] = parts.along;
+  row.widen[i] = 1.0 / parts.across;
+  row.left_r[i] = 2.0 * row.per_second[i] * parts.along;
+  row.left[i] = row.left_r[i] * x;
+  row.right_r[i] = row.left_r[i] * row.widen[i];
+  row.right[i] = row.right_r[i] * x;
+}
+
+KA_INLINE void eliminate(const Row& before, Row& row, const Row& after, std::size_t i) {
+  const double h = row.length[i], next = after.length[i];
+  const double b = row.per_second[i], a = after.per_second[i];
+  const double scale = 1.0 / (2.0 * (h + next) - next * before.after[i]);
+  row.scale[i] = 0.5 * scale * h * next;
+  row.before[i] = scale * next;
+  row.after[i] = scale * h;
+  const Vector constant = (6.0 * b * b) * load(row.r, i) + (6.0 * a * a) * load(after.r, i);
+  store(constant, row.constant, i);
+  store(row.scale[i] * constant - row.before[i] * load(before.solution, i), row.solution, i);
+}
+
+/// Also solves forwards as if D were 1 and b nothing: where the iteration begins.
+KA_EVERY_PROCESSOR
+void set_up(std::span<Row> rows) {
+  for (std::size_t j = 1; j < rows.size(); ++j) {
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < lanes; ++i) measure(rows[j - 1], rows[j], i);
+    if (j == 1) continue;
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < lanes; ++i) eliminate(rows[j - 2], rows[j - 1], rows[j], i);
+  }
+}
+
+/// `after` in the first row of each piece, from a few rows at the end of the piece before.
+KA_EVERY_PROCESSOR
+void begin_elimination(const Pieces& s) {
+  Lane after{};
+  for (std::size_t j = s.stride - seam; j <= s.stride; ++j) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const double h = s.rows[j].length[i], next = s.rows[j + 1].length[i];
+      after[i] = h / (2.0 * (h + next) - next * after[i]);
+    }
+  }
+  s.first().after[0] = 0.0;
+  std::copy_n(after.begin(), lanes - 1, s.first().after.begin() + 1);
+}
+
+Pieces cut(const RotationIntervals& in) {
+  Pieces s;
+  const std::size_t unknown = in.size() - 1;
+  s.stride = unknown / lanes;
+  s.size = unknown - (lanes - 1) * s.stride + 2;
+  s.rows = std::make_unique_for_overwrite<Row[]>(s.size);
+  Row &first = s.first(), &last = s.last();
+  first = {};
+  first.turn[0].fill(1.0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first.solution[axis][0] = first.rate[axis][0] = in.vector[axis][0] / in.length[0];
+  }
+  gather(in, s);
+  begin_elimination(s);
+  set_up({&first, s.size});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    last.rate[axis].back() = last.r[axis].back() * last.per_second.back();
+  }
+  return s;
+}
+
+KA_EVERY_PROCESSOR
+void forwards(std::span<Row> rows) {
+  for (std::size_t j = 1; j + 1 < rows.size(); ++j) {
+    const Row &before = rows[j - 1], &after = rows[j + 1];
+    Row& row = rows[j];
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const Vector z = load(row.rate, i), left = load(before.rate, i), right = load(after.rate, i);
+      const Vector r = load(row.r, i), next = load(after.r, i);
+      const double rz = dot(r, z);
+      const double on_r =
+          row.left_r[i] * dot(r, left) + row.square[i] * dot(z, z) + row.product[i] * rz * rz;
+      const double on_next = after.right_r[i] * dot(next, right);
+      const Vector side = load(row.constant, i) + row.left[i] * left + (row.mixed[i] * rz) * z -
+                          after.right[i] * right - on_r * r + on_next * next;
+      store(row.scale[i] * side - row.before[i] * load(before.solution, i), row.solution, i);
+    }
+  }
+}
+
+/// The largest change of a rate, as rad in the longer interval at its knot.
+KA_EVERY_PROCESSOR
+double backwards(std::span<Row> rows) {
+  Lane change{};
+  for (std::size_t j = rows.size() - 2; j > 0; --j) {
+    const Row& after = rows[j + 1];
+    Row& row = rows[j];
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const Vector z = load(row.solution, i) - row.after[i] * load(after.rate, i);
+      const Vector d = z - load(row.rate, i);
+      const double largest = std::max(std::abs(d.x), std::max(std::abs(d.y), std::abs(d.z)));
+      change[i] = std::max(change[i], largest * std::max(row.length[i], after.length[i]));
+      store(z, row.rate, i);
+    }
+  }
+  return *std::max_element(change.begin(), change.end());
+}
+
+/// Gives a piece's outer row what its neighbour found in `from`, the same knot, one lane before
+/// (step 1) or behind (-1) it; returns the change.
+VectorLanes take_over(const Row& from, Row& to, VectorLanes Row::*what, std::ptrdiff_t step) {
+  VectorLanes change{};
+  const std::size_t source = step > 0 ? 0 : 1, target = 1 - source;
+  for (std::size_t i = 0; i + 1 < lanes; ++i) {
+    const Vector w = turned(conjugate(load(from.turn, i + source)), load(from.*what, i + source));
+    const Vector z = turned(load(to.turn, i + target), w);
+    store(z - load(to.*what, i + target), change, i + target);
+    store(z, to.*what, i + target);
+  }
+  return change;
+}
+
+/// Passes on a change in a piece's outer row.
+KA_EVERY_PROCESSOR
+void mend(Row* row, std::ptrdiff_t step, VectorLanes change, Lane Row::*weight,
+          VectorLanes Row::*what) {
+  for (std::size_t n = 0; n < seam; ++n) {
+    row += step;
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const Vector felt = -(row->*weight)[i] * load(change, i);
+      store(felt, change, i);
+      store(load(row->*what, i) + felt, row->*what, i);
+    }
+  }
+}
+
+/// From the solution forwards to new rates; returns their largest change.
+double take_back(const Pieces& s) {
+  Row &first = s.first(), &last = s.last();
+  const Row &before_first = s.rows[s.stride], &behind_last = s.rows[s.size - 1 - s.stride];
+  mend(&first, 1, take_over(before_first, first, &Row::solution, 1), &Row::before, &Row::solution);
+  const double change = backwards({&first, s.size});
+  mend(&last, -1, take_over(behind_last, last, &Row::rate, -1), &Row::after, &Row::rate);
+  take_over(before_first, first, &Row::rate, 1);
+  return change;
+}
+
+KA_EVERY_PROCESSOR
+void hand_out(const Pieces& s, RotationSlopes& to) {
+  for (std::size_t j = 1; j < s.size; ++j) {
+    const Row &before = s.rows[j - 1], &row = s.rows[j];
+    VectorLanes begin, end;
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < lanes; ++i) {
+      const Quaternion back = conjugate(load(before.turn, i));
+      const Vector z = load(row.rate, i), r = load(row.r, i);
+      store(turned(back, load(before.rate, i)), begin, i);
+      store(turned(back, row.widen[i] * (z - (row.along[i] * dot(r, z)) * r)), end, i);
+    }
+    for (std::size_t i = 0; i < lanes; ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        to.begin[axis][i * s.stride + j - 1] = begin[axis][i];
+        to.end[axis][i * s.stride + j - 1] = end[axis][i];
+      }
+    }
+  }
+}
+
+constexpr double negligible = 1e-13;  // rad of an interval's turn; a seventh of that on the curve
+constexpr int most_sweeps = 8;        // with more, few blocks are spared and the estimate is worse
+
+/// Sweeps until what later ones would change, by the rate at which changes shrink, is negligible;
+/// false where they do not shrink fast.
+bool settle(const Pieces& s) {
+  double last = take_back(s);
+  for (int i = 0; i < most_sweeps && last > negligible; ++i) {
+    forwards({s.rows.get(), s.size});
+    const double change = take_back(s), shrinks = change / last;
+    if (!(shrinks < 0.5)) return false;
+    if (change * shrinks / (1.0 - shrinks) < negligible) return true;
+    last = change;
+  }
+  return last <= negligible;
+}
+
+}  // namespace
+
+bool slopes_in_lanes(const RotationIntervals& intervals, RotationSlopes& to) {
+  if (intervals.size() <= (seam + 1) * lanes) return false;
+  const Pieces pieces = cut(intervals);
+  if (!settle(pieces)) return false;
+  hand_out(pieces, to);
+  return true;
+}
+
+}  // namespace kinalign
