@@ -9,11 +9,11 @@ namespace kinalign {
 
 namespace {
 
-// Class of a step > 0: the six bits behind its leading one, below the number of that bit.
+// Class of a step > 0: the seven bits behind its leading one, below the number of that bit.
 std::size_t class_of(std::uint64_t step) {
   const auto bits = static_cast<unsigned>(std::bit_width(step | 1)) - 1;
-  const std::uint64_t fraction = bits >= 6 ? step >> (bits - 6) : step << (6 - bits);
-  return (std::size_t{bits} << 6) + (fraction & 63);
+  const std::uint64_t fraction = bits >= 7 ? step >> (bits - 7) : step << (7 - bits);
+  return (std::size_t{bits} << 7) + (fraction & 127);
 }
 
 constexpr std::uint64_t longest_first = 1'000'000'000;  // ns; a longer first step may be a slip

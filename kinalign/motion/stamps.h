@@ -62,9 +62,9 @@ class StampSurveyor {
   void keep(Time stamp);
   void take_back();
 
-  // Steps by size, 64 classes to each power of two of nanoseconds, and their sums: the median is
+  // Steps by size, 128 classes to each power of two of nanoseconds, and their sums: the median is
   // the mean of the middle class, exact for a steady rate and never off by more than 1 percent.
-  static constexpr std::size_t classes = 64 * 64;
+  static constexpr std::size_t classes = 64 * 128;
   StampRule rule_;
   StampSurvey survey_;
   Time before_{};  // the last stamp kept but one
