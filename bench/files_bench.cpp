@@ -147,7 +147,14 @@ void csv_kinalign(benchmark::State& state) {
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.size()));
 }
 
-constexpr std::size_t slab = 2000, slabs = 25;  // 50,000 frames, 118 MB of floats
+/// Does everything but wait for the disk.
+class Unsynced final : public PosixFiles {
+ public:
+  int sync(int) override { return 0; }
+};
+
+constexpr std::size_t slab = 2000;
+constexpr std::size_t row_bytes = joints * 10 * sizeof(float) + 16;
 
 /// A take's rows of a 59-joint skeleton.
 TakeSlab take_rows() {
@@ -160,7 +167,7 @@ TakeSlab take_rows() {
   return out;
 }
 
-TakeHeader take_header() {
+TakeHeader take_header(std::size_t slabs) {
   Skeleton skeleton;
   for (std::size_t j = 0; j < joints; ++j) {
     skeleton.joint_names.push_back(fmt::format("joint{}", j));
@@ -173,11 +180,12 @@ TakeHeader take_header() {
   return header;
 }
 
-constexpr std::int64_t take_bytes = slab * slabs * (joints * 10 * 4 + 16);
-
+/// `state.range(0)` slabs of doubles as a take of floats.
+template <class Files>
 void take_kinalign(benchmark::State& state) {
-  PosixFiles files;
-  const TakeHeader header = take_header();
+  Files files;
+  const auto slabs = static_cast<std::size_t>(state.range(0));
+  const TakeHeader header = take_header(slabs);
   TakeSlab rows = take_rows();
   for (auto _ : state) {
     auto writer = *TakeWriter::create(files, folder() + "take.h5", Overwrite::no, header);
@@ -194,16 +202,18 @@ void take_kinalign(benchmark::State& state) {
     std::filesystem::remove(folder() + "take.h5");
     state.ResumeTiming();
   }
-  state.SetBytesProcessed(state.iterations() * take_bytes);
+  state.SetBytesProcessed(state.iterations() * state.range(0) *
+                          static_cast<std::int64_t>(slab * row_bytes));
 }
 
 /// The same bytes by write(), with the same sync and rename.
+template <class Files>
 void take_write(benchmark::State& state) {
-  PosixFiles files;
-  const std::string bytes(static_cast<std::size_t>(take_bytes) / slabs, '\x3f');
+  Files files;
+  const std::string bytes(slab * row_bytes, '\x3f');
   for (auto _ : state) {
     OutputFile file = *OutputFile::create(files, folder() + "take.raw", Overwrite::no);
-    for (std::size_t s = 0; s < slabs; ++s) {
+    for (std::int64_t s = 0; s < state.range(0); ++s) {
       if (!file.write(bytes)) std::abort();
     }
     if (!file.commit()) std::abort();
@@ -211,14 +221,18 @@ void take_write(benchmark::State& state) {
     std::filesystem::remove(folder() + "take.raw");
     state.ResumeTiming();
   }
-  state.SetBytesProcessed(state.iterations() * take_bytes);
+  state.SetBytesProcessed(state.iterations() * state.range(0) *
+                          static_cast<std::int64_t>(bytes.size()));
 }
 
 BENCHMARK(bvh_from_chars)->Name("bvh/from_chars");
 BENCHMARK(bvh_kinalign)->Name("bvh/kinalign");
 BENCHMARK(csv_from_chars)->Name("csv/from_chars");
 BENCHMARK(csv_kinalign)->Name("csv/kinalign");
-BENCHMARK(take_write)->Name("take/write")->UseRealTime();
-BENCHMARK(take_kinalign)->Name("take/kinalign")->UseRealTime();
+constexpr std::int64_t large = 25, small = 3;  // slabs: 118 and 14 MB of floats
+BENCHMARK(take_write<PosixFiles>)->Name("take/write")->Arg(large)->UseRealTime();
+BENCHMARK(take_kinalign<PosixFiles>)->Name("take/kinalign")->Arg(large)->UseRealTime();
+BENCHMARK(take_write<Unsynced>)->Name("take_unsynced/write")->Arg(small)->UseRealTime();
+BENCHMARK(take_kinalign<Unsynced>)->Name("take_unsynced/kinalign")->Arg(small)->UseRealTime();
 
 }  // namespace

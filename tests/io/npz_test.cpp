@@ -24,33 +24,16 @@ Result<void> write(FileSystem& files, const std::string& path, const Take& take,
 }
 
 /// Leaves holes for pieces of 64 KiB, which are zeros here: gigabytes without a disk.
-class SparseFiles final : public FileSystem {
+class SparseFiles final : public PosixFiles {
  public:
-  int open(const char* path, int flags, mode_t mode) override {
-    return real_.open(path, flags, mode);
-  }
-  ssize_t read(int fd, void* data, std::size_t size) override { return real_.read(fd, data, size); }
-  ssize_t write(int fd, const void* data, std::size_t size) override {
-    return real_.write(fd, data, size);
-  }
-  ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override {
-    return real_.read_at(fd, data, size, at);
-  }
   ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
-    return size == 65'536 ? 65'536 : real_.write_at(fd, data, size, at);
+    return size == 65'536 ? 65'536 : PosixFiles::write_at(fd, data, size, at);
   }
   int allocate(int, off_t) override {
     errno = EOPNOTSUPP;
     return -1;
   }
   int sync(int) override { return 0; }
-  int link(const char* from, const char* to) override { return real_.link(from, to); }
-  int rename(const char* from, const char* to) override { return real_.rename(from, to); }
-  int remove(const char* path) override { return real_.remove(path); }
-  int close(int fd) override { return real_.close(fd); }
-
- private:
-  PosixFiles real_;
 };
 
 /// The first stream alone, as `convert` writes a BVH.
