@@ -47,18 +47,23 @@ Result<std::string> read_through(FileSystem& files, const std::string& path) {
   return reader.report_json();
 }
 
+/// Every value of a stream; the survey of a BVH reads none.
 template <class Frames>
-Result<void> read_all(const Passes<Frames>& passes) {
+Result<void> read_all(const Passes<Frames>& passes, const StampSurvey& survey,
+                      const Progress& progress) {
   const Pass<Frames> pass = KA_TRY(passes());
   Frames block;
-  while (KA_TRY(pass(block))) {
+  for (std::uint64_t rows = 0; KA_TRY(pass(block));) {
+    rows += block.size();
+    if (!go_on(progress, "checking", rows, survey.samples)) return Failure(interruption());
   }
   return {};
 }
 
-/// Every value of a stream; the survey of a BVH reads none.
-Result<void> read_through(const RecordedStream& stream) {
-  return std::visit([](const auto& input) { return read_all(input.passes); }, stream.data);
+Result<void> read_through(const RecordedStream& stream, const Progress& progress) {
+  return std::visit(
+      [&](const auto& input) { return read_all(input.passes, stream.survey, progress); },
+      stream.data);
 }
 
 /// What alignment would refuse before it touches a sample: joints, nodes, the common span.
@@ -99,7 +104,7 @@ Result<Findings> check_file(const Check& o, const std::string& path, Call& call)
   Findings findings;
   for (const RecordedStream& stream : input.recording.streams) {
     call.console.detail(harmless(read_as(stream)));
-    KA_TRY(read_through(stream));
+    KA_TRY(read_through(stream, call.console.progress()));
     append(findings, stream.findings);
     append(findings, judge_stamps(stream));
   }

@@ -71,7 +71,8 @@ PointGroup group_of(const PointInput& input) { return {input.joint_names}; }
 ImuGroup group_of(const ImuInput& input) { return {input.node_names, input.content, ""}; }
 
 template <class Input, class Frames>
-Result<void> write_rows(const Input& input, const Passes<Frames>& passes, TakeNpzWriter& writer) {
+Result<void> write_rows(const Input& input, const Passes<Frames>& passes, std::uint64_t frames,
+                        const Progress& progress, TakeNpzWriter& writer) {
   const Pass<Frames> pass = KA_TRY(passes());
   Frames block;
   TakeSlab slab;
@@ -80,11 +81,12 @@ Result<void> write_rows(const Input& input, const Passes<Frames>& passes, TakeNp
     slab.rows = {rows_of(input, block)};
     KA_TRY(writer.append(slab));
     slab.first += slab.stamps.size();
+    if (!go_on(progress, "converting", slab.first, frames)) return Failure(interruption());
   }
   return writer.finish();
 }
 
-Result<void> stream_to_npz(const Job& job, const RecordedStream& stream) {
+Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, const Progress& progress) {
   TakeHeader header;
   header.frames = stream.survey.samples;
   header.parameters.align.store_double = job.store_double;
@@ -93,7 +95,7 @@ Result<void> stream_to_npz(const Job& job, const RecordedStream& stream) {
         header.groups = {{stream.name, group_of(input), false, false, stream.files}};
         auto writer = KA_TRY(
             TakeNpzWriter::create(job.files, job.to, job.overwrite, header, NpzNames::plain));
-        return write_rows(input, input.passes, writer);
+        return write_rows(input, input.passes, header.frames, progress, writer);
       },
       stream.data);
 }
@@ -154,7 +156,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
       return copy_bvh(job.files, job.from, sink, call.console.progress());
     });
   }
-  KA_TRY(stream_to_npz(job, stream));
+  KA_TRY(stream_to_npz(job, stream, call.console.progress()));
   return stream.findings;
 }
 

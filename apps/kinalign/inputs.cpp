@@ -4,6 +4,7 @@
 #include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/field_text.h"
 
+#include "kinalign/align/unused_options.h"
 #include "kinalign/core/file_version.h"
 #include "kinalign/core/files.h"
 #include "kinalign/io/manifest_toml.h"
@@ -50,9 +51,6 @@ Fields StreamFlags::fields() {
 
 Result<void> StreamFlags::check_use(const std::string& path, const RecordedStream* stream,
                                     const Sources& given) const {
-  using Useless = std::vector<std::string_view>;
-  const Useless clip{"rate_hz"}, points{"end_ns", "click_latency_ms"},
-      nodes{"end_ns", "click_latency_ms", "metres_per_unit"};
   for (const auto& [name, source] : given) {
     const auto is = [&name = name](std::string_view other) { return name == other; };
     if (source != Source::flag) continue;
@@ -64,8 +62,7 @@ Result<void> StreamFlags::check_use(const std::string& path, const RecordedStrea
       return Failure(Error{flag_of(name), 0, "a stream's own file",
                            shown(path) + ", which says such things itself"});
     }
-    const std::size_t kind = stream->data.index();
-    const Useless& useless = kind == 0 ? clip : kind == 1 ? points : nodes;
+    const auto useless = useless_options(*stream);
     if (std::none_of(useless.begin(), useless.end(), is)) continue;
     return Failure(Error{flag_of(name), 0, "a file that has a use for it",
                          shown(path) + ": " + contents_line(*stream)});

@@ -130,6 +130,9 @@ Result<void> refuse_alone(const QuickFlags& flags, const Sources& given) {
     return Failure(Error{"--rotation-y-deg", 0, "--space paper, which it is for",
                          "--space " + flags.space.method});
   }
+  if (!flags.joints.empty() && flags.space.method == "none") {
+    return Failure(Error{"--joint", 0, "--space fit or paper, which it is for", "--space none"});
+  }
   return {};
 }
 

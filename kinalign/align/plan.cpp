@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/plan.h"
 
+#include "kinalign/align/unused_options.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -189,10 +191,6 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
       rule_of(reference, options_of(manifest, reference.name), manifest.align);
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     const RecordedStream& s = recording.streams[i];
-    if (const double rate = options_of(manifest, s.name).rate_hz; s.step_ns && rate > 0.0) {
-      return Failure(Error{"", 0, "no rate_hz for '" + s.name + "', whose file states its step",
-                           fmt::format("rate_hz = {:g}", rate)});
-    }
     StreamPlan stream;
     stream.rule = rule_of(s, options_of(manifest, s.name), manifest.align);
     stream.rule.begin_ns = to_ns(plan.begin);
@@ -266,6 +264,7 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   if (std::holds_alternative<ImuInput>(reference.data)) {
     return Failure(Error{"", 0, "a clip or points as the reference", "nodes"});
   }
+  KA_TRY(check_options_used(recording, manifest));
   KA_TRY(find_span(recording, plan));
   KA_TRY(make_groups(recording, manifest, plan));
   KA_TRY(check_roots(plan.header));

@@ -25,7 +25,7 @@ struct AlignPlan {
 };
 
 /// Fails where streams do not overlap in time, names repeat, or the manifest names what is not
-/// there.
+/// there or says what has no effect (unused_options.h).
 Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest);
 
 /// The manifest's options of a stream; defaults where it has none.

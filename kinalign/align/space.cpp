@@ -96,7 +96,7 @@ JointColumn column(const TakeSlab& slab, std::size_t group) {
   return out;
 }
 
-/// Points onto a stream that stays where it is, by a method that has use for what is given.
+/// Points onto a stream that stays where it is.
 Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
                           const Manifest& manifest) {
   const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
@@ -107,10 +107,6 @@ Result<void> check_method(const SpacePlan& plan, const TakeHeader& header,
   if (moved != manifest.spaces.end() && moved->second.method != "none") {
     return Failure(Error{"", 0, "'" + from.name + "' onto a stream that is not moved itself",
                          "'" + onto.name + "'"});
-  }
-  if (plan.options.method != "paper" && plan.options.magnification != 1.0) {
-    return Failure(Error{"", 0, "magnification with method = \"paper\" only",
-                         "'" + from.name + "' with method = \"" + plan.options.method + "\""});
   }
   return {};
 }

@@ -40,6 +40,19 @@ Result<std::size_t> fill(FileSystem& files, const std::string& path, int fd, std
   return done;
 }
 
+/// Hands `bytes` to put(rest) -> ssize_t until all are taken; 0, or why not.
+template <class Put>
+int put_all(std::string_view bytes, const Put& put) {
+  while (!bytes.empty()) {
+    const ssize_t taken = put(bytes);
+    if (taken < 0 && errno == EINTR) continue;
+    if (taken < 0) return errno;
+    if (taken == 0) return ENOSPC;
+    bytes.remove_prefix(static_cast<std::size_t>(taken));
+  }
+  return 0;
+}
+
 }  // namespace
 
 int PosixFiles::open(const char* path, int flags, mode_t mode) {
@@ -192,36 +205,30 @@ void OutputFile::discard() {
   beside_.clear();
 }
 
+Result<void> OutputFile::spoiled(const std::string& expected, int code) {
+  discard();  // what has a hole is never committed
+  return failed(path_, expected, code);
+}
+
 Result<void> OutputFile::write(std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t put = files_->write(fd_, bytes.data(), bytes.size());
-    if (put < 0 && errno == EINTR) continue;
-    if (put <= 0) {
-      const int code = put < 0 ? errno : ENOSPC;
-      discard();  // what has a hole is never committed
-      return failed(path_, "room to write", code);
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(put));
-  }
-  return {};
+  const int code = put_all(bytes, [this](std::string_view rest) {
+    return files_->write(fd_, rest.data(), rest.size());
+  });
+  return code == 0 ? Result<void>{} : spoiled("room to write", code);
 }
 
 Result<void> OutputFile::write_at(std::uint64_t at, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t put = files_->write_at(fd_, bytes.data(), bytes.size(), static_cast<off_t>(at));
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) return failed(path_, "room to write", errno);
-    bytes.remove_prefix(static_cast<std::size_t>(put));
-    at += static_cast<std::uint64_t>(put);
-  }
-  return {};
+  const int code = put_all(bytes, [&, end = at + bytes.size()](std::string_view rest) {
+    return files_->write_at(fd_, rest.data(), rest.size(), static_cast<off_t>(end - rest.size()));
+  });
+  return code == 0 ? Result<void>{} : spoiled("room to write", code);
 }
 
 Result<void> OutputFile::reserve(std::uint64_t size) {
-  while (files_->allocate(fd_, static_cast<off_t>(size)) != 0) {
+  while (size > 0 && files_->allocate(fd_, static_cast<off_t>(size)) != 0) {
     if (errno == EINTR) continue;
     if (errno == EOPNOTSUPP || errno == ENOSYS) return {};
-    return failed(path_, "room for " + std::to_string(size) + " bytes", errno);
+    return spoiled("room for " + std::to_string(size) + " bytes", errno);
   }
   return {};
 }

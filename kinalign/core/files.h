@@ -120,6 +120,7 @@ class OutputFile {
   OutputFile(FileSystem& files, std::string path, Overwrite overwrite);
   Result<void> place();
   void discard();
+  Result<void> spoiled(const std::string& expected, int code);
 
   FileSystem* files_;
   std::string path_;

@@ -39,7 +39,11 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     least = letters;
     best = other;
   }
-  return best;
+  if (!best.empty() || start.size() < 3) return best;
+  const auto begun = std::find_if(known.begin(), known.end(), [start](const std::string& other) {
+    return other.starts_with(start);
+  });
+  return begun == known.end() ? "" : *begun;
 }
 
 }  // namespace kinalign

@@ -7,8 +7,8 @@
 
 namespace kinalign {
 
-/// The known name nearest to `name`, by single letters put in, left out, changed or swapped; empty
-/// where more than a third of its letters differ.
+/// The known name nearest to `name`, by single letters put in, left out, changed or swapped, else
+/// the first that it begins; empty where more than a third of its letters differ.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace kinalign

@@ -100,12 +100,16 @@ StampSurvey survey_of(const BvhOptions& options, double step_ns, std::uint64_t f
 }
 
 /// Reads all numbers, for files that break their promise: faults fail, oddities are found.
-Result<BvhSurvey> read_all(FileSystem& files, const std::string& path, const BvhOptions& options) {
+Result<BvhSurvey> read_all(FileSystem& files, const std::string& path, const BvhOptions& options,
+                           const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   const auto reader = make_bvh_reader(options, path);
   StampSurveyor surveyor;
+  std::uint64_t bytes = 0;
   for (bool ended = false; !ended;) {
     const std::string_view piece = KA_TRY(file.next());
+    bytes += piece.size();
+    if (!go_on(progress, "reading", bytes, file.size())) return Failure(interruption(path));
     ClipFrames block;
     ended = piece.empty();
     KA_TRY(ended ? reader->finish(block) : reader->feed(piece, block));
@@ -125,7 +129,7 @@ Result<BvhSurvey> survey_bvh(FileSystem& files, const std::string& path, const B
   Counted counted = KA_TRY(count(files, path, progress));
   BvhSurvey out;
   if (!counted.kept) {
-    out = KA_TRY(read_all(files, path, options));
+    out = KA_TRY(read_all(files, path, options, progress));
   } else {
     out.findings = std::move(counted.findings);
     out.skeleton = skeleton_of(counted.hierarchy, options, path, out.findings);

@@ -102,7 +102,7 @@ std::string first_of(const std::vector<std::string>& known) {
     list += (i > 0 ? ", " : "") + shown(known[i]);
   }
   if (known.size() > most) list += ", ...";
-  return known.empty() ? "none" : list;
+  return list;
 }
 
 }  // namespace
@@ -133,8 +133,13 @@ const Field* find_field(const Fields& fields, std::string_view name) {
 Error unknown_name(std::string_view name, const std::string& what,
                    const std::vector<std::string>& known) {
   const std::string nearest = nearest_name(name, known);
-  const std::string hint = nearest.empty() ? "known: " + first_of(known) : "nearest: " + nearest;
-  return {"", 0, what + " (" + hint + ")", "\"" + shown(name) + "\""};
+  std::string hint;
+  if (!nearest.empty()) {
+    hint = " (nearest: " + nearest + ")";
+  } else if (!known.empty()) {
+    hint = " (known: " + first_of(known) + ")";
+  }
+  return {"", 0, what + hint, "\"" + shown(name) + "\""};
 }
 
 }  // namespace kinalign

@@ -102,7 +102,7 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   return out;
 }
 
-Result<InputFacts> facts_of(FileSystem& files, const std::string& path) {
+Result<InputFacts> facts_of(FileSystem& files, const std::string& path, const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   Sha256 hash;
   std::uint64_t bytes = 0;
@@ -111,6 +111,7 @@ Result<InputFacts> facts_of(FileSystem& files, const std::string& path) {
     if (piece.empty()) return InputFacts{std::string(file_name(path)), hash.hex(), bytes};
     bytes += piece.size();
     hash.update(piece);
+    if (!go_on(progress, "reading", bytes, file.size())) return Failure(interruption(path));
   }
 }
 
@@ -160,7 +161,7 @@ Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) 
         reader));
   }
   for (const std::string& further : format.further_files) {
-    out.stream.files.push_back(KA_TRY(facts_of(*job.files, further)));
+    out.stream.files.push_back(KA_TRY(facts_of(*job.files, further, *job.progress)));
     out.paths.push_back(further);
   }
   return out;

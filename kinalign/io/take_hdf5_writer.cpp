@@ -181,6 +181,7 @@ Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
   KA_TRY(layout.text(root, "parameters_json", parameters_json(without_folders(header.parameters))));
   hsize_t size = 0;
   if (H5Fget_filesize(file.id(), &size) < 0) return hdf5::failure(bytes, can_hold);
+  KA_TRY(layout.check());
   KA_TRY(output.reserve(size));
   bytes.size = std::max<std::uint64_t>(bytes.size, size);
   return {};

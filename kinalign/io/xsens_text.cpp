@@ -73,13 +73,23 @@ class XsensReader final : public ImuReader {
 
   Result<void> finish(ImuSamples& out) override {
     const auto use = [&](std::string_view line) { return read(line, out); };
-    KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
+    const bool rows = header_ || !waiting_.empty();
+    KA_TRY(rows ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
+    if (!header_) settle(out);
     if (!header_) return Failure(lines_.error("rows of an Xsens export", "the end of the file"));
     if (packets_.lost() > 0) {
       findings.push_back(
           {Severity::note,
            Error{lines_.file(), 0, "every packet", std::to_string(packets_.lost()) + " lost"},
            "they are gaps", ""});
+    }
+    if (late_ > 0) {
+      findings.push_back(
+          {Severity::warning,
+           Error{lines_.file(), 0,
+                 "every quantity within the first " + std::to_string(patience) + " rows",
+                 std::to_string(late_) + " rows with one that begins later"},
+           "that quantity was left out", "cut the rows before it from the file"});
     }
     samples_.report(lines_.file(), findings);
     return {};
@@ -123,28 +133,65 @@ class XsensReader final : public ImuReader {
     KA_TRY(row_.read(line));
     const bool counted = columns_.counter.whole(row_);
     if (!counted) return Failure(Error{"", 0, "a whole PacketCounter", "an empty cell"});
-    if (!header_ && !choose_content()) return {};  // nothing was measured yet
+    const ImuContent here = content_of_row();
+    if (!header_ && waiting_.empty() && !is_any(here)) return {};  // nothing was measured yet
     const auto count = KA_TRY(packets_.next(row_.values[columns_.counter.slots[0]]));
     const Time stamp = KA_TRY(stamp_of(count));
-    append_sample(out);
-    out.stamps.push_back(stamp);
+    if (!header_) {
+      waiting_.push_back({stamp, row_.values, row_.missing});
+      see(here);
+      if (waiting_.size() == patience) settle(out);
+      return {};
+    }
+    const ImuContent& read = header_->content;
+    late_ += (here.orientation && !read.orientation) || (here.acceleration && !read.acceleration) ||
+                     (here.angular_velocity && !read.angular_velocity)
+                 ? 1
+                 : 0;
+    append_sample(stamp, out);
     return {};
   }
 
-  /// By the first row that holds anything: a named column may be empty all along.
-  bool choose_content() {
-    ImuContent content;
+  static bool is_any(const ImuContent& content) {
+    return content.orientation || content.acceleration || content.angular_velocity;
+  }
+
+  /// What has a value in this row: a named column may be empty.
+  ImuContent content_of_row() const {
+    ImuContent here;
+    here.orientation =
+        columns_.quaternion.any(row_) || columns_.matrix.any(row_) || columns_.euler.any(row_);
+    here.gravity = columns_.acceleration.any(row_);
+    here.acceleration = here.gravity || (here.orientation && columns_.free_acceleration.any(row_));
+    here.angular_velocity = columns_.angular_velocity.any(row_);
+    return here;
+  }
+
+  /// Of the rows that wait: which quantities there are, and the best of the orientations.
+  void see(const ImuContent& here) {
+    seen_.orientation |= here.orientation;
+    seen_.acceleration |= here.acceleration;
+    seen_.angular_velocity |= here.angular_velocity;
+    seen_.gravity |= here.gravity;
     for (const XsensGroup* group : {&columns_.quaternion, &columns_.matrix, &columns_.euler}) {
-      if (content.orientation || !group->any(row_)) continue;
-      content.orientation = true;
+      if (group == orientation_) break;
+      if (!group->any(row_)) continue;
       orientation_ = group;
+      break;
     }
-    content.gravity = columns_.acceleration.any(row_) || !columns_.free_acceleration.any(row_);
-    content.acceleration = content.gravity ? columns_.acceleration.any(row_) : content.orientation;
-    content.angular_velocity = columns_.angular_velocity.any(row_);
-    if (!content.orientation && !content.acceleration && !content.angular_velocity) return false;
-    header_ = ImuHeader{{node_}, content};
-    return true;
+  }
+
+  /// The content stands from here on; the rows that waited for it go out.
+  void settle(ImuSamples& out) {
+    if (waiting_.empty()) return;
+    seen_.gravity |= !seen_.acceleration;
+    header_ = ImuHeader{{node_}, seen_};
+    for (Waiting& row : waiting_) {
+      row_.values = std::move(row.values);
+      row_.missing = std::move(row.missing);
+      append_sample(row.stamp, out);
+    }
+    waiting_.clear();
   }
 
   Result<Time> stamp_of(std::uint64_t count) {
@@ -155,7 +202,7 @@ class XsensReader final : public ImuReader {
     return Failure(Error{"", 0, "a stamp inside +-4e18 ns", std::to_string(count) + " packets"});
   }
 
-  void append_sample(ImuSamples& out) {
+  void append_sample(Time stamp, ImuSamples& out) {
     const ImuContent& content = header_->content;
     const XsensGroup& force = content.gravity ? columns_.acceleration : columns_.free_acceleration;
     RawImuSample sample;
@@ -178,6 +225,7 @@ class XsensReader final : public ImuReader {
       copy(columns_.angular_velocity, angular_velocity);
     }
     samples_.append(sample, out);
+    out.stamps.push_back(stamp);
   }
 
   Quat quaternion() const {
@@ -211,6 +259,17 @@ class XsensReader final : public ImuReader {
   PacketCount packets_;
   std::optional<std::uint64_t> first_count_;
   std::optional<ImuHeader> header_;
+
+  /// A row read before it is known which quantities the file has.
+  struct Waiting {
+    Time stamp;
+    std::vector<double> values;
+    std::vector<std::uint8_t> missing;
+  };
+  static constexpr std::size_t patience = 32;  // rows
+  std::vector<Waiting> waiting_;
+  ImuContent seen_{.gravity = false};  // in these
+  std::uint64_t late_ = 0;             // rows with a quantity that none of these had
 };
 
 }  // namespace

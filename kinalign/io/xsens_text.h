@@ -11,7 +11,7 @@
 namespace kinalign {
 
 /// Columns by name, delimiter tab , ; | : or blank. Orientation from Quat_q*, Mat[*][*] or
-/// Roll/Pitch/Yaw, the first of these that has values; acceleration from Acc_* (gravity in), else
+/// Roll/Pitch/Yaw, the first of these with a value in the first 32 rows; acceleration from Acc_* (gravity in), else
 /// from FreeAcc_* brought into the sensor's space (gravity out). The world (z up) becomes y up
 /// unless `up` says y. A stamp is PacketCounter / Update Rate, without its wraps, so sensors of one
 /// recording share their axis; lost packets are gaps. rate_hz replaces the file's rate, start_ns is

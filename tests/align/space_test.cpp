@@ -115,18 +115,6 @@ TEST_CASE("the paper's table in centimetres: m = 100 and the mocap's root in met
   }
 }
 
-TEST_CASE("magnification belongs to the paper's method") {
-  Manifest manifest;
-  manifest.spaces["kinect"].method = "fit";
-  manifest.spaces["kinect"].magnification = 3.0;
-  const auto stream = points(joints, every(10 * ms, 300), wander);
-  const auto take = align(two(stream, stream), manifest);
-  REQUIRE(!take);
-  CHECK(to_string(take.error()) ==
-        "expected magnification with method = \"paper\" only, found 'kinect' with method = "
-        "\"fit\"");
-}
-
 TEST_CASE("a stream that nobody places says so, and whose space it is in") {
   const auto stream = points(joints, every(10 * ms, 300), wander);
   Manifest manifest;

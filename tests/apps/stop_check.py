@@ -75,6 +75,24 @@ def an_interruption_at_any_moment_ends_with_130_and_no_half_file(folder):
     stop_often(folder, signal.SIGINT, check)
 
 
+@case
+def an_interruption_half_way_ends_every_verb_with_130(folder):
+    """Also in passes that only check or write what was surveyed before."""
+    demo(folder / "d", seconds=300)
+    bvh, take = folder / "d/mocap.bvh", folder / "t.h5"
+    (folder / "cut.bvh").write_bytes(bvh.read_bytes()[:-200])
+    for words in (("align", folder / "d/recording.toml", "-o", take, "--force"),
+                  ("check", bvh), ("info", folder / "cut.bvh"),
+                  ("convert", bvh, folder / "o.npz", "--force"),
+                  ("convert", bvh, folder / "o.bvh", "--force")):
+        begin = time.monotonic()
+        assert kinalign(*words).returncode in (0, 1)
+        length = time.monotonic() - begin
+        codes = [stopped_after(part * length, signal.SIGINT, words)[0]
+                 for part in (0.7, 0.6, 0.8, 0.5, 0.65, 0.75)]
+        assert 130 in codes, f"{words[0]} {words[1].name}: {codes}"
+
+
 class Changing:
     """A file that is changed while it is read, over and over."""
 

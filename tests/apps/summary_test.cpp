@@ -9,7 +9,8 @@ using namespace kinalign;
 
 namespace {
 
-StreamReport stream(const std::string& name, std::vector<std::string> nodes, std::uint64_t bridged) {
+StreamReport stream(const std::string& name, std::vector<std::string> nodes,
+                    std::uint64_t bridged) {
   StreamReport s;
   s.stream = name;
   s.nodes = std::move(nodes);

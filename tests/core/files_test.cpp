@@ -196,16 +196,34 @@ TEST_CASE("whichever call fails, the old file or the whole new one stands there,
   }
 }
 
-TEST_CASE("a file that lost a piece can't be committed") {
+TEST_CASE("a file that lost a piece can't be committed, wherever it was to stand") {
+  using Lose = bool (*)(OutputFile & file);
+  const Lose ways[] = {[](OutputFile& file) { return file.write("lost").has_value(); },
+                       [](OutputFile& file) { return file.write_at(7, "lost").has_value(); },
+                       [](OutputFile& file) { return file.reserve(100).has_value(); }};
+  for (const Lose lose : ways) {
+    const FreshFolder folder;
+    FaultyFiles files;
+    auto file = OutputFile::create(files, folder / "out", Overwrite::no);
+    REQUIRE(file);
+    files.fail_at = 2;
+    CHECK(!lose(*file));
+    CHECK(!file->write("more"));
+    CHECK(!file->commit());
+    CHECK(folder.names().empty());
+  }
+}
+
+TEST_CASE("a disk that takes nothing is full") {
   const FreshFolder folder;
   FaultyFiles files;
+  files.most = 0;
   auto file = OutputFile::create(files, folder / "out", Overwrite::no);
   REQUIRE(file);
-  files.fail_at = 2;
-  CHECK(!file->write("lost"));
-  CHECK(!file->write("more"));
-  CHECK(!file->commit());
-  CHECK(folder.names().empty());
+  const auto written = file->write_at(3, "a");
+  REQUIRE(!written);
+  CHECK(to_string(written.error()) ==
+        (folder / "out") + ": expected room to write, found No space left on device");
 }
 
 TEST_CASE("a program killed while it writes leaves what stood there") {

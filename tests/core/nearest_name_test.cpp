@@ -13,6 +13,12 @@ TEST_CASE("the nearest name counts letters put in, left out, changed and swapped
   CHECK(nearest_name("inof", verbs) == "info");
 }
 
+TEST_CASE("the beginning of a name leads to it, if it has three letters") {
+  CHECK(nearest_name("conv", {"config", "convert"}) == "convert");
+  CHECK(nearest_name("sub", {"action", "subject"}) == "subject");
+  CHECK(nearest_name("su", {"action", "subject"}).empty());
+}
+
 TEST_CASE("a name that is like none has no nearest one") {
   CHECK(nearest_name("time-server", {"align", "info"}).empty());
   CHECK(nearest_name("align", {}).empty());

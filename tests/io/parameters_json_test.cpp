@@ -141,7 +141,7 @@ TEST_CASE("parameters with unknown keys, wrong types or wild values are refused"
   CHECK(error_of(std::string(100'000, '[')) ==
         "expected parameters as JSON, found too many brackets");
   CHECK(error_of(with_schema(R"("sub": "")")) ==
-        "expected a known key (known: subject, action, streams, spaces, align), found \"sub\"");
+        "expected a known key (nearest: subject), found \"sub\"");
   CHECK(error_of(with_schema(R"("align": {"gap": 3})")) ==
         "expected a known key (known: reference, gap_ms, rotations, double), found \"align.gap\"");
   CHECK(error_of(with_schema(R"("align": {"gap_ms": null})")) ==

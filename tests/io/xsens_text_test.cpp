@@ -84,6 +84,28 @@ TEST_CASE("a named quantity that is empty is absent") {
   CHECK(read.rows.stamps == std::vector<Time>{utc_time(20'000'000)});
 }
 
+TEST_CASE("a quantity may begin within the first 32 rows; one that begins later is said") {
+  const auto with_gyr_from = [](int first) {
+    std::string text = rate + "PacketCounter,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n";
+    for (int row = 1; row <= 40; ++row) {
+      text += std::to_string(row) + ",1,2,3," + (row < first ? ",,\n" : "4,5,6\n");
+    }
+    return read_xsens(text);
+  };
+  const auto soon = with_gyr_from(32);
+  CHECK(soon.header.content == ImuContent{false, true, true, true});
+  CHECK(soon.rows.stamps.size() == 40);
+  CHECK(std::count(soon.rows.valid.begin(), soon.rows.valid.end(), 1) == 9);
+  CHECK(soon.findings.empty());
+  const auto late = with_gyr_from(33);
+  CHECK(late.header.content == ImuContent{false, true, false, true});
+  CHECK(late.rows.valid == std::vector<std::uint8_t>(40, 1));
+  REQUIRE(late.findings.size() == 1);
+  CHECK(text_of(late.findings[0]) ==
+        "MT_01_00B421E6.txt: expected every quantity within the first 32 rows, found 8 rows with "
+        "one that begins later");
+}
+
 TEST_CASE("rate and start are the user's where given") {
   const std::string text = "PacketCounter,Acc_X,Acc_Y,Acc_Z\n7,1,2,3\n9,1,2,3\n";
   CHECK(read_xsens(text).error ==

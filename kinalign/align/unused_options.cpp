@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/unused_options.h"
+
+#include "kinalign/align/plan.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace kinalign {
+
+namespace {
+
+/// Names of the options that differ between two structures of one kind.
+std::vector<std::string> differing(const Fields& some, const Fields& others) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const bool same = std::visit(
+        [&](auto* value) { return *value == *std::get<decltype(value)>(others[i].value); },
+        some[i].value);
+    if (!same) names.push_back(some[i].name);
+  }
+  return names;
+}
+
+std::vector<std::string> options_set(StreamOptions options) {
+  StreamOptions defaults;
+  return differing(describe(options), describe(defaults));
+}
+
+std::vector<std::string> options_set(SpaceOptions options) {
+  SpaceOptions defaults;
+  defaults.method = options.method;
+  std::vector<std::string> names = differing(describe(options), describe(defaults));
+  if (!options.joints.empty()) names.emplace_back("joints");
+  if (!options.rotation.empty()) names.emplace_back("rotation");
+  if (!options.translation.empty()) names.emplace_back("translation");
+  return names;
+}
+
+struct Method {
+  std::string_view name;
+  std::vector<std::string_view> takes;
+};
+
+const Method& method_named(std::string_view name) {
+  static const std::array<Method, 4> methods{
+      {{"none", {}},
+       {"fit", {"onto", "joints"}},
+       {"given", {"onto", "joints", "rotation", "translation"}},
+       {"paper", {"onto", "joints", "rotation_y_deg", "magnification", "root", "onto_root"}}}};
+  return *std::find_if(methods.begin(), methods.end(),
+                       [name](const Method& method) { return method.name == name; });
+}
+
+bool contains(std::span<const std::string_view> names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Result<void> check_space(const std::string& stream, const SpaceOptions& space) {
+  const std::string at = "[space." + stream + "]";
+  const Method& method = method_named(space.method);
+  for (const std::string& name : options_set(space)) {
+    if (contains(method.takes, name)) continue;
+    std::string taken;
+    for (const std::string_view one : method.takes) {
+      taken += (taken.empty() ? "" : ", ") + std::string(one);
+    }
+    return Failure(Error{"", 0,
+                         "of " + at + " what method = \"" + space.method + "\" takes (" +
+                             (taken.empty() ? "nothing" : taken) + ")",
+                         name});
+  }
+  if (space.method == "given" && space.rotation.empty() && space.translation.empty()) {
+    return Failure(Error{"", 0, "rotation or translation in " + at + ", whose method is \"given\"",
+                         "neither"});
+  }
+  return {};
+}
+
+}  // namespace
+
+std::span<const std::string_view> useless_options(const RecordedStream& stream) {
+  static constexpr std::array<std::string_view, 2> clip{"rate_hz", "root_node"};
+  static constexpr std::array<std::string_view, 3> points{"end_ns", "click_latency_ms",
+                                                          "root_node"};
+  static constexpr std::array<std::string_view, 3> nodes{"end_ns", "click_latency_ms",
+                                                         "metres_per_unit"};
+  if (std::holds_alternative<ClipInput>(stream.data)) return clip;
+  if (std::holds_alternative<PointInput>(stream.data)) return points;
+  return nodes;
+}
+
+Result<void> check_options_used(const Recording& recording, const Manifest& manifest) {
+  constexpr std::array<const char*, 3> kinds{"a skeleton", "points", "nodes"};
+  for (const RecordedStream& stream : recording.streams) {
+    for (const std::string& name : options_set(options_of(manifest, stream.name))) {
+      if (!contains(useless_options(stream), name)) continue;
+      return Failure(Error{
+          "", 0,
+          "of '" + stream.name + "' only options that " + kinds[stream.data.index()] + " can use",
+          name});
+    }
+  }
+  for (const auto& [stream, space] : manifest.spaces) KA_TRY(check_space(stream, space));
+  return {};
+}
+
+}  // namespace kinalign

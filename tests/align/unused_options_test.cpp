@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whatever a manifest says counts, or is refused.
+#include "kinalign/align/unused_options.h"
+
+#include "tests/align/two_streams.h"
+
+#include <doctest/doctest.h>
+
+#include <functional>
+
+using namespace kinalign;
+using namespace kinalign::test;
+
+namespace {
+
+using SayOfStream = std::function<void(StreamOptions&)>;
+using SayOfSpace = std::function<void(SpaceOptions&)>;
+
+const SayOfStream rate = [](StreamOptions& o) { o.rate_hz = 30.0; };
+const SayOfStream end = [](StreamOptions& o) { o.end_ns = 9'000'000'000; };
+const SayOfStream latency = [](StreamOptions& o) { o.click_latency_ms = 400.0; };
+const SayOfStream unit = [](StreamOptions& o) { o.metres_per_unit = 0.01; };
+const SayOfStream root = [](StreamOptions& o) { o.root_node = "waist"; };
+
+Clip skeleton() {
+  Clip clip;
+  clip.skeleton = {{"Hips"}, {-1}, {Vec3::Zero()}, {}};
+  return clip;
+}
+
+/// Of a stream "some" of which `say` is said.
+std::string fault(RecordedStream stream, const SayOfStream& say) {
+  stream.name = "some";
+  Manifest manifest;
+  manifest.streams.resize(1);
+  manifest.streams[0].name = "some";
+  say(manifest.streams[0]);
+  const auto used = check_options_used({"", "", {std::move(stream)}}, manifest);
+  return used ? "" : to_string(used.error());
+}
+
+std::string of_clip(const SayOfStream& say) { return fault(recorded("", skeleton()), say); }
+std::string of_points(const SayOfStream& say) { return fault(recorded("", PointStream{}), say); }
+std::string of_nodes(const SayOfStream& say) { return fault(recorded("", ImuStream{}), say); }
+
+std::string of_space(const std::string& method, const SayOfSpace& say) {
+  Manifest manifest;
+  SpaceOptions& space = manifest.spaces["kinect"];
+  space.method = method;
+  say(space);
+  const auto used = check_options_used({}, manifest);
+  return used ? "" : to_string(used.error());
+}
+
+}  // namespace
+
+TEST_CASE(
+    "of a skeleton's file clicks, unit and axis can be said, a rate can't: it states its step") {
+  for (const auto& say : {end, latency, unit}) CHECK(of_clip(say).empty());
+  CHECK(of_clip(rate) == "expected of 'some' only options that a skeleton can use, found rate_hz");
+  CHECK(of_clip(root) ==
+        "expected of 'some' only options that a skeleton can use, found root_node");
+}
+
+TEST_CASE("of points a rate and a unit can be said, clicks can't") {
+  for (const auto& say : {rate, unit}) CHECK(of_points(say).empty());
+  CHECK(of_points(end) == "expected of 'some' only options that points can use, found end_ns");
+  CHECK(of_points(latency) ==
+        "expected of 'some' only options that points can use, found click_latency_ms");
+  CHECK(of_points(root) == "expected of 'some' only options that points can use, found root_node");
+}
+
+TEST_CASE("of nodes a rate and a root can be said, clicks and a length can't") {
+  for (const auto& say : {rate, root}) CHECK(of_nodes(say).empty());
+  CHECK(of_nodes(end) == "expected of 'some' only options that nodes can use, found end_ns");
+  CHECK(of_nodes(latency) ==
+        "expected of 'some' only options that nodes can use, found click_latency_ms");
+  CHECK(of_nodes(unit) ==
+        "expected of 'some' only options that nodes can use, found metres_per_unit");
+}
+
+TEST_CASE("a space's method takes what it has a use for, and nothing else") {
+  const std::vector<std::pair<std::string, SayOfSpace>> keys{
+      {"onto", [](SpaceOptions& o) { o.onto = "mocap"; }},
+      {"joints",
+       [](SpaceOptions& o) {
+         o.joints = {{"Head", "Head"}};
+       }},
+      {"rotation",
+       [](SpaceOptions& o) {
+         o.rotation = {1, 0, 0, 0};
+       }},
+      {"translation",
+       [](SpaceOptions& o) {
+         o.translation = {1, 0, 0};
+       }},
+      {"rotation_y_deg", [](SpaceOptions& o) { o.rotation_y_deg = 0.0; }},
+      {"magnification", [](SpaceOptions& o) { o.magnification = 100.0; }},
+      {"root", [](SpaceOptions& o) { o.root = "Head"; }},
+      {"onto_root", [](SpaceOptions& o) { o.onto_root = "Head"; }}};
+  const std::map<std::string, std::string> taken{
+      {"none", "nothing"},
+      {"fit", "onto, joints"},
+      {"given", "onto, joints, rotation, translation"},
+      {"paper", "onto, joints, rotation_y_deg, magnification, root, onto_root"}};
+  for (const auto& [method, list] : taken) {
+    for (const auto& [key, say] : keys) {
+      CAPTURE(method);
+      CAPTURE(key);
+      const bool used = (", " + list + ",").find(", " + key + ",") != std::string::npos;
+      const bool lacks = method == "given" && key != "rotation" && key != "translation";
+      const std::string refusal = "expected of [space.kinect] what method = \"" + method +
+                                  "\" takes (" + list + "), found " + key;
+      const std::string lack =
+          "expected rotation or translation in [space.kinect], whose method is \"given\", found "
+          "neither";
+      CHECK(of_space(method, say) == (!used ? refusal : lacks ? lack : ""));
+    }
+  }
+}
