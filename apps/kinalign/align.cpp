@@ -117,8 +117,10 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     const auto near = [](Time t) { return to_ns(t) > -most && to_ns(t) < most; };
     const bool told = near(own) && near(first);
     const bool quick = o.manifest.empty();
-    if (!s.step_ns || !apart || first > last || !told || (quick && s.name != "mocap")) continue;
-    const std::int64_t latency = to_ns(own) - options_of(manifest, s.name).start_ns.value_or(0);
+    const bool placed = s.step_ns || std::holds_alternative<PointInput>(s.data);
+    if (!placed || !apart || first > last || !told || (quick && s.name != "mocap")) continue;
+    const std::int64_t latency =
+        s.step_ns ? to_ns(own) - options_of(manifest, s.name).start_ns.value_or(0) : 0;
     const std::string where = quick ? "--start-ns {}" : "start_ns = {} in [stream." + s.name + "]";
     return fmt::format(fmt::runtime(where), to_ns(first) - latency) + " puts the first frame of " +
            shown(s.name) + " where the others have begun";
@@ -185,7 +187,7 @@ Verb align_verb() {
            "open, with the report and every parameter inside. Exit code 1 where it was done with "
            "warnings.",
        .examples =
-           {{"kinalign align demo/recording.toml -o demo/take.h5", "what the manifest says"},
+           {{"kinalign align demo/recording.toml -o demo/mine.h5", "what the manifest says"},
             {"kinalign align --mocap demo/mocap.bvh --start-ns 1790000000000000000 --kinect "
              "demo/kinect.csv -o demo/quick.h5",
              "two files without a manifest; a BVH knows no time of day"},

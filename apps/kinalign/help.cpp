@@ -81,7 +81,7 @@ std::string usage_line(const Page& page, const Usage& usage) {
 }
 
 std::string overview(const std::vector<Verb>& verbs) {
-  std::string text = "  kinalign align demo/recording.toml -o demo/take.h5\n";
+  std::string text = "  kinalign align demo/recording.toml -o demo/mine.h5\n";
   const bool aligns = std::any_of(verbs.begin(), verbs.end(),
                                   [](const Verb& verb) { return verb.page.name == "align"; });
   if (!aligns) text = "  kinalign config\n";

@@ -145,7 +145,11 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
   };
   SpaceOptions space = flags.space;
   for (const std::string& joint : flags.joints) {
-    space.joints.insert(KA_TRY(pair_of("--joint", joint, "KINECT=MOCAP")));
+    const auto pair = KA_TRY(pair_of("--joint", joint, "KINECT=MOCAP"));
+    if (!space.joints.insert(pair).second) {
+      return Failure(
+          Error{"--joint", 0, "each joint of the Kinect once", shown(pair.first) + " twice"});
+    }
   }
   add(flags.mocap_options, "mocap", flags.mocap);
   StreamOptions kinect;

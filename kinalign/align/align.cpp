@@ -49,6 +49,7 @@ Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
       return Failure(std::move(fitted).error());
     }
     spaces[k].transform = *fitted;
+    spaces[k].beside_line_m = spread_beside_line(moments[k]);
   }
   return {};
 }
@@ -94,6 +95,7 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
     append(report.findings, judge_stamps(s));
   }
   append(report.findings, judge_spaces(plan.header));
+  append(report.findings, judge_files(plan.header));
   return report;
 }
 
@@ -184,6 +186,7 @@ void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
   for (std::size_t k = 0; k < job.spaces.size(); ++k) {
     report.spaces.push_back(counts.residuals[k].report(job.spaces[k], job.plan.header));
     append(report.findings, judge_residual(report.spaces.back()));
+    append(report.findings, judge_fit(job.spaces[k], report.spaces.back()));
   }
   std::stable_sort(report.findings.begin(), report.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });

@@ -62,7 +62,7 @@ void add_content(const Knots& raw, const Knots& rows, std::size_t first, Carried
   }
 }
 
-Findings judge_content(const std::vector<CarriedContent>& contents, const ContentNames& names) {
+Findings judge_carried(const std::vector<CarriedContent>& contents, const ContentNames& names) {
   double worst = least_share;
   std::size_t part = contents.size();
   for (std::size_t k = 0; k < contents.size(); ++k) {

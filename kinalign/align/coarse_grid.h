@@ -41,6 +41,6 @@ struct ContentNames {
 };
 
 /// One warning where more than a tenth of a part's variation is lost, for the worst part.
-Findings judge_content(const std::vector<CarriedContent>& contents, const ContentNames& names);
+Findings judge_carried(const std::vector<CarriedContent>& contents, const ContentNames& names);
 
 }  // namespace kinalign

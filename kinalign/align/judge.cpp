@@ -16,15 +16,22 @@ Findings judge_rate(const RecordedStream& s, const std::string& file) {
   const double median = static_cast<double>(survey.median_step_ns),
                mean = static_cast<double>(to_ns(survey.last) - to_ns(survey.first)) /
                       static_cast<double>(survey.kept() - 1);
-  if (mean < 2.0 * median) return {};
-  constexpr double gap_steps = 3.0;  // as for a steady rate
+  if (mean < 1.5 * median) return {};
+  constexpr double gap_steps = 3.0, burst = 5.0;
+  const std::string repair =
+      mean > burst * median
+          ? fmt::format(
+                "stamps are of arrival, in bursts: leave the time column out of a layout and "
+                "say rate_hz = {:.3g}",
+                1e9 / mean)
+          : fmt::format(
+                "where that is the device's way, say rate_hz = {:.3g} or gap_ms = {:.3g}; "
+                "else many are missing",
+                1e9 / mean, gap_steps * 1e-6 * mean);
   return {{Severity::warning,
            Error{file, 0, fmt::format("steps near their median of {:.3g} ms", 1e-6 * median),
                  fmt::format("a mean of {:.3g} ms", 1e-6 * mean)},
-           "stretches longer than three median steps are taken for gaps",
-           fmt::format("where samples come in bursts, say rate_hz = {:.3g} or gap_ms = {:.3g}; "
-                       "else many are missing",
-                       1e9 / mean, gap_steps * 1e-6 * mean)}};
+           "stretches longer than three median steps are taken for gaps", repair}};
 }
 
 }  // namespace
@@ -37,6 +44,13 @@ Findings judge_stamps(const RecordedStream& s) {
                    Error{file, 0, "stamps that rise",
                          fmt::format("{} that repeat the one before", s.survey.duplicates)},
                    "these samples were left out", ""});
+  }
+  if (s.survey.near > 0) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "stamps a fifth of a step or more apart",
+                         fmt::format("{} nearer to the one before", s.survey.near)},
+                   "these samples were left out",
+                   "stamp samples where they are taken, not where they arrive"});
   }
   if (s.survey.ahead > 0) {
     out.push_back({Severity::warning,
@@ -69,7 +83,7 @@ Findings judge_content(const RecordedStream& s, const ResampleCount& count, doub
   Findings out;
   const auto add = [&](const std::vector<CarriedContent>& contents, const std::string& quantity,
                        const std::vector<std::string>& parts, double noise) {
-    append(out, judge_content(contents, {s.name, quantity, parts, grid_hz, noise}));
+    append(out, judge_carried(contents, {s.name, quantity, parts, grid_hz, noise}));
   };
   if (const auto* points = std::get_if<PointInput>(&s.data)) {
     add(count.positions, "position", points->joint_names, points_m);
@@ -83,8 +97,15 @@ Findings judge_content(const RecordedStream& s, const ResampleCount& count, doub
 Findings judge_spaces(const TakeHeader& header) {
   Findings out;
   for (const TakeGroup& group : header.groups) {
-    if (!std::holds_alternative<PointGroup>(group.kind) || group.space == "take" ||
+    if (std::holds_alternative<ImuGroup>(group.kind) || group.space == "take" ||
         header.parameters.spaces.contains(group.name)) {
+      continue;
+    }
+    if (std::holds_alternative<ClipGroup>(group.kind)) {
+      out.push_back({Severity::note,
+                     Error{"", 0, "'" + group.name + "' in the take's space",
+                           "a skeleton, and only points are moved so far"},
+                     "its positions stay in its own space", ""});
       continue;
     }
     out.push_back({Severity::note, Error{"", 0, "a space for '" + group.name + "'", "none"},
@@ -105,6 +126,39 @@ Findings judge_residual(const SpaceReport& space) {
              fmt::format("{:.1f} cm", 100.0 * space.after_m)},
        "the positions are not to be trusted",
        "are both the same motion, at the same time, of the same units and joints?"}};
+}
+
+Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
+  // Chosen: a trunk's joints lie 3 to 6 cm beside their line, a whole body's 20 and more.
+  constexpr double near_m = 0.1;
+  if (plan.options.method != "fit" || plan.beside_line_m >= near_m) return {};
+  std::string names;
+  for (const JointResidual& joint : space.joints)
+    names += (names.empty() ? "" : ", ") + joint.joint;
+  return {{Severity::warning,
+           Error{"", 0,
+                 fmt::format("joints that spread 10 cm or more beside a line, to fit '{}' by",
+                             space.stream),
+                 fmt::format("{:.1f} cm: {}", 100.0 * plan.beside_line_m, names)},
+           "the turn about that line is a guess, whatever the residuals say",
+           "name joints of arms or legs too: joints = { ... }"}};
+}
+
+Findings judge_files(const TakeHeader& header) {
+  Findings out;
+  for (const TakeGroup& group : header.groups) {
+    const auto& files = group.files;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const auto same = [&](const InputFacts& other) { return other.sha256 == files[i].sha256; };
+      const auto before = files.begin() + static_cast<std::ptrdiff_t>(i);
+      if (std::none_of(files.begin(), before, same)) continue;
+      out.push_back({Severity::warning,
+                     Error{files[i].name, 0, "files of '" + group.name + "' that differ",
+                           "the same bytes as another's"},
+                     "two of its nodes are one", "name the other node's own file"});
+    }
+  }
+  return out;
 }
 
 }  // namespace kinalign

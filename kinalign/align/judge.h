@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/align/resample.h"
+#include "kinalign/align/space.h"
 #include "kinalign/take/take.h"
 
 namespace kinalign {
@@ -14,10 +15,16 @@ Findings judge_stamps(const RecordedStream& stream);
 /// What the grid of `grid_hz` can't carry of one stream.
 Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);
 
-/// Points that stay in a space of their own though nobody said that they should.
+/// Points and skeletons that stay in a space of their own though nobody said that they should.
 Findings judge_spaces(const TakeHeader& header);
 
 /// Joints that lie too far from their counterparts to be the same ones.
 Findings judge_residual(const SpaceReport& space);
+
+/// A fit by joints so near to a line that the turn about it is a guess.
+Findings judge_fit(const SpacePlan& plan, const SpaceReport& space);
+
+/// Nodes that read one and the same file.
+Findings judge_files(const TakeHeader& header);
 
 }  // namespace kinalign

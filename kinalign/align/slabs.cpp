@@ -66,15 +66,16 @@ struct ReferenceSlab {
   std::variant<ClipFrames, PointFrames> rows;
 };
 
-using AnyRows = std::variant<std::monostate, ReferenceRows<ClipFrames>, ReferenceRows<PointFrames>,
-                             PointResampler, ImuResampler, ClipResampler>;
+using StreamRows =
+    std::variant<std::monostate, ReferenceRows<ClipFrames>, ReferenceRows<PointFrames>,
+                 PointResampler, ImuResampler, ClipResampler>;
 
 }  // namespace
 
 struct SlabMaker::State {
   const Recording* recording = nullptr;
   const AlignPlan* plan = nullptr;
-  std::vector<AnyRows> streams;
+  std::vector<StreamRows> streams;
   ImuRows nodes;  // of one stream, on the way into its group
   std::uint64_t done = 0;
 
@@ -114,7 +115,7 @@ Result<void> SlabMaker::State::open(std::size_t i) {
 }
 
 Result<void> SlabMaker::State::pull(ReferenceSlab& next) {
-  AnyRows& stream = streams[plan->reference];
+  StreamRows& stream = streams[plan->reference];
   if (auto* clip = std::get_if<ReferenceRows<ClipFrames>>(&stream)) {
     return clip->next(next.rows.emplace<ClipFrames>(), next.grid);
   }
@@ -136,7 +137,7 @@ void SlabMaker::State::put_reference(ReferenceSlab& reference, TakeSlab& slab) c
 Result<void> SlabMaker::State::other_rows(std::size_t i, std::span<const std::int64_t> grid,
                                           TakeSlab& slab) {
   const std::size_t group = plan->streams[i].group;
-  AnyRows& stream = streams[i];
+  StreamRows& stream = streams[i];
   if (auto* points = std::get_if<PointResampler>(&stream)) {
     PointRows rows;
     KA_TRY(points->rows(grid, rows));

@@ -23,6 +23,7 @@ struct SpacePlan {
   std::vector<JointPair> pairs;  // named joints, for fits and residuals
   JointPair root;                // paper only
   RigidTransform transform;      // fit: found; given: as given; paper: A_rot
+  double beside_line_m = 0.0;    // fit: spread_beside_line of the pairs
 };
 
 /// Plans for all streams of the manifest; `header` has the joints. Without named joints the usual

@@ -31,19 +31,20 @@ void drop_back(std::vector<T>& array, std::size_t rows) {
 template <class Frames>
 void append_rows(Frames& to, const Frames& from, std::size_t first, std::size_t count) {
   const std::size_t rows = from.size();
-  for_each_array<Frames>([&](auto array) { append(to.*array, from.*array, rows, first, count); });
+  for_each_frame_array<Frames>(
+      [&](auto array) { append(to.*array, from.*array, rows, first, count); });
 }
 
 template <class Frames>
 void drop_front(Frames& rows, std::size_t count) {
   const std::size_t all = rows.size();
-  if (count > 0) for_each_array<Frames>([&](auto array) { drop(rows.*array, all, count); });
+  if (count > 0) for_each_frame_array<Frames>([&](auto array) { drop(rows.*array, all, count); });
 }
 
 template <class Frames>
 void drop_last(Frames& rows) {
   const std::size_t all = rows.size();
-  for_each_array<Frames>([&](auto array) { drop_back(rows.*array, all); });
+  for_each_frame_array<Frames>([&](auto array) { drop_back(rows.*array, all); });
 }
 
 template void append_rows(ClipFrames&, const ClipFrames&, std::size_t, std::size_t);

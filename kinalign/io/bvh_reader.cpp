@@ -27,6 +27,7 @@ class BvhReader final : public ClipReader {
   Result<void> finish(ClipFrames& out) override {
     KA_TRY(values_.finish(findings));
     release(out);
+    if (!judged_) judge({});
     return {};
   }
 
@@ -42,7 +43,6 @@ class BvhReader final : public ClipReader {
  private:
   void begin(const BvhHierarchy& hierarchy) {
     skeleton_ = skeleton_of(hierarchy, options_, name_, findings);
-    append(findings, judge_size(skeleton_, options_, name_));
     poser_.emplace(hierarchy, options_);
   }
 
@@ -50,14 +50,33 @@ class BvhReader final : public ClipReader {
   void release(ClipFrames& out) {
     if (!values_.has_rows()) return;
     const auto values = values_.frames();
+    const std::size_t before = out.size();
     poser_->append(values, out);
+    if (!judged_ && out.size() > before) judge(frame_at(out, before));
     if (kept_ != nullptr) kept_->insert(kept_->end(), values.begin(), values.end());
     values_.drop_frames();
+  }
+
+  void judge(const ClipFrames& first_frame) {
+    append(findings, judge_size(skeleton_, first_frame, options_, name_));
+    judged_ = true;
+  }
+
+  ClipFrames frame_at(const ClipFrames& frames, std::size_t i) const {
+    const std::size_t joints = skeleton_.joints();
+    const auto part = [i](const std::vector<double>& all, std::size_t width) {
+      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(i * width);
+      return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(width));
+    };
+    return {{frames.stamps[i]},
+            part(frames.local_positions, 3 * joints),
+            part(frames.local_rotations, 4 * joints)};
   }
 
   BvhOptions options_;
   std::string name_;
   BvhValues values_;
+  bool judged_ = false;  // size and axis
   Skeleton skeleton_;
   std::optional<BvhPoser> poser_;
   std::vector<double>* kept_ = nullptr;

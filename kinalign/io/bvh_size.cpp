@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // No BVH says its unit or its up axis: whether the values assumed give a person who stands.
 #include "kinalign/io/bvh.h"
+#include "kinalign/motion/kinematics.h"
 
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace kinalign {
@@ -60,25 +62,54 @@ const Unit& best_unit(double hip_in_units) {
   return *best;
 }
 
+constexpr int y = 1, z = 2;
+
+/// How far the first frame's joints reach along our y, which is up, and z: a person who stands with
+/// arms spread is narrow along z, one who lies is low along y. Nothing where neither is so.
+std::optional<bool> stands(const Skeleton& skeleton, const ClipFrames& first_frame) {
+  if (first_frame.size() != 1) return std::nullopt;
+  std::vector<double> positions(skeleton.joints() * 3);
+  forward_kinematics(skeleton, first_frame, positions);
+  Vec3 low = vec3(positions, 0), high = low;
+  for (std::size_t j = 1; j < skeleton.joints(); ++j) {
+    low = low.cwiseMin(vec3(positions, j));
+    high = high.cwiseMax(vec3(positions, j));
+  }
+  const Vec3 size = high - low;
+  if (size.y() < 0.5 * size.z()) return false;
+  if (size.z() < 0.5 * size.y()) return true;
+  return std::nullopt;
+}
+
+Finding lying(std::string_view name, const std::string& expected, const std::string& found,
+              char other) {
+  return {Severity::warning, Error{std::string(name), 0, expected, found},
+          "the person is read as lying",
+          fmt::format("--up {0} (up = \"{0}\" in a manifest) turns it upright", other)};
+}
+
 }  // namespace
 
-Findings judge_size(const Skeleton& skeleton, const BvhOptions& options, std::string_view name) {
+Findings judge_size(const Skeleton& skeleton, const ClipFrames& first_frame,
+                    const BvhOptions& options, std::string_view name) {
   constexpr std::size_t body = 10;  // fewer joints are no whole person
-  constexpr int y = 1, z = 2;
   Findings findings;
   if (skeleton.joints() < body) return findings;
   const Extent extent = rest_extent(skeleton);
   int up = options.z_up ? z : y;
   const int other = options.z_up ? y : z;
-  if (extent.size(up) < 0.5 * extent.size(other)) {
-    findings.push_back(
-        {Severity::warning,
-         Error{std::string(name), 0, fmt::format("a rest pose that stands along {}", "xyz"[up]),
-               fmt::format("one that lies along {}", "xyz"[other])},
-         "the person is read as lying",
-         fmt::format("--up {0} (up = \"{0}\" in a manifest) turns it upright", "xyz"[other])});
-    up = other;
+  const bool rest_lies = extent.size(up) < 0.5 * extent.size(other);
+  const auto standing = stands(skeleton, first_frame);
+  const std::string_view axes = "xyz";
+  if (rest_lies && !standing.value_or(false)) {
+    findings.push_back(lying(name, fmt::format("a rest pose that stands along {}", axes[up]),
+                             fmt::format("one that lies along {}", axes[other]), axes[other]));
+  } else if (!rest_lies && !standing.value_or(true)) {
+    findings.push_back(lying(
+        name, fmt::format("a first frame that stands along {}, as the rest pose does", axes[up]),
+        fmt::format("one that lies along {}", axes[other]), axes[other]));
   }
+  if (rest_lies) up = other;
   const double hip = -extent.low[up];
   if (hip < 0.6 || hip > 1.3) {
     const Unit& unit = best_unit(hip / options.metres_per_unit);

@@ -2,6 +2,7 @@
 #include "kinalign/io/bvh_survey.h"
 
 #include "kinalign/core/hash.h"
+#include "kinalign/core/numbers.h"
 #include "kinalign/io/bvh_head.h"
 #include "kinalign/io/bvh_words.h"
 #include "kinalign/motion/stamps.h"
@@ -56,8 +57,34 @@ struct Counted {
   BvhHierarchy hierarchy;
   Findings findings;
   InputFacts facts;
+  std::vector<double> first_row;  // as far as the rows' first 64 KiB have it
   bool kept = false;
 };
+
+/// Numbers of a text's beginning, at most `most`; its last word may go on in the next piece.
+void read_numbers(std::string_view text, std::size_t most, std::vector<double>& numbers) {
+  constexpr std::string_view blanks = " \t\r\n";
+  while (numbers.size() < most) {
+    const auto begin = text.find_first_not_of(blanks);
+    if (begin == std::string_view::npos) return;
+    const auto end = text.find_first_of(blanks, begin);
+    double number = 0.0;
+    if (end == std::string_view::npos || !parse_number(text.substr(begin, end - begin), number)) {
+      return;
+    }
+    numbers.push_back(number);
+    text.remove_prefix(end);
+  }
+}
+
+ClipFrames first_frame(const Counted& counted, const BvhOptions& options) {
+  ClipFrames frame;
+  const std::size_t size = counted.hierarchy.row_size();
+  if (size > 0 && counted.first_row.size() == size) {
+    BvhPoser(counted.hierarchy, options).append(counted.first_row, frame);
+  }
+  return frame;
+}
 
 Result<Counted> count(FileSystem& files, const std::string& path, const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));
@@ -66,6 +93,8 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
   BvhHead head(path);
   WordCount words;
   bool in_rows = false;
+  constexpr std::size_t longest_start = 64 * 1024;  // a row of 3,000 joints
+  std::string start;                                // of the rows
   std::uint64_t bytes = 0;
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
@@ -74,8 +103,10 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
     bytes += piece.size();
     if (in_rows) {
       words.add(piece);
+      if (start.size() < longest_start) start += piece;
     } else if (KA_TRY(head.add(piece, out.findings))) {
       words.add(head.rows());
+      start = head.rows();
       in_rows = true;
     }
     if (!go_on(progress, "reading", bytes, file.size())) return Failure(interruption(path));
@@ -85,6 +116,7 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
   const std::uint64_t row_size = head.hierarchy.row_size();
   out.kept = in_rows && row_size > 0 && !words.within_word() && words.words() % row_size == 0 &&
              words.words() / row_size == head.hierarchy.frames;
+  read_numbers(start + '\n', row_size, out.first_row);
   out.hierarchy = std::move(head.hierarchy);
   return out;
 }
@@ -100,8 +132,8 @@ StampSurvey survey_of(const BvhOptions& options, double step_ns, std::uint64_t f
 }
 
 /// Reads all numbers, for files that break their promise: faults fail, oddities are found.
-Result<BvhSurvey> read_all(FileSystem& files, const std::string& path, const BvhOptions& options,
-                           const Progress& progress) {
+Result<ClipSurvey> read_all(FileSystem& files, const std::string& path, const BvhOptions& options,
+                            const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   const auto reader = make_bvh_reader(options, path);
   StampSurveyor surveyor;
@@ -115,7 +147,7 @@ Result<BvhSurvey> read_all(FileSystem& files, const std::string& path, const Bvh
     KA_TRY(ended ? reader->finish(block) : reader->feed(piece, block));
     surveyor.add(block.stamps);
   }
-  BvhSurvey out;
+  ClipSurvey out;
   out.skeleton = *reader->header();
   out.findings = std::move(reader->findings);
   out.survey = surveyor.result();
@@ -124,16 +156,16 @@ Result<BvhSurvey> read_all(FileSystem& files, const std::string& path, const Bvh
 
 }  // namespace
 
-Result<BvhSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
-                             const Progress& progress) {
+Result<ClipSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
+                              const Progress& progress) {
   Counted counted = KA_TRY(count(files, path, progress));
-  BvhSurvey out;
+  ClipSurvey out;
   if (!counted.kept) {
     out = KA_TRY(read_all(files, path, options, progress));
   } else {
     out.findings = std::move(counted.findings);
     out.skeleton = skeleton_of(counted.hierarchy, options, path, out.findings);
-    append(out.findings, judge_size(out.skeleton, options, path));
+    append(out.findings, judge_size(out.skeleton, first_frame(counted, options), options, path));
   }
   out.facts = std::move(counted.facts);
   out.step_ns = counted.hierarchy.frame_seconds * 1e9;

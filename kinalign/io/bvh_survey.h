@@ -5,23 +5,15 @@
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
 #include "kinalign/io/bvh.h"
-#include "kinalign/take/recording.h"
+#include "kinalign/io/clip_survey.h"
 
 #include <string>
 
 namespace kinalign {
 
-struct BvhSurvey {
-  Skeleton skeleton;
-  StampSurvey survey;
-  double step_ns = 0.0;
-  InputFacts facts;
-  Findings findings;
-};
-
 /// The numbers are read only where counting words does not give the frames that the file promises,
 /// or where the file ends within the last one.
-Result<BvhSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
-                             const Progress& progress);
+Result<ClipSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
+                              const Progress& progress);
 
 }  // namespace kinalign

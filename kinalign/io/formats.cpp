@@ -2,6 +2,7 @@
 #include "kinalign/io/formats.h"
 
 #include "kinalign/io/bvh.h"
+#include "kinalign/io/bvh_survey.h"
 #include "kinalign/io/layout.h"
 #include "kinalign/io/ntu_skeleton.h"
 #include "kinalign/io/opensim_sto.h"
@@ -34,8 +35,8 @@ struct Format {
   bool (*looks)(std::string_view head, std::string_view path);
   Result<AnyReader> (*make)(const Source& source);
   std::string_view selects = "";  // the one name that `select` may have here
-  Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;      // if any
-  Result<BvhSurvey> (*survey)(const Source& source, const Progress& progress) = nullptr;  // if own
+  Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;       // if any
+  Result<ClipSurvey> (*survey)(const Source& source, const Progress& progress) = nullptr;  // if own
 };
 
 /// A format that is known whatever the file's name is.

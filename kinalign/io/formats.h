@@ -4,7 +4,7 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/bvh_survey.h"
+#include "kinalign/io/clip_survey.h"
 #include "kinalign/io/reader.h"
 #include "kinalign/take/manifest.h"
 
@@ -18,7 +18,7 @@ namespace kinalign {
 /// Makes a fresh reader for each pass over a file.
 using MakeReader = std::function<Result<AnyReader>()>;
 /// A first pass of a format's own, quicker than one that reads every row.
-using SurveyClip = std::function<Result<BvhSurvey>(const Progress& progress)>;
+using SurveyClip = std::function<Result<ClipSurvey>(const Progress& progress)>;
 
 struct FoundFormat {
   std::string name;  // "bvh", "trc", or a layout's

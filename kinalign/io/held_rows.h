@@ -17,7 +17,7 @@ class HeldRows {
   void release(const RowStamps& stamps, Frames& out) {
     if (held_.stamps.empty() || !stamps.settled()) return;
     stamps.restamp(held_.stamps);
-    for_each_array<Frames>([&](auto array) {
+    for_each_frame_array<Frames>([&](auto array) {
       auto& to = out.*array;
       to.insert(to.end(), (held_.*array).begin(), (held_.*array).end());
     });

@@ -17,7 +17,8 @@ namespace kinalign {
 
 using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>>;
 
-/// Puts `value` into the option. The error has no place: "gap_ms between 0 and 86400000", "-1".
+/// Puts `value` into the option. The error has no place: "gap_ms as a number from 0 to
+/// 86400000", "-1".
 Result<void> assign(const Field& field, const OptionValue& value);
 
 /// Fails where these are not w,x,y,z of a length from 0.5 to 2: `name` is the key they stand under.

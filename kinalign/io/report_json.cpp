@@ -12,6 +12,7 @@ using Json = nlohmann::ordered_json;
 Json survey_json(const StampSurvey& survey) {
   return {{"samples", survey.samples},
           {"duplicates", survey.duplicates},
+          {"near", survey.near},
           {"backward", survey.backward},
           {"ahead", survey.ahead},
           {"largest_step_back_ns", survey.largest_step_back_ns},

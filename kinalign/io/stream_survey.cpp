@@ -131,7 +131,7 @@ Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
 
 Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path,
                                    const FoundFormat& format) {
-  const BvhSurvey made = KA_TRY(format.survey(*job.progress));
+  const ClipSurvey made = KA_TRY(format.survey(*job.progress));
   RecordedStream out;
   out.name = job.options->name;
   out.survey = made.survey;

@@ -130,6 +130,7 @@ class Finder {
     std::string missing;
     const auto columns = KA_TRY(columns_of(quantity, missing));
     if (!missing.empty() && (quantity.needed || !columns.empty())) return no_column(missing);
+    if (!missing.empty()) found_.absent.push_back(missing);
     if (columns.empty()) return {};
     found_.*quantity.first = slots_;
     for (const std::size_t column : columns) {

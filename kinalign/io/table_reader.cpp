@@ -20,6 +20,7 @@ namespace {
 class PointBuilder {
  public:
   using ReaderType = PointReader;
+  static constexpr const char* without = "every joint that has a place counts as tracked";
 
   PointBuilder(const TableLayout& layout, const StreamOptions& options,
                const std::vector<std::string>& joints)
@@ -80,6 +81,7 @@ class PointBuilder {
 class ImuBuilder {
  public:
   using ReaderType = ImuReader;
+  static constexpr const char* without = "the nodes have no such quantity";
 
   ImuBuilder(const TableLayout& layout, const StreamOptions& options,
              const std::vector<std::string>& nodes)
@@ -132,6 +134,7 @@ class TableReader final : public Builder::ReaderType {
       : layout_(layout),
         members_(std::move(members)),
         select_(options.select),
+        own_layout_(options.layout.ends_with(".toml")),
         lines_(file),
         stamps_(layout.time.has_value(), options.rate_hz > 0.0 ? options.rate_hz : layout.rate_hz,
                 options.start_ns),
@@ -152,6 +155,7 @@ class TableReader final : public Builder::ReaderType {
     stamps_.settle();
     held_.release(stamps_, out);
     if (stamps_.stuck()) this->findings.push_back(stuck_finding(lines_.file(), stamps_));
+    report_absent();
     builder_.report(lines_.file(), this->findings);
     selection_.report(lines_.file(), this->findings);
     return {};
@@ -160,6 +164,19 @@ class TableReader final : public Builder::ReaderType {
   const Header* header() const override { return header_ ? &*header_ : nullptr; }
 
  private:
+  /// A name misspelt in a user's layout looks like a quantity that the file does not have.
+  void report_absent() {
+    if (!own_layout_) return;
+    for (const std::string& column : columns_.absent) {
+      this->findings.push_back(
+          {Severity::note,
+           Error{lines_.file(), 0,
+                 "a column " + shown(column) + ", as layout " + layout_.name + " says",
+                 "none of that name"},
+           Builder::without, "leave it out of the layout if it has to be so"});
+    }
+  }
+
   Result<void> read(std::string_view line, Frames& out) {
     if (static_cast<std::size_t>(lines_.number()) <= layout_.skip_lines) return {};
     if (!layout_.comment.empty() && line.starts_with(layout_.comment)) return {};
@@ -203,6 +220,7 @@ class TableReader final : public Builder::ReaderType {
   TableLayout layout_;
   std::vector<std::string> members_;
   std::map<std::string, std::string> select_;
+  bool own_layout_;
   NamedLines lines_;
   RowStamps stamps_;
   Builder builder_;

@@ -249,7 +249,7 @@ Result<bool> TakeReader::next(TakeSlab& slab) {
       KA_TRY(s.read(*column, count, values));
       return s.check(*column++, std::span(std::as_const(values)));
     };
-    KA_TRY(std::visit([&](auto& one) { return for_each_array(one, use); }, rows));
+    KA_TRY(std::visit([&](auto& one) { return for_each_row_array(one, use); }, rows));
   }
   s.rows += count;
   return true;

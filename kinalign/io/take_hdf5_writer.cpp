@@ -253,7 +253,8 @@ Result<void> TakeWriter::append(const TakeSlab& slab) {
       assert(given.size() * size_of(column->stored) == count * column->row_bytes);
       return s.write(*column++, given);
     };
-    KA_TRY(std::visit([&](const auto& rows) { return for_each_array(rows, use); }, slab.rows[g]));
+    KA_TRY(
+        std::visit([&](const auto& rows) { return for_each_row_array(rows, use); }, slab.rows[g]));
     assert(column == s.groups[g].cend());
   }
   KA_TRY(s.write_stamps(slab.stamps));

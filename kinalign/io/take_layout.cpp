@@ -137,14 +137,10 @@ std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision) 
 }
 
 Result<void> validate(const TakeHeader& header) {
-  const std::set<std::string_view> taken{"time_ns",         "seconds", "t0_ns", "report_json",
-                                         "parameters_json", ".",       ".."};
   std::vector<std::string> names;
   for (const TakeGroup& group : header.groups) {
     names.push_back(group.name);
-    if (group.name.find('/') != std::string::npos || taken.contains(group.name)) {
-      return bad_name("a stream's name that can be a group of the take", group.name);
-    }
+    KA_TRY(check_stream_name(group.name));
     if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
       KA_TRY(validate(clip->skeleton));
       KA_TRY(check_names(clip->skeleton.joint_names, "a name for each joint"));

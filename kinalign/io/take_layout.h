@@ -49,7 +49,7 @@ struct TakeColumn {
 /// "clip", "points", "imu".
 std::string_view kind_of(const TakeGroup& group);
 
-/// The columns that a group's rows fill, in the order of for_each_array.
+/// The columns that a group's rows fill, in the order of for_each_row_array.
 std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision);
 
 /// Fails where a take of this header could not be told from another or not be read again: group
@@ -64,7 +64,7 @@ AnyRows rows_for(const TakeGroup& group);
 /// Calls use(name, array) -> Result<void> for each array of rows (a variant's member, const or
 /// not), in the order of columns_of; also for the arrays that this stream leaves empty.
 template <class Rows, class Use>
-Result<void> for_each_array(Rows& rows, Use&& use) {
+Result<void> for_each_row_array(Rows& rows, Use&& use) {
   Result<void> done;
   for_each_column<std::remove_const_t<Rows>>([&](std::string_view name, auto of) {
     if (done) done = use(name, of(rows));

@@ -121,7 +121,8 @@ Result<void> TakeNpzWriter::append(const TakeSlab& slab) {
         return put(bytes_of(given));
       }
     };
-    KA_TRY(std::visit([&](const auto& rows) { return for_each_array(rows, use); }, slab.rows[g]));
+    KA_TRY(
+        std::visit([&](const auto& rows) { return for_each_row_array(rows, use); }, slab.rows[g]));
     assert(column == groups_[g].cend());
   }
   return {};

@@ -7,6 +7,8 @@
 #include "kinalign/io/named_lines.h"
 #include "kinalign/io/point_rows.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -66,6 +68,7 @@ class TrcReader final : public PointReader {
         KA_TRY(expect(parse_number(facts[i], declared_), "a number of frames", facts[i]));
       }
       if (keys_[i] == "NumMarkers") markers_fact_ = facts[i];
+      if (keys_[i] == "DataRate") parse_number(facts[i], data_rate_);
       if (keys_[i] == "Units") KA_TRY(read_unit(facts[i]));
     }
     return expect(units_.metres > 0.0, "Units among the keys of line 2", "none");
@@ -120,6 +123,8 @@ class TrcReader final : public PointReader {
     KA_TRY(row_.read(line));
     const auto ns = parse_stamp(row_.texts[0], trc_seconds);
     KA_TRY(expect(ns.has_value(), "a time in seconds", row_.texts[0]));
+    if (stamps_.rows() == 0) first_ns_ = *ns;
+    last_ns_ = *ns;
     PointFrames& target = held_.target(stamps_, out);
     target.stamps.push_back(KA_TRY(stamps_.next(*ns)));
     for (std::size_t j = 0; j < states_.size(); ++j) {
@@ -143,6 +148,15 @@ class TrcReader final : public PointReader {
                           Error{file, 3, declared + " frames", std::to_string(stamps_.rows())},
                           "the frames that are there were read", "correct NumFrames"});
     }
+    const double seconds = 1e-9 * (static_cast<double>(last_ns_) - static_cast<double>(first_ns_));
+    const double rate = static_cast<double>(stamps_.rows() - 1) / seconds;
+    if (seconds > 0.0 && data_rate_ > 0.0 && std::abs(rate - data_rate_) > 0.1 * data_rate_) {
+      findings.push_back({Severity::warning,
+                          Error{file, 3, fmt::format("times of DataRate {:g}", data_rate_),
+                                fmt::format("{:.4g} a second", rate)},
+                          "the times were believed",
+                          "find out which is true: gaps and splines go by it"});
+    }
     if (behind_the_end_ > 0) {
       findings.push_back({Severity::warning,
                           Error{file, 0, "nothing behind the blank line that ends the rows",
@@ -158,7 +172,8 @@ class TrcReader final : public PointReader {
   PointUnits units_{y_up, 0.0};
   std::vector<std::string> keys_, names_;
   std::string markers_fact_;
-  double declared_ = 0.0;
+  double declared_ = 0.0, data_rate_ = 0.0;
+  std::int64_t first_ns_ = 0, last_ns_ = 0;  // of the column Time
   RowParser row_;
   std::vector<Tracking> states_;  // [J] of a row
   bool ended_ = false;

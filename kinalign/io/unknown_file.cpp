@@ -42,7 +42,7 @@ Error unknown_file(const std::string& path, std::string_view head) {
           empty
               ? "a recording's file"
               : "a format that kinalign knows (docs/formats); for a table of another kind write a "
-                "layout, --layout FILE (docs/formats/layouts.md)",
+                "layout (docs/formats/layouts.md: layout = in a manifest, --layout with one file)",
           beginning_of(head)};
 }
 

@@ -42,8 +42,9 @@ void PointSizes::add(const PointFrames& block) {
       high = high.cwiseMax(at);
       ++seen;
     }
-    if (seen < enough) continue;
+    if (seen < 2) continue;
     ++frames_;
+    most_points_ = std::max(most_points_, seen);
     diagonals_m_ += (high - low).norm();
   }
 }
@@ -51,7 +52,7 @@ void PointSizes::add(const PointFrames& block) {
 Findings PointSizes::judge(const PointHeader&, const std::string& file) const {
   if (frames_ < enough) return {};
   const double size = diagonals_m_ / static_cast<double>(frames_);
-  if (size >= smallest_m && size <= largest_m) return {};
+  if (size <= largest_m && (size >= smallest_m || most_points_ < enough)) return {};
   const std::string found =
       size < 1000.0 ? fmt::format("{:.3g} m", size) : fmt::format("{:.0f} m", size);
   const Error what{file, 0, "the points of a frame 0.2 to 20 m apart", found};

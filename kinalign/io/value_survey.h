@@ -15,12 +15,14 @@ namespace kinalign {
 class PointSizes {
  public:
   void add(const PointFrames& block);
-  /// A finding where the points of a frame lie too near or too far apart for a person.
+  /// A finding where the points of a frame lie too far apart for a person or, where ten or more
+  /// were seen, too near.
   Findings judge(const PointHeader& header, const std::string& file) const;
 
  private:
-  std::uint64_t frames_ = 0;  // with enough points to be a person
-  double diagonals_m_ = 0.0;  // of the boxes around them, their sum
+  std::uint64_t frames_ = 0;       // with two points or more
+  std::uint64_t most_points_ = 0;  // in one of them
+  double diagonals_m_ = 0.0;       // of the boxes around them, their sum
 };
 
 class ImuSizes {

@@ -29,7 +29,7 @@ inline constexpr auto frame_arrays<ImuSamples> = std::tuple(&ImuSamples::stamps,
 
 /// Calls use(member) for each.
 template <class Frames, class Use>
-void for_each_array(Use&& use) {
+void for_each_frame_array(Use&& use) {
   std::apply([&use](auto... array) { (use(array), ...); }, frame_arrays<Frames>);
 }
 

@@ -26,6 +26,12 @@ PairMoments moved(const PairMoments& m, const Vec3& from_origin, const Vec3& to_
   return out;
 }
 
+/// Of both sides' points, each about its mean, m2.
+Eigen::Matrix3d covariance(const PairMoments& m) {
+  const auto n = static_cast<double>(m.count);
+  return m.cross / n - (m.to_sum / n) * (m.from_sum / n).transpose();
+}
+
 }  // namespace
 
 void PairMoments::add(const Vec3& from, const Vec3& to) {
@@ -63,8 +69,8 @@ Result<RigidTransform> fit_rigid(const PairMoments& m) {
   }
   const auto n = static_cast<double>(m.count);
   const Vec3 from_mean = m.from_sum / n, to_mean = m.to_sum / n;
-  const Eigen::Matrix3d spread = m.cross / n - to_mean * from_mean.transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance(m),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3& sizes = svd.singularValues();
   if (!(sizes[1] > 1e-9 * sizes[0])) {
     return Failure(Error{"", 0, "points that do not lie on one line", "a line"});
@@ -76,6 +82,11 @@ Result<RigidTransform> fit_rigid(const PairMoments& m) {
   transform.rotation = Quat(rotation).normalized();
   transform.translation = m.to_origin + to_mean - transform.rotation * (m.from_origin + from_mean);
   return transform;
+}
+
+double spread_beside_line(const PairMoments& m) {
+  if (m.count == 0) return 0.0;
+  return std::sqrt(Eigen::JacobiSVD<Eigen::Matrix3d>(covariance(m)).singularValues()[1]);
 }
 
 double rms_residual(const PairMoments& m, const RigidTransform& transform) {

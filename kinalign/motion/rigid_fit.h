@@ -34,6 +34,10 @@ struct PairMoments {
 /// Fails with fewer than three pairs or pairs on one line, where a turn about it is free.
 Result<RigidTransform> fit_rigid(const PairMoments& moments);
 
+/// How far the points spread beside the line that they lie nearest to, m rms: a turn about that
+/// line is as sure as this is large.
+double spread_beside_line(const PairMoments& moments);
+
 /// Root mean square distance, m, of the pairs after `transform`.
 double rms_residual(const PairMoments& moments, const RigidTransform& transform);
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/take/manifest.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 namespace kinalign {
 
 namespace {
@@ -8,10 +12,22 @@ constexpr double any = 1e308;
 constexpr double day_ms = 86'400'000.0;
 }  // namespace
 
+Result<void> check_stream_name(const std::string& name) {
+  constexpr std::array<std::string_view, 7> taken{
+      "time_ns", "seconds", "t0_ns", "report_json", "parameters_json", ".", ".."};
+  const bool good = !name.empty() && name.find('/') == std::string::npos &&
+                    name.find('\0') == std::string::npos &&
+                    std::find(taken.begin(), taken.end(), name) == taken.end();
+  if (good) return {};
+  return Failure(Error{"", 0, "a stream's name that can be a group of the take",
+                       name.empty() ? "an empty one" : "\"" + shown(name) + "\""});
+}
+
 Fields describe(AlignOptions& o) {
   return {
       {"reference", "stream whose stamps are the take's grid (default: the first)", &o.reference},
-      {"gap_ms", "longest stretch without samples to interpolate over, ms; 0: three median steps",
+      {"gap_ms",
+       "longest stretch without samples to interpolate over, ms; 0: three nominal periods",
        &o.gap_ms, 0.0, day_ms},
       {"rotations",
        "between samples: spline (no jump in angular acceleration) or slerp",

@@ -4,6 +4,7 @@
 // Documented for users in docs/formats/recording_toml.md.
 #pragma once
 
+#include "kinalign/core/error.h"
 #include "kinalign/core/options.h"
 
 #include <cstdint>
@@ -59,7 +60,7 @@ struct SpaceOptions {
 
 struct AlignOptions {
   std::string reference;             // whose stamps are the grid; empty: the first stream
-  double gap_ms = 0.0;               // longest stretch to interpolate over; 0: three median steps
+  double gap_ms = 0.0;               // longest stretch to interpolate over; 0: 3.1 nominal steps
   std::string rotations = "spline";  // spline: twice continuously differentiable; slerp
   bool store_double = false;         // in the take; float otherwise
 };
@@ -70,6 +71,9 @@ struct Manifest {
   std::map<std::string, SpaceOptions> spaces;  // by stream
   AlignOptions align;
 };
+
+/// Fails where a take could not have a group of that name.
+Result<void> check_stream_name(const std::string& name);
 
 /// Names, meanings and ranges of the scalar options, for flags, TOML, JSON and --help.
 Fields describe(AlignOptions& options);

@@ -13,7 +13,7 @@
 
 namespace kinalign {
 
-/// A joint's distances to its counterpart, m rms, over the rows where both are valid.
+/// A joint's distances to its counterpart, m rms, over the rows where both are tracked.
 struct JointResidual {
   std::string joint, onto;
   std::uint64_t rows = 0;
@@ -35,14 +35,15 @@ struct StreamReport {
   std::string stream;              // the take's group
   std::vector<std::string> nodes;  // of the group's, those that this stream measures
   StampSurvey survey;
-  double rate_hz = 0.0;               // from the median step
-  std::int64_t gap_ns = 0;            // longer stretches are gaps
-  std::uint64_t gaps = 0;             // within the take
-  std::int64_t gap_time_ns = 0;       // sum of their lengths
-  std::uint64_t samples = 0;          // rows x joints (or nodes) of the take
-  std::uint64_t invalid = 0;          // of these
-  std::uint64_t inferred = 0;         // valid, but the device guessed (state 1)
-  std::uint64_t bridged = 0;          // valid, but a neighbouring sample was missing (state 0)
+  double rate_hz = 0.0;          // from the median step
+  std::int64_t gap_ns = 0;       // longer stretches are gaps
+  std::uint64_t gaps = 0;        // within the take
+  std::int64_t gap_time_ns = 0;  // sum of their lengths
+  std::uint64_t samples = 0;     // rows x joints (or nodes) of the take
+  std::uint64_t invalid = 0;     // of these
+  std::uint64_t inferred = 0;    // valid, but the device guessed (state 1)
+  std::uint64_t bridged =
+      0;  // valid, but samples were missing there: state 0, or steps of 1.5 and more
   std::int64_t worst_nearest_ns = 0;  // over valid rows: distance to the nearest raw sample
   std::optional<std::int64_t> worst_interval_ns;  // half-width; absent: nothing is known
 };

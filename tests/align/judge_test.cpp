@@ -72,17 +72,22 @@ TEST_CASE("from one sample in twenty on, a clock that stepped back is an error")
         "there, or stamp it by rate_hz");
 }
 
-TEST_CASE("steps of twice their median on average are bursts or losses, in streams with stamps") {
+TEST_CASE(
+    "steps of 1.5 times their median on average are bursts or losses, in streams with stamps") {
   RecordedStream s = kinect();
   s.survey.last = utc_time(65'934'000'000);
   const Findings found = judge_stamps(s);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
         "warning: kinect: expected steps near their median of 33 ms, found a mean of 66 ms; "
-        "stretches longer than three median steps are taken for gaps; where samples come in "
-        "bursts, say rate_hz = 15.2 or gap_ms = 198; else many are missing");
-  s.survey.last = utc_time(65'933'000'000);
+        "stretches longer than three median steps are taken for gaps; where that is the device's "
+        "way, say rate_hz = 15.2 or gap_ms = 198; else many are missing");
+  s.survey.last = utc_time(49'450'000'000);
   CHECK(judge_stamps(s).empty());
+  s.survey.last = utc_time(329'670'000'000);
+  CHECK(judge_stamps(s).at(0).repair ==
+        "stamps are of arrival, in bursts: leave the time column out of a layout and say rate_hz = "
+        "3.03");
   s.survey.last = utc_time(65'934'000'000);
   s.step_ns = 33e6;  // a file that states its step
   CHECK(judge_stamps(s).empty());
@@ -126,14 +131,18 @@ TEST_CASE("points that nobody placed say how to place them; what was said is not
   TakeHeader header;
   header.groups = {{"mocap", ClipGroup{}, false, false, {}, "take"},
                    {"kinect", PointGroup{}, true, false, {}, "kinect"},
-                   {"imu", ImuGroup{}, true, false, {}, "imu"}};
+                   {"imu", ImuGroup{}, true, false, {}, "imu"},
+                   {"suit", ClipGroup{}, true, false, {}, "suit"}};
   const Findings found = judge_spaces(header);
-  REQUIRE(found.size() == 1);
+  REQUIRE(found.size() == 2);
+  CHECK(whole(found[1]) ==
+        "note: expected 'suit' in the take's space, found a skeleton, and only points are moved so "
+        "far; its positions stay in its own space; ");
   CHECK(whole(found[0]) ==
         "note: expected a space for 'kinect', found none; its positions stay in its own space; "
         "[space.kinect] method = \"fit\" (or \"none\", if so meant)");
   header.parameters.spaces["kinect"].method = "none";
-  CHECK(judge_spaces(header).empty());
+  CHECK(judge_spaces(header).size() == 1);
 }
 
 TEST_CASE("joints more than 30 cm rms from their counterparts are a warning with the distance") {
@@ -149,4 +158,37 @@ TEST_CASE("joints more than 30 cm rms from their counterparts are a warning with
         "warning: expected 'kinect' on 'mocap' to less than 30 cm rms, found 45.7 cm; the "
         "positions are not to be trusted; are both the same motion, at the same time, of the same "
         "units and joints?");
+}
+
+TEST_CASE("a fit by joints near one line is a warning with their names") {
+  SpacePlan plan;
+  plan.options.method = "fit";
+  plan.beside_line_m = 0.043;
+  SpaceReport space;
+  space.stream = "kinect";
+  space.joints = {{"SpineBase", "Hips", 9, 0.1, 0.0}, {"Head", "Head", 9, 0.1, 0.0}};
+  const Findings found = judge_fit(plan, space);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: expected joints that spread 10 cm or more beside a line, to fit 'kinect' by, "
+        "found 4.3 cm: SpineBase, Head; the turn about that line is a guess, whatever the "
+        "residuals say; name joints of arms or legs too: joints = { ... }");
+  plan.beside_line_m = 0.1;
+  CHECK(judge_fit(plan, space).empty());
+  plan.options.method = "given";
+  plan.beside_line_m = 0.0;
+  CHECK(judge_fit(plan, space).empty());
+}
+
+TEST_CASE("one file for two nodes is a warning") {
+  TakeHeader header;
+  header.groups = {
+      {"imu", ImuGroup{}, true, false, {{"w.csv", "aa", 1}, {"l.csv", "bb", 1}}, "imu"}};
+  CHECK(judge_files(header).empty());
+  header.groups[0].files.push_back({"w.csv", "aa", 1});
+  const Findings found = judge_files(header);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: w.csv: expected files of 'imu' that differ, found the same bytes as another's; "
+        "two of its nodes are one; name the other node's own file");
 }

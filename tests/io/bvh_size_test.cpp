@@ -175,3 +175,32 @@ TEST_CASE("two clicks that are not as far apart as the frames say are a finding"
   clicked.click_latency_ms = 500.0;  // of both clicks: the time between them stays
   CHECK(findings_of(10'000'000).empty());
 }
+
+TEST_CASE("where rest pose and first frame stand along different axes, the frame decides") {
+  std::string text = person(90.0, "y");
+  const std::string row = "1 2 3 0 0 0\n", turned = "1 2 3 0 90 0\n";  // about x: y becomes z
+  text.replace(text.find(row), row.size(), turned);
+  CHECK(judged(text, 0.01, true).empty());
+  const Findings findings = judged(text, 0.01, false);
+  REQUIRE(findings.size() == 1);
+  CHECK(to_string(findings[0].what) ==
+        "p.bvh: expected a first frame that stands along y, as the rest pose does, found one that "
+        "lies along z");
+  CHECK(findings[0].meaning == "the person is read as lying");
+  CHECK(findings[0].repair == "--up z (up = \"z\" in a manifest) turns it upright");
+}
+
+TEST_CASE("a survey judges a BVH as reading does, also by a frame without a line end") {
+  const FreshFolder folder;
+  PosixFiles files;
+  std::string text = person(90.0, "y");
+  text.replace(text.find("1 2 3 0 0 0\n"), 12, "1 2 3 0 90 0");
+  StreamOptions options;
+  options.name = "mocap";
+  options.files = {{folder.write("p.bvh", text), ""}};
+  const auto streams = open_streams(files, {options}, {}, 1);
+  REQUIRE(streams);
+  const Findings& findings = streams->front().findings;
+  REQUIRE(!findings.empty());
+  CHECK(findings.back().what.found == "one that lies along z");
+}

@@ -71,7 +71,7 @@ TEST_CASE("UI-PRMD's file of angles has to stay as it was when it was found") {
 TEST_CASE("numbers that could be UI-PRMD's are not, where no other file holds the angles") {
   const FreshFolder folder;
   const std::string lone = folder.write("sixtysix.txt", numbers(66, ','));
-  CHECK(found(lone).error.find("write a layout, --layout FILE") != std::string::npos);
+  CHECK(found(lone).error.find("write a layout (docs/formats/layouts.md: ") != std::string::npos);
   CHECK(found(lone, "ui_prmd_kinect").error ==
         lone +
             ": expected UI-PRMD's file of positions, ..._positions.txt; it leads to the angles, "
@@ -97,7 +97,7 @@ TEST_CASE("a file of no known kind: what it is, and what to do with a table") {
   const std::string known =
       (folder / "f") +
       ":1: expected a format that kinalign knows (docs/formats); for a table of another kind write "
-      "a layout, --layout FILE (docs/formats/layouts.md), found ";
+      "a layout (docs/formats/layouts.md: layout = in a manifest, --layout with one file), found ";
   CHECK(said("unix_ms,acc_x\n1,2\n") == known + "'unix_ms,acc_x'");
   CHECK(said("\xff\xfe\x80 \x1b[31m\n") == known + "bytes that are no plain text");
   CHECK(said("\x1f\x8b\x08") == known + "a gzip archive: unpack it first");

@@ -18,7 +18,7 @@ AlignmentReport small_report() {
   StreamReport imu;
   imu.stream = "imu";
   imu.nodes = {"waist"};
-  imu.survey = {31, 1, 2, 3, 4'000'000, utc_time(5), utc_time(6), 66'666'667};
+  imu.survey = {31, 1, 4, 2, 3, 4'000'000, utc_time(5), utc_time(6), 66'666'667};
   imu.rate_hz = 15.0;
   imu.gap_ns = 206'666'668;
   imu.gaps = 7;
@@ -60,6 +60,7 @@ const std::string whole = R"({
       "stamps": {
         "samples": 31,
         "duplicates": 1,
+        "near": 4,
         "backward": 2,
         "ahead": 3,
         "largest_step_back_ns": 4000000,

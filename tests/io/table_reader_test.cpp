@@ -288,3 +288,28 @@ TEST_CASE("LSL-Kinect's confidences become states") {
   CHECK(read.rows.state[2] == Tracking::tracked);
   CHECK(to_ns(read.rows.stamps[0]) == 1'594'038'000'123'250'000);
 }
+
+TEST_CASE("a column that a user's own layout names and the file lacks is noted") {
+  const std::string text = "t,a_x,a_y,a_z,w_ax,w_ay,w_az\n1,1,2,3,4,5,6\n2,1,2,3,4,5,6\n";
+  StreamOptions own;
+  own.layout = "mine.toml";
+  const auto noted = [&](auto reader) {
+    const auto read = read_all(std::move(reader), text);
+    return read.findings.empty() ? "" : text_of(read.findings[0]) + "; " + read.findings[0].meaning;
+  };
+  const TableLayout points = layout_of(
+      "name = \"mine\"\n[time]\ncolumn = \"t\"\n[joints]\nnames = [\"a\"]\n"
+      "fields = { x = \"{joint}_x\", y = \"{joint}_y\", z = \"{joint}_z\", state = "
+      "\"{joint}_status\" }");
+  CHECK(noted(make_point_table_reader(points, own, "k.csv")) ==
+        "k.csv: expected a column a_status, as layout mine says, found none of that name; every "
+        "joint that has a place counts as tracked");
+  CHECK(noted(make_point_table_reader(points, {}, "k.csv")).empty());  // built in: states or none
+  const TableLayout nodes = layout_of(
+      "name = \"mine\"\nkind = \"imu\"\n[time]\ncolumn = \"t\"\n[nodes]\nnames = [\"w\"]\n"
+      "fields = { ax = \"{node}_ax\", ay = \"{node}_ay\", az = \"{node}_az\", gx = \"{node}_gx\", "
+      "gy = \"{node}_gy\", gz = \"{node}_gz\" }");
+  CHECK(noted(make_imu_table_reader(nodes, own, "w.csv", "")) ==
+        "w.csv: expected a column w_gx, as layout mine says, found none of that name; the nodes "
+        "have no such quantity");
+}

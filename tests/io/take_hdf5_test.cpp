@@ -43,7 +43,7 @@ std::string contents(const TakeSlab& slab) {
       out += bytes_of(std::span(values));
       return {};
     };
-    CHECK(std::visit([&](const auto& one) { return for_each_array(one, use); }, rows));
+    CHECK(std::visit([&](const auto& one) { return for_each_row_array(one, use); }, rows));
   }
   return out;
 }

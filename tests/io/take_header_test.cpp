@@ -57,7 +57,8 @@ TEST_CASE("a stream's name can be a group beside what else stands in a take") {
     CHECK(fault_of(of({points(name)})) ==
           "expected a stream's name that can be a group of the take, found \"" + name + "\"");
   }
-  CHECK(fault_of(of({points("")})) == "expected a name for each stream, found an empty one");
+  CHECK(fault_of(of({points("")})) ==
+        "expected a stream's name that can be a group of the take, found an empty one");
   CHECK(fault_of(of({points("kinect"), points("kinect")})) ==
         "expected a name for each stream, once only, found \"kinect\"");
   CHECK(fault_of(of({points("kinect"), points("Kinect"), points("3 k#")})) == "none");

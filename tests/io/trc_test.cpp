@@ -47,6 +47,17 @@ TEST_CASE("a wrong number of frames in a TRC file is a finding") {
   CHECK(text_of(read.findings[0]) == "walk.trc:3: expected 900 frames, found 1");
 }
 
+TEST_CASE("times that are not those of the DataRate are a finding") {
+  const auto said = [](const std::string& second, const std::string& third) {
+    const auto read = read_trc(head("3") + "1\t0\t1\t2\t3\t1\t2\t3\n2\t" + second +
+                               "\t1\t2\t3\t1\t2\t3\n3\t" + third + "\t1\t2\t3\t1\t2\t3\n");
+    return read.findings.empty() ? "" : text_of(read.findings[0]);
+  };
+  CHECK(said("0.01", "0.02").empty());
+  CHECK(said("0.0109", "0.0218").empty());
+  CHECK(said("0.04", "0.08") == "walk.trc:3: expected times of DataRate 100, found 25 a second");
+}
+
 TEST_CASE("a blank line ends the rows of a TRC file") {
   const auto read = read_trc(head("1") + "1\t0\t1\t2\t3\t1\t2\t3\n\nnotes\n");
   CHECK(read.rows.size() == 1);
@@ -159,7 +170,7 @@ TEST_CASE("OpenSim's marker files are read" * doctest::skip(!shared_data())) {
     std::size_t markers, frames, findings;
   };
   for (const Expected& expected : {Expected{"walk_free_01.trc", 41, 73, 1},
-                                   {"std_walking2_markers.trc", 44, 126, 0},
+                                   {"std_walking2_markers.trc", 44, 126, 1},
                                    {"dataWithBlanksForMissingMarkers.trc", 40, 464, 1},
                                    {"dataWithNaNsOfDifferentCases.trc", 14, 5, 0},
                                    {"dataWithEformat.trc", 14, 5, 0},

@@ -64,8 +64,11 @@ TEST_CASE("joints of a person who is a kilometre or a millimetre tall are in ano
         "place");
 }
 
-TEST_CASE("fewer points than a person has may be as near to each other as they like") {
+TEST_CASE("fewer points than a person has may be near to each other, not a kilometre apart") {
   CHECK(said_of_person(0.01, 9).empty());
+  CHECK(said_of_person(1000.0, 2) ==
+        "k.csv: expected the points of a frame 0.2 to 20 m apart, found 1700 m; lengths are about "
+        "1000 times too large");
 }
 
 TEST_CASE("accelerations in g, or with gravity where none should be, are told apart from m/s2") {

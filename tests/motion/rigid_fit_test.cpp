@@ -139,3 +139,12 @@ TEST_CASE("points on a line, or fewer than three pairs, have no fit") {
   for (int i = 0; i < 5; ++i) one_place.add(Vec3(1, 2, 3), Vec3(4, 5, 6));
   CHECK(!fit_rigid(one_place));
 }
+
+TEST_CASE("points beside a line tell how sure the turn about it is") {
+  PairMoments moments;
+  for (const double y : {-1.0, 1.0}) {
+    for (const double x : {-0.05, 0.05}) moments.add({x, y, 3.0}, {x, y, 0.0});
+  }
+  CHECK(spread_beside_line(moments) == doctest::Approx(0.05).epsilon(1e-12));
+  CHECK(spread_beside_line({}) == 0.0);
+}

@@ -157,3 +157,43 @@ TEST_CASE("frames of a fixed step are counted from the first, and end before tim
   CHECK(frame_stamp(first, 1e9 / 60.0, 1) - first == Duration{16'666'667});
   CHECK(frame_stamp(first, 1e13, 1'000'000'000) - first == Duration{4'000'000'000'000'000'000});
 }
+
+TEST_CASE("a stamp less than a fifth of a step behind the one before is left out and counted") {
+  const auto surveyed = [](const std::vector<std::int64_t>& ms) {
+    std::vector<Time> stamps;
+    for (const std::int64_t t : ms) stamps.push_back(utc_time(t * 1'000'000));
+    StampSurveyor surveyor;
+    surveyor.add(stamps);
+    return surveyor.result();
+  };
+  const StampSurvey late = surveyed({0, 30, 60, 90, 145, 150, 180, 210});  // 120 came at 145
+  CHECK(late.near == 1);
+  CHECK(late.kept() == 7);
+  CHECK(late.backward + late.ahead + late.duplicates == 0);
+  CHECK(surveyed({0, 30, 60, 90, 144, 150, 180, 210}).near == 0);   // a fifth of 30
+  CHECK(surveyed({0, 30, 31, 60, 90}).near == 0);                   // no step is usual yet
+  CHECK(surveyed({0, 1, 2, 90, 91, 92, 180, 181, 182}).near == 0);  // bursts are their own pace
+}
+
+TEST_CASE("whatever is near behind whatever, the survey counts what the rule leaves out") {
+  for (const auto seed : fresh_seeds(200)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    std::vector<Time> stamps{utc_time(0)};
+    while (stamps.size() < 300) {
+      const auto step = static_cast<std::int64_t>(random() % 40);
+      stamps.push_back(stamps.back() + Duration{random() % 9 == 0 ? step : step * 1'000'000});
+    }
+    StampRule rule;
+    StampSurveyor surveyor;
+    surveyor.add(stamps);
+    std::uint64_t kept = 0, near = 0;
+    for (const Time stamp : stamps) {
+      const StampFate fate = rule.judge(stamp);
+      kept += fate == StampFate::kept ? 1 : 0;
+      near += fate == StampFate::near ? 1 : 0;
+    }
+    CHECK(surveyor.result().near == near);
+    CHECK(surveyor.result().kept() == kept);
+  }
+}

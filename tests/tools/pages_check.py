@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What README.md and docs/ show is what the program prints: pages_check.py KINALIGN DEMO_RECORDING [--write]
 
-Every command of a block fenced as ```console runs, each page in a fresh folder that holds a new demo
-recording in demo/ (seed 1, 60 s); what it prints must be what stands below it. A line `...` stands
+Every command of a block fenced as ```console runs, each page in a fresh folder that holds what ./dev
+demo leaves: a recording in demo/ (seed 1, 60 s) and its take; what it prints must be what stands below it. A line `...` stands
 for any number of lines. A block that names ../shared/data or docs/examples is skipped where that
 data is absent. Each command is a case. --write puts what is printed into the pages instead.
 """
@@ -103,6 +103,7 @@ def main():
             if SHARED.exists():
                 (pathlib.Path(name) / "shared").symlink_to(SHARED)
             subprocess.run([demo_recording, folder / "demo", "--seed", "1", "--seconds", "60"], check=True)
+            run("./dev demo", folder, environment)
             outputs = check_page(page, folder, environment, say)
             if "--write" in sys.argv:
                 written(page, iter(outputs))
