@@ -153,8 +153,9 @@ Result<Recording> open_files(const AlignVerb& o, const Manifest& manifest, const
 
 Result<int> run(AlignVerb& o, Call& call) {
   call.console.if_it_fails(advice);
-  const Manifest manifest = KA_TRY(manifest_of(o, call));
-  const std::string base = o.manifest.empty() ? "" : std::string(folder(o.manifest.front()));
+  Manifest manifest = KA_TRY(manifest_of(o, call));
+  const std::string base =
+      o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));
   const std::string out = call.common.dry_run ? "" : call.common.out;
   KA_TRY(keep_inputs(out, o.manifest));
   KA_TRY(keep_inputs(out, files_named(manifest, base)));

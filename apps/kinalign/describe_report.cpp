@@ -86,6 +86,20 @@ std::string head_text(const Json& take, const Json& report) {
   return text + span_text(report);
 }
 
+/// ", 97.8 % valid, 1.6 % inferred"; of a skeleton that was not resampled nothing.
+std::string marks_text(const Json& s) {
+  const std::uint64_t samples = count_at(s, "samples");
+  if (samples == 0) return "";
+  const std::uint64_t invalid = std::min(samples, count_at(s, "invalid"));
+  std::string text = fmt::format(", {} valid", share_text(samples - invalid, samples));
+  const auto share = [&](const char* key, const char* what) {
+    if (count_at(s, key) > 0) text += ", " + share_text(count_at(s, key), samples) + what;
+  };
+  share("inferred", " inferred");
+  share("bridged", " interpolated over loss");
+  return text;
+}
+
 /// "29.92 Hz, shared clock, 97.8 % valid, 2 gaps (0.83 s)"
 std::string quality_text(const Json& s) {
   const bool known = s.is_object() && s.contains("worst_interval_ns");
@@ -94,14 +108,7 @@ std::string quality_text(const Json& s) {
   text += !known               ? "stamps of unknown accuracy"
           : interval_ms == 0.0 ? "shared clock"
                                : fmt::format("± {:.1f} ms", interval_ms);
-  const std::uint64_t samples = count_at(s, "samples");
-  const std::uint64_t invalid = std::min(samples, count_at(s, "invalid"));
-  text += fmt::format(", {} valid", share_text(samples - invalid, samples));
-  const auto share = [&](const char* key, const char* what) {
-    if (count_at(s, key) > 0) text += ", " + share_text(count_at(s, key), samples) + what;
-  };
-  share("inferred", " inferred");
-  share("bridged", " interpolated over loss");
+  text += marks_text(s);
   const std::uint64_t gaps = count_at(s, "gaps");
   if (gaps > 0) {
     text += fmt::format(", {} gap{} ({:.2f} s)", gaps, gaps == 1 ? "" : "s",
@@ -128,9 +135,10 @@ std::string stream_text(const Json& stream, const Json& report, Names names) {
     text += fmt::format("           {}  sha256 {}...\n", text_at(file, "name"),
                         text_at(file, "sha256").substr(0, 12));
   }
-  if (name == text_at(report, "reference")) return text + "           the reference\n";
+  const bool reference = name == text_at(report, "reference");
   for (const Json& s : list_at(report, "streams")) {
     if (text_at(s, "stream") != name) continue;
+    if (reference) return text + "           the reference" + marks_text(s) + "\n";
     const std::string nodes = fmt::format("{}", fmt::join(texts_at(s, "nodes"), ", "));
     text += "           " + (nodes.empty() ? "" : nodes + ": ") + quality_text(s);
   }

@@ -150,6 +150,25 @@ Result<void> keep_inputs(const std::string& out, const std::vector<std::string>&
   return {};
 }
 
+std::string cut_common_folder(Manifest& manifest) {
+  std::vector<std::string*> paths;
+  for (StreamOptions& stream : manifest.streams) {
+    for (StreamFile& file : stream.files) paths.push_back(&file.path);
+    if (stream.layout.ends_with(".toml")) paths.push_back(&stream.layout);
+  }
+  std::erase_if(paths, [](const std::string* path) { return path->starts_with('/'); });
+  if (paths.empty()) return "";
+  std::string common(folder(*paths.front()));
+  for (const std::string* path : paths) {
+    while (!path->starts_with(common)) {
+      common.pop_back();
+      common = folder(common);
+    }
+  }
+  for (std::string* path : paths) path->erase(0, common.size());
+  return common;
+}
+
 std::vector<std::string> files_named(const Manifest& manifest, const std::string& folder) {
   std::vector<std::string> paths;
   const auto add = [&](const std::string& path) { paths.push_back(path_in(folder, path)); };

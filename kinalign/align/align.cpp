@@ -2,6 +2,7 @@
 #include "kinalign/align/align.h"
 
 #include "kinalign/align/judge.h"
+#include "kinalign/align/marks.h"
 #include "kinalign/align/nodes.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/align/slabs.h"
@@ -54,31 +55,18 @@ Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
   return {};
 }
 
-/// What a take's rows of a stream say of themselves in the end: a row without the root of its
-/// nodes, or of the paper's method, has lost all its samples by then.
-struct Marks {
-  std::uint64_t invalid = 0, inferred = 0;
-};
-
-template <class Value>
-std::uint64_t count_of(const std::vector<Value>& values, Value value) {
-  return static_cast<std::uint64_t>(std::count(values.begin(), values.end(), value));
-}
-
-/// Adds those of a stream that was resampled.
-void add_marks(const TakeSlab& slab, const RecordedStream& s, const StreamPlan& stream,
-               Marks& marks) {
+/// Adds what the rows of a stream say.
+void add_marks(const TakeSlab& slab, const TakeHeader& header, const RecordedStream& s,
+               const StreamPlan& stream, Marks& marks) {
   const auto& rows = slab.rows[stream.group];
   if (const auto* clip = std::get_if<ClipRows>(&rows)) {
-    marks.invalid += count_of(clip->valid, std::uint8_t{0});
+    add_marks(*clip, marks);
   } else if (const auto* points = std::get_if<PointRows>(&rows)) {
-    marks.invalid += count_of(points->valid, std::uint8_t{0});
-    marks.inferred += count_of(points->state, Tracking::inferred);
+    add_marks(*points, std::get<PointInput>(s.data).joint_names.size(), marks);
   } else {
-    const auto& imu = std::get<ImuRows>(rows);
-    const std::size_t all = imu.valid.size() / slab.stamps.size();
-    marks.invalid +=
-        count_invalid(imu, {stream.first_node, all}, std::get<ImuInput>(s.data).node_names.size());
+    const auto& group = std::get<ImuGroup>(header.groups[stream.group].kind);
+    add_marks(std::get<ImuRows>(rows), {stream.first_node, group.node_names.size()},
+              std::get<ImuInput>(s.data).node_names.size(), marks);
   }
 }
 
@@ -104,7 +92,7 @@ struct Counts {
   std::uint64_t rows = 0;
   Time begin{}, end{};                  // first and last row
   std::vector<ResidualSums> residuals;  // [spaces]
-  std::vector<Marks> marks;             // [streams] none of the reference
+  std::vector<Marks> marks;             // [streams]
 };
 
 Counts no_counts(const Recording& recording, const std::vector<SpacePlan>& spaces) {
@@ -140,8 +128,8 @@ Result<void> pass_slab(const Job& job, TakeSlab& slab, const TakeSink& sink,
     counts.residuals[k].transform(job.spaces[k], slab);
   }
   for (std::size_t i = 0; i < counts.marks.size(); ++i) {
-    if (i == job.plan.reference) continue;
-    add_marks(slab, job.recording.streams[i], job.plan.streams[i], counts.marks[i]);
+    add_marks(slab, job.plan.header, job.recording.streams[i], job.plan.streams[i],
+              counts.marks[i]);
   }
   KA_TRY(sink.rows(slab));
   if (go_on(progress, "aligning", counts.rows, job.plan.header.frames)) return {};
@@ -150,7 +138,6 @@ Result<void> pass_slab(const Job& job, TakeSlab& slab, const TakeSink& sink,
 
 StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts& counts,
                            std::size_t i) {
-  const ResampleCount count = slabs.count(i);
   const GapCount gaps = slabs.gaps(i);
   const RecordedStream& s = job.recording.streams[i];
   StreamReport out;
@@ -162,11 +149,12 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   out.gap_ns = rule.gap_ns;
   out.gaps = gaps.gaps;
   out.gap_time_ns = gaps.time_ns;
-  out.samples = count.samples;
-  out.invalid = counts.marks[i].invalid;
-  out.inferred = counts.marks[i].inferred;
-  out.bridged = count.bridged;
-  out.worst_nearest_ns = count.worst_nearest_ns;
+  const Marks& marks = counts.marks[i];
+  out.samples = marks.samples;
+  out.invalid = marks.invalid;
+  out.inferred = marks.inferred;
+  out.bridged = marks.bridged;
+  out.worst_nearest_ns = marks.worst_nearest_ns;
   for (const TimeModelPiece& piece : s.clock.pieces) {
     if (!piece.half_width) continue;
     out.worst_interval_ns = std::max(out.worst_interval_ns.value_or(0), piece.half_width->count());

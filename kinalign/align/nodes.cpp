@@ -29,16 +29,7 @@ void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns
   put_columns(from.valid, 1, rows, columns, to.valid);
   put_columns(from.distance.nearest_raw_ns, 1, rows, columns, to.distance.nearest_raw_ns);
   put_columns(from.distance.time_interval_ns, 1, rows, columns, to.distance.time_interval_ns);
-}
-
-std::uint64_t count_invalid(const ImuRows& rows, const NodeColumns& columns, std::size_t count) {
-  std::uint64_t invalid = 0;
-  for (std::size_t row = 0; row < rows.valid.size(); row += columns.all) {
-    for (std::size_t s = 0; s < count; ++s) {
-      invalid += rows.valid[row + columns.first + s] == 0 ? 1 : 0;
-    }
-  }
-  return invalid;
+  put_columns(from.distance.over_loss, 1, rows, columns, to.distance.over_loss);
 }
 
 void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& rows) {

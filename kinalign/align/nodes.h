@@ -20,9 +20,6 @@ struct NodeColumns {
   std::size_t first = 0, all = 0;
 };
 
-/// Rows x nodes of a stream's `count` columns that are not valid.
-std::uint64_t count_invalid(const ImuRows& rows, const NodeColumns& columns, std::size_t count);
-
 /// Copies a stream's `rows` rows of some nodes into a group's rows of all.
 void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns, ImuRows& to);
 

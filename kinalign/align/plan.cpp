@@ -264,7 +264,6 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   if (std::holds_alternative<ImuInput>(reference.data)) {
     return Failure(Error{"", 0, "a clip or points as the reference", "nodes"});
   }
-  for (const RecordedStream& stream : recording.streams) KA_TRY(check_stream_name(stream.name));
   KA_TRY(check_options_used(recording, manifest));
   KA_TRY(find_span(recording, plan));
   KA_TRY(make_groups(recording, manifest, plan));

@@ -35,8 +35,6 @@ struct ResampleRule {
 
 /// What resampling saw, summed over calls.
 struct ResampleCount {
-  std::uint64_t samples = 0, bridged = 0;
-  std::int64_t worst_nearest_ns = 0;
   // Only where the rule says finer:
   std::vector<CarriedContent> positions;                       // [J]
   std::vector<CarriedContent> acceleration, angular_velocity;  // [S]

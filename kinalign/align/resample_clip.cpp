@@ -60,10 +60,7 @@ Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& o
     if (const auto known = half_width(*clock_, window_.rows.stamps[at])) {
       out.distance.time_interval_ns.push_back(known->count());
     }
-    if (out.valid[r] == 0) continue;
-    count_.worst_nearest_ns = std::max(count_.worst_nearest_ns, near.nearest_raw_ns[r]);
   }
-  count_.samples += grid.size();
   out.distance.nearest_raw_ns = std::move(near.nearest_raw_ns);
   return {};
 }

@@ -108,7 +108,6 @@ void interpolate(const NodeSamples& samples, std::span<const std::int64_t> grid,
 void put_distances(const NodeSamples& samples, std::span<const std::int64_t> grid,
                    const ResampleRule& rule, const NodeColumn& column, ImuRows& out) {
   const Neighbours near = find_neighbours(samples.stamps, grid);
-  ResampleCount& count = *column.count;
   for (std::size_t r = 0; r < grid.size(); ++r) {
     const std::size_t cell = r * column.nodes + column.node, left = near.left[r];
     out.distance.nearest_raw_ns[cell] = near.nearest_raw_ns[r];
@@ -116,8 +115,7 @@ void put_distances(const NodeSamples& samples, std::span<const std::int64_t> gri
     const bool between = samples.stamps[left] != grid[r];
     const bool lost =
         between && samples.stamps[left + 1] - samples.stamps[left] > rule.step_ns * 3 / 2;
-    count.bridged += lost ? 1 : 0;
-    count.worst_nearest_ns = std::max(count.worst_nearest_ns, near.nearest_raw_ns[r]);
+    out.distance.over_loss[cell] = lost ? 1 : 0;
   }
 }
 
@@ -142,6 +140,7 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
   const std::size_t nodes = window_.rows.valid.size() / stamps.size(), n = grid.size() * nodes;
   out = no_samples(n, content_);
   out.distance.nearest_raw_ns.resize(n);
+  out.distance.over_loss.assign(n, 0);
   for (std::size_t node = 0; node < nodes; ++node) {
     const NodeSamples samples = samples_of(window_, node, content_, to_world);
     const NodeColumn column{node, nodes, content_, &count_};
@@ -156,7 +155,6 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
     auto& intervals = out.distance.time_interval_ns;
     intervals.insert(intervals.end(), nodes, known->count());
   }
-  count_.samples += n;
   return {};
 }
 

@@ -87,21 +87,6 @@ std::vector<std::int64_t> stamps_seen(const Window<PointFrames>& window) {
   return out;
 }
 
-/// Between two raw samples.
-struct Between {
-  Tracking lesser;
-  bool lost;  // samples in between
-  std::int64_t nearest_ns;
-};
-
-/// The state of a joint there, counted.
-Tracking judge(const Between& between, bool valid, ResampleCount& count) {
-  if (!valid) return Tracking::missing;
-  count.bridged += between.lost || between.lesser == Tracking::missing ? 1 : 0;
-  count.worst_nearest_ns = std::max(count.worst_nearest_ns, between.nearest_ns);
-  return between.lesser;
-}
-
 }  // namespace
 
 Neighbours find_neighbours(std::span<const std::int64_t> stamps,
@@ -131,6 +116,7 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
   out.positions.assign(grid.size() * joints * 3, 0.0);
   out.state.assign(grid.size() * joints, Tracking::missing);
   out.valid.assign(grid.size() * joints, 0);
+  out.distance.over_loss.assign(grid.size() * joints, 0);
   for (const auto& [seen, group] : joints_by_seen(window_.rows, joints)) {
     interpolate(gather(window_, seen, group, joints), grid, rule_, out, count_);
   }
@@ -147,11 +133,11 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
       const std::size_t cell = r * joints + j;
       const Tracking lesser =
           std::min(window_.rows.state[left * joints + j], window_.rows.state[right * joints + j]);
-      out.state[cell] =
-          judge({lesser, lost, out.distance.nearest_raw_ns[r]}, out.valid[cell] != 0, count_);
+      if (out.valid[cell] == 0) continue;
+      out.state[cell] = lesser;
+      out.distance.over_loss[cell] = lost || lesser == Tracking::missing ? 1 : 0;
     }
   }
-  count_.samples += out.valid.size();
   return {};
 }
 

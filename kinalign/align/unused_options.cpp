@@ -94,6 +94,7 @@ std::span<const std::string_view> useless_options(const RecordedStream& stream) 
 Result<void> check_options_used(const Recording& recording, const Manifest& manifest) {
   constexpr std::array<const char*, 3> kinds{"a skeleton", "points", "nodes"};
   for (const RecordedStream& stream : recording.streams) {
+    KA_TRY(check_stream_name(stream.name));
     for (const std::string& name : options_set(options_of(manifest, stream.name))) {
       if (!contains(useless_options(stream), name)) continue;
       return Failure(Error{

@@ -34,7 +34,7 @@ struct Format {
   std::string_view name;
   bool (*looks)(std::string_view head, std::string_view path);
   Result<AnyReader> (*make)(const Source& source);
-  std::string_view selects = "";  // the one name that `select` may have here
+  std::string_view selects = {};  // the one name that `select` may have here
   Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;       // if any
   Result<ClipSurvey> (*survey)(const Source& source, const Progress& progress) = nullptr;  // if own
 };

@@ -3,6 +3,8 @@
 
 #include "kinalign/core/files.h"
 
+#include <filesystem>
+
 namespace kinalign {
 
 std::string path_in(const std::string& folder, const std::string& path) {
@@ -10,9 +12,9 @@ std::string path_in(const std::string& folder, const std::string& path) {
 }
 
 std::string remembered_path(const std::string& path) {
-  const bool leads_out = path.starts_with('/') || path == ".." || path.starts_with("../") ||
-                         path.find("/../") != std::string::npos;
-  return leads_out ? std::string(file_name(path)) : path;
+  const std::string normal = std::filesystem::path(path).lexically_normal().string();
+  const bool leads_out = normal.starts_with('/') || normal == ".." || normal.starts_with("../");
+  return leads_out ? std::string(file_name(path)) : normal;
 }
 
 std::string remembered_path(const std::string& folder, const std::string& given,

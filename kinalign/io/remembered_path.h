@@ -9,7 +9,8 @@ namespace kinalign {
 /// A path in `folder` ("" or ending in '/') where it is relative; an absolute one as it stands.
 std::string path_in(const std::string& folder, const std::string& path);
 
-/// The path itself where it is relative and does not lead up; else the file's name only.
+/// The path, however it is spelt ("./a", "b/../a"), where it is relative and does not lead up; else
+/// the file's name only.
 std::string remembered_path(const std::string& path);
 
 /// The same for `path`, a file that `given`, a path of a manifest in `folder`, led to.

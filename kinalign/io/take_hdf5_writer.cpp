@@ -141,6 +141,7 @@ struct TakeWriter::State {
 
   Result<void> lay_out(const TakeHeader& header);
   Result<void> lay_out(const TakeGroup& group, Precision precision);
+  Result<void> reserve();
   Result<void> write_stamps(std::span<const Time> stamps);
 
   /// Writes an array of rows behind the rows that are there.
@@ -179,9 +180,13 @@ Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
       header.parameters.align.store_double ? Precision::full : Precision::single;
   for (const TakeGroup& group : header.groups) KA_TRY(lay_out(group, precision));
   KA_TRY(layout.text(root, "parameters_json", parameters_json(without_folders(header.parameters))));
+  KA_TRY(layout.check());
+  return reserve();
+}
+
+Result<void> TakeWriter::State::reserve() {
   hsize_t size = 0;
   if (H5Fget_filesize(file.id(), &size) < 0) return hdf5::failure(bytes, can_hold);
-  KA_TRY(layout.check());
   KA_TRY(output.reserve(size));
   bytes.size = std::max<std::uint64_t>(bytes.size, size);
   return {};

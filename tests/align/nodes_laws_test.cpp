@@ -5,6 +5,7 @@
 #include "tests/seeds.h"
 
 #include "kinalign/align/align.h"
+#include "kinalign/align/marks.h"
 #include "kinalign/align/nodes.h"
 #include "kinalign/motion/arrays.h"
 
@@ -131,8 +132,13 @@ TEST_CASE("streams of one group stand side by side, each in its columns, and are
       (s < 2 ? lost_of_two : lost_of_one) += from.valid[i] == 0 ? 1 : 0;
     }
   }
-  CHECK(count_invalid(group, {0, 3}, 2) == lost_of_two);
-  CHECK(count_invalid(group, {2, 3}, 1) == lost_of_one);
+  Marks of_two, of_one;
+  add_marks(group, {0, 3}, 2, of_two);
+  add_marks(group, {2, 3}, 1, of_one);
+  CHECK(of_two.samples == 14);
+  CHECK(of_two.invalid == lost_of_two);
+  CHECK(of_one.samples == 7);
+  CHECK(of_one.invalid == lost_of_one);
 }
 
 TEST_CASE("each node is valid where its own samples are near enough, whatever the others lost") {

@@ -90,15 +90,40 @@ TEST_CASE("what the report counts is what the take holds, also where the root wa
     if (std::string_view(method) == "paper") manifest.spaces["kinect"].onto_root = "Head";
     const auto take = align(recording, manifest);
     REQUIRE(take);
-    const PointRows& out = rows(*take, 1);
-    const StreamReport& report = take->report.streams[1];
     const auto count = [](const auto& values, auto value) {
       return static_cast<std::uint64_t>(std::count(values.begin(), values.end(), value));
     };
-    CHECK(report.samples == out.valid.size());
-    CHECK(report.invalid == count(out.valid, 0));
-    CHECK(report.inferred == count(out.state, Tracking::inferred));
+    for (const std::size_t stream : {0U, 1U}) {  // the reference too
+      const PointRows& out = rows(*take, stream);
+      const StreamReport& report = take->report.streams[stream];
+      CHECK(report.samples == out.valid.size());
+      CHECK(report.invalid == count(out.valid, 0));
+      CHECK(report.inferred == count(out.state, Tracking::inferred));
+    }
+    const PointRows& out = rows(*take, 1);
+    std::int64_t worst = 0;
+    std::uint64_t bridged = 0;
+    for (std::size_t cell = 0; cell < out.valid.size(); ++cell) {
+      if (out.valid[cell] == 0) continue;
+      worst = std::max(worst, out.distance.nearest_raw_ns[cell / joints.size()]);
+      bridged += out.state[cell] == Tracking::missing ? 1 : 0;  // on the same stamps none are lost
+    }
+    CHECK(take->report.streams[1].worst_nearest_ns == worst);
+    CHECK(take->report.streams[1].bridged == bridged);
   }
+}
+
+TEST_CASE("a reference of points has figures: what it lost and what it guessed") {
+  PointStream optical = points(joints, every(10 * ms, 100), wander);
+  optical.frames.state[4] = Tracking::missing;
+  optical.frames.state[9] = Tracking::inferred;
+  const auto take = align({"", "", {recorded("optical", std::move(optical))}}, {});
+  REQUIRE(take);
+  const StreamReport& report = take->report.streams.at(0);
+  CHECK(report.samples == 400);
+  CHECK(report.invalid == 1);
+  CHECK(report.inferred == 1);
+  CHECK(report.bridged == 0);
 }
 
 TEST_CASE("residuals are root mean squares over the rows in which both joints were seen") {

@@ -31,3 +31,22 @@ TEST_CASE("notes do not make an exit code of 1, warnings and errors do") {
   CHECK(code_of({{Severity::note, {}, "", ""}, {Severity::warning, {}, "", ""}}) == 1);
   CHECK(code_of({{Severity::error, {}, "", ""}}) == 1);
 }
+
+TEST_CASE("relative paths are cut to what lies below their common folder, absolute ones stay") {
+  const auto cut = [](const std::vector<std::string>& paths) {
+    Manifest manifest;
+    for (const std::string& path : paths) {
+      manifest.streams.emplace_back();
+      manifest.streams.back().files = {{path, ""}};
+    }
+    std::string all = cut_common_folder(manifest) + ":";
+    for (const StreamOptions& stream : manifest.streams) all += " " + stream.files[0].path;
+    return all;
+  };
+  CHECK(cut({"m.bvh"}) == ": m.bvh");
+  CHECK(cut({"Mueller/m.bvh"}) == "Mueller/: m.bvh");
+  CHECK(cut({"a/b/m.bvh", "a/bc/k.csv"}) == "a/: b/m.bvh bc/k.csv");
+  CHECK(cut({"a/m.bvh", "b/k.csv"}) == ": a/m.bvh b/k.csv");
+  CHECK(cut({"../x/m.bvh", "/y/k.csv", "../x/w.csv"}) == "../x/: m.bvh /y/k.csv w.csv");
+  CHECK(cut({"/y/k.csv"}) == ": /y/k.csv");
+}

@@ -94,7 +94,8 @@ TEST_CASE("files are remembered by their paths below the manifest, else by their
   folder.write("out/q.csv", "7,8,9\n");
   Manifest manifest;
   manifest.streams = {stream("one", "a/p.csv"), stream("two", "b/p.csv"),
-                      stream("three", "../out/q.csv"), stream("four", folder / "out/q.csv")};
+                      stream("three", "../out/q.csv"), stream("four", folder / "out/q.csv"),
+                      stream("five", "./b/../a/./p.csv")};
   for (StreamOptions& each : manifest.streams) each.layout = "../lab.toml";
   PosixFiles files;
   const auto recording = open_recording(files, manifest, (folder / "m") + "/");
@@ -104,6 +105,7 @@ TEST_CASE("files are remembered by their paths below the manifest, else by their
   CHECK(names_of(streams[1]) == std::vector<std::string>{"b/p.csv", "lab.toml"});
   CHECK(names_of(streams[2]) == std::vector<std::string>{"q.csv", "lab.toml"});
   CHECK(names_of(streams[3]) == std::vector<std::string>{"q.csv", "lab.toml"});
+  CHECK(names_of(streams[4]) == std::vector<std::string>{"a/p.csv", "lab.toml"});
 }
 
 TEST_CASE("two files that a take would call by one name are refused with both paths") {
