@@ -150,12 +150,22 @@ Result<void> keep_inputs(const std::string& out, const std::vector<std::string>&
   return {};
 }
 
-std::string cut_common_folder(Manifest& manifest) {
+namespace {
+
+/// Where a manifest names files: the streams' own and layouts.
+std::vector<std::string*> paths_in(Manifest& manifest) {
   std::vector<std::string*> paths;
   for (StreamOptions& stream : manifest.streams) {
     for (StreamFile& file : stream.files) paths.push_back(&file.path);
-    if (stream.layout.ends_with(".toml")) paths.push_back(&stream.layout);
+    if (stream.own_layout()) paths.push_back(&stream.layout);
   }
+  return paths;
+}
+
+}  // namespace
+
+std::string cut_common_folder(Manifest& manifest) {
+  std::vector<std::string*> paths = paths_in(manifest);
   std::erase_if(paths, [](const std::string* path) { return path->starts_with('/'); });
   if (paths.empty()) return "";
   std::string common(folder(*paths.front()));
@@ -169,13 +179,9 @@ std::string cut_common_folder(Manifest& manifest) {
   return common;
 }
 
-std::vector<std::string> files_named(const Manifest& manifest, const std::string& folder) {
+std::vector<std::string> files_named(Manifest manifest, const std::string& folder) {
   std::vector<std::string> paths;
-  const auto add = [&](const std::string& path) { paths.push_back(path_in(folder, path)); };
-  for (const StreamOptions& stream : manifest.streams) {
-    for (const StreamFile& file : stream.files) add(file.path);
-    if (stream.layout.ends_with(".toml")) add(stream.layout);
-  }
+  for (const std::string* path : paths_in(manifest)) paths.push_back(path_in(folder, *path));
   return paths;
 }
 

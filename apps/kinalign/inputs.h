@@ -74,7 +74,7 @@ Result<void> keep_inputs(const std::string& out, const std::vector<std::string>&
 std::string cut_common_folder(Manifest& manifest);
 
 /// Every file that a manifest names; relative paths are relative to `folder`.
-std::vector<std::string> files_named(const Manifest& manifest, const std::string& folder);
+std::vector<std::string> files_named(Manifest manifest, const std::string& folder);
 
 /// What a failed job on a take's file is blamed on, and how far it may go.
 Error blame(const std::string& path);

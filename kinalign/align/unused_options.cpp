@@ -3,6 +3,8 @@
 
 #include "kinalign/align/plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -62,10 +64,7 @@ Result<void> check_space(const std::string& stream, const SpaceOptions& space) {
   const Method& method = method_named(space.method);
   for (const std::string& name : options_set(space)) {
     if (contains(method.takes, name)) continue;
-    std::string taken;
-    for (const std::string_view one : method.takes) {
-      taken += (taken.empty() ? "" : ", ") + std::string(one);
-    }
+    const std::string taken = fmt::format("{}", fmt::join(method.takes, ", "));
     return Failure(Error{"", 0,
                          "of " + at + " what method = \"" + space.method + "\" takes (" +
                              (taken.empty() ? "nothing" : taken) + ")",

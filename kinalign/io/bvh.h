@@ -63,10 +63,10 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
                      std::string_view name, Findings& findings);
 
 /// Whether a person's skeleton has a person's size and stands: findings that propose
-/// metres_per_unit or up where not. Of rest pose and first frame (none: a file without frames) the
-/// frame decides what stands. Skeletons of fewer than ten joints are not judged.
-Findings judge_size(const Skeleton& skeleton, const ClipFrames& first_frame,
-                    const BvhOptions& options, std::string_view name);
+/// metres_per_unit or up where not. Of the rest pose and the first of `rows` [n,C] (none: a file
+/// without frames) the row decides what stands. Skeletons of fewer than ten joints are not judged.
+Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
+                    std::span<const double> rows, const BvhOptions& options, std::string_view name);
 
 /// Local positions and rotations of rows of channel values [n,C], appended to `out`. Position
 /// channels replace the components of OFFSET; angles apply in the order of the channels.

@@ -50,27 +50,15 @@ class BvhReader final : public ClipReader {
   void release(ClipFrames& out) {
     if (!values_.has_rows()) return;
     const auto values = values_.frames();
-    const std::size_t before = out.size();
     poser_->append(values, out);
-    if (!judged_ && out.size() > before) judge(frame_at(out, before));
+    if (!judged_ && !values.empty()) judge(values);
     if (kept_ != nullptr) kept_->insert(kept_->end(), values.begin(), values.end());
     values_.drop_frames();
   }
 
-  void judge(const ClipFrames& first_frame) {
-    append(findings, judge_size(skeleton_, first_frame, options_, name_));
+  void judge(std::span<const double> rows) {
+    append(findings, judge_size(values_.hierarchy(), skeleton_, rows, options_, name_));
     judged_ = true;
-  }
-
-  ClipFrames frame_at(const ClipFrames& frames, std::size_t i) const {
-    const std::size_t joints = skeleton_.joints();
-    const auto part = [i](const std::vector<double>& all, std::size_t width) {
-      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(i * width);
-      return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(width));
-    };
-    return {{frames.stamps[i]},
-            part(frames.local_positions, 3 * joints),
-            part(frames.local_rotations, 4 * joints)};
   }
 
   BvhOptions options_;

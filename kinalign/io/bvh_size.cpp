@@ -13,29 +13,19 @@ namespace kinalign {
 
 namespace {
 
-struct Extent {
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // of the rest pose from its first root, m
-
-  double size(int axis) const { return high[axis] - low[axis]; }
-};
-
-/// The rest pose: all rotations the identity, in the axes of the file.
-Extent rest_extent(const Skeleton& skeleton) {
+/// The rest pose from its first root, m: all rotations the identity, in the axes of the file.
+Eigen::AlignedBox3d rest_box(const Skeleton& skeleton) {
   std::vector<Vec3> at(skeleton.joints(), Vec3::Zero());
-  Extent extent;
-  const auto cover = [&extent](const Vec3& p) {
-    extent.low = extent.low.cwiseMin(p);
-    extent.high = extent.high.cwiseMax(p);
-  };
+  Eigen::AlignedBox3d box(Vec3::Zero());
   for (std::size_t j = 0; j < skeleton.joints(); ++j) {
     const int parent = skeleton.parents[j];
     if (parent >= 0) at[j] = at[static_cast<std::size_t>(parent)] + skeleton.rest_offsets[j];
-    cover(at[j]);
+    box.extend(at[j]);
   }
   for (const EndSite& site : skeleton.end_sites) {
-    cover(at[static_cast<std::size_t>(site.parent)] + site.offset);
+    box.extend(at[static_cast<std::size_t>(site.parent)] + site.offset);
   }
-  return extent;
+  return box;
 }
 
 struct Unit {
@@ -64,18 +54,18 @@ const Unit& best_unit(double hip_in_units) {
 
 constexpr int y = 1, z = 2;
 
-/// How far the first frame's joints reach along our y, which is up, and z: a person who stands with
+/// How far the first row's joints reach along our y, which is up, and z: a person who stands with
 /// arms spread is narrow along z, one who lies is low along y. Nothing where neither is so.
-std::optional<bool> stands(const Skeleton& skeleton, const ClipFrames& first_frame) {
-  if (first_frame.size() != 1) return std::nullopt;
+std::optional<bool> stands(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
+                           std::span<const double> rows, const BvhOptions& options) {
+  if (rows.empty()) return std::nullopt;
+  ClipFrames frame;
+  BvhPoser(hierarchy, options).append(rows.first(hierarchy.row_size()), frame);
   std::vector<double> positions(skeleton.joints() * 3);
-  forward_kinematics(skeleton, first_frame, positions);
-  Vec3 low = vec3(positions, 0), high = low;
-  for (std::size_t j = 1; j < skeleton.joints(); ++j) {
-    low = low.cwiseMin(vec3(positions, j));
-    high = high.cwiseMax(vec3(positions, j));
-  }
-  const Vec3 size = high - low;
+  forward_kinematics(skeleton, frame, positions);
+  Eigen::AlignedBox3d box;
+  for (std::size_t j = 0; j < skeleton.joints(); ++j) box.extend(Vec3(vec3(positions, j)));
+  const Vec3 size = box.sizes();
   if (size.y() < 0.5 * size.z()) return false;
   if (size.z() < 0.5 * size.y()) return true;
   return std::nullopt;
@@ -90,16 +80,17 @@ Finding lying(std::string_view name, const std::string& expected, const std::str
 
 }  // namespace
 
-Findings judge_size(const Skeleton& skeleton, const ClipFrames& first_frame,
-                    const BvhOptions& options, std::string_view name) {
+Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
+                    std::span<const double> rows, const BvhOptions& options,
+                    std::string_view name) {
   constexpr std::size_t body = 10;  // fewer joints are no whole person
   Findings findings;
   if (skeleton.joints() < body) return findings;
-  const Extent extent = rest_extent(skeleton);
+  const Eigen::AlignedBox3d rest = rest_box(skeleton);
   int up = options.z_up ? z : y;
   const int other = options.z_up ? y : z;
-  const bool rest_lies = extent.size(up) < 0.5 * extent.size(other);
-  const auto standing = stands(skeleton, first_frame);
+  const bool rest_lies = rest.sizes()[up] < 0.5 * rest.sizes()[other];
+  const auto standing = stands(hierarchy, skeleton, rows, options);
   const std::string_view axes = "xyz";
   if (rest_lies && !standing.value_or(false)) {
     findings.push_back(lying(name, fmt::format("a rest pose that stands along {}", axes[up]),
@@ -110,7 +101,7 @@ Findings judge_size(const Skeleton& skeleton, const ClipFrames& first_frame,
         fmt::format("one that lies along {}", axes[other]), axes[other]));
   }
   if (rest_lies) up = other;
-  const double hip = -extent.low[up];
+  const double hip = -rest.min()[up];
   if (hip < 0.6 || hip > 1.3) {
     const Unit& unit = best_unit(hip / options.metres_per_unit);
     const bool same = unit.metres == options.metres_per_unit;

@@ -2,8 +2,8 @@
 #include "kinalign/io/bvh_survey.h"
 
 #include "kinalign/core/hash.h"
-#include "kinalign/core/numbers.h"
 #include "kinalign/io/bvh_head.h"
+#include "kinalign/io/bvh_rows.h"
 #include "kinalign/io/bvh_words.h"
 #include "kinalign/motion/stamps.h"
 #include "kinalign/motion/targets.h"
@@ -61,29 +61,12 @@ struct Counted {
   bool kept = false;
 };
 
-/// Numbers of a text's beginning, at most `most`; its last word may go on in the next piece.
-void read_numbers(std::string_view text, std::size_t most, std::vector<double>& numbers) {
-  constexpr std::string_view blanks = " \t\r\n";
-  while (numbers.size() < most) {
-    const auto begin = text.find_first_not_of(blanks);
-    if (begin == std::string_view::npos) return;
-    const auto end = text.find_first_of(blanks, begin);
-    double number = 0.0;
-    if (end == std::string_view::npos || !parse_number(text.substr(begin, end - begin), number)) {
-      return;
-    }
-    numbers.push_back(number);
-    text.remove_prefix(end);
-  }
-}
-
-ClipFrames first_frame(const Counted& counted, const BvhOptions& options) {
-  ClipFrames frame;
-  const std::size_t size = counted.hierarchy.row_size();
-  if (size > 0 && counted.first_row.size() == size) {
-    BvhPoser(counted.hierarchy, options).append(counted.first_row, frame);
-  }
-  return frame;
+/// The first row of a text that begins with it; empty where it holds none.
+std::vector<double> first_row(std::string_view text, const std::string& path, std::size_t size) {
+  BvhRows rows({path, size, 1, 1});
+  Findings ignored;  // of what stands behind the row
+  if (!rows.feed(text, ignored) || !rows.finish(ignored) || rows.frames_read() == 0) return {};
+  return {rows.frames().begin(), rows.frames().begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
 Result<Counted> count(FileSystem& files, const std::string& path, const Progress& progress) {
@@ -116,7 +99,7 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
   const std::uint64_t row_size = head.hierarchy.row_size();
   out.kept = in_rows && row_size > 0 && !words.within_word() && words.words() % row_size == 0 &&
              words.words() / row_size == head.hierarchy.frames;
-  read_numbers(start + '\n', row_size, out.first_row);
+  if (out.kept) out.first_row = first_row(start, path, row_size);
   out.hierarchy = std::move(head.hierarchy);
   return out;
 }
@@ -165,7 +148,8 @@ Result<ClipSurvey> survey_bvh(FileSystem& files, const std::string& path, const 
   } else {
     out.findings = std::move(counted.findings);
     out.skeleton = skeleton_of(counted.hierarchy, options, path, out.findings);
-    append(out.findings, judge_size(out.skeleton, first_frame(counted, options), options, path));
+    append(out.findings,
+           judge_size(counted.hierarchy, out.skeleton, counted.first_row, options, path));
   }
   out.facts = std::move(counted.facts);
   out.step_ns = counted.hierarchy.frame_seconds * 1e9;

@@ -160,7 +160,7 @@ Result<FoundFormat> named_format(const Source& source) {
   if (const auto text = builtin_layout(wanted)) {
     return table_format(KA_TRY(parse_layout(*text, wanted)), source);
   }
-  if (!wanted.ends_with(".toml")) {
+  if (!source.options.own_layout()) {
     return Failure(Error{source.file.path, 0,
                          "a layout's path (*.toml) or one of " + known_formats(),
                          "'" + shown(wanted) + "'"});

@@ -64,7 +64,7 @@ struct NamedFile {
 Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, const NamedFile& named,
                                const Progress& progress) {
   StreamOptions options = *named.options;
-  if (options.layout.ends_with(".toml")) options.layout = path_in(folder, options.layout);
+  if (options.own_layout()) options.layout = path_in(folder, options.layout);
   const StreamFile file{path_in(folder, named.file->path), named.file->node};
   const SurveyJob job{&files, &options, &progress, version_of(file.path)};
   SurveyedFile out = KA_TRY(survey_file(job, file));

@@ -134,7 +134,7 @@ class TableReader final : public Builder::ReaderType {
       : layout_(layout),
         members_(std::move(members)),
         select_(options.select),
-        own_layout_(options.layout.ends_with(".toml")),
+        own_layout_(options.own_layout()),
         lines_(file),
         stamps_(layout.time.has_value(), options.rate_hz > 0.0 ? options.rate_hz : layout.rate_hz,
                 options.start_ns),

@@ -33,19 +33,17 @@ void PointSizes::add(const PointFrames& block) {
   if (block.size() == 0) return;
   const std::size_t joints = block.state.size() / block.size();
   for (std::size_t t = 0; t < block.size(); ++t) {
-    Vec3 low = Vec3::Constant(1e300), high = -low;
+    Eigen::AlignedBox3d box;
     std::uint64_t seen = 0;
     for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
       if (block.state[cell] == Tracking::missing) continue;
-      const auto at = vec3(block.positions, cell);
-      low = low.cwiseMin(at);
-      high = high.cwiseMax(at);
+      box.extend(Vec3(vec3(block.positions, cell)));
       ++seen;
     }
     if (seen < 2) continue;
     ++frames_;
     most_points_ = std::max(most_points_, seen);
-    diagonals_m_ += (high - low).norm();
+    diagonals_m_ += box.diagonal().norm();
   }
 }
 

@@ -19,14 +19,9 @@ using namespace kinalign::test;
 
 namespace {
 
-Vec3 any_vector(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> range(-9, 9);
-  return {range(random), range(random), range(random)};
-}
-
 Quat any_turn(std::mt19937_64& random) {
-  const Vec3 axis = any_vector(random);
-  return Quat(Eigen::AngleAxisd(any_vector(random).x(), axis.normalized()));
+  const Vec3 axis = any_vector(random, 9);
+  return Quat(Eigen::AngleAxisd(any_vector(random, 9).x(), axis.normalized()));
 }
 
 /// Rows of nodes that measure all, of which one in six samples is not valid and holds zeros.
@@ -40,8 +35,8 @@ ImuRows any_rows(std::size_t rows, std::size_t nodes, std::mt19937_64& random) {
     if (random() % 6 == 0) continue;
     out.valid[i] = 1;
     put_quat(out.orientation, i, any_turn(random));
-    vec3(std::span(out.acceleration), i) = any_vector(random);
-    vec3(std::span(out.angular_velocity), i) = any_vector(random);
+    vec3(std::span(out.acceleration), i) = any_vector(random, 9);
+    vec3(std::span(out.angular_velocity), i) = any_vector(random, 9);
   }
   return out;
 }

@@ -17,14 +17,9 @@ using namespace kinalign::test;
 
 namespace {
 
-Vec3 any_place(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> range(-2, 2);
-  return {range(random), range(random), range(random)};
-}
-
 /// Optical points and a Kinect on the same stamps, both anywhere; the Kinect loses `lost` of 100.
 Recording unrelated(std::mt19937_64& random, std::uint64_t lost) {
-  const auto anywhere = [&](std::size_t, double) { return any_place(random); };
+  const auto anywhere = [&](std::size_t, double) { return any_vector(random, 2); };
   PointStream optical = points(joints, every(10 * ms, 200), anywhere);
   PointStream kinect = points(joints, every(10 * ms, 200), anywhere);
   for (auto& state : kinect.frames.state) {
@@ -51,7 +46,7 @@ TEST_CASE("equations (1) and (2) as printed, in every frame, for any A_rot and m
     SpaceOptions& paper = manifest.spaces["kinect"];
     paper.method = "paper";
     paper.onto_root = "Head";
-    paper.rotation_y_deg = 360.0 * any_place(random).x();
+    paper.rotation_y_deg = 360.0 * any_vector(random, 2).x();
     paper.magnification = 0.5 + static_cast<double>(random() % 100) / 50.0;
     const auto take = align(recording, manifest);
     REQUIRE(take);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -17,6 +18,12 @@
 namespace kinalign::test {
 
 constexpr std::int64_t ms = 1'000'000;
+
+/// Each part between -most and most.
+inline Vec3 any_vector(std::mt19937_64& random, double most) {
+  std::uniform_real_distribution<double> range(-most, most);
+  return {range(random), range(random), range(random)};
+}
 
 /// A motion: where joint j is at time t (s).
 using Motion = std::function<Vec3(std::size_t j, double t)>;

@@ -3,6 +3,7 @@
 // letters and blanks.
 #include "tests/folder.h"
 #include "tests/io/any_bvh.h"
+#include "tests/io/bvh_text.h"
 #include "tests/seeds.h"
 
 #include "kinalign/io/bvh_survey.h"
@@ -20,15 +21,6 @@ BvhFile read(const std::string& text) {
   auto file = read_bvh(text, "any.bvh", {});
   REQUIRE_MESSAGE(file, (file ? "" : to_string(file.error())));
   return *std::move(file);
-}
-
-std::string written(const BvhFile& file) {
-  std::string text;
-  REQUIRE(write_bvh(file, [&text](std::string_view piece) -> Result<void> {
-    text += piece;
-    return {};
-  }));
-  return text;
 }
 
 std::vector<std::string> texts_of(const Findings& findings) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/bvh.h"
 
+#include "tests/io/bvh_text.h"
+
 #include "kinalign/motion/kinematics.h"
 
 #include <doctest/doctest.h>
@@ -18,15 +20,6 @@ const std::string one_joint =
     "\tEnd Site\n\t{\n\t\tOFFSET 0 10 0\n\t}\n}\n";
 
 Result<BvhFile> read(const std::string& text) { return read_bvh(text, "walk.bvh", {}); }
-
-std::string written(const BvhFile& file) {
-  std::string text;
-  REQUIRE(write_bvh(file, [&text](std::string_view piece) -> Result<void> {
-    text += piece;
-    return {};
-  }));
-  return text;
-}
 
 std::string fault(const std::string& text) {
   const auto file = read(text);
