@@ -130,11 +130,12 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
 
 std::vector<std::string> advice(const Error& error) {
   std::vector<std::string> lines{"nothing was written"};
-  if (error.file.empty()) {
-    lines.push_back(
-        "kinalign align --help shows the flags, docs/formats/recording_toml.md the keys");
+  const bool manifest = error.file.ends_with(".toml");
+  if (error.file.empty() || manifest) {
+    lines.push_back(manifest ? "docs/formats/recording_toml.md shows the keys"
+                             : "kinalign align --help shows the flags");
     if (const std::string names = name_advice(error); !names.empty()) lines.push_back(names);
-  } else if (error.line > 0 && !error.file.ends_with(".toml")) {
+  } else if (error.line > 0) {
     lines.push_back("kinalign check " + error.file + " says what else is odd in it, up to there");
   }
   return lines;
@@ -168,8 +169,12 @@ Result<int> run(AlignVerb& o, Call& call) {
     if (!start.empty()) lines.push_back(start);
     return lines;
   });
-  const AlignmentReport report =
-      KA_TRY(align_to_file(call, recording, manifest, {out, call.common.overwrite()}));
+  const auto placed = [&o](Error error) {
+    if (error.file.empty() && !o.manifest.empty()) error.file = o.manifest.front();
+    return error;
+  };
+  const AlignmentReport report = KA_TRY(
+      align_to_file(call, recording, manifest, {out, call.common.overwrite()}).map_error(placed));
   call.console.wrote(out);
   call.console.print(summary(report, out, call.console));
   call.console.print_json("{\"report\": " + report_json(report) + "}");

@@ -87,38 +87,49 @@ Result<void> check_flags(const Check& o, const std::string& path, const Recorded
   return used ? Result<void>{} : call.console.refuse(std::move(used).error());
 }
 
-Result<Findings> check_take(const Check& o, const std::string& path, Call& call) {
+/// What is wrong with how many files.
+struct Checked {
+  Findings findings;
+  std::size_t files = 1;
+};
+
+Result<Checked> check_take(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   KA_TRY(check_flags(o, path, nullptr, call));
   const std::string report =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
-  return report_findings(report, path);
+  return Checked{KA_TRY(report_findings(report, path))};
 }
 
-Result<Findings> check_file(const Check& o, const std::string& path, Call& call) {
+Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   if (KA_TRY(is_take(files, path))) return check_take(o, path, call);
   if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
   const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
   if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
-  Findings findings;
+  Checked out;
+  if (input.manifest) out.files = files_named(*input.manifest, "").size();
   for (const RecordedStream& stream : input.recording.streams) {
     call.console.detail(harmless(read_as(stream)));
     KA_TRY(read_through(stream, call.console.progress()));
-    append(findings, stream.findings);
-    append(findings, judge_stamps(stream));
+    append(out.findings, stream.findings);
+    const StreamOptions& options =
+        input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
+    append(out.findings, judge_stamps(stream, options));
   }
-  if (input.manifest) append(findings, check_plan(path, input));
-  return findings;
+  if (input.manifest) append(out.findings, check_plan(path, input));
+  return out;
 }
 
 Result<int> run(Check& o, Call& call) {
   Findings all;
+  std::size_t files = 0;
   bool usable = true;
   for (const std::string& path : o.files) {
     auto found = check_file(o, path, call);
     if (found) {
-      append(all, *found);
+      append(all, found->findings);
+      files += found->files;
     } else if (o.files.size() == 1 || call.console.refused() || interrupted()) {
       return Failure(std::move(found).error());
     } else {  // one file that can't be read must not hide what is wrong with the others
@@ -128,8 +139,8 @@ Result<int> run(Check& o, Call& call) {
   }
   call.console.print(finding_lines(all, call.console));
   if (all.empty()) {
-    call.console.print(fmt::format("{} file{} read, nothing found\n", o.files.size(),
-                                   o.files.size() == 1 ? "" : "s"));
+    call.console.print(
+        fmt::format("{} file{} read, nothing found\n", files, files == 1 ? "" : "s"));
   }
   call.console.print_json("{\"findings\": " + findings_json(all) + "}");
   return usable ? code_of(all) : failed;

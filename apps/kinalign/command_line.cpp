@@ -184,8 +184,8 @@ Fields common_fields(Common& common, const Page& page) {
   fields.push_back({"color",
                     "colours: auto is on a terminal without NO_COLOR",
                     &common.color,
-                    -1e308,
-                    1e308,
+                    -unlimited,
+                    unlimited,
                     {"auto", "always", "never"}});
   return fields;
 }

@@ -98,13 +98,13 @@ std::string mean_rate_text(const RecordedStream& s) {
 
 std::string stream_lines(const RecordedStream& s, const Contents& c, Names names) {
   const bool one_node = c.kind == "imu" && c.names.size() == 1;
-  std::string line =
-      fmt::format("  {:<8} {}: {} samples over {:.3f} s at {:.4g} Hz{}; {}\n", s.name,
-                  one_node ? shown(c.names.front().get<std::string>()) : c.kind, s.survey.samples,
-                  seconds_of(s.survey), rate_hz(s), mean_rate_text(s), c.parts);
+  const std::string who = one_node ? shown(c.names.front().get<std::string>()) : c.kind;
+  std::string line = fmt::format("  {:<8} {} ({}): {} samples over {:.3f} s at {:.4g} Hz{}; {}\n",
+                                 s.name, who, shown(s.format), s.survey.samples,
+                                 seconds_of(s.survey), rate_hz(s), mean_rate_text(s), c.parts);
   if (s.survey.kept() > 0) {
-    line +=
-        fmt::format("           from {} to {} ns\n", to_ns(s.survey.first), to_ns(s.survey.last));
+    line += fmt::format("           from {} to {} ns{}\n", to_ns(s.survey.first),
+                        to_ns(s.survey.last), s.counted ? ", counted at that rate" : "");
   }
   if (names == Names::yes || (c.kind == "imu" && !one_node)) {
     line += name_lines(c.names.get<std::vector<std::string>>());
@@ -119,7 +119,9 @@ std::string stream_lines(const RecordedStream& s, const Contents& c, Names names
 Json stream_json(const RecordedStream& s, const Contents& c) {
   return {{"name", s.name},
           {"kind", c.kind},
+          {"format", s.format},
           {"names", c.names},
+          {"stamps_counted", s.counted},
           {"samples", s.survey.samples},
           {"first_ns", to_ns(s.survey.first)},
           {"last_ns", to_ns(s.survey.last)},

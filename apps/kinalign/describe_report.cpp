@@ -13,6 +13,7 @@
 #include <cmath>
 #include <ctime>
 #include <numbers>
+#include <optional>
 
 namespace kinalign {
 
@@ -102,12 +103,12 @@ std::string marks_text(const Json& s) {
 
 /// "29.92 Hz, shared clock, 97.8 % valid, 2 gaps (0.83 s)"
 std::string quality_text(const Json& s) {
-  const bool known = s.is_object() && s.contains("worst_interval_ns");
-  const double interval_ms = 1e-6 * number_at(s, "worst_interval_ns");
+  const auto has = [&s](const char* key) { return s.is_object() && s.contains(key); };
+  std::optional<std::int64_t> interval_ns;
+  if (has("worst_interval_ns")) interval_ns = std::llround(number_at(s, "worst_interval_ns"));
+  const bool counted = has("stamps_counted") && s["stamps_counted"] == true;
   std::string text = fmt::format("{:.4g} Hz, ", number_at(s, "rate_hz"));
-  text += !known               ? "stamps of unknown accuracy"
-          : interval_ms == 0.0 ? "shared clock"
-                               : fmt::format("± {:.1f} ms", interval_ms);
+  text += clock_text(interval_ns, counted);
   text += marks_text(s);
   const std::uint64_t gaps = count_at(s, "gaps");
   if (gaps > 0) {

@@ -32,8 +32,8 @@ Failure instead_of(std::string expected, std::string_view text) {
 }
 
 std::string range_of(const Field& field) {
-  const bool above = field.least > -1e307;
-  const bool below = field.most < 1e307;
+  const bool above = field.least > -unlimited;
+  const bool below = field.most < unlimited;
   if (above && below) return " from " + text_of(field.least) + " to " + text_of(field.most);
   if (above) return " of at least " + text_of(field.least);
   if (below) return " of at most " + text_of(field.most);

@@ -12,7 +12,7 @@
 namespace kinalign {
 
 /// `text` in lines of at most `width` characters, those behind the first one moved to `indent`.
-std::string wrapped(std::string_view text, std::size_t indent, std::size_t width = 96);
+std::string wrapped(std::string_view text, std::size_t indent, std::size_t width = 80);
 
 /// "0.1.0"
 std::string program_version();

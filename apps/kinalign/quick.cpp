@@ -18,12 +18,14 @@ struct Twin {
   std::string_view flag, key, needs;
 };
 
-constexpr std::array<Twin, 13> twins{
+constexpr std::array<Twin, 15> twins{
     {{"mocap", "file in [stream.mocap]", ""},
      {"kinect", "file in [stream.kinect]", ""},
      {"imu", "files in [stream.imu]", ""},
      {"points", "file in [stream.NAME]", ""},
+     {"mocap_layout", "layout in [stream.mocap]", "mocap"},
      {"kinect_layout", "layout in [stream.kinect]", "kinect"},
+     {"points_layout", "layout in [stream.NAME]", "points"},
      {"imu_layout", "layout in [stream.imu]", "imu"},
      {"root_node", "root_node in [stream.imu]", "imu"},
      {"start_ns", "start_ns in [stream.mocap]", ""},
@@ -92,19 +94,26 @@ Fields QuickFlags::fields() {
       {"kinect", "a file of Kinect joints", &kinect},
       {"imu", "a node's file; may be repeated", &imu},
       {"points", "a further file of points; may be repeated", &points},
+      {"mocap_layout", "layout of the reference's file", &mocap_options.layout},
       {"kinect_layout", "layout of the Kinect file", &kinect_layout},
+      {"points_layout", "layout of the further files of points", &points_layout},
       {"imu_layout", "layout of the nodes' files", &imu_layout},
       {"root_node", "node into whose space all nodes are brought", &root_node},
       {"start_ns", "stamp of the click that started the mocap, ns since 1970",
        &mocap_options.start_ns, -4e18, 4e18},
       {"metres_per_unit", "length of the mocap file's unit, m; 0: the format's own (BVH: 0.01)",
        &mocap_options.metres_per_unit, 0.0, 1000.0},
-      {"up", "the mocap file's up axis (BVH: y)", &mocap_options.up, -1e308, 1e308, {"", "y", "z"}},
+      {"up",
+       "the mocap file's up axis (BVH: y)",
+       &mocap_options.up,
+       -unlimited,
+       unlimited,
+       {"", "y", "z"}},
       {"space",
        "how the Kinect comes into the mocap's space",
        &space.method,
-       -1e308,
-       1e308,
+       -unlimited,
+       unlimited,
        {"none", "paper", "fit"}},
       {"rotation_y_deg", "of --space paper: turn about the y axis, degrees", &space.rotation_y_deg,
        -360.0, 360.0},
@@ -160,7 +169,9 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
   }
   for (const std::string& one : flags.points) {
     const auto [name, file] = KA_TRY(pair_of("--points", one, "NAME=FILE"));
-    add({}, name, file);
+    StreamOptions further;
+    further.layout = flags.points_layout;
+    add(further, name, file);
   }
   StreamOptions nodes;
   nodes.name = "imu";

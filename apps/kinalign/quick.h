@@ -16,7 +16,7 @@ struct QuickFlags {
   std::string mocap, kinect;
   std::vector<std::string> points;  // NAME=FILE
   std::vector<std::string> imu;     // NODE=FILE
-  std::string kinect_layout, imu_layout, root_node;
+  std::string kinect_layout, points_layout, imu_layout, root_node;
   StreamOptions mocap_options;
   SpaceOptions space;
   std::vector<std::string> joints;  // JOINT=JOINT

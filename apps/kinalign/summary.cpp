@@ -35,6 +35,7 @@ void add(Group& group, const StreamReport& s) {
   } else if (sum.worst_interval_ns) {
     sum.worst_interval_ns = std::max(*sum.worst_interval_ns, *s.worst_interval_ns);
   }
+  sum.counted = sum.counted || s.counted;
   group.nodes += s.nodes.size();
   group.parts.push_back(s);
 }
@@ -74,9 +75,8 @@ std::string worst_node(const Group& group, Measure measure) {
 
 std::string time_text(const Group& group, const Console& console) {
   const auto& known = group.sum.worst_interval_ns;
-  std::string sure = console.paint(Colour::warning, "stamps of unknown accuracy");
-  if (known && *known == 0) sure = "shared clock";
-  if (known && *known > 0) sure = fmt::format("± {:.1f} ms", 1e-6 * static_cast<double>(*known));
+  std::string sure = clock_text(known, group.sum.counted);
+  if (!known) sure = console.paint(Colour::warning, sure);
   return harmless(name_of(group)) + " " + sure + worst_node(group, doubt);
 }
 
@@ -176,6 +176,14 @@ std::string share_text(std::uint64_t part, std::uint64_t whole) {
   if (part == 0 || whole == 0) return "";
   const double percent = 100.0 * static_cast<double>(part) / static_cast<double>(whole);
   return percent < 0.05 ? "< 0.1 %" : fmt::format("{:.1f} %", percent);
+}
+
+std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool counted) {
+  if (!interval_ns)
+    return counted ? "counted stamps of unknown accuracy" : "stamps of unknown accuracy";
+  if (*interval_ns == 0) return counted ? "counted stamps, shared clock" : "shared clock";
+  return fmt::format("{}± {:.1f} ms", counted ? "counted stamps " : "",
+                     1e-6 * static_cast<double>(*interval_ns));
 }
 
 std::string summary(const AlignmentReport& report, const std::string& out, const Console& console) {

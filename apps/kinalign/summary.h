@@ -5,6 +5,7 @@
 #include "kinalign/take/report.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace kinalign {
@@ -13,6 +14,10 @@ class Console;
 
 /// `out` is the take's file; empty: nothing was written. Colours are the console's.
 std::string summary(const AlignmentReport& report, const std::string& out, const Console& console);
+
+/// How sure a stream's stamps are: "shared clock", "± 3.6 ms", "counted stamps of unknown
+/// accuracy".
+std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool counted);
 
 /// 3601: "3,601".
 std::string grouped(std::uint64_t number);

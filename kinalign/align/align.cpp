@@ -80,7 +80,7 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
       finding.what.file = file_name(finding.what.file);
       report.findings.push_back(std::move(finding));
     }
-    append(report.findings, judge_stamps(s));
+    append(report.findings, judge_stamps(s, options_of(plan.header.parameters, s.name)));
   }
   append(report.findings, judge_spaces(plan.header));
   append(report.findings, judge_files(plan.header));
@@ -144,6 +144,7 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   out.stream = s.name;
   if (const auto* imu = std::get_if<ImuInput>(&s.data)) out.nodes = imu->node_names;
   out.survey = s.survey;
+  out.counted = s.counted;
   const ResampleRule& rule = job.plan.streams[i].rule;
   out.rate_hz = rule.rate_hz();
   out.gap_ns = rule.gap_ns;

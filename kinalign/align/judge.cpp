@@ -4,39 +4,76 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace kinalign {
 
 namespace {
 
-/// The median tells a device's period, but not where samples come in bursts.
-Findings judge_rate(const RecordedStream& s, const std::string& file) {
+/// Steps between the samples kept of a device that stamps them, ns.
+struct Steps {
+  double median = 0.0, mean = 0.0;
+};
+
+std::optional<Steps> steps_of(const RecordedStream& s) {
+  constexpr std::uint64_t enough = 10;
   const StampSurvey& survey = s.survey;
-  if (s.step_ns || survey.kept() < 10 || survey.median_step_ns == 0) return {};
-  const double median = static_cast<double>(survey.median_step_ns),
-               mean = static_cast<double>(to_ns(survey.last) - to_ns(survey.first)) /
-                      static_cast<double>(survey.kept() - 1);
-  if (mean < 1.5 * median) return {};
-  constexpr double gap_steps = 3.0, burst = 5.0;
-  const std::string repair =
-      mean > burst * median
-          ? fmt::format(
-                "stamps are of arrival, in bursts: leave the time column out of a layout and "
-                "say rate_hz = {:.3g}",
-                1e9 / mean)
-          : fmt::format(
-                "where that is the device's way, say rate_hz = {:.3g} or gap_ms = {:.3g}; "
-                "else many are missing",
-                1e9 / mean, gap_steps * 1e-6 * mean);
+  if (s.counted || survey.kept() < enough || survey.median_step_ns == 0) return std::nullopt;
+  return Steps{static_cast<double>(survey.median_step_ns),
+               static_cast<double>(to_ns(survey.last) - to_ns(survey.first)) /
+                   static_cast<double>(survey.kept() - 1)};
+}
+
+/// A unit taken for another is wrong by a thousand or more, and no device of the field is so quick
+/// or so slow.
+Findings judge_unit(const Steps& steps, const std::string& file) {
+  constexpr double fastest_hz = 5000.0, slowest_hz = 0.5;
+  const double rate = 1e9 / steps.median;
+  if (rate <= fastest_hz && rate >= slowest_hz) return {};
   return {{Severity::warning,
-           Error{file, 0, fmt::format("steps near their median of {:.3g} ms", 1e-6 * median),
-                 fmt::format("a mean of {:.3g} ms", 1e-6 * mean)},
-           "stretches longer than three median steps are taken for gaps", repair}};
+           Error{file, 0, fmt::format("{} to {} samples a second", slowest_hz, fastest_hz),
+                 fmt::format("{:.4g} by the stamps", rate)},
+           "the stamps may be in another unit than they were read in",
+           "a layout's [time] says the column's unit: ns, us, ms or s"}};
+}
+
+/// The median tells a device's period, but not where samples come in bursts.
+Findings judge_rate(const Steps& steps, double nominal_hz, const std::string& file) {
+  constexpr double gap_steps = 3.0, burst = 5.0, alike = 1.5;
+  const double from_mean = 1e9 / steps.mean;
+  const std::string found = fmt::format("a mean of {:.3g} ms", 1e-6 * steps.mean);
+  const auto warning = [&](std::string expected, std::string said, std::string meaning,
+                           std::string repair) -> Findings {
+    return {{Severity::warning, Error{file, 0, std::move(expected), std::move(said)},
+             std::move(meaning), std::move(repair)}};
+  };
+  const std::string median =
+      fmt::format("steps near their median of {:.3g} ms", 1e-6 * steps.median);
+  if (steps.mean > burst * steps.median) {
+    return warning(
+        median, found, "the stamps are of arrival, in bursts",
+        fmt::format("leave the time column out of a layout and say rate_hz = {:.3g}", from_mean));
+  }
+  if (nominal_hz > 0.0) {
+    const auto fits = [nominal_hz](double step) {
+      return step < alike * 1e9 / nominal_hz && alike * step > 1e9 / nominal_hz;
+    };
+    if (fits(steps.median) || fits(steps.mean)) return {};
+    return warning(fmt::format("steps of {:.3g} ms, by rate_hz", 1e3 / nominal_hz),
+                   fmt::format("a median of {:.3g} ms", 1e-6 * steps.median),
+                   "gaps and invalid samples are told by the wrong rate",
+                   fmt::format("say rate_hz = {:.3g}, or nothing", 1e9 / steps.median));
+  }
+  if (steps.mean < alike * steps.median) return {};
+  return warning(median, found, "stretches longer than three median steps are taken for gaps",
+                 fmt::format("where that is the device's way, say rate_hz = {:.3g} or gap_ms = "
+                             "{:.3g}; else many are missing",
+                             from_mean, gap_steps * 1e-6 * steps.mean));
 }
 
 }  // namespace
 
-Findings judge_stamps(const RecordedStream& s) {
+Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   Findings out;
   const std::string file = s.files.empty() ? s.name : s.files.front().name;
   if (s.survey.duplicates > 0) {
@@ -71,7 +108,10 @@ Findings judge_stamps(const RecordedStream& s) {
          many ? "the device's clock was set back: cut the file there, or stamp it by rate_hz"
               : "look at the device's clock if there are many"});
   }
-  append(out, judge_rate(s, file));
+  if (const auto steps = steps_of(s)) {
+    append(out, judge_unit(*steps, file));
+    append(out, judge_rate(*steps, options.rate_hz, file));
+  }
   return out;
 }
 

@@ -9,8 +9,9 @@
 
 namespace kinalign {
 
-/// Stamps that repeat, step back, run ahead or come in bursts.
-Findings judge_stamps(const RecordedStream& stream);
+/// Stamps that repeat, step back, run ahead, come in bursts, in another unit than was thought, or
+/// at another rate than the one stated.
+Findings judge_stamps(const RecordedStream& stream, const StreamOptions& options);
 
 /// What the grid of `grid_hz` can't carry of one stream.
 Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);

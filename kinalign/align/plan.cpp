@@ -2,6 +2,7 @@
 #include "kinalign/align/plan.h"
 
 #include "kinalign/align/unused_options.h"
+#include "kinalign/core/nearest_name.h"
 
 #include <fmt/format.h>
 
@@ -19,11 +20,12 @@ Time last_of(const RecordedStream& s) { return take_time(s.clock, s.survey.last)
 Result<std::size_t> find_reference(const Recording& recording, const Manifest& manifest) {
   const std::string& wanted = manifest.align.reference;
   if (wanted.empty()) return std::size_t{0};
+  std::vector<std::string> known;
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     if (recording.streams[i].name == wanted) return i;
+    known.push_back(recording.streams[i].name);
   }
-  return Failure(
-      Error{"", 0, "a stream named as the reference", "'" + wanted + "', which is none"});
+  return Failure(unknown_name(wanted, "a stream as the reference", known));
 }
 
 /// "kinect", or of nodes, whose streams share a name, "imu waist".
@@ -222,8 +224,8 @@ Result<void> check_roots(const TakeHeader& header) {
     if (nodes == nullptr || nodes->root_node.empty()) continue;
     const auto& names = nodes->node_names;
     if (std::find(names.begin(), names.end(), nodes->root_node) == names.end()) {
-      return Failure(Error{"", 0, "a node of '" + group.name + "' as root_node",
-                           "'" + nodes->root_node + "'"});
+      return Failure(
+          unknown_name(nodes->root_node, "a node of '" + group.name + "' as root_node", names));
     }
     if (!nodes->content.orientation) {
       return Failure(Error{"", 0, "orientations in '" + group.name + "', for root_node", "none"});
@@ -235,12 +237,11 @@ Result<void> check_roots(const TakeHeader& header) {
 Result<void> check_mountings(const TakeHeader& header, const Manifest& manifest) {
   for (const TakeGroup& group : header.groups) {
     const auto* nodes = std::get_if<ImuGroup>(&group.kind);
+    const std::vector<std::string> names =
+        nodes == nullptr ? std::vector<std::string>{} : nodes->node_names;
     for (const auto& [worn, rotation] : options_of(manifest, group.name).mounting) {
-      if (nodes == nullptr || std::find(nodes->node_names.begin(), nodes->node_names.end(), worn) ==
-                                  nodes->node_names.end()) {
-        return Failure(
-            Error{"", 0, "a node of '" + group.name + "' under mounting", "'" + worn + "'"});
-      }
+      if (std::find(names.begin(), names.end(), worn) != names.end()) continue;
+      return Failure(unknown_name(worn, "a node of '" + group.name + "' under mounting", names));
     }
   }
   return {};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/space.h"
 
+#include "kinalign/core/nearest_name.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -21,17 +23,20 @@ std::size_t find_joint(const std::vector<std::string>& names, std::string_view n
 }
 
 Result<std::size_t> find_group(const TakeHeader& header, const std::string& name) {
+  std::vector<std::string> known;
   for (std::size_t g = 0; g < header.groups.size(); ++g) {
-    if (header.groups[g].name == name && joint_names(header.groups[g]) != nullptr) return g;
+    if (joint_names(header.groups[g]) == nullptr) continue;
+    if (header.groups[g].name == name) return g;
+    known.push_back(header.groups[g].name);
   }
-  return Failure(Error{"", 0, "a stream with joints in [space]", "'" + name + "'"});
+  return Failure(unknown_name(name, "a stream with joints in [space]", known));
 }
 
 Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name) {
   const auto& names = *joint_names(group);
   const std::size_t j = find_joint(names, name);
   if (j < names.size()) return j;
-  return Failure(Error{"", 0, "a joint of '" + group.name + "'", "'" + shown(name) + "'"});
+  return Failure(unknown_name(name, "a joint of '" + group.name + "'", names));
 }
 
 Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup& onto,

@@ -26,6 +26,17 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// "a, b, c, ..."
+std::string first_of(const std::vector<std::string>& known) {
+  constexpr std::size_t most = 8;
+  std::string list;
+  for (std::size_t i = 0; i < known.size() && i < most; ++i) {
+    list += (i > 0 ? ", " : "") + shown(known[i]);
+  }
+  if (known.size() > most) list += ", ...";
+  return list;
+}
+
 }  // namespace
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& known) {
@@ -44,6 +55,18 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     return other.starts_with(start);
   });
   return begun == known.end() ? "" : *begun;
+}
+
+Error unknown_name(std::string_view name, const std::string& what,
+                   const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(name, known);
+  std::string hint;
+  if (!nearest.empty()) {
+    hint = " (nearest: " + nearest + ")";
+  } else if (!known.empty()) {
+    hint = " (known: " + first_of(known) + ")";
+  }
+  return {"", 0, what + hint, "\"" + shown(name) + "\""};
 }
 
 }  // namespace kinalign

@@ -4,12 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace kinalign {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// One option of a structure: where its value lives and what may stand there.
 struct Field {
@@ -18,8 +21,8 @@ struct Field {
   std::variant<bool*, double*, std::int64_t*, std::string*, std::optional<double>*,
                std::optional<std::int64_t>*, std::vector<std::string>*>
       value;
-  double least = -1e308;               // numbers only
-  double most = 1e308;                 // numbers only
+  double least = -unlimited;  // numbers only, which are finite all the same
+  double most = unlimited;
   std::vector<std::string> choices{};  // strings only; empty: any text
 };
 

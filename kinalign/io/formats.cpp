@@ -124,6 +124,18 @@ Result<void> check_selection(const Format& format, const Source& source) {
   return {};
 }
 
+/// Each pass sees the further files as they are now.
+FoundFormat watched(FoundFormat found) {
+  std::vector<std::optional<FileVersion>> versions;
+  for (const std::string& path : found.further_files) versions.push_back(version_of(path));
+  found.make = [make = std::move(found.make), paths = found.further_files,
+                versions]() -> Result<AnyReader> {
+    for (std::size_t i = 0; i < paths.size(); ++i) KA_TRY(unchanged(paths[i], versions[i]));
+    return make();
+  };
+  return found;
+}
+
 Result<FoundFormat> program_format(const Format& format, const Source& source) {
   KA_TRY(check_selection(format, source));
   FoundFormat out{
@@ -135,13 +147,7 @@ Result<FoundFormat> program_format(const Format& format, const Source& source) {
   }
   if (format.further_files == nullptr) return out;
   out.further_files = KA_TRY(format.further_files(source));
-  std::vector<std::optional<FileVersion>> versions;
-  for (const std::string& path : out.further_files) versions.push_back(version_of(path));
-  out.make = [&format, source, paths = out.further_files, versions]() -> Result<AnyReader> {
-    for (std::size_t i = 0; i < paths.size(); ++i) KA_TRY(unchanged(paths[i], versions[i]));
-    return format.make(source);
-  };
-  return out;
+  return watched(std::move(out));
 }
 
 std::string known_formats() {
@@ -166,10 +172,12 @@ Result<FoundFormat> named_format(const Source& source) {
                          "'" + shown(wanted) + "'"});
   }
   constexpr std::size_t longest_layout = std::size_t{1} << 20;
+  const auto version = version_of(wanted);
   const std::string text = KA_TRY(read_whole(*source.files, wanted, longest_layout));
   FoundFormat out = table_format(KA_TRY(parse_layout(text, wanted)), source);
   out.further_files.push_back(wanted);
-  return out;
+  KA_TRY(unchanged(wanted, version));
+  return watched(std::move(out));
 }
 
 }  // namespace

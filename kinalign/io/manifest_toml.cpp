@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/manifest_toml.h"
 
+#include "kinalign/core/nearest_name.h"
 #include "kinalign/io/option_values.h"
 
 #include <toml++/toml.h>

@@ -62,6 +62,7 @@ class NtuReader final : public PointReader {
     const auto use = [&](std::string_view line) { return read(line, out); };
     KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!header_) return Failure(lines_.error("the number of frames", "the end of the file"));
+    counted = true;
     report();
     return {};
   }

@@ -31,6 +31,7 @@ class StoReader final : public ImuReader {
     KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!header_) return Failure(lines_.error("the head of a .sto file", "the end of the file"));
     stamps_.settle();
+    counted = stamps_.counted();
     held_.release(stamps_, out);
     if (stamps_.stuck()) findings.push_back(stuck_finding(lines_.file(), stamps_));
     samples_.report(lines_.file(), findings);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/option_values.h"
 
-#include "kinalign/core/nearest_name.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +29,7 @@ std::string wanted(const Field& field, const char* kind) {
     }
     return field.name + " as one of " + list;
   }
-  if (field.least > -1e300) {
+  if (field.least > -unlimited) {
     return fmt::format("{} as {} from {} to {}", field.name, kind, field.least, field.most);
   }
   return field.name + " as " + kind;
@@ -69,7 +67,9 @@ struct Assigner {
     if (!found) return {name, false};
     if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
       const auto number = static_cast<double>(*found);
-      if (!(number >= field.least && number <= field.most)) return {name, false};
+      if (!std::isfinite(number) || number < field.least || number > field.most) {
+        return {name, false};
+      }
     }
     if constexpr (std::is_same_v<Value, std::string>) {
       const auto& choices = field.choices;
@@ -94,17 +94,6 @@ struct Assigner {
   }
 };
 
-/// "a, b, c, ..."
-std::string first_of(const std::vector<std::string>& known) {
-  constexpr std::size_t most = 8;
-  std::string list;
-  for (std::size_t i = 0; i < known.size() && i < most; ++i) {
-    list += (i > 0 ? ", " : "") + shown(known[i]);
-  }
-  if (known.size() > most) list += ", ...";
-  return list;
-}
-
 }  // namespace
 
 Result<void> assign(const Field& field, const OptionValue& value) {
@@ -128,18 +117,6 @@ const Field* find_field(const Fields& fields, std::string_view name) {
   const auto found = std::find_if(fields.begin(), fields.end(),
                                   [&](const Field& field) { return field.name == name; });
   return found == fields.end() ? nullptr : &*found;
-}
-
-Error unknown_name(std::string_view name, const std::string& what,
-                   const std::vector<std::string>& known) {
-  const std::string nearest = nearest_name(name, known);
-  std::string hint;
-  if (!nearest.empty()) {
-    hint = " (nearest: " + nearest + ")";
-  } else if (!known.empty()) {
-    hint = " (known: " + first_of(known) + ")";
-  }
-  return {"", 0, what + hint, "\"" + shown(name) + "\""};
 }
 
 }  // namespace kinalign

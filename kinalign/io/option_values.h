@@ -27,9 +27,4 @@ Result<void> check_rotation(const std::string& name, std::span<const double> num
 /// The field of that name; nullptr where there is none.
 const Field* find_field(const Fields& fields, std::string_view name);
 
-/// The error for a name that is not known, with the nearest known one, or the first
-/// few where none is near: "a key of [align] (nearest: gap_ms)".
-Error unknown_name(std::string_view name, const std::string& what,
-                   const std::vector<std::string>& known);
-
 }  // namespace kinalign

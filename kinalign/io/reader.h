@@ -44,6 +44,9 @@ class Reader {
   /// What the file says of itself before its first row; nullptr until that has been read.
   virtual const Header* header() const = 0;
 
+  /// Stamps are counted by a rate, for want of any that move; known after finish().
+  bool counted = false;
+
   /// What was wrong and could be read all the same; complete after finish(). A fault that repeats
   /// is one finding with a count.
   Findings findings;

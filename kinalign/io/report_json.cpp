@@ -25,6 +25,7 @@ Json stream_json(const StreamReport& stream) {
   Json out = {{"stream", stream.stream}};
   if (!stream.nodes.empty()) out["nodes"] = stream.nodes;
   out["stamps"] = survey_json(stream.survey);
+  out["stamps_counted"] = stream.counted;
   out["rate_hz"] = stream.rate_hz;
   out["gap_ns"] = stream.gap_ns;
   out["gaps"] = stream.gaps;

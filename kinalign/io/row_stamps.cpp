@@ -90,7 +90,7 @@ Result<Time> RowStamps::next(std::int64_t ns) {
     stuck_ = ns == first_ && rows_ + 1 >= patience;
     settled_ = ns != first_ || stuck_;
   }
-  if (by_rate()) ns = first_ + stamp_at_rate(rows_, rate_hz_);
+  if (counted()) ns = first_ + stamp_at_rate(rows_, rate_hz_);
   ++rows_;
   std::int64_t shifted = 0;
   const bool overflow = __builtin_add_overflow(ns, shift_, &shifted);

@@ -54,12 +54,12 @@ class RowStamps {
 
   /// The column never moved.
   bool stuck() const { return stuck_; }
+  /// Stamps are counted by the rate.
+  bool counted() const { return !column_ || (stuck_ && rate_hz_ > 0.0); }
   double rate_hz() const { return rate_hz_; }
   std::uint64_t rows() const { return rows_; }
 
  private:
-  bool by_rate() const { return !column_ || (stuck_ && rate_hz_ > 0.0); }
-
   bool column_;
   double rate_hz_;
   std::optional<std::int64_t> start_ns_;

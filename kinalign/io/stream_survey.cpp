@@ -93,6 +93,8 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   sizes.add(block);
   RecordedStream out;
   out.name = job.options->name;
+  out.format = format.name;
+  out.counted = reader->counted;
   out.data =
       input_of(*reader->header(), passes_of<R>(*job.files, file.path(), job.version, format.make));
   out.survey = surveyor.result();
@@ -134,7 +136,9 @@ Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path
   const ClipSurvey made = KA_TRY(format.survey(*job.progress));
   RecordedStream out;
   out.name = job.options->name;
+  out.format = format.name;
   out.survey = made.survey;
+  out.counted = true;
   out.step_ns = made.step_ns;
   out.files.push_back(made.facts);
   out.findings = made.findings;

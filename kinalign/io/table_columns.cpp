@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/table_columns.h"
 
-#include "kinalign/io/option_values.h"
+#include "kinalign/core/nearest_name.h"
 
 #include <algorithm>
 #include <charconv>

@@ -153,6 +153,7 @@ class TableReader final : public Builder::ReaderType {
       return Failure(lines_.error("a table of layout " + layout_.name, "the end of the file"));
     }
     stamps_.settle();
+    this->counted = stamps_.counted();
     held_.release(stamps_, out);
     if (stamps_.stuck()) this->findings.push_back(stuck_finding(lines_.file(), stamps_));
     report_absent();

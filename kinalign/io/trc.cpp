@@ -32,6 +32,7 @@ class TrcReader final : public PointReader {
     KA_TRY(header_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!header_) return Failure(lines_.error("the head of a TRC file", "the end of the file"));
     stamps_.settle();
+    counted = stamps_.counted();
     held_.release(stamps_, out);
     report();
     return {};

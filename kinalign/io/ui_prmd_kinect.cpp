@@ -99,6 +99,7 @@ class UiPrmdReader final : public PointReader {
     const auto use = [&](std::string_view line) { return read(line, out); };
     KA_TRY(read_ ? lines_.finish(use, findings) : lines_.finish_head(use, findings));
     if (!read_) return Failure(lines_.error("rows of 66 numbers", "the end of the file"));
+    counted = true;
     auto more = KA_TRY(count_angles_left());
     append(findings, angle_rows_.findings);
     report(without_angles_, lines_.file(), angles_file_);

@@ -131,8 +131,8 @@ class XsensReader final : public ImuReader {
 
   Result<void> read_row(std::string_view line, ImuSamples& out) {
     KA_TRY(row_.read(line));
-    const bool counted = columns_.counter.whole(row_);
-    if (!counted) return Failure(Error{"", 0, "a whole PacketCounter", "an empty cell"});
+    const bool packet = columns_.counter.whole(row_);
+    if (!packet) return Failure(Error{"", 0, "a whole PacketCounter", "an empty cell"});
     const ImuContent here = content_of_row();
     if (!header_ && waiting_.empty() && !is_any(here)) return {};  // nothing was measured yet
     const auto count = KA_TRY(packets_.next(row_.values[columns_.counter.slots[0]]));

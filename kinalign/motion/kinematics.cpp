@@ -107,30 +107,6 @@ void load(const ClipFrames& frames, std::size_t joints, std::size_t first, std::
   }
 }
 
-/// Writes parts [from, from + width) of the chain's poses to `out` [T,J,width].
-void run_chain(const Skeleton& skeleton, const ClipFrames& frames, std::size_t from,
-               std::size_t width, std::span<double> out) {
-  const std::size_t joints = skeleton.joints();
-  std::vector<Pose> global(joints);
-  Pose local;
-  for (std::size_t first = 0; first < frames.size(); first += block) {
-    const std::size_t lanes = std::min(block, frames.size() - first);
-    for (std::size_t j = 0; j < joints; ++j) {
-      const int parent = skeleton.parents[j];
-      if (parent < 0) {
-        load(frames, joints, first, j, global[j]);
-      } else {
-        load(frames, joints, first, j, local);
-        follow(global[static_cast<std::size_t>(parent)], local, global[j]);
-      }
-      double* to = &out[(first * joints + j) * width];
-      for (std::size_t i = 0; i < lanes; ++i, to += joints * width) {
-        for (std::size_t k = 0; k < width; ++k) to[k] = global[j][from + k][i];
-      }
-    }
-  }
-}
-
 }  // namespace
 
 void rotations_from_euler(const EulerOrder& order, const EulerColumns& columns,
@@ -158,12 +134,25 @@ void rotations_from_euler(const EulerOrder& order, const EulerColumns& columns,
 
 void forward_kinematics(const Skeleton& skeleton, const ClipFrames& frames,
                         std::span<double> global) {
-  run_chain(skeleton, frames, 4, 3, global);
-}
-
-void global_rotations(const Skeleton& skeleton, const ClipFrames& frames,
-                      std::span<double> global) {
-  run_chain(skeleton, frames, 0, 4, global);
+  const std::size_t joints = skeleton.joints();
+  std::vector<Pose> poses(joints);
+  Pose local;
+  for (std::size_t first = 0; first < frames.size(); first += block) {
+    const std::size_t lanes = std::min(block, frames.size() - first);
+    for (std::size_t j = 0; j < joints; ++j) {
+      const int parent = skeleton.parents[j];
+      if (parent < 0) {
+        load(frames, joints, first, j, poses[j]);
+      } else {
+        load(frames, joints, first, j, local);
+        follow(poses[static_cast<std::size_t>(parent)], local, poses[j]);
+      }
+      double* to = &global[3 * (first * joints + j)];
+      for (std::size_t i = 0; i < lanes; ++i, to += 3 * joints) {
+        for (std::size_t k = 0; k < 3; ++k) to[k] = poses[j][4 + k][i];
+      }
+    }
+  }
 }
 
 }  // namespace kinalign

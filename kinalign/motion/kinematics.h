@@ -35,7 +35,4 @@ void rotations_from_euler(const EulerOrder& order, const EulerColumns& columns, 
 void forward_kinematics(const Skeleton& skeleton, const ClipFrames& frames,
                         std::span<double> global);
 
-/// Fills `global` [T,J,4]: each joint's rotation in the space of the roots.
-void global_rotations(const Skeleton& skeleton, const ClipFrames& frames, std::span<double> global);
-
 }  // namespace kinalign

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rotation and translation that bring points onto points, least squares, from moments: one
-// pass over the data in any number of pieces, and the residual of any transform afterwards
-// (Umeyama, PAMI 13(4), 1991; no scale).
+// pass over the data in any number of pieces (Umeyama, PAMI 13(4), 1991; no scale).
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -24,11 +23,9 @@ struct PairMoments {
   Vec3 from_origin = Vec3::Zero(), to_origin = Vec3::Zero();  // the first pair's
   std::size_t count = 0;
   Vec3 from_sum = Vec3::Zero(), to_sum = Vec3::Zero();
-  double from_square = 0, to_square = 0;
   Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();  // sum of to * from^T
 
   void add(const Vec3& from, const Vec3& to);
-  void add(const PairMoments& other);
 };
 
 /// Fails with fewer than three pairs or pairs on one line, where a turn about it is free.
@@ -37,8 +34,5 @@ Result<RigidTransform> fit_rigid(const PairMoments& moments);
 /// How far the points spread beside the line that they lie nearest to, m rms: a turn about that
 /// line is as sure as this is large.
 double spread_beside_line(const PairMoments& moments);
-
-/// Root mean square distance, m, of the pairs after `transform`.
-double rms_residual(const PairMoments& moments, const RigidTransform& transform);
 
 }  // namespace kinalign

@@ -8,7 +8,6 @@
 namespace kinalign {
 
 namespace {
-constexpr double any = 1e308;
 constexpr double day_ms = 86'400'000.0;
 }  // namespace
 
@@ -32,8 +31,8 @@ Fields describe(AlignOptions& o) {
       {"rotations",
        "between samples: spline (no jump in angular acceleration) or slerp",
        &o.rotations,
-       -any,
-       any,
+       -unlimited,
+       unlimited,
        {"spline", "slerp"}},
       {"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double},
   };
@@ -44,9 +43,9 @@ Fields describe(StreamOptions& o) {
       {"layout", "name or path of a declared layout (default: by the file's content)", &o.layout},
       {"metres_per_unit", "length of the file's unit, m; 0: the format's own (BVH: 0.01)",
        &o.metres_per_unit, 0.0, 1000.0},
-      {"up", "the file's up axis (BVH: y)", &o.up, -any, any, {"", "y", "z"}},
+      {"up", "the file's up axis (BVH: y)", &o.up, -unlimited, unlimited, {"", "y", "z"}},
       {"rate_hz",
-       "nominal sampling rate: stamps files without any, and tells what a gap is in others",
+       "nominal sampling rate: stamps files without unlimited, and tells what a gap is in others",
        &o.rate_hz, 0.0, 1e6},
       {"start_ns", "stamp of the first frame (BVH: of the click on record), ns", &o.start_ns, -4e18,
        4e18},
@@ -56,8 +55,8 @@ Fields describe(StreamOptions& o) {
       {"clock",
        "shared: stamps are exact on the reference's clock; unknown",
        &o.clock,
-       -any,
-       any,
+       -unlimited,
+       unlimited,
        {"shared", "unknown"}},
       {"offset_ms", "added to the stream's stamps, ms", &o.offset_ms, -1e12, 1e12},
       {"drift_ppm", "rate added to the stream's stamps from the first one on, ppm", &o.drift_ppm,
@@ -75,8 +74,8 @@ Fields describe(SpaceOptions& o) {
        "none; paper: equations (1) and (2), root onto root in each frame; fit: one rigid "
        "transform by least squares; given",
        &o.method,
-       -any,
-       any,
+       -unlimited,
+       unlimited,
        {"none", "paper", "fit", "given"}},
       {"onto", "stream that gives the space (default: the reference)", &o.onto},
       {"rotation_y_deg", "paper: turn about the y axis, counter-clockwise seen from above, degrees",

@@ -51,11 +51,14 @@ struct InputFacts {
 };
 
 struct RecordedStream {
-  std::string name;  // the take's group: "mocap", "kinect"; streams of nodes may share one, "imu"
+  std::string name;    // the take's group: "mocap", "kinect"; streams of nodes may share one, "imu"
+  std::string format;  // what its file was read as: "bvh", a layout's name; empty: memory
   std::variant<ClipInput, PointInput, ImuInput> data;
   StampSurvey survey;  // of the device's stamps
   /// Of a file that states a fixed step instead of stamps: frame k is at first + k * step, rounded.
   std::optional<double> step_ns;
+  /// The device wrote no stamps: they are counted from the first by a rate or that step.
+  bool counted = false;
   TimeModel clock;  // from those to the take's axis
   std::vector<InputFacts> files;
   Findings findings;  // of the reader

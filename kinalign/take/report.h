@@ -35,7 +35,8 @@ struct StreamReport {
   std::string stream;              // the take's group
   std::vector<std::string> nodes;  // of the group's, those that this stream measures
   StampSurvey survey;
-  double rate_hz = 0.0;          // from the median step
+  bool counted = false;          // its stamps, from the first by that rate: the device wrote none
+  double rate_hz = 0.0;          // nominal, else from the median step
   std::int64_t gap_ns = 0;       // longer stretches are gaps
   std::uint64_t gaps = 0;        // within the take
   std::int64_t gap_time_ns = 0;  // sum of their lengths

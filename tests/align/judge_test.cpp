@@ -38,7 +38,7 @@ CarriedContent carried(double rms, double lost) {
 
 }  // namespace
 
-TEST_CASE("sound stamps are no finding") { CHECK(judge_stamps(kinect()).empty()); }
+TEST_CASE("sound stamps are no finding") { CHECK(judge_stamps(kinect(), {}).empty()); }
 
 TEST_CASE("stamps that repeat are a note, those that ran ahead or back a warning, in the file") {
   RecordedStream s = kinect();
@@ -47,7 +47,7 @@ TEST_CASE("stamps that repeat are a note, those that ran ahead or back a warning
   s.survey.ahead = 2;
   s.survey.backward = 50;
   s.survey.largest_step_back_ns = 1'500'000'000;
-  const Findings found = judge_stamps(s);
+  const Findings found = judge_stamps(s, {});
   REQUIRE(found.size() == 3);
   CHECK(whole(found[0]) ==
         "note: k.csv: expected stamps that rise, found 3 that repeat the one before; these samples "
@@ -64,7 +64,7 @@ TEST_CASE("from one sample in twenty on, a clock that stepped back is an error")
   RecordedStream s = kinect();
   s.survey.backward = 51;
   s.survey.largest_step_back_ns = 3'600'000'000'000;
-  const Findings found = judge_stamps(s);
+  const Findings found = judge_stamps(s, {});
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
         "error: kinect: expected stamps that rise, found 51 of 1000 that step back, by up to "
@@ -76,24 +76,66 @@ TEST_CASE(
     "steps of 1.5 times their median on average are bursts or losses, in streams with stamps") {
   RecordedStream s = kinect();
   s.survey.last = utc_time(65'934'000'000);
-  const Findings found = judge_stamps(s);
+  const Findings found = judge_stamps(s, {});
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
         "warning: kinect: expected steps near their median of 33 ms, found a mean of 66 ms; "
         "stretches longer than three median steps are taken for gaps; where that is the device's "
         "way, say rate_hz = 15.2 or gap_ms = 198; else many are missing");
   s.survey.last = utc_time(49'450'000'000);
-  CHECK(judge_stamps(s).empty());
+  CHECK(judge_stamps(s, {}).empty());
   s.survey.last = utc_time(329'670'000'000);
-  CHECK(judge_stamps(s).at(0).repair ==
-        "stamps are of arrival, in bursts: leave the time column out of a layout and say rate_hz = "
+  CHECK(whole(judge_stamps(s, {}).at(0)) ==
+        "warning: kinect: expected steps near their median of 33 ms, found a mean of 330 ms; the "
+        "stamps are of arrival, in bursts; leave the time column out of a layout and say rate_hz = "
         "3.03");
   s.survey.last = utc_time(65'934'000'000);
-  s.step_ns = 33e6;  // a file that states its step
-  CHECK(judge_stamps(s).empty());
-  s.step_ns.reset();
+  s.counted = true;  // stamps that the device did not write are what their rate makes them
+  CHECK(judge_stamps(s, {}).empty());
+  s.counted = false;
   s.survey.samples = 9;  // too few to tell
-  CHECK(judge_stamps(s).empty());
+  CHECK(judge_stamps(s, {}).empty());
+}
+
+TEST_CASE("a stated rate is held against the stamps, and does not hide bursts") {
+  RecordedStream s = kinect();
+  StreamOptions options;
+  options.rate_hz = 30.0;
+  CHECK(judge_stamps(s, options).empty());
+  s.survey.last = utc_time(65'934'000'000);  // as many are missing: gaps, which are counted
+  CHECK(judge_stamps(s, options).empty());
+  options.rate_hz = 15.0;  // the device's way, as the advice is
+  CHECK(judge_stamps(s, options).empty());
+  options.rate_hz = 100.0;
+  const Findings found = judge_stamps(s, options);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: kinect: expected steps of 10 ms, by rate_hz, found a median of 33 ms; gaps and "
+        "invalid samples are told by the wrong rate; say rate_hz = 30.3, or nothing");
+  options.rate_hz = 5.0;
+  CHECK(judge_stamps(s, options).size() == 1);
+  options.rate_hz = 30.0;
+  s.survey.median_step_ns = 1'000'000;
+  REQUIRE(judge_stamps(s, options).size() == 1);
+  CHECK(judge_stamps(s, options)[0].meaning == "the stamps are of arrival, in bursts");
+}
+
+TEST_CASE("a rate that no device has is a unit taken for another") {
+  RecordedStream s = kinect();
+  s.survey.median_step_ns = 33'000;  // microseconds read as nanoseconds
+  s.survey.last = utc_time(32'967'000);
+  const Findings found = judge_stamps(s, {});
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: kinect: expected 0.5 to 5000 samples a second, found 3.03e+04 by the stamps; the "
+        "stamps may be in another unit than they were read in; a layout's [time] says the column's "
+        "unit: ns, us, ms or s");
+  s.survey.median_step_ns = 33'000'000'000;
+  s.survey.last = utc_time(32'967'000'000'000);
+  CHECK(judge_stamps(s, {}).size() == 1);
+  s.survey.median_step_ns = 1'000'000;  // a thousand a second
+  s.survey.last = utc_time(999'000'000);
+  CHECK(judge_stamps(s, {}).empty());
 }
 
 TEST_CASE("a grid that loses more than a tenth of a joint's motion names the worst joint") {

@@ -61,7 +61,7 @@ TEST_CASE("the reference is a stream of the recording, and no nodes") {
   Manifest manifest;
   manifest.align.reference = "mocap";
   CHECK(fault(two(hundred(), hundred()), manifest) ==
-        "expected a stream named as the reference, found 'mocap', which is none");
+        "expected a stream as the reference (known: optical, kinect), found \"mocap\"");
   CHECK(fault(of({recorded("imu", node("waist")), recorded("kinect", hundred())})) ==
         "expected a clip or points as the reference, found nodes");
 }
@@ -109,7 +109,7 @@ TEST_CASE("a root node is one of the nodes and has an orientation") {
     return of({recorded("optical", hundred()), recorded("imu", std::move(imu))});
   };
   CHECK(fault(recording(node("waist")), manifest) ==
-        "expected a node of 'imu' as root_node, found 'hip'");
+        "expected a node of 'imu' as root_node (known: waist), found \"hip\"");
   ImuStream unturned = node("hip");
   unturned.content.orientation = false;
   unturned.samples.orientation.clear();
@@ -121,7 +121,7 @@ TEST_CASE("only points are brought onto another stream, and that one stays where
   Manifest manifest;
   manifest.spaces["imu"] = by("fit");
   CHECK(fault(of({recorded("optical", hundred()), recorded("imu", node("waist"))}), manifest) ==
-        "expected a stream with joints in [space], found 'imu'");
+        "expected a stream with joints in [space] (known: optical), found \"imu\"");
   manifest.spaces = {{"mocap", by("fit")}};
   CHECK(fault(of({recorded("optical", hundred()), recorded("mocap", skeleton())}), manifest) ==
         "expected points to be brought onto another stream, found 'mocap'");
@@ -130,7 +130,8 @@ TEST_CASE("only points are brought onto another stream, and that one stays where
         "expected points to be brought onto another stream, found 'optical'");
   SpaceOptions onto_nothing = by("fit");
   onto_nothing.onto = "vicon";
-  CHECK(fault_of_space(onto_nothing) == "expected a stream with joints in [space], found 'vicon'");
+  CHECK(fault_of_space(onto_nothing) ==
+        "expected a stream with joints in [space] (known: optical, kinect), found \"vicon\"");
   manifest.spaces = {{"kinect", by("fit")}, {"second", by("fit")}};
   manifest.spaces["second"].onto = "kinect";
   CHECK(fault(of({recorded("optical", hundred()), recorded("kinect", hundred()),
@@ -142,13 +143,21 @@ TEST_CASE("only points are brought onto another stream, and that one stays where
 TEST_CASE("joints that a manifest names are there on both sides") {
   SpaceOptions space = by("fit");
   space.joints = {{"Nose", "Head"}};
-  CHECK(fault_of_space(space) == "expected a joint of 'kinect', found 'Nose'");
+  CHECK(
+      fault_of_space(space) ==
+      "expected a joint of 'kinect' (known: SpineBase, Head, HandLeft, HandRight), found \"Nose\"");
   space.joints = {{"Head", "Nose"}};
-  CHECK(fault_of_space(space) == "expected a joint of 'optical', found 'Nose'");
-  CHECK(fault_of_space(by("paper")) == "expected a joint of 'optical', found 'Hips'");
+  CHECK(fault_of_space(space) ==
+        "expected a joint of 'optical' (known: SpineBase, Head, HandLeft, HandRight), found "
+        "\"Nose\"");
+  CHECK(fault_of_space(by("paper")) ==
+        "expected a joint of 'optical' (known: SpineBase, Head, HandLeft, HandRight), found "
+        "\"Hips\"");
   space = by("paper");
   space.root = "Pelvis";
-  CHECK(fault_of_space(space) == "expected a joint of 'kinect', found 'Pelvis'");
+  CHECK(fault_of_space(space) ==
+        "expected a joint of 'kinect' (known: SpineBase, Head, HandLeft, HandRight), found "
+        "\"Pelvis\"");
 }
 
 TEST_CASE("a fit needs three named joints, and three places that stand on no line") {

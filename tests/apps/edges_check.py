@@ -143,7 +143,7 @@ def one_stream_alone_is_a_take(folder):
                          (samples.kinect(1), 1)):
         report = made(put(folder, only=text, only_options="start_ns = 0"), folder / "t.h5")
         assert report["frames"] == frames
-    refused("align", put(folder, only=samples.imu()), "-o", folder / "x.h5", naming="expected a clip or points",
+    refused("align", put(folder, only=samples.imu()), "-o", folder / "x.h5", naming=f"{folder}/recording.toml: expected a clip or points",
             out=folder / "x.h5")
     refused("align", put(folder, only=samples.bvh(0)), "-o", folder / "x.h5",
             naming="only.bvh: expected at least one", out=folder / "x.h5")
@@ -163,10 +163,10 @@ def nearly_empty_streams_give_a_take_of_the_instant_they_share(folder):
                   folder / "t.h5")
     assert report["frames"] == 1
     refused("align", put(folder, mocap=samples.bvh(), mocap_options=begin, kinect=samples.kinect(9, last + 1)),
-            "-o", folder / "x.h5", naming="expected streams that overlap", out=folder / "x.h5")
+            "-o", folder / "x.h5", naming=f"{folder}/recording.toml: expected streams that overlap", out=folder / "x.h5")
     # one sample of the other stream between two rows of the grid: no row in the common span
     refused("align", put(folder, mocap=samples.bvh(), mocap_options=begin, kinect=samples.kinect(1, 5)),
-            "-o", folder / "x.h5", naming="expected frames of 'mocap'", out=folder / "x.h5")
+            "-o", folder / "x.h5", naming=f"{folder}/recording.toml: expected frames of 'mocap'", out=folder / "x.h5")
 
 
 @case

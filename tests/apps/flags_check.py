@@ -21,7 +21,9 @@ def a_quick_flag_beside_a_manifest_is_refused_with_the_key_that_says_it(folder):
                              ("--kinect", "k.csv", "file in [stream.kinect]"),
                              ("--imu", "waist=w.csv", "files in [stream.imu]"),
                              ("--points", "a=b.csv", "file in [stream.NAME]"),
+                             ("--mocap-layout", "trc", "layout in [stream.mocap]"),
                              ("--kinect-layout", "kinect", "layout in [stream.kinect]"),
+                             ("--points-layout", "trc", "layout in [stream.NAME]"),
                              ("--imu-layout", "imu", "layout in [stream.imu]"),
                              ("--root-node", "waist", "root_node in [stream.imu]"),
                              ("--start-ns", "0", "start_ns in [stream.mocap]"),
@@ -44,6 +46,7 @@ def a_flag_without_the_file_it_is_for_is_refused(folder):
         wrong(*begin, flag, value, says=f"{flag}: expected --kinect, which it is for, found none")
     for flag, value in (("--imu-layout", "imu"), ("--root-node", "waist")):
         wrong(*begin, flag, value, says=f"{flag}: expected --imu, which it is for, found none")
+    wrong(*begin, "--points-layout", "trc", says="--points-layout: expected --points, which it is for, found none")
     wrong(*begin, "--kinect", folder / "kinect.csv", "--rotation-y-deg", "3",
           says="--rotation-y-deg: expected --space paper, which it is for, found --space fit")
 
@@ -82,7 +85,7 @@ def a_manifests_stream_may_have_any_name_and_two_kinds_of_one_name_are_told(fold
     manifest.write_text(text)
     done_with(0, "align", manifest, "-o", folder / "t.h5")
     manifest.write_text(text.replace('file = "kinect.csv"', 'files = ["kinect.csv", "imu.csv"]'))
-    refused("align", manifest, "-o", folder / "u.h5", naming="expected streams with names that differ, found 'imu' "
+    refused("align", manifest, "-o", folder / "u.h5", naming=f"{manifest}: expected streams with names that differ, found 'imu' "
             "twice: kinect.csv (points) and imu.csv (nodes)", out=folder / "u.h5")
 
 

@@ -57,6 +57,17 @@ TEST_CASE("the summary is a line on time and one per group with losses, the wors
         "  see    kinalign info take.h5\n");
 }
 
+TEST_CASE("stamps that the device did not write are called counted, however sure their clock is") {
+  CHECK(clock_text(std::nullopt, false) == "stamps of unknown accuracy");
+  CHECK(clock_text(std::nullopt, true) == "counted stamps of unknown accuracy");
+  CHECK(clock_text(0, false) == "shared clock");
+  CHECK(clock_text(0, true) == "counted stamps, shared clock");
+  CHECK(clock_text(3'600'000, true) == "counted stamps ± 3.6 ms");
+  AlignmentReport some = report();
+  some.streams[3].counted = true;  // one node's file of two
+  CHECK(plain(some, "").find("imu (2 nodes) counted stamps ± 3.6 ms") != std::string::npos);
+}
+
 TEST_CASE("a group with one node of unknown clock is of unknown accuracy, and that node is named") {
   AlignmentReport some = report();
   some.streams[2].worst_interval_ns.reset();

@@ -61,13 +61,13 @@ def check_refuses_a_manifest_as_align_does(folder):
     manifest = samples.recording(folder)
     good = manifest.read_text()
     for old, new, found in (('method = "paper"', 'method = "fit"\njoints = { SpineBase = "Hps" }',
-                             "expected a joint of 'mocap', found 'Hps'"),
+                             "expected a joint of 'mocap' (nearest: Hips), found \"Hps\""),
                             ("start_ns = 0", "start_ns = 9000000000", "expected streams that overlap in time"),
                             ('file = "imu.csv"', 'file = "imu.csv"\nroot_node = "waste"',
-                             "expected a node of 'imu' as root_node, found 'waste'")):
+                             "expected a node of 'imu' as root_node (known: imu), found \"waste\"")):
         assert old in good
         manifest.write_text(good.replace(old, new))
-        refused("align", manifest, "-o", folder / "t.h5", naming=found.split(",")[0])
+        refused("align", manifest, "-o", folder / "t.h5", naming=f"{manifest}: {found}")
         out, _ = done_with(1, "check", manifest)
         assert out.startswith(f"error    {manifest}: {found}"), out
         assert "kinalign align makes no take of it" in out, out
@@ -154,13 +154,17 @@ def info_gives_first_and_last_stamp_and_the_mean_rate_where_it_is_another(folder
     samples.recording(folder)
     out, _ = done_with(0, "info", folder / "imu.csv")
     assert "           from 0 to 99999999 ns\n" in out and "on the whole" not in out, out
+    out, _ = done_with(0, "info", folder / "mocap.bvh")
+    assert "clip (bvh)" in out and " ns, counted at that rate\n" in out, out
+    out, _ = done_with(0, "check", folder / "recording.toml")
+    assert out == "3 files read, nothing found\n", out
     (folder / "kinect.csv").write_text(samples.kinect(40))
     rows_dropped(folder / "kinect.csv", range(10, 30))
     out, _ = done_with(0, "info", folder / "kinect.csv")
     assert "at 30 Hz (14.62 on the whole); 25 joints" in out, out
     (folder / "imus.sto").write_text(samples.sto())
     out, _ = done_with(0, "info", folder / "imus.sto")
-    assert "  stream   imu: 2 samples" in out and "           torso_imu, pelvis_imu\n" in out, out
+    assert "  stream   imu (sto): 2 samples" in out and "           torso_imu, pelvis_imu\n" in out, out
 
 
 @case

@@ -27,3 +27,13 @@ TEST_CASE("a name that is like none has no nearest one") {
 TEST_CASE("of a long name from a file only the beginning is compared") {
   CHECK(nearest_name(std::string(1 << 20, 'a'), {std::string(64, 'a')}) == std::string(64, 'a'));
 }
+
+TEST_CASE("a name that is not known leads to the nearest one, by letters to change") {
+  const auto nearest = [](const char* name) {
+    return to_string(unknown_name(name, "a verb", {"align", "check", "convert"}));
+  };
+  CHECK(nearest("algin") == "expected a verb (nearest: align), found \"algin\"");
+  CHECK(nearest("chekc") == "expected a verb (nearest: check), found \"chekc\"");
+  CHECK(nearest("conv") == "expected a verb (nearest: convert), found \"conv\"");
+  CHECK(to_string(unknown_name("x", "a stream", {})) == "expected a stream, found \"x\"");
+}

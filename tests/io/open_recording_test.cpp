@@ -56,6 +56,45 @@ TEST_CASE("a user's layout is one of a stream's files, with its hash") {
   CHECK(third->streams[0].files[1].sha256 != first->streams[0].files[1].sha256);
 }
 
+TEST_CASE("a user's layout has to stay as it was when it was read") {
+  const FreshFolder folder;
+  const std::string layout = folder.write("lab.toml", layout_text);
+  folder.write("p.csv", "1,2,3\n");
+  Manifest manifest;
+  manifest.streams = {stream("points", "p.csv")};
+  PosixFiles files;
+  const auto recording = open_recording(files, manifest, folder.path() + "/");
+  REQUIRE_MESSAGE(recording, error_of(recording));
+  const auto& passes = std::get<PointInput>(recording->streams[0].data).passes;
+  CHECK(passes());
+  folder.write("lab.toml", "metres_per_unit = 0.5\n" + layout_text);
+  const auto again = passes();
+  REQUIRE_FALSE(again);
+  CHECK(to_string(again.error()) ==
+        layout + ": expected a file that stays as it is while it is read, found one that changed");
+}
+
+TEST_CASE("a stream says what it was read as, and whether its stamps are counted") {
+  const FreshFolder folder;
+  folder.write("lab.toml", layout_text);
+  folder.write("counted.csv", "1,2,3\n4,5,6\n");
+  folder.write("stamped.csv", "time_ns,qw,qx,qy,qz\n0,1,0,0,0\n10,1,0,0,0\n");
+  folder.write("stuck.csv", "time_ns,qw,qx,qy,qz\n0,1,0,0,0\n0,1,0,0,0\n0,1,0,0,0\n");
+  Manifest manifest;
+  manifest.streams = {stream("points", "counted.csv"), stream("imu", "stamped.csv"),
+                      stream("stuck", "stuck.csv")};
+  manifest.streams[1].layout = manifest.streams[2].layout = "";
+  manifest.streams[2].rate_hz = 15.0;
+  PosixFiles files;
+  const auto recording = open_recording(files, manifest, folder.path() + "/");
+  REQUIRE_MESSAGE(recording, error_of(recording));
+  CHECK(recording->streams[0].format == "lab");
+  CHECK(recording->streams[0].counted);
+  CHECK(recording->streams[1].format == "imu");
+  CHECK_FALSE(recording->streams[1].counted);
+  CHECK(recording->streams[2].counted);
+}
+
 TEST_CASE("a layout that the program carries is no file") {
   const FreshFolder folder;
   folder.write("k.csv", "time_ns,qw,qx,qy,qz\n1,1,0,0,0\n2,1,0,0,0\n");

@@ -179,13 +179,3 @@ TEST_CASE("what TOML says of every option comes back from the parameters that a 
     }
   }
 }
-
-TEST_CASE("a name that is not known leads to the nearest one, by letters to change") {
-  const auto nearest = [](const char* name) {
-    return to_string(unknown_name(name, "a verb", {"align", "check", "convert"}));
-  };
-  CHECK(nearest("algin") == "expected a verb (nearest: align), found \"algin\"");
-  CHECK(nearest("chekc") == "expected a verb (nearest: check), found \"chekc\"");
-  CHECK(nearest("conv") == "expected a verb (nearest: convert), found \"conv\"");
-  CHECK(to_string(unknown_name("x", "a stream", {})) == "expected a stream, found \"x\"");
-}

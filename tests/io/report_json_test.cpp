@@ -19,6 +19,7 @@ AlignmentReport small_report() {
   imu.stream = "imu";
   imu.nodes = {"waist"};
   imu.survey = {31, 1, 4, 2, 3, 4'000'000, utc_time(5), utc_time(6), 66'666'667};
+  imu.counted = true;
   imu.rate_hz = 15.0;
   imu.gap_ns = 206'666'668;
   imu.gaps = 7;
@@ -68,6 +69,7 @@ const std::string whole = R"({
         "last_ns": 6,
         "median_step_ns": 66666667
       },
+      "stamps_counted": true,
       "rate_hz": 15.0,
       "gap_ns": 206666668,
       "gaps": 7,
