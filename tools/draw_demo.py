@@ -72,10 +72,10 @@ def axes():
     parts = []
     for k in range(6):
         x = x_of(BEGIN + k)
-        parts += [f'<path d="M{x:.1f} {TOP}V{BOTTOM}" stroke="#dddddd"/>', text(x, BOTTOM + 18, f"{BEGIN + k:.1f}")]
+        parts += [f'<path d="M{x:.1f} {TOP}V{BOTTOM}" class="grid" stroke="#dddddd"/>', text(x, BOTTOM + 18, f"{BEGIN + k:.1f}")]
     for height in (0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0):
         y = y_of(height)
-        parts += [f'<path d="M{LEFT} {y:.1f}H{RIGHT}" stroke="#dddddd"/>', text(LEFT - 8, y + 4, f"{height:.1f}", "end")]
+        parts += [f'<path d="M{LEFT} {y:.1f}H{RIGHT}" class="grid" stroke="#dddddd"/>', text(LEFT - 8, y + 4, f"{height:.1f}", "end")]
     middle = (TOP + BOTTOM) / 2
     parts.append(text((LEFT + RIGHT) / 2, BOTTOM + 38, "time from the first frame, s"))
     parts.append(f'<g transform="rotate(-90 22 {middle})">' + text(22, middle, "height of the right wrist, m") + "</g>")
@@ -118,7 +118,9 @@ def main():
         "<title>A Kinect's wrist brought onto the mocap's grid and into its space</title>",
         '<defs><pattern id="gap" width="6" height="6" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
         '<path d="M0 0V6" stroke="#999999" stroke-width="1.5"/></pattern></defs>',
-        '<rect width="810" height="375" fill="#ffffff"/>', *parts, "</svg>", ""]), encoding="utf-8")
+        "<style>@media (prefers-color-scheme: dark) { .paper { fill: #15181c } text { fill: #e4e6e8 } "
+        ".grid { stroke: #343a40 } }</style>",
+        '<rect class="paper" width="810" height="375" fill="#ffffff"/>', *parts, "</svg>", ""]), encoding="utf-8")
 
 
 main()
