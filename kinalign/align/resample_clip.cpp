@@ -21,6 +21,32 @@ std::vector<double> column(const std::vector<double>& rotations, std::size_t joi
   return out;
 }
 
+/// The rows of one segment.
+void resample(const Segment& s, const Window<ClipFrames>& window,
+              std::span<const std::int64_t> grid, RotationCurve curve, ClipRows& out) {
+  const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
+  const std::span stamps(window.time_ns);
+  const std::size_t channels = window.rows.local_positions.size() / stamps.size();
+  const std::size_t joints = channels / 3;
+  const auto x = seconds_from(stamps[s.first], stamps.subspan(s.first, knots));
+  const auto at = seconds_from(stamps[s.first], grid.subspan(s.row, rows));
+  const Knots spline{
+      x, std::span(window.rows.local_positions).subspan(s.first * channels, knots * channels),
+      channels};
+  std::vector<double> bends(knots * channels);
+  natural_spline(spline, bends);
+  spline_at(spline, bends, at,
+            std::span(out.local_positions).subspan(s.row * channels, rows * channels));
+  for (std::size_t j = 0; j < joints; ++j) {
+    const auto turned =
+        rotations_at(curve, x, column(window.rows.local_rotations, joints, j, s.first, s.last), at);
+    for (std::size_t r = 0; r < rows; ++r) {
+      std::copy_n(&turned[4 * r], 4, &out.local_rotations[4 * ((s.row + r) * joints + j)]);
+    }
+  }
+  std::fill(&out.valid[s.row], &out.valid[s.row] + rows, std::uint8_t{1});
+}
+
 }  // namespace
 
 Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& out) {
@@ -30,29 +56,11 @@ Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& o
   const auto& stamps = window_.time_ns;
   if (stamps.empty()) return Failure(Error{"", 0, "frames in a clip", "none"});
   const std::size_t channels = window_.rows.local_positions.size() / stamps.size();
-  const std::size_t joints = channels / 3;
   out.local_positions.assign(grid.size() * channels, 0.0);
-  out.local_rotations.assign(grid.size() * joints * 4, 0.0);
+  out.local_rotations.assign(grid.size() * channels / 3 * 4, 0.0);
   out.valid.assign(grid.size(), 0);
   for (const Segment& s : find_segments(stamps, grid, rule_.gap_ns)) {
-    const std::size_t knots = s.last - s.first, rows = s.row_end - s.row;
-    const auto x = seconds_from(stamps[s.first], std::span(stamps).subspan(s.first, knots));
-    const auto at = seconds_from(stamps[s.first], grid.subspan(s.row, rows));
-    const Knots spline{
-        x, std::span(window_.rows.local_positions).subspan(s.first * channels, knots * channels),
-        channels};
-    std::vector<double> bends(knots * channels);
-    natural_spline(spline, bends);
-    spline_at(spline, bends, at,
-              std::span(out.local_positions).subspan(s.row * channels, rows * channels));
-    for (std::size_t j = 0; j < joints; ++j) {
-      const auto turned = rotations_at(
-          rule_.curve, x, column(window_.rows.local_rotations, joints, j, s.first, s.last), at);
-      for (std::size_t r = 0; r < rows; ++r) {
-        std::copy_n(&turned[4 * r], 4, &out.local_rotations[4 * ((s.row + r) * joints + j)]);
-      }
-    }
-    std::fill(&out.valid[s.row], &out.valid[s.row] + rows, std::uint8_t{1});
+    resample(s, window_, grid, rule_.curve, out);
   }
   Neighbours near = find_neighbours(stamps, grid);
   for (std::size_t r = 0; r < grid.size(); ++r) {

@@ -101,5 +101,15 @@ def man_shows_the_page_without_a_warning(folder):
     assert "kinalign" in text
 
 
+@case
+def a_plain_configure_needs_no_preset_and_builds_for_speed(folder):
+    plain = folder / "plain"
+    for words in (("-S", ROOT, "-B", plain, "-DKINALIGN_TESTS=OFF"), ("--build", plain, "--target", "kinalign_core")):
+        done = subprocess.run(["cmake", *words], capture_output=True, check=False)
+        assert done.returncode == 0, done.stderr.decode()
+    assert (plain / "kinalign/core/libkinalign_core.a").exists()
+    assert "CMAKE_BUILD_TYPE:STRING=Release\n" in (plain / "CMakeCache.txt").read_text()
+
+
 if __name__ == "__main__":
     sys.exit(main())
