@@ -13,6 +13,7 @@ namespace {
 /// Steps between the samples kept of a device that stamps them, ns.
 struct Steps {
   double median = 0.0, mean = 0.0;
+  bool often_long = false;  // one in ten and more: the device's way, and no pause now and then
 };
 
 std::optional<Steps> steps_of(const RecordedStream& s) {
@@ -21,7 +22,8 @@ std::optional<Steps> steps_of(const RecordedStream& s) {
   if (s.counted || survey.kept() < enough || survey.median_step_ns == 0) return std::nullopt;
   return Steps{static_cast<double>(survey.median_step_ns),
                static_cast<double>(to_ns(survey.last) - to_ns(survey.first)) /
-                   static_cast<double>(survey.kept() - 1)};
+                   static_cast<double>(survey.kept() - 1),
+               10 * survey.long_steps >= survey.kept() - 1};
 }
 
 /// A unit taken for another is wrong by a thousand or more, and no device of the field is so quick
@@ -34,10 +36,11 @@ Findings judge_unit(const Steps& steps, const std::string& file) {
            Error{file, 0, fmt::format("{} to {} samples a second", slowest_hz, fastest_hz),
                  fmt::format("{:.4g} by the stamps", rate)},
            "the stamps may be in another unit than they were read in",
-           "a layout's [time] says the column's unit: ns, us, ms or s"}};
+           "where a layout reads them, its [time] says the column's unit: ns, us, ms or s"}};
 }
 
-/// The median tells a device's period, but not where samples come in bursts.
+/// The median tells a device's period, but not where samples come in bursts. A few long steps are
+/// gaps, which the report counts.
 Findings judge_rate(const Steps& steps, double nominal_hz, const std::string& file) {
   constexpr double gap_steps = 3.0, burst = 5.0, alike = 1.5;
   const double from_mean = 1e9 / steps.mean;
@@ -49,10 +52,12 @@ Findings judge_rate(const Steps& steps, double nominal_hz, const std::string& fi
   };
   const std::string median =
       fmt::format("steps near their median of {:.3g} ms", 1e-6 * steps.median);
-  if (steps.mean > burst * steps.median) {
+  if (steps.often_long && steps.mean > burst * steps.median) {
     return warning(
         median, found, "the stamps are of arrival, in bursts",
-        fmt::format("leave the time column out of a layout and say rate_hz = {:.3g}", from_mean));
+        fmt::format("where a layout reads them, leave its time column out and say rate_hz = "
+                    "{:.3g}",
+                    from_mean));
   }
   if (nominal_hz > 0.0) {
     const auto fits = [nominal_hz](double step) {
@@ -64,7 +69,7 @@ Findings judge_rate(const Steps& steps, double nominal_hz, const std::string& fi
                    "gaps and invalid samples are told by the wrong rate",
                    fmt::format("say rate_hz = {:.3g}, or nothing", 1e9 / steps.median));
   }
-  if (steps.mean < alike * steps.median) return {};
+  if (!steps.often_long || steps.mean < alike * steps.median) return {};
   return warning(median, found, "stretches longer than three median steps are taken for gaps",
                  fmt::format("where that is the device's way, say rate_hz = {:.3g} or gap_ms = "
                              "{:.3g}; else many are missing",
@@ -187,6 +192,7 @@ Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
 Findings judge_files(const TakeHeader& header) {
   Findings out;
   for (const TakeGroup& group : header.groups) {
+    if (!std::holds_alternative<ImuGroup>(group.kind)) continue;
     const auto& files = group.files;
     for (std::size_t i = 0; i < files.size(); ++i) {
       const auto same = [&](const InputFacts& other) { return other.sha256 == files[i].sha256; };

@@ -25,7 +25,7 @@ Findings judge_residual(const SpaceReport& space);
 /// A fit by joints so near to a line that the turn about it is a guess.
 Findings judge_fit(const SpacePlan& plan, const SpaceReport& space);
 
-/// Nodes that read one and the same file.
+/// Nodes whose files hold the same bytes.
 Findings judge_files(const TakeHeader& header);
 
 }  // namespace kinalign

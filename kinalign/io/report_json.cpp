@@ -18,7 +18,8 @@ Json survey_json(const StampSurvey& survey) {
           {"largest_step_back_ns", survey.largest_step_back_ns},
           {"first_ns", to_ns(survey.first)},
           {"last_ns", to_ns(survey.last)},
-          {"median_step_ns", survey.median_step_ns}};
+          {"median_step_ns", survey.median_step_ns},
+          {"long_steps", survey.long_steps}};
 }
 
 Json stream_json(const StreamReport& stream) {

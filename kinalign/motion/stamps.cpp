@@ -132,6 +132,10 @@ StampSurvey StampSurveyor::result() const {
       break;
     }
   }
+  for (std::size_t i = 0; i < classes; ++i) {
+    const double step = sums_[i] / static_cast<double>(std::max<std::uint64_t>(1, steps_[i]));
+    if (step > 1.5 * static_cast<double>(survey.median_step_ns)) survey.long_steps += steps_[i];
+  }
   return survey;
 }
 

@@ -54,6 +54,7 @@ struct StampSurvey {
   std::int64_t largest_step_back_ns = 0;
   Time first{}, last{};             // of the samples kept
   std::int64_t median_step_ns = 0;  // between kept samples; 0 with fewer than two
+  std::uint64_t long_steps = 0;     // of these, longer than 1.5 medians
 
   std::uint64_t kept() const { return samples - duplicates - near - backward - ahead; }
 };

@@ -40,11 +40,11 @@ struct StreamReport {
   std::int64_t gap_ns = 0;       // longer stretches are gaps
   std::uint64_t gaps = 0;        // within the take
   std::int64_t gap_time_ns = 0;  // sum of their lengths
-  std::uint64_t samples = 0;     // rows x joints (or nodes) of the take
+  std::uint64_t samples = 0;     // rows x joints (or nodes) of the take; of a skeleton rows
   std::uint64_t invalid = 0;     // of these
   std::uint64_t inferred = 0;    // valid, but the device guessed (state 1)
-  std::uint64_t bridged =
-      0;  // valid, but samples were missing there: state 0, or steps of 1.5 and more
+  std::uint64_t bridged = 0;     // valid, but between samples of which some are missing: state 0,
+                                 // or more than 1.5 of the stream's steps apart
   std::int64_t worst_nearest_ns = 0;  // over valid rows: distance to the nearest raw sample
   std::optional<std::int64_t> worst_interval_ns;  // half-width; absent: nothing is known
 };

@@ -21,8 +21,8 @@ namespace kinalign {
 struct SampleDistance {
   std::vector<std::int64_t> nearest_raw_ns;    // at most 10 s; empty: not resampled
   std::vector<std::int64_t> time_interval_ns;  // half-width of the stamp's interval; empty: unknown
-  std::vector<std::uint8_t>
-      over_loss{};  // as `valid`: 1 between samples that miss some; in no file
+  /// As `valid`: 1 between samples that miss some. In no file: only the report counts it.
+  std::vector<std::uint8_t> over_loss{};
 };
 
 /// n rows of a skeleton's stream.

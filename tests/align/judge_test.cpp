@@ -76,6 +76,7 @@ TEST_CASE(
     "steps of 1.5 times their median on average are bursts or losses, in streams with stamps") {
   RecordedStream s = kinect();
   s.survey.last = utc_time(65'934'000'000);
+  s.survey.long_steps = 500;
   const Findings found = judge_stamps(s, {});
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
@@ -85,10 +86,11 @@ TEST_CASE(
   s.survey.last = utc_time(49'450'000'000);
   CHECK(judge_stamps(s, {}).empty());
   s.survey.last = utc_time(329'670'000'000);
-  CHECK(whole(judge_stamps(s, {}).at(0)) ==
-        "warning: kinect: expected steps near their median of 33 ms, found a mean of 330 ms; the "
-        "stamps are of arrival, in bursts; leave the time column out of a layout and say rate_hz = "
-        "3.03");
+  CHECK(
+      whole(judge_stamps(s, {}).at(0)) ==
+      "warning: kinect: expected steps near their median of 33 ms, found a mean of 330 ms; the "
+      "stamps are of arrival, in bursts; where a layout reads them, leave its time column out and "
+      "say rate_hz = 3.03");
   s.survey.last = utc_time(65'934'000'000);
   s.counted = true;  // stamps that the device did not write are what their rate makes them
   CHECK(judge_stamps(s, {}).empty());
@@ -116,8 +118,33 @@ TEST_CASE("a stated rate is held against the stamps, and does not hide bursts") 
   CHECK(judge_stamps(s, options).size() == 1);
   options.rate_hz = 30.0;
   s.survey.median_step_ns = 1'000'000;
+  s.survey.long_steps = 333;
   REQUIRE(judge_stamps(s, options).size() == 1);
   CHECK(judge_stamps(s, options)[0].meaning == "the stamps are of arrival, in bursts");
+}
+
+TEST_CASE("samples come in bursts where many steps are long, and a pause now and then is none") {
+  const auto meaning_of = [](const std::vector<std::int64_t>& ms) {
+    std::vector<Time> stamps;
+    for (const std::int64_t t : ms) stamps.push_back(utc_time(t * 1'000'000));
+    StampSurveyor surveyor;
+    surveyor.add(stamps);
+    RecordedStream s = kinect();
+    s.survey = surveyor.result();
+    const Findings found = judge_stamps(s, {});
+    return found.empty() ? "" : found[0].meaning;
+  };
+  const auto steps = [](std::int64_t usual, std::int64_t rare, std::int64_t each) {
+    std::vector<std::int64_t> ms{0};
+    for (std::int64_t k = 1; k < 1000; ++k)
+      ms.push_back(ms.back() + (k % each == 0 ? rare : usual));
+    return ms;
+  };
+  CHECK(meaning_of(steps(2, 160, 5)) == "the stamps are of arrival, in bursts");
+  CHECK(meaning_of(steps(33, 99, 2)).find("taken for gaps") != std::string::npos);
+  CHECK(meaning_of(steps(33, 57'000, 500)).empty());  // one pause
+  CHECK(meaning_of(steps(33, 20'000, 100)).empty());  // a pause in each hundred
+  CHECK(meaning_of(steps(33, 34, 2)).empty());
 }
 
 TEST_CASE("a rate that no device has is a unit taken for another") {
@@ -128,8 +155,8 @@ TEST_CASE("a rate that no device has is a unit taken for another") {
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
         "warning: kinect: expected 0.5 to 5000 samples a second, found 3.03e+04 by the stamps; the "
-        "stamps may be in another unit than they were read in; a layout's [time] says the column's "
-        "unit: ns, us, ms or s");
+        "stamps may be in another unit than they were read in; where a layout reads them, "
+        "its [time] says the column's unit: ns, us, ms or s");
   s.survey.median_step_ns = 33'000'000'000;
   s.survey.last = utc_time(32'967'000'000'000);
   CHECK(judge_stamps(s, {}).size() == 1);
@@ -228,6 +255,8 @@ TEST_CASE("one file for two nodes is a warning") {
       {"imu", ImuGroup{}, true, false, {{"w.csv", "aa", 1}, {"l.csv", "bb", 1}}, "imu"}};
   CHECK(judge_files(header).empty());
   header.groups[0].files.push_back({"w.csv", "aa", 1});
+  header.groups.push_back(
+      {"kinect", PointGroup{}, true, false, {{"p.txt", "cc", 1}, {"a.txt", "cc", 1}}, "kinect"});
   const Findings found = judge_files(header);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==

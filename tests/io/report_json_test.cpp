@@ -18,7 +18,7 @@ AlignmentReport small_report() {
   StreamReport imu;
   imu.stream = "imu";
   imu.nodes = {"waist"};
-  imu.survey = {31, 1, 4, 2, 3, 4'000'000, utc_time(5), utc_time(6), 66'666'667};
+  imu.survey = {31, 1, 4, 2, 3, 4'000'000, utc_time(5), utc_time(6), 66'666'667, 14};
   imu.counted = true;
   imu.rate_hz = 15.0;
   imu.gap_ns = 206'666'668;
@@ -67,7 +67,8 @@ const std::string whole = R"({
         "largest_step_back_ns": 4000000,
         "first_ns": 5,
         "last_ns": 6,
-        "median_step_ns": 66666667
+        "median_step_ns": 66666667,
+        "long_steps": 14
       },
       "stamps_counted": true,
       "rate_hz": 15.0,

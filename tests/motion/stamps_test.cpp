@@ -175,6 +175,27 @@ TEST_CASE("a stamp less than a fifth of a step behind the one before is left out
   CHECK(surveyed({0, 1, 2, 90, 91, 92, 180, 181, 182}).near == 0);  // bursts are their own pace
 }
 
+TEST_CASE("steps longer than one and a half medians are counted, whatever they are") {
+  for (const auto seed : fresh_seeds(100)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const auto step = static_cast<std::int64_t>(1'000'000 + random() % 99'000'000);
+    std::vector<Time> stamps{utc_time(0)};
+    std::uint64_t longer = 0;
+    while (stamps.size() < 400) {
+      const bool is_long = random() % 3 == 0;
+      longer += is_long ? 1 : 0;
+      const auto times =
+          static_cast<std::int64_t>(is_long ? 175 + random() % 120 : 90 + random() % 21);
+      stamps.push_back(stamps.back() + Duration{step / 100 * times});
+    }
+    StampSurveyor surveyor;
+    surveyor.add(stamps);
+    CHECK(surveyor.result().long_steps == longer);
+  }
+  CHECK(StampSurveyor().result().long_steps == 0);
+}
+
 TEST_CASE("whatever is near behind whatever, the survey counts what the rule leaves out") {
   for (const auto seed : fresh_seeds(200)) {
     CAPTURE(seed);
