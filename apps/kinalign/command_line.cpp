@@ -181,12 +181,10 @@ Fields common_fields(Common& common, const Page& page) {
   fields.push_back({"quiet", "print errors only", &common.quiet});
   fields.push_back({"verbose", "say more: what each file was read as, names of joints and nodes",
                     &common.verbose});
-  fields.push_back({"color",
-                    "colours: auto is on a terminal without NO_COLOR",
-                    &common.color,
-                    -unlimited,
-                    unlimited,
-                    {"auto", "always", "never"}});
+  fields.push_back({.name = "color",
+                    .meaning = "colours: auto is on a terminal without NO_COLOR",
+                    .value = &common.color,
+                    .choices = {"auto", "always", "never"}});
   return fields;
 }
 

@@ -11,6 +11,11 @@ namespace {
 constexpr double day_ms = 86'400'000.0;
 }  // namespace
 
+std::int64_t line_of(const KeyLines& lines, const std::string& key) {
+  const auto found = lines.find(key);
+  return found == lines.end() ? 0 : found->second;
+}
+
 Result<void> check_stream_name(const std::string& name) {
   constexpr std::array<std::string_view, 7> taken{
       "time_ns", "seconds", "t0_ns", "report_json", "parameters_json", ".", ".."};
@@ -28,12 +33,10 @@ Fields describe(AlignOptions& o) {
       {"gap_ms",
        "longest stretch without samples to interpolate over, ms; 0: three nominal periods",
        &o.gap_ms, 0.0, day_ms},
-      {"rotations",
-       "between samples: spline (no jump in angular acceleration) or slerp",
-       &o.rotations,
-       -unlimited,
-       unlimited,
-       {"spline", "slerp"}},
+      {.name = "rotations",
+       .meaning = "between samples: spline (no jump in angular acceleration) or slerp",
+       .value = &o.rotations,
+       .choices = {"spline", "slerp"}},
       {"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double},
   };
 }
@@ -43,21 +46,22 @@ Fields describe(StreamOptions& o) {
       {"layout", "name or path of a declared layout (default: by the file's content)", &o.layout},
       {"metres_per_unit", "length of the file's unit, m; 0: the format's own (BVH: 0.01)",
        &o.metres_per_unit, 0.0, 1000.0},
-      {"up", "the file's up axis (BVH: y)", &o.up, -unlimited, unlimited, {"", "y", "z"}},
+      {.name = "up",
+       .meaning = "the file's up axis (BVH: y)",
+       .value = &o.up,
+       .choices = {"", "y", "z"}},
       {"rate_hz",
-       "nominal sampling rate: stamps files without unlimited, and tells what a gap is in others",
+       "nominal sampling rate: stamps files without any, and tells what a gap is in others",
        &o.rate_hz, 0.0, 1e6},
       {"start_ns", "stamp of the first frame (BVH: of the click on record), ns", &o.start_ns, -4e18,
        4e18},
       {"end_ns", "stamp of the click on stop, ns", &o.end_ns, -4e18, 4e18},
       {"click_latency_ms", "delay from a click to its effect, ms", &o.click_latency_ms, -day_ms,
        day_ms},
-      {"clock",
-       "shared: stamps are exact on the reference's clock; unknown",
-       &o.clock,
-       -unlimited,
-       unlimited,
-       {"shared", "unknown"}},
+      {.name = "clock",
+       .meaning = "shared: stamps are exact on the reference's clock; unknown",
+       .value = &o.clock,
+       .choices = {"shared", "unknown"}},
       {"offset_ms", "added to the stream's stamps, ms", &o.offset_ms, -1e12, 1e12},
       {"drift_ppm", "rate added to the stream's stamps from the first one on, ppm", &o.drift_ppm,
        -1e5, 1e5},
@@ -70,13 +74,12 @@ Fields describe(StreamOptions& o) {
 
 Fields describe(SpaceOptions& o) {
   return {
-      {"method",
-       "none; paper: equations (1) and (2), root onto root in each frame; fit: one rigid "
-       "transform by least squares; given",
-       &o.method,
-       -unlimited,
-       unlimited,
-       {"none", "paper", "fit", "given"}},
+      {.name = "method",
+       .meaning =
+           "none; paper: equations (1) and (2), root onto root in each frame; fit: one rigid "
+           "transform by least squares; given",
+       .value = &o.method,
+       .choices = {"none", "paper", "fit", "given"}},
       {"onto", "stream that gives the space (default: the reference)", &o.onto},
       {"rotation_y_deg", "paper: turn about the y axis, counter-clockwise seen from above, degrees",
        &o.rotation_y_deg, -360.0, 360.0},

@@ -21,6 +21,11 @@ struct StreamFile {
   std::string node;  // the node worn at this place; empty where the file names its own
 };
 
+/// Where a file says a key, for messages: key -> line.
+using KeyLines = std::map<std::string, std::int64_t>;
+/// 0 where no file says it.
+std::int64_t line_of(const KeyLines& lines, const std::string& key);
+
 /// How to read a stream and what is known of its clock.
 struct StreamOptions {
   std::string name;  // "mocap", "kinect", "imu": the take's group
@@ -45,6 +50,8 @@ struct StreamOptions {
 
   std::map<std::string, std::vector<double>> mounting;  // of nodes: sensor_from_bone, w,x,y,z
   std::string root_node;  // of nodes: all are brought into this one's space; empty: the world's
+
+  KeyLines lines;
 };
 
 /// How a stream of points is brought into the reference's space.
@@ -57,6 +64,8 @@ struct SpaceOptions {
   std::vector<double> translation;  // given: m
   std::map<std::string, std::string> joints;           // this stream's joint -> the other's
   std::string root = "SpineBase", onto_root = "Hips";  // paper: the joints that are put together
+
+  KeyLines lines;
 };
 
 struct AlignOptions {

@@ -33,7 +33,10 @@ inline Usage describe_mix(Mix& o) {
   usage.settings = {
       {"gap_ms", "longest gap, ms", &o.gap_ms, 0.0},
       {"rows", "how many", &o.rows, 1.0, 10.0},
-      {"rotations", "between samples", &o.rotations, -unlimited, unlimited, {"spline", "slerp"}},
+      {.name = "rotations",
+       .meaning = "between samples",
+       .value = &o.rotations,
+       .choices = {"spline", "slerp"}},
       {"double", "store 8-byte numbers", &o.store_double},
       {"interval_ms", "half-width, ms", &o.interval_ms, 0.0, 1000.0},
   };
