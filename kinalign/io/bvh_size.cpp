@@ -40,7 +40,8 @@ constexpr std::array<Unit, 5> units{{{0.01, "centimetres"},
                                      {0.0254, "inches"},
                                      {0.056444, "CMU units of 5.64 cm"}}};
 
-/// The unit in which a hip height is nearest to a grown person's 0.9 m.
+/// The unit in which a hip height is nearest to a grown person's 0.9 m: 0.53 of a stature of 1.7 m
+/// (Drillis and Contini, 1964).
 const Unit& best_unit(double hip_in_units) {
   const Unit* best = units.data();
   for (const Unit& unit : units) {
@@ -54,8 +55,8 @@ const Unit& best_unit(double hip_in_units) {
 
 constexpr int y = 1, z = 2;
 
-/// How far the first row's joints reach along our y, which is up, and z: a person who stands with
-/// arms spread is narrow along z, one who lies is low along y. Nothing where neither is so.
+/// Whether the person of the first row stands: upright with arms spread one is narrow along z, and
+/// who lies is low along y, which is up. Nothing where neither is so.
 std::optional<bool> stands(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
                            std::span<const double> rows, const BvhOptions& options) {
   if (rows.empty()) return std::nullopt;
@@ -75,7 +76,7 @@ Finding lying(std::string_view name, const std::string& expected, const std::str
               char other) {
   return {Severity::warning, Error{std::string(name), 0, expected, found},
           "the person is read as lying",
-          fmt::format("--up {0} (up = \"{0}\" in a manifest) turns it upright", other)};
+          fmt::format("--up {0} (up = \"{0}\" in a manifest) if the person stood", other)};
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ struct Counted {
   BvhHierarchy hierarchy;
   Findings findings;
   InputFacts facts;
-  std::vector<double> first_row;  // as far as the rows' first 64 KiB have it
+  std::vector<double> first_row;  // where it ends within the rows' first piece or 64 KiB
   bool kept = false;
 };
 

@@ -69,9 +69,12 @@ class ManifestReader {
   }
 
  private:
+  static std::int64_t line(const toml::node& node) {
+    return static_cast<std::int64_t>(node.source().begin.line);
+  }
   Failure at(const toml::node& node, Error error) const {
     error.file = name_;
-    error.line = static_cast<std::int64_t>(node.source().begin.line);
+    error.line = line(node);
     return Failure(std::move(error));
   }
   Failure wrong(const Entry& entry, const std::string& wanted) const {
@@ -202,6 +205,7 @@ class ManifestReader {
     out.name = stream.key;
     const Fields fields = describe(out);
     for (const Entry& entry : in_file_order(KA_TRY(table(stream)))) {
+      out.lines[entry.key] = line(*entry.value);
       if (entry.key == "file") {
         out.files.push_back({KA_TRY(text(entry)), ""});
       } else if (entry.key == "files") {
@@ -228,6 +232,7 @@ class ManifestReader {
   Result<void> read_space(const Entry& space, SpaceOptions& out) const {
     const Fields fields = describe(out);
     for (const Entry& entry : in_file_order(KA_TRY(table(space)))) {
+      out.lines[entry.key] = line(*entry.value);
       if (entry.key == "rotation") {
         out.rotation = KA_TRY(rotation(entry));
       } else if (entry.key == "translation") {

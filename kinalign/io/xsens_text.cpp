@@ -4,6 +4,7 @@
 #include "kinalign/core/files.h"
 #include "kinalign/core/numbers.h"
 #include "kinalign/io/imu_converter.h"
+#include "kinalign/io/late_quantities.h"
 #include "kinalign/io/named_lines.h"
 #include "kinalign/io/row_stamps.h"
 #include "kinalign/io/xsens_columns.h"
@@ -83,13 +84,14 @@ class XsensReader final : public ImuReader {
            Error{lines_.file(), 0, "every packet", std::to_string(packets_.lost()) + " lost"},
            "they are gaps", ""});
     }
-    if (late_ > 0) {
+    if (late_.rows() > 0) {
       findings.push_back(
           {Severity::warning,
            Error{lines_.file(), 0,
                  "every quantity within the first " + std::to_string(patience) + " rows",
-                 std::to_string(late_) + " rows with one that begins later"},
-           "that quantity was left out", "cut the rows before it from the file"});
+                 std::to_string(late_.rows()) +
+                     " rows with values that begin later: " + late_.names()},
+           "what begins later was left out", "cut the rows before it from the file"});
     }
     samples_.report(lines_.file(), findings);
     return {};
@@ -143,17 +145,9 @@ class XsensReader final : public ImuReader {
       if (waiting_.size() == patience) settle(out);
       return {};
     }
-    const ImuContent& read = header_->content;
-    late_ += (here.orientation && !read.orientation) || (here.acceleration && !read.acceleration) ||
-                     (here.angular_velocity && !read.angular_velocity)
-                 ? 1
-                 : 0;
+    late_.add(here, header_->content);
     append_sample(stamp, out);
     return {};
-  }
-
-  static bool is_any(const ImuContent& content) {
-    return content.orientation || content.acceleration || content.angular_velocity;
   }
 
   /// What has a value in this row: a named column may be empty.
@@ -269,7 +263,7 @@ class XsensReader final : public ImuReader {
   static constexpr std::size_t patience = 32;  // rows
   std::vector<Waiting> waiting_;
   ImuContent seen_{.gravity = false};  // in these
-  std::uint64_t late_ = 0;             // rows with a quantity that none of these had
+  LateQuantities late_;                // that none of these had
 };
 
 }  // namespace

@@ -79,10 +79,10 @@ TEST_CASE("a rest pose that lies is a finding that proposes the other axis, eith
   REQUIRE(z_as_y.size() == 1);  // and no unit: it is judged along the axis the person stands on
   CHECK(to_string(z_as_y[0].what) ==
         "p.bvh: expected a rest pose that stands along y, found one that lies along z");
-  CHECK(z_as_y[0].repair == "--up z (up = \"z\" in a manifest) turns it upright");
+  CHECK(z_as_y[0].repair == "--up z (up = \"z\" in a manifest) if the person stood");
   const Findings y_as_z = judged(person(90, "y"), 0.01, true);
   REQUIRE(y_as_z.size() == 1);
-  CHECK(y_as_z[0].repair == "--up y (up = \"y\" in a manifest) turns it upright");
+  CHECK(y_as_z[0].repair == "--up y (up = \"y\" in a manifest) if the person stood");
   CHECK(judged(person(90, "z"), 0.01, true).empty());
   CHECK(judged(person(900, "z"), 0.01, false).size() == 2);
 }
@@ -187,7 +187,7 @@ TEST_CASE("where rest pose and first frame stand along different axes, the frame
         "p.bvh: expected a first frame that stands along y, as the rest pose does, found one that "
         "lies along z");
   CHECK(findings[0].meaning == "the person is read as lying");
-  CHECK(findings[0].repair == "--up z (up = \"z\" in a manifest) turns it upright");
+  CHECK(findings[0].repair == "--up z (up = \"z\" in a manifest) if the person stood");
 }
 
 TEST_CASE("a survey judges a BVH as reading does, also by a frame without a line end") {
