@@ -102,7 +102,7 @@ Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const
   return {};
 }
 
-/// The start that lays a stream of a fixed step beside the others, where none of it overlaps them.
+/// The start that lays a skeleton or points beside the others, where none of it overlaps them.
 std::string start_advice(const AlignVerb& o, const Recording& recording, const Manifest& manifest) {
   constexpr std::int64_t most = 4'000'000'000'000'000'000;
   for (const RecordedStream& s : recording.streams) {
@@ -119,8 +119,9 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     const bool quick = o.manifest.empty();
     const bool placed = s.step_ns || std::holds_alternative<PointInput>(s.data);
     if (!placed || !apart || first > last || !told || (quick && s.name != "mocap")) continue;
-    const std::int64_t latency =
-        s.step_ns ? to_ns(own) - options_of(manifest, s.name).start_ns.value_or(0) : 0;
+    const std::int64_t start =
+        s.step_ns ? options_of(manifest, s.name).start_ns.value_or(0) : to_ns(s.survey.first);
+    const std::int64_t latency = to_ns(own) - start;
     const std::string where = quick ? "--start-ns {}" : "start_ns = {} in [stream." + s.name + "]";
     return fmt::format(fmt::runtime(where), to_ns(first) - latency) + " puts the first frame of " +
            shown(s.name) + " where the others have begun";
@@ -128,9 +129,10 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
   return "";
 }
 
-std::vector<std::string> advice(const Error& error) {
+/// `path`: of the manifest, if any.
+std::vector<std::string> advice(const std::string& path, const Error& error) {
   std::vector<std::string> lines{"nothing was written"};
-  const bool manifest = error.file.ends_with(".toml");
+  const bool manifest = !path.empty() && error.file == path;
   if (error.file.empty() || manifest) {
     lines.push_back(manifest ? "docs/formats/recording_toml.md shows the keys"
                              : "kinalign align --help shows the flags");
@@ -153,7 +155,8 @@ Result<Recording> open_files(const AlignVerb& o, const Manifest& manifest, const
 }
 
 Result<int> run(AlignVerb& o, Call& call) {
-  call.console.if_it_fails(advice);
+  const std::string path = o.manifest.empty() ? "" : o.manifest.front();
+  call.console.if_it_fails([path](const Error& error) { return advice(path, error); });
   Manifest manifest = KA_TRY(manifest_of(o, call));
   const std::string base =
       o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));
@@ -164,13 +167,14 @@ Result<int> run(AlignVerb& o, Call& call) {
     if (!use) return call.console.refuse(use.error());
   }
   const Recording recording = KA_TRY(open_files(o, manifest, base, call));
-  call.console.if_it_fails([start = start_advice(o, recording, manifest)](const Error& error) {
-    std::vector<std::string> lines = advice(error);
-    if (!start.empty()) lines.push_back(start);
-    return lines;
-  });
-  const auto placed = [&o](Error error) {
-    if (error.file.empty() && !o.manifest.empty()) error.file = o.manifest.front();
+  call.console.if_it_fails(
+      [path, start = start_advice(o, recording, manifest)](const Error& error) {
+        std::vector<std::string> lines = advice(path, error);
+        if (!start.empty()) lines.push_back(start);
+        return lines;
+      });
+  const auto placed = [&path](Error error) {
+    if (error.file.empty()) error.file = path;
     return error;
   };
   const AlignmentReport report = KA_TRY(

@@ -66,15 +66,18 @@ Result<void> read_through(const RecordedStream& stream, const Progress& progress
       stream.data);
 }
 
-/// What alignment would refuse before it touches a sample: joints, nodes, the common span.
+/// What alignment would refuse or remark before it touches a sample: joints, nodes, the common
+/// span.
 Findings check_plan(const std::string& path, const Input& input) {
-  const auto planned = [&input]() -> Result<void> {
+  const auto judged = [&input]() -> Result<Findings> {
     const AlignPlan plan = KA_TRY(plan_alignment(input.recording, *input.manifest));
     KA_TRY(plan_spaces(plan.header, *input.manifest, plan.streams[plan.reference].group));
-    return {};
+    Findings out = judge_spaces(plan.header);
+    append(out, judge_files(plan.header));
+    return out;
   }();
-  if (planned) return {};
-  Error error = planned.error();
+  if (judged) return *judged;
+  Error error = judged.error();
   if (error.file.empty()) error.file = path;
   const std::string repair = name_advice(error);
   return {{Severity::error, std::move(error), "kinalign align makes no take of it", repair}};

@@ -218,17 +218,26 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
   return {};
 }
 
-Result<void> check_roots(const TakeHeader& header) {
+/// A name under `key` of a group of nodes, which is none of theirs.
+Error unknown_node(const TakeGroup& group, const std::vector<std::string>& nodes,
+                   const StreamOptions& options, const std::string& name, const std::string& key) {
+  Error error = unknown_name(name, "a node of '" + group.name + "' for " + key, nodes);
+  error.line = line_of(options.lines, key);
+  return error;
+}
+
+Result<void> check_roots(const TakeHeader& header, const Manifest& manifest) {
   for (const TakeGroup& group : header.groups) {
     const auto* nodes = std::get_if<ImuGroup>(&group.kind);
     if (nodes == nullptr || nodes->root_node.empty()) continue;
     const auto& names = nodes->node_names;
+    const StreamOptions& options = options_of(manifest, group.name);
     if (std::find(names.begin(), names.end(), nodes->root_node) == names.end()) {
-      return Failure(
-          unknown_name(nodes->root_node, "a node of '" + group.name + "' as root_node", names));
+      return Failure(unknown_node(group, names, options, nodes->root_node, "root_node"));
     }
     if (!nodes->content.orientation) {
-      return Failure(Error{"", 0, "orientations in '" + group.name + "', for root_node", "none"});
+      return Failure(Error{"", line_of(options.lines, "root_node"),
+                           "orientations in '" + group.name + "', for root_node", "none"});
     }
   }
   return {};
@@ -237,11 +246,11 @@ Result<void> check_roots(const TakeHeader& header) {
 Result<void> check_mountings(const TakeHeader& header, const Manifest& manifest) {
   for (const TakeGroup& group : header.groups) {
     const auto* nodes = std::get_if<ImuGroup>(&group.kind);
-    const std::vector<std::string> names =
-        nodes == nullptr ? std::vector<std::string>{} : nodes->node_names;
-    for (const auto& [worn, rotation] : options_of(manifest, group.name).mounting) {
+    const auto names = nodes == nullptr ? std::vector<std::string>{} : nodes->node_names;
+    const StreamOptions& options = options_of(manifest, group.name);
+    for (const auto& [worn, rotation] : options.mounting) {
       if (std::find(names.begin(), names.end(), worn) != names.end()) continue;
-      return Failure(unknown_name(worn, "a node of '" + group.name + "' under mounting", names));
+      return Failure(unknown_node(group, names, options, worn, "mounting"));
     }
   }
   return {};
@@ -259,6 +268,7 @@ const StreamOptions& options_of(const Manifest& manifest, const std::string& str
 
 Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest) {
   if (recording.streams.empty()) return Failure(Error{"", 0, "at least one stream", "none"});
+  for (const RecordedStream& stream : recording.streams) KA_TRY(check_stream_name(stream.name));
   AlignPlan plan;
   plan.reference = KA_TRY(find_reference(recording, manifest));
   const RecordedStream& reference = recording.streams[plan.reference];
@@ -268,7 +278,7 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   KA_TRY(check_options_used(recording, manifest));
   KA_TRY(find_span(recording, plan));
   KA_TRY(make_groups(recording, manifest, plan));
-  KA_TRY(check_roots(plan.header));
+  KA_TRY(check_roots(plan.header, manifest));
   KA_TRY(check_mountings(plan.header, manifest));
   plan.header.subject = recording.subject;
   plan.header.action = recording.action;

@@ -24,8 +24,8 @@ struct AlignPlan {
   TakeHeader header;
 };
 
-/// Fails where streams do not overlap in time, names repeat, or the manifest names what is not
-/// there or says what has no effect (unused_options.h).
+/// Fails where streams do not overlap in time, names repeat or could be no group of a take, or the
+/// manifest names what is not there or says what has no effect (unused_options.h).
 Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest);
 
 /// The manifest's options of a stream; defaults where it has none.

@@ -23,7 +23,7 @@ enum class RotationCurve { spline, slerp };
 
 struct ResampleRule {
   std::int64_t gap_ns = 0;   // longer stretches without samples are gaps
-  std::int64_t step_ns = 0;  // the stream's median step
+  std::int64_t step_ns = 0;  // nominal, else the stream's median one
   RotationCurve curve = RotationCurve::spline;
   std::int64_t begin_ns = 0, end_ns = 0;  // of the take: gaps are counted within
   bool finer = false;                     // than the grid: what that can't carry is measured
@@ -33,9 +33,8 @@ struct ResampleRule {
   Reach reach() const { return {knots_felt, gap_ns}; }
 };
 
-/// What resampling saw, summed over calls.
+/// What of a stream the grid can't carry, summed over calls; empty unless the rule says finer.
 struct ResampleCount {
-  // Only where the rule says finer:
   std::vector<CarriedContent> positions;                       // [J]
   std::vector<CarriedContent> acceleration, angular_velocity;  // [S]
 };
@@ -97,14 +96,12 @@ class ClipResampler {
 
   /// Fills all but the global positions.
   Result<void> rows(std::span<const std::int64_t> grid, ClipRows& out);
-  const ResampleCount& count() const { return count_; }
   const GapCount& gaps() const { return window_.gaps; }
 
  private:
   Window<ClipFrames> window_;
   const TimeModel* clock_;
   ResampleRule rule_;
-  ResampleCount count_;
 };
 
 }  // namespace kinalign

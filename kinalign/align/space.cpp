@@ -32,18 +32,23 @@ Result<std::size_t> find_group(const TakeHeader& header, const std::string& name
   return Failure(unknown_name(name, "a stream with joints in [space]", known));
 }
 
-Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name) {
+/// `line` is where a manifest names it, or 0.
+Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name,
+                                std::int64_t line) {
   const auto& names = *joint_names(group);
   const std::size_t j = find_joint(names, name);
   if (j < names.size()) return j;
-  return Failure(unknown_name(name, "a joint of '" + group.name + "'", names));
+  Error error = unknown_name(name, "a joint of '" + group.name + "'", names);
+  error.line = line;
+  return Failure(std::move(error));
 }
 
 Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup& onto,
                                           const SpaceOptions& options) {
   std::vector<JointPair> pairs;
   for (const auto& [a, b] : options.joints) {
-    pairs.push_back({KA_TRY(known_joint(from, a)), KA_TRY(known_joint(onto, b))});
+    const std::int64_t line = line_of(options.lines, "joints");
+    pairs.push_back({KA_TRY(known_joint(from, a, line)), KA_TRY(known_joint(onto, b, line))});
   }
   if (!pairs.empty()) return pairs;
   const auto &theirs = *joint_names(onto), &ours = *joint_names(from);
@@ -120,11 +125,13 @@ Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
   const TakeGroup &from = header.groups[plan.group], &onto = header.groups[plan.onto];
   plan.pairs = KA_TRY(find_pairs(from, onto, plan.options));
   if (plan.options.method == "paper") {
-    plan.root = {KA_TRY(known_joint(from, plan.options.root)),
-                 KA_TRY(known_joint(onto, plan.options.onto_root))};
+    const KeyLines& lines = plan.options.lines;
+    plan.root = {KA_TRY(known_joint(from, plan.options.root, line_of(lines, "root"))),
+                 KA_TRY(known_joint(onto, plan.options.onto_root, line_of(lines, "onto_root")))};
   }
   if (plan.options.method == "fit" && plan.pairs.size() < 3) {
-    return Failure(Error{"", 0, "three named joints or more for a fit (joints = { ... })",
+    return Failure(Error{"", line_of(plan.options.lines, "joints"),
+                         "three named joints or more for a fit (joints = { ... })",
                          std::to_string(plan.pairs.size())});
   }
   return {};

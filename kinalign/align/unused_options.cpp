@@ -51,6 +51,7 @@ const Method& method_named(std::string_view name) {
        {"fit", {"onto", "joints"}},
        {"given", {"onto", "joints", "rotation", "translation"}},
        {"paper", {"onto", "joints", "rotation_y_deg", "magnification", "root", "onto_root"}}}};
+  // a manifest's methods are these four (take/manifest.cpp)
   return *std::find_if(methods.begin(), methods.end(),
                        [name](const Method& method) { return method.name == name; });
 }
@@ -65,14 +66,34 @@ Result<void> check_space(const std::string& stream, const SpaceOptions& space) {
   for (const std::string& name : options_set(space)) {
     if (contains(method.takes, name)) continue;
     const std::string taken = fmt::format("{}", fmt::join(method.takes, ", "));
-    return Failure(Error{"", 0,
+    return Failure(Error{"", line_of(space.lines, name),
                          "of " + at + " what method = \"" + space.method + "\" takes (" +
                              (taken.empty() ? "nothing" : taken) + ")",
                          name});
   }
   if (space.method == "given" && space.rotation.empty() && space.translation.empty()) {
-    return Failure(Error{"", 0, "rotation or translation in " + at + ", whose method is \"given\"",
+    return Failure(Error{"", line_of(space.lines, "method"),
+                         "rotation or translation in " + at + ", whose method is \"given\"",
                          "neither"});
+  }
+  return {};
+}
+
+/// An interval is of stamps that are another clock's, and leaves doubt.
+Result<void> check_intervals(const Recording& recording, const Manifest& manifest) {
+  std::string reference = manifest.align.reference;
+  if (reference.empty() && !recording.streams.empty()) reference = recording.streams.front().name;
+  for (const StreamOptions& options : manifest.streams) {
+    if (!options.interval_ms) continue;
+    const std::int64_t line = line_of(options.lines, "interval_ms");
+    if (options.clock == "shared") {
+      return Failure(Error{"", line, "of '" + options.name + "' a shared clock or an interval_ms",
+                           "both: clock = \"shared\" leaves no doubt"});
+    }
+    if (options.name == reference) {
+      return Failure(Error{"", line, "an interval_ms of streams beside the reference",
+                           "one of '" + reference + "', whose stamps are the take's"});
+    }
   }
   return {};
 }
@@ -93,15 +114,16 @@ std::span<const std::string_view> useless_options(const RecordedStream& stream) 
 Result<void> check_options_used(const Recording& recording, const Manifest& manifest) {
   constexpr std::array<const char*, 3> kinds{"a skeleton", "points", "nodes"};
   for (const RecordedStream& stream : recording.streams) {
-    KA_TRY(check_stream_name(stream.name));
-    for (const std::string& name : options_set(options_of(manifest, stream.name))) {
+    const StreamOptions& options = options_of(manifest, stream.name);
+    for (const std::string& name : options_set(options)) {
       if (!contains(useless_options(stream), name)) continue;
       return Failure(Error{
-          "", 0,
+          "", line_of(options.lines, name),
           "of '" + stream.name + "' only options that " + kinds[stream.data.index()] + " can use",
           name});
     }
   }
+  KA_TRY(check_intervals(recording, manifest));
   for (const auto& [stream, space] : manifest.spaces) KA_TRY(check_space(stream, space));
   return {};
 }

@@ -14,9 +14,8 @@ namespace kinalign {
 /// Names of options that a stream of this kind has no use for.
 std::span<const std::string_view> useless_options(const RecordedStream& stream);
 
-/// Fails where no take could have a group of a stream's name, where a stream's options, or a
-/// space's beside its method, differ from the defaults and have no effect, and where method "given"
-/// is given nothing.
+/// Fails where a stream's options, or a space's beside its method, differ from the defaults and
+/// have no effect, and where method "given" is given nothing.
 Result<void> check_options_used(const Recording& recording, const Manifest& manifest);
 
 }  // namespace kinalign

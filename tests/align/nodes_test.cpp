@@ -124,7 +124,6 @@ TEST_CASE("a mounting of a node that is not there is refused") {
   manifest.streams[0].mounting["wrist_right"] = {1, 0, 0, 0};
   const auto take = align(worn_nodes(), manifest);
   REQUIRE(!take);
-  CHECK(
-      to_string(take.error()) ==
-      "expected a node of 'imu' under mounting (known: waist, wrist_left), found \"wrist_right\"");
+  CHECK(to_string(take.error()) ==
+        "expected a node of 'imu' for mounting (known: waist, wrist_left), found \"wrist_right\"");
 }

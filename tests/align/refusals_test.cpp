@@ -109,7 +109,7 @@ TEST_CASE("a root node is one of the nodes and has an orientation") {
     return of({recorded("optical", hundred()), recorded("imu", std::move(imu))});
   };
   CHECK(fault(recording(node("waist")), manifest) ==
-        "expected a node of 'imu' as root_node (known: waist), found \"hip\"");
+        "expected a node of 'imu' for root_node (known: waist), found \"hip\"");
   ImuStream unturned = node("hip");
   unturned.content.orientation = false;
   unturned.samples.orientation.clear();

@@ -62,6 +62,32 @@ TEST_CASE(
         "expected of 'some' only options that a skeleton can use, found root_node");
 }
 
+TEST_CASE("an interval is of another clock than the reference's, and of one that leaves doubt") {
+  Manifest manifest;
+  manifest.streams.resize(2);
+  manifest.streams[0].name = "optical";
+  manifest.streams[1].name = "kinect";
+  const Recording recording = {
+      "", "", {recorded("optical", PointStream{}), recorded("kinect", PointStream{})}};
+  const auto fault_of = [&](const std::string& reference) {
+    manifest.align.reference = reference;
+    const auto used = check_options_used(recording, manifest);
+    return used ? "" : to_string(used.error());
+  };
+  manifest.streams[1].interval_ms = 4.0;
+  CHECK(fault_of("").empty());
+  CHECK(fault_of("kinect") ==
+        "expected an interval_ms of streams beside the reference, found one of 'kinect', whose "
+        "stamps are the take's");
+  manifest.streams[1].clock = "shared";
+  CHECK(fault_of("") ==
+        "expected of 'kinect' a shared clock or an interval_ms, found both: clock = \"shared\" "
+        "leaves no doubt");
+  manifest.streams[1].interval_ms.reset();
+  manifest.streams[0].clock = "shared";  // as it is anyway
+  CHECK(fault_of("").empty());
+}
+
 TEST_CASE("of points a rate and a unit can be said, clicks can't") {
   for (const auto& say : {rate, unit}) CHECK(of_points(say).empty());
   CHECK(of_points(end) == "expected of 'some' only options that points can use, found end_ns");

@@ -52,6 +52,23 @@ def a_flag_without_the_file_it_is_for_is_refused(folder):
 
 
 @case
+def layouts_of_the_mocap_and_of_further_points_are_those_that_their_flags_name(folder):
+    layout = 'name = "one"\nheader = false\nrate_hz = 10\n[joints]\nnames = ["a"]\nfields = ["x", "y", "z"]\n'
+    (folder / "own.toml").write_text("metres_per_unit = 0.5\n" + layout)
+    (folder / "rows.csv").write_text("1,2,3\n4,5,6\n")
+    begin = ("align", "--mocap", folder / "rows.csv", "--points", f"more={folder}/rows.csv", "-o", folder / "t.h5")
+    own = ("--mocap-layout", folder / "own.toml", "--points-layout", folder / "own.toml")
+    refused(*begin, naming=f"{folder}/rows.csv:1: expected a format that kinalign knows")
+    refused(*begin, *own[:2], naming=f"{folder}/rows.csv:1: expected a format that kinalign knows")
+    refused(*begin, *own[2:], naming=f"{folder}/rows.csv:1: expected a format that kinalign knows")
+    done_with(0, *begin, *own)
+    done_with(0, "convert", folder / "t.h5", folder / "t.npz")
+    take = np.load(folder / "t.npz")
+    for name in ("mocap_positions", "more_positions"):
+        assert np.array_equal(take[name], np.array([[[0.5, 1, 1.5]], [[2, 2.5, 3]]], np.float32)), take[name]
+
+
+@case
 def a_flag_whose_value_is_no_pair_is_wrong_use(folder):
     samples.recording(folder)
     begin = ("align", "--mocap", folder / "mocap.bvh", "-o", folder / "t.h5")

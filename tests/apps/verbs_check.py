@@ -60,16 +60,18 @@ def notes_are_told_and_leave_exit_code_0(folder):
 def check_refuses_a_manifest_as_align_does(folder):
     manifest = samples.recording(folder)
     good = manifest.read_text()
-    for old, new, found in (('method = "paper"', 'method = "fit"\njoints = { SpineBase = "Hps" }',
+    for old, new, key, found in (('method = "paper"', 'method = "fit"\njoints = { SpineBase = "Hps" }', "joints",
                              "expected a joint of 'mocap' (nearest: Hips), found \"Hps\""),
-                            ("start_ns = 0", "start_ns = 9000000000", "expected streams that overlap in time"),
-                            ('file = "imu.csv"', 'file = "imu.csv"\nroot_node = "waste"',
-                             "expected a node of 'imu' as root_node (known: imu), found \"waste\"")):
+                            ("start_ns = 0", "start_ns = 9000000000", None, "expected streams that overlap in time"),
+                            ('file = "imu.csv"', 'file = "imu.csv"\nroot_node = "waste"', "root_node",
+                             "expected a node of 'imu' for root_node (known: imu), found \"waste\"")):
         assert old in good
-        manifest.write_text(good.replace(old, new))
-        refused("align", manifest, "-o", folder / "t.h5", naming=f"{manifest}: {found}")
+        text = good.replace(old, new)
+        manifest.write_text(text)
+        line = f":{text[:text.index(key)].count(chr(10)) + 1}" if key else ""
+        refused("align", manifest, "-o", folder / "t.h5", naming=f"{manifest}{line}: {found}")
         out, _ = done_with(1, "check", manifest)
-        assert out.startswith(f"error    {manifest}: {found}"), out
+        assert out.startswith(f"error    {manifest}{line}: {found}"), out
         assert "kinalign align makes no take of it" in out, out
         assert ("kinalign info FILE -v lists" in out) == ("overlap" not in found), out
 
@@ -184,6 +186,43 @@ def streams_that_miss_each_other_are_answered_with_the_start_that_joins_them(fol
     assert f"  {said} puts the first frame of mocap where the others have begun\n" in err, err
     manifest.write_text(manifest.read_text().replace("start_ns = 5", f"start_ns = {start - 1_000_000}"))
     done_with(0, "align", manifest, "-o", folder / "u.h5")
+
+
+@case
+def the_start_that_joins_points_counts_the_offset_that_moves_them(folder):
+    manifest = samples.recording(folder)
+    (folder / "later.csv").write_text(samples.kinect(4, 90_000_000_000))
+    manifest.write_text('[stream.optical]\nfile = "kinect.csv"\noffset_ms = 5000\n[stream.kinect]\nfile = "later.csv"\n')
+    _, err = done_with(3, "align", manifest, "-o", folder / "t.h5")
+    said = "start_ns = 85000000000 in [stream.optical]"
+    assert f"  {said} puts the first frame of optical where the others have begun\n" in err, err
+    manifest.write_text(manifest.read_text().replace("offset_ms", "start_ns = 85000000000\noffset_ms"))
+    done_with(0, "align", manifest, "-o", folder / "t.h5")
+
+
+@case
+def check_tells_what_align_remarks_of_a_plan(folder):
+    manifest = samples.recording(folder)
+    (folder / "copy.csv").write_text(samples.imu())
+    text = manifest.read_text()
+    assert 'file = "imu.csv"' in text
+    manifest.write_text(text.replace('file = "imu.csv"', 'files = { waist = "imu.csv", wrist = "copy.csv" }'))
+    out, _ = done_with(1, "check", manifest)
+    assert "two of its nodes are one" in out, out
+    out, _ = done_with(1, "align", manifest, "-o", folder / "t.h5")
+    assert "two of its nodes are one" in out, out
+
+
+@case
+def an_error_in_a_manifest_leads_to_its_page_and_one_in_a_layout_does_not(folder):
+    manifest = samples.recording(folder)
+    (folder / "own.toml").write_text('name = "own"\nkey = 1\n')
+    manifest.write_text(manifest.read_text().replace('file = "imu.csv"', 'file = "imu.csv"\nlayout = "own.toml"'))
+    _, err = done_with(3, "align", manifest, "-o", folder / "t.h5")
+    assert "own.toml:2: " in err and "recording_toml.md" not in err, err
+    manifest.write_text("keys = 1\n")
+    _, err = done_with(3, "align", manifest, "-o", folder / "t.h5")
+    assert "recording.toml:1: " in err and "recording_toml.md" in err, err
 
 
 @case
