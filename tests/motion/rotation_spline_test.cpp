@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/motion/rotation_spline.h"
 
+#include "tests/motion/curves.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
 #include "tests/witness.h"
@@ -15,18 +16,10 @@ using namespace kinalign;
 
 namespace {
 
-std::vector<double> curve(const std::vector<double>& times, const std::vector<double>& knots,
-                          const std::vector<double>& at) {
-  std::vector<double> out(4 * at.size(), -7.0);
-  const RotationKnots all{times, knots};
-  rotation_spline_at(all, at, out);
-  return out;
-}
-
 /// Angular rate in the body's space by a central difference.
 Vec3 rate_at(const std::vector<double>& t, const std::vector<double>& knots, double at) {
   constexpr double h = 1e-5;
-  const auto q = curve(t, knots, {at - h, at + h});
+  const auto q = rotation_spline(t, knots, {at - h, at + h});
   return rotation_vector(quat(q, 0).conjugate() * quat(q, 1)) / (2.0 * h);
 }
 
@@ -34,7 +27,7 @@ void check_against_scipy(const std::vector<double>& t, const std::vector<double>
                          std::mt19937_64& random) {
   const auto at = places_within(t, 2 * t.size(), random);
   const auto theirs = run_python("slerp.py", {{"times", t}, {"knots", knots}, {"at", at}});
-  CHECK(worst_angle(curve(t, knots, at), theirs.at("spline")) <= 1e-7);
+  CHECK(worst_angle(rotation_spline(t, knots, at), theirs.at("spline")) <= 1e-7);
 }
 
 /// The rotations at places in the middle third, from knots no further than the reach from them.
@@ -42,20 +35,21 @@ void check_window(const std::vector<double>& t, const std::vector<double>& knots
   const std::size_t begin = t.size() / 3, end = 2 * t.size() / 3;
   std::vector<double> at;
   for (std::size_t k = begin; k < end; ++k) at.push_back(0.4 * t[k] + 0.6 * t[k + 1]);
-  const auto whole = curve(t, knots, at);
+  const auto whole = rotation_spline(t, knots, at);
   const auto from = static_cast<std::ptrdiff_t>(begin - rotation_spline_reach);
   const auto to = static_cast<std::ptrdiff_t>(end + rotation_spline_reach + 1);
-  const auto part = curve({t.begin() + from, t.begin() + to},
-                          {knots.begin() + 4 * from, knots.begin() + 4 * to}, at);
+  const auto part = rotation_spline({t.begin() + from, t.begin() + to},
+                                    {knots.begin() + 4 * from, knots.begin() + 4 * to}, at);
   CHECK(worst_angle(whole, part) <= 1e-12);
 }
 
 }  // namespace
 
 TEST_CASE("one knot stays, two knots turn at a constant rate") {
-  CHECK(curve({5}, {0, 1, 0, 0}, {5, 5}) == std::vector<double>{0, 1, 0, 0, 0, 1, 0, 0});
+  CHECK(rotation_spline({5}, {0, 1, 0, 0}, {5, 5}) == std::vector<double>{0, 1, 0, 0, 0, 1, 0, 0});
   const Quat end = rotation({0.2, -0.4, 0.6});
-  const auto q = curve({1, 3}, {1, 0, 0, 0, end.w(), end.x(), end.y(), end.z()}, {1, 1.5, 3});
+  const auto q =
+      rotation_spline({1, 3}, {1, 0, 0, 0, end.w(), end.x(), end.y(), end.z()}, {1, 1.5, 3});
   CHECK(angle_between(quat(q, 0), Quat::Identity()) <= 1e-15);
   CHECK(angle_between(quat(q, 1), rotation({0.05, -0.1, 0.15})) <= 1e-15);
   CHECK(angle_between(quat(q, 2), end) <= 1e-15);
@@ -70,7 +64,7 @@ TEST_CASE("a turn at a constant rate stays one, on any stamps") {
     std::vector<double> knots(4 * t.size());
     for (std::size_t i = 0; i < t.size(); ++i) put_quat(knots, i, rotation(t[i] * rate));
     const auto at = places_within(t, 50, random);
-    const auto q = curve(t, knots, at);
+    const auto q = rotation_spline(t, knots, at);
     for (std::size_t i = 0; i < at.size(); ++i) {
       CHECK(angle_between(quat(q, i), rotation(at[i] * rate)) <= 1e-12);
     }
@@ -84,7 +78,7 @@ TEST_CASE("a rotation spline goes through every knot") {
     const auto t = irregular_stamps(1 + random() % 60, random);
     const auto knots = rotation_walk(t.size(), 3.0, random);
     // with cubics of up to a thousand radians that cancel at the knots, where they are 3 rad apart
-    CHECK(worst_angle(curve(t, knots, t), knots) <= 1e-12);
+    CHECK(worst_angle(rotation_spline(t, knots, t), knots) <= 1e-12);
   }
 }
 

@@ -19,10 +19,13 @@ inline double angle_between(const Quat& a, const Quat& b) {
   return 2.0 * std::atan2(apart.vec().norm(), std::abs(apart.w()));
 }
 
+/// No number where one of them is none, so that no limit holds.
 inline double worst_angle(std::span<const double> a, std::span<const double> b) {
   double worst = 0.0;
   for (std::size_t i = 0; i < a.size() / 4; ++i) {
-    worst = std::max(worst, angle_between(quat(a, i), quat(b, i)));
+    const double angle = angle_between(quat(a, i), quat(b, i));
+    if (std::isnan(angle)) return angle;
+    worst = std::max(worst, angle);
   }
   return worst;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/motion/slerp.h"
 
+#include "tests/motion/curves.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
 #include "tests/witness.h"
@@ -12,17 +13,6 @@
 #include <random>
 
 using namespace kinalign;
-
-namespace {
-
-std::vector<double> slerp(const std::vector<double>& times, const std::vector<double>& knots,
-                          const std::vector<double>& at) {
-  std::vector<double> out(4 * at.size(), -7.0);
-  slerp_at(times, knots, at, out);
-  return out;
-}
-
-}  // namespace
 
 TEST_CASE("half way between no turn and a quarter turn is an eighth") {
   const double s = std::sqrt(0.5);

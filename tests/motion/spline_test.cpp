@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/motion/spline.h"
 
+#include "tests/motion/curves.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
 #include "tests/witness.h"
@@ -13,8 +14,6 @@ using namespace kinalign;
 
 namespace {
 
-using Values = std::vector<double>;
-
 Values spline(const Values& times, const Values& values, const Values& at) {
   const std::size_t channels = values.size() / times.size();
   Values bends(values.size(), -7.0), out(at.size() * channels, -7.0);
@@ -22,20 +21,6 @@ Values spline(const Values& times, const Values& values, const Values& at) {
   natural_spline(knots, bends);
   spline_at(knots, bends, at, out);
   return out;
-}
-
-Values random_values(std::size_t n, std::mt19937_64& random) {
-  std::normal_distribution<double> normal;
-  Values values(n);
-  for (auto& v : values) v = normal(random);
-  return values;
-}
-
-double worst(const Values& a, const Values& b) {
-  REQUIRE(a.size() == b.size());
-  double most = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
 }
 
 }  // namespace
@@ -56,7 +41,7 @@ TEST_CASE("a natural spline goes through every knot and keeps every straight lin
     std::mt19937_64 random(seed);
     const auto t = irregular_stamps(2 + random() % 100, random);
     const auto y = random_values(3 * t.size(), random);
-    CHECK(worst(spline(t, y, t), y) <= 1e-13);
+    CHECK(worst_difference(spline(t, y, t), y) <= 1e-13);
     Values line(t.size());
     for (std::size_t i = 0; i < t.size(); ++i) line[i] = 3.0 - 2.0 * t[i];
     const auto at = places_within(t, 50, random);
@@ -95,7 +80,7 @@ TEST_CASE("a natural spline agrees with SciPy") {
       const auto at = places_within(t, 2 * n, random);
       const auto theirs = run_python("cubic.py", {{"times", t}, {"values", y}, {"at", at}});
       // 1e-12 of the channels' largest magnitude, which lies between 1 and 5 here
-      CHECK(worst(spline(t, y, at), theirs.at("spline")) <= 1e-12);
+      CHECK(worst_difference(spline(t, y, at), theirs.at("spline")) <= 1e-12);
     }
   }
 }
@@ -113,6 +98,6 @@ TEST_CASE("knots beyond the reach do not move a spline") {
     const auto to = static_cast<std::ptrdiff_t>(270 + spline_reach);
     const auto part = spline({t.begin() + from, t.begin() + to},
                              {y.begin() + 3 * from, y.begin() + 3 * to}, between);
-    CHECK(worst(part, spline(t, y, between)) <= 1e-14);
+    CHECK(worst_difference(part, spline(t, y, between)) <= 1e-14);
   }
 }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Curves through values and rotations as functions of plain arrays, for tests.
+#pragma once
+
+#include "kinalign/motion/rotation_spline.h"
+#include "kinalign/motion/slerp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace kinalign {
+
+using Values = std::vector<double>;
+
+/// Times [T], knots [T,4], places [N] to rotations [N,4].
+inline Values slerp(const Values& times, const Values& knots, const Values& at) {
+  Values out(4 * at.size(), -7.0);
+  slerp_at(times, knots, at, out);
+  return out;
+}
+
+inline Values rotation_spline(const Values& times, const Values& knots, const Values& at) {
+  Values out(4 * at.size(), -7.0);
+  const RotationKnots all{times, knots};
+  rotation_spline_at(all, at, out);
+  return out;
+}
+
+inline Values random_values(std::size_t n, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  Values values(n);
+  for (double& v : values) v = normal(random);
+  return values;
+}
+
+/// No number where one of them is none or sizes differ, so that no limit holds.
+inline double worst_difference(const Values& a, const Values& b) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < a.size() && a.size() == b.size(); ++i) {
+    if (std::isnan(a[i] - b[i])) return a[i] - b[i];
+    worst = std::max(worst, std::abs(a[i] - b[i]));
+  }
+  return a.size() == b.size() ? worst : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Each of them changed.
+template <class Change>
+Values each(Values values, Change&& change) {
+  for (double& v : values) v = change(v);
+  return values;
+}
+
+}  // namespace kinalign
