@@ -20,7 +20,7 @@ class FaultyFiles final : public FileSystem {
   int fail_at = 0;              // the call that fails, from 1; 0: none
   int code = ENOSPC;            // with this errno
   bool nameless = true;         // O_TMPFILE is there
-  std::size_t most = SIZE_MAX;  // bytes a write takes
+  std::size_t most = SIZE_MAX;  // bytes a write takes, and a read at a place gives
   std::size_t first_read = 0;   // bytes the first read gives, the next ones one more each; 0: all
   int calls = 0;
 
@@ -42,7 +42,7 @@ class FaultyFiles final : public FileSystem {
     return fails() ? -1 : files_.write(fd, data, std::min(size, most));
   }
   ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override {
-    return fails() ? -1 : files_.read_at(fd, data, size, at);
+    return fails() ? -1 : files_.read_at(fd, data, std::min(size, most), at);
   }
   ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
     return fails() ? -1 : files_.write_at(fd, data, std::min(size, most), at);
