@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
+#include <string>
 #include <variant>
 
 using namespace kinalign;
@@ -37,6 +39,27 @@ const Field& named(const Fields& fields, const std::string& name) {
   return *std::find_if(fields.begin(), fields.end(), [&](auto& f) { return f.name == name; });
 }
 
+/// Where each described option lies, none twice and all within `options`.
+template <class Options>
+std::set<const void*> described(Options& options) {
+  std::set<const void*> places;
+  for (const Field& field : describe(options)) {
+    CAPTURE(field.name);
+    const auto* place =
+        std::visit([](auto* value) { return static_cast<const void*>(value); }, field.value);
+    CHECK(std::greater_equal<>()(place, static_cast<const void*>(&options)));
+    CHECK(std::less<>()(place, static_cast<const void*>(&options + 1)));
+    CHECK(places.insert(place).second);
+  }
+  return places;
+}
+
+/// How many of these members have a description.
+template <class... Members>
+std::size_t described_of(const std::set<const void*>& places, const Members&... members) {
+  return (places.count(&members) + ...);
+}
+
 }  // namespace
 
 TEST_CASE("options are described with names that differ, and defaults that are allowed") {
@@ -46,6 +69,44 @@ TEST_CASE("options are described with names that differ, and defaults that are a
   check_description(describe(align));
   check_description(describe(stream));
   check_description(describe(space));
+}
+
+TEST_CASE("no option without a description, but for those that are more than one value") {
+  // A member put in or taken out no longer fits these names: then its description has to follow.
+  AlignOptions align;
+  auto& [reference, gap, rotations, store_double] = align;
+  CHECK(described_of(described(align), reference, gap, rotations, store_double) == 4);
+  StreamOptions stream;
+  auto& [name, files, layout, select, unit, up, rate, start, end, latency, clock, offset, drift,
+         interval, mounting, root_node] = stream;
+  const auto of_stream = described(stream);
+  CHECK(described_of(of_stream, name, files, select, mounting) == 0);
+  CHECK(described_of(of_stream, layout, unit, up, rate, start, end, latency, clock, offset, drift,
+                     interval, root_node) == 12);
+  SpaceOptions space;
+  auto& [method, onto, turn, magnification, rotation, translation, joints, root, onto_root] = space;
+  const auto of_space = described(space);
+  CHECK(described_of(of_space, rotation, translation, joints) == 0);
+  CHECK(described_of(of_space, method, onto, turn, magnification, root, onto_root) == 6);
+}
+
+TEST_CASE("a stream may have any name but those that are no group, or another thing, in a take") {
+  for (const std::string name : {"mocap", "kinect 2", "H\xc3\xa4nde", "...", "time", "TIME_NS", " ",
+                                 "a\\b", "valid", "report"}) {
+    CAPTURE(name);
+    CHECK(check_stream_name(name));
+  }
+  const auto refusal = [](const std::string& name) {
+    const auto result = check_stream_name(name);
+    return result ? "" : to_string(result.error());
+  };
+  const std::string expected = "expected a stream's name that can be a group of the take, found ";
+  CHECK(refusal("") == expected + "an empty one");
+  for (const std::string name : {"time_ns", "seconds", "t0_ns", "report_json", "parameters_json",
+                                 ".", "..", "a/b", "/", "/mocap"}) {
+    CHECK(refusal(name) == expected + "\"" + name + "\"");
+  }
+  CHECK(refusal(std::string("a\0b", 3)) == expected + "\"a?b\"");
 }
 
 TEST_CASE("a description leads to the option itself") {
