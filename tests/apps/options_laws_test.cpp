@@ -157,19 +157,19 @@ TEST_CASE(
     for (Mix* mix : {&user, &project, &variables, &flags}) {
       from.push_back(describe_mix(*mix).settings);
     }
-    for (std::size_t i = 0; i < to.size(); ++i) {
-      for (std::size_t place = 0; place < from.size(); ++place) {
-        const Field& field = from[place][i];
-        const std::string text = field_text(field);
-        if (random() % 2 == 0 || text.empty()) continue;
-        REQUIRE(set_field(to[i], text));  // each place is nearer than the one before
-        if (place == 0) users += toml_of(field);
-        if (place == 1) projects += toml_of(field);
-        if (place == 2) machine.variables[variable_of(field.name)] = text;
-        if (place < 3) continue;
-        const Words more = words_of(field, random);
-        words.insert(words.end(), more.begin(), more.end());
-      }
+    const auto say = [&](const Field& field, std::size_t place) {
+      if (place == 0) users += toml_of(field);
+      if (place == 1) projects += toml_of(field);
+      if (place == 2) machine.variables[variable_of(field.name)] = field_text(field);
+      if (place < 3) return;
+      const Words more = words_of(field, random);
+      words.insert(words.end(), more.begin(), more.end());
+    };
+    for (std::size_t k = 0; k < 4 * to.size(); ++k) {
+      const Field& field = from[k % 4][k / 4];
+      if (random() % 2 == 0 || field_text(field).empty()) continue;
+      REQUIRE(set_field(to[k / 4], field_text(field)));  // nearer than the place before
+      say(field, k % 4);
     }
     folder.write(".config/kinalign/config.toml", users);
     folder.write(random() % 2 == 0 ? "a/kinalign.toml" : "a/b/kinalign.toml", projects);
@@ -205,20 +205,20 @@ TEST_CASE("of the projects' files the nearest one above the folder counts, and n
 
 TEST_CASE("a value that an option can't have is refused in the same words wherever it stands") {
   const FreshFolder folder;
-  for (const auto& [name, bad] :
-       std::vector<std::pair<std::string, std::string>>{{"gap_ms", "-1"},
-                                                        {"gap_ms", "many"},
-                                                        {"rows", "11"},
-                                                        {"rows", "2.5"},
-                                                        {"rotations", "euler"},
-                                                        {"double", "maybe"},
-                                                        {"interval_ms", "1e4"}}) {
+  for (const auto& one : std::vector<std::pair<std::string, std::string>>{{"gap_ms", "-1"},
+                                                                          {"gap_ms", "many"},
+                                                                          {"rows", "11"},
+                                                                          {"rows", "2.5"},
+                                                                          {"rotations", "euler"},
+                                                                          {"double", "maybe"},
+                                                                          {"interval_ms", "1e4"}}) {
+    const std::string &name = one.first, &bad = one.second;
     CAPTURE(name);
     CAPTURE(bad);
     Mix mix;
     const Fields fields = describe_mix(mix).settings;
     const auto field = std::find_if(fields.begin(), fields.end(),
-                                    [&name = name](const Field& f) { return f.name == name; });
+                                    [&name](const Field& f) { return f.name == name; });
     const auto refused = set_field(*field, bad);
     REQUIRE_FALSE(refused);
     const auto says = [&](const std::string& place) {

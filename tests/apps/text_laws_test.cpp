@@ -211,8 +211,9 @@ TEST_CASE("in a man page no text becomes a request of roff, and each shell takes
     CAPTURE(shell);
     const std::string script = folder.write(shell, completion_script(shell, verbs));
     const std::string check = shell == "fish" ? "fish --no-execute" : shell + " -n";
-    const std::string command =
-        "command -v " + shell + " >/dev/null || exit 0; " + check + " '" + script + "'";
+    std::string command = "command -v ";
+    command.append(shell).append(" >/dev/null || exit 0; ").append(check);
+    command.append(" '").append(script).append("'");
     CHECK(std::system(command.c_str()) == 0);
   }
 }

@@ -80,10 +80,11 @@ TEST_CASE("any text of up to fifteen digits is written again as it stood, with i
     for (int i = 0; i < 2000; ++i) {
       const auto decimals = random() % 15, whole = random() % (16 - decimals);
       std::string text = random() % 2 == 0 ? "-" : "";
-      text += static_cast<char>((whole == 0 ? '0' : '1') + (whole == 0 ? 0 : random() % 9));
+      text += whole == 0 ? '0' : static_cast<char>('1' + random() % 9);
       for (std::size_t k = 1; k < whole; ++k) text += static_cast<char>('0' + random() % 10);
-      if (decimals > 0) text += '.';
-      for (std::size_t k = 0; k < decimals; ++k) text += static_cast<char>('0' + random() % 10);
+      for (std::size_t k = 0; k < decimals; ++k) {
+        text += (k == 0 ? "." : "") + std::to_string(random() % 10);
+      }
       CHECK(decimals_of(text) == static_cast<int>(decimals));
       CHECK(written(number(text), decimals_of(text)) == text);
     }
