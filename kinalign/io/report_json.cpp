@@ -29,6 +29,7 @@ Json stream_json(const StreamReport& stream) {
   out["stamps_counted"] = stream.counted;
   out["rate_hz"] = stream.rate_hz;
   out["gap_ns"] = stream.gap_ns;
+  out["held_back"] = stream.held_back;
   out["gaps"] = stream.gaps;
   out["gap_time_ns"] = stream.gap_time_ns;
   out["samples"] = stream.samples;

@@ -47,8 +47,8 @@ bool XsensGroup::any(const RowParser& row) const {
 }
 
 bool XsensGroup::whole(const RowParser& row) const {
-  return std::all_of(slots.begin(), slots.end(),
-                     [&](std::size_t i) { return row.missing[i] == 0; });
+  return there() && std::all_of(slots.begin(), slots.end(),
+                                [&](std::size_t i) { return row.missing[i] == 0; });
 }
 
 std::optional<char> xsens_delimiter(std::string_view names) {

@@ -6,6 +6,7 @@
 #include "kinalign/io/imu_converter.h"
 #include "kinalign/io/late_quantities.h"
 #include "kinalign/io/named_lines.h"
+#include "kinalign/io/packet_count.h"
 #include "kinalign/io/row_stamps.h"
 #include "kinalign/io/xsens_columns.h"
 
@@ -25,39 +26,6 @@ std::string device_of(std::string_view file) {
   const bool hexadecimal = id.find_first_not_of("0123456789ABCDEFabcdef") == std::string_view::npos;
   return std::string(hexadecimal ? id : name);
 }
-
-/// Counts on over a 16-bit counter's wraps.
-class PacketCount {
- public:
-  /// Fails, without a place, on what is no counter.
-  Result<std::uint64_t> next(double cell) {
-    constexpr double most = 4294967295.0;
-    if (!(cell >= 0.0) || cell > most || cell != std::floor(cell)) {
-      return Failure(Error{"", 0, "a whole PacketCounter", std::to_string(cell)});
-    }
-    const auto counter = static_cast<std::uint64_t>(cell);
-    if (rows_++ == 0) {
-      count_ = counter;
-    } else {
-      const std::uint64_t step = step_to(counter);
-      lost_ += step > 1 ? step - 1 : 0;
-      count_ += step;
-    }
-    last_ = counter;
-    return count_;
-  }
-
-  std::uint64_t lost() const { return lost_; }
-
- private:
-  std::uint64_t step_to(std::uint64_t counter) const {
-    constexpr std::uint64_t wrap = 65'536;
-    if (counter >= last_) return counter - last_;
-    return (counter % wrap + wrap - last_ % wrap) % wrap;
-  }
-
-  std::uint64_t rows_ = 0, last_ = 0, count_ = 0, lost_ = 0;
-};
 
 class XsensReader final : public ImuReader {
  public:
@@ -83,6 +51,14 @@ class XsensReader final : public ImuReader {
           {Severity::note,
            Error{lines_.file(), 0, "every packet", std::to_string(packets_.lost()) + " lost"},
            "they are gaps", ""});
+    }
+    if (packets_.guessed() > 0) {
+      findings.push_back({Severity::warning,
+                          Error{lines_.file(), 0, "a PacketCounter that goes on",
+                                "one that fell, as if " + std::to_string(packets_.guessed()) +
+                                    " packets were lost"},
+                          "the stamps behind it are right only if they were",
+                          "cut the file there, if the device began anew"});
     }
     if (late_.rows() > 0) {
       findings.push_back(
@@ -150,35 +126,38 @@ class XsensReader final : public ImuReader {
     return {};
   }
 
-  /// What has a value in this row: a named column may be empty.
+  /// What this row has whole: a named column may be empty.
   ImuContent content_of_row() const {
     ImuContent here;
-    here.orientation =
-        columns_.quaternion.any(row_) || columns_.matrix.any(row_) || columns_.euler.any(row_);
-    here.gravity = columns_.acceleration.any(row_);
-    here.acceleration = here.gravity || (here.orientation && columns_.free_acceleration.any(row_));
-    here.angular_velocity = columns_.angular_velocity.any(row_);
+    here.orientation = columns_.quaternion.whole(row_) || columns_.matrix.whole(row_) ||
+                       columns_.euler.whole(row_);
+    here.gravity = columns_.acceleration.whole(row_);
+    here.acceleration =
+        here.gravity || (here.orientation && columns_.free_acceleration.whole(row_));
+    here.angular_velocity = columns_.angular_velocity.whole(row_);
     return here;
   }
 
-  /// Of the rows that wait: which quantities there are, and the best of the orientations.
+  /// Of the rows that wait: which quantities they have, in how many rows.
   void see(const ImuContent& here) {
-    seen_.orientation |= here.orientation;
-    seen_.acceleration |= here.acceleration;
-    seen_.angular_velocity |= here.angular_velocity;
-    seen_.gravity |= here.gravity;
-    for (const XsensGroup* group : {&columns_.quaternion, &columns_.matrix, &columns_.euler}) {
-      if (group == orientation_) break;
-      if (!group->any(row_)) continue;
-      orientation_ = group;
-      break;
+    for (std::size_t k = 0; k < turns_.size(); ++k) {
+      turns_[k].rows += turns_[k].group->whole(row_) ? 1 : 0;
     }
+    with_gravity_ += here.gravity ? 1 : 0;
+    free_ += here.orientation && columns_.free_acceleration.whole(row_) ? 1 : 0;
+    seen_.angular_velocity |= here.angular_velocity;
   }
 
-  /// The content stands from here on; the rows that waited for it go out.
+  /// The content stands from here on, of what is told in two ways by the one that more rows have;
+  /// the rows that waited for it go out.
   void settle(ImuSamples& out) {
     if (waiting_.empty()) return;
-    seen_.gravity |= !seen_.acceleration;
+    const auto best = std::max_element(
+        turns_.begin(), turns_.end(), [](const Told& a, const Told& b) { return a.rows < b.rows; });
+    orientation_ = best->group;
+    seen_.orientation = best->rows > 0;
+    seen_.acceleration = with_gravity_ + free_ > 0;
+    seen_.gravity = with_gravity_ >= free_;
     header_ = ImuHeader{{node_}, seen_};
     for (Waiting& row : waiting_) {
       row_.values = std::move(row.values);
@@ -188,11 +167,13 @@ class XsensReader final : public ImuReader {
     waiting_.clear();
   }
 
-  Result<Time> stamp_of(std::uint64_t count) {
+  Result<Time> stamp_of(std::int64_t count) {
     if (!first_count_) first_count_ = count;
-    std::int64_t ns = stamp_at_rate(count, rate_hz_);
-    if (options_.start_ns) ns = *options_.start_ns + stamp_at_rate(count - *first_count_, rate_hz_);
-    if (ns <= furthest_stamp_ns) return utc_time(ns);
+    const std::int64_t packets = options_.start_ns ? count - *first_count_ : count;
+    const std::int64_t since =
+        stamp_at_rate(static_cast<std::uint64_t>(std::abs(packets)), rate_hz_);
+    const std::int64_t ns = options_.start_ns.value_or(0) + (packets < 0 ? -since : since);
+    if (std::abs(ns) <= furthest_stamp_ns) return utc_time(ns);
     return Failure(Error{"", 0, "a stamp inside +-4e18 ns", std::to_string(count) + " packets"});
   }
 
@@ -251,7 +232,7 @@ class XsensReader final : public ImuReader {
   const XsensGroup* orientation_ = nullptr;  // of columns_
   RowParser row_;
   PacketCount packets_;
-  std::optional<std::uint64_t> first_count_;
+  std::optional<std::int64_t> first_count_;
   std::optional<ImuHeader> header_;
 
   /// A row read before it is known which quantities the file has.
@@ -262,8 +243,14 @@ class XsensReader final : public ImuReader {
   };
   static constexpr std::size_t patience = 32;  // rows
   std::vector<Waiting> waiting_;
-  ImuContent seen_{.gravity = false};  // in these
-  LateQuantities late_;                // that none of these had
+  struct Told {
+    const XsensGroup* group;
+    std::size_t rows = 0;  // of those that wait
+  };
+  std::array<Told, 3> turns_{{{&columns_.quaternion}, {&columns_.matrix}, {&columns_.euler}}};
+  std::size_t with_gravity_ = 0, free_ = 0;
+  ImuContent seen_;
+  LateQuantities late_;  // that none of these had
 };
 
 }  // namespace

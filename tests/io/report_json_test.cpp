@@ -22,6 +22,7 @@ AlignmentReport small_report() {
   imu.counted = true;
   imu.rate_hz = 15.0;
   imu.gap_ns = 206'666'668;
+  imu.held_back = 15;
   imu.gaps = 7;
   imu.gap_time_ns = 8;
   imu.samples = 120;
@@ -73,6 +74,7 @@ const std::string whole = R"({
       "stamps_counted": true,
       "rate_hz": 15.0,
       "gap_ns": 206666668,
+      "held_back": 15,
       "gaps": 7,
       "gap_time_ns": 8,
       "samples": 120,

@@ -159,7 +159,7 @@ TEST_CASE("a packet counter of 16 bits counts on through its wraps, lost packets
   };
   using Packets = std::vector<std::int64_t>;
   CHECK(packets(counters({65535, 0, 1})) == Packets{65535, 65536, 65537});
-  CHECK(packets(counters({65530, 3, 65533})) == Packets{65530, 65539, 65533 + 65536});
+  CHECK(packets(counters({65530, 3, 64000})) == Packets{65530, 65539, 64000 + 65536});
   CHECK(packets(counters({70000, 70002})) == Packets{70000, 70002});  // of 32 bits
   const auto lost = counters({10, 11, 15, 16, 20});
   CHECK(packets(lost) == Packets{10, 11, 15, 16, 20});
@@ -168,6 +168,49 @@ TEST_CASE("a packet counter of 16 bits counts on through its wraps, lost packets
   CHECK(text_of(lost.findings[0]) == "MT_01_00B421E6.txt: expected every packet, found 6 lost");
   CHECK(lost.findings[0].meaning == "they are gaps");
   CHECK(counters({10, 11, 12}).findings.empty());
+}
+
+TEST_CASE("a packet that was overtaken steps back, and nothing behind it moves") {
+  const auto counters = [](const std::vector<std::uint64_t>& values) {
+    std::string text = rate + "PacketCounter,Acc_X,Acc_Y,Acc_Z\n";
+    for (const std::uint64_t value : values) text += std::to_string(value) + ",1,2,3\n";
+    return read_xsens(text);
+  };
+  const auto packets = [](const Read<ImuReader>& read) {
+    std::vector<std::int64_t> out;
+    for (const Time stamp : read.rows.stamps) out.push_back(to_ns(stamp) / 10'000'000);
+    return out;
+  };
+  using Packets = std::vector<std::int64_t>;
+  const auto overtaken = counters({10, 11, 13, 12, 14});
+  CHECK(packets(overtaken) == Packets{10, 11, 13, 12, 14});
+  CHECK(overtaken.findings.empty());  // none was lost
+  CHECK(packets(counters({65534, 0, 65535, 1})) == Packets{65534, 65536, 65535, 65537});
+  CHECK(packets(counters({2, 3, 0, 1})) == Packets{2, 3, 0, 1});  // began anew: says so as it falls
+  const auto anew = counters({40000, 40001, 0, 1});
+  CHECK(packets(anew) == Packets{40000, 40001, 65536, 65537});
+  REQUIRE(anew.findings.size() == 2);
+  CHECK(
+      text_of(anew.findings[1]) ==
+      "MT_01_00B421E6.txt: expected a PacketCounter that goes on, found one that fell, as if 25535 "
+      "packets were lost");
+}
+
+TEST_CASE("of what is told in two ways the one that more of the first rows have whole is read") {
+  std::string text = rate +
+                     "PacketCounter,Acc_X,Acc_Y,Acc_Z,FreeAcc_X,FreeAcc_Y,FreeAcc_Z,"
+                     "Quat_q0,Quat_q1,Quat_q2,Quat_q3,Roll,Pitch,Yaw\n";
+  for (int row = 0; row < 40; ++row) {
+    const bool stray = row == 4;
+    text += std::to_string(row) + (stray ? ",1,1,1" : ",,,") + ",0,0,0" +
+            (stray      ? ",1,0,0,0"
+             : row == 5 ? ",1,,,"
+                        : ",,,,") +
+            ",0,0,90\n";
+  }
+  const auto read = read_xsens(text);
+  CHECK(read.header.content == ImuContent{true, true, false, false});
+  CHECK(std::count(read.rows.valid.begin(), read.rows.valid.end(), 1) == 40);
 }
 
 TEST_CASE("of several orientations the quaternion is taken, then the matrix, then the angles") {
