@@ -119,6 +119,7 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
     const StreamOptions& options =
         input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
     append(out.findings, judge_stamps(stream, options));
+    append(out.findings, judge_near(stream, stream.survey.near));
   }
   if (input.manifest) append(out.findings, check_plan(path, input));
   return out;

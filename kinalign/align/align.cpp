@@ -148,6 +148,7 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   const ResampleRule& rule = job.plan.streams[i].rule;
   out.rate_hz = rule.rate_hz();
   out.gap_ns = rule.gap_ns;
+  out.held_back = slabs.held_back(i);
   out.gaps = gaps.gaps;
   out.gap_time_ns = gaps.time_ns;
   const Marks& marks = counts.marks[i];
@@ -170,6 +171,7 @@ void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
   for (std::size_t i = 0; i < job.recording.streams.size(); ++i) {
     const RecordedStream& stream = job.recording.streams[i];
     report.streams.push_back(report_stream(job, slabs, counts, i));
+    append(report.findings, judge_near(stream, report.streams.back().held_back));
     append(report.findings, judge_content(stream, slabs.count(i), report.rate_hz));
   }
   for (std::size_t k = 0; k < job.spaces.size(); ++k) {

@@ -10,6 +10,10 @@ namespace kinalign {
 
 namespace {
 
+std::string file_of(const RecordedStream& s) {
+  return s.files.empty() ? s.name : s.files.front().name;
+}
+
 /// Steps between the samples kept of a device that stamps them, ns.
 struct Steps {
   double median = 0.0, mean = 0.0;
@@ -26,17 +30,18 @@ std::optional<Steps> steps_of(const RecordedStream& s) {
                10 * survey.long_steps >= survey.kept() - 1};
 }
 
-/// A unit taken for another is wrong by a thousand or more, and no device of the field is so quick
-/// or so slow.
+/// A unit taken for another is wrong by a thousand or more, .NET's ticks by a hundred: no device of
+/// the field is so quick or so slow.
 Findings judge_unit(const Steps& steps, const std::string& file) {
-  constexpr double fastest_hz = 5000.0, slowest_hz = 0.5;
+  constexpr double fastest_hz = 1200.0, slowest_hz = 0.5;
   const double rate = 1e9 / steps.median;
   if (rate <= fastest_hz && rate >= slowest_hz) return {};
   return {{Severity::warning,
            Error{file, 0, fmt::format("{} to {} samples a second", slowest_hz, fastest_hz),
                  fmt::format("{:.4g} by the stamps", rate)},
            "the stamps may be in another unit than they were read in",
-           "where a layout reads them, its [time] says the column's unit: ns, us, ms or s"}};
+           "where a layout reads them, its [time] says the column's unit: ns, us, ms, s or "
+           "ticks_100ns"}};
 }
 
 /// The median tells a device's period, but not where samples come in bursts. A few long steps are
@@ -80,19 +85,15 @@ Findings judge_rate(const Steps& steps, double nominal_hz, const std::string& fi
 
 Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   Findings out;
-  const std::string file = s.files.empty() ? s.name : s.files.front().name;
+  const std::string file = file_of(s);
+  // A sample now and then is sent twice; of many, something else is the reason.
+  const bool often = s.survey.duplicates > 10 && 20 * s.survey.duplicates > s.survey.samples;
   if (s.survey.duplicates > 0) {
-    out.push_back({Severity::note,
+    out.push_back({often ? Severity::warning : Severity::note,
                    Error{file, 0, "stamps that rise",
                          fmt::format("{} that repeat the one before", s.survey.duplicates)},
-                   "these samples were left out", ""});
-  }
-  if (s.survey.near > 0) {
-    out.push_back({Severity::warning,
-                   Error{file, 0, "stamps a fifth of a step or more apart",
-                         fmt::format("{} nearer to the one before", s.survey.near)},
                    "these samples were left out",
-                   "stamp samples where they are taken, not where they arrive"});
+                   often ? "stamps that are rounded, or rows of several nodes in one file" : ""});
   }
   if (s.survey.ahead > 0) {
     out.push_back({Severity::warning,
@@ -118,6 +119,15 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
     append(out, judge_rate(*steps, options.rate_hz, file));
   }
   return out;
+}
+
+Findings judge_near(const RecordedStream& s, std::uint64_t samples) {
+  if (samples == 0) return {};
+  return {{Severity::warning,
+           Error{file_of(s), 0, "samples a fifth of a step or more apart",
+                 fmt::format("{} with the next one nearer", samples)},
+           "they were held back on their way, and are left out where the stream is resampled",
+           "stamp samples where they are taken, not where they arrive"}};
 }
 
 Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {

@@ -13,6 +13,9 @@ namespace kinalign {
 /// at another rate than the one stated.
 Findings judge_stamps(const RecordedStream& stream, const StreamOptions& options);
 
+/// Samples that were held back on their way; near is the count of them.
+Findings judge_near(const RecordedStream& stream, std::uint64_t near);
+
 /// What the grid of `grid_hz` can't carry of one stream.
 Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);
 

@@ -51,12 +51,15 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
 class PointResampler {
  public:
   PointResampler(Pass<PointFrames> pass, const TimeModel& clock, const ResampleRule& rule)
-      : window_(std::move(pass), clock, rule.gap_count()), clock_(&clock), rule_(rule) {}
+      : window_(std::move(pass), clock, rule.gap_count(), rule.step_ns),
+        clock_(&clock),
+        rule_(rule) {}
 
   /// Rows at the grid's stamps (ns, rising, from call to call too).
   Result<void> rows(std::span<const std::int64_t> grid, PointRows& out);
   const ResampleCount& count() const { return count_; }
   const GapCount& gaps() const { return window_.gaps; }
+  std::uint64_t held_back() const { return window_.held_back; }
 
  private:
   Window<PointFrames> window_;
@@ -70,7 +73,7 @@ class ImuResampler {
  public:
   ImuResampler(Pass<ImuSamples> pass, const TimeModel& clock, const ResampleRule& rule,
                const ImuContent& content)
-      : window_(std::move(pass), clock, rule.gap_count()),
+      : window_(std::move(pass), clock, rule.gap_count(), rule.step_ns),
         clock_(&clock),
         rule_(rule),
         content_(content) {}
@@ -80,6 +83,7 @@ class ImuResampler {
   Result<void> rows(std::span<const std::int64_t> grid, bool to_world, ImuRows& out);
   const ResampleCount& count() const { return count_; }
   const GapCount& gaps() const { return window_.gaps; }
+  std::uint64_t held_back() const { return window_.held_back; }
 
  private:
   Window<ImuSamples> window_;

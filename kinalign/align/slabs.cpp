@@ -239,4 +239,13 @@ GapCount SlabMaker::gaps(std::size_t stream) const {
       state_->streams[stream]);
 }
 
+std::uint64_t SlabMaker::held_back(std::size_t stream) const {
+  return std::visit(
+      [](const auto& rows) -> std::uint64_t {
+        if constexpr (requires { rows.held_back(); }) return rows.held_back();
+        return 0;
+      },
+      state_->streams[stream]);
+}
+
 }  // namespace kinalign

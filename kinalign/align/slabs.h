@@ -39,6 +39,7 @@ class SlabMaker {
   /// What the streams' resampling has counted so far, as in the recording.
   ResampleCount count(std::size_t stream) const;
   GapCount gaps(std::size_t stream) const;
+  std::uint64_t held_back(std::size_t stream) const;
 
  private:
   struct State;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The samples of a stream around the rows being made: a stream is pulled block by block, stamps
-// that do not rise (motion/stamps.h) are dropped, and what lies behind is forgotten.
+// that do not rise (motion/stamps.h) are dropped, samples that were held back on their way too, and
+// what lies behind is forgotten.
 #pragma once
 
 #include "kinalign/motion/stamps.h"
@@ -76,8 +77,10 @@ struct GapCount {
 template <class Frames>
 class Window {
  public:
-  Window(Pass<Frames> pass, const TimeModel& clock, const GapCount& count = {})
-      : gaps(count), pass_(std::move(pass)), clock_(&clock) {}
+  /// `step_ns` is the stream's usual step, by which a sample held back is told; 0: none is.
+  Window(Pass<Frames> pass, const TimeModel& clock, const GapCount& count = {},
+         std::int64_t step_ns = 0)
+      : gaps(count), pass_(std::move(pass)), clock_(&clock), step_ns_(step_ns) {}
 
   /// After it, `rows` hold all samples within [from, to] and, where the stream has them, `reach`
   /// on either side. `from` and `to` (ns on the take's axis) rise from call to call.
@@ -103,6 +106,7 @@ class Window {
   Frames rows;                        // stamps as the device gave them
   std::vector<std::int64_t> time_ns;  // [rows] on the take's axis, strictly rising
   GapCount gaps;                      // in what was pulled so far
+  std::uint64_t held_back = 0;        // samples left out of it, as the next came on their heels
 
  private:
   std::size_t first_not_before(std::int64_t t) const {
@@ -136,20 +140,28 @@ class Window {
 
   /// Whether `reach` is there of each column behind `to`.
   bool reaches(std::int64_t to, const Reach& reach) const {
-    if (time_ns.empty() || time_ns.back() < to) return false;
+    const std::size_t end = sure();
+    if (end == 0 || time_ns[end - 1] < to) return false;
     const std::size_t begin = first_not_before(to), width = columns(rows);
     for (std::size_t c = 0; c < width; ++c) {
       std::size_t knots = 0, t = begin;
       std::int64_t last = to;
-      for (; t < time_ns.size() && knots < reach.knots; ++t) {
+      for (; t < end && knots < reach.knots; ++t) {
         if (reach.ended(time_ns[t] - last, knots)) break;
         if (!seen(rows, t * width + c)) continue;
         ++knots;
         last = time_ns[t];
       }
-      if (t == time_ns.size() && knots < reach.knots) return false;
+      if (t == end && knots < reach.knots) return false;
     }
     return true;
+  }
+
+  /// Rows of which no later sample can show that they were held back.
+  std::size_t sure() const {
+    const bool open = !ended_ && last_seen_ && !time_ns.empty() &&
+                      near_share * (time_ns.back() - *last_seen_) < step_ns_;
+    return open ? first_not_before(*last_seen_) : time_ns.size();
   }
 
   /// Drops while pulling, where it is worth the move: a stretch without rows may be long.
@@ -171,47 +183,83 @@ class Window {
 
   void take_block() {
     std::size_t first = 0, i = 0;  // rows [first, i) are kept and not yet appended
+    const auto flush = [&](std::size_t next) {
+      append_rows(rows, block_, first, i - first);
+      first = next;
+    };
     for (; i < block_.size(); ++i) {
       const StampFate fate = rule_.judge(block_.stamps[i]);
-      if (fate == StampFate::kept) {
-        add_time(i);
+      if (fate != StampFate::kept && fate != StampFate::replaces) {
+        flush(i + 1);
         continue;
       }
-      append_rows(rows, block_, first, i - first);
-      first = i + 1;
-      if (fate != StampFate::replaces) continue;
-      take_back();
-      add_time(i);
-      first = i;
+      const std::int64_t t = to_ns(take_time(*clock_, block_.stamps[i]));
+      const bool there = any_seen(block_, i);
+      if (fate == StampFate::replaces) {
+        flush(i);
+        take_back();
+      } else if (there && shows_last_late(t)) {
+        flush(i);
+        drop_late();
+      }
+      time_ns.push_back(t);
+      if (there) see(t);
     }
-    append_rows(rows, block_, first, i - first);
+    flush(i);
   }
 
-  void add_time(std::size_t i) {
-    const std::int64_t t = to_ns(take_time(*clock_, block_.stamps[i]));
-    time_ns.push_back(t);
+  /// Whether a sample at `t` comes so soon behind the last one seen that that one was held back. Of
+  /// a whole stretch of such samples one a step stays.
+  bool shows_last_late(std::int64_t t) const {
+    return last_seen_ && near_share * (t - *last_seen_) < step_ns_ &&
+           t - late_since_.value_or(*last_seen_) < step_ns_;
+  }
+
+  void drop_late() {
+    late_since_ = late_since_.value_or(*last_seen_);
+    while (!time_ns.empty() && time_ns.back() >= *last_seen_) drop_last_row();
+    unsee();
+    ++held_back;
+    was_late_ = true;
+  }
+
+  void take_back() {
+    const bool was_seen = last_seen_ == time_ns.back();
+    drop_last_row();
+    if (was_seen) unsee();
+  }
+
+  void drop_last_row() {
+    drop_last(rows);
+    time_ns.pop_back();
+  }
+
+  /// The row at `t` has something in it.
+  void see(std::int64_t t) {
+    if (!was_late_) late_since_.reset();
+    was_late_ = false;
     gaps_before_ = gaps;
     seen_before_ = last_seen_;
-    if (!any_seen(block_, i)) return;
     if (last_seen_) gaps.add(*last_seen_, t);
     last_seen_ = t;
   }
 
-  void take_back() {
-    drop_last(rows);
-    time_ns.pop_back();
+  void unsee() {
     gaps = gaps_before_;
     last_seen_ = seen_before_;
   }
 
   Pass<Frames> pass_;
   const TimeModel* clock_;
+  std::int64_t step_ns_;
   Frames block_;
   StampRule rule_;
   std::optional<std::int64_t> last_seen_;  // stamp of the last row added with anything in it
-  // Without the last row:
+  // Without that one:
   std::optional<std::int64_t> seen_before_;
   GapCount gaps_before_;
+  std::optional<std::int64_t> late_since_;  // the first of samples held back one after the other
+  bool was_late_ = false;                   // the sample in front of the one to be seen
   bool ended_ = false;
 };
 

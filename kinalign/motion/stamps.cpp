@@ -38,7 +38,6 @@ StampFate StampRule::judge(Time stamp) {
   if (stamp == *last_) return StampFate::duplicate;
   if (stamp > *last_) {
     const bool first_was_right = withdrawn_ && stamp > *withdrawn_;
-    if (!first_was_right && too_near(step_between(*last_, stamp))) return StampFate::near;
     if (!first_was_right) {
       if (before_) learn(step_between(*before_, *last_));
       before_ = last_;
@@ -58,14 +57,7 @@ StampFate StampRule::judge(Time stamp) {
 void StampRule::learn(std::uint64_t step) {
   constexpr std::uint64_t countable = std::uint64_t{1} << 60;
   step = std::min(step, countable);
-  step_before_ = usual_step_;
   usual_step_ = usual_step_ == 0 ? step : std::min(step, 2 * usual_step_);
-}
-
-/// The step to the last one kept is not learnt yet, and may be that of a sample held back.
-bool StampRule::too_near(std::uint64_t step) const {
-  constexpr std::uint64_t share = 5;  // KinectMultiTrack's server stamps: 8 of 34 ms at the least
-  return usual_step_ > 0 && step_before_ > 0 && step < std::min(usual_step_, step_before_) / share;
 }
 
 bool StampRule::pending() const {
@@ -102,7 +94,6 @@ void StampSurveyor::add(std::span<const Time> stamps) {
     const StampFate fate = rule_.judge(stamp);
     ++survey_.samples;
     if (fate == StampFate::duplicate) ++survey_.duplicates;
-    if (fate == StampFate::near) ++survey_.near;
     const bool steps_back = stamp < last && survey_.samples > 1;
     if (fate == StampFate::backward || (fate == StampFate::replaces && !steps_back)) {
       ++survey_.backward;
@@ -134,7 +125,9 @@ StampSurvey StampSurveyor::result() const {
   }
   for (std::size_t i = 0; i < classes; ++i) {
     const double step = sums_[i] / static_cast<double>(std::max<std::uint64_t>(1, steps_[i]));
-    if (step > 1.5 * static_cast<double>(survey.median_step_ns)) survey.long_steps += steps_[i];
+    const auto median = static_cast<double>(survey.median_step_ns);
+    if (step > 1.5 * median) survey.long_steps += steps_[i];
+    if (near_share * step < median) survey.near += steps_[i];
   }
   return survey;
 }

@@ -19,16 +19,13 @@ enum class StampFate {
   kept,
   replaces,   // kept, and the last one kept is taken back: it had jumped ahead of this one
   duplicate,  // left out: the stamp of the last one kept
-  near,       // left out: so near behind it that a spline through both would leap
   backward    // left out: a stamp before the last one kept
 };
 
-/// Rising stamps are kept, but for one less than a fifth of the usual step behind the one before
-/// (of the shorter of the last two): one of the two was held back on its way, and a hand that moves
-/// on in 0.1 ms would be metres away in between. One that leads the one before by more than four
-/// usual steps (at first: a second) and the next one by anything is a slip of the clock and is
-/// taken back, so that a single wild stamp costs a single sample and not all that follow. Of the
-/// first stamp, which has none before it, the second and third decide.
+/// Rising stamps are kept. One that leads the one before by more than four usual steps (at first: a
+/// second) and the next one by anything is a slip of the clock and is taken back, so that a single
+/// wild stamp costs a single sample and not all that follow. Of the first stamp, which has none
+/// before it, the second and third decide.
 class StampRule {
  public:
   StampFate judge(Time stamp);
@@ -37,18 +34,21 @@ class StampRule {
 
  private:
   void learn(std::uint64_t step);
-  bool too_near(std::uint64_t step) const;
 
   std::optional<Time> last_, before_;  // kept
   std::uint64_t usual_step_ = 0;       // ns, of the ones before; 0: not known yet
-  std::uint64_t step_before_ = 0;      // the usual one before that
   std::optional<Time> withdrawn_;      // the first one, until the third says who was wrong
 };
+
+/// Of two samples nearer than this share of the usual step the first was held back on its way: a
+/// hand that moves on within 0.1 ms would be metres away in between. KinectMultiTrack's server
+/// stamps are 8 of 34 ms apart at the least.
+constexpr std::int64_t near_share = 5;
 
 struct StampSurvey {
   std::uint64_t samples = 0;     // all that were read
   std::uint64_t duplicates = 0;  // stamp equal to the last one kept
-  std::uint64_t near = 0;        // stamp less than a fifth of a step behind it
+  std::uint64_t near = 0;        // kept, and less than a fifth of the median step behind it
   std::uint64_t backward = 0;    // stamp before the last one kept
   std::uint64_t ahead = 0;       // stamp far ahead of the ones before and behind
   std::int64_t largest_step_back_ns = 0;
@@ -56,7 +56,7 @@ struct StampSurvey {
   std::int64_t median_step_ns = 0;  // between kept samples; 0 with fewer than two
   std::uint64_t long_steps = 0;     // of these, longer than 1.5 medians
 
-  std::uint64_t kept() const { return samples - duplicates - near - backward - ahead; }
+  std::uint64_t kept() const { return samples - duplicates - backward - ahead; }
 };
 
 /// Counts what StampRule keeps and leaves out.

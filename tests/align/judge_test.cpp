@@ -60,6 +60,24 @@ TEST_CASE("stamps that repeat are a note, those that ran ahead or back a warning
         "1.500 s; these samples were left out; look at the device's clock if there are many");
 }
 
+TEST_CASE("samples held back are a warning that says what to do about it") {
+  CHECK(judge_near(kinect(), 0).empty());
+  const Findings found = judge_near(kinect(), 3);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: kinect: expected samples a fifth of a step or more apart, found 3 with the next "
+        "one nearer; they were held back on their way, and are left out where the stream is "
+        "resampled; stamp samples where they are taken, not where they arrive");
+}
+
+TEST_CASE("stamps that repeat in one of twenty samples and more are no chance") {
+  RecordedStream s = kinect();
+  s.survey.duplicates = 50;
+  CHECK(judge_stamps(s, {}).at(0).severity == Severity::note);
+  s.survey.duplicates = 51;
+  CHECK(judge_stamps(s, {}).at(0).severity == Severity::warning);
+}
+
 TEST_CASE("from one sample in twenty on, a clock that stepped back is an error") {
   RecordedStream s = kinect();
   s.survey.backward = 51;
@@ -154,9 +172,9 @@ TEST_CASE("a rate that no device has is a unit taken for another") {
   const Findings found = judge_stamps(s, {});
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: kinect: expected 0.5 to 5000 samples a second, found 3.03e+04 by the stamps; the "
+        "warning: kinect: expected 0.5 to 1200 samples a second, found 3.03e+04 by the stamps; the "
         "stamps may be in another unit than they were read in; where a layout reads them, "
-        "its [time] says the column's unit: ns, us, ms or s");
+        "its [time] says the column's unit: ns, us, ms, s or ticks_100ns");
   s.survey.median_step_ns = 33'000'000'000;
   s.survey.last = utc_time(32'967'000'000'000);
   CHECK(judge_stamps(s, {}).size() == 1);

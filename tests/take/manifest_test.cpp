@@ -78,15 +78,16 @@ TEST_CASE("no option without a description, but for those that are more than one
   CHECK(described_of(described(align), reference, gap, rotations, store_double) == 4);
   StreamOptions stream;
   auto& [name, files, layout, select, unit, up, rate, start, end, latency, clock, offset, drift,
-         interval, mounting, root_node] = stream;
+         interval, mounting, root_node, lines] = stream;
   const auto of_stream = described(stream);
-  CHECK(described_of(of_stream, name, files, select, mounting) == 0);
+  CHECK(described_of(of_stream, name, files, select, mounting, lines) == 0);
   CHECK(described_of(of_stream, layout, unit, up, rate, start, end, latency, clock, offset, drift,
                      interval, root_node) == 12);
   SpaceOptions space;
-  auto& [method, onto, turn, magnification, rotation, translation, joints, root, onto_root] = space;
+  auto& [method, onto, turn, magnification, rotation, translation, joints, root, onto_root, said] =
+      space;
   const auto of_space = described(space);
-  CHECK(described_of(of_space, rotation, translation, joints) == 0);
+  CHECK(described_of(of_space, rotation, translation, joints, said) == 0);
   CHECK(described_of(of_space, method, onto, turn, magnification, root, onto_root) == 6);
 }
 

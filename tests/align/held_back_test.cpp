@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples that were held back on their way and stamped where they arrived, on the heels of the
+// next: wherever they stand, no curve runs through them.
+#include "tests/align/two_streams.h"
+#include "tests/seeds.h"
+
+#include "kinalign/align/align.h"
+#include "kinalign/align/window.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace kinalign;
+using namespace kinalign::test;
+
+namespace {
+
+constexpr std::int64_t step = 33 * ms;
+
+/// A hand at 3 m/s on a straight line, on which any spline through true samples lies.
+Vec3 hand(std::size_t, double t) { return {3.0 * t, 1.0, -3.0 * t}; }
+
+/// The same samples with later stamps.
+PointStream stamped(const std::vector<Time>& taken, const std::vector<Time>& arrived) {
+  PointStream out = points(joints, taken, hand);
+  out.frames.stamps = arrived;
+  return out;
+}
+
+/// How far a valid row lies from the truth at most, m.
+double worst_of(const Take& take) {
+  const PointRows& kinect = rows(take, 1);
+  double worst = 0.0;
+  for (std::size_t r = 0; r < take.all.stamps.size(); ++r) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (kinect.valid[r * joints.size() + j] == 0) continue;
+      const double t = 1e-9 * static_cast<double>(to_ns(take.all.stamps[r]));
+      worst = std::max(worst, (at(kinect, r, j) - hand(j, t)).norm());
+    }
+  }
+  return worst;
+}
+
+Take aligned(PointStream kinect, double rate_hz = 0.0) {
+  Manifest manifest = own_space();
+  manifest.streams.resize(1);
+  manifest.streams[0].name = "kinect";
+  manifest.streams[0].rate_hz = rate_hz;
+  const std::size_t rows = static_cast<std::size_t>(to_ns(kinect.frames.stamps.back()) / (10 * ms));
+  auto take = align(two(points(joints, every(10 * ms, rows), wander), std::move(kinect)), manifest);
+  REQUIRE(take);
+  return *std::move(take);
+}
+
+}  // namespace
+
+TEST_CASE("of samples on the heels of the next ones none is used, wherever they stand") {
+  for (const auto seed : fresh_seeds(200)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    std::vector<Time> taken{utc_time(0)};
+    while (taken.size() < 120) {
+      taken.push_back(taken.back() + Duration{step + static_cast<std::int64_t>(random() % 6) * ms});
+    }
+    std::vector<Time> arrived = taken;
+    const std::size_t opening = random() % 11;  // wait in a buffer until the next one comes
+    std::uint64_t late = opening;
+    for (std::size_t i = opening; i-- > 0;) arrived[i] = arrived[i + 1] - Duration{200'000};
+    for (std::size_t i = opening + 1; i + 1 < taken.size(); ++i) {
+      if (random() % 10 != 0) continue;
+      const std::size_t stall = std::min(1 + random() % 4, taken.size() - 1 - i);
+      for (std::size_t k = stall; k-- > 0;) arrived[i + k] = arrived[i + k + 1] - Duration{ms};
+      late += stall;
+      i += stall;
+    }
+    const Take take = aligned(stamped(taken, arrived));
+    CHECK(worst_of(take) <= 1e-9);
+    CHECK(take.report.streams[1].held_back == late);
+    REQUIRE(!take.report.findings.empty() == (late > 0));
+    if (late > 0) CHECK(take.report.findings[0].severity == Severity::warning);
+  }
+}
+
+TEST_CASE(
+    "a fifth of the usual step is not near yet, and the usual step is the stated one, if any") {
+  const auto held_back = [](std::int64_t nearest, double rate_hz) {
+    std::vector<Time> stamps = every(50 * ms, 40);
+    stamps[20] = stamps[21] - Duration{nearest};
+    return aligned(stamped(stamps, stamps), rate_hz).report.streams[1].held_back;
+  };
+  CHECK(held_back(10 * ms, 0.0) == 0);
+  CHECK(held_back(10 * ms - 1, 0.0) == 1);
+  CHECK(held_back(10 * ms - 1, 40.0) == 0);
+  CHECK(held_back(5 * ms - 1, 40.0) == 1);
+}
+
+TEST_CASE("rows in which nothing was seen hold no sample back") {
+  PointStream kinect = points(joints, every(step, 60), hand);
+  PointStream beats;  // an empty row a millisecond before and behind each fifth sample
+  beats.joint_names = joints;
+  for (std::size_t i = 0; i < 60; ++i) {
+    const auto empty = [&](Time stamp) {
+      beats.frames.stamps.push_back(stamp);
+      beats.frames.positions.insert(beats.frames.positions.end(), 3 * joints.size(), 0.0);
+      beats.frames.state.insert(beats.frames.state.end(), joints.size(), Tracking::missing);
+    };
+    if (i % 5 == 1) empty(kinect.frames.stamps[i] - Duration{ms});
+    append_rows(beats.frames, kinect.frames, i, 1);
+    if (i % 5 == 1) empty(kinect.frames.stamps[i] + Duration{ms});
+  }
+  const Take take = aligned(beats);
+  CHECK(take.report.streams[1].held_back == 0);
+  CHECK(take.report.streams[1].invalid == 0);
+  CHECK(worst_of(take) <= 1e-9);
+}
+
+TEST_CASE("a stretch at a much higher rate is thinned to the usual one and not lost") {
+  std::vector<Time> stamps = every(1000 * ms, 60);
+  for (std::int64_t k = 1; k <= 500; ++k) stamps.push_back(stamps.back() + Duration{10 * ms});
+  for (std::int64_t k = 1; k <= 700; ++k) stamps.push_back(stamps.back() + Duration{1000 * ms});
+  const Take take = aligned(stamped(stamps, stamps));
+  CHECK(take.report.streams[1].held_back > 450);
+  CHECK(take.report.streams[1].held_back < 500);
+  CHECK(take.report.streams[1].invalid == 0);
+  CHECK(worst_of(take) <= 1e-7);
+}
+
+TEST_CASE("the reference keeps its rows, and blocks of any size hold back the same samples") {
+  std::vector<Time> stamps = every(step, 100);
+  for (const std::size_t late : {0, 2, 50, 98}) stamps[late] = stamps[late + 1] - Duration{ms};
+  const PointStream all = stamped(every(step, 100), stamps);
+  const auto take = align(two(all, points(joints, every(10 * ms, 400), wander)), own_space());
+  REQUIRE(take);
+  CHECK(take->report.frames == 100);
+  CHECK(take->report.streams[0].held_back == 0);
+  for (const std::size_t size : {1, 2, 7, 100}) {
+    CAPTURE(size);
+    Recording recording = two(points(joints, every(10 * ms, 300), wander), all);
+    recording.streams[1] = read_in_blocks(recording.streams[1], all.frames, size);
+    const auto in_pieces = align(recording, own_space());
+    REQUIRE(in_pieces);
+    CHECK(in_pieces->report.streams[1].held_back == 4);
+    CHECK(worst_of(*in_pieces) <= 1e-9);
+  }
+}
