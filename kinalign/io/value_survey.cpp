@@ -32,6 +32,7 @@ double times_too_large(double size_m) {
 void PointSizes::add(const PointFrames& block) {
   if (block.size() == 0) return;
   const std::size_t joints = block.state.size() / block.size();
+  all_frames_ += block.size();
   for (std::size_t t = 0; t < block.size(); ++t) {
     Eigen::AlignedBox3d box;
     std::uint64_t seen = 0;
@@ -40,6 +41,7 @@ void PointSizes::add(const PointFrames& block) {
       box.extend(Vec3(vec3(block.positions, cell)));
       ++seen;
     }
+    seen_frames_ += seen > 0 ? 1 : 0;
     if (seen < 2) continue;
     ++frames_;
     most_points_ = std::max(most_points_, seen);
@@ -48,6 +50,12 @@ void PointSizes::add(const PointFrames& block) {
 }
 
 Findings PointSizes::judge(const PointHeader&, const std::string& file) const {
+  if (all_frames_ >= enough && 10 * seen_frames_ < all_frames_) {
+    return {{Severity::warning,
+             Error{file, 0, "frames with a point in them, one in ten at least",
+                   fmt::format("{} of {}", seen_frames_, all_frames_)},
+             "in the others nothing was seen", "look at the cells that are empty"}};
+  }
   if (frames_ < enough) return {};
   const double size = diagonals_m_ / static_cast<double>(frames_);
   if (size <= largest_m && (size >= smallest_m || most_points_ < enough)) return {};
@@ -80,6 +88,8 @@ void ImuSizes::add(std::span<const double> vectors, const ImuSamples& block, Nor
 }
 
 void ImuSizes::add(const ImuSamples& block) {
+  samples_ += block.valid.size();
+  valid_ += static_cast<std::uint64_t>(std::count(block.valid.begin(), block.valid.end(), 1));
   add(block.acceleration, block, acceleration_);
   add(block.angular_velocity, block, angular_velocity_);
 }
@@ -91,6 +101,13 @@ Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const
     out.push_back(
         {Severity::warning, Error{file, 0, expected, found}, "read as they stand there", advice});
   };
+  if (samples_ >= enough && 10 * valid_ < samples_) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "nodes whose samples are valid, one in ten at least",
+                         fmt::format("{} of {}", valid_, samples_)},
+                   "the others are invalid: a quantity is missing in them",
+                   "look at the cells that are empty"});
+  }
   if (acceleration_.count >= enough) {
     const double mean = acceleration_.mean();
     const std::string found = fmt::format("{:.3g} m/s2", mean);

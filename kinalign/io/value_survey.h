@@ -16,10 +16,11 @@ class PointSizes {
  public:
   void add(const PointFrames& block);
   /// A finding where the points of a frame lie too far apart for a person or, where ten or more
-  /// were seen, too near.
+  /// were seen, too near, or where hardly a frame has any.
   Findings judge(const PointHeader& header, const std::string& file) const;
 
  private:
+  std::uint64_t all_frames_ = 0, seen_frames_ = 0;
   std::uint64_t frames_ = 0;       // with two points or more
   std::uint64_t most_points_ = 0;  // in one of them
   double diagonals_m_ = 0.0;       // of the boxes around them, their sum
@@ -28,7 +29,8 @@ class PointSizes {
 class ImuSizes {
  public:
   void add(const ImuSamples& block);
-  /// Findings where accelerations can't be m/s2 with (or without) gravity, or rates not rad/s.
+  /// Findings where accelerations can't be m/s2 with (or without) gravity, rates not rad/s, or
+  /// where hardly a sample is valid.
   Findings judge(const ImuHeader& header, const std::string& file) const;
 
  private:
@@ -42,6 +44,7 @@ class ImuSizes {
   static void add(std::span<const double> vectors, const ImuSamples& block, Norms& norms);
 
   Norms acceleration_, angular_velocity_;
+  std::uint64_t samples_ = 0, valid_ = 0;
 };
 
 /// A skeleton's rest pose says more than its frames do: it is judged where it is read.

@@ -91,19 +91,33 @@ TEST_CASE("turns in degrees per second are told apart from radians") {
         "w.csv: expected turns of at most 12 rad/s in the mean, found 57.3 rad/s\n");
 }
 
-TEST_CASE("samples that were not seen count for nothing, and too few say nothing") {
+TEST_CASE("samples that were not seen count for nothing, and where hardly one was that is said") {
   PointFrames missing;
   missing.stamps.assign(rows, Time{});
   missing.positions.assign(rows * 75, 0.0);
   missing.state.assign(rows * 25, Tracking::missing);
   PointSizes points;
   points.add(missing);
-  CHECK(points.judge({}, "k.csv").empty());
+  const Findings nobody = points.judge({}, "k.csv");
+  REQUIRE(nobody.size() == 1);
+  CHECK(to_string(nobody[0].what) ==
+        "k.csv: expected frames with a point in them, one in ten at least, found 0 of " +
+            std::to_string(rows));
   ImuSamples lost;
   lost.stamps.assign(rows, Time{});
   lost.acceleration.assign(rows * 3, 0.0);
   lost.valid.assign(rows, 0);
   ImuSizes nodes;
   nodes.add(lost);
-  CHECK(nodes.judge({{"waist"}, {false, true, false, true}}, "w.csv").empty());
+  const ImuHeader header{{"waist"}, {false, true, false, true}};
+  const Findings nothing = nodes.judge(header, "w.csv");
+  REQUIRE(nothing.size() == 1);
+  CHECK(to_string(nothing[0].what) ==
+        "w.csv: expected nodes whose samples are valid, one in ten at least, found 0 of " +
+            std::to_string(rows));
+  lost.acceleration.assign(9 * 3, 0.0);
+  lost.valid.assign(9, 0);  // too few to tell
+  ImuSizes few;
+  few.add(lost);
+  CHECK(few.judge(header, "w.csv").empty());
 }
