@@ -45,8 +45,10 @@ std::string to_string(const Error& error) {
 
 std::string shown(std::string_view text) {
   constexpr std::size_t most = 40;
-  std::string out = without_controls(text.substr(0, most));
-  if (text.size() > most) out += "...";
+  if (text.size() <= most) return without_controls(text);
+  std::size_t cut = most;  // never within a letter of UTF-8, which has four bytes at most
+  while (cut > most - 3 && (static_cast<unsigned char>(text[cut]) & 0xc0U) == 0x80U) --cut;
+  std::string out = without_controls(text.substr(0, cut)) + "...";
   return out;
 }
 

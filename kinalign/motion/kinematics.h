@@ -22,7 +22,7 @@ constexpr std::size_t euler_frames = 16;
 
 /// Angles of one joint over many frames, degrees, one column for each of the order's rotations
 /// (nullptr: always zero), rows `stride` apart; rotations go to rotations[i * rotation_stride +
-/// 0..3] as w,x,y,z. Angles of any size; exact to 4e-16 a component up to 180 degrees.
+/// 0..3] as w,x,y,z. Angles up to 1e15; exact to 4e-16 a component up to 180 degrees.
 struct EulerColumns {
   std::array<const double*, 3> angles{};
   std::size_t stride = 0;

@@ -20,6 +20,7 @@ void append_rows(TakeSlab& all, const TakeSlab& slab) {
           const auto& from = std::get<std::remove_reference_t<decltype(to)>>(slab.rows[g]);
           for_each_column<std::remove_reference_t<decltype(to)>>(
               [&](const char*, auto of) { join(of(to), of(from)); });
+          join(to.distance.over_loss, from.distance.over_loss);
         },
         all.rows[g]);
   }
