@@ -40,6 +40,14 @@ std::uint64_t count_at(const Json& json, const char* key) {
   return json[key].get<std::uint64_t>();
 }
 
+/// ns; 0 where none stands, or none that a take can have.
+std::int64_t stamp_at(const Json& json, const char* key) {
+  constexpr std::int64_t furthest = 9'200'000'000'000'000'000;
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number_integer()) return 0;
+  const auto ns = json[key].get<std::int64_t>();
+  return ns > furthest || ns < -furthest ? 0 : ns;
+}
+
 const Json& list_at(const Json& json, const char* key) {
   static const Json none = Json::array();
   if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return none;
@@ -59,13 +67,13 @@ std::string date_text(std::int64_t ns) {
 
 /// The take's span; devices without a calendar count from near zero.
 std::string span_text(const Json& report) {
-  constexpr double year_ns = 3.2e16;
-  const double begin = number_at(report, "begin_ns"), end = number_at(report, "end_ns");
-  if (begin < year_ns || end > 9.2e18) {
-    return fmt::format("  from {:.3f} to {:.3f} s, no date known\n", 1e-9 * begin, 1e-9 * end);
+  constexpr std::int64_t year_ns = 32'000'000'000'000'000;
+  const std::int64_t begin = stamp_at(report, "begin_ns"), end = stamp_at(report, "end_ns");
+  if (begin < year_ns || end < begin) {
+    return fmt::format("  from {:.3f} to {:.3f} s, no date known\n",
+                       1e-9 * static_cast<double>(begin), 1e-9 * static_cast<double>(end));
   }
-  return fmt::format("  from {} to {} UTC\n", date_text(static_cast<std::int64_t>(begin)),
-                     date_text(static_cast<std::int64_t>(end)));
+  return fmt::format("  from {} to {} UTC\n", date_text(begin), date_text(end));
 }
 
 std::string head_text(const Json& take, const Json& report) {
@@ -74,8 +82,9 @@ std::string head_text(const Json& take, const Json& report) {
   std::string text = fmt::format("{}: a take by {}, {} frames", text_at(take, "file"),
                                  text_at(take, "software"), grouped(frames));
   if (rate > 0.0) {
-    text +=
-        fmt::format(" at {:.4g} Hz, {}", rate, duration_text(static_cast<double>(frames) / rate));
+    text += fmt::format(" at {:.4g} Hz, {}", rate,
+                        duration_text(take_seconds(stamp_at(report, "begin_ns"),
+                                                   stamp_at(report, "end_ns"), rate)));
   }
   text += "\n";
   const std::string subject = text_at(take, "subject"), action = text_at(take, "action");
@@ -92,7 +101,8 @@ std::string marks_text(const Json& s) {
   const std::uint64_t samples = count_at(s, "samples");
   if (samples == 0) return "";
   const std::uint64_t invalid = std::min(samples, count_at(s, "invalid"));
-  std::string text = fmt::format(", {} valid", share_text(samples - invalid, samples));
+  const std::string valid = share_text(samples - invalid, samples);
+  std::string text = valid.empty() ? ", nothing valid" : ", " + valid + " valid";
   const auto share = [&](const char* key, const char* what) {
     if (count_at(s, key) > 0) text += ", " + share_text(count_at(s, key), samples) + what;
   };
@@ -105,7 +115,7 @@ std::string marks_text(const Json& s) {
 std::string quality_text(const Json& s) {
   const auto has = [&s](const char* key) { return s.is_object() && s.contains(key); };
   std::optional<std::int64_t> interval_ns;
-  if (has("worst_interval_ns")) interval_ns = std::llround(number_at(s, "worst_interval_ns"));
+  if (has("worst_interval_ns")) interval_ns = stamp_at(s, "worst_interval_ns");
   const bool counted = has("stamps_counted") && s["stamps_counted"] == true;
   std::string text = fmt::format("{:.4g} Hz, ", number_at(s, "rate_hz"));
   text += clock_text(interval_ns, counted);

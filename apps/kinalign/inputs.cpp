@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <system_error>
 
 namespace kinalign {
 
@@ -162,12 +164,31 @@ std::vector<std::string*> paths_in(Manifest& manifest) {
   return paths;
 }
 
+/// The one spelling of a path: its folder's, without links, and the file's own name, which may be a
+/// link. A folder that is not there is only brought into order.
+std::string place_of(const std::string& path) {
+  const std::filesystem::path whole = std::filesystem::absolute(path);
+  std::error_code fault;
+  const auto parent = std::filesystem::canonical(whole.parent_path(), fault);
+  return ((fault ? whole.parent_path().lexically_normal() : parent) / whole.filename()).string();
+}
+
+/// As seen from where the program was called: "demo/"; "" for that folder itself.
+std::string from_here(const std::string& folder) {
+  const auto here = std::filesystem::canonical(std::filesystem::current_path());
+  const std::string near = std::filesystem::path(folder).lexically_relative(here).string();
+  if (near.empty() || near == ".") return near.empty() ? folder : "";
+  return near.ends_with('/') ? near : near + "/";
+}
+
 }  // namespace
 
 std::string cut_common_folder(Manifest& manifest) {
-  std::vector<std::string*> paths = paths_in(manifest);
-  std::erase_if(paths, [](const std::string* path) { return path->starts_with('/'); });
+  const std::vector<std::string*> paths = paths_in(manifest);
   if (paths.empty()) return "";
+  const bool relative = std::none_of(
+      paths.begin(), paths.end(), [](const std::string* path) { return path->starts_with('/'); });
+  for (std::string* path : paths) *path = place_of(*path);
   std::string common(folder(*paths.front()));
   for (const std::string* path : paths) {
     while (!path->starts_with(common)) {
@@ -175,8 +196,10 @@ std::string cut_common_folder(Manifest& manifest) {
       common = folder(common);
     }
   }
+  // Of files that share nothing a take remembers the names alone: no path of a machine's.
+  if (common == "/") return "";
   for (std::string* path : paths) path->erase(0, common.size());
-  return common;
+  return relative ? from_here(common) : common;
 }
 
 std::vector<std::string> files_named(Manifest manifest, const std::string& folder) {

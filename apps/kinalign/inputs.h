@@ -69,8 +69,9 @@ Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const s
 /// by what is made of it.
 Result<void> keep_inputs(const std::string& out, const std::vector<std::string>& inputs);
 
-/// The folder that all relative paths of a manifest share, "" or ending in '/'; they become
-/// relative to it, so that a take does not depend on where the program was called from.
+/// The folder that all paths of a manifest share, "" or ending in '/'; they become relative to it,
+/// so that a take does not depend on where the program was called from, nor on how a path is spelt.
+/// Where they share nothing they become absolute.
 std::string cut_common_folder(Manifest& manifest);
 
 /// Every file that a manifest names; relative paths are relative to `folder`.

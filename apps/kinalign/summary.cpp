@@ -164,9 +164,15 @@ std::string grouped(std::uint64_t number) {
   return text;
 }
 
+double take_seconds(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz) {
+  const double last = rate_hz > 0.0 ? 1.0 / rate_hz : 0.0;
+  return 1e-9 * (static_cast<double>(end_ns) - static_cast<double>(begin_ns)) + last;
+}
+
 std::string duration_text(double s) {
-  if (s < 60.0) return fmt::format("{:.2f} s", s);
-  const auto whole = static_cast<std::int64_t>(s);
+  constexpr double shown_as_minute = 59.995, longest = 1e15;
+  if (!(s >= shown_as_minute)) return fmt::format("{:.2f} s", s);
+  const auto whole = static_cast<std::int64_t>(std::min(s + 0.005, longest));
   return whole < 3600
              ? fmt::format("{} min {:02} s", whole / 60, whole % 60)
              : fmt::format("{} h {:02} min {:02} s", whole / 3600, whole / 60 % 60, whole % 60);
@@ -187,8 +193,7 @@ std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool coun
 }
 
 std::string summary(const AlignmentReport& report, const std::string& out, const Console& console) {
-  const double length =
-      report.rate_hz > 0.0 ? static_cast<double>(report.frames) / report.rate_hz : 0.0;
+  const double length = take_seconds(to_ns(report.begin), to_ns(report.end), report.rate_hz);
   const std::vector<Group> groups = groups_of(report);
   std::string names;
   for (const Group& group : groups) names += (names.empty() ? "" : " + ") + name_of(group);

@@ -22,6 +22,9 @@ std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool coun
 /// 3601: "3,601".
 std::string grouped(std::uint64_t number);
 
+/// From the first row to the end of the last one, which lasts as long as a usual step.
+double take_seconds(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz);
+
 /// 61.5 s: "1 min 01 s".
 std::string duration_text(double s);
 

@@ -32,7 +32,7 @@ TEST_CASE("notes do not make an exit code of 1, warnings and errors do") {
   CHECK(code_of({{Severity::error, {}, "", ""}}) == 1);
 }
 
-TEST_CASE("relative paths are cut to what lies below their common folder, absolute ones stay") {
+TEST_CASE("paths are cut to what lies below their common folder, however they are spelt") {
   const auto cut = [](const std::vector<std::string>& paths) {
     Manifest manifest;
     for (const std::string& path : paths) {
@@ -47,6 +47,18 @@ TEST_CASE("relative paths are cut to what lies below their common folder, absolu
   CHECK(cut({"Mueller/m.bvh"}) == "Mueller/: m.bvh");
   CHECK(cut({"a/b/m.bvh", "a/bc/k.csv"}) == "a/: b/m.bvh bc/k.csv");
   CHECK(cut({"a/m.bvh", "b/k.csv"}) == ": a/m.bvh b/k.csv");
-  CHECK(cut({"../x/m.bvh", "/y/k.csv", "../x/w.csv"}) == "../x/: m.bvh /y/k.csv w.csv");
-  CHECK(cut({"/y/k.csv"}) == ": /y/k.csv");
+  CHECK(cut({"../x/m.bvh", "../x/w.csv"}) == "../x/: m.bvh w.csv");
+  CHECK(cut({"/y/k.csv"}) == "/y/: k.csv");
+  CHECK(cut({"/y/k.csv", "/z/k.csv"}) == ": /y/k.csv /z/k.csv");
+  const FreshFolder folder;
+  for (const char* name : {"a", "b"})
+    std::filesystem::create_directories(folder.path() + "/" + name);
+  std::filesystem::create_directory_symlink(folder.path() + "/a", folder.path() + "/link");
+  const std::string at = std::filesystem::canonical(folder.path()).string() + "/";
+  const std::string near = std::filesystem::path(at).lexically_relative(
+      std::filesystem::canonical(std::filesystem::current_path()));
+  const std::string below = ": a/m.bvh b/k.csv";
+  CHECK(cut({at + "a/m.bvh", at + "b/k.csv"}) == at + below);
+  CHECK(cut({at + "link/m.bvh", near + "/b/../b/k.csv"}) == at + below);
+  CHECK(cut({near + "/./a/m.bvh", near + "/a/../b/k.csv"}).ends_with("/" + below));
 }

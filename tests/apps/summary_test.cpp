@@ -22,6 +22,8 @@ StreamReport stream(const std::string& name, std::vector<std::string> nodes,
 AlignmentReport report() {
   AlignmentReport report;
   report.frames = 3601;
+  report.begin = utc_time(5);
+  report.end = utc_time(60'000'000'005);
   report.rate_hz = 60.0;
   report.reference = "mocap";
   report.streams = {stream("mocap", {}, 0), stream("kinect", {}, 0), stream("imu", {"waist"}, 20),
