@@ -27,6 +27,21 @@ std::vector<bool> groups_of_fits(const std::vector<SpacePlan>& spaces, std::size
   return out;
 }
 
+Result<void> fit_space(const PairMoments& moments, const std::string& name, SpacePlan& space) {
+  if (moments.count == 0) {
+    return Failure(Error{name, 0, "rows in which joints of both are tracked, for a fit",
+                         "none (are rate_hz and gap_ms the device's?)"});
+  }
+  auto fitted = fit_rigid(moments);
+  if (!fitted) {
+    fitted.error().file = name;
+    return Failure(std::move(fitted).error());
+  }
+  space.transform = *fitted;
+  space.beside_line_m = spread_beside_line(moments);
+  return {};
+}
+
 /// A pass over the streams concerned that finds the transforms to be fitted.
 Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
                         std::vector<SpacePlan>& spaces, const Progress& progress,
@@ -44,13 +59,7 @@ Result<void> fit_spaces(const Recording& recording, const AlignPlan& plan,
   }));
   for (std::size_t k = 0; k < spaces.size(); ++k) {
     if (spaces[k].options.method != "fit") continue;
-    auto fitted = fit_rigid(moments[k]);
-    if (!fitted) {
-      fitted.error().file = plan.header.groups[spaces[k].group].name;
-      return Failure(std::move(fitted).error());
-    }
-    spaces[k].transform = *fitted;
-    spaces[k].beside_line_m = spread_beside_line(moments[k]);
+    KA_TRY(fit_space(moments[k], plan.header.groups[spaces[k].group].name, spaces[k]));
   }
   return {};
 }

@@ -25,9 +25,16 @@ std::vector<std::string> differing(const Fields& some, const Fields& others) {
   return names;
 }
 
+/// And those that a file says, if only what holds without a word.
+void add_said(const KeyLines& lines, std::vector<std::string>& names) {
+  for (const auto& [key, line] : lines) names.push_back(key);
+}
+
 std::vector<std::string> options_set(StreamOptions options) {
   StreamOptions defaults;
-  return differing(describe(options), describe(defaults));
+  std::vector<std::string> names = differing(describe(options), describe(defaults));
+  add_said(options.lines, names);
+  return names;
 }
 
 std::vector<std::string> options_set(SpaceOptions options) {
@@ -37,6 +44,8 @@ std::vector<std::string> options_set(SpaceOptions options) {
   if (!options.joints.empty()) names.emplace_back("joints");
   if (!options.rotation.empty()) names.emplace_back("rotation");
   if (!options.translation.empty()) names.emplace_back("translation");
+  add_said(options.lines, names);
+  std::erase(names, "method");
   return names;
 }
 

@@ -173,7 +173,8 @@ TEST_CASE("a fit needs three named joints, and three places that stand on no lin
   auto never_seen = hundred();
   never_seen.frames.state.assign(never_seen.frames.state.size(), Tracking::inferred);
   CHECK(fault_of_space(by("fit"), never_seen) ==
-        "kinect: expected three pairs of points for a rigid fit, found 0");
+        "kinect: expected rows in which joints of both are tracked, for a fit, found none (are "
+        "rate_hz and gap_ms the device's?)");
 }
 
 TEST_CASE("a given rotation is one") {

@@ -144,3 +144,24 @@ TEST_CASE("a space's method takes what it has a use for, and nothing else") {
     }
   }
 }
+
+TEST_CASE(
+    "a key that a file says is refused where it has no effect, also with the default's value") {
+  Manifest manifest;
+  SpaceOptions& space = manifest.spaces["kinect"];
+  space.method = "fit";
+  space.lines = {{"method", 4}, {"onto", 5}, {"rotation_y_deg", 6}};
+  const auto used = check_options_used({}, manifest);
+  REQUIRE_FALSE(used);
+  CHECK(used.error().line == 6);
+  CHECK(used.error().found == "rotation_y_deg");
+  space.lines.erase("rotation_y_deg");
+  CHECK(check_options_used({}, manifest));
+  manifest.streams.resize(1);
+  manifest.streams[0].name = "some";
+  manifest.streams[0].lines = {{"file", 2}, {"clock", 3}, {"root_node", 4}};
+  const Recording recording{"", "", {recorded("some", PointStream{})}};
+  CHECK(check_options_used(recording, manifest).error().line == 4);
+  manifest.streams[0].lines.erase("root_node");
+  CHECK(check_options_used(recording, manifest));
+}
