@@ -160,7 +160,7 @@ class Window {
   /// Rows of which no later sample can show that they were held back.
   std::size_t sure() const {
     const bool open = !ended_ && last_seen_ && !time_ns.empty() &&
-                      near_share * (time_ns.back() - *last_seen_) < step_ns_;
+                      time_ns.back() - *last_seen_ < step_ns_ / near_share;
     return open ? first_not_before(*last_seen_) : time_ns.size();
   }
 
@@ -211,7 +211,7 @@ class Window {
   /// Whether a sample at `t` comes so soon behind the last one seen that that one was held back. Of
   /// a whole stretch of such samples one a step stays.
   bool shows_last_late(std::int64_t t) const {
-    return last_seen_ && near_share * (t - *last_seen_) < step_ns_ &&
+    return last_seen_ && t - *last_seen_ < step_ns_ / near_share &&
            t - late_since_.value_or(*last_seen_) < step_ns_;
   }
 
