@@ -60,6 +60,30 @@ Result<void> check_stream_names(const Manifest& manifest) {
   return {};
 }
 
+Result<SpaceOptions> space_of(const QuickFlags& flags) {
+  SpaceOptions space = flags.space;
+  for (const std::string& joint : flags.joints) {
+    const auto pair = KA_TRY(pair_of("--joint", joint, "KINECT=MOCAP"));
+    if (!space.joints.insert(pair).second) {
+      return Failure(
+          Error{"--joint", 0, "each joint of the Kinect once", shown(pair.first) + " twice"});
+    }
+  }
+  return space;
+}
+
+Result<StreamOptions> nodes_of(const QuickFlags& flags) {
+  StreamOptions nodes;
+  nodes.name = "imu";
+  nodes.layout = flags.imu_layout;
+  nodes.root_node = flags.root_node;
+  for (const std::string& one : flags.imu) {
+    const auto [node, file] = KA_TRY(pair_of("--imu", one, "NODE=FILE"));
+    nodes.files.push_back({file, node});
+  }
+  return nodes;
+}
+
 /// Kinds of streams, as in RecordedStream::data, and their names in messages.
 constexpr std::size_t clip = 0, points = 1, nodes = 2;
 
@@ -148,20 +172,12 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
     stream.files = {{std::move(file), ""}};
     manifest.streams.push_back(std::move(stream));
   };
-  SpaceOptions space = flags.space;
-  for (const std::string& joint : flags.joints) {
-    const auto pair = KA_TRY(pair_of("--joint", joint, "KINECT=MOCAP"));
-    if (!space.joints.insert(pair).second) {
-      return Failure(
-          Error{"--joint", 0, "each joint of the Kinect once", shown(pair.first) + " twice"});
-    }
-  }
   add(flags.mocap_options, "mocap", flags.mocap);
   StreamOptions kinect;
   kinect.layout = flags.kinect_layout;
   if (!flags.kinect.empty()) {
     add(kinect, "kinect", flags.kinect);
-    manifest.spaces["kinect"] = space;
+    manifest.spaces["kinect"] = KA_TRY(space_of(flags));
   }
   for (const std::string& one : flags.points) {
     const auto [name, file] = KA_TRY(pair_of("--points", one, "NAME=FILE"));
@@ -169,15 +185,7 @@ Result<Manifest> quick_manifest(const QuickFlags& flags) {
     further.layout = flags.points_layout;
     add(further, name, file);
   }
-  StreamOptions nodes;
-  nodes.name = "imu";
-  nodes.layout = flags.imu_layout;
-  nodes.root_node = flags.root_node;
-  for (const std::string& one : flags.imu) {
-    const auto [node, file] = KA_TRY(pair_of("--imu", one, "NODE=FILE"));
-    nodes.files.push_back({file, node});
-  }
-  if (!nodes.files.empty()) manifest.streams.push_back(nodes);
+  if (!flags.imu.empty()) manifest.streams.push_back(KA_TRY(nodes_of(flags)));
   KA_TRY(check_stream_names(manifest));
   return manifest;
 }

@@ -256,6 +256,17 @@ Result<void> check_mountings(const TakeHeader& header, const Manifest& manifest)
   return {};
 }
 
+Result<void> check_nodes(const TakeHeader& header, const Manifest& manifest) {
+  KA_TRY(check_roots(header, manifest));
+  return check_mountings(header, manifest);
+}
+
+Result<void> check_streams(const Recording& recording) {
+  if (recording.streams.empty()) return Failure(Error{"", 0, "at least one stream", "none"});
+  for (const RecordedStream& stream : recording.streams) KA_TRY(check_stream_name(stream.name));
+  return {};
+}
+
 }  // namespace
 
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {
@@ -267,8 +278,7 @@ const StreamOptions& options_of(const Manifest& manifest, const std::string& str
 }
 
 Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest) {
-  if (recording.streams.empty()) return Failure(Error{"", 0, "at least one stream", "none"});
-  for (const RecordedStream& stream : recording.streams) KA_TRY(check_stream_name(stream.name));
+  KA_TRY(check_streams(recording));
   AlignPlan plan;
   plan.reference = KA_TRY(find_reference(recording, manifest));
   const RecordedStream& reference = recording.streams[plan.reference];
@@ -278,8 +288,7 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   KA_TRY(check_options_used(recording, manifest));
   KA_TRY(find_span(recording, plan));
   KA_TRY(make_groups(recording, manifest, plan));
-  KA_TRY(check_roots(plan.header, manifest));
-  KA_TRY(check_mountings(plan.header, manifest));
+  KA_TRY(check_nodes(plan.header, manifest));
   plan.header.subject = recording.subject;
   plan.header.action = recording.action;
   plan.header.parameters = manifest;

@@ -69,15 +69,32 @@ std::vector<double> first_row(std::string_view text, const std::string& path, st
   return {rows.frames().begin(), rows.frames().begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
+/// What follows a head, in pieces.
+struct RowsText {
+  WordCount words;
+  std::string start;
+
+  void add(std::string_view piece) {
+    constexpr std::size_t longest_start = 64 * 1024;  // a row of 3,000 joints
+    words.add(piece);
+    if (start.size() < longest_start) start += piece;
+  }
+
+  /// Whether the words are those of the frames that the head promises.
+  bool keeps(const BvhHierarchy& head) const {
+    const std::uint64_t row_size = head.row_size();
+    return row_size > 0 && !words.within_word() && words.words() % row_size == 0 &&
+           words.words() / row_size == head.frames;
+  }
+};
+
 Result<Counted> count(FileSystem& files, const std::string& path, const Progress& progress) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   Counted out;
   Sha256 hash;
   BvhHead head(path);
-  WordCount words;
+  RowsText rows;
   bool in_rows = false;
-  constexpr std::size_t longest_start = 64 * 1024;  // a row of 3,000 joints
-  std::string start;                                // of the rows
   std::uint64_t bytes = 0;
   for (;;) {
     const std::string_view piece = KA_TRY(file.next());
@@ -85,21 +102,17 @@ Result<Counted> count(FileSystem& files, const std::string& path, const Progress
     hash.update(piece);
     bytes += piece.size();
     if (in_rows) {
-      words.add(piece);
-      if (start.size() < longest_start) start += piece;
+      rows.add(piece);
     } else if (KA_TRY(head.add(piece, out.findings))) {
-      words.add(head.rows());
-      start = head.rows();
+      rows.add(head.rows());
       in_rows = true;
     }
     if (!go_on(progress, "reading", bytes, file.size())) return Failure(interruption(path));
   }
   if (!in_rows) KA_TRY(head.finish(out.findings));
   out.facts = {std::string(file_name(path)), hash.hex(), bytes};
-  const std::uint64_t row_size = head.hierarchy.row_size();
-  out.kept = in_rows && row_size > 0 && !words.within_word() && words.words() % row_size == 0 &&
-             words.words() / row_size == head.hierarchy.frames;
-  if (out.kept) out.first_row = first_row(start, path, row_size);
+  out.kept = in_rows && rows.keeps(head.hierarchy);
+  if (out.kept) out.first_row = first_row(rows.start, path, head.hierarchy.row_size());
   out.hierarchy = std::move(head.hierarchy);
   return out;
 }
