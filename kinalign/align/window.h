@@ -195,13 +195,11 @@ class Window {
       }
       const std::int64_t t = to_ns(take_time(*clock_, block_.stamps[i]));
       const bool there = any_seen(block_, i);
-      if (fate == StampFate::replaces) {
-        flush(i);
-        take_back();
-      } else if (there && shows_last_late(t)) {
-        flush(i);
-        drop_late();
-      }
+      const bool shows = fate == StampFate::kept && there && shows_last_late(t);
+      if (fate == StampFate::replaces || shows) flush(i);
+      if (fate == StampFate::replaces) take_back();
+      if (shows) drop_late();
+      if (there && !shows) late_since_.reset();
       time_ns.push_back(t);
       if (there) see(t);
     }
@@ -220,7 +218,6 @@ class Window {
     while (!time_ns.empty() && time_ns.back() >= *last_seen_) drop_last_row();
     unsee();
     ++held_back;
-    was_late_ = true;
   }
 
   void take_back() {
@@ -236,8 +233,6 @@ class Window {
 
   /// The row at `t` has something in it.
   void see(std::int64_t t) {
-    if (!was_late_) late_since_.reset();
-    was_late_ = false;
     gaps_before_ = gaps;
     seen_before_ = last_seen_;
     if (last_seen_) gaps.add(*last_seen_, t);
@@ -259,7 +254,6 @@ class Window {
   std::optional<std::int64_t> seen_before_;
   GapCount gaps_before_;
   std::optional<std::int64_t> late_since_;  // the first of samples held back one after the other
-  bool was_late_ = false;                   // the sample in front of the one to be seen
   bool ended_ = false;
 };
 
