@@ -6,6 +6,7 @@
 #include "kinalign/core/parallel.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace kinalign {
 
@@ -69,6 +70,17 @@ struct ReferenceSlab {
 using StreamRows =
     std::variant<std::monostate, ReferenceRows<ClipFrames>, ReferenceRows<PointFrames>,
                  PointResampler, ImuResampler, ClipResampler>;
+
+/// What a stream's rows answer; nothing where they have no answer.
+template <class Answer, class Ask>
+Answer asked(const StreamRows& stream, Ask ask) {
+  return std::visit(
+      [&ask](const auto& rows) -> Answer {
+        if constexpr (std::is_invocable_v<Ask, decltype(rows)>) return ask(rows);
+        return {};
+      },
+      stream);
+}
 
 }  // namespace
 
@@ -222,30 +234,20 @@ Result<void> SlabMaker::for_each(std::size_t jobs,
 }
 
 ResampleCount SlabMaker::count(std::size_t stream) const {
-  return std::visit(
-      [](const auto& rows) {
-        if constexpr (requires { rows.count(); }) return rows.count();
-        return ResampleCount{};
-      },
-      state_->streams[stream]);
+  return asked<ResampleCount>(
+      state_->streams[stream],
+      [](const auto& rows) -> decltype(rows.count()) { return rows.count(); });
 }
 
 GapCount SlabMaker::gaps(std::size_t stream) const {
-  return std::visit(
-      [](const auto& rows) {
-        if constexpr (requires { rows.gaps(); }) return rows.gaps();
-        return GapCount{};
-      },
-      state_->streams[stream]);
+  return asked<GapCount>(state_->streams[stream],
+                         [](const auto& rows) -> decltype(rows.gaps()) { return rows.gaps(); });
 }
 
 std::uint64_t SlabMaker::held_back(std::size_t stream) const {
-  return std::visit(
-      [](const auto& rows) -> std::uint64_t {
-        if constexpr (requires { rows.held_back(); }) return rows.held_back();
-        return 0;
-      },
-      state_->streams[stream]);
+  return asked<std::uint64_t>(
+      state_->streams[stream],
+      [](const auto& rows) -> decltype(rows.held_back()) { return rows.held_back(); });
 }
 
 }  // namespace kinalign
