@@ -21,6 +21,22 @@ Read<ImuReader> read_xsens(std::string_view text, const StreamOptions& options =
 
 const std::string rate = "// Update Rate: 100.0Hz\n";
 
+/// A file whose rows have these counters.
+Read<ImuReader> counters(const std::vector<std::uint64_t>& values) {
+  std::string text = rate + "PacketCounter,Acc_X,Acc_Y,Acc_Z\n";
+  for (const std::uint64_t value : values) text += std::to_string(value) + ",1,2,3\n";
+  return read_xsens(text);
+}
+
+using Packets = std::vector<std::int64_t>;
+
+/// Which packet's stamp each row has.
+Packets packets(const Read<ImuReader>& read) {
+  Packets out;
+  for (const Time stamp : read.rows.stamps) out.push_back(to_ns(stamp) / 10'000'000);
+  return out;
+}
+
 /// Where the sensor's axes point in our world.
 Vec3 turned_axis(const Read<ImuReader>& read, const Vec3& axis) {
   return quat(read.rows.orientation, 0) * axis;
@@ -147,17 +163,6 @@ TEST_CASE("the node is the user's name, else the device's id, else the file's na
 }
 
 TEST_CASE("a packet counter of 16 bits counts on through its wraps, lost packets are gaps") {
-  const auto counters = [](const std::vector<std::uint64_t>& values) {
-    std::string text = rate + "PacketCounter,Acc_X,Acc_Y,Acc_Z\n";
-    for (const std::uint64_t value : values) text += std::to_string(value) + ",1,2,3\n";
-    return read_xsens(text);
-  };
-  const auto packets = [](const Read<ImuReader>& read) {
-    std::vector<std::int64_t> out;
-    for (const Time stamp : read.rows.stamps) out.push_back(to_ns(stamp) / 10'000'000);
-    return out;
-  };
-  using Packets = std::vector<std::int64_t>;
   CHECK(packets(counters({65535, 0, 1})) == Packets{65535, 65536, 65537});
   CHECK(packets(counters({65530, 3, 64000})) == Packets{65530, 65539, 64000 + 65536});
   CHECK(packets(counters({70000, 70002})) == Packets{70000, 70002});  // of 32 bits
@@ -171,17 +176,6 @@ TEST_CASE("a packet counter of 16 bits counts on through its wraps, lost packets
 }
 
 TEST_CASE("a packet that was overtaken steps back, and nothing behind it moves") {
-  const auto counters = [](const std::vector<std::uint64_t>& values) {
-    std::string text = rate + "PacketCounter,Acc_X,Acc_Y,Acc_Z\n";
-    for (const std::uint64_t value : values) text += std::to_string(value) + ",1,2,3\n";
-    return read_xsens(text);
-  };
-  const auto packets = [](const Read<ImuReader>& read) {
-    std::vector<std::int64_t> out;
-    for (const Time stamp : read.rows.stamps) out.push_back(to_ns(stamp) / 10'000'000);
-    return out;
-  };
-  using Packets = std::vector<std::int64_t>;
   const auto overtaken = counters({10, 11, 13, 12, 14});
   CHECK(packets(overtaken) == Packets{10, 11, 13, 12, 14});
   CHECK(overtaken.findings.empty());  // none was lost
