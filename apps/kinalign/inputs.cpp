@@ -167,15 +167,18 @@ std::vector<std::string*> paths_in(Manifest& manifest) {
 /// The one spelling of a path: its folder's, without links, and the file's own name, which may be a
 /// link. A folder that is not there is only brought into order.
 std::string place_of(const std::string& path) {
-  const std::filesystem::path whole = std::filesystem::absolute(path);
   std::error_code fault;
+  const std::filesystem::path whole = std::filesystem::absolute(path, fault);
+  if (fault) return path;  // called from a folder that is gone
   const auto parent = std::filesystem::canonical(whole.parent_path(), fault);
   return ((fault ? whole.parent_path().lexically_normal() : parent) / whole.filename()).string();
 }
 
 /// As seen from where the program was called: "demo/"; "" for that folder itself.
 std::string from_here(const std::string& folder) {
-  const auto here = std::filesystem::canonical(std::filesystem::current_path());
+  std::error_code fault;
+  const auto here = std::filesystem::canonical(".", fault);
+  if (fault) return folder;
   const std::string near = std::filesystem::path(folder).lexically_relative(here).string();
   if (near.empty() || near == ".") return near.empty() ? folder : "";
   return near.ends_with('/') ? near : near + "/";

@@ -100,7 +100,12 @@ std::vector<std::string> changed_inputs(const Origin& origin, const Recording& r
 class Scratch {
  public:
   static Result<Scratch> make() {
-    std::string name = (std::filesystem::temp_directory_path() / "kinalign-XXXXXX").string();
+    std::error_code fault;
+    const auto temporary = std::filesystem::temp_directory_path(fault);
+    if (fault) {
+      return Failure(Error{"TMPDIR", 0, "a folder for temporary files", fault.message()});
+    }
+    std::string name = (temporary / "kinalign-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) {
       return Failure(Error{name, 0, "room for a temporary folder", "none"});
     }

@@ -257,5 +257,16 @@ def offsets_and_drifts_of_any_size_end_in_a_take_or_a_message(folder):
             law(kinalign(*words), words)
 
 
+@case
+def a_folder_that_is_gone_is_a_message(folder):
+    """The one the program is called from, and the one for temporary files."""
+    (folder / "gone").mkdir()
+    refused("align", "--mocap", "m.bvh", "--kinect", "k.csv", "-o", "t.h5", naming="m.bvh: expected", cwd=folder,
+            prefix=("sh", "-c", 'cd gone && rmdir ../gone && exec "$0" "$@"'))
+    made(samples.recording(folder / "r"), folder / "t.h5")
+    refused("rebuild", folder / "t.h5", "--inputs", folder / "r", "--verify", naming="TMPDIR: expected a folder",
+            env={"TMPDIR": str(folder / "absent")})
+
+
 if __name__ == "__main__":
     sys.exit(main())
