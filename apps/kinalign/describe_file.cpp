@@ -42,15 +42,18 @@ Contents contents(const std::vector<std::string>& joints) {
   return {"points", counted(joints.size(), "joint"), joints};
 }
 
-Contents contents(const std::vector<std::string>& nodes, const ImuContent& content) {
-  std::string parts = counted(nodes.size(), "node") + ":";
+Contents contents(const ImuGroup& group) {
+  const ImuContent& content = group.content;
+  std::string parts = counted(group.node_names.size(), "node") + ":";
   if (content.orientation) parts += " orientation,";
   if (content.acceleration) {
-    parts += content.gravity ? " acceleration with gravity," : " acceleration without gravity,";
+    parts += content.gravity ? " acceleration with gravity" : " acceleration without gravity";
+    if (content.gravity && !group.root_node.empty()) parts += " in " + group.root_node + " only";
+    parts += ",";
   }
   if (content.angular_velocity) parts += " angular velocity,";
   parts.pop_back();
-  return {"imu", parts, nodes};
+  return {"imu", parts, group.node_names};
 }
 
 Contents contents_of(const RecordedStream& stream) {
@@ -59,7 +62,7 @@ Contents contents_of(const RecordedStream& stream) {
     return contents(points->joint_names);
   }
   const auto& imu = std::get<ImuInput>(stream.data);
-  return contents(imu.node_names, imu.content);
+  return contents({imu.node_names, imu.content, ""});
 }
 
 Contents contents_of(const TakeGroup& group) {
@@ -67,8 +70,7 @@ Contents contents_of(const TakeGroup& group) {
   if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
     return contents(points->joint_names);
   }
-  const auto& imu = std::get<ImuGroup>(group.kind);
-  return contents(imu.node_names, imu.content);
+  return contents(std::get<ImuGroup>(group.kind));
 }
 
 Json files_json(const std::vector<InputFacts>& files) {

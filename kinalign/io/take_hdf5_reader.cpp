@@ -70,7 +70,9 @@ Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
   ImuGroup out;
   out.node_names = KA_TRY(file.texts(group, "node_names"));
   out.root_node = KA_TRY(file.text_attribute(group, "root_node"));
-  out.content.gravity = KA_TRY(file.text_attribute(group, "gravity")) == "included";
+  const auto gravity = KA_TRY(file.text_attributes(group, "gravity"));
+  out.content.gravity =
+      std::find(gravity.begin(), gravity.end(), gravity_included) != gravity.end();
   out.content.orientation = hdf5::has(group, "orientation");
   out.content.acceleration = hdf5::has(group, "acceleration");
   out.content.angular_velocity = hdf5::has(group, "angular_velocity");

@@ -207,7 +207,7 @@ Result<void> TakeWriter::State::lay_out(const TakeGroup& group, Precision precis
     const auto& imu = std::get<ImuGroup>(group.kind);
     KA_TRY(layout.texts(made.id(), "node_names", imu.node_names));
     if (!hdf5::put_text(made.id(), "root_node", imu.root_node) ||
-        !hdf5::put_text(made.id(), "gravity", imu.content.gravity ? "included" : "removed")) {
+        !hdf5::put_texts(made.id(), "gravity", gravity_texts(imu))) {
       return hdf5::failure(bytes, can_hold);
     }
   }

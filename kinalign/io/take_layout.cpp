@@ -46,14 +46,18 @@ std::vector<TakeColumn> point_columns(std::uint64_t joints, const TakeGroup& gro
 
 std::vector<TakeColumn> imu_columns(const ImuGroup& group, Stored number) {
   const std::uint64_t nodes = group.node_names.size();
-  const std::string space = group.root_node.empty() ? "world" : group.root_node;
+  const std::string& root = group.root_node;
+  const std::string space = root.empty() ? "each node's own, as mounted" : root;
   std::vector<TakeColumn> out;
   if (group.content.orientation) {
-    out.push_back({"orientation", number, {nodes, 4}, rotation_facts(space)});
+    const std::string turned = root.empty() ? "world" : root + "; its own: world";
+    out.push_back({"orientation", number, {nodes, 4}, rotation_facts(turned)});
   }
   if (group.content.acceleration) {
     Facts said = facts("m/s2", space);
-    said.emplace_back("gravity", group.content.gravity ? "included" : "removed");
+    const std::string gravity = group.content.gravity ? gravity_included : gravity_removed;
+    const bool differs = group.content.gravity && !root.empty();
+    said.emplace_back("gravity", gravity + (differs ? " in " + root + " only" : ""));
     out.push_back({"acceleration", number, {nodes, 3}, std::move(said)});
   }
   if (group.content.angular_velocity) {
@@ -116,6 +120,14 @@ AnyRows rows_for(const TakeGroup& group) {
   if (std::holds_alternative<ClipGroup>(group.kind)) return ClipRows{};
   if (std::holds_alternative<PointGroup>(group.kind)) return PointRows{};
   return ImuRows{};
+}
+
+std::vector<std::string> gravity_texts(const ImuGroup& group) {
+  std::vector<std::string> out;
+  for (std::size_t node = 0; node < group.node_names.size(); ++node) {
+    out.emplace_back(has_gravity(group, node) ? gravity_included : gravity_removed);
+  }
+  return out;
 }
 
 std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision) {

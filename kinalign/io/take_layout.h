@@ -49,6 +49,11 @@ struct TakeColumn {
 /// "clip", "points", "imu".
 std::string_view kind_of(const TakeGroup& group);
 
+/// What a take says of a node: gravity stands in its acceleration, or not.
+constexpr const char* gravity_included = "included";
+constexpr const char* gravity_removed = "removed";
+std::vector<std::string> gravity_texts(const ImuGroup& group);  // [S]
+
 /// The columns that a group's rows fill, in the order of for_each_row_array.
 std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision);
 

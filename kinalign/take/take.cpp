@@ -5,6 +5,11 @@
 
 namespace kinalign {
 
+bool has_gravity(const ImuGroup& group, std::size_t node) {
+  const bool differs = !group.root_node.empty() && group.node_names[node] != group.root_node;
+  return group.content.gravity && !differs;
+}
+
 void append_rows(TakeSlab& all, const TakeSlab& slab) {
   const auto join = [](auto& to, const auto& from) {
     to.insert(to.end(), from.begin(), from.end());

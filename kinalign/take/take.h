@@ -63,6 +63,10 @@ struct ImuGroup {
   std::string root_node;  // whose space the others are in; empty: the world's
 };
 
+/// Whether gravity stands in a node's acceleration. Below a root node it stands in the root's
+/// alone: the others' are what they differ from it by.
+bool has_gravity(const ImuGroup& group, std::size_t node);
+
 /// What is known of a stream before its first row.
 struct TakeGroup {
   std::string name;  // "mocap"

@@ -151,6 +151,8 @@ def check_imu(folder, take, method, tolerance, angle_tolerance):
             assert apart <= tolerance, f"{node}: {name} differs by {apart}"
             assert (take[f"imu/{name}"][:, s][~there] == 0).all()
         assert of["imu", node]["invalid"] == np.count_nonzero(~valid), f"{node}: the report's count differs"
+        stands = np.linalg.norm(take["imu/acceleration"][:, s][valid].mean(0)) > 5
+        assert (take["imu"].attrs["gravity"][s] == b"included") == stands, f"{node}: gravity is said falsely"
 
 
 def check_mocap(folder, take, tolerance):

@@ -110,8 +110,9 @@ TEST_CASE("nodes have the quantities that were measured, in the world's space or
   TakeGroup group{"imu", imu, true, true, {}, "take"};
   CHECK(columns(group) ==
         Columns{"orientation float32 [2,4] order w,x,y,z, space world",
-                "acceleration float32 [2,3] units m/s2, space world, gravity included",
-                "angular_velocity float32 [2,3] units rad/s, space world",
+                "acceleration float32 [2,3] units m/s2, space each node's own, as mounted, "
+                "gravity included",
+                "angular_velocity float32 [2,3] units rad/s, space each node's own, as mounted",
                 "valid uint8 [2] values 0 no, 1 yes", "nearest_raw_ns int64 [2] units ns",
                 "time_interval_ns int64 [2] units ns"});
   imu.content = {false, true, false, false};
@@ -121,6 +122,27 @@ TEST_CASE("nodes have the quantities that were measured, in the world's space or
   CHECK(columns(group) ==
         Columns{"acceleration float32 [2,3] units m/s2, space waist, gravity removed",
                 "valid uint8 [2] values 0 no, 1 yes", "nearest_raw_ns int64 [2] units ns"});
+}
+
+TEST_CASE("below a root node gravity is in the root's acceleration alone, as the file says") {
+  const auto said = [](bool gravity, std::string root) {
+    const ImuGroup imu{{"wrist", "waist"}, {true, true, true, gravity}, std::move(root)};
+    Columns out = columns({"imu", imu, true, false, {}, "take"});
+    out.resize(2);
+    const std::vector<std::string> nodes = gravity_texts(imu);
+    out.insert(out.end(), nodes.begin(), nodes.end());
+    return out;
+  };
+  CHECK(
+      said(true, "waist") ==
+      Columns{"orientation float32 [2,4] order w,x,y,z, space waist; its own: world",
+              "acceleration float32 [2,3] units m/s2, space waist, gravity included in waist only",
+              "removed", "included"});
+  CHECK(said(false, "waist")[1].ends_with("gravity removed"));
+  CHECK(gravity_texts({{"wrist", "waist"}, {true, true, true, true}, ""}) ==
+        Columns{"included", "included"});
+  CHECK(gravity_texts({{"wrist", "waist"}, {true, true, true, false}, "waist"}) ==
+        Columns{"removed", "removed"});
 }
 
 TEST_CASE("a row's bytes are its values' times their size") {

@@ -44,7 +44,8 @@ with h5py.File(sys.argv[1], "r") as take:
     assert take["time_ns"].attrs["units"] == b"ns since 1970-01-01T00:00:00 UTC"
     assert take["mocap/positions"].attrs["units"] == b"m"
     assert take["mocap/local_rotations"].attrs["order"] == b"w,x,y,z"
-    assert take["imu/acceleration"].attrs["gravity"] == b"included"
+    assert take["imu/acceleration"].attrs["gravity"] == b"included in waist only"
+    assert list(take["imu"].attrs["gravity"]) == [b"included", b"removed"]
     assert list(take["imu"].attrs["input_names"]) == [b"w.csv", b"wl.csv"]
     assert list(take["imu"].attrs["input_sha256"]) == [b"c" * 64, b"d" * 64]
     assert json.loads(take["report_json"].asstr()[()])["schema"] == "kinalign.report/1"
