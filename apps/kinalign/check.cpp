@@ -14,6 +14,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace kinalign {
 
 namespace {
@@ -72,15 +74,23 @@ Findings check_plan(const std::string& path, const Input& input) {
   const auto judged = [&input]() -> Result<Findings> {
     const AlignPlan plan = KA_TRY(plan_alignment(input.recording, *input.manifest));
     KA_TRY(plan_spaces(plan.header, *input.manifest, plan.streams[plan.reference].group));
-    Findings out = judge_spaces(plan.header);
-    append(out, judge_files(plan.header));
-    return out;
+    return judge_plan(input.recording, plan);
   }();
   if (judged) return *judged;
   Error error = judged.error();
   if (error.file.empty()) error.file = path;
   const std::string repair = name_advice(error);
   return {{Severity::error, std::move(error), "kinalign align makes no take of it", repair}};
+}
+
+/// The stream that a manifest makes the grid of; none of a single file.
+std::size_t reference_of(const Input& input) {
+  const auto& streams = input.recording.streams;
+  if (!input.manifest) return streams.size();
+  const std::string& named = input.manifest->align.reference;
+  const auto is = [&named](const RecordedStream& s) { return named.empty() || s.name == named; };
+  return static_cast<std::size_t>(std::find_if(streams.begin(), streams.end(), is) -
+                                  streams.begin());
 }
 
 /// A flag that the file has no use for is wrong use.
@@ -112,14 +122,17 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
   if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
   Checked out;
   if (input.manifest) out.files = files_named(*input.manifest, "").size();
-  for (const RecordedStream& stream : input.recording.streams) {
+  const std::size_t reference = reference_of(input);
+  for (std::size_t i = 0; i < input.recording.streams.size(); ++i) {
+    const RecordedStream& stream = input.recording.streams[i];
     call.console.detail(harmless(read_as(stream)));
     KA_TRY(read_through(stream, call.console.progress()));
     append(out.findings, stream.findings);
     const StreamOptions& options =
         input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
     append(out.findings, judge_stamps(stream, options));
-    append(out.findings, judge_near(stream, stream.survey.near));
+    append(out.findings, judge_near(stream, stream.survey.near,
+                                    i == reference ? Role::reference : Role::resampled));
   }
   if (input.manifest) append(out.findings, check_plan(path, input));
   return out;

@@ -91,8 +91,7 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
     }
     append(report.findings, judge_stamps(s, options_of(plan.header.parameters, s.name)));
   }
-  append(report.findings, judge_spaces(plan.header));
-  append(report.findings, judge_files(plan.header));
+  append(report.findings, judge_plan(recording, plan));
   return report;
 }
 
@@ -180,7 +179,10 @@ void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
   for (std::size_t i = 0; i < job.recording.streams.size(); ++i) {
     const RecordedStream& stream = job.recording.streams[i];
     report.streams.push_back(report_stream(job, slabs, counts, i));
-    append(report.findings, judge_near(stream, report.streams.back().held_back));
+    const bool grid = i == job.plan.reference;
+    append(report.findings, judge_near(stream, grid ? stream.survey.near : slabs.held_back(i),
+                                       grid ? Role::reference : Role::resampled));
+    append(report.findings, judge_rows(report.streams.back()));
     append(report.findings, judge_content(stream, slabs.count(i), report.rate_hz));
   }
   for (std::size_t k = 0; k < job.spaces.size(); ++k) {

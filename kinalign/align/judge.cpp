@@ -121,13 +121,16 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   return out;
 }
 
-Findings judge_near(const RecordedStream& s, std::uint64_t samples) {
-  if (samples == 0) return {};
+Findings judge_near(const RecordedStream& s, std::uint64_t near, Role role) {
+  if (near == 0) return {};
+  const char* then = role == Role::reference
+                         ? "as the reference they keep the stamp of their arrival, at which the "
+                           "other streams are taken"
+                         : "they are left out where the stream is resampled";
   return {{Severity::warning,
            Error{file_of(s), 0, "samples a fifth of a step or more apart",
-                 fmt::format("{} with the next one nearer", samples)},
-           "they were held back on their way, and are left out where the stream is resampled",
-           "stamp samples where they are taken, not where they arrive"}};
+                 fmt::format("{} with the next one nearer: held back on their way", near)},
+           then, "stamp samples where they are taken, not where they arrive"}};
 }
 
 Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {
@@ -145,74 +148,6 @@ Findings judge_content(const RecordedStream& s, const ResampleCount& count, doub
   } else if (const auto* imu = std::get_if<ImuInput>(&s.data)) {
     add(count.acceleration, "acceleration", imu->node_names, acceleration_m_s2);
     add(count.angular_velocity, "angular velocity", imu->node_names, angular_velocity_rad_s);
-  }
-  return out;
-}
-
-Findings judge_spaces(const TakeHeader& header) {
-  Findings out;
-  for (const TakeGroup& group : header.groups) {
-    if (std::holds_alternative<ImuGroup>(group.kind) || group.space == "take" ||
-        header.parameters.spaces.contains(group.name)) {
-      continue;
-    }
-    if (std::holds_alternative<ClipGroup>(group.kind)) {
-      out.push_back({Severity::note,
-                     Error{"", 0, "'" + group.name + "' in the take's space",
-                           "a skeleton, and only points are moved so far"},
-                     "its positions stay in its own space", ""});
-      continue;
-    }
-    out.push_back({Severity::note, Error{"", 0, "a space for '" + group.name + "'", "none"},
-                   "its positions stay in its own space",
-                   "[space." + group.name + "] method = \"fit\" (or \"none\", if so meant)"});
-  }
-  return out;
-}
-
-Findings judge_residual(const SpaceReport& space) {
-  // Chosen: after a fit Kinect v2 joints lie 6 to 9 cm from optical ones (Keraal: 7.5; Xu and
-  // McGorry, Applied Ergonomics 2015), the worst of another device 21. No body is this far off.
-  constexpr double too_far_m = 0.3;
-  if (!(space.after_m > too_far_m)) return {};
-  return {
-      {Severity::warning,
-       Error{"", 0, fmt::format("'{}' on '{}' to less than 30 cm rms", space.stream, space.onto),
-             fmt::format("{:.1f} cm", 100.0 * space.after_m)},
-       "the positions are not to be trusted",
-       "are both the same motion, at the same time, of the same units and joints?"}};
-}
-
-Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
-  // Chosen: a trunk's joints lie 3 to 6 cm beside their line, a whole body's 20 and more.
-  constexpr double near_m = 0.1;
-  if (plan.options.method != "fit" || plan.beside_line_m >= near_m) return {};
-  std::string names;
-  for (const JointResidual& joint : space.joints)
-    names += (names.empty() ? "" : ", ") + joint.joint;
-  return {{Severity::warning,
-           Error{"", 0,
-                 fmt::format("joints that spread 10 cm or more beside a line, to fit '{}' by",
-                             space.stream),
-                 fmt::format("{:.1f} cm: {}", 100.0 * plan.beside_line_m, names)},
-           "the turn about that line is a guess, whatever the residuals say",
-           "name joints of arms or legs too: joints = { ... }"}};
-}
-
-Findings judge_files(const TakeHeader& header) {
-  Findings out;
-  for (const TakeGroup& group : header.groups) {
-    if (!std::holds_alternative<ImuGroup>(group.kind)) continue;
-    const auto& files = group.files;
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      const auto same = [&](const InputFacts& other) { return other.sha256 == files[i].sha256; };
-      const auto before = files.begin() + static_cast<std::ptrdiff_t>(i);
-      if (std::none_of(files.begin(), before, same)) continue;
-      out.push_back({Severity::warning,
-                     Error{files[i].name, 0, "files of '" + group.name + "' that differ",
-                           "the same bytes as another's"},
-                     "two of its nodes are one", "name the other node's own file"});
-    }
   }
   return out;
 }

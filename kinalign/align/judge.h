@@ -3,7 +3,7 @@
 // what would mend it.
 #pragma once
 
-#include "kinalign/align/resample.h"
+#include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
 #include "kinalign/take/take.h"
 
@@ -13,22 +13,26 @@ namespace kinalign {
 /// at another rate than the one stated.
 Findings judge_stamps(const RecordedStream& stream, const StreamOptions& options);
 
-/// Samples that were held back on their way; near is the count of them.
-Findings judge_near(const RecordedStream& stream, std::uint64_t near);
+/// What becomes of a stream's samples: their stamps are the grid, or they are resampled onto it.
+enum class Role { reference, resampled };
+
+/// `near` samples that were held back on their way.
+Findings judge_near(const RecordedStream& stream, std::uint64_t near, Role role);
 
 /// What the grid of `grid_hz` can't carry of one stream.
 Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);
 
-/// Points and skeletons that stay in a space of their own though nobody said that they should.
-Findings judge_spaces(const TakeHeader& header);
+/// Known before a sample is touched: streams that share little of their time, that stay in a space
+/// of their own though nobody said that they should, that read the same bytes.
+Findings judge_plan(const Recording& recording, const AlignPlan& plan);
+
+/// A stream of which hardly a row is valid.
+Findings judge_rows(const StreamReport& stream);
 
 /// Joints that lie too far from their counterparts to be the same ones.
 Findings judge_residual(const SpaceReport& space);
 
 /// A fit by joints so near to a line that the turn about it is a guess.
 Findings judge_fit(const SpacePlan& plan, const SpaceReport& space);
-
-/// Nodes whose files hold the same bytes.
-Findings judge_files(const TakeHeader& header);
 
 }  // namespace kinalign

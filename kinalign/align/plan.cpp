@@ -28,18 +28,11 @@ Result<std::size_t> find_reference(const Recording& recording, const Manifest& m
   return Failure(unknown_name(wanted, "a stream as the reference", known));
 }
 
-/// "kinect", or of nodes, whose streams share a name, "imu waist".
-std::string label(const RecordedStream& s) {
-  const auto* imu = std::get_if<ImuInput>(&s.data);
-  const bool one = imu != nullptr && imu->node_names.size() == 1;
-  return one ? s.name + " " + shown(imu->node_names.front()) : s.name;
-}
-
 std::string spans(const Recording& recording) {
   std::string text;
   for (const RecordedStream& s : recording.streams) {
     if (!text.empty()) text += ", ";
-    text += fmt::format("{} {:.3f} to {:.3f} s", label(s),
+    text += fmt::format("{} {:.3f} to {:.3f} s", stream_label(s),
                         1e-9 * static_cast<double>(to_ns(first_of(s))),
                         1e-9 * static_cast<double>(to_ns(last_of(s))));
   }
@@ -268,6 +261,12 @@ Result<void> check_streams(const Recording& recording) {
 }
 
 }  // namespace
+
+std::string stream_label(const RecordedStream& s) {
+  const auto* imu = std::get_if<ImuInput>(&s.data);
+  const bool one = imu != nullptr && imu->node_names.size() == 1;
+  return one ? s.name + " " + shown(imu->node_names.front()) : s.name;
+}
 
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {
   static const StreamOptions defaults;

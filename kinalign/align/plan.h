@@ -28,6 +28,9 @@ struct AlignPlan {
 /// manifest names what is not there or says what has no effect (unused_options.h).
 Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest);
 
+/// "kinect", or of a single node, whose streams share a name, "imu waist".
+std::string stream_label(const RecordedStream& stream);
+
 /// The manifest's options of a stream; defaults where it has none.
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream);
 

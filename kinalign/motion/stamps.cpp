@@ -110,7 +110,7 @@ void StampSurveyor::add(std::span<const Time> stamps) {
   }
 }
 
-StampSurvey StampSurveyor::result() const {
+StampSurvey StampSurveyor::result(double step_ns) const {
   StampSurvey survey = survey_;
   std::uint64_t all = 0;
   for (const auto n : steps_) all += n;
@@ -127,7 +127,7 @@ StampSurvey StampSurveyor::result() const {
     const double step = sums_[i] / static_cast<double>(std::max<std::uint64_t>(1, steps_[i]));
     const auto median = static_cast<double>(survey.median_step_ns);
     if (step > 1.5 * median) survey.long_steps += steps_[i];
-    if (near_share * step < median) survey.near += steps_[i];
+    if (near_share * step < (step_ns > 0.0 ? step_ns : median)) survey.near += steps_[i];
   }
   return survey;
 }

@@ -48,7 +48,7 @@ constexpr std::int64_t near_share = 5;
 struct StampSurvey {
   std::uint64_t samples = 0;     // all that were read
   std::uint64_t duplicates = 0;  // stamp equal to the last one kept
-  std::uint64_t near = 0;        // kept, and less than a fifth of the median step behind it
+  std::uint64_t near = 0;        // kept, and less than a fifth of a step behind the one before
   std::uint64_t backward = 0;    // stamp before the last one kept
   std::uint64_t ahead = 0;       // stamp far ahead of the ones before and behind
   std::int64_t largest_step_back_ns = 0;
@@ -63,7 +63,8 @@ struct StampSurvey {
 class StampSurveyor {
  public:
   void add(std::span<const Time> stamps);
-  StampSurvey result() const;
+  /// `step_ns`: the step that is stated, by which near ones are told; 0: by the median.
+  StampSurvey result(double step_ns = 0.0) const;
 
  private:
   void keep(Time stamp);

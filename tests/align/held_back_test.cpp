@@ -134,6 +134,9 @@ TEST_CASE("the reference keeps its rows, and blocks of any size hold back the sa
   REQUIRE(take);
   CHECK(take->report.frames == 100);
   CHECK(take->report.streams[0].held_back == 0);
+  REQUIRE(take->report.findings.size() == 1);  // but it is said that their stamps are not theirs
+  CHECK(take->report.findings[0].what.found.starts_with("4 with the next one nearer"));
+  CHECK(take->report.findings[0].meaning.starts_with("as the reference"));
   for (const std::size_t size : {1, 2, 7, 100}) {
     CAPTURE(size);
     Recording recording = two(points(joints, every(10 * ms, 300), wander), all);

@@ -36,6 +36,18 @@ CarriedContent carried(double rms, double lost) {
   return out;
 }
 
+/// Of a take with this header, made of `streams` over the first one's whole span.
+Findings judged(TakeHeader header, std::vector<RecordedStream> streams = {kinect()}) {
+  AlignPlan plan;
+  plan.begin = streams.front().survey.first;
+  plan.end = streams.front().survey.last;
+  plan.header = std::move(header);
+  plan.header.frames = streams.front().survey.kept();
+  Recording recording;
+  recording.streams = std::move(streams);
+  return judge_plan(recording, plan);
+}
+
 }  // namespace
 
 TEST_CASE("sound stamps are no finding") { CHECK(judge_stamps(kinect(), {}).empty()); }
@@ -61,13 +73,17 @@ TEST_CASE("stamps that repeat are a note, those that ran ahead or back a warning
 }
 
 TEST_CASE("samples held back are a warning that says what to do about it") {
-  CHECK(judge_near(kinect(), 0).empty());
-  const Findings found = judge_near(kinect(), 3);
+  CHECK(judge_near(kinect(), 0, Role::resampled).empty());
+  CHECK(judge_near(kinect(), 0, Role::reference).empty());
+  const Findings found = judge_near(kinect(), 3, Role::resampled);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
         "warning: kinect: expected samples a fifth of a step or more apart, found 3 with the next "
-        "one nearer; they were held back on their way, and are left out where the stream is "
-        "resampled; stamp samples where they are taken, not where they arrive");
+        "one nearer: held back on their way; they are left out where the stream is resampled; "
+        "stamp samples where they are taken, not where they arrive");
+  CHECK(judge_near(kinect(), 3, Role::reference).at(0).meaning ==
+        "as the reference they keep the stamp of their arrival, at which the other streams are "
+        "taken");
 }
 
 TEST_CASE("stamps that repeat in one of twenty samples and more are no chance") {
@@ -220,7 +236,7 @@ TEST_CASE("points that nobody placed say how to place them; what was said is not
                    {"kinect", PointGroup{}, true, false, {}, "kinect"},
                    {"imu", ImuGroup{}, true, false, {}, "imu"},
                    {"suit", ClipGroup{}, true, false, {}, "suit"}};
-  const Findings found = judge_spaces(header);
+  const Findings found = judged(header);
   REQUIRE(found.size() == 2);
   CHECK(whole(found[1]) ==
         "note: expected 'suit' in the take's space, found a skeleton, and only points are moved so "
@@ -229,7 +245,7 @@ TEST_CASE("points that nobody placed say how to place them; what was said is not
         "note: expected a space for 'kinect', found none; its positions stay in its own space; "
         "[space.kinect] method = \"fit\" (or \"none\", if so meant)");
   header.parameters.spaces["kinect"].method = "none";
-  CHECK(judge_spaces(header).size() == 1);
+  CHECK(judged(header).size() == 1);
 }
 
 TEST_CASE("joints more than 30 cm rms from their counterparts are a warning with the distance") {
@@ -271,13 +287,73 @@ TEST_CASE("one file for two nodes is a warning") {
   TakeHeader header;
   header.groups = {
       {"imu", ImuGroup{}, true, false, {{"w.csv", "aa", 1}, {"l.csv", "bb", 1}}, "imu"}};
-  CHECK(judge_files(header).empty());
+  CHECK(judged(header).empty());
   header.groups[0].files.push_back({"w.csv", "aa", 1});
   header.groups.push_back(
-      {"kinect", PointGroup{}, true, false, {{"p.txt", "cc", 1}, {"a.txt", "cc", 1}}, "kinect"});
-  const Findings found = judge_files(header);
+      {"kinect", PointGroup{}, true, false, {{"p.txt", "cc", 1}, {"a.txt", "cc", 1}}, "take"});
+  const Findings found = judged(header);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
         "warning: w.csv: expected files of 'imu' that differ, found the same bytes as another's; "
         "two of its nodes are one; name the other node's own file");
+}
+
+TEST_CASE("one file with one selection for two streams is a warning, with another selection none") {
+  TakeHeader header;
+  header.groups = {{"left", PointGroup{}, false, false, {{"k.csv", "aa", 1}}, "take"},
+                   {"right", PointGroup{}, true, false, {{"k.csv", "aa", 1}}, "take"}};
+  header.parameters.streams.resize(2);
+  header.parameters.streams[0].name = "left";
+  header.parameters.streams[1].name = "right";
+  header.parameters.streams[0].select = {{"Skeleton#", "0"}};
+  CHECK(judged(header).empty());
+  header.parameters.streams[1].select = header.parameters.streams[0].select;
+  const Findings found = judged(header);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: k.csv: expected other samples in 'right' than in 'left', found the same file and "
+        "the same selection; both are one stream; name the other one's file, or select its rows");
+}
+
+TEST_CASE("streams that share less than half of the shortest one's time are a warning") {
+  RecordedStream late = kinect();  // of 32.967 s, as the other
+  late.name = "suit";
+  late.survey.first = utc_time(16'000'000'000);
+  late.survey.last = utc_time(48'967'000'000);
+  AlignPlan plan;
+  plan.begin = late.survey.first;
+  plan.end = kinect().survey.last;
+  plan.header.frames = 514;
+  Recording recording;
+  recording.streams = {kinect(), late};
+  const Findings half = judge_plan(recording, plan);
+  REQUIRE(half.size() == 1);
+  CHECK(whole(half[0]) ==
+        "note: expected the frames of 'kinect' within the span of all streams, found 486 of 1000 "
+        "outside: 'suit' begins last, 'kinect' ends first; these are cut; ");
+  plan.begin = recording.streams[1].survey.first = utc_time(17'000'000'000);
+  recording.streams[1].survey.last = utc_time(49'967'000'000);
+  const Findings less = judge_plan(recording, plan);
+  REQUIRE(less.size() == 1);
+  CHECK(
+      whole(less[0]) ==
+      "warning: expected streams that share most of 'kinect', 32.97 s, found 15.97 s that all "
+      "have: 'suit' begins last, 'kinect' ends first; all else is cut; over so little a fit looks "
+      "good at any offset; are start_ns and offset_ms right?");
+}
+
+TEST_CASE("a stream of which most rows are invalid is a warning with its node") {
+  StreamReport imu;
+  imu.stream = "imu";
+  imu.nodes = {"waist"};
+  imu.samples = 1000;
+  imu.invalid = 500;
+  CHECK(judge_rows(imu).empty());
+  imu.invalid = 501;
+  const Findings found = judge_rows(imu);
+  REQUIRE(found.size() == 1);
+  CHECK(whole(found[0]) ==
+        "warning: expected samples of 'imu waist' in most rows, found 50.1 % that are invalid; "
+        "little of it is in the take; see its gaps: are rate_hz and gap_ms the device's, is it "
+        "there for the whole take?");
 }

@@ -80,7 +80,9 @@ TEST_CASE("a clock set back by an hour is an error that says how many samples ar
       recorded("kinect", points({"b"}, stamps, wander))};
   const auto take = align(recording, own_space());
   REQUIRE(take);
-  REQUIRE(take->report.findings.size() == 1);
+  REQUIRE(take->report.findings.size() == 2);
+  CHECK(take->report.findings[1].what.expected ==
+        "the frames of 'points' within the span of all streams");
   CHECK(take->report.findings[0].severity == Severity::error);
   CHECK(to_string(take->report.findings[0].what) ==
         "kinect: expected stamps that rise, found 101 of 161 that step back, by up to 3601.770 s");

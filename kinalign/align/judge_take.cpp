@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/align/judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+Findings judge_spaces(const TakeHeader& header) {
+  Findings out;
+  for (const TakeGroup& group : header.groups) {
+    if (std::holds_alternative<ImuGroup>(group.kind) || group.space == "take" ||
+        header.parameters.spaces.contains(group.name)) {
+      continue;
+    }
+    if (std::holds_alternative<ClipGroup>(group.kind)) {
+      out.push_back({Severity::note,
+                     Error{"", 0, "'" + group.name + "' in the take's space",
+                           "a skeleton, and only points are moved so far"},
+                     "its positions stay in its own space", ""});
+      continue;
+    }
+    out.push_back({Severity::note, Error{"", 0, "a space for '" + group.name + "'", "none"},
+                   "its positions stay in its own space",
+                   "[space." + group.name + "] method = \"fit\" (or \"none\", if so meant)"});
+  }
+  return out;
+}
+
+Findings judge_nodes_alike(const TakeHeader& header) {
+  Findings out;
+  for (const TakeGroup& group : header.groups) {
+    if (!std::holds_alternative<ImuGroup>(group.kind)) continue;
+    const auto& files = group.files;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const auto same = [&](const InputFacts& other) { return other.sha256 == files[i].sha256; };
+      const auto before = files.begin() + static_cast<std::ptrdiff_t>(i);
+      if (std::none_of(files.begin(), before, same)) continue;
+      out.push_back({Severity::warning,
+                     Error{files[i].name, 0, "files of '" + group.name + "' that differ",
+                           "the same bytes as another's"},
+                     "two of its nodes are one", "name the other node's own file"});
+    }
+  }
+  return out;
+}
+
+/// Two streams that read the same samples.
+Findings judge_streams_alike(const TakeHeader& header) {
+  Findings out;
+  const auto bytes_of = [](const TakeGroup& group) {
+    std::vector<std::string_view> hashes;
+    for (const InputFacts& file : group.files) hashes.emplace_back(file.sha256);
+    return hashes;
+  };
+  for (auto later = header.groups.begin(); later != header.groups.end(); ++later) {
+    const auto same = [&](const TakeGroup& other) {
+      const Manifest& said = header.parameters;
+      return other.kind.index() == later->kind.index() && bytes_of(other) == bytes_of(*later) &&
+             options_of(said, other.name).select == options_of(said, later->name).select;
+    };
+    const auto first = std::find_if(header.groups.begin(), later, same);
+    if (first == later || later->files.empty()) continue;
+    out.push_back(
+        {Severity::warning,
+         Error{later->files.front().name, 0,
+               fmt::format("other samples in '{}' than in '{}'", later->name, first->name),
+               "the same file and the same selection"},
+         "both are one stream", "name the other one's file, or select its rows"});
+  }
+  return out;
+}
+
+/// Streams that share little of their time are seldom meant to: a start taken for another, a device
+/// that fell silent. A body at rest hides it from every residual.
+Findings judge_span(const Recording& recording, const AlignPlan& plan) {
+  const auto first = [](const RecordedStream& s) { return take_time(s.clock, s.survey.first); };
+  const auto last = [](const RecordedStream& s) { return take_time(s.clock, s.survey.last); };
+  const auto span = [&](const RecordedStream& s) { return seconds(last(s) - first(s)); };
+  const auto& streams = recording.streams;
+  const auto by = [](auto value) {
+    return [value](const auto& a, const auto& b) { return value(a) < value(b); };
+  };
+  const RecordedStream& late = *std::max_element(streams.begin(), streams.end(), by(first));
+  const RecordedStream& early = *std::min_element(streams.begin(), streams.end(), by(last));
+  const RecordedStream& brief = *std::min_element(streams.begin(), streams.end(), by(span));
+  const std::string bounds =
+      fmt::format("'{}' begins last, '{}' ends first", stream_label(late), stream_label(early));
+  const double common = seconds(plan.end - plan.begin);
+  if (2.0 * common < span(brief)) {
+    return {{Severity::warning,
+             Error{"", 0,
+                   fmt::format("streams that share most of '{}', {:.2f} s", stream_label(brief),
+                               span(brief)),
+                   fmt::format("{:.2f} s that all have: {}", common, bounds)},
+             "all else is cut; over so little a fit looks good at any offset",
+             "are start_ns and offset_ms right?"}};
+  }
+  const RecordedStream& reference = streams[plan.reference];
+  const std::uint64_t cut = reference.survey.kept() - plan.header.frames;
+  if (10 * cut <= reference.survey.kept()) return {};
+  return {{Severity::note,
+           Error{"", 0,
+                 fmt::format("the frames of '{}' within the span of all streams", reference.name),
+                 fmt::format("{} of {} outside: {}", cut, reference.survey.kept(), bounds)},
+           "these are cut", ""}};
+}
+
+}  // namespace
+
+Findings judge_plan(const Recording& recording, const AlignPlan& plan) {
+  Findings out = judge_span(recording, plan);
+  append(out, judge_spaces(plan.header));
+  append(out, judge_nodes_alike(plan.header));
+  append(out, judge_streams_alike(plan.header));
+  return out;
+}
+
+Findings judge_rows(const StreamReport& stream) {
+  if (2 * stream.invalid <= stream.samples) return {};
+  std::string name = stream.stream;
+  if (stream.nodes.size() == 1) name += " " + shown(stream.nodes.front());
+  return {
+      {Severity::warning,
+       Error{"", 0, fmt::format("samples of '{}' in most rows", name),
+             fmt::format("{:.1f} % that are invalid", 100.0 * static_cast<double>(stream.invalid) /
+                                                          static_cast<double>(stream.samples))},
+       "little of it is in the take",
+       "see its gaps: are rate_hz and gap_ms the device's, is it there for the whole take?"}};
+}
+
+Findings judge_residual(const SpaceReport& space) {
+  // Chosen: after a fit Kinect v2 joints lie 6 to 9 cm from optical ones (Keraal: 7.5; Xu and
+  // McGorry, Applied Ergonomics 2015), the worst of another device 21. No body is this far off.
+  constexpr double too_far_m = 0.3;
+  if (!(space.after_m > too_far_m)) return {};
+  return {
+      {Severity::warning,
+       Error{"", 0, fmt::format("'{}' on '{}' to less than 30 cm rms", space.stream, space.onto),
+             fmt::format("{:.1f} cm", 100.0 * space.after_m)},
+       "the positions are not to be trusted",
+       "are both the same motion, at the same time, of the same units and joints?"}};
+}
+
+Findings judge_fit(const SpacePlan& plan, const SpaceReport& space) {
+  // Chosen: a trunk's joints lie 3 to 6 cm beside their line, a whole body's 20 and more.
+  constexpr double near_m = 0.1;
+  if (plan.options.method != "fit" || plan.beside_line_m >= near_m) return {};
+  std::string names;
+  for (const JointResidual& joint : space.joints)
+    names += (names.empty() ? "" : ", ") + joint.joint;
+  return {{Severity::warning,
+           Error{"", 0,
+                 fmt::format("joints that spread 10 cm or more beside a line, to fit '{}' by",
+                             space.stream),
+                 fmt::format("{:.1f} cm: {}", 100.0 * plan.beside_line_m, names)},
+           "the turn about that line is a guess, whatever the residuals say",
+           "name joints of arms or legs too: joints = { ... }"}};
+}
+
+}  // namespace kinalign
