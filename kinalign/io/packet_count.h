@@ -7,49 +7,73 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 
 namespace kinalign {
 
-/// Counts on over a 16-bit counter's wraps.
+/// Counts on over a counter's wraps.
 class PacketCount {
  public:
-  /// The packet's place among all, which falls where one was overtaken by the next or the device
-  /// began anew. Fails, without a place, on what is no counter.
+  /// The packet's place among all. It falls where a packet was overtaken by the next, and leads by
+  /// far where a counter is wild, which the one behind it shows; StampRule knows both. Fails,
+  /// without a place, on what is no counter.
   Result<std::int64_t> next(double cell) {
     constexpr double most = 4294967295.0;
     if (!(cell >= 0.0) || cell > most || cell != std::floor(cell)) {
       return Failure(Error{"", 0, "a whole PacketCounter", std::to_string(cell)});
     }
     const auto counter = static_cast<std::int64_t>(cell);
-    count_ += rows_++ == 0 ? counter : step_to(counter);
-    last_ = counter;
-    if (rows_ == 1 || count_ > highest_) {
-      lost_ += rows_ == 1 ? 0 : count_ - highest_ - 1;
-      highest_ = count_;
-    } else if (lost_ > 0 && count_ < highest_) {
-      --lost_;  // it was only late
-    }
-    return count_;
+    if (leapt_ && follows(counter, before_) && !follows(counter, now_)) now_ = before_;
+    before_ = now_;
+    leapt_ = now_.rows > 0 && !follows(counter, now_);
+    take(counter);
+    return now_.place;
   }
 
-  std::int64_t lost() const { return lost_; }
+  std::int64_t lost() const { return now_.lost; }
   /// The longest loss that is only guessed, since the counter fell: a device that began anew?
-  std::int64_t guessed() const { return guessed_; }
+  std::int64_t guessed() const { return now_.guessed; }
 
  private:
-  /// Sixteen bits wrap. A packet that was overtaken lies little behind; any other fall is a wrap.
-  std::int64_t step_to(std::int64_t counter) {
-    constexpr std::int64_t wrap = 65'536, most_late = 1000;
-    const std::int64_t plain = counter - last_;
-    if (plain >= 0 && (counter >= wrap || wrap - plain > most_late)) return plain;
-    const std::int64_t forward = (plain % wrap + wrap) % wrap;
-    if (wrap - forward <= most_late) return forward - wrap;
-    if (forward > most_late) guessed_ = std::max(guessed_, forward);
-    return forward;
+  /// Chosen: ten seconds at 100 Hz. A packet is not overtaken by more, and a longer loss is
+  /// believed only when the next counter goes on from it.
+  static constexpr std::int64_t near = 1000;
+  static constexpr std::int64_t narrow = 65'536, wide = std::int64_t{1} << 32;
+
+  struct State {
+    std::int64_t rows = 0, last = 0, place = 0, highest = 0, lost = 0, guessed = 0;
+    std::int64_t wrap = narrow;  // wide where a counter has shown more than 16 bits
+  };
+
+  /// How far `counter` lies behind the last one, on the shorter way around.
+  static std::int64_t around(std::int64_t counter, const State& s) {
+    const std::int64_t wrap = counter < narrow ? s.wrap : wide;
+    const std::int64_t forward = ((counter - s.last) % wrap + wrap) % wrap;
+    return wrap - forward <= near ? forward - wrap : forward;
+  }
+  static bool follows(std::int64_t counter, const State& s) {
+    return std::abs(around(counter, s)) <= near;
   }
 
-  std::int64_t rows_ = 0, last_ = 0, count_ = 0, highest_ = 0, lost_ = 0, guessed_ = 0;
+  void take(std::int64_t counter) {
+    State& s = now_;
+    const std::int64_t step = s.rows == 0 ? counter : around(counter, s);
+    if (counter >= narrow) s.wrap = wide;
+    if (s.rows > 0 && counter < s.last && step > near) s.guessed = std::max(s.guessed, step);
+    s.place += step;
+    s.last = counter;
+    if (s.rows == 0 || s.place > s.highest) {
+      s.lost += s.rows == 0 ? 0 : s.place - s.highest - 1;
+      s.highest = s.place;
+    } else if (s.lost > 0 && s.place < s.highest) {
+      --s.lost;  // it was only late
+    }
+    ++s.rows;
+  }
+
+  State now_, before_;
+  bool leapt_ = false;  // the last one, out of what `before_` was
 };
 
 }  // namespace kinalign

@@ -190,6 +190,30 @@ TEST_CASE("a packet that was overtaken steps back, and nothing behind it moves")
       "packets were lost");
 }
 
+TEST_CASE("one wild counter is one packet far ahead, and nothing behind it moves") {
+  for (const std::uint64_t wild : {31 + 65536, 31 + (1 << 17), 31 + (1 << 30), 31 + 20000}) {
+    CAPTURE(wild);
+    const auto read = counters({29, 30, wild, 32, 33});
+    const Packets found = packets(read);
+    CHECK(found[2] == static_cast<std::int64_t>(wild));
+    CHECK(found[3] == 32);
+    CHECK(found[4] == 33);
+    REQUIRE(read.findings.size() == 1);
+    CHECK(text_of(read.findings[0]) == "MT_01_00B421E6.txt: expected every packet, found 1 lost");
+  }
+}
+
+TEST_CASE("a counter of 32 bits that falls began anew, whatever its lower 16 bits say") {
+  const auto anew = counters({100'000, 131'078, 131'079, 3, 4, 5});
+  const std::int64_t fall = (std::int64_t{1} << 32) - 131'076;
+  CHECK(packets(anew).back() - packets(anew)[2] == fall + 2);
+  REQUIRE(anew.findings.size() == 2);
+  CHECK(anew.findings[1].what.found ==
+        "one that fell, as if " + std::to_string(fall) + " packets were lost");
+  CHECK(packets(counters({131'078, 131'080, 131'079, 131'081})) ==
+        Packets{131'078, 131'080, 131'079, 131'081});
+}
+
 TEST_CASE("of what is told in two ways the one that more of the first rows have whole is read") {
   std::string text = rate +
                      "PacketCounter,Acc_X,Acc_Y,Acc_Z,FreeAcc_X,FreeAcc_Y,FreeAcc_Z,"
