@@ -6,6 +6,7 @@
 #include "apps/kinalign/program.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/align/arrivals_of.h"
 #include "kinalign/align/judge.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
@@ -47,25 +48,6 @@ Result<std::string> read_through(FileSystem& files, const std::string& path) {
         Error{path, 0, fmt::format("{} rows", reader.header().frames), std::to_string(rows)});
   }
   return reader.report_json();
-}
-
-/// Every value of a stream; the survey of a BVH reads none.
-template <class Frames>
-Result<void> read_all(const Passes<Frames>& passes, const StampSurvey& survey,
-                      const Progress& progress) {
-  const Pass<Frames> pass = KA_TRY(passes());
-  Frames block;
-  for (std::uint64_t rows = 0; KA_TRY(pass(block));) {
-    rows += block.size();
-    if (!go_on(progress, "checking", rows, survey.samples)) return Failure(interruption());
-  }
-  return {};
-}
-
-Result<void> read_through(const RecordedStream& stream, const Progress& progress) {
-  return std::visit(
-      [&](const auto& input) { return read_all(input.passes, stream.survey, progress); },
-      stream.data);
 }
 
 /// What alignment would refuse or remark before it touches a sample: joints, nodes, the common
@@ -126,13 +108,14 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
   for (std::size_t i = 0; i < input.recording.streams.size(); ++i) {
     const RecordedStream& stream = input.recording.streams[i];
     call.console.detail(harmless(read_as(stream)));
-    KA_TRY(read_through(stream, call.console.progress()));
-    append(out.findings, stream.findings);
     const StreamOptions& options =
         input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
+    const Arrivals arrivals = KA_TRY(arrivals_of(stream, options, call.console.progress()));
+    append(out.findings, stream.findings);
     append(out.findings, judge_stamps(stream, options));
-    append(out.findings, judge_near(stream, stream.survey.near,
-                                    i == reference ? Role::reference : Role::resampled));
+    append(out.findings,
+           judge_arrivals(stream, arrivals, i == reference ? Role::reference : Role::resampled));
+    append(out.findings, judge_start(stream, options, arrivals));
   }
   if (input.manifest) append(out.findings, check_plan(path, input));
   return out;

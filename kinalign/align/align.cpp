@@ -146,7 +146,7 @@ Result<void> pass_slab(const Job& job, TakeSlab& slab, const TakeSink& sink,
 
 StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts& counts,
                            std::size_t i) {
-  const GapCount gaps = slabs.gaps(i);
+  const StreamCounts seen = slabs.counts(i);
   const RecordedStream& s = job.recording.streams[i];
   StreamReport out;
   out.stream = s.name;
@@ -156,9 +156,10 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   const ResampleRule& rule = job.plan.streams[i].rule;
   out.rate_hz = rule.rate_hz();
   out.gap_ns = rule.gap_ns;
-  out.held_back = slabs.held_back(i);
-  out.gaps = gaps.gaps;
-  out.gap_time_ns = gaps.time_ns;
+  out.held_back = seen.held_back;
+  out.arrivals = seen.arrivals;
+  out.gaps = seen.gaps.gaps;
+  out.gap_time_ns = seen.gaps.time_ns;
   const Marks& marks = counts.marks[i];
   out.samples = marks.samples;
   out.invalid = marks.invalid;
@@ -179,11 +180,13 @@ void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
   for (std::size_t i = 0; i < job.recording.streams.size(); ++i) {
     const RecordedStream& stream = job.recording.streams[i];
     report.streams.push_back(report_stream(job, slabs, counts, i));
-    const bool grid = i == job.plan.reference;
-    append(report.findings, judge_near(stream, grid ? stream.survey.near : slabs.held_back(i),
-                                       grid ? Role::reference : Role::resampled));
+    const Role role = i == job.plan.reference ? Role::reference : Role::resampled;
+    const Arrivals& arrivals = report.streams.back().arrivals;
+    append(report.findings, judge_arrivals(stream, arrivals, role));
+    append(report.findings,
+           judge_start(stream, options_of(job.plan.header.parameters, stream.name), arrivals));
     append(report.findings, judge_rows(report.streams.back()));
-    append(report.findings, judge_content(stream, slabs.count(i), report.rate_hz));
+    append(report.findings, judge_content(stream, slabs.content(i), report.rate_hz));
   }
   for (std::size_t k = 0; k < job.spaces.size(); ++k) {
     report.spaces.push_back(counts.residuals[k].report(job.spaces[k], job.plan.header));

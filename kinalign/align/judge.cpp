@@ -17,68 +17,79 @@ std::string file_of(const RecordedStream& s) {
 /// Steps between the samples kept of a device that stamps them, ns.
 struct Steps {
   double median = 0.0, mean = 0.0;
-  bool often_long = false;  // one in ten and more: the device's way, and no pause now and then
+  std::uint64_t long_ones = 0;
+  double long_share = 0.0;  // of the stream's time
 };
 
 std::optional<Steps> steps_of(const RecordedStream& s) {
   constexpr std::uint64_t enough = 10;
   const StampSurvey& survey = s.survey;
   if (s.counted || survey.kept() < enough || survey.median_step_ns == 0) return std::nullopt;
+  const double all = static_cast<double>(to_ns(survey.last) - to_ns(survey.first));
   return Steps{static_cast<double>(survey.median_step_ns),
-               static_cast<double>(to_ns(survey.last) - to_ns(survey.first)) /
-                   static_cast<double>(survey.kept() - 1),
-               10 * survey.long_steps >= survey.kept() - 1};
+               all / static_cast<double>(survey.kept() - 1), survey.long_steps,
+               static_cast<double>(survey.long_time_ns) / all};
+}
+
+Findings warning(const std::string& file, std::string expected, std::string found,
+                 std::string meaning, std::string repair) {
+  return {{Severity::warning, Error{file, 0, std::move(expected), std::move(found)},
+           std::move(meaning), std::move(repair)}};
 }
 
 /// A unit taken for another is wrong by a thousand or more, .NET's ticks by a hundred: no device of
-/// the field is so quick or so slow.
-Findings judge_unit(const Steps& steps, const std::string& file) {
-  constexpr double fastest_hz = 1200.0, slowest_hz = 0.5;
+/// the field is so quick or so slow. Cameras reach 1,000 frames a second, inertial sensors 2,000.
+Findings judge_unit(const Steps& steps, const RecordedStream& s) {
+  const double fastest_hz = std::holds_alternative<ImuInput>(s.data) ? 2500.0 : 1200.0;
+  constexpr double slowest_hz = 0.5;
   const double rate = 1e9 / steps.median;
   if (rate <= fastest_hz && rate >= slowest_hz) return {};
-  return {{Severity::warning,
-           Error{file, 0, fmt::format("{} to {} samples a second", slowest_hz, fastest_hz),
-                 fmt::format("{:.4g} by the stamps", rate)},
-           "the stamps may be in another unit than they were read in",
-           "where a layout reads them, its [time] says the column's unit: ns, us, ms, s or "
-           "ticks_100ns"}};
+  return warning(file_of(s), fmt::format("{} to {} samples a second", slowest_hz, fastest_hz),
+                 fmt::format("{:.4g} by the stamps", rate),
+                 "the stamps may be in another unit than they were read in",
+                 "where a layout reads them, its [time] says the column's unit: ns, us, ms, s or "
+                 "ticks_100ns");
 }
 
-/// The median tells a device's period, but not where samples come in bursts. A few long steps are
-/// gaps, which the report counts.
-Findings judge_rate(const Steps& steps, double nominal_hz, const std::string& file) {
-  constexpr double gap_steps = 3.0, burst = 5.0, alike = 1.5;
-  const double from_mean = 1e9 / steps.mean;
-  const std::string found = fmt::format("a mean of {:.3g} ms", 1e-6 * steps.mean);
-  const auto warning = [&](std::string expected, std::string said, std::string meaning,
-                           std::string repair) -> Findings {
-    return {{Severity::warning, Error{file, 0, std::move(expected), std::move(said)},
-             std::move(meaning), std::move(repair)}};
+/// A stated rate that fits neither the usual step nor the mean.
+Findings judge_stated(const Steps& steps, double nominal_hz, const std::string& file) {
+  constexpr double alike = 1.5;
+  const auto fits = [nominal_hz](double step) {
+    return step < alike * 1e9 / nominal_hz && alike * step > 1e9 / nominal_hz;
   };
+  if (fits(steps.median) || fits(steps.mean)) return {};
+  return warning(file, fmt::format("steps of {:.3g} ms, by rate_hz", 1e3 / nominal_hz),
+                 fmt::format("a median of {:.3g} ms", 1e-6 * steps.median),
+                 "gaps and invalid samples are told by the wrong rate",
+                 fmt::format("say rate_hz = {:.3g}, or nothing", 1e9 / steps.median));
+}
+
+/// A stream that stands still for more than half of its time has pauses, or samples that come in
+/// bursts and are stamped on arrival: stamps can't tell, a person can. Ten trials have nine pauses.
+Findings judge_rate(const Steps& steps, const std::string& file) {
+  constexpr double gap_steps = 3.0, burst = 5.0, alike = 1.5;
+  constexpr std::uint64_t pauses = 10;
+  if (steps.long_ones <= pauses || steps.long_share < 0.5 || steps.mean < alike * steps.median) {
+    return {};
+  }
   const std::string median =
       fmt::format("steps near their median of {:.3g} ms", 1e-6 * steps.median);
-  if (steps.often_long && steps.mean > burst * steps.median) {
-    return warning(
-        median, found, "the stamps are of arrival, in bursts",
-        fmt::format("where a layout reads them, leave its time column out and say rate_hz = "
-                    "{:.3g}",
-                    from_mean));
+  const double from_mean = 1e9 / steps.mean;
+  if (steps.mean < burst * steps.median) {
+    return warning(file, median, fmt::format("a mean of {:.3g} ms", 1e-6 * steps.mean),
+                   "stretches longer than three median steps are taken for gaps",
+                   fmt::format("where that is the device's way, say rate_hz = {:.3g} or gap_ms = "
+                               "{:.3g}; else many are missing",
+                               from_mean, gap_steps * 1e-6 * steps.mean));
   }
-  if (nominal_hz > 0.0) {
-    const auto fits = [nominal_hz](double step) {
-      return step < alike * 1e9 / nominal_hz && alike * step > 1e9 / nominal_hz;
-    };
-    if (fits(steps.median) || fits(steps.mean)) return {};
-    return warning(fmt::format("steps of {:.3g} ms, by rate_hz", 1e3 / nominal_hz),
-                   fmt::format("a median of {:.3g} ms", 1e-6 * steps.median),
-                   "gaps and invalid samples are told by the wrong rate",
-                   fmt::format("say rate_hz = {:.3g}, or nothing", 1e9 / steps.median));
-  }
-  if (!steps.often_long || steps.mean < alike * steps.median) return {};
-  return warning(median, found, "stretches longer than three median steps are taken for gaps",
-                 fmt::format("where that is the device's way, say rate_hz = {:.3g} or gap_ms = "
-                             "{:.3g}; else many are missing",
-                             from_mean, gap_steps * 1e-6 * steps.mean));
+  return warning(
+      file, median,
+      fmt::format("{} longer ones, {:.0f} % of the time", steps.long_ones,
+                  100.0 * steps.long_share),
+      "the device paused, or samples came in bursts and were stamped on arrival",
+      fmt::format("if it paused, say rate_hz = {:.3g}; if they came in bursts, leave the "
+                  "time column out of a layout and say rate_hz = {:.3g}",
+                  1e9 / steps.median, from_mean));
 }
 
 }  // namespace
@@ -104,33 +115,60 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
   if (s.survey.backward > 0) {
     // Behind a clock that was set back nothing is later than what came before.
     const bool many = 20 * s.survey.backward > s.survey.samples;
-    out.push_back(
-        {many ? Severity::error : Severity::warning,
-         Error{file, 0, "stamps that rise",
-               fmt::format("{} of {} that step back, by up to {:.3f} s", s.survey.backward,
-                           s.survey.samples,
-                           1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
-         "these samples were left out",
-         many ? "the device's clock was set back: cut the file there, or stamp it by rate_hz"
-              : "look at the device's clock if there are many"});
+    out.push_back({many ? Severity::error : Severity::warning,
+                   Error{file, 0, "stamps that rise",
+                         fmt::format("{} of {} that step back, by up to {:.3f} s",
+                                     s.survey.backward, s.survey.samples,
+                                     1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
+                   "these samples were left out",
+                   many ? "the device's clock was set back: cut the file there, or leave the time "
+                          "column out of "
+                          "its layout and say rate_hz"
+                        : "look at the device's clock if there are many"});
   }
   if (const auto steps = steps_of(s)) {
-    append(out, judge_unit(*steps, file));
-    append(out, judge_rate(*steps, options.rate_hz, file));
+    append(out, judge_unit(*steps, s));
+    append(out, options.rate_hz > 0.0 ? judge_stated(*steps, options.rate_hz, file)
+                                      : judge_rate(*steps, file));
   }
   return out;
 }
 
-Findings judge_near(const RecordedStream& s, std::uint64_t near, Role role) {
-  if (near == 0) return {};
-  const char* then = role == Role::reference
-                         ? "as the reference they keep the stamp of their arrival, at which the "
-                           "other streams are taken"
-                         : "they are left out where the stream is resampled";
-  return {{Severity::warning,
-           Error{file_of(s), 0, "samples a fifth of a step or more apart",
-                 fmt::format("{} with the next one nearer: held back on their way", near)},
-           then, "stamp samples where they are taken, not where they arrive"}};
+Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role role) {
+  Findings out;
+  if (arrivals.near > 0) {
+    out.push_back(
+        {Severity::warning,
+         Error{file_of(s), 0, "samples a fifth of a step or more apart",
+               fmt::format("{} with the next one nearer: held back on their way", arrivals.near)},
+         role == Role::reference
+             ? "as the reference they keep the stamp of their arrival, at which the other "
+               "streams are taken"
+             : "they are left out where the stream is resampled",
+         "stamp samples where they are taken, not where they arrive"});
+  }
+  if (arrivals.late > 0) {
+    out.push_back(
+        {Severity::warning,
+         Error{file_of(s), 0, "samples that come as they are taken",
+               fmt::format("{} that came quicker behind a pause, {:.2f} s late and more",
+                           arrivals.late, 1e-9 * static_cast<double>(arrivals.worst_late_ns))},
+         "so far behind the motion they stand in rows that are valid",
+         "use the device's own stamps where the file has them, or leave the time column "
+         "out of its layout and say rate_hz"});
+  }
+  return out;
+}
+
+Findings judge_start(const RecordedStream& s, const StreamOptions& options,
+                     const Arrivals& arrivals) {
+  if (s.counted || !options.start_ns) return {};
+  const bool first_kept = to_ns(s.survey.first) == *options.start_ns;
+  if (first_kept && !arrivals.first_late) return {};
+  return warning(file_of(s), "start_ns at a first sample stamped when it was taken",
+                 first_kept ? "one that was held back" : "one with a stamp far from the others'",
+                 "all of the stream is shifted by as much",
+                 "cut that sample from the file, and say start_ns of the one behind it");
 }
 
 Findings judge_content(const RecordedStream& s, const ResampleCount& count, double grid_hz) {

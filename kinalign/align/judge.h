@@ -16,8 +16,12 @@ Findings judge_stamps(const RecordedStream& stream, const StreamOptions& options
 /// What becomes of a stream's samples: their stamps are the grid, or they are resampled onto it.
 enum class Role { reference, resampled };
 
-/// `near` samples that were held back on their way.
-Findings judge_near(const RecordedStream& stream, std::uint64_t near, Role role);
+/// Samples that were held back on their way and stamped where they arrived.
+Findings judge_arrivals(const RecordedStream& stream, const Arrivals& arrivals, Role role);
+
+/// A start_ns, which is the first sample's, where the first sample is none to go by.
+Findings judge_start(const RecordedStream& stream, const StreamOptions& options,
+                     const Arrivals& arrivals);
 
 /// What the grid of `grid_hz` can't carry of one stream.
 Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);

@@ -116,8 +116,7 @@ std::int64_t step_of(double ns) {
 ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
                      const AlignOptions& options) {
   ResampleRule rule;
-  rule.step_ns = step_of(s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns)));
-  if (stream.rate_hz > 0.0) rule.step_ns = step_of(1e9 / stream.rate_hz);
+  rule.step_ns = usual_step_ns(s, stream);
   rule.gap_ns = options.gap_ms > 0.0 ? std::llround(options.gap_ms * 1e6) : 3 * rule.step_ns;
   // Stamps rounded to a milli- or microsecond make three steps a little longer than three medians.
   if (options.gap_ms == 0.0) rule.gap_ns += rule.step_ns / 10;
@@ -266,6 +265,11 @@ std::string stream_label(const RecordedStream& s) {
   const auto* imu = std::get_if<ImuInput>(&s.data);
   const bool one = imu != nullptr && imu->node_names.size() == 1;
   return one ? s.name + " " + shown(imu->node_names.front()) : s.name;
+}
+
+std::int64_t usual_step_ns(const RecordedStream& s, const StreamOptions& options) {
+  if (options.rate_hz > 0.0) return step_of(1e9 / options.rate_hz);
+  return step_of(s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns)));
 }
 
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {

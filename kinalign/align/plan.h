@@ -31,6 +31,10 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
 /// "kinect", or of a single node, whose streams share a name, "imu waist".
 std::string stream_label(const RecordedStream& stream);
 
+/// The step between samples that alignment takes for the usual one, ns: the stated one, else the
+/// median.
+std::int64_t usual_step_ns(const RecordedStream& stream, const StreamOptions& options);
+
 /// The manifest's options of a stream; defaults where it has none.
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream);
 

@@ -51,15 +51,14 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
 class PointResampler {
  public:
   PointResampler(Pass<PointFrames> pass, const TimeModel& clock, const ResampleRule& rule)
-      : window_(std::move(pass), clock, rule.gap_count(), rule.step_ns),
+      : window_(std::move(pass), clock, rule.gap_count(), UsualStep{rule.step_ns}),
         clock_(&clock),
         rule_(rule) {}
 
   /// Rows at the grid's stamps (ns, rising, from call to call too).
   Result<void> rows(std::span<const std::int64_t> grid, PointRows& out);
-  const ResampleCount& count() const { return count_; }
-  const GapCount& gaps() const { return window_.gaps; }
-  std::uint64_t held_back() const { return window_.held_back; }
+  const ResampleCount& content() const { return count_; }
+  StreamCounts counts() const { return window_.counts(); }
 
  private:
   Window<PointFrames> window_;
@@ -73,7 +72,7 @@ class ImuResampler {
  public:
   ImuResampler(Pass<ImuSamples> pass, const TimeModel& clock, const ResampleRule& rule,
                const ImuContent& content)
-      : window_(std::move(pass), clock, rule.gap_count(), rule.step_ns),
+      : window_(std::move(pass), clock, rule.gap_count(), UsualStep{rule.step_ns}),
         clock_(&clock),
         rule_(rule),
         content_(content) {}
@@ -81,9 +80,8 @@ class ImuResampler {
   /// Vectors are turned into the world before they are interpolated, if `to_world`: in a turning
   /// sensor's space a spline would bend what is straight.
   Result<void> rows(std::span<const std::int64_t> grid, bool to_world, ImuRows& out);
-  const ResampleCount& count() const { return count_; }
-  const GapCount& gaps() const { return window_.gaps; }
-  std::uint64_t held_back() const { return window_.held_back; }
+  const ResampleCount& content() const { return count_; }
+  StreamCounts counts() const { return window_.counts(); }
 
  private:
   Window<ImuSamples> window_;
@@ -100,7 +98,7 @@ class ClipResampler {
 
   /// Fills all but the global positions.
   Result<void> rows(std::span<const std::int64_t> grid, ClipRows& out);
-  const GapCount& gaps() const { return window_.gaps; }
+  StreamCounts counts() const { return window_.counts(); }
 
  private:
   Window<ClipFrames> window_;

@@ -6,7 +6,6 @@
 #include "kinalign/core/parallel.h"
 
 #include <algorithm>
-#include <type_traits>
 
 namespace kinalign {
 
@@ -32,7 +31,8 @@ template <class Frames>
 class ReferenceRows {
  public:
   ReferenceRows(Pass<Frames> pass, const RecordedStream& stream, const AlignPlan& plan)
-      : window_(std::move(pass), stream.clock, plan.streams[plan.reference].rule.gap_count()),
+      : window_(std::move(pass), stream.clock, plan.streams[plan.reference].rule.gap_count(),
+                UsualStep{plan.streams[plan.reference].rule.step_ns, false}),
         most_rows_(rows_at_once(plan.header)),
         begin_(to_ns(plan.begin)),
         end_(to_ns(plan.end)) {}
@@ -53,7 +53,7 @@ class ReferenceRows {
     begin_ = grid.back() + 1;
     return {};
   }
-  const GapCount& gaps() const { return window_.gaps; }
+  StreamCounts counts() const { return window_.counts(); }
 
  private:
   Window<Frames> window_;
@@ -70,17 +70,6 @@ struct ReferenceSlab {
 using StreamRows =
     std::variant<std::monostate, ReferenceRows<ClipFrames>, ReferenceRows<PointFrames>,
                  PointResampler, ImuResampler, ClipResampler>;
-
-/// What a stream's rows answer; nothing where they have no answer.
-template <class Answer, class Ask>
-Answer asked(const StreamRows& stream, Ask ask) {
-  return std::visit(
-      [&ask](const auto& rows) -> Answer {
-        if constexpr (std::is_invocable_v<Ask, decltype(rows)>) return ask(rows);
-        return {};
-      },
-      stream);
-}
 
 }  // namespace
 
@@ -233,21 +222,22 @@ Result<void> SlabMaker::for_each(std::size_t jobs,
   return {};
 }
 
-ResampleCount SlabMaker::count(std::size_t stream) const {
-  return asked<ResampleCount>(
-      state_->streams[stream],
-      [](const auto& rows) -> decltype(rows.count()) { return rows.count(); });
+ResampleCount SlabMaker::content(std::size_t stream) const {
+  return std::visit(
+      [](const auto& rows) -> ResampleCount {
+        if constexpr (requires { rows.content(); }) return rows.content();
+        return {};
+      },
+      state_->streams[stream]);
 }
 
-GapCount SlabMaker::gaps(std::size_t stream) const {
-  return asked<GapCount>(state_->streams[stream],
-                         [](const auto& rows) -> decltype(rows.gaps()) { return rows.gaps(); });
-}
-
-std::uint64_t SlabMaker::held_back(std::size_t stream) const {
-  return asked<std::uint64_t>(
-      state_->streams[stream],
-      [](const auto& rows) -> decltype(rows.held_back()) { return rows.held_back(); });
+StreamCounts SlabMaker::counts(std::size_t stream) const {
+  return std::visit(
+      [](const auto& rows) -> StreamCounts {
+        if constexpr (requires { rows.counts(); }) return rows.counts();
+        return {};
+      },
+      state_->streams[stream]);
 }
 
 }  // namespace kinalign

@@ -36,10 +36,9 @@ class SlabMaker {
   /// Points are in their own space yet. With two jobs the reference is read one slab ahead.
   Result<void> for_each(std::size_t jobs, const std::function<Result<void>(TakeSlab&)>& use);
 
-  /// What the streams' resampling has counted so far, as in the recording.
-  ResampleCount count(std::size_t stream) const;
-  GapCount gaps(std::size_t stream) const;
-  std::uint64_t held_back(std::size_t stream) const;
+  /// Of a stream, as in the recording, so far: what the grid can't carry, and what was counted.
+  ResampleCount content(std::size_t stream) const;
+  StreamCounts counts(std::size_t stream) const;
 
  private:
   struct State;

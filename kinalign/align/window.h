@@ -4,10 +4,12 @@
 // what lies behind is forgotten.
 #pragma once
 
+#include "kinalign/motion/arrivals.h"
 #include "kinalign/motion/stamps.h"
 #include "kinalign/take/recording.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -74,13 +76,29 @@ struct GapCount {
   }
 };
 
+/// The stream's usual step, by which a sample held back is told. 0: none is.
+struct UsualStep {
+  std::int64_t ns = 0;
+  bool leave_out = true;  // else such samples are counted only
+};
+
+/// What was pulled of a stream so far.
+struct StreamCounts {
+  GapCount gaps;
+  std::uint64_t held_back = 0;  // samples left out, as the next came on their heels
+  Arrivals arrivals;            // of all that rise
+};
+
 template <class Frames>
 class Window {
  public:
-  /// `step_ns` is the stream's usual step, by which a sample held back is told; 0: none is.
-  Window(Pass<Frames> pass, const TimeModel& clock, const GapCount& count = {},
-         std::int64_t step_ns = 0)
-      : gaps(count), pass_(std::move(pass)), clock_(&clock), step_ns_(step_ns) {}
+  Window(Pass<Frames> pass, const TimeModel& clock, const GapCount& count = {}, UsualStep step = {})
+      : pass_(std::move(pass)),
+        clock_(&clock),
+        near_ns_(step.leave_out ? step.ns / near_share : 0),
+        step_ns_(step.ns),
+        arrivals_(step.ns),
+        gaps_(count) {}
 
   /// After it, `rows` hold all samples within [from, to] and, where the stream has them, `reach`
   /// on either side. `from` and `to` (ns on the take's axis) rise from call to call.
@@ -105,8 +123,8 @@ class Window {
 
   Frames rows;                        // stamps as the device gave them
   std::vector<std::int64_t> time_ns;  // [rows] on the take's axis, strictly rising
-  GapCount gaps;                      // in what was pulled so far
-  std::uint64_t held_back = 0;        // samples left out of it, as the next came on their heels
+
+  StreamCounts counts() const { return {gaps_, held_back_, arrivals_.result()}; }
 
  private:
   std::size_t first_not_before(std::int64_t t) const {
@@ -159,8 +177,8 @@ class Window {
 
   /// Rows of which no later sample can show that they were held back.
   std::size_t sure() const {
-    const bool open = !ended_ && last_seen_ && !time_ns.empty() &&
-                      time_ns.back() - *last_seen_ < step_ns_ / near_share;
+    const bool open =
+        !ended_ && last_seen_ && !time_ns.empty() && time_ns.back() - *last_seen_ < near_ns_;
     return open ? first_not_before(*last_seen_) : time_ns.size();
   }
 
@@ -195,10 +213,15 @@ class Window {
       }
       const std::int64_t t = to_ns(take_time(*clock_, block_.stamps[i]));
       const bool there = any_seen(block_, i);
-      const bool shows = fate == StampFate::kept && there && shows_last_late(t);
-      if (fate == StampFate::replaces || shows) flush(i);
-      if (fate == StampFate::replaces) take_back();
-      if (shows) drop_late();
+      if (fate == StampFate::replaces) {
+        flush(i);
+        take_back();
+      }
+      const bool shows = there && shows_last_late(t);
+      if (shows) {
+        flush(i);
+        drop_late();
+      }
       if (there && !shows) late_since_.reset();
       time_ns.push_back(t);
       if (there) see(t);
@@ -209,7 +232,7 @@ class Window {
   /// Whether a sample at `t` comes so soon behind the last one seen that that one was held back. Of
   /// a whole stretch of such samples one a step stays.
   bool shows_last_late(std::int64_t t) const {
-    return last_seen_ && t - *last_seen_ < step_ns_ / near_share &&
+    return last_seen_ && t - *last_seen_ < near_ns_ && arrivals_.can_be_late() &&
            t - late_since_.value_or(*last_seen_) < step_ns_;
   }
 
@@ -217,13 +240,15 @@ class Window {
     late_since_ = late_since_.value_or(*last_seen_);
     while (!time_ns.empty() && time_ns.back() >= *last_seen_) drop_last_row();
     unsee();
-    ++held_back;
+    ++held_back_;
   }
 
   void take_back() {
     const bool was_seen = last_seen_ == time_ns.back();
     drop_last_row();
-    if (was_seen) unsee();
+    if (!was_seen) return;
+    unsee();
+    arrivals_.take_back();
   }
 
   void drop_last_row() {
@@ -233,26 +258,35 @@ class Window {
 
   /// The row at `t` has something in it.
   void see(std::int64_t t) {
-    gaps_before_ = gaps;
-    seen_before_ = last_seen_;
-    if (last_seen_) gaps.add(*last_seen_, t);
+    before_[1] = before_[0];
+    before_[0] = {last_seen_, gaps_};
+    if (last_seen_) gaps_.add(*last_seen_, t);
     last_seen_ = t;
+    arrivals_.add(t);
   }
 
   void unsee() {
-    gaps = gaps_before_;
-    last_seen_ = seen_before_;
+    last_seen_ = before_[0].seen;
+    gaps_ = before_[0].gaps;
+    before_[0] = before_[1];
   }
 
   Pass<Frames> pass_;
   const TimeModel* clock_;
-  std::int64_t step_ns_;
+  std::int64_t near_ns_, step_ns_;
   Frames block_;
   StampRule rule_;
+  ArrivalSurveyor arrivals_;
+  GapCount gaps_;
+  std::uint64_t held_back_ = 0;
   std::optional<std::int64_t> last_seen_;  // stamp of the last row added with anything in it
-  // Without that one:
-  std::optional<std::int64_t> seen_before_;
-  GapCount gaps_before_;
+  /// As it was without that one, and without the one before: a wild stamp is taken back, and then
+  /// the one in front of it may be late.
+  struct Before {
+    std::optional<std::int64_t> seen;
+    GapCount gaps;
+  };
+  std::array<Before, 2> before_;
   std::optional<std::int64_t> late_since_;  // the first of samples held back one after the other
   bool ended_ = false;
 };

@@ -12,14 +12,14 @@ using Json = nlohmann::ordered_json;
 Json survey_json(const StampSurvey& survey) {
   return {{"samples", survey.samples},
           {"duplicates", survey.duplicates},
-          {"near", survey.near},
           {"backward", survey.backward},
           {"ahead", survey.ahead},
           {"largest_step_back_ns", survey.largest_step_back_ns},
           {"first_ns", to_ns(survey.first)},
           {"last_ns", to_ns(survey.last)},
           {"median_step_ns", survey.median_step_ns},
-          {"long_steps", survey.long_steps}};
+          {"long_steps", survey.long_steps},
+          {"long_time_ns", survey.long_time_ns}};
 }
 
 Json stream_json(const StreamReport& stream) {
@@ -30,6 +30,9 @@ Json stream_json(const StreamReport& stream) {
   out["rate_hz"] = stream.rate_hz;
   out["gap_ns"] = stream.gap_ns;
   out["held_back"] = stream.held_back;
+  out["near"] = stream.arrivals.near;
+  out["late"] = stream.arrivals.late;
+  out["worst_late_ns"] = stream.arrivals.worst_late_ns;
   out["gaps"] = stream.gaps;
   out["gap_time_ns"] = stream.gap_time_ns;
   out["samples"] = stream.samples;

@@ -97,7 +97,7 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   out.counted = reader->counted;
   out.data =
       input_of(*reader->header(), passes_of<R>(*job.files, file.path(), job.version, format.make));
-  out.survey = surveyor.result(job.options->rate_hz > 0.0 ? 1e9 / job.options->rate_hz : 0.0);
+  out.survey = surveyor.result();
   out.files.push_back({std::string(file_name(file.path())), hash.hex(), bytes});
   out.findings = std::move(reader->findings);
   append(out.findings, sizes.judge(*reader->header(), file.path()));

@@ -110,7 +110,7 @@ void StampSurveyor::add(std::span<const Time> stamps) {
   }
 }
 
-StampSurvey StampSurveyor::result(double step_ns) const {
+StampSurvey StampSurveyor::result() const {
   StampSurvey survey = survey_;
   std::uint64_t all = 0;
   for (const auto n : steps_) all += n;
@@ -123,12 +123,14 @@ StampSurvey StampSurveyor::result(double step_ns) const {
       break;
     }
   }
+  double long_time = 0.0;
   for (std::size_t i = 0; i < classes; ++i) {
     const double step = sums_[i] / static_cast<double>(std::max<std::uint64_t>(1, steps_[i]));
-    const auto median = static_cast<double>(survey.median_step_ns);
-    if (step > 1.5 * median) survey.long_steps += steps_[i];
-    if (near_share * step < (step_ns > 0.0 ? step_ns : median)) survey.near += steps_[i];
+    if (step <= 1.5 * static_cast<double>(survey.median_step_ns)) continue;
+    survey.long_steps += steps_[i];
+    long_time += sums_[i];
   }
+  survey.long_time_ns = long_time < 9.2e18 ? std::llround(long_time) : INT64_MAX;
   return survey;
 }
 

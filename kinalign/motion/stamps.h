@@ -40,21 +40,16 @@ class StampRule {
   std::optional<Time> withdrawn_;      // the first one, until the third says who was wrong
 };
 
-/// Of two samples nearer than this share of the usual step the first was held back on its way: a
-/// hand that moves on within 0.1 ms would be metres away in between. KinectMultiTrack's server
-/// stamps are 8 of 34 ms apart at the least.
-constexpr std::int64_t near_share = 5;
-
 struct StampSurvey {
   std::uint64_t samples = 0;     // all that were read
   std::uint64_t duplicates = 0;  // stamp equal to the last one kept
-  std::uint64_t near = 0;        // kept, and less than a fifth of a step behind the one before
   std::uint64_t backward = 0;    // stamp before the last one kept
   std::uint64_t ahead = 0;       // stamp far ahead of the ones before and behind
   std::int64_t largest_step_back_ns = 0;
   Time first{}, last{};             // of the samples kept
   std::int64_t median_step_ns = 0;  // between kept samples; 0 with fewer than two
   std::uint64_t long_steps = 0;     // of these, longer than 1.5 medians
+  std::int64_t long_time_ns = 0;    // in which the stream stood still: their sum
 
   std::uint64_t kept() const { return samples - duplicates - backward - ahead; }
 };
@@ -63,8 +58,7 @@ struct StampSurvey {
 class StampSurveyor {
  public:
   void add(std::span<const Time> stamps);
-  /// `step_ns`: the step that is stated, by which near ones are told; 0: by the median.
-  StampSurvey result(double step_ns = 0.0) const;
+  StampSurvey result() const;
 
  private:
   void keep(Time stamp);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/motion/arrivals.h"
 #include "kinalign/motion/rigid_fit.h"
 #include "kinalign/motion/stamps.h"
 
@@ -39,6 +40,7 @@ struct StreamReport {
   double rate_hz = 0.0;          // nominal, else from the median step
   std::int64_t gap_ns = 0;       // longer stretches are gaps
   std::uint64_t held_back = 0;   // samples left out: the next one came on their heels
+  Arrivals arrivals;             // how late samples were stamped
   std::uint64_t gaps = 0;        // within the take
   std::int64_t gap_time_ns = 0;  // sum of their lengths
   std::uint64_t samples = 0;     // rows x joints (or nodes) of the take; of a skeleton rows

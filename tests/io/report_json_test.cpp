@@ -18,11 +18,12 @@ AlignmentReport small_report() {
   StreamReport imu;
   imu.stream = "imu";
   imu.nodes = {"waist"};
-  imu.survey = {31, 1, 4, 2, 3, 4'000'000, utc_time(5), utc_time(6), 66'666'667, 14};
+  imu.survey = {31, 1, 2, 3, 4'000'000, utc_time(5), utc_time(6), 66'666'667, 14, 16};
   imu.counted = true;
   imu.rate_hz = 15.0;
   imu.gap_ns = 206'666'668;
   imu.held_back = 15;
+  imu.arrivals = {17, 18, 19, true};
   imu.gaps = 7;
   imu.gap_time_ns = 8;
   imu.samples = 120;
@@ -62,19 +63,22 @@ const std::string whole = R"({
       "stamps": {
         "samples": 31,
         "duplicates": 1,
-        "near": 4,
         "backward": 2,
         "ahead": 3,
         "largest_step_back_ns": 4000000,
         "first_ns": 5,
         "last_ns": 6,
         "median_step_ns": 66666667,
-        "long_steps": 14
+        "long_steps": 14,
+        "long_time_ns": 16
       },
       "stamps_counted": true,
       "rate_hz": 15.0,
       "gap_ns": 206666668,
       "held_back": 15,
+      "near": 17,
+      "late": 18,
+      "worst_late_ns": 19,
       "gaps": 7,
       "gap_time_ns": 8,
       "samples": 120,

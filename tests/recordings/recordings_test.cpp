@@ -5,7 +5,9 @@
 #include "tests/shared_data.h"
 
 #include "kinalign/align/align.h"
+#include "kinalign/io/layout.h"
 #include "kinalign/io/open_recording.h"
+#include "kinalign/motion/arrivals.h"
 
 #include <Eigen/Eigenvalues>
 #include <doctest/doctest.h>
@@ -61,6 +63,24 @@ Manifest two_kinects(const std::string& path, int scenario) {
   }
   manifest.spaces["kinect_1"].method = "fit";
   return manifest;
+}
+
+/// The stamps of the first body's rows, ns, as a layout reads them.
+std::vector<std::int64_t> stamps_by(const std::string& layout, const std::string& path) {
+  Manifest manifest;
+  manifest.streams = {stream("kinect", path, layout)};
+  manifest.streams[0].select = {{"Skeleton#", "0"}};
+  PosixFiles files;
+  const auto recording = open_recording(files, manifest, "");
+  REQUIRE(recording);
+  const auto pass = std::get<PointInput>(recording->streams[0].data).passes();
+  REQUIRE(pass);
+  std::vector<std::int64_t> out;
+  PointFrames block;
+  while (*(*pass)(block)) {
+    for (const Time stamp : block.stamps) out.push_back(to_ns(stamp));
+  }
+  return out;
 }
 
 /// Root mean square angle, degrees, that the best constant rotations on both sides leave between
@@ -169,6 +189,42 @@ TEST_CASE("KinectMultiTrack: the second Kinect onto the first by the server's st
       REQUIRE(take);
       CHECK(std::abs(100.0 * take->report.spaces.at(0).after_m - expected) < 0.3);
     }
+  }
+}
+
+TEST_CASE("KinectMultiTrack: what is told late is late by the devices' own ticks too" *
+          doctest::skip(!shared_data())) {
+  const FreshFolder scratch;
+  const std::string unpack =
+      "/usr/bin/python3 " + shared_path("unpack.py") + " multitrack '" + scratch.path() + "'";
+  REQUIRE(std::system(unpack.c_str()) == 0);
+  std::string layout(*builtin_layout("kinect_multitrack"));
+  const auto column = layout.find("column = "), body = layout.find("[joints]");
+  layout.replace(column, body - column, "column = \"Skeleton_Time\"\nunit = \"ticks_100ns\"\n\n");
+  const std::string ticks = scratch.write("ticks.toml", layout);
+  for (const auto& file : std::filesystem::directory_iterator(scratch.path())) {
+    if (file.path().extension() != ".csv") continue;
+    CAPTURE(file.path().filename().string());
+    const auto arrived = stamps_by("kinect_multitrack", file.path().string());
+    const auto taken = stamps_by(ticks, file.path().string());
+    REQUIRE(arrived.size() == taken.size());
+    constexpr std::int64_t step = 34'000'000;
+    ArrivalSurveyor surveyor(step);
+    std::uint64_t late = 0;
+    std::int64_t worst = 0, last = INT64_MIN;
+    for (std::size_t i = 0; i < arrived.size(); ++i) {
+      if (arrived[i] <= last || arrived[i] > arrived.back()) continue;  // repeated, or wild
+      surveyor.add(last = arrived[i]);
+      std::int64_t by = 0;  // how much later than the best of the next 300
+      for (std::size_t j = i; j < std::min(i + 300, arrived.size()); ++j) {
+        by = std::max(by, (arrived[i] - arrived[j]) - (taken[i] - taken[j]));
+      }
+      late += by >= late_steps * step ? 1 : 0;
+      worst = std::max(worst, by);
+    }
+    CHECK(surveyor.result().late > 20);
+    CHECK(surveyor.result().late <= late);
+    CHECK(surveyor.result().worst_late_ns <= worst);
   }
 }
 

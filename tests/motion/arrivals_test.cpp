@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// How late samples were stamped on arrival, against the times at which they were taken.
+#include "kinalign/motion/arrivals.h"
+
+#include "tests/seeds.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+using namespace kinalign;
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+Arrivals arrivals(const std::vector<std::int64_t>& stamps, std::int64_t step_ns) {
+  ArrivalSurveyor surveyor(step_ns);
+  for (const std::int64_t t : stamps) surveyor.add(t);
+  return surveyor.result();
+}
+
+/// Samples taken each step; those of [from, to) wait, and come one each `drain_ns` from `to` on,
+/// until none waits.
+std::vector<std::int64_t> stalled(std::size_t count, std::int64_t step, std::size_t from,
+                                  std::size_t to, std::int64_t drain_ns) {
+  std::vector<std::int64_t> stamps;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::int64_t t = static_cast<std::int64_t>(k) * step;
+    if (k == from) t = static_cast<std::int64_t>(to) * step;
+    if (k > from) t = std::max(t, stamps.back() + drain_ns);
+    stamps.push_back(t);
+  }
+  return stamps;
+}
+
+}  // namespace
+
+TEST_CASE("samples less than a fifth of a step in front of the next are counted") {
+  const auto near_of = [](std::vector<std::int64_t> stamps) {
+    for (std::int64_t& t : stamps) t *= ms;
+    return arrivals(stamps, 30 * ms).near;
+  };
+  CHECK(near_of({0, 30, 60, 90, 145, 150, 180, 210}) == 1);  // 120 came at 145
+  CHECK(near_of({0, 30, 60, 90, 144, 150, 180, 210}) == 0);
+  CHECK(near_of({0, 1, 2, 30, 60, 90, 120, 150, 180, 210}) == 2);
+}
+
+TEST_CASE("what waited in a stall is counted, and how late the first of it was, is known") {
+  for (const std::int64_t drain : {1, 3, 5, 8}) {
+    CAPTURE(drain);
+    const auto stamps = stalled(1000, 10 * ms, 300, 340, drain * ms);
+    const Arrivals found = arrivals(stamps, 10 * ms);
+    std::uint64_t late = 0;
+    for (std::size_t k = 0; k < stamps.size(); ++k) {
+      if (stamps[k] - static_cast<std::int64_t>(k) * 10 * ms >= late_steps * 10 * ms) ++late;
+    }
+    // 5 % of slack for each of up to 200 samples until the stall is drained
+    CHECK(found.late <= late);
+    CHECK(found.late >= late * 3 / 4 - 10);
+    CHECK(found.worst_late_ns <= 400 * ms);
+    CHECK(found.worst_late_ns >= 290 * ms);
+  }
+}
+
+TEST_CASE("what waited before the first sample could be sent is told too") {
+  const Arrivals found = arrivals(stalled(1000, 10 * ms, 0, 40, 2 * ms), 10 * ms);
+  CHECK(found.late > 30);
+  CHECK(found.first_late);
+  CHECK(!arrivals(stalled(1000, 10 * ms, 5, 40, 2 * ms), 10 * ms).first_late);
+  CHECK(found.worst_late_ns >= 350 * ms);
+}
+
+TEST_CASE("bursts at the stated rate are late by what the last one of each shows") {
+  std::vector<std::int64_t> stamps;
+  for (std::int64_t k = 0; k < 1000; ++k) stamps.push_back((k / 10 * 100 + k % 10) * ms);
+  const Arrivals found = arrivals(stamps, 10 * ms);
+  CHECK(found.late == 600);
+  CHECK(found.near == 900);
+  CHECK(found.worst_late_ns == 76'500'000);  // of true 81: nine steps less 5 %, and nine of 1 ms
+}
+
+TEST_CASE("no sample is late: jitter, losses, pauses, another rate for a while, a rounded step") {
+  for (const auto seed : fresh_seeds(50)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const auto step =
+        static_cast<std::int64_t>(5 * ms + random() % static_cast<std::uint64_t>(60 * ms));
+    const auto jitter = [&] {
+      return static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(step));
+    };
+    std::vector<std::int64_t> stamps;
+    std::int64_t taken = 0;
+    for (int k = 0; k < 2000; ++k) {
+      const auto any = random() % 100;
+      taken += any < 10 ? 2 * step : any == 10 ? 50 * step : step;
+      stamps.push_back(taken + jitter());
+    }
+    std::sort(stamps.begin(), stamps.end());
+    CHECK(arrivals(stamps, step).late == 0);
+    CHECK(arrivals(stamps, step + step / 50).late == 0);
+  }
+  std::vector<std::int64_t> awake;  // 10 Hz, and 60 Hz for a while
+  for (std::int64_t k = 0; k < 400; ++k) awake.push_back(k * 100 * ms);
+  for (std::int64_t k = 1; k < 300; ++k) awake.push_back(awake[399] + k * 17 * ms);
+  for (std::int64_t k = 1; k < 100; ++k) awake.push_back(awake[698] + k * 100 * ms);
+  CHECK(arrivals(awake, 100 * ms).late == 0);
+  CHECK(arrivals(awake, 100 * ms).near == 0);
+}
+
+TEST_CASE("a wild stamp that is taken back leaves nothing behind") {
+  const auto stamps = stalled(600, 10 * ms, 300, 340, 3 * ms);
+  ArrivalSurveyor surveyor(10 * ms);
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    if (k % 7 == 3) {
+      surveyor.add(stamps[k] + 3'600'000 * ms);
+      surveyor.take_back();
+    }
+    surveyor.add(stamps[k]);
+  }
+  CHECK(surveyor.result() == arrivals(stamps, 10 * ms));
+}
+
+TEST_CASE("without a step nothing is told") {
+  CHECK(arrivals({0, 1, 2, 1000, 1001, 1002}, 0) == Arrivals{});
+}
