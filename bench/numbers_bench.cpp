@@ -63,17 +63,16 @@ const char* by_kinalign(const char* at, const char* end, double& value) {
   return behind;
 }
 char* shortest(char* at, double value) { return std::to_chars(at, at + number_room, value).ptr; }
+char* fixed_by_to_chars(char* at, double value) {
+  return std::to_chars(at, at + number_room, value, std::chars_format::fixed, 4).ptr;
+}
 char* four_decimals(char* at, double value) { return put_number(at, value, 4); }
 
 template <auto parse>
 void parsing(benchmark::State& state) {
   std::string text(all * (number_room + 1), '\0');
   text.resize(static_cast<std::size_t>(
-      write_all(motion(Digits::of_file), text.data(),
-                [](char* at, double v) {
-                  return std::to_chars(at, at + number_room, v, std::chars_format::fixed, 4).ptr;
-                }) -
-      text.data()));
+      write_all(motion(Digits::of_file), text.data(), fixed_by_to_chars) - text.data()));
   std::vector<double> values(all);
   for (auto _ : state) {
     read_all(text, values, parse);
@@ -95,6 +94,9 @@ BENCHMARK(parsing<by_from_chars>)->Name("parse/from_chars")->Unit(benchmark::kMi
 BENCHMARK(parsing<by_kinalign>)->Name("parse/kinalign")->Unit(benchmark::kMillisecond);
 BENCHMARK(printing<shortest, Digits::of_file>)
     ->Name("print_file_like/to_chars")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(printing<fixed_by_to_chars, Digits::of_file>)
+    ->Name("print_fixed/to_chars")
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(printing<four_decimals, Digits::of_file>)
     ->Name("print_file_like/kinalign")
