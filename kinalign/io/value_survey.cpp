@@ -68,8 +68,8 @@ Findings PointSizes::judge(const PointHeader&, const std::string& file) const {
       {Severity::warning, what,
        times > 1.0 ? fmt::format("lengths are about {:g} times too large", times)
                    : fmt::format("lengths are about {:g} times too small", 1.0 / times),
-       fmt::format("--metres-per-unit (metres_per_unit in a manifest or layout) {:g} times that "
-                   "now taken",
+       fmt::format("metres_per_unit of this stream, in a manifest or layout, {:g} times that now "
+                   "taken",
                    1.0 / times)}};
 }
 
@@ -92,6 +92,7 @@ void ImuSizes::add(const ImuSamples& block) {
   valid_ += static_cast<std::uint64_t>(std::count(block.valid.begin(), block.valid.end(), 1));
   add(block.acceleration, block, acceleration_);
   add(block.angular_velocity, block, angular_velocity_);
+  orientation_.add(block);
 }
 
 Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const {
@@ -128,6 +129,7 @@ Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const
          fmt::format("{:.3g} rad/s", angular_velocity_.mean()),
          "angular_velocity_unit = \"deg/s\" in a layout of the file");
   }
+  append(out, orientation_.judge(header, file));
   return out;
 }
 

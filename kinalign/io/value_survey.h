@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// How large a stream's values are, from the pass that surveys its stamps: enough to see a unit that
-// can't be right. BVHs are judged by their rest pose instead (bvh_size.cpp).
+// What a stream's values are like, from the pass that surveys its stamps: enough to see a unit that
+// can't be right, orientations that belong to another node, and that hardly anything can be used.
+// BVHs are judged by their rest pose instead (bvh_size.cpp).
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/io/orientation_sense.h"
 #include "kinalign/io/reader.h"
 
 #include <cstdint>
@@ -29,8 +31,8 @@ class PointSizes {
 class ImuSizes {
  public:
   void add(const ImuSamples& block);
-  /// Findings where accelerations can't be m/s2 with (or without) gravity, rates not rad/s, or
-  /// where hardly a sample is valid.
+  /// Findings where accelerations can't be m/s2 with (or without) gravity, rates not rad/s,
+  /// orientations not those of the same node, or where hardly a sample is valid.
   Findings judge(const ImuHeader& header, const std::string& file) const;
 
  private:
@@ -44,6 +46,7 @@ class ImuSizes {
   static void add(std::span<const double> vectors, const ImuSamples& block, Norms& norms);
 
   Norms acceleration_, angular_velocity_;
+  OrientationSense orientation_;
   std::uint64_t samples_ = 0, valid_ = 0;
 };
 
