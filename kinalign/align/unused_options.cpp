@@ -33,6 +33,7 @@ void add_said(const KeyLines& lines, std::vector<std::string>& names) {
 std::vector<std::string> options_set(StreamOptions options) {
   StreamOptions defaults;
   std::vector<std::string> names = differing(describe(options), describe(defaults));
+  if (!options.mounting.empty()) names.emplace_back("mounting");
   add_said(options.lines, names);
   return names;
 }
@@ -93,6 +94,14 @@ Result<void> check_intervals(const Recording& recording, const Manifest& manifes
   std::string reference = manifest.align.reference;
   if (reference.empty() && !recording.streams.empty()) reference = recording.streams.front().name;
   for (const StreamOptions& options : manifest.streams) {
+    const std::int64_t doubt = options.clock == "unknown" ? line_of(options.lines, "clock") : 0;
+    if (doubt > 0 && (options.interval_ms || options.name == reference)) {
+      return Failure(Error{"", doubt,
+                           "no clock of '" + options.name +
+                               "', of whose stamps is known "
+                               "how sure they are",
+                           "clock = \"unknown\""});
+    }
     if (!options.interval_ms) continue;
     const std::int64_t line = line_of(options.lines, "interval_ms");
     if (options.clock == "shared") {
@@ -110,9 +119,9 @@ Result<void> check_intervals(const Recording& recording, const Manifest& manifes
 }  // namespace
 
 std::span<const std::string_view> useless_options(const RecordedStream& stream) {
-  static constexpr std::array<std::string_view, 2> clip{"rate_hz", "root_node"};
-  static constexpr std::array<std::string_view, 3> points{"end_ns", "click_latency_ms",
-                                                          "root_node"};
+  static constexpr std::array<std::string_view, 3> clip{"rate_hz", "root_node", "mounting"};
+  static constexpr std::array<std::string_view, 4> points{"end_ns", "click_latency_ms", "root_node",
+                                                          "mounting"};
   static constexpr std::array<std::string_view, 3> nodes{"end_ns", "click_latency_ms",
                                                          "metres_per_unit"};
   if (std::holds_alternative<ClipInput>(stream.data)) return clip;
@@ -126,10 +135,11 @@ Result<void> check_options_used(const Recording& recording, const Manifest& mani
     const StreamOptions& options = options_of(manifest, stream.name);
     for (const std::string& name : options_set(options)) {
       if (!contains(useless_options(stream), name)) continue;
-      return Failure(Error{
-          "", line_of(options.lines, name),
-          "of '" + stream.name + "' only options that " + kinds[stream.data.index()] + " can use",
-          name});
+      const std::string file = stream.files.empty() ? "" : " (" + stream.files[0].name + ")";
+      return Failure(Error{"", line_of(options.lines, name),
+                           "of '" + stream.name + "'" + file + " only options that " +
+                               kinds[stream.data.index()] + " can use",
+                           name});
     }
   }
   KA_TRY(check_intervals(recording, manifest));

@@ -289,6 +289,8 @@ TEST_CASE("joints more than 30 cm rms from their counterparts are a warning with
   space.onto = "mocap";
   space.after_m = 0.3;
   CHECK(judge_residual(space).empty());
+  space.after_m = 0.301;
+  CHECK(judge_residual(space).size() == 1);
   space.after_m = 0.4567;
   const Findings found = judge_residual(space);
   REQUIRE(found.size() == 1);
@@ -311,6 +313,8 @@ TEST_CASE("a fit by joints near one line is a warning with their names") {
         "warning: expected joints that spread 10 cm or more beside a line, to fit 'kinect' by, "
         "found 4.3 cm: SpineBase, Head; the turn about that line is a guess, whatever the "
         "residuals say; name joints of arms or legs too: joints = { ... }");
+  plan.beside_line_m = 0.099;
+  CHECK(judge_fit(plan, space).size() == 1);
   plan.beside_line_m = 0.1;
   CHECK(judge_fit(plan, space).empty());
   plan.options.method = "given";

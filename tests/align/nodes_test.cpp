@@ -26,12 +26,25 @@ Quat turning(std::size_t s, double t) {
               Eigen::AngleAxisd(0.3 * std::sin(t + k), Vec3::UnitX()));
 }
 
+/// What a node's gyroscope reads.
+Vec3 turned_by(std::size_t s, double t) {
+  const double k = static_cast<double>(s);
+  return {std::sin(t + k), 0.5 + k, std::cos(2.0 * t)};
+}
+
 /// Optical points and two nodes that turn; stamps of both are the grid's, so that rows are samples.
 Recording worn_nodes() {
   Recording recording;
   recording.streams.push_back(recorded("optical", points(joints, every(10 * ms, 200), wander)));
-  recording.streams.push_back(
-      recorded("imu", nodes({"waist", "wrist_left"}, every(10 * ms, 200), turning)));
+  ImuStream imu = nodes({"waist", "wrist_left"}, every(10 * ms, 200), turning);
+  imu.content.angular_velocity = true;
+  for (const Time stamp : imu.samples.stamps) {
+    for (const std::size_t s : {std::size_t{0}, std::size_t{1}}) {
+      const Vec3 w = turned_by(s, 1e-9 * static_cast<double>(to_ns(stamp)));
+      imu.samples.angular_velocity.insert(imu.samples.angular_velocity.end(), w.begin(), w.end());
+    }
+  }
+  recording.streams.push_back(recorded("imu", std::move(imu)));
   return recording;
 }
 
@@ -97,6 +110,8 @@ TEST_CASE("a mounting turns orientations and vectors from the sensor's axes to t
       const Vec3 felt = turning(s, t).conjugate() * Vec3(0, 9.81, 0);
       const Vec3 a = vec3(std::span(imu.acceleration), 2 * r + s);
       CHECK((a - worn.conjugate() * felt).norm() < 1e-9);
+      const Vec3 w = vec3(std::span(imu.angular_velocity), 2 * r + s);
+      CHECK((w - worn.conjugate() * turned_by(s, t)).norm() < 1e-9);
     }
   }
 }
@@ -116,6 +131,11 @@ TEST_CASE("with a root node, mountings turn the orientations before, vectors go 
     const Vec3 up = waist.conjugate() * Vec3(0, 9.81, 0);
     CHECK((vec3(std::span(imu.acceleration), 2 * r) - up).norm() < 1e-9);
     CHECK(vec3(std::span(imu.acceleration), 2 * r + 1).norm() < 1e-9);
+    for (const std::size_t s : {std::size_t{0}, std::size_t{1}}) {
+      const Vec3 world = turning(s, t) * turned_by(s, t);
+      const Vec3 w = vec3(std::span(imu.angular_velocity), 2 * r + s);
+      CHECK((w - waist.conjugate() * world).norm() < 1e-9);
+    }
   }
 }
 

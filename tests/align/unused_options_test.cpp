@@ -96,6 +96,16 @@ TEST_CASE("of points a rate and a unit can be said, clicks can't") {
   CHECK(of_points(root) == "expected of 'some' only options that points can use, found root_node");
 }
 
+TEST_CASE("mountings are of nodes, and a refusal names the file") {
+  const SayOfStream worn = [](StreamOptions& o) { o.mounting["waist"] = {1, 0, 0, 0}; };
+  CHECK(of_nodes(worn).empty());
+  CHECK(of_points(worn) == "expected of 'some' only options that points can use, found mounting");
+  RecordedStream clip = recorded("", skeleton());
+  clip.files = {{"walk.bvh", "", 0}};
+  CHECK(fault(clip, worn) ==
+        "expected of 'some' (walk.bvh) only options that a skeleton can use, found mounting");
+}
+
 TEST_CASE("of nodes a rate and a root can be said, clicks and a length can't") {
   for (const auto& say : {rate, root}) CHECK(of_nodes(say).empty());
   CHECK(of_nodes(end) == "expected of 'some' only options that nodes can use, found end_ns");
@@ -161,7 +171,19 @@ TEST_CASE(
   manifest.streams[0].name = "some";
   manifest.streams[0].lines = {{"file", 2}, {"clock", 3}, {"root_node", 4}};
   const Recording recording{"", "", {recorded("some", PointStream{})}};
-  CHECK(check_options_used(recording, manifest).error().line == 4);
+  const auto line = [&] {
+    const auto checked = check_options_used(recording, manifest);
+    return checked ? 0 : checked.error().line;
+  };
+  CHECK(line() == 4);
   manifest.streams[0].lines.erase("root_node");
-  CHECK(check_options_used(recording, manifest));
+  CHECK(line() == 3);  // of the reference nothing is unknown
+  manifest.align.reference = "other";
+  CHECK(line() == 0);
+  manifest.streams[0].interval_ms = 4.0;
+  CHECK(line() == 3);
+  manifest.streams[0].lines.erase("clock");
+  CHECK(line() == 0);
+  manifest.streams[0].lines["mounting"] = 5;  // an empty one
+  CHECK(line() == 5);
 }
