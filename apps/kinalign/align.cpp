@@ -124,7 +124,7 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
     const std::int64_t latency = to_ns(own) - start;
     const std::string where = quick ? "--start-ns {}" : "start_ns = {} in [stream." + s.name + "]";
     return fmt::format(fmt::runtime(where), to_ns(first) - latency) + " puts the first frame of " +
-           shown(s.name) + " where the others have begun";
+           shown(s.name) + " where the others have begun: right only if all began at once";
   }
   return "";
 }
@@ -136,6 +136,11 @@ std::vector<std::string> advice(const std::string& path, const Error& error) {
   if (error.file.empty() || manifest) {
     lines.push_back(manifest ? "docs/formats/recording_toml.md shows the keys"
                              : "kinalign align --help shows the flags");
+    if (!manifest && error.expected.find("joints = {") != std::string::npos) {
+      lines.push_back(
+          "--joint KINECT=MOCAP names two that are one, and may be repeated; kinalign "
+          "info FILE -v lists the names of both");
+    }
     if (const std::string names = name_advice(error); !names.empty()) lines.push_back(names);
   } else if (error.line > 0) {
     lines.push_back("kinalign check " + error.file + " says what else is odd in it, up to there");
@@ -170,7 +175,9 @@ Result<int> run(AlignVerb& o, Call& call) {
   call.console.if_it_fails(
       [path, start = start_advice(o, recording, manifest)](const Error& error) {
         std::vector<std::string> lines = advice(path, error);
-        if (!start.empty()) lines.push_back(start);
+        const bool apart = error.expected.find(" in time") != std::string::npos ||
+                           error.expected.find("common span") != std::string::npos;
+        if (apart && !start.empty()) lines.push_back(start);
         return lines;
       });
   const auto placed = [&path](Error error) {

@@ -93,7 +93,12 @@ Result<Checked> check_take(const Check& o, const std::string& path, Call& call) 
   KA_TRY(check_flags(o, path, nullptr, call));
   const std::string report =
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
-  return Checked{KA_TRY(report_findings(report, path))};
+  Checked out{KA_TRY(report_findings(report, path))};
+  for (Finding& finding : out.findings) {  // of several takes: which one's input
+    const std::string& input = finding.what.file;
+    finding.what.file = input.empty() ? path : path + ": " + input;
+  }
+  return out;
 }
 
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
