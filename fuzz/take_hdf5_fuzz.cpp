@@ -9,11 +9,13 @@
 #include "kinalign/core/progress.h"
 #include "kinalign/io/guarded.h"
 #include "kinalign/io/take_hdf5.h"
+#include "kinalign/io/take_layout.h"
 
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstdio>
+#include <span>
 #include <string>
 
 using namespace kinalign;
@@ -65,20 +67,27 @@ std::string damaged(const std::string& whole, std::string_view damage) {
   return out;
 }
 
-/// Header and numbers of every slab as bytes.
+/// What a take says of itself, and every array of every slab, as bytes.
 Result<std::string> contents(const std::string& path) {
   PosixFiles files;
   TakeReader reader = KA_TRY(TakeReader::open(files, path));
   std::string out = reader.software() + reader.header().subject;
   TakeSlab slab;
   while (KA_TRY(reader.next(slab))) {
-    for (const auto& rows : slab.rows) {
-      const auto* points = std::get_if<PointRows>(&rows);
-      if (points == nullptr) continue;
-      for (const double x : points->positions) {
-        if (x - x != 0.0) std::_Exit(1);  // not finite: a fault of the reader
-        out += std::to_string(x);
+    const auto add = [&out](std::string_view, const auto& values) -> Result<void> {
+      const std::span given(values);
+      using Value = typename std::remove_cvref_t<decltype(values)>::value_type;
+      if constexpr (std::is_same_v<Value, double>) {
+        for (const double x : given) {
+          if (x - x != 0.0) std::_Exit(1);  // not finite: a fault of the reader
+        }
       }
+      out += bytes_of(given);
+      return {};
+    };
+    out += bytes_of(std::span<const Time>(slab.stamps));
+    for (const auto& any : slab.rows) {
+      KA_TRY(std::visit([&](const auto& rows) { return for_each_row_array(rows, add); }, any));
     }
   }
   return out + KA_TRY(reader.report_json());

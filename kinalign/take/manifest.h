@@ -21,7 +21,8 @@ struct StreamFile {
   std::string node;  // the node worn at this place; empty where the file names its own
 };
 
-/// Where a file says a key, for messages: key -> line.
+/// Where a file says a key: key -> line. For messages, and because a key that is said, if only with
+/// the default's value, must have an effect (align/unused_options.h).
 using KeyLines = std::map<std::string, std::int64_t>;
 /// 0 where no file says it.
 std::int64_t line_of(const KeyLines& lines, const std::string& key);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three axes of time that can't be subtracted from, compared with or stored as one another: a
-// TimeModel (kinalign/clock) turns NodeTime into HostTime, logged pairs turn HostTime into Time.
+// Three axes of time that can't be subtracted from, compared with or stored as one another. Files
+// of recordings have Time alone, which a TimeModel (kinalign/clock) moves onto the take's; devices
+// that are recorded live will have NodeTime, and the machine that records them HostTime.
 #pragma once
 
 #include <chrono>
