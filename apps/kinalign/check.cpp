@@ -95,8 +95,8 @@ Result<Checked> check_take(const Check& o, const std::string& path, Call& call) 
       KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
   Checked out{KA_TRY(report_findings(report, path))};
   for (Finding& finding : out.findings) {  // of several takes: which one's input
-    const std::string& input = finding.what.file;
-    finding.what.file = input.empty() ? path : path + ": " + input;
+    std::string& file = finding.what.file;
+    file = file.empty() ? path : fmt::format("{}: {}", path, file);
   }
   return out;
 }
