@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -18,7 +19,9 @@ namespace {
 
 // The only variable that outlives a call: a signal handler can be told nothing.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
-volatile std::sig_atomic_t ctrl_c = 0;
+/// Written by a handler of signals, read by any thread.
+std::atomic<bool> ctrl_c = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 constexpr std::array<std::string_view, 7> codes{"",         "\x1b[32m", "\x1b[33m", "\x1b[31m",
                                                 "\x1b[31m", "\x1b[32m", "\x1b[34m"};
@@ -135,16 +138,16 @@ std::string broken(std::string_view lines, std::size_t width) {
 }
 
 void take_signals() {
-  ctrl_c = 0;
+  ctrl_c = false;
   struct sigaction action {};
-  action.sa_handler = [](int) { ctrl_c = 1; };
+  action.sa_handler = [](int) { ctrl_c = true; };
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   ::sigaction(SIGINT, &action, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);  // a limit on files' sizes is then a full disk like any other
 }
 
-bool interrupted() { return ctrl_c != 0; }
+bool interrupted() { return ctrl_c; }
 
 Console::Console(const Surroundings& surroundings, const Common& common, std::string verb)
     : surroundings_(surroundings),

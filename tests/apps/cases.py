@@ -16,6 +16,7 @@ BUILD = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/dev").resolve(
 PROGRAM = BUILD / "apps/kinalign/kinalign"
 DEMO = BUILD / "tools/kinalign_demo_recording"
 SANITIZED = BUILD.name in ("asan", "tsan")  # sanitizers reserve terabytes of addresses
+WRITES_ITSELF = BUILD.name == "tsan"  # a file of its own into TMPDIR, at every start
 LONG = bool(os.environ.get("KINALIGN_LONG_TESTS"))  # the same sweeps, finer
 
 
