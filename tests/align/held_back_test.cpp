@@ -175,3 +175,16 @@ TEST_CASE("what waited in a stall and was sent quicker than it was taken is a wa
   CHECK(take.report.findings[0].severity == Severity::warning);
   CHECK(take.report.findings[0].what.expected == "samples that come as they are taken");
 }
+
+TEST_CASE("of a whole stretch of samples that waited one a step stays") {
+  std::vector<Time> arrived = every(step, 60);
+  for (std::int64_t k = 0; k < 150; ++k) {  // five seconds' silence, and then all within 4.5 steps
+    arrived.push_back(arrived[59] + Duration{5000 * ms + k * ms});
+  }
+  for (std::int64_t k = 1; k < 60; ++k) arrived.push_back(arrived[209] + Duration{k * step});
+  std::vector<Time> taken = arrived;  // whatever was there: only the count is asked
+  const std::uint64_t left =
+      150 - aligned(stamped(taken, arrived), 1e9 / step).report.streams[1].held_back;
+  CHECK(left >= 4);
+  CHECK(left <= 6);
+}

@@ -140,9 +140,11 @@ TEST_CASE("each node is valid where its own samples are near enough, whatever th
   for (const std::uint64_t seed : fresh_seeds(20)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
-    ImuStream imu =
-        nodes({"waist", "left", "right"}, every(20 * ms, 100),
-              [](std::size_t, double t) { return Quat(Eigen::AngleAxisd(t, Vec3::UnitY())); });
+    auto stamps = every(20 * ms, 100);
+    for (Time& stamp : stamps) stamp += Duration{static_cast<std::int64_t>(random() % 9) * ms};
+    ImuStream imu = nodes({"waist", "left", "right"}, stamps, [](std::size_t, double t) {
+      return Quat(Eigen::AngleAxisd(t, Vec3::UnitY()));
+    });
     for (std::size_t s = 0; s < 3; ++s) {
       bool lost = false;
       for (std::size_t t = 0; t < 100; ++t) {
@@ -155,10 +157,13 @@ TEST_CASE("each node is valid where its own samples are near enough, whatever th
                          recorded("imu", imu)};
     Manifest manifest;
     manifest.align.gap_ms = 61.0;
+    manifest.streams.resize(1);
+    manifest.streams[0].name = "imu";
+    manifest.streams[0].rate_hz = 50.0;
     const auto take = align(recording, manifest);
     REQUIRE(take);
     const auto& rows = std::get<ImuRows>(take->all.rows[1]);
-    std::uint64_t invalid = 0;
+    std::uint64_t invalid = 0, bridged = 0;
     for (std::size_t r = 0; r < take->all.stamps.size(); ++r) {
       const std::int64_t row = to_ns(take->all.stamps[r]);
       for (std::size_t s = 0; s < 3; ++s) {
@@ -172,6 +177,7 @@ TEST_CASE("each node is valid where its own samples are near enough, whatever th
         const bool valid = before && behind && *behind - *before <= 61 * ms;
         CHECK(rows.valid[3 * r + s] == (valid ? 1 : 0));
         invalid += valid ? 0 : 1;
+        bridged += valid && *behind - *before > 30 * ms ? 1 : 0;
         if (!valid) CHECK(acceleration(rows, 3 * r + s) == Vec3::Zero());
         std::int64_t nearest = farthest_nearest_ns;
         if (before) nearest = std::min(nearest, row - *before);
@@ -181,5 +187,6 @@ TEST_CASE("each node is valid where its own samples are near enough, whatever th
     }
     CHECK(take->report.streams[1].samples == rows.valid.size());
     CHECK(take->report.streams[1].invalid == invalid);
+    CHECK(take->report.streams[1].bridged == bridged);
   }
 }

@@ -119,7 +119,8 @@ TEST_CASE("a stream has the same fate whenever it was recorded") {
   }
 }
 
-TEST_CASE("a rising stream whose steps differ by less than the leap of a wild stamp loses nothing") {
+TEST_CASE(
+    "a rising stream whose steps differ by less than the leap of a wild stamp loses nothing") {
   for (const auto seed : fresh_seeds(200)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
@@ -156,6 +157,20 @@ TEST_CASE("one wild stamp anywhere in a steady stream costs itself alone") {
       CHECK(kept_of(given) == others);
     }
   }
+}
+
+TEST_CASE("a pause does not become the usual step: a wild stamp right behind it is told") {
+  Stamps stamps;
+  for (int i = 0; i < 20; ++i) stamps.push_back(utc_time(i * 10'000'000LL));
+  stamps.push_back(stamps.back() + Duration{30'000'000});  // three steps
+  const Stamps steady = stamps;
+  const Time wild = stamps.back() + Duration{85'000'000};  // more than four times two usual steps
+  const Time next = stamps.back() + Duration{10'000'000};
+  stamps.push_back(wild);
+  stamps.push_back(next);
+  Stamps expected = steady;
+  expected.push_back(next);
+  CHECK(kept_of(stamps) == expected);
 }
 
 TEST_CASE("frames of a fixed step stand where exact arithmetic puts them, to a nanosecond") {
