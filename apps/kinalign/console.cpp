@@ -17,9 +17,8 @@ namespace kinalign {
 
 namespace {
 
-// The only variable that outlives a call: a signal handler can be told nothing.
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
-/// Written by a handler of signals, read by any thread.
+// The only variable that outlives a call: a signal handler can be told nothing. Any thread reads
+// it. NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 std::atomic<bool> ctrl_c = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
