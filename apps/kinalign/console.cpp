@@ -17,9 +17,9 @@ namespace kinalign {
 
 namespace {
 
-// The only variable that outlives a call: a signal handler can be told nothing. Any thread reads
-// it. NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
-std::atomic<bool> ctrl_c = false;
+// The only variable that outlives a call: a signal handler can be told nothing.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
+std::atomic<bool> ctrl_c = false;  // any thread reads it
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 constexpr std::array<std::string_view, 7> codes{"",         "\x1b[32m", "\x1b[33m", "\x1b[31m",
