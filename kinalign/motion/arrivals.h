@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <deque>
-#include <optional>
 
 namespace kinalign {
 
@@ -43,7 +42,7 @@ class ArrivalSurveyor {
   void take_back();
   /// Whether the last one can be late by half a step and more.
   bool can_be_late() const;
-  const Arrivals& result() const { return found_; }
+  const Arrivals& result() const { return now_.found; }
 
  private:
   /// One that came behind a pause: it may turn out to have waited.
@@ -53,21 +52,21 @@ class ArrivalSurveyor {
     double pause = 0.0;       // how late it can be, ns
     bool late = false;
   };
-  struct Last {
-    std::int64_t t = 0;
-    double pause = 0.0;
-    bool start = false;  // all came in haste so far
+  /// All that is known behind a sample.
+  struct State {
+    std::uint64_t count = 0;
+    std::int64_t first = 0, last = 0;  // stamps, ns
+    double pause = 0.0;                // how late the last can be, ns
+    bool start = false;                // all came in haste so far
+    std::deque<Candidate> candidates;  // of the last `reach` samples
+    Arrivals found;
   };
 
   double pause_behind(double pause, double step) const;
   void find_late(double after_line, double least);
 
   double step_;
-  std::uint64_t count_ = 0;
-  std::int64_t first_ = 0;
-  Last last_, before_;
-  std::deque<Candidate> candidates_;  // of the last `reach` samples
-  Arrivals found_, found_before_;
+  State now_, before_;
 };
 
 }  // namespace kinalign
