@@ -65,6 +65,12 @@ Manifest two_kinects(const std::string& path, int scenario) {
   return manifest;
 }
 
+void unpack_multitrack(const FreshFolder& into) {
+  const std::string unpack =
+      "/usr/bin/python3 " + shared_path("unpack.py") + " multitrack '" + into.path() + "'";
+  REQUIRE(std::system(unpack.c_str()) == 0);
+}
+
 /// The stamps of the first body's rows, ns, as a layout reads them.
 std::vector<std::int64_t> stamps_by(const std::string& layout, const std::string& path) {
   Manifest manifest;
@@ -160,9 +166,7 @@ TEST_CASE("Keraal: a Kinect onto optical points, and the report shows the joints
 TEST_CASE("KinectMultiTrack: the second Kinect onto the first by the server's stamps" *
           doctest::skip(!shared_data())) {
   const FreshFolder scratch;
-  const std::string unpack =
-      "/usr/bin/python3 " + shared_path("unpack.py") + " multitrack '" + scratch.path() + "'";
-  REQUIRE(std::system(unpack.c_str()) == 0);
+  unpack_multitrack(scratch);
   struct Row {
     std::string file;
     double stand, step;  // cm
@@ -195,9 +199,7 @@ TEST_CASE("KinectMultiTrack: the second Kinect onto the first by the server's st
 TEST_CASE("KinectMultiTrack: what is told late is late by the devices' own ticks too" *
           doctest::skip(!shared_data())) {
   const FreshFolder scratch;
-  const std::string unpack =
-      "/usr/bin/python3 " + shared_path("unpack.py") + " multitrack '" + scratch.path() + "'";
-  REQUIRE(std::system(unpack.c_str()) == 0);
+  unpack_multitrack(scratch);
   std::string layout(*builtin_layout("kinect_multitrack"));
   const auto column = layout.find("column = "), body = layout.find("[joints]");
   layout.replace(column, body - column, "column = \"Skeleton_Time\"\nunit = \"ticks_100ns\"\n\n");
