@@ -15,8 +15,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace kinalign {
 
 namespace {
@@ -65,16 +63,6 @@ Findings check_plan(const std::string& path, const Input& input) {
   return {{Severity::error, std::move(error), "kinalign align makes no take of it", repair}};
 }
 
-/// The stream that a manifest makes the grid of; none of a single file.
-std::size_t reference_of(const Input& input) {
-  const auto& streams = input.recording.streams;
-  if (!input.manifest) return streams.size();
-  const std::string& named = input.manifest->align.reference;
-  const auto is = [&named](const RecordedStream& s) { return named.empty() || s.name == named; };
-  return static_cast<std::size_t>(std::find_if(streams.begin(), streams.end(), is) -
-                                  streams.begin());
-}
-
 /// A flag that the file has no use for is wrong use.
 Result<void> check_flags(const Check& o, const std::string& path, const RecordedStream* stream,
                          Call& call) {
@@ -109,9 +97,9 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
   if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
   Checked out;
   if (input.manifest) out.files = files_named(*input.manifest, "").size();
-  const std::size_t reference = reference_of(input);
-  for (std::size_t i = 0; i < input.recording.streams.size(); ++i) {
-    const RecordedStream& stream = input.recording.streams[i];
+  const std::string reference =
+      input.manifest ? reference_name(input.recording, *input.manifest) : "";
+  for (const RecordedStream& stream : input.recording.streams) {
     call.console.detail(harmless(read_as(stream)));
     const StreamOptions& options =
         input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
@@ -119,7 +107,9 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
     append(out.findings, stream.findings);
     append(out.findings, judge_stamps(stream, options));
     append(out.findings,
-           judge_arrivals(stream, arrivals, i == reference ? Role::reference : Role::resampled));
+           judge_arrivals(
+               stream, arrivals,
+               input.manifest && stream.name == reference ? Role::reference : Role::resampled));
     append(out.findings, judge_start(stream, options, arrivals));
   }
   if (input.manifest) append(out.findings, check_plan(path, input));

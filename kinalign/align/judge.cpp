@@ -122,8 +122,7 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
                                      1e-9 * static_cast<double>(s.survey.largest_step_back_ns))},
                    "these samples were left out",
                    many ? "the device's clock was set back: cut the file there, or leave the time "
-                          "column out of "
-                          "its layout and say rate_hz"
+                          "column out of its layout and say rate_hz"
                         : "look at the device's clock if there are many"});
   }
   if (const auto steps = steps_of(s)) {

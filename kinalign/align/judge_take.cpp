@@ -77,15 +77,13 @@ Findings judge_streams_alike(const TakeHeader& header) {
 /// Streams that share little of their time are seldom meant to: a start taken for another, a device
 /// that fell silent. A body at rest hides it from every residual.
 Findings judge_span(const Recording& recording, const AlignPlan& plan) {
-  const auto first = [](const RecordedStream& s) { return take_time(s.clock, s.survey.first); };
-  const auto last = [](const RecordedStream& s) { return take_time(s.clock, s.survey.last); };
-  const auto span = [&](const RecordedStream& s) { return seconds(last(s) - first(s)); };
+  const auto span = [](const RecordedStream& s) { return seconds(last_of(s) - first_of(s)); };
   const auto& streams = recording.streams;
   const auto by = [](auto value) {
     return [value](const auto& a, const auto& b) { return value(a) < value(b); };
   };
-  const RecordedStream& late = *std::max_element(streams.begin(), streams.end(), by(first));
-  const RecordedStream& early = *std::min_element(streams.begin(), streams.end(), by(last));
+  const RecordedStream& late = *std::max_element(streams.begin(), streams.end(), by(first_of));
+  const RecordedStream& early = *std::min_element(streams.begin(), streams.end(), by(last_of));
   const RecordedStream& brief = *std::min_element(streams.begin(), streams.end(), by(span));
   const std::string bounds =
       fmt::format("'{}' begins last, '{}' ends first", stream_label(late), stream_label(early));

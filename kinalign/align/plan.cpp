@@ -14,12 +14,8 @@ namespace kinalign {
 
 namespace {
 
-Time first_of(const RecordedStream& s) { return take_time(s.clock, s.survey.first); }
-Time last_of(const RecordedStream& s) { return take_time(s.clock, s.survey.last); }
-
 Result<std::size_t> find_reference(const Recording& recording, const Manifest& manifest) {
-  const std::string& wanted = manifest.align.reference;
-  if (wanted.empty()) return std::size_t{0};
+  const std::string wanted = reference_name(recording, manifest);
   std::vector<std::string> known;
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     if (recording.streams[i].name == wanted) return i;
@@ -260,6 +256,14 @@ Result<void> check_streams(const Recording& recording) {
 }
 
 }  // namespace
+
+std::string reference_name(const Recording& recording, const Manifest& manifest) {
+  const bool said = !manifest.align.reference.empty() || recording.streams.empty();
+  return said ? manifest.align.reference : recording.streams.front().name;
+}
+
+Time first_of(const RecordedStream& s) { return take_time(s.clock, s.survey.first); }
+Time last_of(const RecordedStream& s) { return take_time(s.clock, s.survey.last); }
 
 std::string stream_label(const RecordedStream& s) {
   const auto* imu = std::get_if<ImuInput>(&s.data);

@@ -28,6 +28,13 @@ struct AlignPlan {
 /// manifest names what is not there or says what has no effect (unused_options.h).
 Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest);
 
+/// The stream whose stamps are the grid: the one that is said, else the first.
+std::string reference_name(const Recording& recording, const Manifest& manifest);
+
+/// A stream's first and last stamp on the take's axis.
+Time first_of(const RecordedStream& stream);
+Time last_of(const RecordedStream& stream);
+
 /// "kinect", or of a single node, whose streams share a name, "imu waist".
 std::string stream_label(const RecordedStream& stream);
 

@@ -91,16 +91,14 @@ Result<void> check_space(const std::string& stream, const SpaceOptions& space) {
 
 /// An interval is of stamps that are another clock's, and leaves doubt.
 Result<void> check_intervals(const Recording& recording, const Manifest& manifest) {
-  std::string reference = manifest.align.reference;
-  if (reference.empty() && !recording.streams.empty()) reference = recording.streams.front().name;
+  const std::string reference = reference_name(recording, manifest);
   for (const StreamOptions& options : manifest.streams) {
     const std::int64_t doubt = options.clock == "unknown" ? line_of(options.lines, "clock") : 0;
     if (doubt > 0 && (options.interval_ms || options.name == reference)) {
-      return Failure(Error{"", doubt,
-                           "no clock of '" + options.name +
-                               "', of whose stamps is known "
-                               "how sure they are",
-                           "clock = \"unknown\""});
+      return Failure(
+          Error{"", doubt,
+                "no clock of '" + options.name + "', of whose stamps is known how sure they are",
+                "clock = \"unknown\""});
     }
     if (!options.interval_ms) continue;
     const std::int64_t line = line_of(options.lines, "interval_ms");
