@@ -6,6 +6,7 @@
 #include "kinalign/io/layout.h"
 #include "kinalign/io/table_reader.h"
 #include "kinalign/io/take_hdf5.h"
+#include "kinalign/io/take_layout.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -154,7 +155,7 @@ class Unsynced final : public PosixFiles {
 };
 
 constexpr std::size_t slab = 2000;
-constexpr std::size_t row_bytes = joints * 10 * sizeof(float) + 16;
+constexpr std::size_t row_bytes(std::size_t number) { return joints * 10 * number + 16; }
 
 /// A take's rows of a 59-joint skeleton.
 TakeSlab take_rows() {
@@ -180,12 +181,13 @@ TakeHeader take_header(std::size_t slabs) {
   return header;
 }
 
-/// `state.range(0)` slabs of doubles as a take of floats.
-template <class Files>
+/// `state.range(0)` slabs of doubles as a take of floats or of doubles.
+template <class Files, Stored stored>
 void take_kinalign(benchmark::State& state) {
   Files files;
   const auto slabs = static_cast<std::size_t>(state.range(0));
-  const TakeHeader header = take_header(slabs);
+  TakeHeader header = take_header(slabs);
+  header.parameters.align.store_double = stored == Stored::float64;
   TakeSlab rows = take_rows();
   for (auto _ : state) {
     auto writer = *TakeWriter::create(files, folder() + "take.h5", Overwrite::no, header);
@@ -203,14 +205,14 @@ void take_kinalign(benchmark::State& state) {
     state.ResumeTiming();
   }
   state.SetBytesProcessed(state.iterations() * state.range(0) *
-                          static_cast<std::int64_t>(slab * row_bytes));
+                          static_cast<std::int64_t>(slab * row_bytes(size_of(stored))));
 }
 
 /// The same bytes by write(), with the same sync and rename.
 template <class Files>
 void take_write(benchmark::State& state) {
   Files files;
-  const std::string bytes(slab * row_bytes, '\x3f');
+  const std::string bytes(slab * row_bytes(sizeof(float)), '\x3f');
   for (auto _ : state) {
     OutputFile file = *OutputFile::create(files, folder() + "take.raw", Overwrite::no);
     for (std::int64_t s = 0; s < state.range(0); ++s) {
@@ -230,9 +232,16 @@ BENCHMARK(bvh_kinalign)->Name("bvh/kinalign");
 BENCHMARK(csv_from_chars)->Name("csv/from_chars");
 BENCHMARK(csv_kinalign)->Name("csv/kinalign");
 constexpr std::int64_t large = 25, small = 3;  // slabs: 118 and 14 MB of floats
+constexpr auto floats = Stored::float32, doubles = Stored::float64;
 BENCHMARK(take_write<PosixFiles>)->Name("take/write")->Arg(large)->UseRealTime();
-BENCHMARK(take_kinalign<PosixFiles>)->Name("take/kinalign")->Arg(large)->UseRealTime();
+BENCHMARK(take_kinalign<PosixFiles, floats>)->Name("take/kinalign")->Arg(large)->UseRealTime();
 BENCHMARK(take_write<Unsynced>)->Name("take_unsynced/write")->Arg(small)->UseRealTime();
-BENCHMARK(take_kinalign<Unsynced>)->Name("take_unsynced/kinalign")->Arg(small)->UseRealTime();
+BENCHMARK(take_kinalign<Unsynced, floats>)
+    ->Name("take_unsynced/kinalign")
+    ->Arg(small)
+    ->UseRealTime();
+// 19 MB of doubles, which are not narrowed on the way.
+BENCHMARK(take_write<Unsynced>)->Name("take_doubles/write")->Arg(4)->UseRealTime();
+BENCHMARK(take_kinalign<Unsynced, doubles>)->Name("take_doubles/kinalign")->Arg(2)->UseRealTime();
 
 }  // namespace
