@@ -56,13 +56,23 @@ const char* parse_any(const char* at, const char* end, double& value) {
   return fault == std::errc{} ? behind : nullptr;
 }
 
-/// A whole number of 10^-decimals. Not part of put_number, which would save registers for it: 1 %
-/// of the time of any number.
-__attribute__((noinline)) char* put_decimals(char* at, std::int64_t all, int decimals) {
+char* put_whole(char* at, std::int64_t whole) {
+  if (whole >= 100) return std::to_chars(at, at + 20, whole).ptr;
+  const char* pair = &digit_pairs[static_cast<std::size_t>(2 * whole)];
+  if (whole >= 10) *at++ = *pair;
+  *at++ = pair[1];
+  return at;
+}
+
+/// A whole number of 10^-decimals, below 2^52, and the double next to it: their whole parts agree,
+/// since an integer is 10^-decimals away and doubles lie nearer. Not part of put_number, which
+/// would save registers for it: 1 % of the time of any number.
+__attribute__((noinline)) char* put_decimals(char* at, double value, std::int64_t all,
+                                             int decimals) {
   const auto power = static_cast<std::int64_t>(ten[static_cast<std::size_t>(decimals)]);
-  const std::int64_t whole = all / power;
+  const auto whole = static_cast<std::int64_t>(value);  // quicker than all / power
   std::int64_t fraction = all - whole * power;
-  at = std::to_chars(at, at + 20, whole).ptr;
+  at = put_whole(at, whole);
   if (decimals == 0) return at;
   *at++ = '.';
   int left = decimals;
@@ -131,7 +141,7 @@ char* put_number(char* at, double value, int decimals) {
     return std::to_chars(at, at + number_room, value).ptr;
   }
   if (std::signbit(value)) *at++ = '-';
-  return put_decimals(at, all, decimals);
+  return put_decimals(at, magnitude, all, decimals);
 }
 
 }  // namespace kinalign
