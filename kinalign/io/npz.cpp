@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/npz.h"
 
+#include "kinalign/io/utf8.h"
+
 #include <zlib.h>
 
 #include <algorithm>
@@ -96,31 +98,12 @@ std::string npy_header(const NpzArray& array) {
   return Record().text("\x93NUMPY").u16(1).u16(text.size()).text(text).bytes();
 }
 
-struct Character {
-  char32_t code = 0;
-  std::size_t bytes = 1;
-};
-
-/// The first character of UTF-8; a byte that begins none stands for itself.
-Character first_character(std::string_view text) {
-  const auto lead = static_cast<unsigned char>(text.front());
-  const std::size_t more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : lead >= 0xc2 ? 1 : 0;
-  char32_t code = more == 0 ? lead : lead & (0x3fU >> more);
-  bool good = lead < 0xf5 && more < text.size();
-  for (std::size_t k = 1; good && k <= more; ++k) {
-    const auto next = static_cast<unsigned char>(text[k]);
-    good = (next & 0xc0U) == 0x80;
-    code = code << 6U | (next & 0x3fU);
-  }
-  good = good && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
-  return good ? Character{code, more + 1} : Character{lead, 1};
-}
-
+/// A byte that begins no character stands for itself.
 std::u32string characters(std::string_view text) {
   std::u32string out;
   while (!text.empty()) {
     const Character next = first_character(text);
-    out += next.code;
+    out += next.code.value_or(static_cast<unsigned char>(text.front()));
     text.remove_prefix(next.bytes);
   }
   return out;

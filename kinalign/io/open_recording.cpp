@@ -4,6 +4,7 @@
 #include "kinalign/core/parallel.h"
 #include "kinalign/io/remembered_path.h"
 #include "kinalign/io/stream_survey.h"
+#include "kinalign/io/utf8.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +78,8 @@ Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, con
   return out;
 }
 
-/// Of two files that a take would call by one name, `rebuild` could not tell which is which.
+/// Of two files that a take would call by one name, `rebuild` could not tell which is which, and a
+/// name that is no text it could not find.
 Result<void> check_names(const std::vector<SurveyedFile>& opened) {
   struct Place {
     const std::string* path;
@@ -87,6 +89,11 @@ Result<void> check_names(const std::vector<SurveyedFile>& opened) {
   for (const SurveyedFile& each : opened) {
     for (std::size_t i = 0; i < each.paths.size(); ++i) {
       const InputFacts& facts = each.stream.files[i];
+      if (!is_utf8(facts.name)) {
+        return Failure(Error{each.paths[i], 0,
+                             "a file name in UTF-8, which a take can hold, so rename the file",
+                             "'" + shown(facts.name) + "'"});
+      }
       const auto [at, fresh] = seen.try_emplace(facts.name, Place{&each.paths[i], &facts});
       if (fresh || at->second.facts->sha256 == facts.sha256) continue;
       return Failure(Error{each.paths[i], 0,

@@ -164,3 +164,14 @@ TEST_CASE("two files that a take would call by one name are refused with both pa
   folder.write("b/p.csv", "1,2,3\n");  // the same bytes: whichever `rebuild` finds is right
   CHECK(error_of(open_recording(files, manifest, base)) == "none");
 }
+
+TEST_CASE("a file whose name is no UTF-8 is refused, since no take can hold it") {
+  const FreshFolder folder;
+  folder.write("lab.toml", layout_text);
+  folder.write("M\xfcller.csv", "1,2,3\n");
+  Manifest manifest;
+  manifest.streams = {stream("one", "M\xfcller.csv")};
+  PosixFiles files;
+  const std::string error = error_of(open_recording(files, manifest, folder.path() + "/"));
+  CHECK(error.find("expected a file name in UTF-8") != std::string::npos);
+}

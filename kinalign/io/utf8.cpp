@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/utf8.h"
+
+namespace kinalign {
+
+Character first_character(std::string_view text) {
+  const auto lead = static_cast<unsigned char>(text.front());
+  const std::size_t more = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : lead >= 0xc2 ? 1 : 0;
+  char32_t code = more == 0 ? lead : lead & (0x3fU >> more);
+  bool good = more == 0 ? lead < 0x80 : lead < 0xf5 && more < text.size();
+  for (std::size_t k = 1; good && k <= more; ++k) {
+    const auto next = static_cast<unsigned char>(text[k]);
+    good = (next & 0xc0U) == 0x80;
+    code = code << 6U | (next & 0x3fU);
+  }
+  constexpr char32_t least[] = {0, 0x80, 0x800, 0x10000};  // else a shorter form would do
+  good = good && code >= least[more] && code <= 0x10ffff && (code < 0xd800 || code > 0xdfff);
+  return good ? Character{code, more + 1} : Character{};
+}
+
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const Character next = first_character(text);
+    if (!next.code) return false;
+    text.remove_prefix(next.bytes);
+  }
+  return true;
+}
+
+}  // namespace kinalign
