@@ -66,8 +66,8 @@ def whole_job(build, folder, rounds):
     row("raw to take, 148,000 frames", "`std::from_chars` over the BVH, CPU time", cpu / limit, 3.5,
         f"{cpu:.2f} CPU s, {mib:.0f} MiB")
     part = record(build, folder / "part", 20_000 / RATE)[0]
-    wall = statistics.median(align(build, part)["wall"] for _ in range(rounds))
     for way in ("split", "loadtxt"):
+        wall = statistics.median(align(build, part)["wall"] for _ in range(rounds))
         script = run(["env", "OPENBLAS_NUM_THREADS=1", "/usr/bin/python3", HERE / "peers/job.py",
                       part.with_name("mocap.bvh"), folder, way])
         seconds = json.loads(script["out"].splitlines()[-1])["seconds"]
