@@ -136,25 +136,23 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
 Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role role) {
   Findings out;
   if (arrivals.near > 0) {
-    out.push_back(
-        {Severity::warning,
-         Error{file_of(s), 0, "samples a fifth of a step or more apart",
-               fmt::format("{} with the next one nearer: held back on their way", arrivals.near)},
-         role == Role::reference
-             ? "as the reference they keep the stamp of their arrival, at which the other "
-               "streams are taken"
-             : "they are left out where the stream is resampled",
-         "stamp samples where they are taken, not where they arrive"});
+    append(out, warning(file_of(s), "samples a fifth of a step or more apart",
+                        fmt::format("{} with the next one nearer: held back on their way",
+                                    arrivals.near),
+                        role == Role::reference
+                            ? "as the reference they keep the stamp of their arrival, at which the "
+                              "other streams are taken"
+                            : "they are left out where the stream is resampled",
+                        "stamp samples where they are taken, not where they arrive"));
   }
   if (arrivals.late > 0) {
-    out.push_back(
-        {Severity::warning,
-         Error{file_of(s), 0, "samples that come as they are taken",
-               fmt::format("{} that came quicker behind a pause, {:.2f} s late and more",
-                           arrivals.late, 1e-9 * static_cast<double>(arrivals.worst_late_ns))},
-         "so far behind the motion they stand in rows that are valid",
-         "use the device's own stamps where the file has them, or leave the time column "
-         "out of its layout and say rate_hz"});
+    append(out,
+           warning(file_of(s), "samples that come as they are taken",
+                   fmt::format("{} that came quicker behind a pause, {:.2f} s late and more",
+                               arrivals.late, 1e-9 * static_cast<double>(arrivals.worst_late_ns)),
+                   "so far behind the motion they stand in rows that are valid",
+                   "use the device's own stamps where the file has them, or leave the time "
+                   "column out of its layout and say rate_hz"));
   }
   return out;
 }
