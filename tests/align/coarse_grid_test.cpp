@@ -59,8 +59,12 @@ TEST_CASE("between them the share grows with the frequency") {
 TEST_CASE("noise of the sensor's own size is no loss, nor is anything on a finer grid") {
   CHECK(findings_of(40.0, 0.05, 60.0).empty());
   CHECK(findings_of(40.0, 2.0, 200.0).empty());
-  CHECK(findings_of(40.0, 2.0, 60.0, 10).size() ==
-        1);  // by any stream a little finer than the grid
+}
+
+TEST_CASE("a stream a little finer than the grid is judged, one of much the same rate is not") {
+  CHECK(findings_of(40.0, 2.0, 60.0, 10).size() == 1);
+  CHECK(findings_of(36.0, 2.0, 60.0, 12).size() == 1);
+  CHECK(findings_of(30.0, 2.0, 60.0, 16).empty());
 }
 
 TEST_CASE("a sine loses what the cubic between the rows can't follow, by its share of their rate") {
