@@ -59,7 +59,8 @@ class Console {
   /// the first Ctrl-C (the second one ends the program at once).
   Progress progress();
 
-  /// To be said if the verb fails; the last call counts.
+  /// To be said if the verb fails; the last call counts. Asked after the verb has returned: it
+  /// holds what it needs, by value.
   void if_it_fails(Advice advice) { advice_ = std::move(advice); }
   /// Whatever fails from here on, the file is there. An empty path: there is none.
   void wrote(const std::string& path);

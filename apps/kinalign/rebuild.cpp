@@ -208,13 +208,14 @@ Result<int> run(Rebuild& o, Call& call) {
   const std::string base = o.inputs.ends_with('/') ? o.inputs : o.inputs + "/";
   const std::vector<std::string> inputs = files_named(origin.parameters, base);
   KA_TRY(keep_inputs(call.common.out, inputs));
-  call.console.if_it_fails([&](const Error& error) -> std::vector<std::string> {
-    if (!error.file.starts_with(base)) return {};
-    return {
-        fmt::format("--inputs is one folder that has all {} files of the take by the names that "
-                    "kinalign info {} shows: copy or link them into one",
-                    inputs.size(), take)};
-  });
+  call.console.if_it_fails(
+      [base, take, count = inputs.size()](const Error& error) -> std::vector<std::string> {
+        if (!error.file.starts_with(base)) return {};
+        return {
+            fmt::format("--inputs is one folder that has all {} files of the take by the names "
+                        "that kinalign info {} shows: copy or link them into one",
+                        count, take)};
+      });
   // An input that is not there is no difference: nothing can be said.
   for (const std::string& input : inputs) KA_TRY(InputFile::open(files, input));
   Result<Recording> recording =

@@ -140,6 +140,19 @@ def one_parameter_altered_in_the_take_is_noticed(folder):
 
 
 @case
+def an_input_that_is_not_there_is_an_error_with_what_to_do(folder):
+    demo(folder, seconds=2)
+    (folder / "none").mkdir()
+    aligned(pathlib.Path("recording.toml"), folder / "t.h5", cwd=folder)
+    for words in (("--verify",), ("-o", "again.h5")):  # a short path, as people type it
+        done = kinalign("rebuild", "t.h5", "--inputs", "none", *words, cwd=folder)
+        assert done.returncode == 3, done
+        said = done.stderr.decode()
+        assert "none/mocap.bvh: expected a readable file" in said, said
+        assert "--inputs is one folder that has all 7 files of the take" in said, said
+
+
+@case
 def stamps_of_1970_and_of_2200_are_kept_to_the_nanosecond(folder):
     for start in (0, 7_258_118_400_000_000_001, -1_000_000_000, 3_999_999_000_000_000_000):
         samples.recording(folder)
