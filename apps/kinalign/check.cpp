@@ -89,6 +89,13 @@ Result<Checked> check_take(const Check& o, const std::string& path, Call& call) 
   return out;
 }
 
+/// A take knows an input by its name below the manifest, a user of one file by its path.
+void name_as_typed(const std::string& path, const RecordedStream& stream, Findings& findings) {
+  for (Finding& finding : findings) {
+    if (finding.what.file == stream.files.front().name) finding.what.file = path;
+  }
+}
+
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   if (KA_TRY(is_take(files, path))) return check_take(o, path, call);
@@ -103,15 +110,16 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
     call.console.detail(harmless(read_as(stream)));
     const StreamOptions& options =
         input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
-    const Arrivals arrivals = KA_TRY(arrivals_of(stream, options, call.console.progress()));
-    append(out.findings, stream.findings);
-    append(out.findings, judge_stamps(stream, options));
-    append(out.findings,
-           judge_arrivals(
-               stream, arrivals,
-               input.manifest && stream.name == reference ? Role::reference : Role::resampled));
-    append(out.findings, judge_start(stream, options, arrivals));
+    const Role role =
+        input.manifest && stream.name == reference ? Role::reference : Role::resampled;
+    const Arrivals arrivals = KA_TRY(arrivals_of(stream, options, role, call.console.progress()));
+    Findings found = stream.findings;
+    append(found, judge_stamps(stream, options));
+    append(found, judge_arrivals(stream, arrivals, role));
+    append(found, judge_start(stream, options, arrivals));
+    append(out.findings, said_of(stream, input.recording, std::move(found)));
   }
+  if (!input.manifest) name_as_typed(path, input.recording.streams.front(), out.findings);
   if (input.manifest) append(out.findings, check_plan(path, input));
   return out;
 }

@@ -85,11 +85,12 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
   report.reference = recording.streams[plan.reference].name;
   report.rate_hz = plan.streams[plan.reference].rule.rate_hz();
   for (const RecordedStream& s : recording.streams) {
-    for (Finding finding : s.findings) {  // a take shall not depend on where its inputs lay
+    Findings found = s.findings;
+    for (Finding& finding : found) {  // a take shall not depend on where its inputs lay
       finding.what.file = file_name(finding.what.file);
-      report.findings.push_back(std::move(finding));
     }
-    append(report.findings, judge_stamps(s, options_of(plan.header.parameters, s.name)));
+    append(found, judge_stamps(s, options_of(plan.header.parameters, s.name)));
+    append(report.findings, said_of(s, recording, std::move(found)));
   }
   append(report.findings, judge_plan(recording, plan));
   return report;
@@ -163,6 +164,7 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   const Marks& marks = counts.marks[i];
   out.samples = marks.samples;
   out.invalid = marks.invalid;
+  out.empty_rows = marks.empty_rows;
   out.inferred = marks.inferred;
   out.bridged = marks.bridged;
   out.worst_nearest_ns = marks.worst_nearest_ns;
@@ -182,10 +184,11 @@ void finish_report(const Job& job, const SlabMaker& slabs, const Counts& counts,
     report.streams.push_back(report_stream(job, slabs, counts, i));
     const Role role = i == job.plan.reference ? Role::reference : Role::resampled;
     const Arrivals& arrivals = report.streams.back().arrivals;
-    append(report.findings, judge_arrivals(stream, arrivals, role));
-    append(report.findings,
+    Findings found = judge_arrivals(stream, arrivals, role);
+    append(found,
            judge_start(stream, options_of(job.plan.header.parameters, stream.name), arrivals));
-    append(report.findings, judge_rows(report.streams.back()));
+    append(report.findings, said_of(stream, job.recording, std::move(found)));
+    append(report.findings, judge_rows(report.streams.back(), counts.rows));
     append(report.findings, judge_content(stream, slabs.content(i), report.rate_hz));
   }
   for (std::size_t k = 0; k < job.spaces.size(); ++k) {

@@ -2,6 +2,7 @@
 // Every sample of a stream, read and thrown away: what `check` tells of it.
 #pragma once
 
+#include "kinalign/align/window.h"
 #include "kinalign/core/progress.h"
 #include "kinalign/motion/arrivals.h"
 #include "kinalign/take/manifest.h"
@@ -11,7 +12,7 @@ namespace kinalign {
 
 /// How late its samples were stamped, by the step that alignment takes for its usual one. Fails
 /// where a value can't be read.
-Result<Arrivals> arrivals_of(const RecordedStream& stream, const StreamOptions& options,
+Result<Arrivals> arrivals_of(const RecordedStream& stream, const StreamOptions& options, Role role,
                              const Progress& progress);
 
 }  // namespace kinalign

@@ -136,13 +136,13 @@ Findings judge_stamps(const RecordedStream& s, const StreamOptions& options) {
 Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role role) {
   Findings out;
   if (arrivals.near > 0) {
+    const std::string what = role == Role::reference
+                                 ? "as the reference they keep the stamp of their arrival, at "
+                                   "which the other streams are taken"
+                                 : "they are left out where the stream is resampled";
     append(out, warning(file_of(s), "samples a fifth of a step or more apart",
-                        fmt::format("{} with the next one nearer: held back on their way",
-                                    arrivals.near),
-                        role == Role::reference
-                            ? "as the reference they keep the stamp of their arrival, at which the "
-                              "other streams are taken"
-                            : "they are left out where the stream is resampled",
+                        fmt::format("{} with the next one nearer", arrivals.near),
+                        "held back on their way: " + what,
                         "stamp samples where they are taken, not where they arrive"));
   }
   if (arrivals.late > 0) {
@@ -150,11 +150,23 @@ Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role 
            warning(file_of(s), "samples that come as they are taken",
                    fmt::format("{} that came quicker behind a pause, {:.2f} s late and more",
                                arrivals.late, 1e-9 * static_cast<double>(arrivals.worst_late_ns)),
-                   "so far behind the motion they stand in rows that are valid",
+                   "where they are used, the take is so far behind the motion",
                    "use the device's own stamps where the file has them, or leave the time "
                    "column out of its layout and say rate_hz"));
   }
   return out;
+}
+
+Findings said_of(const RecordedStream& stream, const Recording& recording, Findings findings) {
+  const auto reads_the_same = [&](const RecordedStream& other) {
+    return &other != &stream && file_of(other) == file_of(stream);
+  };
+  const auto& streams = recording.streams;
+  if (std::none_of(streams.begin(), streams.end(), reads_the_same)) return findings;
+  for (Finding& finding : findings) {
+    finding.what.expected = fmt::format("of '{}' {}", stream_label(stream), finding.what.expected);
+  }
+  return findings;
 }
 
 Findings judge_start(const RecordedStream& s, const StreamOptions& options,

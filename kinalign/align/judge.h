@@ -13,15 +13,15 @@ namespace kinalign {
 /// at another rate than the one stated.
 Findings judge_stamps(const RecordedStream& stream, const StreamOptions& options);
 
-/// What becomes of a stream's samples: their stamps are the grid, or they are resampled onto it.
-enum class Role { reference, resampled };
-
 /// Samples that were held back on their way and stamped where they arrived.
 Findings judge_arrivals(const RecordedStream& stream, const Arrivals& arrivals, Role role);
 
 /// A start_ns, which is the first sample's, where the first sample is none to go by.
 Findings judge_start(const RecordedStream& stream, const StreamOptions& options,
                      const Arrivals& arrivals);
+
+/// Findings of a stream; where another one reads the same file, they name the stream.
+Findings said_of(const RecordedStream& stream, const Recording& recording, Findings findings);
 
 /// What the grid of `grid_hz` can't carry of one stream.
 Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);
@@ -30,8 +30,8 @@ Findings judge_content(const RecordedStream& stream, const ResampleCount& count,
 /// of their own though nobody said that they should, that read the same bytes.
 Findings judge_plan(const Recording& recording, const AlignPlan& plan);
 
-/// A stream of which hardly a row is valid.
-Findings judge_rows(const StreamReport& stream);
+/// A stream that has nothing in most of the take's `rows`.
+Findings judge_rows(const StreamReport& stream, std::uint64_t rows);
 
 /// Joints that lie too far from their counterparts to be the same ones.
 Findings judge_residual(const SpaceReport& space);

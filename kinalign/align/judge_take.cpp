@@ -117,17 +117,16 @@ Findings judge_plan(const Recording& recording, const AlignPlan& plan) {
   return out;
 }
 
-Findings judge_rows(const StreamReport& stream) {
-  if (2 * stream.invalid <= stream.samples) return {};
+Findings judge_rows(const StreamReport& stream, std::uint64_t rows) {
+  if (2 * stream.empty_rows <= rows) return {};
   std::string name = stream.stream;
   if (stream.nodes.size() == 1) name += " " + shown(stream.nodes.front());
-  return {
-      {Severity::warning,
-       Error{"", 0, fmt::format("samples of '{}' in most rows", name),
-             fmt::format("{:.1f} % that are invalid", 100.0 * static_cast<double>(stream.invalid) /
-                                                          static_cast<double>(stream.samples))},
-       "little of it is in the take",
-       "see its gaps: are rate_hz and gap_ms the device's, is it there for the whole take?"}};
+  const double share = static_cast<double>(stream.empty_rows) / static_cast<double>(rows);
+  return {{Severity::warning,
+           Error{"", 0, fmt::format("samples of '{}' in most rows", name),
+                 fmt::format("none in {:.1f} % of them", 100.0 * share)},
+           "little of it is in the take",
+           "see its gaps: are rate_hz and gap_ms the device's, is it there for the whole take?"}};
 }
 
 Findings judge_residual(const SpaceReport& space) {

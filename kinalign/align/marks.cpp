@@ -21,6 +21,7 @@ void add_marks(const ClipRows& rows, Marks& marks) {
   for (std::size_t r = 0; r < rows.valid.size(); ++r) {
     if (rows.valid[r] == 0) {
       ++marks.invalid;
+      ++marks.empty_rows;
     } else {
       add_valid(rows.distance, r, r, marks);
     }
@@ -29,26 +30,30 @@ void add_marks(const ClipRows& rows, Marks& marks) {
 
 void add_marks(const PointRows& rows, std::size_t joints, Marks& marks) {
   marks.samples += rows.valid.size();
-  for (std::size_t cell = 0; cell < rows.valid.size(); ++cell) {
-    if (rows.valid[cell] == 0) {
-      ++marks.invalid;
-      continue;
+  for (std::size_t row = 0; row * joints < rows.valid.size(); ++row) {
+    std::uint64_t valid = 0;
+    for (std::size_t cell = row * joints; cell < (row + 1) * joints; ++cell) {
+      if (rows.valid[cell] == 0) continue;
+      ++valid;
+      marks.inferred += rows.state[cell] == Tracking::inferred ? 1 : 0;
+      add_valid(rows.distance, row, cell, marks);
     }
-    marks.inferred += rows.state[cell] == Tracking::inferred ? 1 : 0;
-    add_valid(rows.distance, cell / joints, cell, marks);
+    marks.invalid += joints - valid;
+    marks.empty_rows += valid == 0 ? 1 : 0;
   }
 }
 
 void add_marks(const ImuRows& rows, const NodeColumns& columns, std::size_t count, Marks& marks) {
   for (std::size_t row = 0; row < rows.valid.size(); row += columns.all) {
+    std::uint64_t valid = 0;
     for (std::size_t cell = row + columns.first; cell < row + columns.first + count; ++cell) {
-      ++marks.samples;
-      if (rows.valid[cell] == 0) {
-        ++marks.invalid;
-      } else {
-        add_valid(rows.distance, cell, cell, marks);
-      }
+      if (rows.valid[cell] == 0) continue;
+      ++valid;
+      add_valid(rows.distance, cell, cell, marks);
     }
+    marks.samples += count;
+    marks.invalid += count - valid;
+    marks.empty_rows += valid == 0 ? 1 : 0;
   }
 }
 

@@ -13,6 +13,7 @@ namespace kinalign {
 struct Marks {
   std::uint64_t samples = 0;  // rows x joints (or nodes); of a skeleton rows
   std::uint64_t invalid = 0, inferred = 0, bridged = 0;
+  std::uint64_t empty_rows = 0;       // nothing in them is valid
   std::int64_t worst_nearest_ns = 0;  // over valid samples
 };
 

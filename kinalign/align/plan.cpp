@@ -113,6 +113,7 @@ ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
                      const AlignOptions& options) {
   ResampleRule rule;
   rule.step_ns = usual_step_ns(s, stream);
+  rule.taken_step_ns = taken_step_ns(s, stream);
   rule.gap_ns = options.gap_ms > 0.0 ? std::llround(options.gap_ms * 1e6) : 3 * rule.step_ns;
   // Stamps rounded to a milli- or microsecond make three steps a little longer than three medians.
   if (options.gap_ms == 0.0) rule.gap_ns += rule.step_ns / 10;
@@ -276,6 +277,14 @@ std::int64_t usual_step_ns(const RecordedStream& s, const StreamOptions& options
   return step_of(s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns)));
 }
 
+std::int64_t taken_step_ns(const RecordedStream& s, const StreamOptions& options) {
+  constexpr double alike = 1.5;
+  const std::int64_t usual = usual_step_ns(s, options);
+  if (s.step_ns || s.survey.usual_step_ns == 0) return usual;
+  const double times = static_cast<double>(usual) / static_cast<double>(s.survey.usual_step_ns);
+  return times < alike && alike * times > 1.0 ? s.survey.usual_step_ns : usual;
+}
+
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {
   static const StreamOptions defaults;
   for (const StreamOptions& s : manifest.streams) {
@@ -290,7 +299,8 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   plan.reference = KA_TRY(find_reference(recording, manifest));
   const RecordedStream& reference = recording.streams[plan.reference];
   if (std::holds_alternative<ImuInput>(reference.data)) {
-    return Failure(Error{"", 0, "a clip or points as the reference", "nodes"});
+    return Failure(
+        Error{"", 0, "a skeleton or points as the reference (reference = in [align])", "nodes"});
   }
   KA_TRY(check_options_used(recording, manifest));
   KA_TRY(find_span(recording, plan));

@@ -42,6 +42,10 @@ std::string stream_label(const RecordedStream& stream);
 /// median.
 std::int64_t usual_step_ns(const RecordedStream& stream, const StreamOptions& options);
 
+/// The step in which the device took its samples, ns, as near as stamps know it: the mean of the
+/// usual ones; the stated one where these say quite another (stamps in bursts).
+std::int64_t taken_step_ns(const RecordedStream& stream, const StreamOptions& options);
+
 /// The manifest's options of a stream; defaults where it has none.
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream);
 

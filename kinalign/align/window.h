@@ -76,17 +76,21 @@ struct GapCount {
   }
 };
 
-/// The stream's usual step, by which a sample held back is told. 0: none is.
+/// What becomes of a stream's samples: their stamps are the grid, or they are resampled onto it.
+enum class Role { reference, resampled };
+
+/// The step in which samples were taken, by which one that was held back is told. 0: none is. Of
+/// the reference such samples are counted, of other streams left out.
 struct UsualStep {
   std::int64_t ns = 0;
-  bool leave_out = true;  // else such samples are counted only
+  Role role = Role::resampled;
 };
 
 /// What was pulled of a stream so far.
 struct StreamCounts {
   GapCount gaps;
   std::uint64_t held_back = 0;  // samples left out, as the next came on their heels
-  Arrivals arrivals;            // of all that rise
+  Arrivals arrivals;            // of all that rise; near: of a stream resampled those left out
 };
 
 template <class Frames>
@@ -95,7 +99,7 @@ class Window {
   Window(Pass<Frames> pass, const TimeModel& clock, const GapCount& count = {}, UsualStep step = {})
       : pass_(std::move(pass)),
         clock_(&clock),
-        near_ns_(step.leave_out ? step.ns / near_share : 0),
+        near_ns_(step.role == Role::resampled ? step.ns / near_share : 0),
         step_ns_(step.ns),
         arrivals_(step.ns),
         gaps_(count) {}
@@ -124,7 +128,11 @@ class Window {
   Frames rows;                        // stamps as the device gave them
   std::vector<std::int64_t> time_ns;  // [rows] on the take's axis, strictly rising
 
-  StreamCounts counts() const { return {gaps_, held_back_, arrivals_.result()}; }
+  StreamCounts counts() const {
+    StreamCounts out{gaps_, held_back_, arrivals_.result()};
+    if (near_ns_ > 0) out.arrivals.near = held_back_;
+    return out;
+  }
 
  private:
   std::size_t first_not_before(std::int64_t t) const {

@@ -37,6 +37,7 @@ Json stream_json(const StreamReport& stream) {
   out["gap_time_ns"] = stream.gap_time_ns;
   out["samples"] = stream.samples;
   out["invalid"] = stream.invalid;
+  out["empty_rows"] = stream.empty_rows;
   out["inferred"] = stream.inferred;
   out["bridged"] = stream.bridged;
   out["worst_nearest_ns"] = stream.worst_nearest_ns;

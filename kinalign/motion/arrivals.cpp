@@ -11,59 +11,104 @@ namespace {
 constexpr std::uint64_t reach = 256;  // samples: how far behind one the proof is looked for
 constexpr double slack = 0.05;        // of a step
 constexpr double regular = 0.2;  // of a step: so much longer or shorter is no haste and no pause
+constexpr double flush_share = 0.1, flush_steps = 10.0;
 
 }  // namespace
 
-/// How late a sample can be that came `step` behind one that can be late by `pause`.
-double ArrivalSurveyor::pause_behind(double pause, double step) const {
-  const bool usual = std::abs(step - step_) < regular * step_;
-  return std::max(0.0, pause + step - step_ - (usual ? slack * step_ : 0.0));
+ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t) const {
+  Last last = before;
+  last.t = t;
+  ++last.count;
+  if (before.count == 0) {
+    last.first = t;
+    last.step = step_;
+    last.pause = static_cast<double>(reach) * step_;
+    last.flush = true;
+    return last;
+  }
+  last.step = static_cast<double>(t) - static_cast<double>(before.t);
+  const bool near = is_near(last.step);
+  if (near && can_be_late(before)) {
+    ++last.near;
+    last.first_near = last.first_near || before.count == 1;
+  }
+  const bool heels = last.step < flush_share * step_;
+  last.flush = before.flush && heels && static_cast<double>(t - before.first) < flush_steps * step_;
+  if (last.flush) return last;
+  if (before.flush && heels) {  // too long for a flush: the device was quicker
+    last.near = 0;
+    last.first_near = false;
+  }
+  const bool usual = std::abs(last.step - step_) < regular * step_;
+  const double over = last.step - step_;
+  last.pause =
+      std::max(0.0, (before.flush ? 0.0 : before.pause) + over - (usual ? slack * step_ : 0.0));
+  last.doubt = std::clamp(before.doubt + over, 0.0, static_cast<double>(late_steps) * step_);
+  if (2.0 * last.step >= step_) last.doubt = std::max(last.doubt, step_);
+  return last;
+}
+
+/// Of two samples the later one lies lower if it came quicker behind the other than the device, 5 %
+/// quicker than known, can have taken it: by as much the other was late.
+double ArrivalSurveyor::after_line(const Last& last) const {
+  return static_cast<double>(last.t - last.first) -
+         (1.0 - slack) * step_ * static_cast<double>(last.count - 1);
 }
 
 void ArrivalSurveyor::add(std::int64_t t) {
-  before_ = now_;
-  State& s = now_;
-  if (s.count == 0) s.first = t;
-  const double step = s.count == 0 ? step_ : static_cast<double>(t) - static_cast<double>(s.last);
   if (!(step_ > 0.0)) return;
-  if (static_cast<double>(near_share) * step < step_ && can_be_late()) {
-    ++s.found.near;
-    s.found.first_late = s.found.first_late || s.count == 1;
-  }
-  const bool start = s.count == 0 || (s.start && s.count < reach && step < step_);
-  // In front of the first samples a pause of any length may have been.
-  const double longest = static_cast<double>(reach) * step_;
-  if (s.start && !start) s.candidates.clear();  // one came in time: those before it had not waited
-  s.pause = start ? longest : pause_behind(s.start ? 0.0 : s.pause, step);
-  s.start = start;
-  s.last = t;
-  const std::uint64_t index = s.count++;
+  settle();
+  before_ = now_;
+  now_ = behind(before_, t);
+  settled_ = false;
+}
 
-  const double after_line =
-      static_cast<double>(t - s.first) - (1.0 - slack) * step_ * static_cast<double>(index);
-  while (!s.candidates.empty() && s.candidates.front().index + reach < index) {
-    s.candidates.pop_front();
+/// Compares the last sample with those before it, once it is known that it stays.
+void ArrivalSurveyor::settle() {
+  if (settled_) return;
+  settled_ = true;
+  if (before_.flush && !now_.flush) {
+    if (now_.step >= flush_share * step_) find_late(after_line(before_));
+    candidates_.clear();
   }
-  const double least = static_cast<double>(late_steps) * step_;
-  if (step < (1.0 - slack) * step_) find_late(after_line, least);
-  if (s.pause >= least) s.candidates.push_back({index, after_line, s.pause, false});
+  const std::uint64_t index = now_.count - 1;
+  while (!candidates_.empty() && candidates_.front().index + reach < index) {
+    candidates_.pop_front();
+  }
+  if (!now_.flush && now_.step < (1.0 - slack) * step_) find_late(after_line(now_));
+  if (now_.pause >= static_cast<double>(late_steps) * step_) {
+    candidates_.push_back({index, after_line(now_), now_.pause, false});
+  }
 }
 
 /// Of those that came behind a pause, by a sample that came in haste.
-void ArrivalSurveyor::find_late(double after_line, double least) {
-  Arrivals& found = now_.found;
-  for (Candidate& c : now_.candidates) {
+void ArrivalSurveyor::find_late(double after_line) {
+  for (Candidate& c : candidates_) {
     const double late = std::min(c.pause, c.after_line - after_line);
-    if (late < least) continue;
-    found.late += c.late ? 0 : 1;
-    found.first_late = found.first_late || c.index == 0;
+    if (late < static_cast<double>(late_steps) * step_) continue;
+    late_.late += c.late ? 0 : 1;
+    late_.first_late = late_.first_late || c.index == 0;
     c.late = true;
-    found.worst_late_ns = std::max<std::int64_t>(found.worst_late_ns, std::llround(late));
+    late_.worst_late_ns = std::max<std::int64_t>(late_.worst_late_ns, std::llround(late));
   }
 }
 
-bool ArrivalSurveyor::can_be_late() const { return now_.count > 0 && 2.0 * now_.pause >= step_; }
+bool ArrivalSurveyor::can_be_late(const Last& last) const {
+  return last.count > 0 && 2.0 * std::max(last.pause, last.doubt) >= step_;
+}
 
-void ArrivalSurveyor::take_back() { now_ = before_; }
+void ArrivalSurveyor::take_back() {
+  now_ = before_;
+  settled_ = true;
+}
+
+Arrivals ArrivalSurveyor::result() const {
+  ArrivalSurveyor all = *this;
+  all.settle();
+  Arrivals found = all.late_;
+  found.near = all.now_.near;
+  found.first_late = found.first_late || all.now_.first_near;
+  return found;
+}
 
 }  // namespace kinalign

@@ -19,6 +19,8 @@ std::size_t class_of(std::uint64_t step) {
 constexpr std::uint64_t longest_first = 1'000'000'000;  // ns; a longer first step may be a slip
 constexpr std::uint64_t longest_ratio = 4;              // and a later one of so many usual steps
 
+std::int64_t rounded(double ns) { return ns < 9.2e18 ? std::llround(ns) : INT64_MAX; }
+
 std::int64_t held(std::uint64_t ns) {
   return static_cast<std::int64_t>(std::min<std::uint64_t>(ns, INT64_MAX));
 }
@@ -119,18 +121,25 @@ StampSurvey StampSurveyor::result() const {
     below += steps_[i];
     if (2 * below >= all) {
       const double middle = sums_[i] / static_cast<double>(steps_[i]);
-      survey.median_step_ns = middle < 9.2e18 ? std::llround(middle) : INT64_MAX;
+      survey.median_step_ns = rounded(middle);
       break;
     }
   }
-  double long_time = 0.0;
+  const auto median = static_cast<double>(survey.median_step_ns);
+  double long_time = 0.0, usual_time = 0.0;
+  std::uint64_t usual = 0;
   for (std::size_t i = 0; i < classes; ++i) {
     const double step = sums_[i] / static_cast<double>(std::max<std::uint64_t>(1, steps_[i]));
-    if (step <= 1.5 * static_cast<double>(survey.median_step_ns)) continue;
-    survey.long_steps += steps_[i];
-    long_time += sums_[i];
+    if (step > 1.5 * median) {
+      survey.long_steps += steps_[i];
+      long_time += sums_[i];
+    } else if (2.0 * step >= median) {
+      usual += steps_[i];
+      usual_time += sums_[i];
+    }
   }
-  survey.long_time_ns = long_time < 9.2e18 ? std::llround(long_time) : INT64_MAX;
+  survey.long_time_ns = rounded(long_time);
+  if (usual > 0) survey.usual_step_ns = rounded(usual_time / static_cast<double>(usual));
   return survey;
 }
 

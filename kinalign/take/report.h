@@ -45,6 +45,7 @@ struct StreamReport {
   std::int64_t gap_time_ns = 0;  // sum of their lengths
   std::uint64_t samples = 0;     // rows x joints (or nodes) of the take; of a skeleton rows
   std::uint64_t invalid = 0;     // of these
+  std::uint64_t empty_rows = 0;  // of the take, in which nothing of the stream is valid
   std::uint64_t inferred = 0;    // valid, but the device guessed (state 1)
   std::uint64_t bridged = 0;     // valid, but between samples of which some are missing: state 0,
                                  // or more than 1.5 of the stream's steps apart

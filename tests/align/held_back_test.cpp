@@ -115,14 +115,29 @@ TEST_CASE("rows in which nothing was seen hold no sample back") {
   CHECK(worst_of(take) <= 1e-9);
 }
 
-TEST_CASE("a stretch at a much higher rate is kept whole, for no pause stands in front of it") {
+TEST_CASE("of a stretch at a much higher rate one sample is left out, where it begins") {
   std::vector<Time> stamps = every(1000 * ms, 60);
   for (std::int64_t k = 1; k <= 500; ++k) stamps.push_back(stamps.back() + Duration{10 * ms});
   for (std::int64_t k = 1; k <= 700; ++k) stamps.push_back(stamps.back() + Duration{1000 * ms});
   const Take take = aligned(stamped(stamps, stamps));
-  CHECK(take.report.streams[1].held_back == 0);
+  CHECK(take.report.streams[1].held_back == 1);
   CHECK(take.report.streams[1].invalid == 0);
   CHECK(worst_of(take) <= 1e-7);
+}
+
+TEST_CASE("a loop that reads slower than the device measures loses the first of each pair only") {
+  std::vector<Time> taken, read;
+  std::uint64_t pairs = 0;
+  for (std::int64_t turn = 0, k = 0; turn < 300; ++turn) {
+    for (int found = 0; k * step <= turn * 35 * ms; ++k, ++found) {
+      taken.push_back(utc_time(k * step));
+      read.push_back(utc_time(turn * 35 * ms + found * ms / 10));
+      pairs += found > 0 ? 1 : 0;
+    }
+  }
+  const Take take = aligned(stamped(taken, read));
+  CHECK(take.report.streams[1].held_back == pairs);
+  CHECK(worst_of(take) < 0.2);  // late by a step at the most: 4.2 m/s in 35 ms
 }
 
 TEST_CASE("the reference keeps its rows, and blocks of any size hold back the same samples") {
@@ -135,7 +150,7 @@ TEST_CASE("the reference keeps its rows, and blocks of any size hold back the sa
   CHECK(take->report.streams[0].held_back == 0);
   REQUIRE(take->report.findings.size() == 1);  // but it is said that their stamps are not theirs
   CHECK(take->report.findings[0].what.found.starts_with("4 with the next one nearer"));
-  CHECK(take->report.findings[0].meaning.starts_with("as the reference"));
+  CHECK(take->report.findings[0].meaning.find("as the reference") != std::string::npos);
   for (const std::size_t size : {1, 2, 7, 100}) {
     CAPTURE(size);
     Recording recording = two(points(joints, every(10 * ms, 300), wander), all);
@@ -174,6 +189,15 @@ TEST_CASE("what waited in a stall and was sent quicker than it was taken is a wa
   REQUIRE(take.report.findings.size() == 1);
   CHECK(take.report.findings[0].severity == Severity::warning);
   CHECK(take.report.findings[0].what.expected == "samples that come as they are taken");
+}
+
+TEST_CASE("a stated rate that is a tenth off makes no sample late, nor a stamp that is rounded") {
+  std::vector<Time> stamps = every(step, 200);
+  for (std::size_t k = 100; k < 200; ++k) stamps[k] += Duration{500 * ms};  // a true pause
+  CHECK(aligned(stamped(stamps, stamps), 28.0).report.streams[1].arrivals.late == 0);
+  CHECK(aligned(stamped(stamps, stamps), 25.0).report.streams[1].arrivals.late == 0);
+  for (Time& t : stamps) t = utc_time(to_ns(t) / (10 * ms) * (10 * ms));
+  CHECK(aligned(stamped(stamps, stamps)).report.streams[1].arrivals.late == 0);
 }
 
 TEST_CASE("of a whole stretch of samples that waited one a step stays") {

@@ -79,11 +79,11 @@ TEST_CASE("samples held back are a warning that says what to do about it") {
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
         "warning: kinect: expected samples a fifth of a step or more apart, found 3 with the next "
-        "one nearer: held back on their way; they are left out where the stream is resampled; "
+        "one nearer; held back on their way: they are left out where the stream is resampled; "
         "stamp samples where they are taken, not where they arrive");
   CHECK(judge_arrivals(kinect(), {3, 0, 0}, Role::reference).at(0).meaning ==
-        "as the reference they keep the stamp of their arrival, at which the other streams are "
-        "taken");
+        "held back on their way: as the reference they keep the stamp of their arrival, at which "
+        "the other streams are taken");
 }
 
 TEST_CASE("samples that came late behind a pause are a warning with how late they were") {
@@ -91,8 +91,8 @@ TEST_CASE("samples that came late behind a pause are a warning with how late the
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
         "warning: kinect: expected samples that come as they are taken, found 12 that came quicker "
-        "behind a pause, 0.41 s late and more; so far behind the motion they stand in rows that "
-        "are valid; use the device's own stamps where the file has them, or leave the time column "
+        "behind a pause, 0.41 s late and more; where they are used, the take is so far behind "
+        "the motion; use the device's own stamps where the file has them, or leave the time column "
         "out of its layout and say rate_hz");
 }
 
@@ -381,18 +381,17 @@ TEST_CASE("streams that share less than half of the shortest one's time are a wa
       "good at any offset; are start_ns and offset_ms right?");
 }
 
-TEST_CASE("a stream of which most rows are invalid is a warning with its node") {
+TEST_CASE("a stream that has nothing in most rows is a warning with its node") {
   StreamReport imu;
   imu.stream = "imu";
   imu.nodes = {"waist"};
-  imu.samples = 1000;
-  imu.invalid = 500;
-  CHECK(judge_rows(imu).empty());
-  imu.invalid = 501;
-  const Findings found = judge_rows(imu);
+  imu.empty_rows = 500;
+  CHECK(judge_rows(imu, 1000).empty());
+  imu.empty_rows = 501;
+  const Findings found = judge_rows(imu, 1000);
   REQUIRE(found.size() == 1);
   CHECK(whole(found[0]) ==
-        "warning: expected samples of 'imu waist' in most rows, found 50.1 % that are invalid; "
+        "warning: expected samples of 'imu waist' in most rows, found none in 50.1 % of them; "
         "little of it is in the take; see its gaps: are rate_hz and gap_ms the device's, is it "
         "there for the whole take?");
 }

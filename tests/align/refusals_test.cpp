@@ -63,7 +63,7 @@ TEST_CASE("the reference is a stream of the recording, and no nodes") {
   CHECK(fault(two(hundred(), hundred()), manifest) ==
         "expected a stream as the reference (known: optical, kinect), found \"mocap\"");
   CHECK(fault(of({recorded("imu", node("waist")), recorded("kinect", hundred())})) ==
-        "expected a clip or points as the reference, found nodes");
+        "expected a skeleton or points as the reference (reference = in [align]), found nodes");
 }
 
 TEST_CASE("a stream without a sample, or none of the reference in the span, is refused") {

@@ -143,7 +143,7 @@ def one_stream_alone_is_a_take(folder):
                          (samples.kinect(1), 1)):
         report = made(put(folder, only=text, only_options="start_ns = 0"), folder / "t.h5")
         assert report["frames"] == frames
-    refused("align", put(folder, only=samples.imu()), "-o", folder / "x.h5", naming=f"{folder}/recording.toml: expected a clip or points",
+    refused("align", put(folder, only=samples.imu()), "-o", folder / "x.h5", naming=f"{folder}/recording.toml: expected a skeleton or points",
             out=folder / "x.h5")
     refused("align", put(folder, only=samples.bvh(0)), "-o", folder / "x.h5",
             naming="only.bvh: expected at least one", out=folder / "x.h5")

@@ -56,6 +56,68 @@ def notes_are_told_and_leave_exit_code_0(folder):
         assert "note  " in out, out
 
 
+def first_sample_late(path):
+    """Its first stamp a tenth of a millisecond in front of the second one."""
+    lines = path.read_text().splitlines()
+    second = int(lines[2].split(",", 1)[0])
+    lines[1] = f"{second - 100_000}," + lines[1].split(",", 1)[1]
+    path.write_text("\n".join(lines) + "\n")
+    return second - 100_000
+
+
+@case
+def what_align_warns_of_check_tells_of_the_manifest_as_well(folder):
+    demo(folder, seconds=20)
+    kinect, node = folder / "kinect.csv", folder / "imu_wrist_left.csv"
+    start = first_sample_late(kinect)
+    rows = [line.split(",") for line in node.read_text().splitlines()]
+    node.write_text("\n".join(",".join([r[0], *r[2:5], r[1], *r[5:]]) if i else ",".join(r)
+                              for i, r in enumerate(rows)) + "\n")  # x,y,z,w as w,x,y,z
+    manifest = folder / "m.toml"
+    manifest.write_text(f'[align]\nreference = "kinect"\n[stream.kinect]\nfile = "kinect.csv"\nstart_ns = {start}\n'
+                        '[stream.imu]\nfiles = { wrist_left = "imu_wrist_left.csv" }\n')
+    told = []
+    for words in (("check", manifest), ("align", manifest, "-o", folder / "t.h5")):
+        said = json.loads(done_with(1, *words, "--json")[0])
+        told.append([f["expected"] + " " + f["meaning"] for f in (said.get("report") or said)["findings"]])
+        for what in ("as the reference they keep", "start_ns at a first sample stamped", "gravity of 'wrist_left'",
+                     "orientations of 'wrist_left' that turn as the gyroscope says"):
+            assert any(what in line for line in told[-1]), (words, what, told[-1])
+    assert sorted(told[0]) == sorted(told[1]), told
+
+
+@case
+def findings_name_a_lone_file_as_it_was_typed_and_of_one_file_the_stream(folder):
+    demo(folder, seconds=20)
+    first_sample_late(folder / "kinect.csv")
+    for typed in (folder / "kinect.csv", "kinect.csv", f"../{folder.name}/kinect.csv"):
+        said = json.loads(done_with(1, "check", typed, "--json", cwd=folder)[0])
+        assert {f["file"] for f in said["findings"]} == {str(typed)}, said
+    (folder / "two.toml").write_text("".join(f'[stream.{name}]\nfile = "kinect.csv"\n' for name in ("a", "b")))
+    said = json.loads(done_with(1, "check", folder / "two.toml", "--json")[0])
+    near = sorted(f["expected"] for f in said["findings"] if "a fifth of a step" in f["expected"])
+    assert [line[:7] for line in near] == ["of 'a' ", "of 'b' "], near
+
+
+@case
+def a_stream_that_is_hardly_there_is_told_and_joints_that_are_never_seen_are_not(folder):
+    demo(folder, seconds=20)
+    lines = [line.split(",") for line in (folder / "kinect.csv").read_text().splitlines()]
+
+    def warned(state_of):
+        for i, row in enumerate(lines[1:]):
+            for joint in range(25):
+                if state_of(i, joint) == 0:
+                    row[4 * joint + 4] = "0"
+        (folder / "k.csv").write_text("\n".join(map(",".join, lines)) + "\n")
+        done = kinalign("align", "--mocap", folder / "mocap.bvh", "--start-ns", 1790000000000000000, "--kinect",
+                        folder / "k.csv", "-o", folder / "t.h5", "--force", "--json")
+        return [f["expected"] for f in json.loads(done.stdout)["report"]["findings"]]
+
+    assert not any("in most rows" in line for line in warned(lambda i, joint: 0 if 12 <= joint < 20 else 2))
+    assert any("samples of 'kinect' in most rows" in line for line in warned(lambda i, joint: 0 if i % 100 < 70 else 2))
+
+
 @case
 def check_refuses_a_manifest_as_align_does(folder):
     manifest = samples.recording(folder)

@@ -83,6 +83,7 @@ const std::string whole = R"({
       "gap_time_ns": 8,
       "samples": 120,
       "invalid": 9,
+      "empty_rows": 0,
       "inferred": 10,
       "bridged": 11,
       "worst_nearest_ns": 12,

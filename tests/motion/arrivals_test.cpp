@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -66,20 +67,54 @@ TEST_CASE("what waited in a stall is counted, and how late the first of it was, 
 }
 
 TEST_CASE("what waited before the first sample could be sent is told too") {
-  const Arrivals found = arrivals(stalled(1000, 10 * ms, 0, 40, 2 * ms), 10 * ms);
+  const auto flushed = stalled(1000, 10 * ms, 0, 40, ms / 2);
+  const Arrivals found = arrivals(flushed, 10 * ms);
   CHECK(found.late > 30);
   CHECK(found.first_late);
-  CHECK(!arrivals(stalled(1000, 10 * ms, 5, 40, 2 * ms), 10 * ms).first_late);
   CHECK(found.worst_late_ns >= 350 * ms);
+  CHECK(!arrivals(stalled(1000, 10 * ms, 5, 40, ms / 2), 10 * ms).first_late);
+}
+
+TEST_CASE("a device that begins quicker than it goes on has not waited") {
+  for (const std::int64_t quick : {4, 6, 30, 45}) {
+    CAPTURE(quick);
+    std::vector<std::int64_t> stamps{0};
+    for (int k = 0; k < 240; ++k) stamps.push_back(stamps.back() + quick * ms);
+    for (int k = 0; k < 1000; ++k) stamps.push_back(stamps.back() + 50 * ms);
+    const Arrivals found = arrivals(stamps, 50 * ms);
+    CHECK(found.late == 0);
+    CHECK(found.near <= 1);  // of 6 ms: where the flush that it could have been ends
+    if (quick >= 10) CHECK(!found.first_late);
+  }
 }
 
 TEST_CASE("bursts at the stated rate are late by what the last one of each shows") {
   std::vector<std::int64_t> stamps;
   for (std::int64_t k = 0; k < 1000; ++k) stamps.push_back((k / 10 * 100 + k % 10) * ms);
   const Arrivals found = arrivals(stamps, 10 * ms);
-  CHECK(found.late == 600);
-  CHECK(found.near == 900);
+  CHECK(found.late == 99 * 6);  // what stands in front of the first burst nobody knows
+  CHECK(found.near == 99 * 9 + 1);
   CHECK(found.worst_late_ns == 76'500'000);  // of true 81: nine steps less 5 %, and nine of 1 ms
+}
+
+TEST_CASE("a loop that reads a little slower than the device measures finds pairs, all told") {
+  for (const double loop_ms : {33.4, 34.0, 35.0, 40.0}) {
+    CAPTURE(loop_ms);
+    std::vector<std::int64_t> stamps;
+    std::uint64_t pairs = 0;
+    for (std::int64_t turn = 0, taken = 0; turn < 2000; ++turn) {
+      const double now_ms = loop_ms * static_cast<double>(turn);
+      for (int found = 0; static_cast<double>(taken) * 100.0 / 3.0 <= now_ms; ++taken, ++found) {
+        stamps.push_back(std::llround(now_ms * 1e6) + found * ms / 10);
+        pairs += found > 0 ? 1 : 0;
+      }
+    }
+    const auto usual = static_cast<std::int64_t>(loop_ms * 1e6);
+    CHECK(pairs > 0);
+    CHECK(arrivals(stamps, usual).near == pairs);
+    CHECK(arrivals(stamps, 100 * ms / 3).near == pairs);
+    CHECK(arrivals(stamps, usual).late == 0);
+  }
 }
 
 TEST_CASE("no sample is late: jitter, losses, pauses, another rate for a while, a rounded step") {
@@ -107,7 +142,7 @@ TEST_CASE("no sample is late: jitter, losses, pauses, another rate for a while, 
   for (std::int64_t k = 1; k < 300; ++k) awake.push_back(awake[399] + k * 17 * ms);
   for (std::int64_t k = 1; k < 100; ++k) awake.push_back(awake[698] + k * 100 * ms);
   CHECK(arrivals(awake, 100 * ms).late == 0);
-  CHECK(arrivals(awake, 100 * ms).near == 0);
+  CHECK(arrivals(awake, 100 * ms).near == 1);  // where the quick stretch begins
 }
 
 TEST_CASE("a wild stamp that is taken back leaves nothing behind") {

@@ -87,6 +87,15 @@ TEST_CASE("a clock that is set back for good keeps what came before") {
   CHECK(found.backward == 50);
 }
 
+TEST_CASE("the usual step of stamps that are rounded is the device's, not the rounded one") {
+  std::vector<std::int64_t> ns;  // 60 Hz in hundredths of a second: steps of 20, 20, 10 ms
+  for (std::int64_t i = 0; i < 600; ++i)
+    ns.push_back((i * 100 / 60 + (i < 300 ? 0 : 50)) * 10'000'000);
+  const auto found = survey(stamps(ns));
+  CHECK(found.median_step_ns == 20'000'000);
+  CHECK(std::abs(static_cast<double>(found.usual_step_ns) - 1e9 / 60) < 0.005 * 1e9 / 60);
+}
+
 TEST_CASE("no stamps and one stamp have no step") {
   CHECK(survey({}).median_step_ns == 0);
   CHECK(survey({}).kept() == 0);
