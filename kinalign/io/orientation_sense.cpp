@@ -45,17 +45,21 @@ void OrientationSense::add(const ImuSamples& block) {
   }
 }
 
-/// Steps that are long, or in which the node turned far, say little of the rate between.
+/// Steps that are long, or in which the node turned far, say little of the rate between. Turns are
+/// held against each other, not rates: a stamp that is 10 us in front of the next would outweigh
+/// all the others.
 void OrientationSense::add_turn(Node& node, const Last& now) {
-  constexpr double longest_s = 0.2, farthest_rad = 1.0;
+  constexpr double longest_s = 0.2, farthest_rad = 1.0, quickest_rad_s = 40.0;  // 2,300 deg/s
   const double seconds = 1e-9 * (static_cast<double>(now.t) - static_cast<double>(node.last->t));
   const Vec3 turn = rotation_vector(node.last->q.conjugate() * now.q);
   if (!(seconds > 0.0) || seconds > longest_s || turn.norm() > farthest_rad) return;
-  const Vec3 turned = turn / seconds, felt = 0.5 * (node.last->rate + now.rate);
+  const Vec3 rate = 0.5 * (node.last->rate + now.rate), felt = rate * seconds;
+  if (rate.norm() > quickest_rad_s) return;
   ++node.turns;
-  node.both += turned.dot(felt);
-  node.turned += turned.squaredNorm();
+  node.both += turn.dot(felt);
+  node.turned += turn.squaredNorm();
   node.felt += felt.squaredNorm();
+  node.times += seconds * seconds;
 }
 
 Findings OrientationSense::judge(const ImuHeader& header, const std::string& file) const {
@@ -74,8 +78,8 @@ Findings OrientationSense::judge(const ImuHeader& header, const std::string& fil
                        "orientations and accelerations do not belong together", advice});
       }
     }
-    const auto turns = static_cast<double>(node.turns);
-    if (node.turns < enough || node.felt < turns * least_turn_rad_s * least_turn_rad_s) continue;
+    const double least = node.times * least_turn_rad_s * least_turn_rad_s;
+    if (node.turns < enough || node.felt < least) continue;
     const double alike = node.both / std::sqrt(std::max(node.turned * node.felt, 1e-300));
     if (alike >= least_likeness) continue;
     out.push_back({Severity::warning,

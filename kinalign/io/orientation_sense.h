@@ -31,8 +31,9 @@ class OrientationSense {
     Vec3 up = Vec3::Zero();           // accelerations in the world, their sum, m/s2
     std::optional<Last> last;         // valid sample
     std::uint64_t turns = 0;          // pairs of samples one behind the other
-    double both = 0.0;                // (turn by the orientations) . (by the gyroscope), rad2/s2
+    double both = 0.0;                // (turn by the orientations) . (by the gyroscope), rad2
     double turned = 0.0, felt = 0.0;  // their squares
+    double times = 0.0;               // the squares of the times between, s2
   };
 
   void add_turn(Node& node, const Last& now);

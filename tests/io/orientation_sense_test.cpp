@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 using namespace kinalign;
 
@@ -75,6 +76,29 @@ TEST_CASE("parts in another order, the inverse and another axis up show in gravi
         "w.csv: expected gravity of 'wrist' that points up in the world, found 90 degrees from it "
         "in the mean\n");
   CHECK(said_of(swinging(z_up), without).empty());  // without gravity any axis may be up
+}
+
+TEST_CASE("one sample that came on the heels of the next, or one wild rate, outweighs no other") {
+  for (const std::int64_t ns : {100'000, 1'000, 1}) {
+    CAPTURE(ns);
+    ImuSamples late = swinging(as_it_is);
+    late.stamps[200] = late.stamps[201] - Duration{ns};
+    CHECK(said_of(late, with_gravity).empty());
+  }
+  ImuSamples wild = swinging(as_it_is);
+  wild.angular_velocity[3 * 200] = 2000.0;
+  CHECK(said_of(wild, with_gravity).empty());
+}
+
+TEST_CASE("gravity may lean by up to 45 degrees") {
+  const auto leaning = [](double degrees) {
+    const double half = degrees * std::numbers::pi / 360.0;
+    return said_of(
+        swinging([half](const Quat& q) { return Quat(std::cos(half), std::sin(half), 0, 0) * q; }),
+        with_gravity);
+  };
+  CHECK(leaning(40).empty());
+  CHECK(says(leaning(50), "gravity of 'wrist'"));
 }
 
 TEST_CASE("a node at rest says nothing of its turns, and a few samples nothing at all") {
