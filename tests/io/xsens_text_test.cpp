@@ -203,6 +203,17 @@ TEST_CASE("one wild counter is one packet far ahead, and nothing behind it moves
   }
 }
 
+TEST_CASE("a first counter that is wild moves nothing behind it") {
+  CHECK(packets(counters({1 << 20, 1, 2, 3})) == Packets{1 << 20, 1, 2, 3});
+  CHECK(packets(counters({40000, 1001, 1002})) == Packets{40000, 1001, 1002});
+  CHECK(packets(counters({1 << 20, 65535, 0, 1})) == Packets{1 << 20, 65535, 65536, 65537});
+}
+
+TEST_CASE("a packet is overtaken by up to a thousand, and a loss is believed that goes on") {
+  CHECK(packets(counters({4999, 5000, 4000, 5001}))[2] == 4000);
+  CHECK(packets(counters({4999, 5000, 3999, 4000}))[2] == 3999 + 65536);  // fell: began anew
+}
+
 TEST_CASE("a counter of 32 bits that falls began anew, whatever its lower 16 bits say") {
   const auto anew = counters({100'000, 131'078, 131'079, 3, 4, 5});
   const std::int64_t fall = (std::int64_t{1} << 32) - 131'076;
