@@ -33,31 +33,73 @@ void PointSizes::add(const PointFrames& block) {
   if (block.size() == 0) return;
   const std::size_t joints = block.state.size() / block.size();
   all_frames_ += block.size();
+  joints_.resize(joints);
   for (std::size_t t = 0; t < block.size(); ++t) {
     Eigen::AlignedBox3d box;
     std::uint64_t seen = 0;
     for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
       if (block.state[cell] == Tracking::missing) continue;
-      box.extend(Vec3(vec3(block.positions, cell)));
+      const Vec3 at = vec3(block.positions, cell);
+      Seen& joint = joints_[cell - t * joints];
+      ++(at.isZero(0.0) ? joint.at_zero : joint.elsewhere);
+      box.extend(at);
       ++seen;
     }
     seen_frames_ += seen > 0 ? 1 : 0;
     if (seen < 2) continue;
-    ++frames_;
     most_points_ = std::max(most_points_, seen);
-    diagonals_m_ += box.diagonal().norm();
+    const double diagonal_m = box.diagonal().norm();
+    Frames& frames = diagonal_m > largest_m ? far_ : person_;
+    ++frames.count;
+    frames.diagonals_m += diagonal_m;
   }
 }
 
-Findings PointSizes::judge(const PointHeader&, const std::string& file) const {
+Findings PointSizes::judge(const PointHeader& header, const std::string& file) const {
   if (all_frames_ >= enough && 10 * seen_frames_ < all_frames_) {
     return {{Severity::warning,
              Error{file, 0, "frames with a point in them, one in ten at least",
                    fmt::format("{} of {}", seen_frames_, all_frames_)},
              "in the others nothing was seen", "look at the cells that are empty"}};
   }
-  if (frames_ < enough) return {};
-  const double size = diagonals_m_ / static_cast<double>(frames_);
+  Findings out = judge_marks(header, file);
+  append(out, judge_unit(file));
+  return out;
+}
+
+/// A point that is always at zero is the file's origin: a body seen from its own root.
+Findings PointSizes::judge_marks(const PointHeader& header, const std::string& file) const {
+  Findings out;
+  std::uint64_t at_zero = 0;
+  std::string first;
+  for (std::size_t j = 0; j < joints_.size() && j < header.joint_names.size(); ++j) {
+    if (joints_[j].at_zero == 0 || joints_[j].elsewhere == 0) continue;
+    if (at_zero == 0) first = shown(header.joint_names[j]);
+    at_zero += joints_[j].at_zero;
+  }
+  if (at_zero > 0) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "points where they were seen",
+                         fmt::format("{} at exactly 0, 0, 0, the first of '{}'", at_zero, first)},
+                   "read as places, as they stand there",
+                   "missing_point = [0, 0, 0] in a layout of the file, where that means not seen"});
+  }
+  if (far_.count > 0 && far_.count <= person_.count) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "the points of a frame within 20 m",
+                         fmt::format("{} of {} frames in which they are not, {:.0f} m in the mean",
+                                     far_.count, far_.count + person_.count,
+                                     far_.diagonals_m / static_cast<double>(far_.count))},
+                   "read as places, as they stand there",
+                   "missing_point in a layout of the file, where a number stands for not seen"});
+  }
+  return out;
+}
+
+Findings PointSizes::judge_unit(const std::string& file) const {
+  const Frames& most = far_.count > person_.count ? far_ : person_;
+  if (far_.count + person_.count < enough) return {};
+  const double size = most.diagonals_m / static_cast<double>(most.count);
   if (size <= largest_m && (size >= smallest_m || most_points_ < enough)) return {};
   const std::string found =
       size < 1000.0 ? fmt::format("{:.3g} m", size) : fmt::format("{:.0f} m", size);

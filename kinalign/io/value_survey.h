@@ -11,21 +11,34 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace kinalign {
 
 class PointSizes {
  public:
   void add(const PointFrames& block);
-  /// A finding where the points of a frame lie too far apart for a person or, where ten or more
-  /// were seen, too near, or where hardly a frame has any.
+  /// Findings where the points of a frame lie too far apart for a person or, where ten or more
+  /// were seen, too near, where hardly a frame has any, and where a point now and then is at
+  /// exactly 0, 0, 0 or far from all others, as writers mark what they did not see.
   Findings judge(const PointHeader& header, const std::string& file) const;
 
  private:
   std::uint64_t all_frames_ = 0, seen_frames_ = 0;
-  std::uint64_t frames_ = 0;       // with two points or more
+  /// Frames with two points or more, and the diagonals of the boxes around these.
+  struct Frames {
+    std::uint64_t count = 0;
+    double diagonals_m = 0.0;  // their sum
+  };
+  Frames person_, far_;            // up to 20 m, and beyond
   std::uint64_t most_points_ = 0;  // in one of them
-  double diagonals_m_ = 0.0;       // of the boxes around them, their sum
+  struct Seen {
+    std::uint64_t at_zero = 0, elsewhere = 0;
+  };
+  std::vector<Seen> joints_;
+
+  Findings judge_marks(const PointHeader& header, const std::string& file) const;
+  Findings judge_unit(const std::string& file) const;
 };
 
 class ImuSizes {

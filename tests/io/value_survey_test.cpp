@@ -71,6 +71,35 @@ TEST_CASE("fewer points than a person has may be near to each other, not a kilom
         "1000 times too large");
 }
 
+TEST_CASE("zeros that come and go, and points far from all others, mark what was not seen") {
+  const auto said = [](Vec3 mark, std::size_t each) {
+    PointFrames block;
+    for (std::size_t t = 0; t < rows; ++t) {
+      block.stamps.push_back(utc_time(static_cast<std::int64_t>(t)));
+      const Vec3 hand = t % each == 0 ? mark : Vec3(0.4, 1.0, 2.0);
+      for (const Vec3& at : {Vec3(0.0, 0.9, 2.0), hand}) {
+        block.positions.insert(block.positions.end(), at.begin(), at.end());
+        block.state.push_back(Tracking::tracked);
+      }
+    }
+    PointSizes sizes;
+    sizes.add(block);
+    std::string all;
+    for (const Finding& finding : sizes.judge({{"Hip", "Hand"}}, "k.csv")) {
+      all += to_string(finding.what) + "; " + finding.repair + "\n";
+    }
+    return all;
+  };
+  CHECK(said(Vec3::Zero(), 7) ==
+        "k.csv: expected points where they were seen, found 6 at exactly 0, 0, 0, the first of "
+        "'Hand'; missing_point = [0, 0, 0] in a layout of the file, where that means not seen\n");
+  CHECK(said(Vec3::Zero(), 1) == "");  // the file's origin
+  CHECK(said(Vec3(-9999, -9999, -9999), 7) ==
+        "k.csv: expected the points of a frame within 20 m, found 6 of 40 frames in which they are "
+        "not, 17320 m in the mean; missing_point in a layout of the file, where a number stands "
+        "for not seen\n");
+}
+
 TEST_CASE("accelerations in g, or with gravity where none should be, are told apart from m/s2") {
   CHECK(said_of_node(9.81, 1.0, true).empty());
   CHECK(said_of_node(20.0, 5.0, true).empty());  // a shank that runs
