@@ -3,6 +3,7 @@
 #include "kinalign/core/numbers.h"
 #include "kinalign/io/bvh.h"
 #include "kinalign/io/bvh_words.h"
+#include "kinalign/io/utf8.h"
 
 #include <algorithm>
 #include <array>
@@ -220,9 +221,11 @@ Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
                      std::string_view name, Findings& findings) {
   Skeleton out;
   out.parents = hierarchy.parents;
-  out.joint_names = told_apart(hierarchy.names);
+  std::vector<std::string> names;
+  for (const std::string& written : hierarchy.names) names.push_back(as_utf8(written));
+  out.joint_names = told_apart(names);
   for (std::size_t j = 0; j < out.joint_names.size(); ++j) {
-    const std::string& written = hierarchy.names[j];
+    const std::string& written = names[j];
     if (out.joint_names[j] == written) continue;
     findings.push_back(
         {Severity::warning,

@@ -105,6 +105,21 @@ Result<void> check_names(const std::vector<SurveyedFile>& opened) {
   return {};
 }
 
+/// What a user calls subject, action, streams and nodes stands in the take.
+Result<void> check_texts(const Manifest& manifest) {
+  std::vector<std::string> texts{manifest.subject, manifest.action};
+  for (const StreamOptions& stream : manifest.streams) {
+    texts.push_back(stream.name);
+    for (const StreamFile& file : stream.files) texts.push_back(file.node);
+  }
+  for (const std::string& text : texts) {
+    if (is_utf8(text)) continue;
+    return Failure(Error{"", 0, "subject, action and names in UTF-8, as a take holds them",
+                         "'" + shown(text) + "'"});
+  }
+  return {};
+}
+
 /// Nodes' files share a layout: one stream names it once.
 void drop_repeated(std::vector<SurveyedFile>& opened) {
   for (std::size_t i = 0; i < opened.size(); ++i) {
@@ -161,6 +176,7 @@ Result<std::vector<RecordedStream>> open_streams(FileSystem& files,
 Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
                                  const std::string& folder, const Progress& progress,
                                  std::size_t jobs) {
+  KA_TRY(check_texts(manifest));
   auto opened = KA_TRY(open_all(files, folder, manifest.streams, progress, jobs));
   KA_TRY(check_names(opened));
   Recording recording;

@@ -4,6 +4,7 @@
 #include "kinalign/core/hash.h"
 #include "kinalign/io/formats.h"
 #include "kinalign/io/unchanged.h"
+#include "kinalign/io/utf8.h"
 #include "kinalign/io/value_survey.h"
 
 #include <fmt/format.h>
@@ -19,11 +20,16 @@ namespace {
 ClipInput input_of(const Skeleton& header, Passes<ClipFrames> passes) {
   return {header, std::move(passes)};
 }
+/// Names of files from before UTF-8, as takes hold texts.
+std::vector<std::string> all_as_utf8(std::vector<std::string> names) {
+  for (std::string& name : names) name = as_utf8(name);
+  return names;
+}
 PointInput input_of(const PointHeader& header, Passes<PointFrames> passes) {
-  return {header.joint_names, std::move(passes)};
+  return {all_as_utf8(header.joint_names), std::move(passes)};
 }
 ImuInput input_of(const ImuHeader& header, Passes<ImuSamples> passes) {
-  return {header.node_names, header.content, std::move(passes)};
+  return {all_as_utf8(header.node_names), header.content, std::move(passes)};
 }
 
 using Version = std::optional<FileVersion>;

@@ -27,4 +27,19 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+std::string as_utf8(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const Character next = first_character(text);
+    const auto lead = static_cast<unsigned char>(text.front());
+    if (next.code) {
+      out += text.substr(0, next.bytes);
+    } else {
+      out += {static_cast<char>(0xc0U | lead >> 6U), static_cast<char>(0x80U | (lead & 0x3fU))};
+    }
+    text.remove_prefix(next.bytes);
+  }
+  return out;
+}
+
 }  // namespace kinalign

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace kinalign {
@@ -17,5 +18,8 @@ struct Character {
 Character first_character(std::string_view text);
 
 bool is_utf8(std::string_view text);
+
+/// The text, a byte that begins no character read as one of Latin-1.
+std::string as_utf8(std::string_view text);
 
 }  // namespace kinalign

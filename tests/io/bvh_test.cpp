@@ -167,6 +167,19 @@ TEST_CASE("a repeated name is told apart, and written as it was") {
   CHECK(written(*file).find("b#2") == std::string::npos);
 }
 
+TEST_CASE("a name from before UTF-8 is read as Latin-1, and written as it was") {
+  const auto file = read(
+      "HIERARCHY\nROOT H\xfc"
+      "fte\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation Zrotation\n}\n"
+      "MOTION\nFrames: 0\nFrame Time: 0.01\n");
+  REQUIRE(file);
+  CHECK(file->clip.skeleton.joint_names == std::vector<std::string>{"H\xc3\xbc"
+                                                                    "fte"});
+  CHECK(file->findings.empty());
+  CHECK(written(*file).find("ROOT H\xfc"
+                            "fte") != std::string::npos);
+}
+
 TEST_CASE("a repeated name counts on to one that no other joint has") {
   std::string joints;
   for (const std::string name : {"b", "b", "b#2", "b", "b#2"}) {

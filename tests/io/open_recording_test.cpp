@@ -165,6 +165,27 @@ TEST_CASE("two files that a take would call by one name are refused with both pa
   CHECK(error_of(open_recording(files, manifest, base)) == "none");
 }
 
+TEST_CASE("what a user calls a subject, a stream or a node has to be UTF-8 as well") {
+  const FreshFolder folder;
+  folder.write("lab.toml", layout_text);
+  folder.write("p.csv", "1,2,3\n");
+  PosixFiles files;
+  const auto opened = [&](const Manifest& manifest) {
+    return error_of(open_recording(files, manifest, folder.path() + "/"));
+  };
+  Manifest manifest;
+  manifest.streams = {stream("one", "p.csv")};
+  CHECK(opened(manifest) == "none");
+  for (const auto& change :
+       {+[](Manifest& m) { m.subject = "\xff"; }, +[](Manifest& m) { m.action = "\xff"; },
+        +[](Manifest& m) { m.streams[0].name = "\xff"; },
+        +[](Manifest& m) { m.streams[0].files[0].node = "\xff"; }}) {
+    Manifest wrong = manifest;
+    change(wrong);
+    CHECK(opened(wrong).starts_with("expected subject, action and names in UTF-8"));
+  }
+}
+
 TEST_CASE("a file whose name is no UTF-8 is refused, since no take can hold it") {
   const FreshFolder folder;
   folder.write("lab.toml", layout_text);

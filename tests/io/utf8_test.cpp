@@ -35,6 +35,13 @@ TEST_CASE("every character is read from its bytes, and from no fewer") {
   CHECK(wrong == 0);
 }
 
+TEST_CASE("a byte that begins no character is read as one of Latin-1") {
+  CHECK(as_utf8("M\xfcller") == "M\xc3\xbcller");
+  CHECK(as_utf8("M\xc3\xbcller") == "M\xc3\xbcller");
+  CHECK(as_utf8("\xe9\xc3") == "\xc3\xa9\xc3\x83");
+  CHECK(as_utf8("") == "");
+}
+
 TEST_CASE("bytes of other encodings are no UTF-8") {
   CHECK(is_utf8(""));
   CHECK(is_utf8("M\xc3\xbcller.bvh"));
