@@ -11,8 +11,7 @@ Result<Arrivals> arrivals_of(const RecordedStream& stream, const StreamOptions& 
   return std::visit(
       [&](const auto& input) -> Result<Arrivals> {
         constexpr std::size_t at_once = 4096;
-        Window window(KA_TRY(input.passes()), stream.clock, {},
-                      UsualStep{taken_step_ns(stream, options), role});
+        Window window(KA_TRY(input.passes()), stream.clock, {}, taken_step(stream, options, role));
         std::uint64_t rows = 0;
         for (std::int64_t from = INT64_MIN;; from = window.time_ns.back() + 1) {
           KA_TRY(window.fill(from, at_once));

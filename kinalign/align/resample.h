@@ -22,9 +22,9 @@ constexpr std::size_t knots_felt = std::max(spline_reach, rotation_spline_reach)
 enum class RotationCurve { spline, slerp };
 
 struct ResampleRule {
-  std::int64_t gap_ns = 0;         // longer stretches without samples are gaps
-  std::int64_t step_ns = 0;        // nominal, else the stream's median one
-  std::int64_t taken_step_ns = 0;  // in which the device took its samples
+  std::int64_t gap_ns = 0;   // longer stretches without samples are gaps
+  std::int64_t step_ns = 0;  // nominal, else the stream's median one
+  UsualStep taken;           // in which the device took its samples
   RotationCurve curve = RotationCurve::spline;
   std::int64_t begin_ns = 0, end_ns = 0;  // of the take: gaps are counted within
   bool finer = false;                     // than the grid: what that can't carry is measured
@@ -52,7 +52,7 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
 class PointResampler {
  public:
   PointResampler(Pass<PointFrames> pass, const TimeModel& clock, const ResampleRule& rule)
-      : window_(std::move(pass), clock, rule.gap_count(), UsualStep{rule.taken_step_ns}),
+      : window_(std::move(pass), clock, rule.gap_count(), rule.taken),
         clock_(&clock),
         rule_(rule) {}
 
@@ -73,7 +73,7 @@ class ImuResampler {
  public:
   ImuResampler(Pass<ImuSamples> pass, const TimeModel& clock, const ResampleRule& rule,
                const ImuContent& content)
-      : window_(std::move(pass), clock, rule.gap_count(), UsualStep{rule.taken_step_ns}),
+      : window_(std::move(pass), clock, rule.gap_count(), rule.taken),
         clock_(&clock),
         rule_(rule),
         content_(content) {}

@@ -32,7 +32,7 @@ class ReferenceRows {
  public:
   ReferenceRows(Pass<Frames> pass, const RecordedStream& stream, const AlignPlan& plan)
       : window_(std::move(pass), stream.clock, plan.streams[plan.reference].rule.gap_count(),
-                UsualStep{plan.streams[plan.reference].rule.taken_step_ns, Role::reference}),
+                plan.streams[plan.reference].rule.taken),
         most_rows_(rows_at_once(plan.header)),
         begin_(to_ns(plan.begin)),
         end_(to_ns(plan.end)) {}

@@ -84,6 +84,7 @@ enum class Role { reference, resampled };
 struct UsualStep {
   std::int64_t ns = 0;
   Role role = Role::resampled;
+  bool steady = true;  // known well enough to tell late samples by
 };
 
 /// What was pulled of a stream so far.
@@ -101,7 +102,7 @@ class Window {
         clock_(&clock),
         near_ns_(step.role == Role::resampled ? step.ns / near_share : 0),
         step_ns_(step.ns),
-        arrivals_(step.ns),
+        arrivals_(step.ns, step.steady),
         gaps_(count) {}
 
   /// After it, `rows` hold all samples within [from, to] and, where the stream has them, `reach`
@@ -225,23 +226,35 @@ class Window {
         flush(i);
         take_back();
       }
-      const bool shows = there && shows_last_late(t);
+      const bool shows = there && shows_last_late(t, i);
       if (shows) {
         flush(i);
         drop_late();
       }
       if (there && !shows) late_since_.reset();
       time_ns.push_back(t);
-      if (there) see(t);
+      if (there) see(t, i);
     }
     flush(i);
   }
 
-  /// Whether a sample at `t` comes so soon behind the last one seen that that one was held back. Of
-  /// a whole stretch of such samples one a step stays.
-  bool shows_last_late(std::int64_t t) const {
-    return last_seen_ && t - *last_seen_ < near_ns_ && arrivals_.can_be_late() &&
-           t - late_since_.value_or(*last_seen_) < step_ns_;
+  /// Whether row i of the block, at `t`, is of those by which arrivals are judged. Nodes may stand
+  /// in rows of their own, near each other's: a row is if it shows something that the last one of
+  /// them showed, or if there has been none for long.
+  bool in_line(std::int64_t t, std::size_t i) const {
+    if (!line_.t || t - *line_.t > late_steps * step_ns_) return true;
+    const std::size_t width = columns(block_);
+    for (std::size_t c = 0; c < width; ++c) {
+      if (line_.seen[c] != 0 && seen(block_, i * width + c)) return true;
+    }
+    return false;
+  }
+
+  /// Whether row i of the block, at `t`, comes so soon behind the last one seen that that one was
+  /// held back. Of a whole stretch of such samples one a step stays.
+  bool shows_last_late(std::int64_t t, std::size_t i) const {
+    return last_seen_ && t - *last_seen_ < near_ns_ && line_.t == last_seen_ && in_line(t, i) &&
+           arrivals_.shows_late(t) && t - late_since_.value_or(*last_seen_) < step_ns_;
   }
 
   void drop_late() {
@@ -255,8 +268,8 @@ class Window {
     const bool was_seen = last_seen_ == time_ns.back();
     drop_last_row();
     if (!was_seen) return;
+    if (line_.t == last_seen_) arrivals_.take_back();
     unsee();
-    arrivals_.take_back();
   }
 
   void drop_last_row() {
@@ -264,20 +277,34 @@ class Window {
     time_ns.pop_back();
   }
 
-  /// The row at `t` has something in it.
-  void see(std::int64_t t) {
-    before_[1] = before_[0];
-    before_[0] = {last_seen_, gaps_};
+  /// Row i of the block, at `t`, has something in it.
+  void see(std::int64_t t, std::size_t i) {
+    std::swap(before_[0], before_[1]);
+    before_[0].seen = last_seen_;
+    before_[0].gaps = gaps_;
+    before_[0].line = line_;
     if (last_seen_) gaps_.add(*last_seen_, t);
     last_seen_ = t;
+    if (!in_line(t, i)) return;
+    const std::size_t width = columns(block_);
+    line_.t = t;
+    line_.seen.resize(width);
+    for (std::size_t c = 0; c < width; ++c) line_.seen[c] = seen(block_, i * width + c) ? 1 : 0;
     arrivals_.add(t);
   }
 
   void unsee() {
     last_seen_ = before_[0].seen;
     gaps_ = before_[0].gaps;
-    before_[0] = before_[1];
+    line_ = before_[0].line;
+    std::swap(before_[0], before_[1]);
   }
+
+  /// The last row by which arrivals are judged.
+  struct Line {
+    std::optional<std::int64_t> t;
+    std::vector<std::uint8_t> seen;  // [columns]
+  };
 
   Pass<Frames> pass_;
   const TimeModel* clock_;
@@ -288,11 +315,13 @@ class Window {
   GapCount gaps_;
   std::uint64_t held_back_ = 0;
   std::optional<std::int64_t> last_seen_;  // stamp of the last row added with anything in it
+  Line line_;
   /// As it was without that one, and without the one before: a wild stamp is taken back, and then
   /// the one in front of it may be late.
   struct Before {
     std::optional<std::int64_t> seen;
     GapCount gaps;
+    Line line;
   };
   std::array<Before, 2> before_;
   std::optional<std::int64_t> late_since_;  // the first of samples held back one after the other

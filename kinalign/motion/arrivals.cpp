@@ -11,7 +11,10 @@ namespace {
 constexpr std::uint64_t reach = 256;  // samples: how far behind one the proof is looked for
 constexpr double slack = 0.05;        // of a step
 constexpr double regular = 0.2;  // of a step: so much longer or shorter is no haste and no pause
-constexpr double flush_share = 0.1, flush_steps = 10.0;
+constexpr double flush_share = 0.125, flush_steps = 10.0;
+constexpr double heap_share = 0.05;  // of a step
+constexpr std::uint64_t heap = 8;    // so near each other that many may come without a pause
+constexpr double hidden = 2.0;       // steps that may have waited behind a usual one
 
 }  // namespace
 
@@ -27,12 +30,12 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
     return last;
   }
   last.step = static_cast<double>(t) - static_cast<double>(before.t);
-  const bool near = is_near(last.step);
-  if (near && can_be_late(before)) {
+  last.run = static_cast<double>(near_share) * last.step < step_ ? before.run + 1 : 0;
+  if (shows_late(before, last.step)) {
     ++last.near;
     last.first_near = last.first_near || before.count == 1;
   }
-  const bool heels = last.step < flush_share * step_;
+  const bool heels = last.step <= flush_share * step_;
   last.flush = before.flush && heels && static_cast<double>(t - before.first) < flush_steps * step_;
   if (last.flush) return last;
   if (before.flush && heels) {  // too long for a flush: the device was quicker
@@ -44,7 +47,7 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
   last.pause =
       std::max(0.0, (before.flush ? 0.0 : before.pause) + over - (usual ? slack * step_ : 0.0));
   last.doubt = std::clamp(before.doubt + over, 0.0, static_cast<double>(late_steps) * step_);
-  if (2.0 * last.step >= step_) last.doubt = std::max(last.doubt, step_);
+  if (2.0 * last.step >= step_) last.doubt = std::max(last.doubt, hidden * step_);
   return last;
 }
 
@@ -67,8 +70,9 @@ void ArrivalSurveyor::add(std::int64_t t) {
 void ArrivalSurveyor::settle() {
   if (settled_) return;
   settled_ = true;
+  if (!steady_) return;
   if (before_.flush && !now_.flush) {
-    if (now_.step >= flush_share * step_) find_late(after_line(before_));
+    if (now_.step > flush_share * step_) find_late(after_line(before_));
     candidates_.clear();
   }
   const std::uint64_t index = now_.count - 1;
@@ -93,8 +97,10 @@ void ArrivalSurveyor::find_late(double after_line) {
   }
 }
 
-bool ArrivalSurveyor::can_be_late(const Last& last) const {
-  return last.count > 0 && 2.0 * std::max(last.pause, last.doubt) >= step_;
+bool ArrivalSurveyor::shows_late(const Last& last, double step) const {
+  if (static_cast<double>(near_share) * step >= step_) return false;
+  return (step < heap_share * step_ && last.run < heap) ||
+         2.0 * std::max(last.pause, last.doubt) >= step_;
 }
 
 void ArrivalSurveyor::take_back() {

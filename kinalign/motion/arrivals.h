@@ -30,23 +30,29 @@ struct Arrivals {
 /// come quicker than they are taken have waited, and so a pause stands in front of them, which is
 /// as long at the least: late_i <= t_i - t_k - (i - k) step behind a punctual sample k. A device
 /// that now and then measures quicker makes no pause before. In front of the first sample any
-/// pause may have been: of what stands there only a flush counts, samples less than a tenth of a
+/// pause may have been: of what stands there only a flush counts, samples up to an eighth of a
 /// step apart that are through within ten steps. The step may be 5 % off.
 ///
-/// Near ones need less: a loop that reads a little slower than the device measures finds two
-/// samples now and then, without a pause that shows. Any usual step may hide one step of waiting.
-/// Where a device begins to measure five times quicker, one sample is so taken for near.
+/// Near ones need less: a loop that reads a little slower than the device measures finds two or
+/// three samples now and then, without a pause that shows. Up to eight in a row may come nearer
+/// than a twentieth of a step, and any usual step may hide two steps of waiting: where a device
+/// begins to measure five times quicker, two or three samples are so taken for near, of twenty
+/// times quicker eight.
 class ArrivalSurveyor {
  public:
-  /// 0: no step is known, nothing is told.
-  explicit ArrivalSurveyor(std::int64_t step_ns) : step_(static_cast<double>(step_ns)) {}
+  /// 0: no step is known, nothing is told. Not `steady`: it is not known to 5 %, and no more than
+  /// near ones are told.
+  explicit ArrivalSurveyor(std::int64_t step_ns, bool steady = true)
+      : step_(static_cast<double>(step_ns)), steady_(steady) {}
 
   /// Rising stamps, ns.
   void add(std::int64_t t);
   /// The last one was no sample. One can be taken back, then the next is to be added.
   void take_back();
-  /// Whether the last one is near a sample that comes within a fifth of a step.
-  bool can_be_late() const { return can_be_late(now_); }
+  /// Whether the last one was held back if the next comes at `t`.
+  bool shows_late(std::int64_t t) const {
+    return now_.count > 0 && shows_late(now_, static_cast<double>(t) - static_cast<double>(now_.t));
+  }
   Arrivals result() const;
 
  private:
@@ -60,6 +66,7 @@ class ArrivalSurveyor {
   /// What is known when a sample has come.
   struct Last {
     std::uint64_t count = 0, near = 0;
+    std::uint64_t run = 0;  // quick steps in a row, to it
     std::int64_t first = 0, t = 0;
     double step = 0.0;   // to it, ns
     double pause = 0.0;  // how late it can be behind the pauses that show, ns
@@ -68,14 +75,14 @@ class ArrivalSurveyor {
     bool first_near = false;
   };
 
-  bool is_near(double step) const { return static_cast<double>(near_share) * step < step_; }
-  bool can_be_late(const Last& last) const;
+  bool shows_late(const Last& last, double step) const;
   Last behind(const Last& before, std::int64_t t) const;
   double after_line(const Last& last) const;
   void settle();
   void find_late(double after_line);
 
   double step_;
+  bool steady_;
   Last now_, before_;
   bool settled_ = true;               // `now_` has been compared with those before it
   std::deque<Candidate> candidates_;  // of the last `reach` samples

@@ -372,6 +372,8 @@ TEST_CASE("streams that share less than half of the shortest one's time are a wa
         "outside: 'suit' begins last, 'kinect' ends first; these are cut; ");
   plan.header.frames = 900;
   CHECK(judge_plan(recording, plan).empty());  // a tenth
+  plan.header.frames = 899;
+  CHECK(judge_plan(recording, plan).size() == 1);
   plan.header.frames = 514;
   plan.begin = recording.streams[1].survey.first = utc_time(17'000'000'000);
   recording.streams[1].survey.last = utc_time(49'967'000'000);
