@@ -41,7 +41,11 @@ void PointSizes::add(const PointFrames& block) {
       if (block.state[cell] == Tracking::missing) continue;
       const Vec3 at = vec3(block.positions, cell);
       Seen& joint = joints_[cell - t * joints];
-      ++(at.isZero(0.0) ? joint.at_zero : joint.elsewhere);
+      if (!at.isZero(0.0)) {
+        ++joint.elsewhere;
+      } else if (joint.elsewhere > 0) {
+        ++joint.at_zero;
+      }
       box.extend(at);
       ++seen;
     }
@@ -67,13 +71,14 @@ Findings PointSizes::judge(const PointHeader& header, const std::string& file) c
   return out;
 }
 
-/// A point that is always at zero is the file's origin: a body seen from its own root.
+/// A point that is always or first at zero is the file's origin: a body seen from its own root, or
+/// from where its root was first.
 Findings PointSizes::judge_marks(const PointHeader& header, const std::string& file) const {
   Findings out;
   std::uint64_t at_zero = 0;
   std::string first;
   for (std::size_t j = 0; j < joints_.size() && j < header.joint_names.size(); ++j) {
-    if (joints_[j].at_zero == 0 || joints_[j].elsewhere == 0) continue;
+    if (joints_[j].at_zero == 0) continue;
     if (at_zero == 0) first = shown(header.joint_names[j]);
     at_zero += joints_[j].at_zero;
   }

@@ -33,7 +33,7 @@ class PointSizes {
   Frames person_, far_;            // up to 20 m, and beyond
   std::uint64_t most_points_ = 0;  // in one of them
   struct Seen {
-    std::uint64_t at_zero = 0, elsewhere = 0;
+    std::uint64_t elsewhere = 0, at_zero = 0;  // behind another place
   };
   std::vector<Seen> joints_;
 

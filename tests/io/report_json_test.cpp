@@ -28,6 +28,7 @@ AlignmentReport small_report() {
   imu.gap_time_ns = 8;
   imu.samples = 120;
   imu.invalid = 9;
+  imu.empty_rows = 19;
   imu.inferred = 10;
   imu.bridged = 11;
   imu.worst_nearest_ns = 12;
@@ -83,7 +84,7 @@ const std::string whole = R"({
       "gap_time_ns": 8,
       "samples": 120,
       "invalid": 9,
-      "empty_rows": 0,
+      "empty_rows": 19,
       "inferred": 10,
       "bridged": 11,
       "worst_nearest_ns": 12,
