@@ -30,7 +30,7 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
     return last;
   }
   last.step = static_cast<double>(t) - static_cast<double>(before.t);
-  last.run = static_cast<double>(near_share) * last.step < step_ ? before.run + 1 : 0;
+  last.run = is_near(last.step) ? before.run + 1 : 0;
   if (shows_late(before, last.step)) {
     ++last.near;
     last.first_near = last.first_near || before.count == 1;
@@ -46,7 +46,7 @@ ArrivalSurveyor::Last ArrivalSurveyor::behind(const Last& before, std::int64_t t
   const double over = last.step - step_;
   last.pause =
       std::max(0.0, (before.flush ? 0.0 : before.pause) + over - (usual ? slack * step_ : 0.0));
-  last.doubt = std::clamp(before.doubt + over, 0.0, static_cast<double>(late_steps) * step_);
+  last.doubt = std::clamp(before.doubt + over, 0.0, least_late());
   if (2.0 * last.step >= step_) last.doubt = std::max(last.doubt, hidden * step_);
   return last;
 }
@@ -80,7 +80,7 @@ void ArrivalSurveyor::settle() {
     candidates_.pop_front();
   }
   if (!now_.flush && now_.step < (1.0 - slack) * step_) find_late(after_line(now_));
-  if (now_.pause >= static_cast<double>(late_steps) * step_) {
+  if (now_.pause >= least_late()) {
     candidates_.push_back({index, after_line(now_), now_.pause, false});
   }
 }
@@ -89,7 +89,7 @@ void ArrivalSurveyor::settle() {
 void ArrivalSurveyor::find_late(double after_line) {
   for (Candidate& c : candidates_) {
     const double late = std::min(c.pause, c.after_line - after_line);
-    if (late < static_cast<double>(late_steps) * step_) continue;
+    if (late < least_late()) continue;
     late_.late += c.late ? 0 : 1;
     late_.first_late = late_.first_late || c.index == 0;
     c.late = true;
@@ -98,7 +98,7 @@ void ArrivalSurveyor::find_late(double after_line) {
 }
 
 bool ArrivalSurveyor::shows_late(const Last& last, double step) const {
-  if (static_cast<double>(near_share) * step >= step_) return false;
+  if (!is_near(step)) return false;
   return (step < heap_share * step_ && last.run < heap) ||
          2.0 * std::max(last.pause, last.doubt) >= step_;
 }

@@ -75,6 +75,8 @@ class ArrivalSurveyor {
     bool first_near = false;
   };
 
+  bool is_near(double step) const { return static_cast<double>(near_share) * step < step_; }
+  double least_late() const { return static_cast<double>(late_steps) * step_; }
   bool shows_late(const Last& last, double step) const;
   Last behind(const Last& before, std::int64_t t) const;
   double after_line(const Last& last) const;
