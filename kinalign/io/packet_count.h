@@ -61,8 +61,10 @@ class PacketCount {
     // The first counter may be the wild one: what falls behind it counts anew.
     const bool anew = s.rows == 1 && counter < s.last && !follows(counter, s);
     const std::int64_t step = s.rows == 0 ? counter : anew ? counter - s.last : around(counter, s);
-    if (anew) s.highest = counter - 1;
-    if (anew) s.wrap = narrow;
+    if (anew) {
+      s.highest = counter - 1;
+      s.wrap = narrow;
+    }
     if (counter >= narrow) s.wrap = wide;
     if (s.rows > 0 && counter < s.last && step > near) s.guessed = std::max(s.guessed, step);
     s.place += step;
