@@ -119,8 +119,11 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
     append(found, judge_start(stream, options, arrivals));
     append(out.findings, said_of(stream, input.recording, std::move(found)));
   }
-  if (!input.manifest) name_as_typed(path, input.recording.streams.front(), out.findings);
-  if (input.manifest) append(out.findings, check_plan(path, input));
+  if (input.manifest) {
+    append(out.findings, check_plan(path, input));
+  } else {
+    name_as_typed(path, input.recording.streams.front(), out.findings);
+  }
   return out;
 }
 
