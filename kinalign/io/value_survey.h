@@ -24,21 +24,22 @@ class PointSizes {
   Findings judge(const PointHeader& header, const std::string& file) const;
 
  private:
-  std::uint64_t all_frames_ = 0, seen_frames_ = 0;
   /// Frames with two points or more, and the diagonals of the boxes around these.
   struct Frames {
     std::uint64_t count = 0;
     double diagonals_m = 0.0;  // their sum
   };
-  Frames person_, far_;            // up to 20 m, and beyond
-  std::uint64_t most_points_ = 0;  // in one of them
   struct Seen {
     std::uint64_t elsewhere = 0, at_zero = 0;  // behind another place
   };
-  std::vector<Seen> joints_;
 
   Findings judge_marks(const PointHeader& header, const std::string& file) const;
   Findings judge_unit(const std::string& file) const;
+
+  std::uint64_t all_frames_ = 0, seen_frames_ = 0;
+  Frames person_, far_;            // up to 20 m, and beyond
+  std::uint64_t most_points_ = 0;  // in one of them
+  std::vector<Seen> joints_;
 };
 
 class ImuSizes {
