@@ -17,6 +17,8 @@ constexpr std::uint64_t enough = 10;  // points for a person, frames or samples 
 /// Bounds chosen wide: a metre taken for a centimetre or the other way round lies outside, children
 /// and two people in one volume lie inside.
 constexpr double smallest_m = 0.2, largest_m = 20.0;
+/// From frame to frame; a hand at 15 Hz goes as far.
+constexpr double furthest_step_m = 0.2;
 /// A node at rest reads 9.8 m/s2, shanks of runners 20 in the mean.
 constexpr double least_with_gravity = 6.0, most_acceleration = 40.0;
 /// Limbs turn by 1 to 5 rad/s in the mean; degrees read as radians are 57 times more.
@@ -29,6 +31,18 @@ double times_too_large(double size_m) {
 
 }  // namespace
 
+void PointSizes::Seen::add(const Vec3& at) {
+  if (at.isZero(0.0)) {
+    ++now_at_zero;
+    return;
+  }
+  const bool comes_far = at.squaredNorm() > furthest_step_m * furthest_step_m;
+  if (far || comes_far) lost_at_zero += now_at_zero;
+  now_at_zero = 0;
+  elsewhere = true;
+  far = comes_far;
+}
+
 void PointSizes::add(const PointFrames& block) {
   if (block.size() == 0) return;
   const std::size_t joints = block.state.size() / block.size();
@@ -40,12 +54,7 @@ void PointSizes::add(const PointFrames& block) {
     for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
       if (block.state[cell] == Tracking::missing) continue;
       const Vec3 at = vec3(block.positions, cell);
-      Seen& joint = joints_[cell - t * joints];
-      if (!at.isZero(0.0)) {
-        ++joint.elsewhere;
-      } else if (joint.elsewhere > 0) {
-        ++joint.at_zero;
-      }
+      joints_[cell - t * joints].add(at);
       box.extend(at);
       ++seen;
     }
@@ -71,16 +80,21 @@ Findings PointSizes::judge(const PointHeader& header, const std::string& file) c
   return out;
 }
 
-/// A point that is always or first at zero is the file's origin: a body seen from its own root, or
-/// from where its root was first.
+/// A point that is always at zero, or moves away from it, is the file's origin: a body seen from
+/// its own root, or from where its root was first. Two can't be.
 Findings PointSizes::judge_marks(const PointHeader& header, const std::string& file) const {
   Findings out;
+  const auto stays = std::count_if(joints_.begin(), joints_.end(), [](const Seen& joint) {
+    return !joint.elsewhere && joint.now_at_zero > 0;
+  });
   std::uint64_t at_zero = 0;
   std::string first;
   for (std::size_t j = 0; j < joints_.size() && j < header.joint_names.size(); ++j) {
-    if (joints_[j].at_zero == 0) continue;
-    if (at_zero == 0) first = shown(header.joint_names[j]);
-    at_zero += joints_[j].at_zero;
+    const Seen& joint = joints_[j];
+    const bool never_seen = !joint.elsewhere && stays > 1;
+    const std::uint64_t zeros = never_seen ? joint.now_at_zero : joint.lost();
+    if (at_zero == 0 && zeros > 0) first = shown(header.joint_names[j]);
+    at_zero += zeros;
   }
   if (at_zero > 0) {
     out.push_back({Severity::warning,

@@ -29,8 +29,15 @@ class PointSizes {
     std::uint64_t count = 0;
     double diagonals_m = 0.0;  // their sum
   };
+  /// Where a joint was in the frames in which it was seen.
   struct Seen {
-    std::uint64_t elsewhere = 0, at_zero = 0;  // behind another place
+    bool elsewhere = false;          // than at zero
+    bool far = false;                // its last place elsewhere was
+    std::uint64_t now_at_zero = 0;   // since then
+    std::uint64_t lost_at_zero = 0;  // before, with a place far away in front or behind
+
+    void add(const Vec3& at);
+    std::uint64_t lost() const { return lost_at_zero + (far ? now_at_zero : 0); }
   };
 
   Findings judge_marks(const PointHeader& header, const std::string& file) const;

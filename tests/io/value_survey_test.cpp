@@ -71,30 +71,55 @@ TEST_CASE("fewer points than a person has may be near to each other, not a kilom
         "1000 times too large");
 }
 
-TEST_CASE("zeros that come and go, and points far from all others, mark what was not seen") {
-  const auto said = [](Vec3 mark, std::size_t each) {
-    PointFrames block;
-    for (std::size_t t = 0; t < rows; ++t) {
-      block.stamps.push_back(utc_time(static_cast<std::int64_t>(t)));
-      const Vec3 hand = t % each == 0 ? mark : Vec3(0.4, 1.0, 2.0);
-      for (const Vec3& at : {Vec3(0.0, 0.9, 2.0), hand}) {
-        block.positions.insert(block.positions.end(), at.begin(), at.end());
-        block.state.push_back(Tracking::tracked);
-      }
+/// Of a hip that sways along z by `hip_sways`, m, and a hand, frame by frame.
+template <class Hand>
+std::string said_of_hand(Hand hand, const Vec3& hip = {0.0, 0.9, 2.0}, double hip_sways = 0.0) {
+  PointFrames block;
+  for (std::size_t t = 0; t < rows; ++t) {
+    block.stamps.push_back(utc_time(static_cast<std::int64_t>(t)));
+    const double sway = hip_sways * static_cast<double>(t % 20 < 10 ? t % 10 : 10 - t % 10);
+    const Vec3 moved = hip + Vec3(0.0, 0.0, sway);
+    for (const Vec3& at : {moved, hand(t)}) {
+      block.positions.insert(block.positions.end(), at.begin(), at.end());
+      block.state.push_back(Tracking::tracked);
     }
-    PointSizes sizes;
-    sizes.add(block);
-    std::string all;
-    for (const Finding& finding : sizes.judge({{"Hip", "Hand"}}, "k.csv")) {
-      all += to_string(finding.what) + "; " + finding.repair + "\n";
-    }
-    return all;
-  };
-  CHECK(said(Vec3::Zero(), 7) ==
-        "k.csv: expected points where they were seen, found 5 at exactly 0, 0, 0, the first of "
-        "'Hand'; missing_point = [0, 0, 0] in a layout of the file, where that means not seen\n");
-  CHECK(said(Vec3::Zero(), 1) == "");  // the file's origin
-  CHECK(said(Vec3(-9999, -9999, -9999), 7) ==
+  }
+  PointSizes sizes;
+  sizes.add(block);
+  std::string all;
+  for (const Finding& finding : sizes.judge({{"Hip", "Hand"}}, "k.csv")) {
+    all += to_string(finding.what) + "; " + finding.repair + "\n";
+  }
+  return all;
+}
+
+std::string zeros_of_hand(const std::string& count) {
+  return "k.csv: expected points where they were seen, found " + count +
+         " at exactly 0, 0, 0, the first of 'Hand'; missing_point = [0, 0, 0] in a layout of the "
+         "file, where that means not seen\n";
+}
+
+const Vec3 zero = Vec3::Zero(), in_front{0.4, 1.0, 2.0};
+
+TEST_CASE("zeros that come and go mark what was not seen, at a file's start too") {
+  CHECK(said_of_hand([](auto t) { return t % 7 == 0 ? zero : in_front; }) == zeros_of_hand("6"));
+  CHECK(said_of_hand([](auto t) { return t < 30 ? zero : in_front; }) == zeros_of_hand("30"));
+  CHECK(said_of_hand([](auto t) { return t >= 30 ? zero : in_front; }) == zeros_of_hand("10"));
+}
+
+TEST_CASE("one point that stays at zero or moves away and comes back is the file's origin") {
+  CHECK(said_of_hand([](auto) { return in_front; }, zero) == "");
+  CHECK(said_of_hand([](auto) { return in_front; }, zero, 0.01) == "");
+  const auto never = [](auto) { return zero; };
+  CHECK(said_of_hand(never) == "");
+  CHECK(said_of_hand(never, zero) ==
+        "k.csv: expected points where they were seen, found 80 at exactly 0, 0, 0, the first of "
+        "'Hip'; missing_point = [0, 0, 0] in a layout of the file, where that means not seen\n");
+}
+
+TEST_CASE("points far from all others mark what was not seen") {
+  const Vec3 mark(-9999, -9999, -9999);
+  CHECK(said_of_hand([&](auto t) { return t % 7 == 0 ? mark : in_front; }) ==
         "k.csv: expected the points of a frame within 20 m, found 6 of 40 frames in which they are "
         "not, 17320 m in the mean; missing_point in a layout of the file, where a number stands "
         "for not seen\n");
