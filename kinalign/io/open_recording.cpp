@@ -3,6 +3,7 @@
 
 #include "kinalign/core/parallel.h"
 #include "kinalign/io/remembered_path.h"
+#include "kinalign/io/row_stamps.h"
 #include "kinalign/io/stream_survey.h"
 #include "kinalign/io/utf8.h"
 
@@ -66,6 +67,7 @@ Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, con
                                const Progress& progress) {
   StreamOptions options = *named.options;
   if (options.own_layout()) options.layout = path_in(folder, options.layout);
+  if (options.files.size() > 1) options.start_ns.reset();  // start_together
   const StreamFile file{path_in(folder, named.file->path), named.file->node};
   const SurveyJob job{&files, &options, &progress, version_of(file.path)};
   SurveyedFile out = KA_TRY(survey_file(job, file));
@@ -101,6 +103,29 @@ Result<void> check_names(const std::vector<SurveyedFile>& opened) {
                            "by their paths), so rename one or move both there",
                            "'" + shown(facts.name) + "' again: " + *at->second.path});
     }
+  }
+  return {};
+}
+
+/// Files of one stream share an axis: where start_ns is given, the earliest sample of all has it.
+Result<void> start_together(const StreamOptions& options, std::vector<SurveyedFile>& opened) {
+  if (!options.start_ns || options.files.size() < 2) return {};
+  std::optional<std::int64_t> first;
+  for (const SurveyedFile& each : opened) {
+    const RecordedStream& s = each.stream;
+    if (s.name != options.name || s.survey.kept() == 0) continue;
+    first = std::min(first.value_or(to_ns(s.survey.first)), to_ns(s.survey.first));
+  }
+  for (SurveyedFile& each : opened) {
+    if (!first || each.stream.name != options.name) continue;
+    const std::int64_t shift = *options.start_ns - *first;
+    const std::int64_t last = to_ns(each.stream.survey.last);
+    if (std::abs(shift) > furthest_stamp_ns ||
+        last > furthest_stamp_ns - std::max<std::int64_t>(0, shift)) {
+      return Failure(Error{each.paths.front(), 0, "a stamp inside +-4e18 ns",
+                           std::to_string(last) + " ns, to be moved by " + std::to_string(shift)});
+    }
+    each.stream.clock.pieces.front().offset += Duration{shift};
   }
   return {};
 }
@@ -154,6 +179,7 @@ Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string&
   std::vector<SurveyedFile> out;
   out.reserve(opened.size());
   for (auto& one : opened) out.push_back(KA_TRY(std::move(one)));
+  for (const StreamOptions& options : streams) KA_TRY(start_together(options, out));
   return out;
 }
 

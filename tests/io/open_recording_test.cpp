@@ -95,6 +95,30 @@ TEST_CASE("a stream says what it was read as, and whether its stamps are counted
   CHECK(recording->streams[2].counted);
 }
 
+TEST_CASE("files of one stream share an axis: start_ns is the earliest sample's of all") {
+  const FreshFolder folder;
+  folder.write("waist.csv", "time_ns,qw,qx,qy,qz\n50,1,0,0,0\n60,1,0,0,0\n");
+  folder.write("wrist.csv", "time_ns,qw,qx,qy,qz\n40,1,0,0,0\n70,1,0,0,0\n");
+  Manifest manifest;
+  manifest.streams = {stream("imu", "waist.csv")};
+  manifest.streams[0].files = {{"waist.csv", "waist"}, {"wrist.csv", "wrist"}};
+  manifest.streams[0].layout = "";
+  manifest.streams[0].start_ns = 1000;
+  manifest.streams[0].offset_ms = 0.001;
+  PosixFiles files;
+  auto recording = open_recording(files, manifest, folder.path() + "/");
+  REQUIRE_MESSAGE(recording, error_of(recording));
+  const auto start = [&](std::size_t i) {
+    return to_ns(take_time(recording->streams[i].clock, recording->streams[i].survey.first));
+  };
+  CHECK(start(0) == 2010);
+  CHECK(start(1) == 2000);
+  manifest.streams[0].start_ns = 3'999'999'999'999'999'999;
+  CHECK(error_of(open_recording(files, manifest, folder.path() + "/"))
+            .find("expected a stamp inside +-4e18 ns, found 60 ns, to be moved by") !=
+        std::string::npos);
+}
+
 TEST_CASE("a layout that the program carries is no file") {
   const FreshFolder folder;
   folder.write("k.csv", "time_ns,qw,qx,qy,qz\n1,1,0,0,0\n2,1,0,0,0\n");
