@@ -4,11 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace kinalign {
 
 namespace {
+
+/// What start_ns added, of several files, to the stamps.
+Duration own_offset(const RecordedStream& s, const StreamOptions& options) {
+  return s.clock.pieces.front().offset - Duration{std::llround(options.offset_ms * 1e6)};
+}
 
 std::string file_of(const RecordedStream& s) {
   return s.files.empty() ? s.name : s.files.front().name;
@@ -154,6 +160,14 @@ Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role 
                    "use the device's own stamps where the file has them, or leave the time "
                    "column out of its layout and say rate_hz"));
   }
+  if (arrivals.near_only) {
+    out.push_back({Severity::note,
+                   Error{file_of(s), 0, "a step by which late samples can be told",
+                         fmt::format("a median of {:.4g} ms, a mean of {:.4g}",
+                                     1e-6 * static_cast<double>(s.survey.median_step_ns),
+                                     1e-6 * static_cast<double>(s.survey.usual_step_ns))},
+                   "they were not looked for", "rate_hz, where the device measures at one rate"});
+  }
   return out;
 }
 
@@ -172,7 +186,10 @@ Findings said_of(const RecordedStream& stream, const Recording& recording, Findi
 Findings judge_start(const RecordedStream& s, const StreamOptions& options,
                      const Arrivals& arrivals) {
   if (s.counted || !options.start_ns) return {};
-  const bool first_kept = to_ns(s.survey.first) == *options.start_ns;
+  const bool several = options.files.size() > 1;  // of those the earliest kept has it
+  const Time start = utc_time(*options.start_ns);
+  if (several && s.survey.first + own_offset(s, options) != start) return {};
+  const bool first_kept = several || s.survey.first == start;
   if (first_kept && !arrivals.first_late) return {};
   return warning(file_of(s), "start_ns at a first sample stamped when it was taken",
                  first_kept ? "one that was held back" : "one with a stamp far from the others'",

@@ -278,17 +278,6 @@ std::int64_t usual_step_ns(const RecordedStream& s, const StreamOptions& options
   return step_of(s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns)));
 }
 
-UsualStep taken_step(const RecordedStream& s, const StreamOptions& options, Role role) {
-  constexpr double alike = 1.5, steady = 0.08;  // KinectMultiTrack: 34 ms and 32.2 to 33.3
-  const std::int64_t usual = usual_step_ns(s, options);
-  const auto median = static_cast<double>(s.survey.median_step_ns);
-  if (s.step_ns || median <= 0.0) return {usual, role, true};
-  const double times = static_cast<double>(usual) / median;
-  if (times >= alike || alike * times <= 1.0) return {usual, role, true};
-  const double off = static_cast<double>(s.survey.usual_step_ns) - median;
-  return {s.survey.median_step_ns, role, std::abs(off) < steady * median};
-}
-
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {
   static const StreamOptions defaults;
   for (const StreamOptions& s : manifest.streams) {

@@ -42,11 +42,6 @@ std::string stream_label(const RecordedStream& stream);
 /// median.
 std::int64_t usual_step_ns(const RecordedStream& stream, const StreamOptions& options);
 
-/// The step in which the device took its samples: the median, or the stated one where that says
-/// quite another (stamps in bursts). Not steady where the mean of the usual steps differs from it,
-/// since stamps are rounded coarsely or the rate has changed.
-UsualStep taken_step(const RecordedStream& stream, const StreamOptions& options, Role role);
-
 /// The manifest's options of a stream; defaults where it has none.
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream);
 

@@ -24,7 +24,7 @@ enum class RotationCurve { spline, slerp };
 struct ResampleRule {
   std::int64_t gap_ns = 0;   // longer stretches without samples are gaps
   std::int64_t step_ns = 0;  // nominal, else the stream's median one
-  UsualStep taken;           // in which the device took its samples
+  TakenStep taken;           // in which the device took its samples
   RotationCurve curve = RotationCurve::spline;
   std::int64_t begin_ns = 0, end_ns = 0;  // of the take: gaps are counted within
   bool finer = false;                     // than the grid: what that can't carry is measured

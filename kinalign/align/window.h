@@ -4,7 +4,7 @@
 // what lies behind is forgotten.
 #pragma once
 
-#include "kinalign/motion/arrivals.h"
+#include "kinalign/align/arrival_lines.h"
 #include "kinalign/motion/stamps.h"
 #include "kinalign/take/recording.h"
 
@@ -35,6 +35,11 @@ inline bool seen(const PointFrames& rows, std::size_t cell) {
   return rows.state[cell] != Tracking::missing;
 }
 inline bool seen(const ImuSamples& rows, std::size_t cell) { return rows.valid[cell] != 0; }
+inline void make_unseen(ClipFrames&, std::size_t) {}
+inline void make_unseen(PointFrames& rows, std::size_t cell) {
+  rows.state[cell] = Tracking::missing;
+}
+inline void make_unseen(ImuSamples& rows, std::size_t cell) { rows.valid[cell] = 0; }
 
 template <class Frames>
 bool any_seen(const Frames& rows, std::size_t row) {
@@ -76,17 +81,6 @@ struct GapCount {
   }
 };
 
-/// What becomes of a stream's samples: their stamps are the grid, or they are resampled onto it.
-enum class Role { reference, resampled };
-
-/// The step in which samples were taken, by which one that was held back is told. 0: none is. Of
-/// the reference such samples are counted, of other streams left out.
-struct UsualStep {
-  std::int64_t ns = 0;
-  Role role = Role::resampled;
-  bool steady = true;  // known well enough to tell late samples by
-};
-
 /// What was pulled of a stream so far.
 struct StreamCounts {
   GapCount gaps;
@@ -97,12 +91,11 @@ struct StreamCounts {
 template <class Frames>
 class Window {
  public:
-  Window(Pass<Frames> pass, const TimeModel& clock, const GapCount& count = {}, UsualStep step = {})
+  Window(Pass<Frames> pass, const TimeModel& clock, const GapCount& count = {}, TakenStep step = {})
       : pass_(std::move(pass)),
         clock_(&clock),
-        near_ns_(step.role == Role::resampled ? step.ns / near_share : 0),
-        step_ns_(step.ns),
-        arrivals_(step.ns, step.steady),
+        lines_(step),
+        near_counts_(step.role == Role::reference),
         gaps_(count) {}
 
   /// After it, `rows` hold all samples within [from, to] and, where the stream has them, `reach`
@@ -130,8 +123,8 @@ class Window {
   std::vector<std::int64_t> time_ns;  // [rows] on the take's axis, strictly rising
 
   StreamCounts counts() const {
-    StreamCounts out{gaps_, held_back_, arrivals_.result()};
-    if (near_ns_ > 0) out.arrivals.near = held_back_;
+    StreamCounts out{gaps_, held_back_, lines_.result()};
+    if (!near_counts_) out.arrivals.near = held_back_;
     return out;
   }
 
@@ -186,9 +179,9 @@ class Window {
 
   /// Rows of which no later sample can show that they were held back.
   std::size_t sure() const {
-    const bool open =
-        !ended_ && last_seen_ && !time_ns.empty() && time_ns.back() - *last_seen_ < near_ns_;
-    return open ? first_not_before(*last_seen_) : time_ns.size();
+    if (ended_ || time_ns.empty()) return time_ns.size();
+    const auto open = lines_.open_since(time_ns.back());
+    return open ? first_not_before(*open) : time_ns.size();
   }
 
   /// Drops while pulling, where it is worth the move: a stretch without rows may be long.
@@ -221,55 +214,63 @@ class Window {
         continue;
       }
       const std::int64_t t = to_ns(take_time(*clock_, block_.stamps[i]));
-      const bool there = any_seen(block_, i);
       if (fate == StampFate::replaces) {
         flush(i);
         take_back();
       }
-      const bool shows = there && shows_last_late(t, i);
-      if (shows) {
-        flush(i);
-        drop_late();
+      if (!look(i)) {
+        time_ns.push_back(t);
+        continue;
       }
-      if (there && !shows) late_since_.reset();
+      const auto line = lines_.line_of(t, seen_);
+      const auto late = line ? lines_.shown_late(*line, t) : std::nullopt;
+      if (late) {
+        flush(i);
+        leave_out(*late);
+        lines_.leave_out(*line);
+      } else if (line) {
+        lines_.keep(*line);
+      }
       time_ns.push_back(t);
-      if (there) see(t, i);
+      see(t, line);
     }
     flush(i);
   }
 
-  /// Whether row i of the block, at `t`, is of those by which arrivals are judged. Nodes may stand
-  /// in rows of their own, near each other's: a row is if it shows something that the last one of
-  /// them showed, or if there has been none for long.
-  bool in_line(std::int64_t t, std::size_t i) const {
-    if (!line_.t || t - *line_.t > late_steps * step_ns_) return true;
+  /// Whether row i of the block has something in it, `seen_` what.
+  bool look(std::size_t i) {
     const std::size_t width = columns(block_);
+    seen_.resize(width);
+    bool any = false;
     for (std::size_t c = 0; c < width; ++c) {
-      if (line_.seen[c] != 0 && seen(block_, i * width + c)) return true;
+      seen_[c] = seen(block_, i * width + c) ? 1 : 0;
+      any = any || seen_[c] != 0;
     }
-    return false;
+    return any;
   }
 
-  /// Whether row i of the block, at `t`, comes so soon behind the last one seen that that one was
-  /// held back. Of a whole stretch of such samples one a step stays.
-  bool shows_last_late(std::int64_t t, std::size_t i) const {
-    return last_seen_ && t - *last_seen_ < near_ns_ && line_.t == last_seen_ && in_line(t, i) &&
-           arrivals_.shows_late(t) && t - late_since_.value_or(*last_seen_) < step_ns_;
-  }
-
-  void drop_late() {
-    late_since_ = late_since_.value_or(*last_seen_);
-    while (!time_ns.empty() && time_ns.back() >= *last_seen_) drop_last_row();
-    unsee();
+  /// The row at `late` was held back, as that in `seen_` shows. Behind it may be rows of others.
+  void leave_out(std::int64_t late) {
     ++held_back_;
+    if (late == last_seen_) {
+      while (!time_ns.empty() && time_ns.back() >= late) drop_last_row();
+      restore();
+      return;
+    }
+    const std::size_t row = first_not_before(late);
+    if (row == time_ns.size()) return;
+    for (std::size_t c = 0; c < seen_.size(); ++c) {
+      if (seen_[c] != 0) make_unseen(rows, row * seen_.size() + c);
+    }
   }
 
+  /// The last row was no sample.
   void take_back() {
     const bool was_seen = last_seen_ == time_ns.back();
     drop_last_row();
     if (!was_seen) return;
-    if (line_.t == last_seen_) arrivals_.take_back();
-    unsee();
+    if (before_[0].in_line) lines_.take_back();
+    restore();
   }
 
   void drop_last_row() {
@@ -277,54 +278,39 @@ class Window {
     time_ns.pop_back();
   }
 
-  /// Row i of the block, at `t`, has something in it.
-  void see(std::int64_t t, std::size_t i) {
-    std::swap(before_[0], before_[1]);
-    before_[0].seen = last_seen_;
-    before_[0].gaps = gaps_;
-    before_[0].line = line_;
+  /// The row at `t` has `seen_` in it.
+  void see(std::int64_t t, std::optional<std::size_t> line) {
+    before_[1] = before_[0];
+    before_[0] = {last_seen_, gaps_, line.has_value()};
     if (last_seen_) gaps_.add(*last_seen_, t);
     last_seen_ = t;
-    if (!in_line(t, i)) return;
-    const std::size_t width = columns(block_);
-    line_.t = t;
-    line_.seen.resize(width);
-    for (std::size_t c = 0; c < width; ++c) line_.seen[c] = seen(block_, i * width + c) ? 1 : 0;
-    arrivals_.add(t);
+    if (line) lines_.add(*line, t, seen_);
   }
 
-  void unsee() {
-    last_seen_ = before_[0].seen;
+  void restore() {
+    last_seen_ = before_[0].last_seen;
     gaps_ = before_[0].gaps;
-    line_ = before_[0].line;
-    std::swap(before_[0], before_[1]);
+    before_[0] = before_[1];
   }
-
-  /// The last row by which arrivals are judged.
-  struct Line {
-    std::optional<std::int64_t> t;
-    std::vector<std::uint8_t> seen;  // [columns]
-  };
 
   Pass<Frames> pass_;
   const TimeModel* clock_;
-  std::int64_t near_ns_, step_ns_;
   Frames block_;
+  std::vector<std::uint8_t> seen_;  // [columns] of the row being taken
   StampRule rule_;
-  ArrivalSurveyor arrivals_;
+  ArrivalLines lines_;
+  bool near_counts_;  // of the reference: rows held back stay
   GapCount gaps_;
   std::uint64_t held_back_ = 0;
   std::optional<std::int64_t> last_seen_;  // stamp of the last row added with anything in it
-  Line line_;
   /// As it was without that one, and without the one before: a wild stamp is taken back, and then
   /// the one in front of it may be late.
   struct Before {
-    std::optional<std::int64_t> seen;
+    std::optional<std::int64_t> last_seen;
     GapCount gaps;
-    Line line;
+    bool in_line = false;  // the row that was added then
   };
   std::array<Before, 2> before_;
-  std::optional<std::int64_t> late_since_;  // the first of samples held back one after the other
   bool ended_ = false;
 };
 

@@ -113,6 +113,7 @@ Arrivals ArrivalSurveyor::result() const {
   all.settle();
   Arrivals found = all.late_;
   found.near = all.now_.near;
+  found.near_only = step_ > 0.0 && !steady_;
   found.first_late = found.first_late || all.now_.first_near;
   return found;
 }

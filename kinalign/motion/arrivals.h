@@ -21,6 +21,7 @@ struct Arrivals {
   std::uint64_t late = 0;          // stamped at least late_steps steps after they were taken
   std::int64_t worst_late_ns = 0;  // of these, the worst; what is known to be its least
   bool first_late = false;         // the first sample is near the next one, or late
+  bool near_only = false;          // no step was known by which late ones could be told
 
   bool operator==(const Arrivals&) const = default;
 };

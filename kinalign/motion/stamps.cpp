@@ -133,7 +133,7 @@ StampSurvey StampSurveyor::result() const {
     if (step > 1.5 * median) {
       survey.long_steps += steps_[i];
       long_time += sums_[i];
-    } else if (2.0 * step >= median) {
+    } else if (2.0 * step >= median || 5.0 * step < median) {
       usual += steps_[i];
       usual_time += sums_[i];
     }

@@ -50,7 +50,9 @@ struct StampSurvey {
   std::int64_t median_step_ns = 0;  // between kept samples; 0 with fewer than two
   std::uint64_t long_steps = 0;     // of these, longer than 1.5 medians
   std::int64_t long_time_ns = 0;    // in which the stream stood still: their sum
-  std::int64_t usual_step_ns = 0;   // the mean of those from half to one and a half medians
+  /// The mean of those up to one and a half medians, without the haste behind a stall, from a fifth
+  /// to half a median. Shorter ones are of samples that were read at once.
+  std::int64_t usual_step_ns = 0;
 
   std::uint64_t kept() const { return samples - duplicates - backward - ahead; }
 };

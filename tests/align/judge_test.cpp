@@ -110,6 +110,22 @@ TEST_CASE("a start_ns at a first sample that was late or wild is a warning") {
   options.start_ns = 7;  // and the first one kept has 0
   CHECK(judge_start(kinect(), options, {}).at(0).what.found ==
         "one with a stamp far from the others'");
+  options.files = {{"a.csv", "a"}, {"b.csv", "b"}};  // and the other begins 7 ns earlier
+  RecordedStream s = kinect();
+  s.clock.pieces.front().offset = Duration{14};
+  CHECK(judge_start(s, options, {1, 0, 0, true}).empty());
+  s.clock.pieces.front().offset = Duration{7};
+  CHECK(judge_start(s, options, {1, 0, 0, true}).at(0).what.found == "one that was held back");
+}
+
+TEST_CASE("where no step is known to tell late samples by, a note says so") {
+  RecordedStream s = kinect();
+  s.survey.usual_step_ns = 27'500'000;
+  Arrivals arrivals;
+  arrivals.near_only = true;
+  CHECK(whole(judge_arrivals(s, arrivals, Role::resampled).at(0)) ==
+        "note: kinect: expected a step by which late samples can be told, found a median of 33 ms, "
+        "a mean of 27.5; they were not looked for; rate_hz, where the device measures at one rate");
 }
 
 TEST_CASE("stamps that repeat in one of twenty samples and more are no chance") {
