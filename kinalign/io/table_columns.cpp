@@ -2,6 +2,7 @@
 #include "kinalign/io/table_columns.h"
 
 #include "kinalign/core/nearest_name.h"
+#include "kinalign/io/utf8.h"
 
 #include <algorithm>
 #include <charconv>
@@ -37,17 +38,13 @@ std::string with_member(std::string pattern, const std::string& member) {
   return pattern;
 }
 
-Failure no_column(const std::string& name) {
-  return Failure(Error{"", 0, "a column " + shown(name), "none of that name"});
-}
-
 class Finder {
  public:
   Finder(const TableLayout& layout, const std::vector<std::string>& members,
          const std::vector<std::string>& names)
       : layout_(layout), members_(members), named_(!names.empty()) {
     for (std::size_t i = 0; i < names.size(); ++i)
-      ++places_.try_emplace(names[i], i).first->second.times;
+      ++places_.try_emplace(as_utf8(names[i]), i).first->second.times;
     found_.uses.resize(named_ ? names.size() : layout.columns);
   }
 
@@ -63,6 +60,9 @@ class Finder {
       found_.body = {layout_.body, text_of(KA_TRY(column_of({layout_.body, 0}))), ""};
     }
     if (slots_ == 0) return Failure(Error{"", 0, "columns of layout " + layout_.name, "none"});
+    found_.unread = static_cast<std::size_t>(
+        std::count_if(found_.uses.begin(), found_.uses.end(),
+                      [](const ColumnUse& use) { return use.slot < 0 && use.text < 0; }));
     return std::move(found_);
   }
 
@@ -72,6 +72,14 @@ class Finder {
     std::size_t column;
     int times = 0;
   };
+
+  Failure no_column(const std::string& name) const {
+    std::vector<std::string> known;
+    for (const auto& [each, place] : places_) known.push_back(each);
+    const std::string near = nearest_name(name, known);
+    const std::string hint = near.empty() ? "" : " (nearest: " + shown(near) + ")";
+    return Failure(Error{"", 0, "a column " + shown(name), "none of that name" + hint});
+  }
 
   ColumnChoice choice_of(const std::string& column) const {
     std::size_t number = 0;

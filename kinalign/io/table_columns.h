@@ -23,6 +23,7 @@ struct TableColumns {
   int states = -1;                                                 // [M]
   int orientation = -1, acceleration = -1, angular_velocity = -1;  // [M,4], [M,3], [M,3]
   std::vector<std::string> absent;  // a column of each quantity that was left out
+  std::size_t unread = 0;           // columns of the file of which nothing is used
 };
 
 /// `members` are the joints or nodes; `names` the file's columns, empty where no line names them.

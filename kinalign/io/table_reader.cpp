@@ -9,6 +9,8 @@
 #include "kinalign/io/point_rows.h"
 #include "kinalign/io/table_columns.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 
@@ -165,16 +167,20 @@ class TableReader final : public Builder::ReaderType {
   const Header* header() const override { return header_ ? &*header_ : nullptr; }
 
  private:
-  /// A name misspelt in a user's layout looks like a quantity that the file does not have.
+  /// A name misspelt in a user's layout, or in the file, looks like a quantity that the file does
+  /// not have.
   void report_absent() {
-    if (!own_layout_) return;
+    if (!own_layout_ && columns_.unread == 0) return;
     for (const std::string& column : columns_.absent) {
       this->findings.push_back(
           {Severity::note,
            Error{lines_.file(), 0,
                  "a column " + shown(column) + ", as layout " + layout_.name + " says",
                  "none of that name"},
-           Builder::without, "leave it out of the layout if it has to be so"});
+           Builder::without,
+           own_layout_ ? "leave it out of the layout if it has to be so"
+                       : fmt::format("call it so, if it is one of the {} columns that are not read",
+                                     columns_.unread)});
     }
   }
 

@@ -122,7 +122,7 @@ TEST_CASE("a file has the columns that its layout names, each once, each with on
       "name = 'n'\nrate_hz = 1\n[joints]\nnames = ['A']\nfields = { x = 'u', y = 'v', z = '";
   CHECK(fault_of_file(by_name + "w' }\n", "u,v,w\n1,2,3\n") == "");
   CHECK(fault_of_file(by_name + "w' }\n", "u,v\n1,2\n") ==
-        "p.csv:1: expected a column w, found none of that name");
+        "p.csv:1: expected a column w, found none of that name (nearest: u)");
   CHECK(fault_of_file(by_name + "w' }\n", "u,v,w,w\n1,2,3,4\n") ==
         "p.csv:1: expected one column w, found 2 of that name");
   CHECK(fault_of_file(by_name + "u' }\n", "u,v\n1,2\n") ==
