@@ -32,6 +32,7 @@ double times_too_large(double size_m) {
 }  // namespace
 
 void PointSizes::Seen::add(const Vec3& at) {
+  seen = true;
   if (at.isZero(0.0)) {
     ++now_at_zero;
     return;
@@ -53,6 +54,7 @@ void PointSizes::add(const PointFrames& block) {
     std::uint64_t seen = 0;
     for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
       if (block.state[cell] == Tracking::missing) continue;
+      ++(block.state[cell] == Tracking::tracked ? tracked_ : inferred_);
       const Vec3 at = vec3(block.positions, cell);
       joints_[cell - t * joints].add(at);
       box.extend(at);
@@ -75,8 +77,36 @@ Findings PointSizes::judge(const PointHeader& header, const std::string& file) c
                    fmt::format("{} of {}", seen_frames_, all_frames_)},
              "in the others nothing was seen", "look at the cells that are empty"}};
   }
-  Findings out = judge_marks(header, file);
+  Findings out = judge_seen(header, file);
+  append(out, judge_marks(header, file));
   append(out, judge_unit(file));
+  return out;
+}
+
+Findings PointSizes::judge_seen(const PointHeader& header, const std::string& file) const {
+  Findings out;
+  if (inferred_ >= enough && tracked_ == 0) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "points that were tracked",
+                         fmt::format("none, and {} that were inferred", inferred_)},
+                   "a fit takes tracked ones only",
+                   "where they were tracked, say under [state] of a layout which value says so"});
+  }
+  std::size_t never = 0;
+  std::string first;
+  for (std::size_t j = 0; j < joints_.size() && j < header.joint_names.size(); ++j) {
+    if (joints_[j].seen) continue;
+    if (never++ == 0) first = shown(header.joint_names[j]);
+  }
+  if (never > 0 && all_frames_ >= enough) {
+    out.push_back({Severity::note,
+                   Error{file, 0, "points that were seen now and then",
+                         fmt::format("{} of {} that never were, the first '{}'", never,
+                                     joints_.size(), first)},
+                   "they are invalid in every row",
+                   "where 0, 0, 0 is its place, as of a body seen from there: a layout without "
+                   "missing_point"});
+  }
   return out;
 }
 

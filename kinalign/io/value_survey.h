@@ -31,6 +31,7 @@ class PointSizes {
   };
   /// Where a joint was in the frames in which it was seen.
   struct Seen {
+    bool seen = false;               // in any frame
     bool elsewhere = false;          // than at zero
     bool far = false;                // its last place elsewhere was
     std::uint64_t now_at_zero = 0;   // since then
@@ -40,12 +41,14 @@ class PointSizes {
     std::uint64_t lost() const { return lost_at_zero + (far ? now_at_zero : 0); }
   };
 
+  Findings judge_seen(const PointHeader& header, const std::string& file) const;
   Findings judge_marks(const PointHeader& header, const std::string& file) const;
   Findings judge_unit(const std::string& file) const;
 
   std::uint64_t all_frames_ = 0, seen_frames_ = 0;
-  Frames person_, far_;            // up to 20 m, and beyond
-  std::uint64_t most_points_ = 0;  // in one of them
+  std::uint64_t inferred_ = 0, tracked_ = 0;  // points
+  Frames person_, far_;                       // up to 20 m, and beyond
+  std::uint64_t most_points_ = 0;             // in one of them
   std::vector<Seen> joints_;
 };
 

@@ -117,6 +117,27 @@ TEST_CASE("one point that stays at zero or moves away and comes back is the file
         "'Hip'; missing_point = [0, 0, 0] in a layout of the file, where that means not seen\n");
 }
 
+TEST_CASE("points of which none was tracked are a warning, one that was never seen is a note") {
+  PointFrames block;
+  for (std::size_t t = 0; t < rows; ++t) {
+    block.stamps.push_back(utc_time(static_cast<std::int64_t>(t)));
+    block.positions.insert(block.positions.end(), {0, 0, 0, 0, 0.9, 2, 0, 1.6, 2});
+    block.state.insert(block.state.end(),
+                       {Tracking::missing, Tracking::inferred, Tracking::inferred});
+  }
+  PointSizes sizes;
+  sizes.add(block);
+  const Findings found = sizes.judge({{"Hip", "Neck", "Head"}}, "k.csv");
+  REQUIRE(found.size() == 2);
+  CHECK(found[0].severity == Severity::warning);
+  CHECK(to_string(found[0].what) ==
+        "k.csv: expected points that were tracked, found none, and 80 that were inferred");
+  CHECK(found[1].severity == Severity::note);
+  CHECK(to_string(found[1].what) ==
+        "k.csv: expected points that were seen now and then, found 1 of 3 that never were, the "
+        "first 'Hip'");
+}
+
 TEST_CASE("points far from all others mark what was not seen") {
   const Vec3 mark(-9999, -9999, -9999);
   CHECK(said_of_hand([&](auto t) { return t % 7 == 0 ? mark : in_front; }) ==
