@@ -48,7 +48,13 @@ Result<std::vector<JointPair>> find_pairs(const TakeGroup& from, const TakeGroup
   std::vector<JointPair> pairs;
   for (const auto& [a, b] : options.joints) {
     const std::int64_t line = line_of(options.lines, "joints");
-    pairs.push_back({KA_TRY(known_joint(from, a, line)), KA_TRY(known_joint(onto, b, line))});
+    const std::size_t other = KA_TRY(known_joint(onto, b, line));
+    const auto same = [other](const JointPair& pair) { return pair.onto == other; };
+    if (std::any_of(pairs.begin(), pairs.end(), same)) {
+      return Failure(
+          Error{"", line, "joints of '" + onto.name + "' that differ", "'" + shown(b) + "' twice"});
+    }
+    pairs.push_back({KA_TRY(known_joint(from, a, line)), other});
   }
   if (!pairs.empty()) return pairs;
   const auto &theirs = *joint_names(onto), &ours = *joint_names(from);

@@ -158,6 +158,8 @@ TEST_CASE("joints that a manifest names are there on both sides") {
   CHECK(fault_of_space(space) ==
         "expected a joint of 'kinect' (known: SpineBase, Head, HandLeft, HandRight), found "
         "\"Pelvis\"");
+  space.joints = {{"Head", "Head"}, {"HandLeft", "Head"}, {"HandRight", "HandRight"}};
+  CHECK(fault_of_space(space) == "expected joints of 'optical' that differ, found 'Head' twice");
 }
 
 TEST_CASE("a fit needs three named joints, and three places that stand on no line") {
