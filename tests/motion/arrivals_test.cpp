@@ -49,6 +49,30 @@ TEST_CASE("samples less than a fifth of a step in front of the next are counted"
   CHECK(near_of({0, 1, 2, 30, 60, 90, 120, 150, 180, 210}) == 2);
 }
 
+TEST_CASE("without a pause only those are near that come within a twentieth of a step") {
+  const auto near_of = [](std::int64_t apart) {
+    std::vector<std::int64_t> stamps;
+    for (std::int64_t k = 0; k < 20; ++k) stamps.push_back(100 * k * ms);
+    for (std::int64_t k = 1; k < 9; ++k) stamps.push_back(1900 * ms + k * apart * ms);
+    for (std::int64_t k = 1; k < 20; ++k) stamps.push_back((1900 + 8 * apart + 100 * k) * ms);
+    return arrivals(stamps, 100 * ms).near;
+  };
+  CHECK(near_of(4) == 8);
+  CHECK(near_of(6) == 2);  // by the two steps that may hide
+  CHECK(near_of(14) == 2);
+}
+
+TEST_CASE("at the start only those are near that come within an eighth of a step") {
+  const auto near_of = [](std::int64_t apart) {
+    std::vector<std::int64_t> stamps;
+    for (std::int64_t k = 0; k < 8; ++k) stamps.push_back(k * apart * ms);
+    for (std::int64_t k = 1; k < 20; ++k) stamps.push_back((7 * apart + 100 * k) * ms);
+    return arrivals(stamps, 100 * ms).near;
+  };
+  CHECK(near_of(12) == 7);
+  CHECK(near_of(13) < 7);
+}
+
 TEST_CASE("what waited in a stall is counted, and how late the first of it was, is known") {
   for (const std::int64_t drain : {1, 3, 5, 8}) {
     CAPTURE(drain);
