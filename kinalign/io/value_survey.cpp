@@ -17,8 +17,9 @@ constexpr std::uint64_t enough = 10;  // points for a person, frames or samples 
 /// Bounds chosen wide: a metre taken for a centimetre or the other way round lies outside, children
 /// and two people in one volume lie inside.
 constexpr double smallest_m = 0.2, largest_m = 20.0;
-/// From frame to frame; a hand at 15 Hz goes as far.
-constexpr double furthest_step_m = 0.2;
+/// From frame to frame, of a root that walks at 30 Hz. The joints of a hand are 6 cm and more from
+/// its wrist.
+constexpr double furthest_step_m = 0.05;
 /// A node at rest reads 9.8 m/s2, shanks of runners 20 in the mean.
 constexpr double least_with_gravity = 6.0, most_acceleration = 40.0;
 /// Limbs turn by 1 to 5 rad/s in the mean; degrees read as radians are 57 times more.
@@ -100,7 +101,7 @@ Findings PointSizes::judge_seen(const PointHeader& header, const std::string& fi
   }
   if (never > 0 && all_frames_ >= enough) {
     out.push_back({Severity::note,
-                   Error{file, 0, "points that were seen now and then",
+                   Error{file, 0, "points that were seen at least once",
                          fmt::format("{} of {} that never were, the first '{}'", never,
                                      joints_.size(), first)},
                    "they are invalid in every row",
@@ -111,7 +112,8 @@ Findings PointSizes::judge_seen(const PointHeader& header, const std::string& fi
 }
 
 /// A point that is always at zero, or moves away from it, is the file's origin: a body seen from
-/// its own root, or from where its root was first. Two can't be.
+/// its own root, or from where its root was first. Two are only where they
+/// have no offset from each other.
 Findings PointSizes::judge_marks(const PointHeader& header, const std::string& file) const {
   Findings out;
   const auto stays = std::count_if(joints_.begin(), joints_.end(), [](const Seen& joint) {

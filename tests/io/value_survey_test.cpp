@@ -107,6 +107,11 @@ TEST_CASE("zeros that come and go mark what was not seen, at a file's start too"
   CHECK(said_of_hand([](auto t) { return t >= 30 ? zero : in_front; }) == zeros_of_hand("10"));
 }
 
+TEST_CASE("zeros among the joints of a hand, all near its wrist, mark what was not seen") {
+  CHECK(said_of_hand([](auto t) { return t / 10 == 2 ? zero : Vec3(0.0, 0.06, 0.0); }, zero) ==
+        zeros_of_hand("10"));
+}
+
 TEST_CASE("one point that stays at zero or moves away and comes back is the file's origin") {
   CHECK(said_of_hand([](auto) { return in_front; }, zero) == "");
   CHECK(said_of_hand([](auto) { return in_front; }, zero, 0.01) == "");
@@ -134,7 +139,7 @@ TEST_CASE("points of which none was tracked are a warning, one that was never se
         "k.csv: expected points that were tracked, found none, and 80 that were inferred");
   CHECK(found[1].severity == Severity::note);
   CHECK(to_string(found[1].what) ==
-        "k.csv: expected points that were seen now and then, found 1 of 3 that never were, the "
+        "k.csv: expected points that were seen at least once, found 1 of 3 that never were, the "
         "first 'Hip'");
 }
 
