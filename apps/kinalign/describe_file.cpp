@@ -6,6 +6,7 @@
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/json_text.h"
 
+#include "kinalign/align/plan.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
 
@@ -105,8 +106,8 @@ std::string stream_lines(const RecordedStream& s, const Contents& c, Names names
                                  s.name, who, shown(s.format), s.survey.samples,
                                  seconds_of(s.survey), rate_hz(s), mean_rate_text(s), c.parts);
   if (s.survey.kept() > 0) {
-    line += fmt::format("           from {} to {} ns{}\n", to_ns(s.survey.first),
-                        to_ns(s.survey.last), s.counted ? ", counted at that rate" : "");
+    line += fmt::format("           from {} to {} ns{}\n", to_ns(first_of(s)), to_ns(last_of(s)),
+                        s.counted ? ", counted at that rate" : "");
   }
   if (names == Names::yes || (c.kind == "imu" && !one_node)) {
     line += name_lines(c.names.get<std::vector<std::string>>());
@@ -125,8 +126,8 @@ Json stream_json(const RecordedStream& s, const Contents& c) {
           {"names", c.names},
           {"stamps_counted", s.counted},
           {"samples", s.survey.samples},
-          {"first_ns", to_ns(s.survey.first)},
-          {"last_ns", to_ns(s.survey.last)},
+          {"first_ns", to_ns(first_of(s))},
+          {"last_ns", to_ns(last_of(s))},
           {"rate_hz", rate_hz(s)},
           {"duplicate_stamps", s.survey.duplicates},
           {"backward_stamps", s.survey.backward},
