@@ -249,18 +249,23 @@ class Window {
     return any;
   }
 
-  /// The row at `late` was held back, as that in `seen_` shows. Behind it may be rows of others.
+  /// The row at `late` was held back, as that in `seen_` shows: what both have in them goes. Behind
+  /// it may be rows of others.
   void leave_out(std::int64_t late) {
     ++held_back_;
-    if (late == last_seen_) {
+    const std::size_t row = first_not_before(late), width = seen_.size();
+    if (row == time_ns.size() || time_ns[row] != late) return;
+    bool whole = late == last_seen_;
+    for (std::size_t c = 0; c < width && whole; ++c) {
+      whole = seen_[c] != 0 || !seen(rows, row * width + c);
+    }
+    if (whole) {
       while (!time_ns.empty() && time_ns.back() >= late) drop_last_row();
       restore();
       return;
     }
-    const std::size_t row = first_not_before(late);
-    if (row == time_ns.size()) return;
-    for (std::size_t c = 0; c < seen_.size(); ++c) {
-      if (seen_[c] != 0) make_unseen(rows, row * seen_.size() + c);
+    for (std::size_t c = 0; c < width; ++c) {
+      if (seen_[c] != 0) make_unseen(rows, row * width + c);
     }
   }
 
