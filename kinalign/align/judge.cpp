@@ -166,7 +166,8 @@ Findings judge_arrivals(const RecordedStream& s, const Arrivals& arrivals, Role 
                          fmt::format("a median of {:.4g} ms, a mean of {:.4g}",
                                      1e-6 * static_cast<double>(s.survey.median_step_ns),
                                      1e-6 * static_cast<double>(s.survey.usual_step_ns))},
-                   "they were not looked for", "rate_hz, where the device measures at one rate"});
+                   "they were not looked for",
+                   "the device's true rate as rate_hz, or finer stamps"});
   }
   return out;
 }

@@ -20,11 +20,11 @@ struct TakenStep {
   bool steady = true;  // known well enough to tell late samples by
 };
 
-/// The stated step where it agrees with the usual one, or says quite another than the median
-/// (stamps in bursts), else the median. That is steady where it agrees with the stated one, with
-/// the usual one, or with the mean of all, which a stall without losses leaves as it was: not where
-/// stamps are rounded coarsely, where the rate has changed, or where a loop slower than the device
-/// read them.
+/// The stated step where it says quite another than the median (stamps in bursts), or where a loop
+/// slower than the device read them and it is within 5 % of the mean of the usual steps; else the
+/// median. That is steady where those differ from it by less than 8 % in the mean, where the mean
+/// of all does by less than 3 %, which a stall without losses leaves as it was, or the stated one
+/// by less than 5 %: not where stamps are rounded coarsely or the rate has changed.
 TakenStep taken_step(const RecordedStream& stream, const StreamOptions& options, Role role);
 
 }  // namespace kinalign

@@ -134,6 +134,7 @@ StampSurvey StampSurveyor::result() const {
       survey.long_steps += steps_[i];
       long_time += sums_[i];
     } else if (2.0 * step >= median || 5.0 * step < median) {
+      survey.read_at_once += 5.0 * step < median ? steps_[i] : 0;
       usual += steps_[i];
       usual_time += sums_[i];
     }

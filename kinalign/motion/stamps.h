@@ -53,6 +53,7 @@ struct StampSurvey {
   /// The mean of those up to one and a half medians, without the haste behind a stall, from a fifth
   /// to half a median. Shorter ones are of samples that were read at once.
   std::int64_t usual_step_ns = 0;
+  std::uint64_t read_at_once = 0;  // steps shorter than a fifth of a median
 
   std::uint64_t kept() const { return samples - duplicates - backward - ahead; }
 };

@@ -100,7 +100,8 @@ TEST_CASE("where no step is known to tell late samples by, a note says so") {
   arrivals.near_only = true;
   CHECK(whole(judge_arrivals(s, arrivals, Role::resampled).at(0)) ==
         "note: kinect: expected a step by which late samples can be told, found a median of 33 ms, "
-        "a mean of 27.5; they were not looked for; rate_hz, where the device measures at one rate");
+        "a mean of 27.5; they were not looked for; the device's true rate as rate_hz, or finer "
+        "stamps");
 }
 
 TEST_CASE("stamps that repeat in one of twenty samples and more are no chance") {

@@ -79,7 +79,39 @@ TEST_CASE("a stated rate that is a tenth off is not believed, one that is quite 
   const auto stamps = stretches({{600, 33.0}});
   CHECK(ms_of(taken(stamps, 27.0)) == doctest::Approx(33.0).epsilon(0.01));
   CHECK(ms_of(taken(stamps, 300.0)) == doctest::Approx(1000.0 / 300));
+}
+
+TEST_CASE("of rates that swing about the stated one the median stays, and is steady within 8 %") {
+  const auto seven = stretches({{930, 1000.0 / 93}, {1070, 1000.0 / 107}});
+  CHECK(ms_of(taken(seven, 100.0)) == doctest::Approx(1000.0 / 107).epsilon(0.01));
+  CHECK(taken(stretches({{700, 30.0}, {300, 37.0}})).steady);        // 7 % in the mean
+  CHECK_FALSE(taken(stretches({{700, 30.0}, {300, 40.0}})).steady);  // 10 %
+}
+
+TEST_CASE("losses of 3 % beside stalls of 10 % leave no steady step, nor do rounded stamps") {
+  // a second's stall each ten, drained at 0.75, and so many ms lost
+  const auto lossy = [](double lost_ms) {
+    return stretches({{183, 100.0 / 3}, {1, 1000.0 + lost_ms}, {116, 25.0}}, 6);
+  };
+  CHECK(taken(lossy(200.0)).steady);
+  CHECK_FALSE(taken(lossy(400.0)).steady);
+  CHECK(taken(lossy(400.0), 30.0).steady);
+  CHECK_FALSE(taken(stretches({{2, 20.0},
+                               {1, 10.0},
+                               {2, 20.0},
+                               {1, 10.0},
+                               {2, 20.0},
+                               {1, 10.0},
+                               {1, 20.0},
+                               {1, 60.0},
+                               {1, 10.0}},
+                              100))
+                  .steady);
+}
+
+TEST_CASE("a stated rate is believed to be the median's within 5 %") {
   const auto rounded = stretches({{2, 20.0}, {1, 10.0}}, 300);
-  CHECK_FALSE(taken(rounded, 67.0).steady);
-  CHECK(taken(rounded, 60.0).steady);
+  CHECK_FALSE(taken(rounded, 60.0).steady);
+  CHECK_FALSE(taken(rounded, 47.0).steady);
+  CHECK(taken(rounded, 48.0).steady);
 }
