@@ -62,9 +62,12 @@ std::optional<std::int64_t> through_double(std::string_view text, TimeScale scal
 std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale) {
   Decimal decimal;
   if (!parse_decimal(text, decimal)) return through_double(text, scale);
-  const std::int64_t units = (decimal.minus ? -decimal.whole : decimal.whole) -
-                             scale.epoch_s * (second_ns / scale.unit_ns);
-  if (std::abs(units) > furthest_stamp_ns / scale.unit_ns) return std::nullopt;
+  const std::int64_t whole = decimal.minus ? -decimal.whole : decimal.whole;
+  const std::int64_t furthest = furthest_stamp_ns / scale.unit_ns;
+  std::int64_t epoch = 0, units = 0;
+  const bool overflow = __builtin_mul_overflow(scale.epoch_s, second_ns / scale.unit_ns, &epoch) ||
+                        __builtin_sub_overflow(whole, epoch, &units);
+  if (overflow || units > furthest || units < -furthest) return std::nullopt;
   // below 1e10 * 1e9 + 5e9: fits into 64 bits without a sign
   const std::uint64_t part =
       (decimal.fraction * static_cast<std::uint64_t>(scale.unit_ns) + decimal.scale / 2) /

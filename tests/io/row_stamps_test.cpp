@@ -94,6 +94,9 @@ TEST_CASE("stamps reach 4e18 ns either way and no further") {
   CHECK_FALSE(parse_stamp("4000000001", in_s));
   CHECK_FALSE(parse_stamp("-1e300", in_s));
   CHECK_FALSE(parse_stamp("0", {1, 10 * second_ns}));
+  CHECK_FALSE(parse_stamp("0", {1, year_1_s}));  // nanoseconds since the year 1 are too many
+  CHECK_FALSE(parse_stamp("9223372036854775799", in_net_ticks));
+  CHECK_FALSE(parse_stamp("-9223372036854775799", in_net_ticks));
 }
 
 TEST_CASE("a stamp is a number and nothing else") {
