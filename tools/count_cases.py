@@ -26,6 +26,10 @@ def main():
         broken = re.match(r"\s*\d+ - (\S+) \((SEGFAULT|Subprocess|Timeout|Not Run|ILLEGAL|SIG)", line)
         if broken:
             cases["failed"].append(f"the program of {broken[1]} ended early or did not run")
+    for line in lines_of(ctest_log) if not cases["failed"] else []:  # a sanitizer ends with 1
+        broken = re.match(r"\s*\d+ - (\S+) \(Failed\)", line)
+        if broken:
+            cases["failed"].append(f"the program of {broken[1]} failed outside its cases")
     if elsewhere == "1" and not cases["failed"]:
         print("failed outside the test cases: see above")
     for name in cases["failed"]:
