@@ -73,10 +73,14 @@ class Finder {
     int times = 0;
   };
 
+  std::vector<std::string> known() const {
+    std::vector<std::string> names;
+    for (const auto& [name, place] : places_) names.push_back(name);
+    return names;
+  }
+
   Failure no_column(const std::string& name) const {
-    std::vector<std::string> known;
-    for (const auto& [each, place] : places_) known.push_back(each);
-    const std::string near = nearest_name(name, known);
+    const std::string near = nearest_name(name, known());
     const std::string hint = near.empty() ? "" : " (nearest: " + shown(near) + ")";
     return Failure(Error{"", 0, "a column " + shown(name), "none of that name" + hint});
   }
@@ -105,9 +109,7 @@ class Finder {
   Result<std::size_t> selected(const std::string& column) const {
     const ColumnChoice choice = choice_of(column);
     if (choice.number != 0 || !named_ || places_.contains(column)) return column_of(choice);
-    std::vector<std::string> known;
-    for (const auto& [name, place] : places_) known.push_back(name);
-    return Failure(unknown_name(column, "a column of the file to select by", known));
+    return Failure(unknown_name(column, "a column of the file to select by", known()));
   }
 
   /// The columns of a quantity, members outside, fields inside; a missing one is `none`.

@@ -33,7 +33,6 @@ double times_too_large(double size_m) {
 }  // namespace
 
 void PointSizes::Seen::add(const Vec3& at) {
-  seen = true;
   if (at.isZero(0.0)) {
     ++now_at_zero;
     return;
@@ -96,7 +95,7 @@ Findings PointSizes::judge_seen(const PointHeader& header, const std::string& fi
   std::size_t never = 0;
   std::string first;
   for (std::size_t j = 0; j < joints_.size() && j < header.joint_names.size(); ++j) {
-    if (joints_[j].seen) continue;
+    if (joints_[j].seen()) continue;
     if (never++ == 0) first = shown(header.joint_names[j]);
   }
   if (never > 0 && all_frames_ >= enough) {
@@ -112,13 +111,12 @@ Findings PointSizes::judge_seen(const PointHeader& header, const std::string& fi
 }
 
 /// A point that is always at zero, or moves away from it, is the file's origin: a body seen from
-/// its own root, or from where its root was first. Two are only where they
-/// have no offset from each other.
+/// its own root, or from where its root was first. Two are only where they have no offset from each
+/// other.
 Findings PointSizes::judge_marks(const PointHeader& header, const std::string& file) const {
   Findings out;
-  const auto stays = std::count_if(joints_.begin(), joints_.end(), [](const Seen& joint) {
-    return !joint.elsewhere && joint.now_at_zero > 0;
-  });
+  const auto stays = std::count_if(joints_.begin(), joints_.end(),
+                                   [](const Seen& j) { return j.seen() && !j.elsewhere; });
   std::uint64_t at_zero = 0;
   std::string first;
   for (std::size_t j = 0; j < joints_.size() && j < header.joint_names.size(); ++j) {

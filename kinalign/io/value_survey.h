@@ -31,13 +31,13 @@ class PointSizes {
   };
   /// Where a joint was in the frames in which it was seen.
   struct Seen {
-    bool seen = false;               // in any frame
     bool elsewhere = false;          // than at zero
     bool far = false;                // its last place elsewhere was
     std::uint64_t now_at_zero = 0;   // since then
     std::uint64_t lost_at_zero = 0;  // before, with a place far away in front or behind
 
     void add(const Vec3& at);
+    bool seen() const { return elsewhere || now_at_zero > 0; }
     std::uint64_t lost() const { return lost_at_zero + (far ? now_at_zero : 0); }
   };
 
