@@ -82,14 +82,14 @@ std::optional<std::int64_t> ArrivalLines::open_since(std::int64_t t) const {
 
 Arrivals ArrivalLines::result() const {
   Arrivals all;
-  for (const Line& line : lines_) {
-    const Arrivals one = line.arrivals.result();
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const Arrivals one = lines_[i].arrivals.result();
+    if (i == 0) all.first_late = one.first_late;
     all.near += one.near;
     all.late += one.late;
     all.worst_late_ns = std::max(all.worst_late_ns, one.worst_late_ns);
     all.near_only = one.near_only;
   }
-  if (!lines_.empty()) all.first_late = lines_.front().arrivals.result().first_late;
   return all;
 }
 
