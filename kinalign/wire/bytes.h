@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bytes of datagrams, in network order (big-endian, RFC 1700): all of wire's layouts use it. A
+// reader or writer that runs past its end keeps quiet until it is asked: one check behind a layout
+// instead of one a field.
+#pragma once
+
+#include <bit>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace kinalign {
+
+/// Takes fields from the front of a datagram. Past the end it gives zeros and `complete` is false.
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  template <std::unsigned_integral T>
+  T take() {
+    if (sizeof(T) > bytes_.size() - at_) {
+      at_ = bytes_.size();
+      complete_ = false;
+      return 0;
+    }
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < sizeof(T); ++i) value = value << 8 | bytes_[at_++];
+    return static_cast<T>(value);
+  }
+  float take_float() { return std::bit_cast<float>(take<std::uint32_t>()); }
+
+  bool complete() const { return complete_; }
+  std::size_t left() const { return bytes_.size() - at_; }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+  bool complete_ = true;
+};
+
+/// Puts fields one behind another. What has no room is not written and `complete` is false.
+class ByteWriter {
+ public:
+  explicit ByteWriter(std::span<std::uint8_t> bytes) : bytes_(bytes) {}
+
+  template <std::unsigned_integral T>
+  void put(T value) {
+    if (sizeof(T) > bytes_.size() - at_) {
+      complete_ = false;
+      return;
+    }
+    for (std::size_t i = sizeof(T); i-- > 0;) {
+      bytes_[at_++] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i));
+    }
+  }
+  void put_float(float value) { put(std::bit_cast<std::uint32_t>(value)); }
+
+  bool complete() const { return complete_; }
+  std::size_t written() const { return at_; }
+
+ private:
+  std::span<std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+  bool complete_ = true;
+};
+
+}  // namespace kinalign
