@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/wire/crc32.h"
+
+#include <array>
+
+namespace kinalign {
+
+namespace {
+
+// What four bits do to the remainder: 64 bytes of table instead of 1024, for the node's sake.
+constexpr std::array<std::uint32_t, 16> nibbles = [] {
+  std::array<std::uint32_t, 16> table{};
+  for (std::uint32_t i = 0; i < 16; ++i) {
+    std::uint32_t rest = i;
+    for (int bit = 0; bit < 4; ++bit) rest = rest >> 1 ^ (rest % 2 != 0 ? 0xedb88320U : 0U);
+    table[i] = rest;
+  }
+  return table;
+}();
+
+}  // namespace
+
+std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
+  std::uint32_t rest = 0xffffffff;
+  for (const std::uint8_t byte : bytes) {
+    rest ^= byte;
+    rest = rest >> 4 ^ nibbles[rest & 15];
+    rest = rest >> 4 ^ nibbles[rest & 15];
+  }
+  return ~rest;
+}
+
+}  // namespace kinalign

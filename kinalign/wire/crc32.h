@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CRC-32 of Ethernet, zlib and PNG (IEEE 802.3: polynomial 04c11db7, bits reflected, ones
+// before and behind). It finds damage; a MAC finds intent.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace kinalign {
+
+std::uint32_t crc32(std::span<const std::uint8_t> bytes);
+
+}  // namespace kinalign

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// SipHash-2-4 with 64 bits: J.-P. Aumasson, D. J. Bernstein, "SipHash: a fast short-input PRF",
+// INDOCRYPT 2012. Without the key its results can neither be told from chance nor be foretold, so
+// it is the MAC of the node's datagrams, and the hash of tables whose keys strangers choose.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace kinalign {
+
+using SipHashKey = std::array<std::uint8_t, 16>;
+
+/// As a number; the reference writes it lowest byte first.
+std::uint64_t siphash_2_4(const SipHashKey& key, std::span<const std::uint8_t> bytes);
+
+}  // namespace kinalign
