@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/wire/node_frame.h"
+
+#include "kinalign/wire/node_layout.h"
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t clock_size = 8 + 4 + 4 + 8;  // n_tx and the echo
+
+static_assert(node_datagram_size(clock_size + max_node_samples * max_sample_size, true) ==
+              max_node_datagram);
+
+NodeRefusal take_samples(ByteReader& reader, NodeFrame& frame) {
+  for (std::size_t i = 0; i < frame.sample_count; ++i) {
+    if (!take_sample(reader, frame.samples[i])) return NodeRefusal::stray_bits;
+  }
+  return NodeRefusal::none;
+}
+
+NodeRefusal take_frame(const NodeHead& head, ByteReader& reader, NodeFrame& frame) {
+  if (head.byte21 > max_node_samples) return NodeRefusal::too_many_samples;
+  frame.origin = head.origin;
+  frame.sample_count = head.byte21;
+  frame.has_battery = (head.flags & battery_flag) != 0;
+  frame.battery_mv = head.battery_mv;
+  frame.n_tx_us = reader.take<std::uint64_t>();
+  frame.has_echo = (head.flags & echo_flag) != 0;
+  frame.echo = {reader.take<std::uint32_t>(), reader.take<std::uint32_t>(),
+                reader.take<std::uint64_t>()};
+  if (!frame.has_echo && frame.echo != ReplyEcho{}) return NodeRefusal::stray_bits;
+  return take_samples(reader, frame);
+}
+
+}  // namespace
+
+std::size_t encoded_size(const NodeFrame& frame, const MacKey* key) {
+  std::size_t fields = clock_size;
+  for (std::size_t i = 0; i < frame.sample_count; ++i) fields += encoded_size(frame.samples[i]);
+  return node_datagram_size(fields, key != nullptr);
+}
+
+std::span<const std::uint8_t> encode(const NodeFrame& frame, const MacKey* key,
+                                     std::span<std::uint8_t> out) {
+  if (frame.sample_count > max_node_samples) return {};
+  const std::size_t size = encoded_size(frame, key);
+  if (size > out.size()) return {};
+  const auto flags = static_cast<std::uint8_t>((frame.has_battery ? battery_flag : 0) |
+                                               (frame.has_echo ? echo_flag : 0));
+  const std::uint16_t battery = frame.has_battery ? frame.battery_mv : std::uint16_t{0};
+  const ReplyEcho echo = frame.has_echo ? frame.echo : ReplyEcho{};
+  ByteWriter writer = begin_datagram(out, size,
+                                     {DatagramType::frame, frame.origin, flags,
+                                      static_cast<std::uint8_t>(frame.sample_count), battery},
+                                     key);
+  writer.put(frame.n_tx_us);
+  writer.put(echo.reply_sequence);
+  writer.put(echo.nonce);
+  writer.put(echo.n_rx_us);
+  for (std::size_t i = 0; i < frame.sample_count; ++i) put_sample(writer, frame.samples[i]);
+  return seal(out.first(size), key);
+}
+
+NodeRefusal decode(const Envelope& envelope, const MacKey* key, NodeFrame& frame) {
+  return decode_as(DatagramType::frame, envelope, key, frame, take_frame);
+}
+
+}  // namespace kinalign

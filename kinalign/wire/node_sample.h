@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// One reading of a node's sensors, in SI units. Layout: docs/formats/imu_node.md.
+#pragma once
+
+#include "kinalign/wire/bytes.h"
+
+#include <array>
+
+namespace kinalign {
+
+struct NodeSample {
+  std::uint32_t age_us = 0;  // the frame's n_tx - the counter at the sample
+  bool has_acceleration = false;
+  bool has_angular_velocity = false;
+  bool has_orientation = false;
+  bool gravity_included = false;            // in the acceleration; only where there is one
+  std::array<float, 3> acceleration{};      // m/s2, in the node's own space
+  std::array<float, 3> angular_velocity{};  // rad/s, in the node's own space
+  std::array<float, 4> orientation{};       // w,x,y,z, world_from_sensor
+
+  bool operator==(const NodeSample&) const = default;
+};
+
+/// What a receiver marks, though the sample came whole and its stamp is good.
+struct SampleFaults {
+  bool not_finite = false;        // NaN or infinite, anywhere in what is present
+  bool zero_orientation = false;  // four zeros: no rotation at all
+};
+SampleFaults faults(const NodeSample& sample);
+
+inline constexpr std::size_t max_sample_size = 4 + 1 + 4 * (3 + 3 + 4);
+std::size_t encoded_size(const NodeSample& sample);
+void put_sample(ByteWriter& writer, const NodeSample& sample);
+
+/// Whether its flags are those of this version.
+[[nodiscard]] bool take_sample(ByteReader& reader, NodeSample& sample);
+
+}  // namespace kinalign
