@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random numbers by counter: the k-th of a stream is a function of (seed, stream, k, lane), so it
+// is the same in whatever order and on however many threads it is asked for. The mixing function is
+// SplitMix64's (Steele, Lea, Flood, «Fast splittable pseudorandom number generators», 2014).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace kinalign {
+
+constexpr std::uint64_t mix64(std::uint64_t z) {
+  z += 0x9E3779B97F4A7C15U;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+  return z ^ (z >> 31);
+}
+
+/// One stream of a seed: numbers k = 0, 1, … in 16 lanes that do not depend on one another.
+class RandomStream {
+ public:
+  constexpr RandomStream(std::uint64_t seed, std::uint64_t stream)
+      : base_(mix64(mix64(seed) ^ stream)) {}
+
+  /// Uniform in (0, 1).
+  constexpr double uniform(std::uint64_t k, std::uint64_t lane) const {
+    return (static_cast<double>(mix64(base_ + 16 * k + lane) >> 11) + 0.5) * 0x1p-53;
+  }
+  double exponential(std::uint64_t k, std::uint64_t lane, double mean) const {
+    return -mean * std::log(uniform(k, lane));
+  }
+  /// Standard normal, from lanes `lane` and `lane` + 1 (Box and Muller).
+  double normal(std::uint64_t k, std::uint64_t lane) const {
+    return std::sqrt(-2.0 * std::log(uniform(k, lane))) *
+           std::cos(2.0 * std::numbers::pi * uniform(k, lane + 1));
+  }
+  bool chance(std::uint64_t k, std::uint64_t lane, double probability) const {
+    return uniform(k, lane) < probability;
+  }
+
+ private:
+  std::uint64_t base_;
+};
+
+}  // namespace kinalign
