@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a certified stamp stands on. While H1 to H5 hold, the truth lies in its interval:
+//   H1  no delay is negative: the host's stamps are taken early on sending and late on receiving,
+//   on
+//       one continuous clock that nobody steps or slews (CLOCK_MONOTONIC_RAW);
+//   H2  the node's clock is at most `rate` off the host's;
+//   H3  that error changes by at most `curvature` per second;
+//   H4  within one boot id the node's counter is continuous: no step, no sleep that loses time;
+//   H5  the datagrams are the node's own.
+#pragma once
+
+#include <string>
+
+namespace kinalign {
+
+struct Assumptions {
+  double rate = 100e-6;
+  double curvature = 5e-8;  // per second: three times the worst of a crystal that warms up
+
+  bool operator==(const Assumptions&) const = default;
+};
+
+/// "H1-H5 rate<=100ppm curvature<=0.05ppm/s": stands with every certificate.
+std::string to_string(const Assumptions& assumptions);
+
+}  // namespace kinalign

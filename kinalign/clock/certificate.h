@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The interval that holds the offset between two clocks under stated assumptions (assumptions.h),
+// from all exchanges so far. Hulls under straight lines are Zhang, Liu, Xia's (INFOCOM 2002) and
+// Harrison and Newman's («TICSync», ICRA 2011); lifting them by the curvature is ours.
+#pragma once
+
+#include "kinalign/clock/assumptions.h"
+#include "kinalign/clock/corridor.h"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace kinalign {
+
+class Certificate {
+ public:
+  /// Remembers so many corners of each hull: fewer bound less, and truly.
+  explicit Certificate(const Assumptions& assumptions,
+                       std::size_t corners = std::numeric_limits<std::size_t>::max())
+      : assumptions_(assumptions), corridor_(assumptions.curvature), corners_(corners) {}
+
+  /// x(s) <= x, from a packet up; x(s) >= x, from a packet down.
+  void add_above(double s, double x);
+  void add_below(double s, double x);
+
+  /// There are bounds enough for a claim: two up, one down.
+  bool bounded() const { return up_ >= 2 && down_ >= 1; }
+  std::uint64_t up() const { return up_; }
+  std::uint64_t down() const { return down_; }
+  /// All that x(t) can be. Absent where there are no bounds of one kind, or where they contradict
+  /// each other.
+  std::optional<ValueRange> at(double t) const;
+  const Assumptions& assumptions() const { return assumptions_; }
+  /// The same under a greater curvature, from the corners of the hulls alone.
+  Certificate relaxed(double curvature) const;
+
+ private:
+  Assumptions assumptions_;
+  Corridor corridor_;
+  std::size_t corners_;
+  std::uint64_t up_ = 0, down_ = 0;
+};
+
+}  // namespace kinalign

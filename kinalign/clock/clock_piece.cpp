@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/clock_piece.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double counter_resolution_s = 1e-6;
+constexpr double tolerated_s = 5e-6;  // against the certificate, before a bound is a violator
+constexpr double violators_within_s = 5.0;
+constexpr double most_curvature = 2e-6;  // per second: 100 times that of a board that warms up
+constexpr double before_a_slip_s = 5.0;
+constexpr double stale_s = 0.5;
+constexpr double between_pieces = 2e-6;  // by which a slope may differ
+constexpr std::uint32_t seldom = 4;
+
+Duration rounded_down(double s) { return Duration{static_cast<std::int64_t>(std::floor(s * 1e9))}; }
+Duration rounded_up(double s) { return Duration{static_cast<std::int64_t>(std::ceil(s * 1e9))}; }
+
+/// Whether two bounds of different kinds leave no way for a function of at most this rate.
+bool contradict(const JournalEntry& a, const JournalEntry& b, double rate) {
+  if (a.bound == b.bound) return false;
+  const JournalEntry& above = a.bound == Bound::above ? a : b;
+  const JournalEntry& below = a.bound == Bound::above ? b : a;
+  return below.x > above.x + rate * std::abs(a.s - b.s) + tolerated_s;
+}
+
+}  // namespace
+
+/// The counter is cut to whole microseconds: a reading n stands for up to n + 1 us.
+JournalEntry ClockPiece::entry(const Crossing& crossing) const {
+  const Duration node = crossing.n - origin_.node;
+  const Duration offset = (crossing.h - origin_.host) - node;
+  const double early = crossing.bound == Bound::below ? counter_resolution_s : 0.0;
+  return {seconds(node), seconds(offset) - early, crossing.bound};
+}
+
+HostTime ClockPiece::host_time(const JournalEntry& e) const {
+  return origin_.host + rounded_down(e.s + e.x);
+}
+
+void ClockPiece::ask(double s) {
+  range_ = certificate_.at(s);
+  range_at_ = s;
+  unseen_ = 0;
+}
+
+/// By how much a bound excludes all that the certificate leaves, s; not positive: it does not. The
+/// certificate of some exchanges ago serves as well.
+double ClockPiece::violation(const JournalEntry& e) {
+  if (!certificate_.bounded()) return 0.0;
+  if (!range_ || e.s - range_at_ > stale_s || unseen_ >= seldom) ask(e.s);
+  if (!range_) return 0.0;
+  const double d = e.s - range_at_;
+  const double bent = assumptions().curvature * d * d / 2.0;
+  const double least = std::min(range_->least_slope * d, range_->greatest_slope * d) - bent;
+  const double most = std::max(range_->least_slope * d, range_->greatest_slope * d) + bent;
+  return e.bound == Bound::above ? range_->low + least - e.x : e.x - range_->high - most;
+}
+
+void ClockPiece::add(const JournalEntry& e) {
+  const double slope = estimate_.slope().mean;
+  if (e.bound == Bound::above) {
+    certificate_.add_above(e.s, e.x);
+    estimate_.add_above(e.s, e.x);
+    floors_.add_above({e.s, e.x}, slope);
+  } else {
+    certificate_.add_below(e.s, e.x);
+    estimate_.add_below(e.s, e.x);
+    floors_.add_below({e.s, -e.x}, slope);
+  }
+  journal_.add(e);
+  ++unseen_;
+}
+
+ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
+  const JournalEntry e = entry(crossing);
+  amount_ = violation(e);
+  if (amount_ > tolerated_s) return judge(crossing);
+  Verdict verdict = Verdict::taken;
+  if (certificate_.bounded() && !range_) {
+    if (!relax(e.s)) return Verdict::broken;
+    verdict = Verdict::relaxed;
+  }
+  add(e);
+  if (const auto by = stepped_with_route()) {
+    amount_ = *by;
+    slip_ = Slip::with_route;
+    return Verdict::slipped;
+  }
+  if (const auto by = stepped_between_windows()) {
+    amount_ = *by;
+    slip_ = Slip::between_windows;
+    return Verdict::slipped;
+  }
+  return verdict;
+}
+
+/// Told once a change of route.
+std::optional<double> ClockPiece::stepped_with_route() {
+  const auto& change = estimate_.last_change();
+  if (!change || !change->step || estimate_.changes() == routes_judged_) return std::nullopt;
+  routes_judged_ = estimate_.changes();
+  return change->step;
+}
+
+/// Asked once a window. Where routes are seen to change, windows of two of them are not alike.
+std::optional<double> ClockPiece::stepped_between_windows() {
+  if (floors_.windows() == windows_judged_) return std::nullopt;
+  windows_judged_ = floors_.windows();
+  const auto& change = estimate_.last_change();
+  const bool one_route =
+      !change || journal_.newest(0).s - change->s > FloorLog::longest_reach_s + FloorLog::window_s;
+  return one_route ? floors_.step() : std::nullopt;
+}
+
+/// Once a node bends more than assumed, what is just enough would put the truth at the edge: so far
+/// as crystals go. False: even that leaves no way.
+bool ClockPiece::relax(double s) {
+  if (assumptions().curvature >= most_curvature) return false;
+  Certificate relaxed = certificate_.relaxed(most_curvature);
+  if (!relaxed.at(s)) return false;
+  certificate_ = std::move(relaxed);
+  ask(s);
+  return true;
+}
+
+/// A node that warms up faster than assumed bends away from the certificate bit by bit: three
+/// violators that a greater curvature explains are no step.
+ClockPiece::Verdict ClockPiece::judge(const Crossing& violator) {
+  const auto old = [&](const Crossing& c) {
+    return std::abs(seconds(violator.n - c.n)) > violators_within_s;
+  };
+  const auto end = violators_.begin() + static_cast<std::ptrdiff_t>(violator_count_);
+  violator_count_ =
+      static_cast<std::size_t>(std::remove_if(violators_.begin(), end, old) - violators_.begin());
+  violators_[violator_count_++] = violator;
+  if (violator_count_ < violators_.size()) return Verdict::violator;
+  const Certificate before = certificate_;
+  for (const Crossing& v : violators_) {
+    const JournalEntry e = entry(v);
+    e.bound == Bound::above ? certificate_.add_above(e.s, e.x) : certificate_.add_below(e.s, e.x);
+  }
+  if (!relax(entry(violator).s)) {
+    certificate_ = before;
+    return Verdict::broken;
+  }
+  for (const Crossing& v : violators_) add(entry(v));
+  violator_count_ = 0;
+  return Verdict::relaxed;
+}
+
+/// Behind the last crossing that can't go with the violators: until then the counter had not
+/// stepped. At least five seconds before the first violator, or three windows of floors.
+double ClockPiece::first_doubt() const {
+  if (slip_ == Slip::with_route) return estimate_.last_change()->s - before_a_slip_s;
+  if (slip_ == Slip::between_windows) return journal_.newest(0).s - FloorLog::longest_reach_s;
+  if (violator_count_ < violators_.size()) return 0.0;
+  std::array<JournalEntry, 3> violators{};
+  std::transform(violators_.begin(), violators_.end(), violators.begin(),
+                 [this](const Crossing& c) { return entry(c); });
+  double first = violators[0].s;
+  for (const JournalEntry& v : violators) first = std::min(first, v.s);
+  for (std::size_t i = 0; i < journal_.size(); ++i) {
+    const JournalEntry e = journal_.newest(i);
+    for (const JournalEntry& v : violators) {
+      if (contradict(e, v, assumptions().rate)) return std::min(e.s, first - violators_within_s);
+    }
+  }
+  return 0.0;
+}
+
+HostTime ClockPiece::doubtful_since() const {
+  return origin_.host + rounded_down(std::max(first_doubt(), 0.0));
+}
+
+/// From the last window of floors on.
+ClockPiece ClockPiece::next_by_windows(const SlopeBelief& prior) const {
+  const JournalEntry last = journal_.newest(0);
+  std::size_t kept = 1;
+  const double begin = last.s - FloorLog::window_s;
+  while (kept < journal_.size() && journal_.newest(kept).s > begin) ++kept;
+  const JournalEntry first = journal_.newest(kept - 1);
+  ClockPiece next({origin_.node + rounded_down(first.s), host_time(first)}, assumptions(), prior);
+  const double node = seconds(next.origin_.node - origin_.node);
+  const double host = seconds(next.origin_.host - origin_.host);
+  while (kept-- > 0) {
+    const JournalEntry e = journal_.newest(kept);
+    next.add({e.s - node, e.x + node - host, e.bound});
+  }
+  return next;
+}
+
+/// With the same estimate, which has begun anew there, and a certificate from there on.
+ClockPiece ClockPiece::next_by_route() const {
+  ClockPiece next = *this;
+  next.slip_ = Slip::none;
+  next.certificate_ = Certificate(assumptions(), corners);
+  next.range_.reset();
+  const double begin = estimate_.last_change()->s;
+  for (std::size_t i = journal_.size(); i-- > 0;) {
+    const JournalEntry e = journal_.newest(i);
+    if (e.s <= begin) continue;
+    e.bound == Bound::above ? next.certificate_.add_above(e.s, e.x)
+                            : next.certificate_.add_below(e.s, e.x);
+  }
+  return next;
+}
+
+ClockPiece ClockPiece::next_piece() const {
+  SlopeBelief prior = estimate_.slope();
+  prior.deviation += between_pieces;
+  if (slip_ == Slip::with_route) return next_by_route();
+  if (slip_ == Slip::between_windows) return next_by_windows(prior);
+  if (violator_count_ < violators_.size()) {
+    const JournalEntry last = journal_.newest(0);
+    return {{origin_.node + rounded_down(last.s), host_time(last)}, assumptions(), prior};
+  }
+  ClockPiece next({violators_[0].n, violators_[0].h}, assumptions(), prior);
+  for (const Crossing& v : violators_) next.add(next.entry(v));
+  return next;
+}
+
+std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
+  const double s = seconds(n - origin_.node);
+  const auto middle = estimate_.at(s);
+  if (!middle) return std::nullopt;
+  ClockStamp stamp;
+  stamp.assumptions = assumptions();
+  double x = middle->value;
+  ask(s);
+  if (const auto& range = range_) {
+    x = std::clamp(x, range->low, range->high);
+    stamp.earliest = origin_.host + rounded_down(s + range->low);
+    stamp.latest = origin_.host + rounded_up(s + range->high + counter_resolution_s);
+    if (certificate_.bounded()) stamp.certainty = Certainty::certified;
+  } else {
+    stamp.certainty = Certainty::doubtful;
+  }
+  stamp.time = origin_.host + Duration{std::llround((s + x + counter_resolution_s / 2.0) * 1e9)};
+  return stamp;
+}
+
+}  // namespace kinalign

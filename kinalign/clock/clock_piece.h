@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// One stretch of a node's counter without a break: its certificate, its estimate, and the watch
+// over exchanges that can't be.
+#pragma once
+
+#include "kinalign/clock/certificate.h"
+#include "kinalign/clock/clock_stamp.h"
+#include "kinalign/clock/exchange_journal.h"
+#include "kinalign/clock/floor_log.h"
+#include "kinalign/clock/offset_estimate.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace kinalign {
+
+/// One way of an exchange: a frame that left at n and arrived at h bounds the offset from above, a
+/// reply that left at h and arrived at n from below.
+struct Crossing {
+  Bound bound = Bound::above;
+  NodeTime n{};
+  HostTime h{};
+};
+
+class ClockPiece {
+ public:
+  /// Seconds are counted from this pair of readings.
+  struct Origin {
+    NodeTime node{};
+    HostTime host{};
+  };
+  ClockPiece(const Origin& origin, const Assumptions& assumptions, SlopeBelief prior)
+      : origin_(origin), certificate_(assumptions, corners), estimate_(prior) {}
+
+  enum class Verdict : std::uint8_t {
+    taken,
+    violator,  // against the certificate: left out
+    relaxed,   // taken; the curvature was raised
+    broken,    // the third violator in five seconds, or bounds without any way between them
+    slipped    // taken; the floors say that the counter stepped, by less than the certificate sees
+  };
+  Verdict push(const Crossing& crossing);
+
+  /// Absent until there is a crossing of each kind.
+  std::optional<ClockStamp> at(NodeTime n);
+
+  /// After `broken` or `slipped`: the piece that begins here, …
+  ClockPiece next_piece() const;
+  /// … and since when the stamps of this one are in doubt, by the frames' arrival.
+  HostTime doubtful_since() const;
+
+  const Origin& origin() const { return origin_; }
+  const Assumptions& assumptions() const { return certificate_.assumptions(); }
+  const OffsetEstimate& estimate() const { return estimate_; }
+  const FloorLog& floors() const { return floors_; }
+  /// Behind the verdict: how far beyond the certificate, or how far the counter stepped, s.
+  double amount() const { return amount_; }
+
+ private:
+  static constexpr std::size_t corners = 255;
+
+  JournalEntry entry(const Crossing& crossing) const;
+  HostTime host_time(const JournalEntry& e) const;
+  void ask(double s);
+  double violation(const JournalEntry& e);
+  void add(const JournalEntry& e);
+  Verdict judge(const Crossing& violator);
+  bool relax(double s);
+  std::optional<double> stepped_between_windows();
+  std::optional<double> stepped_with_route();
+  double first_doubt() const;
+  ClockPiece next_by_windows(const SlopeBelief& prior) const;
+  ClockPiece next_by_route() const;
+
+  Origin origin_;
+  Certificate certificate_;
+  OffsetEstimate estimate_;
+  ExchangeJournal journal_;
+  FloorLog floors_;
+  std::uint64_t windows_judged_ = 0;
+  std::array<Crossing, 3> violators_{};  // within five seconds
+  std::size_t violator_count_ = 0;
+  enum class Slip : std::uint8_t { none, between_windows, with_route };
+  Slip slip_ = Slip::none;
+  std::uint32_t routes_judged_ = 0;
+  double amount_ = 0.0;
+  /// What x could be at range_at_ when it was asked last, and how many bounds came since.
+  std::optional<ValueRange> range_;
+  double range_at_ = 0.0;
+  std::uint32_t unseen_ = 0;
+};
+
+}  // namespace kinalign

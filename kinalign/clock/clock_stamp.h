@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// When something happened on the host's axis, and how sure that is.
+#pragma once
+
+#include "kinalign/clock/assumptions.h"
+#include "kinalign/wire/time.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace kinalign {
+
+enum class Certainty : std::uint8_t {
+  certified,  // the truth lies in the interval while the assumptions hold
+  one_sided,  // too few exchanges: an end is open, or nothing may be claimed yet
+  doubtful    // the exchanges contradict the assumptions around here
+};
+
+struct ClockStamp {
+  HostTime time{};                           // the likeliest
+  std::optional<HostTime> earliest, latest;  // the interval; absent: that end is open
+  Certainty certainty = Certainty::one_sided;
+  Assumptions assumptions;  // under which it is certified
+};
+
+}  // namespace kinalign

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The least delay of one direction of one route, told from the fastest packets.
+#pragma once
+
+#include "kinalign/clock/lifted_hull.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace kinalign {
+
+/// A bound x(s) <= x: seconds from an origin near the data. Of the direction that bounds from below
+/// it is mirrored: -x(s) <= -x.
+struct OffsetBound {
+  double s = 0.0;
+  double x = 0.0;
+};
+
+/// A straight floor under bounds.
+struct FloorLine {
+  double s = 0.0, x = 0.0, slope = 0.0;
+
+  double at(double t) const { return x + slope * (t - s); }
+  double excess(OffsetBound bound) const { return bound.x - at(bound.s); }
+};
+
+/// Where the delays of a direction lie above its floor: classes of a factor of two from 1 us on.
+class ExcessCounts {
+ public:
+  void add(double excess);
+  std::uint64_t total() const { return total_; }
+  /// How many lie above, in whole classes: at least as many as do.
+  std::uint64_t above(double excess) const;
+  /// Half of them lie at most so far above, rounded up to a whole class.
+  double median() const;
+
+ private:
+  std::array<std::uint32_t, 24> classes_{};
+  std::uint64_t total_ = 0;
+};
+
+/// Bounds of one direction while its floor does not change.
+class Floor {
+ public:
+  void add(OffsetBound bound, const FloorLine& line);
+
+  /// Points per second of delay just above `line`: how sharply the floor is known. 0 with fewer
+  /// than two points.
+  double density(const FloorLine& line) const;
+  const LiftedHull& hull() const { return hull_; }
+  const ExcessCounts& counts() const { return counts_; }
+
+ private:
+  void keep_low(OffsetBound bound, const FloorLine& line);
+
+  /// |x''| that is usual, not what can be: with 1e-8 / s each link's error is the least or within
+  /// 15 % of it (docs/clock.md).
+  LiftedHull hull_{1e-8};
+  ExcessCounts counts_;
+  std::array<OffsetBound, 12> low_{};  // the points nearest to the floor, of the last 100 s
+  std::size_t lows_ = 0;
+};
+
+}  // namespace kinalign

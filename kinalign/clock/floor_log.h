@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The least delays of each ten seconds: what a user sees of the link, and the trace that a step of
+// the counter leaves where it is too small for the certificate.
+#pragma once
+
+#include "kinalign/clock/floor.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace kinalign {
+
+/// Of one window of ten seconds that had six exchanges each way, or of several.
+struct FloorWindow {
+  double s = 0.0;           // its middle
+  double middle = 0.0;      // of the offset, between the floors, s
+  double round_trip = 0.0;  // s
+  double gap = 0.0;         // how far the floors may lie from where they are seen, s
+};
+
+class FloorLog {
+ public:
+  /// Bounds from above, or mirrored ones from below; `slope` of the offset as far as it is known.
+  void add_above(OffsetBound bound, double slope) { add(0, bound, slope); }
+  void add_below(OffsetBound mirrored, double slope) { add(1, mirrored, -slope); }
+
+  static constexpr double window_s = 10.0;
+  /// 0: the last whole window.
+  std::optional<FloorWindow> window(std::size_t i) const;
+  std::uint64_t windows() const { return windows_; }
+
+  /// By how much the offset stepped within the windows before the last, if their round trips are
+  /// alike on both sides: a route that is longer one way and as much shorter the other is unlikely.
+  /// Single windows are compared over one between, and threes, whose floors are known better.
+  std::optional<double> step() const { return step_; }
+  static constexpr double longest_reach_s = 70.0;
+
+ private:
+  static constexpr std::size_t lowest = 6, remembered = 7;
+  struct Lows {
+    std::array<double, lowest> x{};  // rising, moved to the window's middle
+    std::size_t count = 0;
+  };
+  void add(std::size_t side, OffsetBound bound, double slope);
+  void close(double slope);
+  std::optional<FloorWindow> merged(std::size_t first, std::size_t count, double slope) const;
+  /// How far offsets of windows usually differ, and whether these do by more.
+  struct Comparison {
+    std::uint64_t pairs = 0;
+    double moved_squares = 0.0;
+
+    std::optional<double> step(const FloorWindow& now, const FloorWindow& then, double slope);
+  };
+
+  std::array<Lows, 2> now_;
+  std::int64_t index_ = 0;
+  std::array<std::optional<FloorWindow>, remembered> past_;
+  std::uint64_t windows_ = 0;
+  Comparison singles_, threes_;
+  std::optional<double> step_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/lifted_hull.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+void LiftedHull::append(double s, double lifted) {
+  if (!corners_.empty() && corners_.back().s == s) {
+    if (lifted >= corners_.back().lifted) return;
+    corners_.pop_back();
+  }
+  double slope = -infinite;
+  while (!corners_.empty()) {
+    slope = (lifted - corners_.back().lifted) / (s - corners_.back().s);
+    if (corners_.size() == 1 || slope > corners_[corners_.size() - 2].slope) break;
+    corners_.pop_back();
+  }
+  if (!corners_.empty()) corners_.back().slope = slope;
+  corners_.push_back({s, lifted, infinite});
+}
+
+void LiftedHull::add(double s, double bound) {
+  const double lifted = bound + rho_ * s * s / 2.0;
+  const auto behind = std::upper_bound(corners_.begin(), corners_.end(), s,
+                                       [](double at, const Corner& c) { return at < c.s; });
+  if (behind == corners_.end()) return append(s, lifted);
+  const std::vector<Corner> later(behind, corners_.end());
+  corners_.erase(behind, corners_.end());
+  if (!corners_.empty()) corners_.back().slope = infinite;
+  append(s, lifted);
+  for (const Corner& c : later) append(c.s, c.lifted);
+}
+
+LiftedHull::Support LiftedHull::support(const Corner& corner, double t, double slope) const {
+  const double tau = corner.s - t;
+  return {corner.lifted - rho_ * t * (corner.s - t / 2.0) - slope * tau, tau};
+}
+
+/// The corner that a line of this slope in the lifted plane touches.
+std::vector<LiftedHull::Corner>::const_iterator LiftedHull::corner_for(double slope) const {
+  return std::partition_point(corners_.begin(), corners_.end() - 1,
+                              [slope](const Corner& c) { return c.slope < slope; });
+}
+
+LiftedHull::Support LiftedHull::at(double t, double slope) const {
+  assert(!corners_.empty());
+  return support(*corner_for(slope + rho_ * t), t, slope);
+}
+
+void LiftedHull::bounds_at(double t, double first, double step, std::span<double> bounds) const {
+  assert(!corners_.empty());
+  auto corner = corner_for(first + rho_ * t);
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const double slope = first + step * static_cast<double>(i);
+    while (corner->slope < slope + rho_ * t) ++corner;  // the last one's is infinite
+    bounds[i] = support(*corner, t, slope).bound;
+  }
+}
+
+LiftedHull::Peak LiftedHull::peak(double t) const {
+  assert(!corners_.empty());
+  const auto behind = std::partition_point(corners_.begin(), corners_.end() - 1,
+                                           [t](const Corner& c) { return c.s < t; });
+  if (behind == corners_.begin() || behind->s < t) {  // t lies outside: the bound grows on and on
+    const double slope = behind == corners_.begin() && behind->s >= t ? -infinite : infinite;
+    return {infinite, slope};
+  }
+  const double slope = (behind - 1)->slope - rho_ * t;
+  return {support(*behind, t, slope).bound, slope};
+}
+
+LiftedHull LiftedHull::relifted(double rho) const {
+  LiftedHull hull(rho);
+  for (const Corner& c : corners_) hull.add(c.s, c.lifted - rho_ * c.s * c.s / 2.0);
+  return hull;
+}
+
+void LiftedHull::keep_newest(std::size_t n) {
+  if (corners_.size() > n)
+    corners_.erase(corners_.begin(), corners_.end() - static_cast<std::ptrdiff_t>(n));
+}
+
+}  // namespace kinalign

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/live_clock.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_events = 64;
+constexpr double between_lives = 2e-6;  // by which a slope may differ
+
+}  // namespace
+
+void LiveClock::tell(const ClockEvent& event) {
+  if (events_.size() < most_events) {
+    events_.push_back(event);
+  } else {
+    ++missed_events_;
+  }
+}
+
+std::vector<ClockEvent> LiveClock::take_events() { return std::exchange(events_, {}); }
+
+void LiveClock::begin(BootKey boot, const Crossing& first) {
+  SlopeBelief prior;
+  if (piece_) {  // it is the same crystal
+    prior = piece_->estimate().slope();
+    prior.deviation += between_lives;
+    earlier_[lives_++ % earlier_.size()] = boot_;
+  }
+  piece_.emplace(ClockPiece::Origin{first.n, first.h}, assumptions_, prior);
+  boot_ = boot;
+  routes_told_ = 0;
+  tell({ClockEvent::Kind::new_boot, boot, first.h, first.h});
+}
+
+void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
+  const Crossing crossing{Bound::above, n_tx, h_rx};
+  const auto lives =
+      earlier_.begin() + static_cast<std::ptrdiff_t>(std::min(lives_, earlier_.size()));
+  if (piece_ && boot != boot_ && std::find(earlier_.begin(), lives, boot) != lives) {
+    ++late_;
+    return;
+  }
+  if (!piece_ || boot != boot_) begin(boot, crossing);
+  if (h_rx < newest_) {
+    piece_.emplace(ClockPiece::Origin{n_tx, h_rx}, assumptions_, piece_->estimate().slope());
+    tell({ClockEvent::Kind::host_backwards, boot, h_rx, newest_});
+  }
+  newest_ = h_rx;
+  answer(piece_->push(crossing), crossing);
+}
+
+void LiveClock::push_down(BootKey boot, NodeTime n_rx, HostTime h_tx) {
+  if (!piece_ || boot != boot_) {
+    ++late_;
+    return;
+  }
+  const Crossing crossing{Bound::below, n_rx, h_tx};
+  answer(piece_->push(crossing), crossing);
+}
+
+void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
+  using Verdict = ClockPiece::Verdict;
+  using Kind = ClockEvent::Kind;
+  if (piece_->estimate().changes() != routes_told_) {
+    routes_told_ = piece_->estimate().changes();
+    tell({Kind::route, boot_, crossing.h, crossing.h});
+  }
+  switch (verdict) {
+    case Verdict::taken:
+      return;
+    case Verdict::violator:
+      return tell({Kind::violator, boot_, crossing.h, crossing.h, piece_->amount()});
+    case Verdict::relaxed:
+      tell({Kind::relaxed, boot_, newest_, newest_, piece_->assumptions().curvature});
+      return tell({Kind::withdrawn, boot_, piece_->origin().host, newest_});
+    case Verdict::broken:
+      return replace_piece(Kind::step, crossing);
+    case Verdict::slipped:
+      return replace_piece(Kind::slip, crossing);
+  }
+}
+
+void LiveClock::replace_piece(ClockEvent::Kind why, const Crossing& crossing) {
+  tell({why, boot_, crossing.h, crossing.h, piece_->amount()});
+  tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
+  piece_ = piece_->next_piece();
+  routes_told_ = 0;
+}
+
+std::optional<ClockStamp> LiveClock::host_from_node(BootKey boot, NodeTime n) {
+  if (!piece_ || boot != boot_) return std::nullopt;
+  return piece_->at(n);
+}
+
+}  // namespace kinalign

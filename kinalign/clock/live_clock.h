@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// The clock of one node, told while its frames arrive: from exchanges to host_from_node with an
+// interval. One object a node; it does not grow: some 60 KiB.
+//
+//   frame up:    n_tx (T1 of RFC 5905, read by the node)  ->  h_rx (T2, read by the host)
+//   its reply:   h_tx (T3, read by the host)              ->  n_rx (T4, read by the node)
+//
+// The two ways need no pairing: a frame whose reply was lost still bounds the offset from above,
+// and a reply is pushed once a later frame has brought its echo.
+#pragma once
+
+#include "kinalign/clock/clock_piece.h"
+#include "kinalign/clock/clock_stamp.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace kinalign {
+
+/// Which life of a node a counter belongs to: its boot id, or a number of the caller's where a node
+/// restarted without drawing a new one.
+using BootKey = std::uint64_t;
+
+struct ClockEvent {
+  enum class Kind : std::uint8_t {
+    new_boot,        // a piece begins with a life of the node
+    step,            // a piece begins: the counter stepped
+    slip,            // a piece begins: the floors moved against each other, by a step too small for
+                     // the certificate
+    host_backwards,  // a piece begins: the host's clock went back
+    withdrawn,       // stamps of frames that arrived from begin to end: certified, and are not
+    violator,        // a crossing that can't be was left out
+    relaxed,         // the node's clock bends more than was assumed
+    route            // the packets took another route
+  };
+  Kind kind{};
+  BootKey boot = 0;
+  HostTime begin{}, end{};
+  double value = 0.0;  // step, slip, violator: by how much, s; relaxed: the curvature, 1/s
+
+  bool operator==(const ClockEvent&) const = default;
+};
+
+class LiveClock {
+ public:
+  explicit LiveClock(const Assumptions& assumptions = {}) : assumptions_(assumptions) {}
+
+  /// A frame of this life arrived. In the order of arrival.
+  void push_up(BootKey boot, NodeTime n_tx, HostTime h_rx);
+  /// A frame that has just been pushed says that the reply sent at h_tx reached the node at n_rx.
+  void push_down(BootKey boot, NodeTime n_rx, HostTime h_tx);
+
+  /// When the counter of this life read n. Absent where too little is known of that life, and for
+  /// lives before the present one: the offline clock has those.
+  std::optional<ClockStamp> host_from_node(BootKey boot, NodeTime n);
+
+  /// What happened since this was asked last: at most 64, `missed_events` counts the rest.
+  std::vector<ClockEvent> take_events();
+  std::uint64_t missed_events() const { return missed_events_; }
+  std::uint64_t late_crossings() const { return late_; }  // of earlier lives
+
+  /// The stretch of the counter that is being told; nullptr before the first frame.
+  const ClockPiece* piece() const { return piece_ ? &*piece_ : nullptr; }
+
+ private:
+  void push(BootKey boot, const Crossing& crossing);
+  void begin(BootKey boot, const Crossing& first);
+  void answer(ClockPiece::Verdict verdict, const Crossing& crossing);
+  void replace_piece(ClockEvent::Kind why, const Crossing& crossing);
+  void tell(const ClockEvent& event);
+
+  Assumptions assumptions_;
+  std::optional<ClockPiece> piece_;
+  BootKey boot_ = 0;
+  std::array<BootKey, 8> earlier_{};  // lives
+  std::size_t lives_ = 0;
+  HostTime newest_ = HostTime::min();
+  std::uint32_t routes_told_ = 0;
+  std::uint64_t late_ = 0;
+  std::vector<ClockEvent> events_;
+  std::uint64_t missed_events_ = 0;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// A new route shows as delays of the usual shape on another floor; a busy radio, whose delays are
+// long for a while, shows as delays that spread by more than their least one rose.
+#include "kinalign/clock/recent_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::array windows_s{1.0, 3.0, 9.0};
+constexpr std::size_t least_points = 6;
+constexpr double steepness_s = 2.0;  // over the seconds watched: jumps for each of its spreads, …
+constexpr double least_steepness = 1.0;  // … at the least
+constexpr double wider = 1.0;            // than on the old floor a new one may spread
+constexpr double sure_nats = 25.0;       // evidence against the old floor
+
+/// Evidence that `points` delays at least `excess` above a floor are not of those counted before.
+double nats(const ExcessCounts& counts, std::size_t points, double excess) {
+  const auto n = static_cast<double>(points);
+  const double others = static_cast<double>(counts.total()) - n;
+  const double above = static_cast<double>(counts.above(excess)) - n;
+  if (others < 20.0) return 0.0;
+  return n * std::log((others + 2.0) / (std::max(above, 0.0) + 1.0));
+}
+
+}  // namespace
+
+void RecentBounds::add(OffsetBound bound, bool held) {
+  if (size_ == capacity && entries_[next_].held) --held_;
+  entries_[next_] = {bound, held};
+  next_ = (next_ + 1) % capacity;
+  size_ = std::min(size_ + 1, capacity);
+  if (held) ++held_;
+}
+
+/// How many of the newest may be of a new floor: all since the first held one, or all in a row that
+/// lie clearly above.
+std::size_t RecentBounds::run(const FloorLine& line, double limit) const {
+  std::size_t points = 0, still_held = held_;
+  if (held_ > 0) {
+    while (still_held > 0) still_held -= entry(points++).held ? 1 : 0;
+    return points;
+  }
+  while (points < size_ && line.excess(entry(points).bound) > limit) ++points;
+  return points;
+}
+
+std::optional<double> RecentBounds::moved(const FloorLine& line, double limit,
+                                          const ExcessCounts& counts) const {
+  if (size_ == 0 || std::abs(line.excess(newest(0))) <= limit) {
+    if (held_ == 0) return std::nullopt;
+  }
+  const std::size_t all = run(line, limit);
+  std::array<double, capacity> excess;
+  for (std::size_t i = 0; i < all; ++i) excess[i] = line.excess(newest(i));
+  for (const double window : windows_s) {
+    std::size_t points = all;
+    const double begin = newest(0).s - window;
+    if (held_ == 0)
+      while (points > 0 && newest(points - 1).s < begin) --points;
+    if (points < least_points || newest(0).s - newest(all - 1).s < window) return std::nullopt;
+    std::array<double, capacity> sorted = excess;
+    const auto half = static_cast<std::ptrdiff_t>(points / 2);
+    std::nth_element(sorted.begin(), sorted.begin() + half,
+                     sorted.begin() + static_cast<std::ptrdiff_t>(points));
+    const double least = *std::min_element(sorted.begin(), sorted.begin() + half + 1);
+    const double spread = sorted[points / 2] - least;
+    const double steepness = std::max(steepness_s / window, least_steepness);
+    const bool sharp = std::abs(least) > steepness * spread && spread < wider * counts.median();
+    if (sharp && (held_ > 0 || nats(counts, points, least) > sure_nats)) {
+      const double first = newest(points - 1).s;
+      return points < size_ ? (first + newest(points).s) / 2.0 : first - 1e-3;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<OffsetBound> RecentBounds::release(double s) {
+  if (held_ == 0) return std::nullopt;
+  for (std::size_t i = size_; i-- > 0;) {
+    Entry& e = entries_[(next_ + capacity - 1 - i) % capacity];
+    if (!e.held) continue;
+    if (e.bound.s > s - windows_s.back()) return std::nullopt;
+    e.held = false;
+    --held_;
+    return e.bound;
+  }
+  return std::nullopt;
+}
+
+}  // namespace kinalign

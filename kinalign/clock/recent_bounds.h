@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bounds of one direction of the last seconds, watched for a floor that has moved.
+#pragma once
+
+#include "kinalign/clock/floor.h"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace kinalign {
+
+class RecentBounds {
+ public:
+  /// `held`: lies so far below the floor that it is kept out of the route until more is known.
+  void add(OffsetBound bound, bool held);
+
+  /// If all of the last second (or three, or nine) lie around another floor than `line`: the moment
+  /// between the last one of the old floor and the first of the new. `limit`: nearer to the line is
+  /// nothing new; `counts`: how the excess lies that was seen on the old floor.
+  std::optional<double> moved(const FloorLine& line, double limit,
+                              const ExcessCounts& counts) const;
+
+  /// A held bound that nothing followed within nine seconds: it is taken for one of the route.
+  std::optional<OffsetBound> release(double s);
+
+  std::size_t size() const { return size_; }
+  const OffsetBound& newest(std::size_t i) const { return entry(i).bound; }  // 0: the last one
+
+ private:
+  struct Entry {
+    OffsetBound bound;
+    bool held = false;
+  };
+  static constexpr std::size_t capacity = 256;
+  const Entry& entry(std::size_t newest) const {
+    return entries_[(next_ + capacity - 1 - newest) % capacity];
+  }
+  std::size_t run(const FloorLine& line, double limit) const;
+
+  std::array<Entry, capacity> entries_{};
+  std::size_t next_ = 0, size_ = 0;
+  std::size_t held_ = 0;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The likeliest offset between two clocks while packets take one route.
+#pragma once
+
+#include "kinalign/clock/floor.h"
+
+namespace kinalign {
+
+/// What is known of a slope: a mean with a standard deviation.
+struct SlopeBelief {
+  double mean = 0.0;
+  double deviation = 15e-6;  // crystals of such boards: +-10 ppm at 25 C, +-20 ppm from 0 to 50 C
+};
+
+/// x(t) in the middle between two floors.
+struct Middle {
+  double t = 0.0;
+  double value = 0.0;
+  double slope = 0.0;
+  double deviation = 0.0;                           // of the value if the floors are alike
+  double round_trip = 0.0;                          // between the floors
+  double above_density = 0.0, below_density = 0.0;  // 0: not known yet
+
+  double at(double s) const { return value + slope * (s - t); }
+  FloorLine above() const { return {t, value + round_trip / 2.0, slope}; }
+  FloorLine below() const { return {t, -value + round_trip / 2.0, -slope}; }  // mirrored
+  /// How far the two floors may still lie from where they are seen, s.
+  double floor_deviation() const;
+};
+
+/// Bounds from above (x <= h_rx - n_tx) and from below (x >= h_tx - n_rx) between which x runs as
+/// long as the least delays stay what they are.
+class Route {
+ public:
+  explicit Route(SlopeBelief prior) : prior_(prior), belief_(prior) {}
+
+  void add_above(OffsetBound bound, const Middle& middle);
+  void add_below(OffsetBound mirrored, const Middle& middle);
+  bool bounded() const { return !above_.hull().empty() && !below_.hull().empty(); }
+  const Floor& above() const { return above_; }
+  const Floor& below() const { return below_; }
+  SlopeBelief belief() const { return belief_; }
+
+  /// Averaged over all slopes by how likely they are; `last` is an earlier answer or a guess. Needs
+  /// a bound of each kind.
+  Middle middle(double t, const Middle& last);
+  /// At another t with the floors as sharp as they are for `now`.
+  Middle middle_elsewhere(double t, const Middle& now) const;
+
+ private:
+  Middle average(double t, const Middle& known, SlopeBelief& around) const;
+
+  SlopeBelief prior_, belief_;
+  Floor above_, below_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/floor_log.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace kinalign;
+
+namespace {
+
+/// Ten packets a second each way, 1 ms and what is drawn on top; the offset steps at 100 s.
+struct Told {
+  FloorLog log;
+  std::optional<double> step;  // the first
+};
+
+Told log_of(double until, double step, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::exponential_distribution<double> delay(1000.0);
+  Told told;
+  FloorLog& log = told.log;
+  for (double s = 0.0; s < until; s += 0.1) {
+    const double x = 1e-5 * s + (s >= 100.0 ? step : 0.0);
+    log.add_above({s, x + 1e-3 + delay(random)}, 1e-5);
+    log.add_below({s, -(x - 1e-3 - delay(random))}, 1e-5);
+    if (!told.step) told.step = log.step();
+  }
+  return told;
+}
+
+}  // namespace
+
+TEST_CASE("a window tells the least round trip and the offset between the floors") {
+  const FloorLog log = log_of(25.0, 0.0, 1).log;
+  REQUIRE(log.window(0));
+  CHECK(log.window(0)->s == 15.0);
+  CHECK(log.window(0)->round_trip == doctest::Approx(2e-3).epsilon(0.05));
+  CHECK(log.window(0)->middle == doctest::Approx(1e-5 * 15.0).epsilon(0.2));
+  CHECK(log.windows() == 2);
+}
+
+TEST_CASE("a step of a millisecond shows within two windows, and nothing shows without one") {
+  CHECK(!log_of(200.0, 0.0, 2).step);
+  const auto by = log_of(120.5, 1e-3, 2).step;
+  REQUIRE(by);
+  CHECK(*by == doctest::Approx(1e-3).epsilon(0.1));
+}
+
+TEST_CASE("a window with few packets is none") {
+  FloorLog log;
+  for (double s = 0.0; s < 40.0; s += 0.1) {
+    log.add_above({s, 1e-3}, 0.0);
+    if (s < 20.0) log.add_below({s, 1e-3}, 0.0);
+  }
+  CHECK(!log.window(0));
+  CHECK(log.window(2));
+}

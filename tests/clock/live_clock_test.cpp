@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/live_clock.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+using namespace kinalign;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr HostTime host(Duration d) { return HostTime{1000s + d}; }
+constexpr NodeTime node(Duration d) { return NodeTime{5s + d}; }
+
+/// Ten exchanges a second, a millisecond each way, of a node without drift.
+void run(LiveClock& clock, BootKey boot, Duration from, Duration until) {
+  for (Duration t = from; t < until; t += 100ms) {
+    clock.push_up(boot, node(t), host(t + 1ms));
+    clock.push_down(boot, node(t - 50ms), host(t - 51ms));
+  }
+}
+
+std::uint64_t count(const std::vector<ClockEvent>& events, ClockEvent::Kind kind) {
+  return static_cast<std::uint64_t>(std::count_if(
+      events.begin(), events.end(), [kind](const auto& e) { return e.kind == kind; }));
+}
+
+}  // namespace
+
+TEST_CASE("a stamp lies in the middle of its interval, which a millisecond each way leaves") {
+  LiveClock clock;
+  run(clock, 7, 0s, 60s);
+  const auto stamp = clock.host_from_node(7, node(60s));
+  REQUIRE(stamp);
+  CHECK(stamp->certainty == Certainty::certified);
+  CHECK(std::chrono::abs(stamp->time - host(60s)) < 5us);
+  CHECK(*stamp->earliest <= host(60s) - 999us);
+  CHECK(*stamp->latest >= host(60s) + 999us);
+  CHECK(*stamp->latest - *stamp->earliest < 2100us);
+}
+
+TEST_CASE("nothing is said of a node that was not heard, or of which no reply came back") {
+  LiveClock clock;
+  CHECK(!clock.host_from_node(7, node(0s)));
+  clock.push_up(7, node(0s), host(1ms));
+  CHECK(!clock.host_from_node(7, node(0s)));
+  clock.push_down(7, node(50ms), host(49ms));
+  const auto stamp = clock.host_from_node(7, node(0s));
+  REQUIRE(stamp);
+  CHECK(stamp->certainty == Certainty::one_sided);  // one frame is no claim
+}
+
+TEST_CASE("a new life begins a piece; frames of earlier ones are counted and change nothing") {
+  LiveClock clock;
+  run(clock, 7, 0s, 10s);
+  run(clock, 8, 20s, 30s);
+  CHECK(count(clock.take_events(), ClockEvent::Kind::new_boot) == 2);
+  const auto before = clock.host_from_node(8, node(30s));
+  clock.push_up(7, node(10s), host(30s));
+  CHECK(clock.late_crossings() == 1);
+  CHECK(clock.host_from_node(8, node(30s))->time == before->time);
+  CHECK(!clock.host_from_node(7, node(10s)));
+}
+
+TEST_CASE("one crossing that cannot be is left out, three are a step") {
+  LiveClock clock;
+  run(clock, 7, 0s, 30s);
+  const auto before = clock.host_from_node(7, node(31s));
+  clock.push_up(7, node(30s), host(29s));  // a second before it was sent
+  auto events = clock.take_events();
+  CHECK(count(events, ClockEvent::Kind::violator) == 0);
+  CHECK(count(events, ClockEvent::Kind::host_backwards) == 1);  // which it can't have arrived at
+  LiveClock other;
+  run(other, 7, 0s, 30s);
+  other.push_up(7, node(31s), host(30s + 500ms));
+  CHECK(count(other.take_events(), ClockEvent::Kind::violator) == 1);
+  CHECK(other.host_from_node(7, node(31s))->time == before->time);
+  other.push_up(7, node(31s + 100ms), host(30s + 600ms));
+  other.push_up(7, node(31s + 200ms), host(30s + 700ms));
+  events = other.take_events();
+  CHECK(count(events, ClockEvent::Kind::step) == 1);
+  CHECK(count(events, ClockEvent::Kind::withdrawn) == 1);
+  CHECK(events.back().begin < host(27s));  // five seconds before the first of them
+}
+
+TEST_CASE("a host's clock that goes back ends the piece") {
+  LiveClock clock;
+  run(clock, 7, 0s, 10s);
+  static_cast<void>(clock.take_events());
+  clock.push_up(7, node(10s), host(5s));
+  CHECK(count(clock.take_events(), ClockEvent::Kind::host_backwards) == 1);
+}
+
+TEST_CASE("events beyond sixty-four are counted") {
+  LiveClock clock;
+  for (BootKey boot = 0; boot < 100; ++boot) {
+    clock.push_up(boot, node(0s), host(std::chrono::seconds(boot)));
+  }
+  CHECK(clock.take_events().size() == 64);
+  CHECK(clock.missed_events() == 36);
+  CHECK(clock.take_events().empty());
+}
