@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/clock_table/judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+HostTime arrival_time(double seconds) {
+  return HostTime{Duration{static_cast<std::int64_t>(std::ceil(seconds * 1e9))}};
+}
+
+HostTime departure_time(double seconds) {
+  return HostTime{Duration{static_cast<std::int64_t>(std::floor(seconds * 1e9))}};
+}
+
+NodeTime counter_time(std::int64_t microseconds) { return NodeTime{Duration{1000 * microseconds}}; }
+
+double seconds_of(HostTime t) { return seconds(t.time_since_epoch()); }
+
+std::uint64_t JudgedRun::count(ClockEvent::Kind kind) const {
+  return static_cast<std::uint64_t>(std::count_if(
+      events.begin(), events.end(), [kind](const ClockEvent& e) { return e.kind == kind; }));
+}
+
+std::uint64_t JudgedRun::lies() const {
+  return static_cast<std::uint64_t>(
+      std::count_if(stamps.begin(), stamps.end(),
+                    [](const JudgedStamp& s) { return s.certified && !s.withdrawn && s.outside; }));
+}
+
+namespace {
+
+JudgedStamp judged(const ClockStamp& stamp, const SimulatedFrame& frame, double heard) {
+  JudgedStamp out;
+  out.sent = frame.sent;
+  out.heard = heard;
+  out.error = seconds_of(stamp.time) - frame.truth;
+  out.certified = stamp.certainty == Certainty::certified;
+  const bool early = stamp.earliest && *stamp.earliest > arrival_time(frame.sent);
+  const bool late = stamp.latest && *stamp.latest < departure_time(frame.sent);
+  out.outside = early || late;
+  if (stamp.earliest && stamp.latest)
+    out.half_width = seconds(*stamp.latest - *stamp.earliest) / 2.0;
+  return out;
+}
+
+void withdraw(const ClockEvent& event, std::vector<JudgedStamp>& stamps) {
+  for (JudgedStamp& stamp : stamps) {
+    const HostTime heard = arrival_time(stamp.heard);
+    if (heard >= event.begin && heard <= event.end) stamp.withdrawn = true;
+  }
+}
+
+}  // namespace
+
+JudgedRun judge_live(const SimulatedExchanges& exchanges, const Assumptions& assumptions) {
+  JudgedRun run;
+  run.asymmetry = (exchanges.floors.up - exchanges.floors.down) / 2.0;
+  LiveClock clock(assumptions);
+  for (const Heard& heard : in_order_of_arrival(exchanges)) {
+    if (heard.again) continue;  // the receiver drops duplicates
+    const SimulatedFrame& frame = exchanges.frames[heard.frame];
+    ++run.frames;
+    clock.push_up(frame.boot_id, counter_time(frame.n_tx_us), arrival_time(heard.at));
+    if (frame.echo) {
+      const SimulatedFrame& answered = exchanges.frames[*frame.echo];
+      clock.push_down(frame.boot_id, counter_time(answered.n_rx_us),
+                      departure_time(answered.replied));
+    }
+    const auto stamp = clock.host_from_node(frame.boot_id, counter_time(frame.n_tx_us));
+    for (const ClockEvent& event : clock.take_events()) {
+      if (event.kind == ClockEvent::Kind::withdrawn) withdraw(event, run.stamps);
+      run.events.push_back(event);
+    }
+    if (stamp) run.stamps.push_back(judged(*stamp, frame, heard.at));
+  }
+  return run;
+}
+
+ErrorFigures figures(std::vector<double> errors) {
+  if (errors.empty()) return {};
+  double squares = 0.0;
+  for (double& e : errors) {
+    e = std::abs(e);
+    squares += e * e;
+  }
+  std::sort(errors.begin(), errors.end());
+  const auto n = errors.size();
+  return {std::sqrt(squares / static_cast<double>(n)), errors[std::min(n - 1, n * 99 / 100)],
+          errors.back()};
+}
+
+std::vector<double> errors_since(const JudgedRun& run, double begin, double asymmetry) {
+  std::vector<double> errors;
+  for (const JudgedStamp& stamp : run.stamps) {
+    if (stamp.sent >= begin) errors.push_back(stamp.error - asymmetry);
+  }
+  return errors;
+}
+
+}  // namespace kinalign
