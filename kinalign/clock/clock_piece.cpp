@@ -177,6 +177,18 @@ HostTime ClockPiece::doubtful_since() const {
   return origin_.host + rounded_down(std::max(first_doubt(), 0.0));
 }
 
+HostTime ClockPiece::next_begins() const {
+  if (slip_ == Slip::with_route) {
+    return origin_.host + rounded_down(estimate_.last_change()->s);
+  }
+  const double now = journal_.newest(0).s;
+  if (slip_ == Slip::between_windows) {
+    return origin_.host + rounded_down(now - FloorLog::window_s);
+  }
+  if (violator_count_ < violators_.size()) return origin_.host + rounded_down(now);
+  return std::min({violators_[0].heard, violators_[1].heard, violators_[2].heard});
+}
+
 /// From the last window of floors on.
 ClockPiece ClockPiece::next_by_windows(const SlopeBelief& prior) const {
   const JournalEntry last = journal_.newest(0);

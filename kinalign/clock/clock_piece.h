@@ -21,6 +21,7 @@ struct Crossing {
   Bound bound = Bound::above;
   NodeTime n{};
   HostTime h{};
+  HostTime heard{};  // when the frame arrived that told of it
 };
 
 class ClockPiece {
@@ -47,6 +48,7 @@ class ClockPiece {
 
   /// After `broken` or `slipped`: the piece that begins here, …
   ClockPiece next_piece() const;
+  HostTime next_begins() const;
   /// … and since when the stamps of this one are in doubt, by the frames' arrival.
   HostTime doubtful_since() const;
 

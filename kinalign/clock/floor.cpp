@@ -13,7 +13,6 @@ constexpr double remembered_s = 100.0;
 constexpr std::size_t nearest = 6;  // points that tell a density
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double resolution_s = 1e-6;
-constexpr std::size_t hull_corners = 512;
 
 std::size_t class_of(double excess) {
   if (excess < resolution_s) return 0;
@@ -44,7 +43,7 @@ void Floor::add(OffsetBound bound, const FloorLine& line) {
   counts_.add(line.excess(bound));
   keep_low(bound, line);
   hull_.add(bound.s, bound.x);
-  hull_.keep_newest(hull_corners);
+  hull_.keep_newest(corners_);
 }
 
 /// Of a full set the worst goes: an old one, else the one farthest above the floor.

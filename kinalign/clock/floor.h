@@ -43,6 +43,8 @@ class ExcessCounts {
 /// Bounds of one direction while its floor does not change.
 class Floor {
  public:
+  explicit Floor(std::size_t corners) : corners_(corners) {}
+
   void add(OffsetBound bound, const FloorLine& line);
 
   /// Points per second of delay just above `line`: how sharply the floor is known. 0 with fewer
@@ -57,6 +59,7 @@ class Floor {
   /// |x''| that is usual, not what can be: with 1e-8 / s each link's error is the least or within
   /// 15 % of it (docs/clock.md).
   LiftedHull hull_{1e-8};
+  std::size_t corners_;  // that it remembers
   ExcessCounts counts_;
   std::array<OffsetBound, 12> low_{};  // the points nearest to the floor, of the last 100 s
   std::size_t lows_ = 0;

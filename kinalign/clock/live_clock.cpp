@@ -36,8 +36,13 @@ void LiveClock::begin(BootKey boot, const Crossing& first) {
   tell({ClockEvent::Kind::new_boot, boot, first.h, first.h});
 }
 
+void LiveClock::push(const Exchange& exchange) {
+  push_up(exchange.boot, exchange.n_tx, exchange.h_rx);
+  if (exchange.echo) push_down(exchange.boot, exchange.echo->n_rx, exchange.echo->h_tx);
+}
+
 void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
-  const Crossing crossing{Bound::above, n_tx, h_rx};
+  const Crossing crossing{Bound::above, n_tx, h_rx, h_rx};
   const auto lives =
       earlier_.begin() + static_cast<std::ptrdiff_t>(std::min(lives_, earlier_.size()));
   if (piece_ && boot != boot_ && std::find(earlier_.begin(), lives, boot) != lives) {
@@ -58,7 +63,7 @@ void LiveClock::push_down(BootKey boot, NodeTime n_rx, HostTime h_tx) {
     ++late_;
     return;
   }
-  const Crossing crossing{Bound::below, n_rx, h_tx};
+  const Crossing crossing{Bound::below, n_rx, h_tx, newest_};
   answer(piece_->push(crossing), crossing);
 }
 
@@ -67,13 +72,13 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
   using Kind = ClockEvent::Kind;
   if (piece_->estimate().changes() != routes_told_) {
     routes_told_ = piece_->estimate().changes();
-    tell({Kind::route, boot_, crossing.h, crossing.h});
+    tell({Kind::route, boot_, crossing.heard, crossing.heard});
   }
   switch (verdict) {
     case Verdict::taken:
       return;
     case Verdict::violator:
-      return tell({Kind::violator, boot_, crossing.h, crossing.h, piece_->amount()});
+      return tell({Kind::violator, boot_, crossing.heard, crossing.heard, piece_->amount()});
     case Verdict::relaxed:
       tell({Kind::relaxed, boot_, newest_, newest_, piece_->assumptions().curvature});
       return tell({Kind::withdrawn, boot_, piece_->origin().host, newest_});
@@ -85,7 +90,7 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
 }
 
 void LiveClock::replace_piece(ClockEvent::Kind why, const Crossing& crossing) {
-  tell({why, boot_, crossing.h, crossing.h, piece_->amount()});
+  tell({why, boot_, piece_->next_begins(), crossing.heard, piece_->amount()});
   tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
   piece_ = piece_->next_piece();
   routes_told_ = 0;

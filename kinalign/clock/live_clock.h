@@ -11,6 +11,7 @@
 
 #include "kinalign/clock/clock_piece.h"
 #include "kinalign/clock/clock_stamp.h"
+#include "kinalign/clock/host_from_node.h"
 
 #include <array>
 #include <cstdint>
@@ -19,16 +20,12 @@
 
 namespace kinalign {
 
-/// Which life of a node a counter belongs to: its boot id, or a number of the caller's where a node
-/// restarted without drawing a new one.
-using BootKey = std::uint64_t;
-
 struct ClockEvent {
   enum class Kind : std::uint8_t {
-    new_boot,        // a piece begins with a life of the node
-    step,            // a piece begins: the counter stepped
-    slip,            // a piece begins: the floors moved against each other, by a step too small for
-                     // the certificate
+    new_boot,  // a piece begins with a life of the node
+    step,      // a piece began, at `begin`: the counter stepped
+    slip,      // a piece began, at `begin`: the floors moved against each other, by a step too
+               // small for the certificate
     host_backwards,  // a piece begins: the host's clock went back
     withdrawn,       // stamps of frames that arrived from begin to end: certified, and are not
     violator,        // a crossing that can't be was left out
@@ -47,9 +44,11 @@ class LiveClock {
  public:
   explicit LiveClock(const Assumptions& assumptions = {}) : assumptions_(assumptions) {}
 
-  /// A frame of this life arrived. In the order of arrival.
+  /// A frame of this life arrived, in the order of arrival; with its echo.
+  void push(const Exchange& exchange);
+  /// The halves of that: the frame, …
   void push_up(BootKey boot, NodeTime n_tx, HostTime h_rx);
-  /// A frame that has just been pushed says that the reply sent at h_tx reached the node at n_rx.
+  /// … and what it says: that the reply sent at h_tx reached the node at n_rx.
   void push_down(BootKey boot, NodeTime n_rx, HostTime h_tx);
 
   /// When the counter of this life read n. Absent where too little is known of that life, and for
@@ -65,7 +64,6 @@ class LiveClock {
   const ClockPiece* piece() const { return piece_ ? &*piece_ : nullptr; }
 
  private:
-  void push(BootKey boot, const Crossing& crossing);
   void begin(BootKey boot, const Crossing& first);
   void answer(ClockPiece::Verdict verdict, const Crossing& crossing);
   void replace_piece(ClockEvent::Kind why, const Crossing& crossing);

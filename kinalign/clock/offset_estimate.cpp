@@ -13,7 +13,7 @@ constexpr std::uint64_t settling_points = 100;
 constexpr double gaps_off = 20.0;         // a floor's usual gaps that make a bound stand apart, …
 constexpr double least_off_s = 20e-6;     // … and at least this
 constexpr double wander = 0.2e-6;         // of a slope between two routes
-constexpr double alike_deviations = 4.0;  // of round trips before and behind a step
+constexpr double alike_deviations = 8.0;  // of round trips before and behind a step
 constexpr double step_deviations = 20.0;
 constexpr std::uint32_t often = 64, seldom = 4;
 
@@ -107,6 +107,7 @@ void OffsetEstimate::judge_change() {
 
 /// What came after s is of a new route.
 void OffsetEstimate::change_route(double s) {
+  for (const RecentBounds& recent : recent_) s = std::min(s, recent.before_held().value_or(s));
   const Middle old = *at(s);
   least_round_trip_ = joint_ ? std::min(least_round_trip_, old.round_trip) : old.round_trip;
   joint_ =

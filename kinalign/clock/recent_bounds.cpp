@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace kinalign {
 
@@ -14,8 +15,8 @@ constexpr std::array windows_s{1.0, 3.0, 9.0};
 constexpr std::size_t least_points = 6;
 constexpr double steepness_s = 2.0;  // over the seconds watched: jumps for each of its spreads, …
 constexpr double least_steepness = 1.0;  // … at the least
-constexpr double wider = 1.0;            // than on the old floor a new one may spread
-constexpr double sure_nats = 25.0;       // evidence against the old floor
+constexpr double least_gap_s = 1e-3;
+constexpr double sure_nats = 25.0;  // evidence against the old floor
 
 /// Evidence that `points` delays at least `excess` above a floor are not of those counted before.
 double nats(const ExcessCounts& counts, std::size_t points, double excess) {
@@ -48,34 +49,55 @@ std::size_t RecentBounds::run(const FloorLine& line, double limit) const {
   return points;
 }
 
+namespace {
+
+struct Level {
+  double least = 0.0, spread = 0.0;  // of some delays: the least, and from there to the median
+};
+
+Level level_of(std::span<double> excess) {
+  const auto half = excess.begin() + static_cast<std::ptrdiff_t>(excess.size() / 2);
+  std::nth_element(excess.begin(), half, excess.end());
+  const double least = *std::min_element(excess.begin(), half + 1);
+  return {least, *half - least};
+}
+
+bool another_floor(const Level& level, double window_s, const ExcessCounts& counts) {
+  const double steepness = std::max(steepness_s / window_s, least_steepness);
+  return std::abs(level.least) > steepness * level.spread && level.spread < counts.median();
+}
+
+}  // namespace
+
 std::optional<double> RecentBounds::moved(const FloorLine& line, double limit,
                                           const ExcessCounts& counts) const {
-  if (size_ == 0 || std::abs(line.excess(newest(0))) <= limit) {
-    if (held_ == 0) return std::nullopt;
-  }
+  if (size_ == 0 || (held_ == 0 && line.excess(newest(0)) <= limit)) return std::nullopt;
   const std::size_t all = run(line, limit);
-  std::array<double, capacity> excess;
-  for (std::size_t i = 0; i < all; ++i) excess[i] = line.excess(newest(i));
   for (const double window : windows_s) {
+    if (newest(0).s - newest(all - 1).s < window) return std::nullopt;
     std::size_t points = all;
-    const double begin = newest(0).s - window;
-    if (held_ == 0)
-      while (points > 0 && newest(points - 1).s < begin) --points;
-    if (points < least_points || newest(0).s - newest(all - 1).s < window) return std::nullopt;
-    std::array<double, capacity> sorted = excess;
-    const auto half = static_cast<std::ptrdiff_t>(points / 2);
-    std::nth_element(sorted.begin(), sorted.begin() + half,
-                     sorted.begin() + static_cast<std::ptrdiff_t>(points));
-    const double least = *std::min_element(sorted.begin(), sorted.begin() + half + 1);
-    const double spread = sorted[points / 2] - least;
-    const double steepness = std::max(steepness_s / window, least_steepness);
-    const bool sharp = std::abs(least) > steepness * spread && spread < wider * counts.median();
-    if (sharp && (held_ > 0 || nats(counts, points, least) > sure_nats)) {
-      const double first = newest(points - 1).s;
-      return points < size_ ? (first + newest(points).s) / 2.0 : first - 1e-3;
-    }
+    while (held_ == 0 && points > 0 && newest(points - 1).s < newest(0).s - window) --points;
+    if (points < least_points) return std::nullopt;
+    std::array<double, capacity> excess{};
+    for (std::size_t i = 0; i < points; ++i) excess[i] = line.excess(newest(i));
+    const Level level = level_of(std::span(excess).first(points));
+    if (!another_floor(level, window, counts)) continue;
+    if (held_ == 0 && nats(counts, points, level.least) < sure_nats) continue;
+    while (points < all && line.excess(newest(points)) >= level.least) ++points;
+    return before(points - 1);
   }
   return std::nullopt;
+}
+
+double RecentBounds::before(std::size_t i) const {
+  return i + 1 < size_ ? (newest(i).s + newest(i + 1).s) / 2.0 : newest(i).s - least_gap_s;
+}
+
+std::optional<double> RecentBounds::before_held() const {
+  if (held_ == 0) return std::nullopt;
+  std::size_t points = 0, still_held = held_;
+  while (still_held > 0) still_held -= entry(points++).held ? 1 : 0;
+  return before(points - 1);
 }
 
 std::optional<OffsetBound> RecentBounds::release(double s) {

@@ -21,6 +21,9 @@ class RecentBounds {
   std::optional<double> moved(const FloorLine& line, double limit,
                               const ExcessCounts& counts) const;
 
+  /// The moment before the first held bound.
+  std::optional<double> before_held() const;
+
   /// A held bound that nothing followed within nine seconds: it is taken for one of the route.
   std::optional<OffsetBound> release(double s);
 
@@ -36,6 +39,7 @@ class RecentBounds {
   const Entry& entry(std::size_t newest) const {
     return entries_[(next_ + capacity - 1 - newest) % capacity];
   }
+  double before(std::size_t newest) const;
   std::size_t run(const FloorLine& line, double limit) const;
 
   std::array<Entry, capacity> entries_{};

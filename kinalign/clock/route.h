@@ -32,7 +32,10 @@ struct Middle {
 /// long as the least delays stay what they are.
 class Route {
  public:
-  explicit Route(SlopeBelief prior) : prior_(prior), belief_(prior) {}
+  /// Remembers so many corners of each hull: few are enough while it is the newest end that is
+  /// asked.
+  explicit Route(SlopeBelief prior, std::size_t corners = 255)
+      : prior_(prior), belief_(prior), above_(corners), below_(corners) {}
 
   void add_above(OffsetBound bound, const Middle& middle);
   void add_below(OffsetBound mirrored, const Middle& middle);

@@ -25,7 +25,7 @@ ExchangeOptions minutes(Link link, double minutes) {
 /// Seconds behind `at` until the first event of a kind; 1e9: none.
 double delay_of(const JudgedRun& run, ClockEvent::Kind kind, double at) {
   for (const ClockEvent& event : run.events) {
-    if (event.kind == kind && seconds_of(event.begin) >= at) return seconds_of(event.begin) - at;
+    if (event.kind == kind && seconds_of(event.end) >= at) return seconds_of(event.end) - at;
   }
   return 1e9;
 }

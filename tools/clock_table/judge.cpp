@@ -52,28 +52,69 @@ void withdraw(const ClockEvent& event, std::vector<JudgedStamp>& stamps) {
   }
 }
 
-}  // namespace
+/// The frames behind `exchanges_of`, in the same order.
+std::vector<std::size_t> heard_frames(const SimulatedExchanges& exchanges) {
+  std::vector<std::size_t> frames;
+  for (const Heard& heard : in_order_of_arrival(exchanges)) {
+    if (!heard.again) frames.push_back(heard.frame);
+  }
+  return frames;
+}
 
-JudgedRun judge_live(const SimulatedExchanges& exchanges, const Assumptions& assumptions) {
+Exchange exchange_of(const SimulatedExchanges& exchanges, const SimulatedFrame& frame) {
+  Exchange exchange{frame.boot_id, counter_time(frame.n_tx_us), arrival_time(*frame.heard), {}};
+  if (frame.echo) {
+    const SimulatedFrame& answered = exchanges.frames[*frame.echo];
+    exchange.echo = {counter_time(answered.n_rx_us), departure_time(answered.replied)};
+  }
+  return exchange;
+}
+
+JudgedRun judged_run(const SimulatedExchanges& exchanges) {
   JudgedRun run;
   run.asymmetry = (exchanges.floors.up - exchanges.floors.down) / 2.0;
+  return run;
+}
+
+}  // namespace
+
+std::vector<Exchange> exchanges_of(const SimulatedExchanges& exchanges) {
+  std::vector<Exchange> out;
+  for (const std::size_t frame : heard_frames(exchanges)) {
+    out.push_back(exchange_of(exchanges, exchanges.frames[frame]));
+  }
+  return out;
+}
+
+JudgedRun judge_live(const SimulatedExchanges& exchanges, const Assumptions& assumptions) {
+  JudgedRun run = judged_run(exchanges);
   LiveClock clock(assumptions);
-  for (const Heard& heard : in_order_of_arrival(exchanges)) {
-    if (heard.again) continue;  // the receiver drops duplicates
-    const SimulatedFrame& frame = exchanges.frames[heard.frame];
+  for (const std::size_t k : heard_frames(exchanges)) {
+    const SimulatedFrame& frame = exchanges.frames[k];
+    const Exchange exchange = exchange_of(exchanges, frame);
     ++run.frames;
-    clock.push_up(frame.boot_id, counter_time(frame.n_tx_us), arrival_time(heard.at));
-    if (frame.echo) {
-      const SimulatedFrame& answered = exchanges.frames[*frame.echo];
-      clock.push_down(frame.boot_id, counter_time(answered.n_rx_us),
-                      departure_time(answered.replied));
-    }
-    const auto stamp = clock.host_from_node(frame.boot_id, counter_time(frame.n_tx_us));
+    clock.push(exchange);
+    const auto stamp = clock.host_from_node(exchange.boot, exchange.n_tx);
     for (const ClockEvent& event : clock.take_events()) {
       if (event.kind == ClockEvent::Kind::withdrawn) withdraw(event, run.stamps);
       run.events.push_back(event);
     }
-    if (stamp) run.stamps.push_back(judged(*stamp, frame, heard.at));
+    if (stamp) run.stamps.push_back(judged(*stamp, frame, *frame.heard));
+  }
+  return run;
+}
+
+JudgedRun judge_offline(const SimulatedExchanges& exchanges, const Assumptions& assumptions) {
+  JudgedRun run = judged_run(exchanges);
+  const std::vector<Exchange> heard = exchanges_of(exchanges);
+  const OfflineClock clock = fit_offline_clock(heard, assumptions);
+  run.events = clock.events;
+  const std::vector<std::size_t> frames = heard_frames(exchanges);
+  run.frames = frames.size();
+  for (std::size_t i = 0; i < heard.size(); ++i) {
+    const auto stamp = host_from_node(clock.model, heard[i].boot, heard[i].n_tx, heard[i].h_rx);
+    const SimulatedFrame& frame = exchanges.frames[frames[i]];
+    if (stamp) run.stamps.push_back(judged(*stamp, frame, *frame.heard));
   }
   return run;
 }

@@ -2,7 +2,7 @@
 // A clock held against the truth of simulated exchanges.
 #pragma once
 
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/clock/offline_clock.h"
 #include "kinalign/simulate/exchanges.h"
 
 #include <vector>
@@ -36,6 +36,12 @@ struct JudgedRun {
   /// Stamps that were certified, were not withdrawn, and are wrong.
   std::uint64_t lies() const;
 };
+
+/// What the host heard, duplicates left out, as a receiver would hand it on.
+std::vector<Exchange> exchanges_of(const SimulatedExchanges& exchanges);
+
+/// Fits the whole recording and asks for each frame.
+JudgedRun judge_offline(const SimulatedExchanges& exchanges, const Assumptions& assumptions = {});
 
 /// Plays what the host heard into a live clock and asks for each frame as it arrives.
 JudgedRun judge_live(const SimulatedExchanges& exchanges, const Assumptions& assumptions = {});

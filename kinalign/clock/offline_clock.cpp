@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// First the live clock walks through all exchanges and says where pieces begin, which stretches are
+// in doubt and what can't be; then each piece is fitted to all that is left of it.
+#include "kinalign/clock/offline_clock.h"
+
+#include "kinalign/clock/certificate.h"
+#include "kinalign/clock/offline_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double knot_s = 1.0;
+constexpr double most_curvature = 2e-6;
+constexpr double counter_resolution_s = 1e-6;
+
+struct Walk {
+  std::vector<ClockEvent> events;
+  std::vector<DoubtfulStretch> doubtful;
+  std::vector<std::size_t> piece;  // of each exchange
+  std::vector<bool> up_left_out, echo_left_out;
+  std::size_t pieces = 0;
+};
+
+bool begins_piece(ClockEvent::Kind kind) {
+  using Kind = ClockEvent::Kind;
+  return kind == Kind::new_boot || kind == Kind::step || kind == Kind::slip ||
+         kind == Kind::host_backwards;
+}
+
+/// What happened with exchange i: pieces that begin reach back to where they do.
+void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const ClockEvent& event,
+          bool of_echo) {
+  if (event.kind == ClockEvent::Kind::withdrawn) {
+    // What was withdrawn since a clock bends more than assumed is certified again under that.
+    if (!begins_piece(walk.events.back().kind)) return;
+    const HostTime end = walk.events.back().begin - Duration{1};
+    if (event.begin <= end) walk.doubtful.push_back({event.begin, end});
+    return;
+  }
+  walk.events.push_back(event);
+  if (event.kind == ClockEvent::Kind::violator)
+    (of_echo ? walk.echo_left_out : walk.up_left_out)[i] = true;
+  if (!begins_piece(event.kind)) return;
+  const std::size_t next = walk.pieces++;
+  for (std::size_t k = i + 1;
+       k-- > 0 && exchanges[k].h_rx >= event.begin && exchanges[k].boot == event.boot;) {
+    walk.piece[k] = next;
+    walk.up_left_out[k] = walk.echo_left_out[k] = false;  // violators were the new piece's
+  }
+}
+
+Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assumptions) {
+  Walk walk;
+  walk.piece.resize(exchanges.size());
+  walk.up_left_out.resize(exchanges.size());
+  walk.echo_left_out.resize(exchanges.size());
+  LiveClock clock(assumptions);
+  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+    const Exchange& e = exchanges[i];
+    walk.piece[i] = walk.pieces == 0 ? 0 : walk.pieces - 1;
+    clock.push_up(e.boot, e.n_tx, e.h_rx);
+    for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, false);
+    if (!e.echo) continue;
+    clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
+    for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, true);
+  }
+  return walk;
+}
+
+bool in_doubt(std::span<const DoubtfulStretch> doubtful, HostTime h) {
+  return std::any_of(doubtful.begin(), doubtful.end(),
+                     [h](const DoubtfulStretch& d) { return d.begin <= h && h <= d.end; });
+}
+
+/// The bounds of a piece in seconds from its first exchange.
+struct PieceBounds {
+  NodeTime node{};
+  HostTime host{};
+  std::vector<JournalEntry> bounds;
+  std::uint64_t up = 0, down = 0;
+
+  void add(Bound bound, NodeTime n, HostTime h) {
+    const double early = bound == Bound::below ? counter_resolution_s : 0.0;
+    bounds.push_back({seconds(n - node), seconds((h - host) - (n - node)) - early, bound});
+    ++(bound == Bound::above ? up : down);
+  }
+};
+
+Certificate certificate_of(const PieceBounds& piece, const Assumptions& assumptions) {
+  std::vector<JournalEntry> sorted = piece.bounds;  // appending is cheap, inserting is not
+  std::sort(sorted.begin(), sorted.end(),
+            [](const JournalEntry& a, const JournalEntry& b) { return a.s < b.s; });
+  Certificate certificate(assumptions);
+  for (const JournalEntry& b : sorted) {
+    b.bound == Bound::above ? certificate.add_above(b.s, b.x) : certificate.add_below(b.s, b.x);
+  }
+  return certificate;
+}
+
+Duration nanoseconds(double s) { return Duration{static_cast<std::int64_t>(s)}; }
+
+/// Knots of a piece; false where its bounds contradict each other.
+bool fill_knots(const PieceBounds& piece, const Certificate& certificate, OfflineEstimate& estimate,
+                std::vector<ClockKnot>& knots) {
+  double begin = piece.bounds.front().s, end = begin;
+  for (const JournalEntry& b : piece.bounds) {
+    begin = std::min(begin, b.s);
+    end = std::max(end, b.s);
+  }
+  const double widened = certificate.assumptions().curvature * knot_s * knot_s / 8.0;
+  const Duration base = piece.host.time_since_epoch() - piece.node.time_since_epoch();
+  const auto count = static_cast<std::size_t>(std::ceil((end - begin) / knot_s)) + 1;
+  knots.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Duration since = nanoseconds(std::round((begin + knot_s * static_cast<double>(i)) * 1e9));
+    const double t = seconds(since);
+    const auto range = certificate.at(t);
+    if (!range) return false;
+    const double x = std::clamp(estimate.at(t), range->low, range->high);
+    knots.push_back({piece.node + since, base + nanoseconds(std::round(x * 1e9)),
+                     base + nanoseconds(std::floor((range->low - widened) * 1e9)),
+                     base + nanoseconds(std::ceil((range->high + widened) * 1e9))});
+  }
+  return true;
+}
+
+/// Under the least curvature that lets the bounds go together: it says how much the clock wandered.
+void fit(const PieceBounds& piece, ClockPieceModel& model, Assumptions assumptions) {
+  OfflineEstimate estimate(piece.bounds);
+  model.routes = estimate.routes();
+  model.round_trip = nanoseconds(estimate.least_round_trip() * 1e9);
+  for (;; assumptions.curvature = std::min(2.0 * assumptions.curvature, most_curvature)) {
+    const Certificate certificate = certificate_of(piece, assumptions);
+    model.assumptions = assumptions;
+    model.certified =
+        fill_knots(piece, certificate, estimate, model.knots) && certificate.bounded();
+    if (model.certified || assumptions.curvature >= most_curvature) return;
+  }
+}
+
+/// All exchanges of a piece but those in doubt and those that can't be.
+PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::size_t p,
+                    ClockPieceModel& model) {
+  PieceBounds piece;
+  bool begun = false;
+  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+    if (walk.piece[i] != p) continue;
+    const Exchange& e = exchanges[i];
+    if (!std::exchange(begun, true)) {
+      piece.node = e.n_tx;
+      piece.host = model.first = e.h_rx;
+      model.boot = e.boot;
+    }
+    model.last = e.h_rx;
+    model.violators += (walk.up_left_out[i] ? 1U : 0U) + (walk.echo_left_out[i] ? 1U : 0U);
+    if (in_doubt(walk.doubtful, e.h_rx)) continue;
+    if (!walk.up_left_out[i]) piece.add(Bound::above, e.n_tx, e.h_rx);
+    if (e.echo && !walk.echo_left_out[i]) piece.add(Bound::below, e.echo->n_rx, e.echo->h_tx);
+  }
+  model.up = piece.up;
+  model.down = piece.down;
+  return piece;
+}
+
+}  // namespace
+
+OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
+                               const Assumptions& assumptions) {
+  Walk walk = walk_through(exchanges, assumptions);
+  OfflineClock out;
+  for (std::size_t p = 0; p < walk.pieces; ++p) {
+    ClockPieceModel& model = out.model.pieces.emplace_back();
+    const PieceBounds piece = collect(exchanges, walk, p, model);
+    if (piece.up > 0 && piece.down > 0) fit(piece, model, assumptions);
+  }
+  out.model.doubtful = std::move(walk.doubtful);
+  out.events = std::move(walk.events);
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// The offline clock over simulated links, on fresh seeds each time.
+#include "tests/seeds.h"
+#include "tools/clock_table/judge.h"
+
+#include <doctest/doctest.h>
+
+#include <array>
+
+using namespace kinalign;
+
+namespace {
+
+constexpr double ms = 1e-3;
+
+ExchangeOptions minutes(Link link, double minutes) {
+  ExchangeOptions options;
+  options.length_s = 60.0 * minutes;
+  options.link.link = link;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("offline errors stay under the bars of each link, on any seeds") {
+  struct Bar {
+    Link link;
+    double pooled_ms, each_ms, worst_ms, net_ms;
+  };
+  // Promise 2, offline at 60 s, for 20 seeds; net: less (Fu - Fd) / 2, which no exchange can see.
+  constexpr std::array bars{
+      Bar{Link::wired, 0.005, 0.008, 0.012, 0.001}, Bar{Link::quiet, 0.080, 0.12, 0.13, 0.002},
+      Bar{Link::paper, 0.10, 0.25, 0.45, 0.06},     Bar{Link::modem_sleep, 0.085, 0.15, 0.20, 0.02},
+      Bar{Link::congested, 0.28, 0.38, 0.45, 0.05}, Bar{Link::roaming, 0.15, 0.50, 1.0, 0.15},
+      Bar{Link::thin_floor, 0.75, 2.5, 4.5, 0.75}};
+  const auto seeds = fresh_seeds(20);
+  for (const Bar& bar : bars) {
+    CAPTURE(letter(bar.link));
+    std::vector<double> total, net;
+    for (const auto seed : seeds) {
+      CAPTURE(seed);
+      const auto run = judge_offline(simulate_exchanges(minutes(bar.link, 1.0), seed));
+      CHECK(run.lies() == 0);
+      CHECK(run.stamps.size() == run.frames);
+      const auto errors = errors_since(run, 0.0), less = errors_since(run, 0.0, run.asymmetry);
+      CHECK(figures(errors).rms < bar.each_ms * ms);
+      CHECK(figures(errors).worst < bar.worst_ms * ms);
+      total.insert(total.end(), errors.begin(), errors.end());
+      net.insert(net.end(), less.begin(), less.end());
+    }
+    CHECK(figures(total).rms < bar.pooled_ms * ms);
+    CHECK(figures(net).rms < bar.net_ms * ms);
+  }
+}
+
+TEST_CASE("over ten minutes of roaming the offset is carried from route to route") {
+  for (const auto seed : fresh_seeds(3)) {
+    CAPTURE(seed);
+    const auto run = judge_offline(simulate_exchanges(minutes(Link::roaming, 10.0), seed));
+    CHECK(run.lies() == 0);
+    CHECK(figures(errors_since(run, 0.0)).rms < 1.6 * ms);
+  }
+}
+
+TEST_CASE("pieces are those of the node's lives and steps, and no stamp that stays is wrong") {
+  for (const auto seed : fresh_seeds(10)) {
+    CAPTURE(seed);
+    ExchangeOptions options = minutes(Link::paper, 1.0);
+    options.reboots = {{.at = 20.0, .gap = 1.0}};
+    options.steps = {{.at = 40.0, .by = -1.0}};
+    const SimulatedExchanges exchanges = simulate_exchanges(options, seed);
+    const OfflineClock clock = fit_offline_clock(exchanges_of(exchanges));
+    CHECK(clock.model.pieces.size() == 3);
+    const JudgedRun run = judge_offline(exchanges);
+    CHECK(run.lies() == 0);
+    CHECK(figures(errors_since(run, 42.0)).worst < 2.0 * ms);
+  }
+}
+
+TEST_CASE("a clock that bends more than assumed is certified under what it bends") {
+  for (const auto seed : fresh_seeds(5)) {
+    CAPTURE(seed);
+    ExchangeOptions options = minutes(Link::wired, 1.0);
+    options.clock = {.frequency_error = 0.0, .temperature = false, .ramp = 1e-6};
+    const auto clock = fit_offline_clock(exchanges_of(simulate_exchanges(options, seed)));
+    REQUIRE(clock.model.pieces.size() == 1);
+    CHECK(clock.model.pieces[0].certified);
+    CHECK(clock.model.pieces[0].assumptions.curvature > 2e-7);
+  }
+}
+
+TEST_CASE("a life of one frame, and one without a reply, are pieces of which nothing is claimed") {
+  using namespace std::chrono_literals;
+  const std::vector<Exchange> exchanges{
+      {1, NodeTime{5s}, HostTime{10s}, std::nullopt},
+      {2, NodeTime{5s}, HostTime{11s}, std::nullopt},
+      {2, NodeTime{6s}, HostTime{12s}, Exchange::Echo{NodeTime{5500ms}, HostTime{11500ms}}}};
+  const auto clock = fit_offline_clock(exchanges);
+  REQUIRE(clock.model.pieces.size() == 2);
+  CHECK(!host_from_node(clock.model, 1, NodeTime{5s}, HostTime{10s}));
+  CHECK(host_from_node(clock.model, 2, NodeTime{5s}, HostTime{11s}));
+  CHECK(fit_offline_clock({}).model.pieces.empty());
+}
