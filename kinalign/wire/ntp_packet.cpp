@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/wire/ntp_packet.h"
+
+#include "kinalign/wire/bytes.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::int64_t ns_per_s = 1'000'000'000;
+constexpr std::int64_t from_1900_to_1970_s = 2'208'988'800;
+
+/// Whole seconds since 1970, downwards, and the nanoseconds behind them.
+struct Seconds {
+  std::int64_t s, ns;
+};
+
+Seconds seconds_of(Time t) {
+  const std::int64_t rest = to_ns(t) % ns_per_s;
+  return {to_ns(t) / ns_per_s - (rest < 0 ? 1 : 0), rest < 0 ? rest + ns_per_s : rest};
+}
+
+/// Nanoseconds of a fraction of 2^-32 s, to the nearest: up to 1e9.
+std::uint64_t ns_of_fraction(std::uint32_t fraction) {
+  return (std::uint64_t{fraction} * ns_per_s + (std::uint64_t{1} << 31)) >> 32;
+}
+
+/// Whether `left` bytes behind the extension fields can be a MAC: a key id alone (a crypto-NAK) or
+/// with a digest of 16 or 20 bytes (RFC 7822 section 7.5); of 8 before version 4 (RFC 1305).
+bool is_mac(std::size_t left, std::uint8_t version) {
+  return left == 20 || left == 24 || left == (version == 4 ? 4U : 12U);
+}
+
+/// What stands behind the header: extension fields (of version 4: type, length, at least 16 bytes,
+/// the last one at least 28 where no MAC follows), then a MAC or nothing.
+bool is_trailer(std::span<const std::uint8_t> rest, std::uint8_t version) {
+  constexpr std::size_t least_field = 16, least_last_field = 28;
+  while (version == 4 && rest.size() >= least_last_field) {
+    ByteReader field(rest);
+    field.take<std::uint16_t>();  // its type: none is answered, any is passed over
+    const std::size_t length = field.take<std::uint16_t>();
+    if (length < least_field || length % 4 != 0 || length > rest.size()) return false;
+    if (length == rest.size()) return length >= least_last_field;
+    rest = rest.subspan(length);
+  }
+  return rest.empty() || is_mac(rest.size(), version);
+}
+
+NtpPacket take_header(ByteReader& reader) {
+  NtpPacket packet;
+  const auto first = reader.take<std::uint8_t>();
+  packet.leap = static_cast<NtpLeap>(first >> 6);
+  packet.version = first >> 3 & 7;
+  packet.mode = first & 7;
+  packet.stratum = reader.take<std::uint8_t>();
+  packet.poll = static_cast<std::int8_t>(reader.take<std::uint8_t>());
+  packet.precision = static_cast<std::int8_t>(reader.take<std::uint8_t>());
+  packet.root_delay = {reader.take<std::uint32_t>()};
+  packet.root_dispersion = {reader.take<std::uint32_t>()};
+  packet.reference_id = reader.take<std::uint32_t>();
+  packet.reference = {reader.take<std::uint64_t>()};
+  packet.originate = {reader.take<std::uint64_t>()};
+  packet.receive = {reader.take<std::uint64_t>()};
+  packet.transmit = {reader.take<std::uint64_t>()};
+  return packet;
+}
+
+NtpAnswer kiss(std::uint32_t code) {
+  if (code == ntp_code("DENY") || code == ntp_code("RSTR")) return NtpAnswer::kiss_deny;
+  return code == ntp_code("RATE") ? NtpAnswer::kiss_rate : NtpAnswer::kiss_other;
+}
+
+}  // namespace
+
+NtpStamp ntp_from_time(Time t) {
+  const auto [s, ns] = seconds_of(t);
+  const auto seconds_1900 = static_cast<std::uint64_t>(s + from_1900_to_1970_s);
+  // to the nearest; 999,999,999 ns stay below 2^32
+  const std::uint64_t fraction = ((static_cast<std::uint64_t>(ns) << 32) + ns_per_s / 2) / ns_per_s;
+  const std::uint64_t bits = seconds_1900 << 32 | fraction;
+  return {bits == 0 ? 1 : bits};
+}
+
+std::optional<Time> time_from_ntp(NtpStamp stamp, Time pivot) {
+  if (stamp.bits == 0) return std::nullopt;
+  const std::int64_t pivot_s = seconds_of(pivot).s + from_1900_to_1970_s;
+  const auto seconds_1900 = static_cast<std::uint32_t>(stamp.bits >> 32);
+  const auto step = static_cast<std::int32_t>(seconds_1900 - static_cast<std::uint32_t>(pivot_s));
+  const std::int64_t s = pivot_s + step - from_1900_to_1970_s;
+  const auto ns = static_cast<std::int64_t>(ns_of_fraction(static_cast<std::uint32_t>(stamp.bits)));
+  constexpr std::int64_t most_s = INT64_MAX / ns_per_s - 1;
+  if (s < -most_s || s > most_s) return std::nullopt;
+  return utc_time(s * ns_per_s + ns);
+}
+
+Duration ntp_difference(NtpStamp earlier, NtpStamp later) {
+  const std::uint64_t apart = later.bits - earlier.bits;
+  const auto s = static_cast<std::int32_t>(apart >> 32);
+  const auto ns = static_cast<std::int64_t>(ns_of_fraction(static_cast<std::uint32_t>(apart)));
+  return Duration{s * ns_per_s + ns};
+}
+
+NtpShort ntp_short_from(Duration d) {
+  const std::int64_t ns = std::clamp(d, Duration{0}, Duration{65536 * ns_per_s}).count();
+  const std::uint64_t bits = ((static_cast<std::uint64_t>(ns) << 16) + ns_per_s - 1) / ns_per_s;
+  return {static_cast<std::uint32_t>(std::min<std::uint64_t>(bits, UINT32_MAX))};
+}
+
+Duration duration_from(NtpShort value) {
+  return Duration{static_cast<std::int64_t>(std::uint64_t{value.bits} * ns_per_s >> 16)};
+}
+
+NtpRefusal decode_request(std::span<const std::uint8_t> datagram, NtpPacket& packet) {
+  if (datagram.size() < ntp_packet_size) return NtpRefusal::too_short;
+  ByteReader reader(datagram);
+  const NtpPacket read = take_header(reader);
+  if (read.version < 1 || read.version > 4) return NtpRefusal::wrong_version;
+  if (read.mode != ntp_mode_client) return NtpRefusal::wrong_mode;
+  if (!is_trailer(datagram.subspan(ntp_packet_size), read.version))
+    return NtpRefusal::wrong_trailer;
+  packet = read;
+  return NtpRefusal::none;
+}
+
+NtpAnswer decode_answer(std::span<const std::uint8_t> datagram, NtpStamp sent, NtpPacket& packet) {
+  if (datagram.size() < ntp_packet_size) return NtpAnswer::malformed;
+  ByteReader reader(datagram);
+  const NtpPacket read = take_header(reader);
+  const bool ours = read.version >= 1 && read.version <= 4 && read.mode == ntp_mode_server;
+  if (!ours) return NtpAnswer::malformed;
+  packet = read;
+  if (read.originate != sent || sent.bits == 0) return NtpAnswer::not_ours;
+  if (read.stratum == 0) return kiss(read.reference_id);
+  const bool lost = read.leap == NtpLeap::unsynchronised ||
+                    read.stratum >= ntp_stratum_unsynchronised || read.transmit.bits == 0;
+  return lost ? NtpAnswer::unsynchronised : NtpAnswer::good;
+}
+
+std::array<std::uint8_t, ntp_packet_size> encode(const NtpPacket& packet) {
+  std::array<std::uint8_t, ntp_packet_size> bytes{};
+  ByteWriter writer(bytes);
+  const auto leap = static_cast<unsigned>(packet.leap);
+  writer.put(
+      static_cast<std::uint8_t>(leap << 6 | (packet.version & 7U) << 3 | (packet.mode & 7U)));
+  writer.put(packet.stratum);
+  writer.put(static_cast<std::uint8_t>(packet.poll));
+  writer.put(static_cast<std::uint8_t>(packet.precision));
+  writer.put(packet.root_delay.bits);
+  writer.put(packet.root_dispersion.bits);
+  writer.put(packet.reference_id);
+  writer.put(packet.reference.bits);
+  writer.put(packet.originate.bits);
+  writer.put(packet.receive.bits);
+  writer.put(packet.transmit.bits);
+  return bytes;
+}
+
+}  // namespace kinalign
