@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Addresses of hosts and networks, IPv4 and IPv6 in one shape.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace kinalign {
+
+/// 16 bytes; an IPv4 address stands as ::ffff:a.b.c.d (RFC 4291 section 2.5.5.2).
+using HostAddress = std::array<std::uint8_t, 16>;
+
+constexpr HostAddress mapped_ipv4(std::span<const std::uint8_t, 4> bytes) {
+  return {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, bytes[0], bytes[1], bytes[2], bytes[3]};
+}
+
+constexpr bool is_ipv4(const HostAddress& address) {
+  for (std::size_t i = 0; i < 10; ++i) {
+    if (address[i] != 0) return false;
+  }
+  return address[10] == 0xff && address[11] == 0xff;
+}
+
+/// What is counted as one stranger: an IPv4 address, an IPv6 network of 64 bits, which is what one
+/// customer has.
+constexpr std::span<const std::uint8_t, 8> stranger(const HostAddress& address) {
+  const std::span<const std::uint8_t, 16> bytes(address);
+  return is_ipv4(address) ? bytes.last<8>() : bytes.first<8>();
+}
+
+/// The addresses whose first `bits` bits are those of `prefix`.
+struct Network {
+  HostAddress prefix{};
+  std::size_t bits = 0;  // of the 16 bytes: 96 more than an IPv4 network says
+
+  bool has(const HostAddress& address) const;
+};
+
+/// "192.168.7.0/24", "fd00::/8" or an address alone.
+Result<Network> parse_network(const std::string& text);
+
+}  // namespace kinalign

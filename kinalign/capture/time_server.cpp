@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/time_server.h"
+
+#include <poll.h>
+
+#include <array>
+#include <ctime>
+
+namespace kinalign {
+
+namespace {
+
+constexpr Duration tick = std::chrono::milliseconds(250);
+constexpr int batches_in_turn = 16;  // from one socket before the others have theirs
+
+Duration read_clock(clockid_t clock) {
+  timespec now{};
+  ::clock_gettime(clock, &now);
+  return std::chrono::seconds(now.tv_sec) + Duration{now.tv_nsec};
+}
+
+Time now_utc() { return Time{read_clock(CLOCK_REALTIME)}; }
+HostTime now_host() { return HostTime{read_clock(CLOCK_MONOTONIC_RAW)}; }
+
+/// All addresses of both kinds; a host without IPv6 has IPv4 alone.
+Result<std::vector<UdpSocket>> open_everywhere(std::uint16_t port) {
+  std::vector<UdpSocket> sockets;
+  sockets.push_back(KA_TRY(UdpSocket::open("0.0.0.0", port)));
+  port = sockets.front().port();
+  if (system_knows_ipv6()) sockets.push_back(KA_TRY(UdpSocket::open("::", port)));
+  return sockets;
+}
+
+Result<std::vector<UdpSocket>> open_sockets(const std::vector<std::string>& addresses,
+                                            std::uint16_t port) {
+  if (addresses.empty()) return open_everywhere(port);
+  std::vector<UdpSocket> sockets;
+  for (const std::string& address : addresses) {
+    sockets.push_back(KA_TRY(UdpSocket::open(address, port)));
+    port = sockets.front().port();
+  }
+  return sockets;
+}
+
+NtpAsked asked_of(const Datagram& datagram, std::uint16_t port, Time now) {
+  return {.bytes = datagram.bytes,
+          .cut = datagram.cut,
+          .from = datagram.from,
+          .from_port = datagram.from_port,
+          .to = datagram.to,
+          .to_port = port,
+          .unicast = datagram.unicast,
+          .received = datagram.received.value_or(now)};
+}
+
+}  // namespace
+
+Result<TimeServer> TimeServer::open(const TimeServerOptions& options) {
+  return TimeServer(options, KA_TRY(open_sockets(options.addresses, options.port)));
+}
+
+TimeServer::TimeServer(const TimeServerOptions& options, std::vector<UdpSocket> sockets)
+    : policy_{options.local_stratum, measured_precision()},
+      sockets_(std::move(sockets)),
+      responder_(options.key, options.exempt),
+      batch_(std::make_unique<DatagramBatch>()) {
+  responder_.set_state(server_state(read_kernel_clock(), policy_, now_utc()));
+}
+
+void TimeServer::serve(const std::function<bool()>& go_on) {
+  while (go_on()) {
+    responder_.set_state(server_state(read_kernel_clock(), policy_, now_utc()));
+    serve_until(now_host() + tick);
+  }
+}
+
+void TimeServer::serve_until(HostTime end) {
+  std::vector<pollfd> waiting;
+  for (const UdpSocket& socket : sockets_) waiting.push_back({socket.fd(), POLLIN, 0});
+  for (Duration left = tick; left > Duration{0}; left = end - now_host()) {
+    const auto whole_ms = std::chrono::ceil<std::chrono::milliseconds>(left).count();
+    const int ready = ::poll(waiting.data(), waiting.size(), static_cast<int>(whole_ms));
+    if (ready <= 0) return;  // the time is over, or a signal has come
+    for (std::size_t i = 0; i < waiting.size(); ++i) {
+      if (waiting[i].revents != 0) drain(sockets_[i]);
+    }
+  }
+}
+
+void TimeServer::drain(const UdpSocket& socket) {
+  for (int i = 0; i < batches_in_turn; ++i) {
+    const std::size_t datagrams = batch_->receive(socket.fd());
+    if (datagrams == 0) return;
+    answer(socket, datagrams);
+  }
+}
+
+void TimeServer::answer(const UdpSocket& socket, std::size_t datagrams) {
+  const HostTime host_now = now_host();
+  std::array<NtpOutcome, DatagramBatch::most> outcomes{};
+  for (std::size_t i = 0; i < datagrams; ++i) {
+    const Datagram datagram = batch_->at(i);
+    const Time now = now_utc();
+    outcomes[i] = responder_.respond(asked_of(datagram, socket.port(), now), now, host_now,
+                                     batch_->answer_to(i).first<ntp_packet_size>());
+    const bool sends = outcomes[i] == NtpOutcome::answered || outcomes[i] == NtpOutcome::kissed;
+    if (sends) batch_->queue(i, datagram, ntp_packet_size);
+  }
+  for (const std::size_t i : batch_->send(socket.fd())) outcomes[i] = NtpOutcome::unsent;
+  for (std::size_t i = 0; i < datagrams; ++i) ++counts_[outcomes[i]];
+}
+
+}  // namespace kinalign

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/udp_socket.h"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr int receive_buffer = 4 << 20;  // a tenth of a second of a flood
+
+/// What stands in the way of an address and port, for who has to clear it.
+std::string obstacle(int code, std::uint16_t port) {
+  if (code == EADDRINUSE) return "another program on it";
+  if (code == EACCES || code == EPERM) {
+    return port < 1024 ? "no permission for a port below 1024" : "no permission";
+  }
+  if (code == EADDRNOTAVAIL) return "no interface that has it";
+  return std::strerror(code);
+}
+
+bool set(int fd, int level, int name, int value) {
+  return ::setsockopt(fd, level, name, &value, sizeof value) == 0;
+}
+
+bool set_options(int fd, int family) {
+  set(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer);  // as much of it as the system allows
+  if (!set(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1)) return false;
+  if (family == AF_INET) return set(fd, IPPROTO_IP, IP_PKTINFO, 1);
+  return set(fd, IPPROTO_IPV6, IPV6_V6ONLY, 1) && set(fd, IPPROTO_IPV6, IPV6_RECVPKTINFO, 1);
+}
+
+std::uint16_t bound_port(int fd) {
+  sockaddr_storage bound{};
+  socklen_t size = sizeof bound;
+  ::getsockname(fd, reinterpret_cast<sockaddr*>(&bound), &size);
+  if (bound.ss_family == AF_INET) return ntohs(reinterpret_cast<sockaddr_in&>(bound).sin_port);
+  return ntohs(reinterpret_cast<sockaddr_in6&>(bound).sin6_port);
+}
+
+}  // namespace
+
+Result<UdpSocket> UdpSocket::open(const std::string& address, std::uint16_t port) {
+  addrinfo hints{};
+  hints.ai_flags = AI_NUMERICHOST | AI_PASSIVE;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  const int fault = ::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &hints, &found);
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> hold(found, &::freeaddrinfo);
+  if (fault != 0) return Failure(Error{"", 0, "an IPv4 or IPv6 address", shown(address)});
+  const int type = SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
+  UdpSocket socket(::socket(found->ai_family, type, 0), address);
+  const bool bound = socket.fd_ >= 0 && set_options(socket.fd_, found->ai_family) &&
+                     ::bind(socket.fd_, found->ai_addr, found->ai_addrlen) == 0;
+  if (!bound) {
+    return Failure(
+        Error{endpoint_text(address, port), 0, "a UDP port to serve on", obstacle(errno, port)});
+  }
+  socket.port_ = bound_port(socket.fd_);
+  return socket;
+}
+
+UdpSocket::UdpSocket(UdpSocket&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)), port_(other.port_), address_(std::move(other.address_)) {}
+
+UdpSocket& UdpSocket::operator=(UdpSocket&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  std::swap(port_, other.port_);
+  std::swap(address_, other.address_);
+  return *this;
+}
+
+UdpSocket::~UdpSocket() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+bool system_knows_ipv6() {
+  const int fd = ::socket(AF_INET6, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (fd >= 0) ::close(fd);
+  return fd >= 0 || errno != EAFNOSUPPORT;
+}
+
+std::string endpoint_text(const std::string& address, std::uint16_t port) {
+  const bool six = address.find(':') != std::string::npos;
+  return (six ? "[" + address + "]" : address) + ":" + std::to_string(port);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// A UDP socket of a server: bound, never blocking, with the kernel's stamp of each arrival
+// (CLOCK_REALTIME) and the address that it was sent to.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <cstdint>
+#include <string>
+
+namespace kinalign {
+
+class UdpSocket {
+ public:
+  /// `address`: IPv4 or IPv6, with %interface where it is link-local; "0.0.0.0" and "::" are all of
+  /// their kind. Port 0: any free one.
+  static Result<UdpSocket> open(const std::string& address, std::uint16_t port);
+  UdpSocket(UdpSocket&& other) noexcept;
+  UdpSocket& operator=(UdpSocket&& other) noexcept;
+  UdpSocket(const UdpSocket&) = delete;
+  UdpSocket& operator=(const UdpSocket&) = delete;
+  ~UdpSocket();
+
+  int fd() const { return fd_; }
+  std::uint16_t port() const { return port_; }
+  const std::string& address() const { return address_; }
+
+ private:
+  UdpSocket(int fd, std::string address) : fd_(fd), address_(std::move(address)) {}
+
+  int fd_ = -1;
+  std::uint16_t port_ = 0;
+  std::string address_;
+};
+
+bool system_knows_ipv6();
+
+/// "192.168.7.1:123", "[::1]:123".
+std::string endpoint_text(const std::string& address, std::uint16_t port);
+
+}  // namespace kinalign

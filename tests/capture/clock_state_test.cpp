@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/clock_state.h"
+
+#include <doctest/doctest.h>
+#include <sys/timex.h>
+
+using namespace kinalign;
+using namespace std::chrono_literals;
+
+namespace {
+
+const Time now = utc_time(1'790'000'000'000'000'000);
+
+NtpServerState state_of(const std::optional<KernelClock>& kernel,
+                        std::optional<std::uint8_t> local_stratum = {}) {
+  return server_state(kernel, {local_stratum, -25}, now);
+}
+
+}  // namespace
+
+TEST_CASE("unsynchronised: leap 3 and stratum 16, unless this machine is the reference") {
+  for (const std::optional<KernelClock>& kernel :
+       std::initializer_list<std::optional<KernelClock>>{{},
+                                                         KernelClock{TIME_ERROR, STA_UNSYNC, 16s},
+                                                         KernelClock{TIME_OK, STA_UNSYNC, 1ms},
+                                                         KernelClock{TIME_ERROR, 0, 1ms}}) {
+    CHECK(state_of(kernel).leap == NtpLeap::unsynchronised);
+    CHECK(state_of(kernel).stratum == 16);
+    const NtpServerState local = state_of(kernel, 10);
+    CHECK(local.leap == NtpLeap::none);
+    CHECK(local.stratum == 10);
+    CHECK(local.reference_id == 0x7f7f0100);
+    CHECK(local.root_dispersion == 1ms);
+  }
+}
+
+TEST_CASE("a synchronised clock is served as such, also where a local reference is allowed") {
+  for (const auto& local : std::initializer_list<std::optional<std::uint8_t>>{{}, 10}) {
+    const NtpServerState state = state_of(KernelClock{TIME_OK, STA_PLL, 12ms}, local);
+    CHECK(state.leap == NtpLeap::none);
+    CHECK(state.stratum == 9);
+    CHECK(state.reference_id == 0x7f000001);
+    CHECK(state.root_dispersion == 12ms);
+    CHECK(state.reference == now);
+    CHECK(state.precision == -25);
+  }
+}
+
+TEST_CASE("leap_insert, leap_delete: announced on the day, no longer once it is over") {
+  const auto leap = [](int state, unsigned status) {
+    return state_of(KernelClock{state, status, 1ms}).leap;
+  };
+  CHECK(leap(TIME_OK, STA_INS) == NtpLeap::insert);
+  CHECK(leap(TIME_INS, STA_INS) == NtpLeap::insert);
+  CHECK(leap(TIME_DEL, STA_DEL) == NtpLeap::remove);
+  CHECK(leap(TIME_OOP, STA_INS) == NtpLeap::none);
+  CHECK(leap(TIME_WAIT, STA_INS) == NtpLeap::none);
+  CHECK(leap(TIME_WAIT, STA_DEL) == NtpLeap::none);
+  CHECK(leap(TIME_INS, STA_INS | STA_UNSYNC) == NtpLeap::unsynchronised);
+}
+
+TEST_CASE("this machine's kernel answers, and its clock is read in under 60 microseconds") {
+  CHECK(read_kernel_clock());
+  CHECK(measured_precision() <= -14);
+  CHECK(measured_precision() >= -30);
+}
