@@ -142,6 +142,7 @@ void take_signals() {
   action.sa_handler = [](int) { ctrl_c = true; };
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);  // a limit on files' sizes is then a full disk like any other
 }

@@ -72,6 +72,8 @@ class Console {
   /// Says what went wrong and what was advised.
   void report(const Error& error);
 
+  /// Writes what is held, for a job that goes on.
+  void flush();
   /// Writes what is still held. Fails where stdout took no more; a reader that went away is fine.
   Result<void> finish();
 
@@ -81,7 +83,6 @@ class Console {
   void erase_progress();
   void show_progress(std::string_view what, std::uint64_t done, std::uint64_t total);
   void say(std::string_view line, Colour colour = Colour::plain);
-  void flush();
 
   const Surroundings& surroundings_;
   const Common& common_;
@@ -104,9 +105,10 @@ std::string progress_line(std::string_view what, std::uint64_t done, std::uint64
 /// line's second column or, where there is none, two blanks further in. Colours have no width.
 std::string broken(std::string_view lines, std::size_t width);
 
-/// From here on the first Ctrl-C is only noted, and a reader of stdout that goes away is no signal.
+/// From here on the first Ctrl-C or SIGTERM is only noted, and a reader of stdout that goes away is
+/// no signal.
 void take_signals();
-/// Ctrl-C was pressed since take_signals().
+/// Ctrl-C was pressed, or SIGTERM came, since take_signals().
 bool interrupted();
 
 }  // namespace kinalign

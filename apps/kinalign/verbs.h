@@ -13,6 +13,7 @@ Verb info_verb();
 Verb check_verb();
 Verb convert_verb();
 Verb rebuild_verb();
+Verb time_server_verb();
 Verb config_verb();
 Verb completion_verb();
 Verb man_verb();

@@ -17,7 +17,7 @@ FLAG = re.compile(r"^  (?:-\w, )?(--[\w-]+)(?: ([\w|=]+))?", re.M)
 
 
 def verbs():
-    return re.findall(r"^  (\w+)  +\w", done_with(0, "help")[0].split("\nverbs\n")[1], re.M)
+    return re.findall(r"^  ([\w-]+)  +\w", done_with(0, "help")[0].split("\nverbs\n")[1], re.M)
 
 
 def page(verb):

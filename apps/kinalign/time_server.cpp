@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/time_server.h"
+
+#include "apps/kinalign/console.h"
+#include "apps/kinalign/summary.h"
+#include "apps/kinalign/time_server_text.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/capture/own_addresses.h"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+namespace kinalign {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct TimeServerFlags {
+  std::int64_t port = 123;
+  std::vector<std::string> listen, exempt;
+  std::optional<std::int64_t> local_stratum;
+};
+
+Result<std::vector<Network>> networks_of(const std::vector<std::string>& texts) {
+  std::vector<Network> networks;
+  for (const std::string& text : texts) {
+    auto network = parse_network(text);
+    if (!network) return Failure(Error{"--exempt", 0, network.error().expected, shown(text)});
+    networks.push_back(*network);
+  }
+  return networks;
+}
+
+Usage describe_time_server(TimeServerFlags& o) {
+  Usage usage;
+  usage.flags = {
+      {"listen", "an address to serve on (all, where none is given); may be repeated", &o.listen},
+      {"exempt", "an address or network that may ask as often as it likes; may be repeated",
+       &o.exempt}};
+  usage.settings = {{"port", "UDP port; 0: any free one", &o.port, 0.0, 65535.0},
+                    {"local_stratum",
+                     "serve this machine's clock as the lab's reference while nothing "
+                     "synchronises it, at this stratum; 10 is usual",
+                     &o.local_stratum, 1.0, 15.0}};
+  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    KA_TRY(networks_of(o.exempt));
+    return {};
+  };
+  return usage;
+}
+
+Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
+  TimeServerOptions options;
+  options.addresses = flags.listen;
+  options.port = static_cast<std::uint16_t>(flags.port);
+  if (flags.local_stratum) options.local_stratum = static_cast<std::uint8_t>(*flags.local_stratum);
+  options.exempt = KA_TRY(networks_of(flags.exempt));
+  const bool drawn = ::getrandom(options.key.data(), options.key.size(), 0) ==
+                     static_cast<ssize_t>(options.key.size());
+  if (!drawn) return Failure(Error{"", 0, "random numbers from the system", "none"});
+  return options;
+}
+
+std::vector<std::string> advice_on(const Error& error, std::int64_t port) {
+  if (error.found.starts_with("another program")) {
+    return {fmt::format("ss -ulpn 'sport = :{}' shows which one; --port takes another port", port)};
+  }
+  if (error.found.starts_with("no permission")) {
+    return {"as root, or once: sudo setcap cap_net_bind_service=+ep $(command -v kinalign)",
+            "--port 12300 needs no rights, for clients that can be told a port"};
+  }
+  return {};
+}
+
+ServedPort served_port(const TimeServer& server, const TimeServerFlags& flags) {
+  ServedPort served;
+  for (const UdpSocket& socket : server.sockets()) served.addresses.push_back(socket.address());
+  served.reachable = flags.listen.empty() ? own_addresses() : flags.listen;
+  served.port = server.sockets().front().port();
+  return served;
+}
+
+/// Tells what changes while the server serves.
+class Herald {
+ public:
+  Herald(const TimeServer& server, Console& console)
+      : server_(server), console_(console), progress_(console.progress()), told_(server.state()) {}
+
+  /// Whether to go on.
+  bool operator()() {
+    tell_clock();
+    tell_counts();
+    return progress_("serving: " + counts_text(server_.counts()), 0, 0);
+  }
+  void tell_end() {
+    const double s = elapsed_s();
+    console_.print(
+        fmt::format("served for {}: {}\n", duration_text(s), counts_text(server_.counts())));
+    console_.print_json(counts_json(server_.counts(), "stopped", s));
+  }
+
+ private:
+  double elapsed_s() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+
+  void tell_clock() {
+    const NtpServerState& now = server_.state();
+    if (now.leap == told_.leap && now.stratum == told_.stratum) return;
+    told_ = now;
+    console_.note("kinalign time-server: the clock is now " + clock_text(now));
+    console_.print_json(clock_json(now));
+    console_.flush();
+  }
+  void tell_counts() {
+    constexpr double every_s = 10;
+    if (elapsed_s() < every_s * (counts_told_ + 1)) return;
+    ++counts_told_;
+    console_.print_json(counts_json(server_.counts(), "counts", elapsed_s()));
+    console_.flush();
+  }
+
+  const TimeServer& server_;
+  Console& console_;
+  Progress progress_;
+  NtpServerState told_;
+  Clock::time_point began_ = Clock::now();
+  int counts_told_ = 0;
+};
+
+Result<int> run(TimeServerFlags& o, Call& call) {
+  Console& console = call.console;
+  console.if_it_fails([port = o.port](const Error& error) { return advice_on(error, port); });
+  TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));
+  const ServedPort served = served_port(server, o);
+  console.print(harmless(start_lines(served, server.state())));
+  console.print_json(start_json(served, server.state()));
+  if (server.state().leap == NtpLeap::unsynchronised) {
+    console.note(
+        "kinalign time-server: warning: --local-stratum 10 makes this machine the reference "
+        "of a lab without another");
+  }
+  console.flush();
+  Herald herald(server, console);
+  server.serve([&herald] { return herald(); });
+  herald.tell_end();
+  return 0;
+}
+
+}  // namespace
+
+Verb time_server_verb() {
+  return make_verb<TimeServerFlags>(
+      {.name = "time-server",
+       .summary = "the lab's clock: answer NTP requests",
+       .text =
+           "Serves the system's clock by NTP (RFC 5905) until Ctrl-C. Strangers get 8 answers at "
+           "once, then one in 2 s; --exempt is for clients that ask more often.",
+       .examples = {{"kinalign time-server --local-stratum 10",
+                     "a lab without another clock; port 123 needs root"},
+                    {"kinalign time-server --port 12300 --listen 127.0.0.1",
+                     "without rights, for this machine"},
+                    {"kinalign time-server --json", "a line of JSON for each event"}},
+       .common = {"json"}},
+      describe_time_server, run);
+}
+
+}  // namespace kinalign

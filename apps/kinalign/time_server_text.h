@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the time server says of itself: lines for people, members of JSON objects for programs.
+#pragma once
+
+#include "kinalign/capture/ntp_responder.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// Where it serves, as clients have to know it.
+struct ServedPort {
+  std::vector<std::string> addresses;  // that it listens on: "0.0.0.0", "::1"
+  std::vector<std::string> reachable;  // of this host, for clients
+  std::uint16_t port = 123;
+};
+
+/// What it begins with: where, how good the clock is, what a client is to be told.
+std::string start_lines(const ServedPort& served, const NtpServerState& state);
+std::string start_json(const ServedPort& served, const NtpServerState& state);
+
+/// "not synchronised (clients turn away)"; no line end.
+std::string clock_text(const NtpServerState& state);
+std::string clock_json(const NtpServerState& state);
+
+/// "1,234 answered, 5 limited": what there was none of is left out.
+std::string counts_text(const NtpCounts& counts);
+/// `event`: "counts" while it serves, "stopped" at the end.
+std::string counts_json(const NtpCounts& counts, const std::string& event, double elapsed_s);
+
+}  // namespace kinalign
