@@ -62,7 +62,8 @@ std::string clock_text(const NtpServerState& state) {
   if (state.leap == NtpLeap::unsynchronised) {
     return "not synchronised, and no reference: clients are told so and turn away";
   }
-  const std::string leap = state.leap == NtpLeap::none ? "" : ", a leap second tonight";
+  const std::string leap =
+      state.leap == NtpLeap::none ? "" : ", a leap second at the end of the day (UTC)";
   if (state.reference_id == local_reference_id) {
     return fmt::format("not synchronised: this machine is the reference, stratum {}{}",
                        state.stratum, leap);
