@@ -31,6 +31,7 @@ nlohmann::ordered_json state_json(const NtpServerState& state) {
   return {{"leap", name_of(state.leap)},
           {"stratum", state.stratum},
           {"reference_id", reference_text(state.reference_id)},
+          {"root_delay_ms", 1e3 * seconds(state.root_delay)},
           {"root_dispersion_ms", 1e3 * seconds(state.root_dispersion)},
           {"precision_log2_s", state.precision}};
 }
@@ -68,8 +69,11 @@ std::string clock_text(const NtpServerState& state) {
     return fmt::format("not synchronised: this machine is the reference, stratum {}{}",
                        state.stratum, leap);
   }
-  return fmt::format("synchronised within {:.1f} ms, stratum {}{}",
-                     1e3 * seconds(state.root_dispersion), state.stratum, leap);
+  const Duration most = state.root_dispersion + state.root_delay / 2;  // RFC 5905: root distance
+  const double ms = 1e3 * seconds(most);
+  const std::string within =
+      ms < 0.1 ? fmt::format("{:.0f} us", 1e3 * ms) : fmt::format("{:.1f} ms", ms);
+  return fmt::format("synchronised within {}, stratum {}{}", within, state.stratum, leap);
 }
 
 std::string start_lines(const ServedPort& served, const NtpServerState& state) {

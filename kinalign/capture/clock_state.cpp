@@ -19,11 +19,31 @@ NtpLeap leap_of(const KernelClock& kernel) {
   return (kernel.status & STA_DEL) != 0 ? NtpLeap::remove : NtpLeap::none;
 }
 
-bool is_synchronised(const KernelClock& kernel) {
-  return (kernel.status & STA_UNSYNC) == 0 && kernel.state != TIME_ERROR;
+bool knows_its_distance(const std::optional<ChronyTracking>& chrony) {
+  return chrony && chrony->leap != NtpLeap::unsynchronised && chrony->stratum > 0 &&
+         chrony->stratum < ntp_stratum_unsynchronised - 1;
+}
+
+void set_synchronised(NtpServerState& state, const KernelClock& kernel,
+                      const std::optional<ChronyTracking>& chrony) {
+  constexpr std::uint8_t unknown_stratum = 9;
+  state.reference_id = 0x7f000001;  // 127.0.0.1: a program on this host sets the clock
+  state.leap = leap_of(kernel);
+  state.stratum = unknown_stratum;
+  state.root_dispersion = kernel.max_error;
+  if (!knows_its_distance(chrony)) return;
+  state.leap = chrony->leap;
+  state.stratum = static_cast<std::uint8_t>(chrony->stratum + 1);
+  state.root_delay = chrony->root_delay;
+  state.root_dispersion = chrony->root_dispersion;
+  state.reference = chrony->reference;
 }
 
 }  // namespace
+
+bool is_synchronised(const std::optional<KernelClock>& kernel) {
+  return kernel && (kernel->status & STA_UNSYNC) == 0 && kernel->state != TIME_ERROR;
+}
 
 std::optional<KernelClock> read_kernel_clock() {
   timex asked{};
@@ -44,17 +64,14 @@ std::int8_t measured_precision() {
   return static_cast<std::int8_t>(std::ceil(std::log2(std::clamp(s / readings, 1e-9, 1e-3))));
 }
 
-NtpServerState server_state(const std::optional<KernelClock>& kernel, const ClockPolicy& policy,
+NtpServerState server_state(const std::optional<KernelClock>& kernel,
+                            const std::optional<ChronyTracking>& chrony, const ClockPolicy& policy,
                             Time now) {
-  constexpr std::uint8_t synchronised_stratum = 9;
   NtpServerState state;
   state.precision = policy.precision;
   state.reference = state.read = now;
-  if (kernel && is_synchronised(*kernel)) {
-    state.leap = leap_of(*kernel);
-    state.stratum = synchronised_stratum;
-    state.reference_id = 0x7f000001;  // 127.0.0.1: a program on this host sets the clock
-    state.root_dispersion = kernel->max_error;
+  if (is_synchronised(kernel)) {
+    set_synchronised(state, *kernel, chrony);
   } else if (policy.local_stratum) {
     state.leap = NtpLeap::none;
     state.stratum = *policy.local_stratum;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How good the system's clock is, from what the kernel says of it, as an NTP server has to state
-// it.
+// How good the system's clock is, from what the kernel and chronyd say of it, as an NTP server has
+// to state it.
 #pragma once
 
+#include "kinalign/capture/chrony_tracking.h"
 #include "kinalign/capture/ntp_answer.h"
 
 #include <optional>
@@ -15,6 +16,9 @@ struct KernelClock {
   unsigned status = 0;    // STA_UNSYNC, STA_INS, ...
   Duration max_error{0};  // grows until whoever disciplines the clock sets it anew
 };
+
+/// Something disciplines it.
+bool is_synchronised(const std::optional<KernelClock>& kernel);
 
 /// None where the kernel does not answer.
 std::optional<KernelClock> read_kernel_clock();
@@ -31,9 +35,11 @@ struct ClockPolicy {
   std::int8_t precision = -20;
 };
 
-/// Synchronised: one below the worst, since the kernel knows no stratum of its source. A local
-/// reference is one only while nothing disciplines the clock.
-NtpServerState server_state(const std::optional<KernelClock>& kernel, const ClockPolicy& policy,
+/// Whether the clock is synchronised is the kernel's word. How far it is from the root is
+/// chronyd's, one stratum below it; without one the stratum is 9, since the kernel knows none. A
+/// local reference is one only while nothing disciplines the clock.
+NtpServerState server_state(const std::optional<KernelClock>& kernel,
+                            const std::optional<ChronyTracking>& chrony, const ClockPolicy& policy,
                             Time now);
 
 }  // namespace kinalign

@@ -61,15 +61,26 @@ Result<TimeServer> TimeServer::open(const TimeServerOptions& options) {
 
 TimeServer::TimeServer(const TimeServerOptions& options, std::vector<UdpSocket> sockets)
     : policy_{options.local_stratum, measured_precision()},
+      chrony_(options.chrony_port),
       sockets_(std::move(sockets)),
       responder_(options.key, options.exempt),
       batch_(std::make_unique<DatagramBatch>()) {
-  responder_.set_state(server_state(read_kernel_clock(), policy_, now_utc()));
+  if (is_synchronised(read_kernel_clock())) {
+    chrony_.latest(now_host());
+    chrony_.wait();
+  }
+  look_at_clock();
+}
+
+void TimeServer::look_at_clock() {
+  const auto kernel = read_kernel_clock();
+  const auto chrony = is_synchronised(kernel) ? chrony_.latest(now_host()) : std::nullopt;
+  responder_.set_state(server_state(kernel, chrony, policy_, now_utc()));
 }
 
 void TimeServer::serve(const std::function<bool()>& go_on) {
   while (go_on()) {
-    responder_.set_state(server_state(read_kernel_clock(), policy_, now_utc()));
+    look_at_clock();
     serve_until(now_host() + tick);
   }
 }

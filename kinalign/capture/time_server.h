@@ -3,6 +3,7 @@
 // come.
 #pragma once
 
+#include "kinalign/capture/chrony_query.h"
 #include "kinalign/capture/clock_state.h"
 #include "kinalign/capture/datagram_batch.h"
 #include "kinalign/capture/ntp_responder.h"
@@ -23,6 +24,7 @@ struct TimeServerOptions {
   std::optional<std::uint8_t> local_stratum;  // see ClockPolicy
   std::vector<Network> exempt;                // from the limit on how often one may ask
   SipHashKey key{};                           // random in each run
+  std::uint16_t chrony_port = 323;            // where a chronyd of this host takes commands
 };
 
 class TimeServer {
@@ -39,11 +41,13 @@ class TimeServer {
 
  private:
   TimeServer(const TimeServerOptions& options, std::vector<UdpSocket> sockets);
+  void look_at_clock();
   void serve_until(HostTime end);
   void drain(const UdpSocket& socket);
   void answer(const UdpSocket& socket, std::size_t datagrams);
 
   ClockPolicy policy_;
+  ChronyQuery chrony_;
   std::vector<UdpSocket> sockets_;
   NtpResponder responder_;
   NtpCounts counts_;

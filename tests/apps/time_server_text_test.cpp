@@ -43,9 +43,12 @@ TEST_CASE("a synchronised clock is named with its error, a leap second with its 
   state.stratum = 9;
   state.root_dispersion = 12'340us;
   CHECK(clock_text(state) == "synchronised within 12.3 ms, stratum 9");
+  state.root_dispersion = 8us;
+  state.root_delay = 5us;
+  CHECK(clock_text(state) == "synchronised within 10 us, stratum 9");
   state.leap = NtpLeap::insert;
   CHECK(clock_text(state) ==
-        "synchronised within 12.3 ms, stratum 9, a leap second at the end of the day (UTC)");
+        "synchronised within 10 us, stratum 9, a leap second at the end of the day (UTC)");
 }
 
 TEST_CASE("counts name what there was and leave out the rest; JSON has all of them") {
