@@ -3,6 +3,7 @@
 time_server_check.py BUILD_FOLDER [CASE...]"""
 import os
 import pathlib
+import pty
 import random
 import re
 import shutil
@@ -283,6 +284,22 @@ def people_are_told_where_it_serves_what_clients_need_and_what_was_done(_):
     port = re.fullmatch(r"serving time on 127\.0\.0\.1:(\d+), UDP\n", first[0])[1]
     assert "stratum" in first[1] and first[2] == f"  clients  chrony: server 127.0.0.1 port {port} iburst\n", first
     assert re.fullmatch(r"served for [\d.]+ m?s: 0 answered\n", last), last
+
+
+@case
+def a_terminal_shows_the_counts_in_one_line_that_is_gone_at_the_end(_):
+    terminal, end = pty.openpty()
+    with subprocess.Popen([str(cases.PROGRAM), "time-server", *ALL_ADDRESSES], stderr=end, stdout=subprocess.PIPE,
+                          text=True, env={**os.environ, "TERM": "xterm"}) as program:
+        program.stdout.readline()
+        os.close(end)
+        shown = ""
+        while "serving: 0 answered" not in shown:  # asked four times a second
+            shown += os.read(terminal, 4096).decode()
+        program.send_signal(signal.SIGTERM)
+        assert program.stdout.read().endswith(": 0 answered\n") and program.wait(30) == 0
+        shown += os.read(terminal, 4096).decode()
+    assert shown.count("\n") == 0 and shown.endswith("\r\x1b[K"), repr(shown)
 
 
 @case
