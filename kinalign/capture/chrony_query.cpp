@@ -17,7 +17,7 @@ ChronyQuery::ChronyQuery(std::uint16_t port)
   chronyd.sin_port = htons(port);
   chronyd.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   // connected: nobody else's datagrams come in
-  ::connect(fd_, reinterpret_cast<const sockaddr*>(&chronyd), sizeof chronyd);
+  (void)::connect(fd_, reinterpret_cast<const sockaddr*>(&chronyd), sizeof chronyd);
 }
 
 ChronyQuery::ChronyQuery(ChronyQuery&& other) noexcept
