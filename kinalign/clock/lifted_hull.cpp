@@ -70,9 +70,9 @@ LiftedHull::Peak LiftedHull::peak(double t) const {
   assert(!corners_.empty());
   const auto behind = std::partition_point(corners_.begin(), corners_.end() - 1,
                                            [t](const Corner& c) { return c.s < t; });
-  if (behind == corners_.begin() || behind->s < t) {  // t lies outside: the bound grows on and on
-    const double slope = behind == corners_.begin() && behind->s >= t ? -infinite : infinite;
-    return {infinite, slope};
+  if (behind->s < t) return {infinite, infinite};  // behind the last: the bound grows on and on
+  if (behind == corners_.begin()) {
+    return {behind->s > t ? infinite : support(*behind, t, 0.0).bound, -infinite};
   }
   const double slope = (behind - 1)->slope - rho_ * t;
   return {support(*behind, t, slope).bound, slope};

@@ -74,6 +74,8 @@ TEST_CASE("the peak is the greatest bound that any slope leaves") {
     LiftedHull hull(5e-8);
     for (const Point& p : points) hull.add(p.s, p.bound);
     std::uniform_real_distribution<double> when(points.front().s, points.back().s);
+    CHECK(hull.peak(points.front().s).bound == points.front().bound);
+    CHECK(hull.peak(points.back().s).bound == doctest::Approx(points.back().bound));
     const double t = when(random);
     const auto peak = hull.peak(t);
     CHECK(peak.bound == doctest::Approx(least(points, 5e-8, t, peak.slope)).epsilon(1e-12));
