@@ -45,14 +45,16 @@ void OffsetEstimate::add(Side side, OffsetBound bound) {
   const double density = side == Side::above ? middle_.above_density : middle_.below_density;
   const bool watched = settled(bound.s) && floor(side).counts().total() >= settling_points;
   const double limit = watched ? std::max(gaps_off / density, least_off_s) : 0.0;
-  const bool held = watched && line(side).excess(bound) < -limit;
-  recent.add(bound, held);
-  if (!held) add_to_route(side, bound);
+  const double excess = watched ? line(side).excess(bound) : 0.0;
+  const Standing standing = excess < -limit  ? Standing::held
+                            : excess > limit ? Standing::above
+                                             : Standing::usual;
+  recent.add(bound, standing);
+  if (standing != Standing::held) add_to_route(side, bound);
   if (const auto late = recent.release(bound.s)) add_to_route(side, *late);
   if (watched) {
     judge_change();
-    if (const auto s = recent.moved(line(side), limit, floor(side).counts()))
-      return change_route(*s);
+    if (const auto s = recent.moved(line(side), floor(side).counts())) return change_route(*s);
   }
   const auto points = route_.above().counts().total() + route_.below().counts().total();
   if (route_.bounded() && ++unseen_ >= (points < often ? 1 : seldom)) refresh(bound.s);
@@ -140,7 +142,7 @@ void OffsetEstimate::change_route(double s) {
     while (k < recent_[i].size() && recent_[i].newest(k).s > s) ++k;
     RecentBounds kept;
     while (k-- > 0) {
-      kept.add(recent_[i].newest(k), false);
+      kept.add(recent_[i].newest(k), Standing::usual);
       add_to_route(sides[i], recent_[i].newest(k));
     }
     recent_[i] = kept;

@@ -15,6 +15,7 @@ constexpr std::array windows_s{1.0, 3.0, 9.0};
 constexpr std::size_t least_points = 6;
 constexpr double steepness_s = 2.0;  // over the seconds watched: jumps for each of its spreads, …
 constexpr double least_steepness = 1.0;  // … at the least
+constexpr std::size_t asked_each = 3;    // bounds: sorting a second's delays takes a microsecond
 constexpr double least_gap_s = 1e-3;
 constexpr double sure_nats = 25.0;  // evidence against the old floor
 
@@ -29,24 +30,14 @@ double nats(const ExcessCounts& counts, std::size_t points, double excess) {
 
 }  // namespace
 
-void RecentBounds::add(OffsetBound bound, bool held) {
-  if (size_ == capacity && entries_[next_].held) --held_;
-  entries_[next_] = {bound, held};
+void RecentBounds::add(OffsetBound bound, Standing standing) {
+  entries_[next_] = {bound, standing};
   next_ = (next_ + 1) % capacity;
   size_ = std::min(size_ + 1, capacity);
-  if (held) ++held_;
-}
-
-/// How many of the newest may be of a new floor: all since the first held one, or all in a row that
-/// lie clearly above.
-std::size_t RecentBounds::run(const FloorLine& line, double limit) const {
-  std::size_t points = 0, still_held = held_;
-  if (held_ > 0) {
-    while (still_held > 0) still_held -= entry(points++).held ? 1 : 0;
-    return points;
+  above_run_ = standing == Standing::above ? std::min(above_run_ + 1, capacity) : 0;
+  if (since_held_ > 0 || standing == Standing::held) {
+    since_held_ = std::min(since_held_ + 1, capacity);
   }
-  while (points < size_ && line.excess(entry(points).bound) > limit) ++points;
-  return points;
 }
 
 namespace {
@@ -69,20 +60,20 @@ bool another_floor(const Level& level, double window_s, const ExcessCounts& coun
 
 }  // namespace
 
-std::optional<double> RecentBounds::moved(const FloorLine& line, double limit,
-                                          const ExcessCounts& counts) const {
-  if (size_ == 0 || (held_ == 0 && line.excess(newest(0)) <= limit)) return std::nullopt;
-  const std::size_t all = run(line, limit);
+std::optional<double> RecentBounds::moved(const FloorLine& line, const ExcessCounts& counts) const {
+  const bool below = since_held_ > 0;
+  const std::size_t all = below ? since_held_ : above_run_;
+  if (all < least_points || all % asked_each != 0) return std::nullopt;
+  std::array<double, capacity> excess;  // NOLINT(*-member-init): filled as far as it is read
   for (const double window : windows_s) {
     if (newest(0).s - newest(all - 1).s < window) return std::nullopt;
     std::size_t points = all;
-    while (held_ == 0 && points > 0 && newest(points - 1).s < newest(0).s - window) --points;
+    while (!below && points > 0 && newest(points - 1).s < newest(0).s - window) --points;
     if (points < least_points) return std::nullopt;
-    std::array<double, capacity> excess{};
     for (std::size_t i = 0; i < points; ++i) excess[i] = line.excess(newest(i));
     const Level level = level_of(std::span(excess).first(points));
     if (!another_floor(level, window, counts)) continue;
-    if (held_ == 0 && nats(counts, points, level.least) < sure_nats) continue;
+    if (!below && nats(counts, points, level.least) < sure_nats) continue;
     while (points < all && line.excess(newest(points)) >= level.least) ++points;
     return before(points - 1);
   }
@@ -94,23 +85,17 @@ double RecentBounds::before(std::size_t i) const {
 }
 
 std::optional<double> RecentBounds::before_held() const {
-  if (held_ == 0) return std::nullopt;
-  std::size_t points = 0, still_held = held_;
-  while (still_held > 0) still_held -= entry(points++).held ? 1 : 0;
-  return before(points - 1);
+  return since_held_ > 0 ? std::optional(before(since_held_ - 1)) : std::nullopt;
 }
 
 std::optional<OffsetBound> RecentBounds::release(double s) {
-  if (held_ == 0) return std::nullopt;
-  for (std::size_t i = size_; i-- > 0;) {
-    Entry& e = entries_[(next_ + capacity - 1 - i) % capacity];
-    if (!e.held) continue;
-    if (e.bound.s > s - windows_s.back()) return std::nullopt;
-    e.held = false;
-    --held_;
-    return e.bound;
-  }
-  return std::nullopt;
+  if (since_held_ == 0 || newest(since_held_ - 1).s > s - windows_s.back()) return std::nullopt;
+  const std::size_t first = since_held_ - 1;
+  Entry& e = entries_[(next_ + capacity - 1 - first) % capacity];
+  const bool was_held = e.standing == Standing::held;
+  e.standing = Standing::usual;
+  while (since_held_ > 0 && entry(since_held_ - 1).standing != Standing::held) --since_held_;
+  return was_held ? std::optional(e.bound) : std::nullopt;
 }
 
 }  // namespace kinalign

@@ -6,20 +6,26 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 namespace kinalign {
 
+/// Where a bound lies when it comes, by the floor as it is known then.
+enum class Standing : std::uint8_t {
+  held,   // so far below that it is kept out of the route until more is known
+  usual,  // near the floor
+  above   // clearly above, as it is for a delayed packet, and for each of a longer route
+};
+
 class RecentBounds {
  public:
-  /// `held`: lies so far below the floor that it is kept out of the route until more is known.
-  void add(OffsetBound bound, bool held);
+  void add(OffsetBound bound, Standing standing);
 
   /// If all of the last second (or three, or nine) lie around another floor than `line`: the moment
-  /// between the last one of the old floor and the first of the new. `limit`: nearer to the line is
-  /// nothing new; `counts`: how the excess lies that was seen on the old floor.
-  std::optional<double> moved(const FloorLine& line, double limit,
-                              const ExcessCounts& counts) const;
+  /// between the last one of the old floor and the first of the new. `counts`: how the excess lies
+  /// that was seen on the old floor. Found within a few bounds.
+  std::optional<double> moved(const FloorLine& line, const ExcessCounts& counts) const;
 
   /// The moment before the first held bound.
   std::optional<double> before_held() const;
@@ -33,18 +39,18 @@ class RecentBounds {
  private:
   struct Entry {
     OffsetBound bound;
-    bool held = false;
+    Standing standing = Standing::usual;
   };
   static constexpr std::size_t capacity = 256;
   const Entry& entry(std::size_t newest) const {
     return entries_[(next_ + capacity - 1 - newest) % capacity];
   }
   double before(std::size_t newest) const;
-  std::size_t run(const FloorLine& line, double limit) const;
 
   std::array<Entry, capacity> entries_{};
   std::size_t next_ = 0, size_ = 0;
-  std::size_t held_ = 0;
+  std::size_t above_run_ = 0;   // newest in a row that stand above
+  std::size_t since_held_ = 0;  // newest since the first held one; 0: none is
 };
 
 }  // namespace kinalign
