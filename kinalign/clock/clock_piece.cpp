@@ -12,6 +12,7 @@ constexpr double counter_resolution_s = 1e-6;
 constexpr double tolerated_s = 5e-6;  // against the certificate, before a bound is a violator
 constexpr double violators_within_s = 5.0;
 constexpr double most_curvature = 2e-6;  // per second: 100 times that of a board that warms up
+constexpr double harmless_share = 0.4;   // of the round trip: half of it is the least delay
 constexpr double before_a_slip_s = 5.0;
 constexpr double stale_s = 0.5;
 constexpr double between_pieces = 2e-6;  // by which a slope may differ
@@ -86,17 +87,17 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
     verdict = Verdict::relaxed;
   }
   add(e);
-  if (const auto by = stepped_with_route()) {
-    amount_ = *by;
-    slip_ = Slip::with_route;
-    return Verdict::slipped;
-  }
-  if (const auto by = stepped_between_windows()) {
-    amount_ = *by;
-    slip_ = Slip::between_windows;
-    return Verdict::slipped;
-  }
-  return verdict;
+  return slipped().value_or(verdict);
+}
+
+/// A step by less than the least delay leaves the truth within the certificate.
+std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
+  const auto with_route = stepped_with_route(), between_windows = stepped_between_windows();
+  if (!with_route && !between_windows) return std::nullopt;
+  amount_ = with_route ? *with_route : *between_windows;
+  if (std::abs(amount_) < harmless_share * estimate_.least_round_trip()) return Verdict::uneasy;
+  slip_ = with_route ? Slip::with_route : Slip::between_windows;
+  return Verdict::slipped;
 }
 
 /// Told once a change of route.

@@ -39,7 +39,8 @@ class ClockPiece {
     violator,  // against the certificate: left out
     relaxed,   // taken; the curvature was raised
     broken,    // the third violator in five seconds, or bounds without any way between them
-    slipped    // taken; the floors say that the counter stepped, by less than the certificate sees
+    slipped,   // taken; the floors say that the counter stepped, by less than the certificate sees
+    uneasy     // taken; likewise, by so little that the certificate holds all the same
   };
   Verdict push(const Crossing& crossing);
 
@@ -71,6 +72,7 @@ class ClockPiece {
   bool relax(double s);
   std::optional<double> stepped_between_windows();
   std::optional<double> stepped_with_route();
+  std::optional<Verdict> slipped();
   double first_doubt() const;
   ClockPiece next_by_windows(const SlopeBelief& prior) const;
   ClockPiece next_by_route() const;

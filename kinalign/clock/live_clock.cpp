@@ -79,6 +79,8 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
       return;
     case Verdict::violator:
       return tell({Kind::violator, boot_, crossing.heard, crossing.heard, piece_->amount()});
+    case Verdict::uneasy:
+      return tell({Kind::uneasy, boot_, crossing.heard, crossing.heard, piece_->amount()});
     case Verdict::relaxed:
       tell({Kind::relaxed, boot_, newest_, newest_, piece_->assumptions().curvature});
       return tell({Kind::withdrawn, boot_, piece_->origin().host, newest_});

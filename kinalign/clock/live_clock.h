@@ -26,6 +26,8 @@ struct ClockEvent {
     step,      // a piece began, at `begin`: the counter stepped
     slip,      // a piece began, at `begin`: the floors moved against each other, by a step too
                // small for the certificate
+    uneasy,    // likewise, by so little that the certificate holds all the same; likeliest
+               // stamps may be off by up to that
     host_backwards,  // a piece begins: the host's clock went back
     withdrawn,       // stamps of frames that arrived from begin to end: certified, and are not
     violator,        // a crossing that can't be was left out

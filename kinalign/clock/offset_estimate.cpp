@@ -107,13 +107,18 @@ void OffsetEstimate::judge_change() {
   joint_->variance += step * step;
 }
 
+double OffsetEstimate::least_round_trip() const {
+  return joint_ ? std::min(least_round_trip_, middle_.round_trip) : middle_.round_trip;
+}
+
 /// What came after s is of a new route.
 void OffsetEstimate::change_route(double s) {
   for (const RecentBounds& recent : recent_) s = std::min(s, recent.before_held().value_or(s));
   const Middle old = *at(s);
+  const bool silent = recent_[0].silent_around(s);
   least_round_trip_ = joint_ ? std::min(least_round_trip_, old.round_trip) : old.round_trip;
-  joint_ =
-      Joint{s, old.value, old.deviation * old.deviation, old.round_trip, old.floor_deviation()};
+  joint_ = Joint{
+      s, old.value, old.deviation * old.deviation, old.round_trip, old.floor_deviation(), silent};
   const Middle before = middle_;
   route_ = Route({old.slope, route_.belief().deviation + wander});
   since_.reset();

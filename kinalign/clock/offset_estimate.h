@@ -33,6 +33,8 @@ class OffsetEstimate {
   /// Absent until there is a bound of each kind.
   std::optional<Middle> at(double t);
   SlopeBelief slope() const { return route_.belief(); }
+  /// Between the floors, of the shortest route so far, s.
+  double least_round_trip() const;
   const std::optional<RouteChange>& last_change() const { return last_change_; }
   std::uint32_t changes() const { return changes_; }
 
@@ -42,7 +44,7 @@ class OffsetEstimate {
   struct Joint {
     double s = 0.0, x = 0.0, variance = 0.0;
     double round_trip = 0.0, floor_deviation = 0.0;  // of the route before
-    bool judged = false;
+    bool judged = false;                             // whether it was the counter that stepped
   };
 
   void add(Side side, OffsetBound bound);

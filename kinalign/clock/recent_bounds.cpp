@@ -16,6 +16,7 @@ constexpr std::size_t least_points = 6;
 constexpr double steepness_s = 2.0;  // over the seconds watched: jumps for each of its spreads, …
 constexpr double least_steepness = 1.0;  // … at the least
 constexpr std::size_t asked_each = 3;    // bounds: sorting a second's delays takes a microsecond
+constexpr double silent_steps = 2.5;
 constexpr double least_gap_s = 1e-3;
 constexpr double sure_nats = 25.0;  // evidence against the old floor
 
@@ -82,6 +83,14 @@ std::optional<double> RecentBounds::moved(const FloorLine& line, const ExcessCou
 
 double RecentBounds::before(std::size_t i) const {
   return i + 1 < size_ ? (newest(i).s + newest(i + 1).s) / 2.0 : newest(i).s - least_gap_s;
+}
+
+bool RecentBounds::silent_around(double s) const {
+  std::size_t i = 0;
+  while (i + 1 < size_ && newest(i + 1).s > s) ++i;
+  if (i + 1 >= size_) return true;
+  const double mean = (newest(0).s - newest(size_ - 1).s) / static_cast<double>(size_ - 1);
+  return newest(i).s - newest(i + 1).s > silent_steps * mean;
 }
 
 std::optional<double> RecentBounds::before_held() const {

@@ -27,6 +27,9 @@ class RecentBounds {
   /// that was seen on the old floor. Found within a few bounds.
   std::optional<double> moved(const FloorLine& line, const ExcessCounts& counts) const;
 
+  /// Whether fewer came around s than usually do: the longest step over it against the mean one.
+  bool silent_around(double s) const;
+
   /// The moment before the first held bound.
   std::optional<double> before_held() const;
 

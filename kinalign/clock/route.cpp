@@ -133,8 +133,8 @@ Middle Route::average(double t, const Middle& known, SlopeBelief& around) const 
     Middle middle = known;
     middle.t = t;
     middle.slope = slope.mean;
+    middle.value = value.mean;
     // A floor lies below its lowest point by a gap between points, on the average.
-    middle.value = value.mean + (below_gap - above_gap) / 2.0;
     middle.round_trip = moments(s.gap, s.likelihood).mean - above_gap - below_gap;
     middle.deviation =
         sharp ? std::hypot(value.deviation, std::hypot(above_gap, below_gap) / 2.0) : 1.0;

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What others do, re-implemented on simulated exchanges: the paper, and the ideas of liblsl, of
+// SNTP clients and of a Kalman filter, each as the reference simulator in Python has it. Ours are
+// not those programs. All give the error of each frame that was heard, s, in the order of arrival;
+// frames without a stamp are left out.
+#pragma once
+
+#include "kinalign/simulate/exchanges.h"
+
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+struct PeerErrors {
+  std::vector<double> sent;   // when the frame was sent, s
+  std::vector<double> error;  // s
+};
+
+struct Peer {
+  std::string_view name;
+  bool live;  // each stamp by what had arrived until then
+  PeerErrors (*errors)(const SimulatedExchanges& exchanges);
+};
+
+/// In the order of the table.
+const std::vector<Peer>& peers();
+
+}  // namespace kinalign
