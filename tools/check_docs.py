@@ -15,7 +15,7 @@ LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 
 def pages():
     found = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")]
-    for folder in ("kinalign", "apps", "tests", "tools", "bench", "fuzz", "layouts"):
+    for folder in ("kinalign", "apps", "firmware", "tests", "tools", "bench", "fuzz", "layouts"):
         found += ROOT.glob(f"{folder}/**/*.md")
     return sorted(found)
 

@@ -2,8 +2,8 @@
 """The include rule: a room includes the rooms that its CMake call USES, and all that stand below.
 
 Rooms are the calls of kinalign_room in kinalign/*/CMakeLists.txt; programs (apps/*, tools, fuzz,
-bench) may include what their kinalign_* libraries reach; tests any room. No two rooms use each other
-in a circle. Heavy libraries stand in .cpp files only: see HEAVY.
+bench) may include what their kinalign_* libraries reach, firmware the room wire alone, and
+firmware/node nothing else of ours; tests any room. No two rooms use each other in a circle. Heavy libraries stand in .cpp files only: see HEAVY.
 """
 import pathlib
 import re
@@ -51,6 +51,19 @@ def program_rooms(folder, uses):
     return set().union(*(below(room, uses) for room in linked))
 
 
+def is_there(name):
+    """A header, or one that everyone makes from an example: config.h from config.example.h."""
+    path = ROOT / name
+    return path.is_file() or path.with_suffix(".example" + path.suffix).is_file()
+
+
+def node_faults():
+    """What stands against the node's logic being the same files on every board."""
+    for path in sorted((ROOT / "firmware/node").rglob("*.*")):
+        for name in re.findall(r'#\s*include\s+"(?!kinalign/wire/|firmware/node/)([^"]+)"', path.read_text()):
+            yield f"{path.relative_to(ROOT)}: the node's logic may not include {name}: it knows no board"
+
+
 def faults(folder, allowed, uses, own):
     for path in sorted(p for p in folder.rglob("*") if p.suffix in ENDINGS):
         for quote, name in INCLUDE.findall(path.read_text(errors="replace")):
@@ -60,11 +73,11 @@ def faults(folder, allowed, uses, own):
                 yield f"{place}: <{name}> is heavy: only a .cpp file may include it"
             if parts[0] == "kinalign" and (len(parts) < 3 or parts[1] not in allowed):
                 yield f"{place}: {own} may not include {name}: it uses {', '.join(sorted(allowed))}"
-            if quote == '"' and parts[0] not in ("kinalign", "apps", "tests", "tools", "bench", "fuzz"):
+            if quote == '"' and parts[0] not in ("kinalign", "apps", "firmware", "tests", "tools", "bench", "fuzz"):
                 yield f"{place}: \"{name}\": expected a path from the repository's root"
-            if quote == '"' and not (ROOT / name).is_file():
+            if quote == '"' and not is_there(name):
                 yield f"{place}: \"{name}\" is not there"
-            if own in uses and parts[0] in ("apps", "tests", "tools"):
+            if own in uses and parts[0] in ("apps", "firmware", "tests", "tools"):
                 yield f"{place}: a room may not include {name}"
 
 
@@ -77,6 +90,9 @@ def main():
         if folder.is_dir():
             own = str(folder.relative_to(ROOT))
             found += faults(folder, program_rooms(folder, uses), uses, own)
+    if (ROOT / "firmware").is_dir():
+        found += faults(ROOT / "firmware", {"wire"}, uses, "firmware")
+        found += node_faults()
     found += faults(ROOT / "tests", set(uses), uses, "tests")
     print("\n".join(found))
     return 1 if found else 0

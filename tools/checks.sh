@@ -20,7 +20,7 @@ check() { # NAME COMMAND...
   fi
 }
 
-ours=(apps bench cmake fuzz kinalign tests tools)
+ours=(apps bench cmake firmware fuzz kinalign tests tools)
 
 format() {
   find "${ours[@]}" \( -name '*.cpp' -o -name '*.h' \) -print0 |

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""clang-tidy on the files of kinalign/ and apps/ that are not as they were when they passed.
+"""clang-tidy on the files of kinalign/, apps/ and firmware/ that are not as they were when they passed.
 
 A file has passed as it stands when <BUILD>/../tidy/ holds a stamp of its code (comments do not count,
 but for NOLINT), of every header of ours that it reaches, and of .clang-tidy. So an unchanged tree costs nothing, and after a commit that
@@ -52,7 +52,7 @@ def tidy(path, build):
 def sources(build):
     commands = json.loads((build / "compile_commands.json").read_text())
     files = sorted({pathlib.Path(c["file"]) for c in commands})
-    return [f for f in files if f.is_relative_to(ROOT / "kinalign") or f.is_relative_to(ROOT / "apps")]
+    return [f for f in files if f.relative_to(ROOT).parts[0] in ("kinalign", "apps", "firmware")]
 
 
 def changed_since_parent():

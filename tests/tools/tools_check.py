@@ -68,6 +68,26 @@ def rooms_in_a_circle_are_refused(folder):
 
 
 @case
+def firmware_may_include_wire_and_its_logic_no_board(folder):
+    house(folder)
+    put(folder, "firmware/node/a.h", '#include "kinalign/wire/a.h"\n#include <span>\n')
+    put(folder, "firmware/board/config.example.h", "")
+    put(folder, "firmware/board/b.cpp",
+        '#include "firmware/board/config.h"\n#include "firmware/node/a.h"\n')
+    assert includes(folder) == (0, "\n"), includes(folder)
+    put(folder, "firmware/node/a.h", '#include "firmware/board/config.h"\n')
+    put(folder, "firmware/board/b.cpp", '#include "kinalign/core/b.h"\n')
+    put(folder, "kinalign/wire/a.h", '#include "firmware/node/a.h"\n')
+    code, text = includes(folder)
+    assert code == 1
+    assert text == (
+        "kinalign/wire/a.h: a room may not include firmware/node/a.h\n"
+        "firmware/board/b.cpp: firmware may not include kinalign/core/b.h: it uses wire\n"
+        "firmware/node/a.h: the node's logic may not include firmware/board/config.h: it knows no board\n"
+    ), text
+
+
+@case
 def an_app_reaches_the_rooms_that_it_links(folder):
     house(folder)
     put(folder, "apps/a/CMakeLists.txt", "target_link_libraries(a kinalign_core)\n")

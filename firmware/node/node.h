@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// A node with a counter: samples on a timer, a frame a period, replies as they come, none of which
+// waits for another. Datagrams: docs/formats/imu_node.md. 33 KiB, no heap.
+#pragma once
+
+#include "firmware/node/answer_gate.h"
+#include "firmware/node/frame_pace.h"
+#include "firmware/node/sampler.h"
+
+#include "kinalign/wire/node_frame.h"
+
+namespace kinalign {
+
+struct NodeSettings {
+  std::uint32_t node_id = 0;
+  std::uint32_t boot_id = 0;  // new at every start
+  bool has_key = false;
+  MacKey key{};
+  std::uint32_t frame_period_us = 66'667;  // 15 a second; 30 samples fit in each
+  std::uint32_t dither_us = 1000;
+  bool narrow_counter =
+      false;  // stamps leave modulo 2^32, as of a node that does not widen its own
+};
+
+struct FrameCounts {
+  std::uint64_t sent = 0;
+  std::uint64_t send_fails = 0;  // the frame's number is lost, its samples go with the next one
+  std::uint64_t late = 0;        // frames behind which others were left out
+  std::uint64_t samples_sent = 0;
+  std::uint64_t unstampable = 0;  // samples later than their frame or over 71 min old: not sent
+};
+
+struct NodeCounts {
+  SampleCounts samples;
+  FrameCounts frames;
+  AnswerCounts replies;
+};
+
+class Node {
+ public:
+  Node(Board& board, const NodeSettings& settings);
+
+  /// On each tick of the sample timer with the number of those that are due. May run in a task of
+  /// its own beside everything else; all the rest belongs into one task.
+  void tick(std::uint32_t due) { sampler_.tick(due); }
+  /// Reads what has arrived, sends the frame that is due, shows what changed. To be called when a
+  /// datagram arrives (n_rx is read here: waiting makes the host's interval wider, never wrong) and
+  /// after idle_us.
+  void poll();
+  /// For how long nothing is to be done unless a datagram arrives: 10 ms at the most.
+  std::uint32_t idle_us(std::uint64_t now_us) const;
+  /// Whether the radio has a link. Without one no frame is begun, and samples wait.
+  void set_link(bool up) { lights_.link_up = up; }
+
+  std::uint64_t replies_accepted() const { return gate_.counts().accepted; }
+  NodeCounts counts() { return {sampler_.counts(), counts_, gate_.counts()}; }
+
+ private:
+  void receive();
+  void accept(std::span<const std::uint8_t> datagram, std::uint64_t n_rx_us);
+  void send_frame();
+  void gather();
+  void stamp();
+  void forget_or_keep(bool sent);
+  void show(std::uint64_t now_us);
+  const MacKey* key() const { return settings_.has_key ? &settings_.key : nullptr; }
+
+  Board& board_;
+  NodeSettings settings_;
+  Sampler sampler_;
+  AnswerGate gate_;
+  FramePace pace_;
+  FrameCounts counts_;
+  ReplyEcho echo_;  // of the newest reply since the last frame that got away
+  bool has_echo_ = false;
+  bool answered_ = false, locked_ = false;
+  std::uint64_t answered_us_ = 0;
+  Lights lights_, shown_;
+  bool ever_shown_ = false;
+  std::array<TakenSample, max_node_samples> gathered_{};  // for the next frame
+  std::size_t gathered_count_ = 0;
+  NodeFrame frame_;
+  std::array<std::uint8_t, max_node_datagram> datagram_{};
+};
+
+}  // namespace kinalign
