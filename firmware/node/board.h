@@ -50,4 +50,19 @@ class Locked {
   Board& board_;
 };
 
+/// Shows what has changed, and what there is at first.
+class LightSwitch {
+ public:
+  void show(Board& board, const Lights& lights) {
+    if (ever_ && lights == shown_) return;
+    ever_ = true;
+    shown_ = lights;
+    board.show(lights);
+  }
+
+ private:
+  Lights shown_;
+  bool ever_ = false;
+};
+
 }  // namespace kinalign

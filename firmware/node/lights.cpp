@@ -5,6 +5,8 @@ namespace kinalign {
 
 namespace {
 
+constexpr std::uint16_t low_battery_mv = 3500;  // one lithium cell: a tenth of its charge is left
+
 constexpr Colour dark{}, red{20, 0, 0}, yellow{14, 10, 0}, green{0, 16, 0};
 
 Colour sync_colour(SyncLight sync) {
@@ -18,6 +20,11 @@ Colour battery_colour(BatteryLight battery) {
 }
 
 }  // namespace
+
+BatteryLight battery_light(bool has_battery, std::uint16_t mv) {
+  if (!has_battery) return BatteryLight::unknown;
+  return mv < low_battery_mv ? BatteryLight::low : BatteryLight::good;
+}
 
 Picture picture(const Lights& lights) {
   const std::array<Colour, matrix_side> rows{

@@ -24,6 +24,8 @@ struct Lights {
   bool operator==(const Lights&) const = default;
 };
 
+BatteryLight battery_light(bool has_battery, std::uint16_t mv);
+
 struct Colour {
   std::uint8_t red = 0, green = 0, blue = 0;
 

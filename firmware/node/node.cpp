@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/node/node.h"
 
+#include "firmware/node/arrivals.h"
+
 #include "kinalign/wire/node_reply.h"
 
 namespace kinalign {
 
 namespace {
 
-constexpr std::size_t answer_room = 64;  // the longest has 56 bytes; a longer datagram is refused
-constexpr int answers_a_poll = 16;       // a flood delays a frame by no more than these
 constexpr std::uint32_t longest_idle_us = 10'000;
 constexpr std::uint64_t unanswered_after_us = 3'000'000;
-constexpr std::uint16_t low_battery_mv = 3500;  // one lithium cell: a tenth of its charge is left
 
 }  // namespace
 
@@ -23,7 +22,10 @@ Node::Node(Board& board, const NodeSettings& settings)
       pace_(settings.frame_period_us, settings.dither_us, settings.boot_id) {}
 
 void Node::poll() {
-  receive();
+  for_arrivals(board_, [this](std::span<const std::uint8_t> datagram) {
+    const std::uint64_t n_rx_us = board_.counter_us();  // first of all
+    accept(datagram, n_rx_us);
+  });
   const std::uint64_t now_us = board_.counter_us();
   if (lights_.link_up && pace_.due(now_us)) {
     send_frame();
@@ -37,20 +39,9 @@ std::uint32_t Node::idle_us(std::uint64_t now_us) const {
   return pace_.next_us() > now_us ? static_cast<std::uint32_t>(pace_.next_us() - now_us) : 0;
 }
 
-void Node::receive() {
-  std::array<std::uint8_t, answer_room> room{};
-  std::size_t size = 0;
-  for (int i = 0; i < answers_a_poll && board_.receive(room, size); ++i) {
-    const std::uint64_t n_rx_us = board_.counter_us();
-    accept(std::span(room).first(size), n_rx_us);
-  }
-}
-
 void Node::accept(std::span<const std::uint8_t> datagram, std::uint64_t n_rx_us) {
-  Envelope envelope;
   NodeReply reply;
-  NodeRefusal refusal = open_envelope(datagram, envelope);
-  if (refusal == NodeRefusal::none) refusal = decode(envelope, key(), reply);
+  const NodeRefusal refusal = open_and_decode(datagram, key(), reply);
   if (refusal != NodeRefusal::none) return gate_.refuse(refusal);
   if (!gate_.admit(reply.origin)) return;
   echo_ = {reply.reply_sequence, reply.nonce, n_rx_us};
@@ -115,13 +106,8 @@ void Node::show(std::uint64_t now_us) {
   lights_.sync = !answered_ ? SyncLight::unanswered
                  : locked_  ? SyncLight::locked
                             : SyncLight::answered;
-  lights_.battery = !frame_.has_battery                  ? BatteryLight::unknown
-                    : frame_.battery_mv < low_battery_mv ? BatteryLight::low
-                                                         : BatteryLight::good;
-  if (ever_shown_ && lights_ == shown_) return;
-  ever_shown_ = true;
-  shown_ = lights_;
-  board_.show(lights_);
+  lights_.battery = battery_light(frame_.has_battery, frame_.battery_mv);
+  light_switch_.show(board_, lights_);
 }
 
 }  // namespace kinalign

@@ -5,22 +5,12 @@
 
 #include "firmware/node/answer_gate.h"
 #include "firmware/node/frame_pace.h"
+#include "firmware/node/node_settings.h"
 #include "firmware/node/sampler.h"
 
 #include "kinalign/wire/node_frame.h"
 
 namespace kinalign {
-
-struct NodeSettings {
-  std::uint32_t node_id = 0;
-  std::uint32_t boot_id = 0;  // new at every start
-  bool has_key = false;
-  MacKey key{};
-  std::uint32_t frame_period_us = 66'667;  // 15 a second; 30 samples fit in each
-  std::uint32_t dither_us = 1000;
-  bool narrow_counter =
-      false;  // stamps leave modulo 2^32, as of a node that does not widen its own
-};
 
 struct FrameCounts {
   std::uint64_t sent = 0;
@@ -56,7 +46,6 @@ class Node {
   NodeCounts counts() { return {sampler_.counts(), counts_, gate_.counts()}; }
 
  private:
-  void receive();
   void accept(std::span<const std::uint8_t> datagram, std::uint64_t n_rx_us);
   void send_frame();
   void gather();
@@ -75,8 +64,8 @@ class Node {
   bool has_echo_ = false;
   bool answered_ = false, locked_ = false;
   std::uint64_t answered_us_ = 0;
-  Lights lights_, shown_;
-  bool ever_shown_ = false;
+  Lights lights_;
+  LightSwitch light_switch_;
   std::array<TakenSample, max_node_samples> gathered_{};  // for the next frame
   std::size_t gathered_count_ = 0;
   NodeFrame frame_;
