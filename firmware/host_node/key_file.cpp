@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/host_node/key_file.h"
+
+#include <sys/stat.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+std::string octal(unsigned mode) {
+  std::array<char, 8> digits{};
+  const auto [end, error] = std::to_chars(digits.begin(), digits.end(), mode & 07777U, 8);
+  return '0' + std::string(digits.begin(), end);
+}
+
+bool digits_to_key(std::string_view digits, MacKey& key) {
+  if (digits.size() != 2 * key.size()) return false;
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    const std::string_view two = digits.substr(2 * i, 2);
+    const auto [end, error] = std::from_chars(two.begin(), two.end(), key[i], 16);
+    if (error != std::errc{} || end != two.end()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Tried<MacKey> read_key_file(const std::string& path) {
+  const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "re"));
+  if (!file) return failure(path + ": expected a key, found: " + std::strerror(errno));
+  struct stat found {};
+  if (fstat(fileno(file.get()), &found) != 0 || !S_ISREG(found.st_mode)) {
+    return failure(path + ": expected a file with a key, found none");
+  }
+  if ((found.st_mode & 077U) != 0) {
+    return failure(path + ": expected mode 0600, since nobody else may read a key, found " +
+                   octal(found.st_mode) + ": chmod 600 " + path);
+  }
+  std::array<char, 64> text{};
+  std::string_view digits(text.data(), std::fread(text.data(), 1, text.size(), file.get()));
+  if (!digits.empty() && digits.back() == '\n') digits.remove_suffix(1);
+  MacKey key{};
+  if (!digits_to_key(digits, key)) {  // what it is instead is nobody's business
+    return failure(path + ": expected a key of 32 hexadecimal digits, found something else");
+  }
+  return key;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// A node's life on the host: ticks, arrivals and what befalls it, until its time is up.
+#pragma once
+
+#include "firmware/host_node/posix_board.h"
+#include "firmware/node/clockless_node.h"
+#include "firmware/node/node.h"
+
+#include <variant>
+
+namespace kinalign {
+
+/// Summed over all reboots. What belongs to the other kind of node stays 0.
+struct LifeCounts {
+  NodeCounts node;
+  ClocklessCounts clockless;
+  std::uint64_t reboots = 0;
+};
+
+class Life {
+ public:
+  Life(const HostNodeOptions& options, UdpSocket socket);
+
+  /// Until options.seconds are over or `stop`, a descriptor, can be read.
+  Tried<void> live(int stop);
+  LifeCounts counts();
+  const std::vector<ClockTruth>& truths() const { return clock_.truths(); }
+  const Lights& lights() const { return board_.lights(); }
+
+ private:
+  void boot(std::uint32_t boot_id);
+  Tried<void> befall(const Event& event);
+  void tick_and_poll();
+  std::int64_t idle_ns();
+  std::uint32_t ticks_due();
+
+  HostNodeOptions options_;
+  UdpSocket socket_;
+  SimulatedClock clock_;
+  PosixBoard board_;
+  std::variant<std::monostate, Node, ClocklessNode> node_;
+  LifeCounts past_;  // of the starts before this one
+  std::int64_t begin_ns_;
+  std::size_t next_event_ = 0;
+  bool link_up_ = true;
+  double tick_period_us_;
+  double next_tick_us_ = 0;
+};
+
+}  // namespace kinalign

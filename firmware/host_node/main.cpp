@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The node's logic as a program: see options.cpp for what it can be told.
+#include "firmware/host_node/key_file.h"
+#include "firmware/host_node/life.h"
+#include "firmware/host_node/pipe_line.h"
+#include "firmware/host_node/report.h"
+#include "firmware/script/script.h"
+
+#include <sys/signalfd.h>
+
+#include <csignal>
+#include <memory>
+
+namespace {
+
+using namespace kinalign;
+
+/// Can be read once the program was asked to end.
+int stop_descriptor() {
+  sigset_t signals{};
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  sigprocmask(SIG_BLOCK, &signals, nullptr);
+  return signalfd(-1, &signals, SFD_CLOEXEC);
+}
+
+void play_script() {
+  PipeLine line;
+  std::make_unique<Script>(line)->play();
+  std::fflush(stdout);
+}
+
+Tried<void> run(HostNodeOptions options) {
+  if (options.help) {
+    std::fputs(host_node_help(), stdout);
+    return {};
+  }
+  if (options.script) {
+    play_script();
+    return {};
+  }
+  if (!options.key_file.empty()) {
+    const auto key = read_key_file(options.key_file);
+    if (!key) return tl::unexpected(key.error());
+    options.node.has_key = true;
+    options.node.key = *key;
+  }
+  auto socket = UdpSocket::connected_to(options.host, options.port);
+  if (!socket) return tl::unexpected(socket.error());
+  const int stop = stop_descriptor();
+  const auto life = std::make_unique<Life>(options, *std::move(socket));
+  if (auto lived = life->live(stop); !lived) return lived;
+  std::puts(report(options, *life).c_str());
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<const char*> words(argv + 1, argv + argc);
+  auto options = options_from(words);
+  const Tried<void> done = options ? run(*std::move(options)) : tl::unexpected(options.error());
+  if (done) return 0;
+  std::fprintf(stderr, "host_node: %s\n", done.error().text.c_str());
+  return done.error().exit_code;
+}

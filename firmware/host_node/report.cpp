@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware/host_node/report.h"
+
+#include "firmware/node/count_names.h"
+
+#include <array>
+#include <charconv>
+
+namespace kinalign {
+
+namespace {
+
+/// An object of JSON, built up; values are text as it stands in JSON.
+class Object {
+ public:
+  Object& add(const std::string& name, const std::string& value) {
+    text_ += (text_.empty() ? "\"" : ", \"") + name + "\": " + value;
+    return *this;
+  }
+  Object& add(const std::string& name, std::uint64_t value) {
+    return add(name, std::to_string(value));
+  }
+  std::string text() const { return '{' + text_ + '}'; }
+
+ private:
+  std::string text_;
+};
+
+std::string shortest(double value) {
+  std::array<char, 32> digits{};
+  return {digits.begin(), std::to_chars(digits.begin(), digits.end(), value).ptr};
+}
+
+std::string truths(const std::vector<ClockTruth>& all) {
+  std::string text;
+  for (const ClockTruth& truth : all) {
+    text += (text.empty() ? "" : ", ") + Object()
+                                             .add("boot_id", truth.boot_id)
+                                             .add("raw_ns", std::to_string(truth.raw_ns))
+                                             .add("counter_us", shortest(truth.counter_us))
+                                             .add("drift_ppm", shortest(truth.drift_ppm))
+                                             .text();
+  }
+  return '[' + text + ']';
+}
+
+const char* name_of(SyncLight sync) {
+  if (sync == SyncLight::unanswered) return "\"unanswered\"";
+  return sync == SyncLight::answered ? "\"answered\"" : "\"locked\"";
+}
+
+}  // namespace
+
+std::string report(const HostNodeOptions& options, Life& life) {
+  const LifeCounts counts = life.counts();
+  Object all;
+  all.add("node_id", options.node.node_id).add("reboots", counts.reboots);
+  const auto add = [&](const char* name, std::uint64_t number) { all.add(name, number); };
+  if (options.clockless) {
+    each_clockless_count(counts.clockless, add);
+  } else {
+    each_node_count(counts.node, add);
+  }
+  return all.add("sync", name_of(life.lights().sync)).add("truth", truths(life.truths())).text();
+}
+
+}  // namespace kinalign
