@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The node on a Cortex-M3, with a serial line for its world: see firmware/script/script.h. The
-// port is the CMSDK UART of Arm's Cortex-M System Design Kit (technical reference manual,
-// section 4.3): as slow as it is, it waits for nobody here.
+// port is Arm's PL011 (technical reference manual DDI 0183, chapter 3), the first of the LM3S6965.
 #include "firmware/cortex_m/stack.h"
 #include "firmware/script/script.h"
 
@@ -10,33 +9,43 @@
 namespace {
 
 struct UartRegisters {
-  volatile std::uint32_t data, state, control, interrupt, baud_divider;
+  volatile std::uint32_t data;
+  std::uint32_t unused_1[5];
+  volatile std::uint32_t flags;
+  std::uint32_t unused_2[4];
+  volatile std::uint32_t line_control, control;
 };
-constexpr std::uintptr_t uart_address = 0x40004000;
-constexpr std::uint32_t transmitter_full = 1, receiver_full = 2;        // of state
-constexpr std::uint32_t transmitter_enabled = 1, receiver_enabled = 2;  // of control
+constexpr std::uintptr_t uart_address = 0x4000c000;
+constexpr std::uint32_t receiver_empty = 1 << 4, transmitter_full = 1 << 5;  // of flags
+constexpr std::uint32_t eight_bits = 3 << 5, with_queues = 1 << 4;           // of line_control
+constexpr std::uint32_t enabled = 1 | 1 << 8 | 1 << 9;  // of control: port, transmitter, receiver
 
 class Uart : public kinalign::Line {
  public:
   Uart() {
-    uart_.baud_divider = 16;  // the least there is
-    uart_.control = transmitter_enabled | receiver_enabled;
+    uart_.line_control = eight_bits | with_queues;
+    uart_.control = enabled;
   }
   bool read(std::span<std::uint8_t> bytes) override {
     for (auto& byte : bytes) {
-      while ((uart_.state & receiver_full) == 0) continue;
+      while ((uart_.flags & receiver_empty) != 0) wait();
       byte = static_cast<std::uint8_t>(uart_.data);
     }
     return true;
   }
   void write(std::span<const std::uint8_t> bytes) override {
     for (const auto byte : bytes) {
-      while ((uart_.state & transmitter_full) != 0) continue;
+      while ((uart_.flags & transmitter_full) != 0) continue;
       uart_.data = byte;
     }
   }
 
  private:
+  /// An emulator has one lock for all registers: asking without a pause keeps the line itself out.
+  static void wait() {
+    for (int i = 0; i < 1000; ++i) asm volatile("");
+  }
+
   UartRegisters& uart_ = *reinterpret_cast<UartRegisters*>(uart_address);
 };
 

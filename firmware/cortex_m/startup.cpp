@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From reset to main, with the names of mps2_an385.ld. ARMv7-M Architecture Reference Manual, B1.5:
+// From reset to main, with the names of lm3s6965.ld. ARMv7-M Architecture Reference Manual, B1.5:
 // the vectors begin with the stack's end and the address of reset; then the faults.
 #include "firmware/cortex_m/stack.h"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The same node on a Cortex-M3 (QEMU) and on the host: cortex_m_check.py BINARY_DIR [--show]
+"""The same node on a Cortex-M3 (QEMU) and on the host: cortex_m_check.py BINARY_DIR
 
 A script of ticks, polls and arrivals (firmware/script/script.h) is made against host_node --script, whose frames the
 replies in it answer, and then played to the image: every byte that comes back has to be the same.
@@ -48,13 +48,13 @@ class Player:
     """A process that plays a script. Reads with a limit of time, since a broken image says nothing."""
 
     def __init__(self, command, seconds=60):
-        self.process = subprocess.Popen([str(c) for c in command], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.process = subprocess.Popen([str(c) for c in command], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        stderr=subprocess.DEVNULL)  # QEMU's words on timers that are off
         self.limit = threading.Timer(seconds, self.process.kill)
         self.limit.start()
 
     def put(self, kind, fields=b""):
-        self.process.stdin.write(struct.pack(">H", len(fields) + 1) + kind + fields)
-        self.process.stdin.flush()
+        os.write(self.process.stdin.fileno(), struct.pack(">H", len(fields) + 1) + kind + fields)
 
     def get(self):
         head = self.process.stdout.read(2)
@@ -80,7 +80,7 @@ def host():
 
 
 def board():
-    return Player(["qemu-system-arm", "-M", "mps2-an385", "-display", "none", "-monitor", "none",
+    return Player(["qemu-system-arm", "-M", "lm3s6965evb", "-display", "none", "-monitor", "none",
                    "-serial", "stdio", "-kernel", image()])
 
 
@@ -88,7 +88,7 @@ class Scene:
     """A script in the making, played to the host's node as it grows."""
 
     def __init__(self, seed, key=None, clockless=False, narrow=False, start_us=0):
-        self.random = random.Random(seed)
+        self.seed, self.random = seed, random.Random(seed)
         self.key, self.clockless = key, clockless
         self.script, self.got, self.sent = [], [], []
         self.player = host()
@@ -144,7 +144,9 @@ class Scene:
     def wander(self, steps):
         """Random life: uneven ticks, missed ones, an unsteady radio, replies, noise."""
         for _ in range(steps):
-            self.now += self.random.choice([1, 900, 4_000, 5_000, 6_000, 10_000, 300_000 if self.random.random() < 0.02 else 2])
+            self.now += self.random.choice([1, 900, 5_000, 10_000, 10_000, 30_000])
+            if self.random.random() < 0.02:
+                self.now += 300_000
             if self.random.random() < 0.6:
                 self.tick(due=self.random.choice([1, 1, 1, 1, 0, 2, 5]))
             for _ in range(self.random.choice([0, 0, 0, 1, 2, 9 if self.random.random() < 0.05 else 1])):
@@ -162,11 +164,10 @@ def played_on_board(script):
     """What the image says to a script, and the bytes of its stack that it used."""
     player = board()
     try:
-        got = []
-        for kind, fields in script:
-            player.put(kind, fields)
-            if kind != b"D":
-                got += player.until(b"N" if kind == b"E" else b"K")
+        # all at once, beside the reading: a round trip a message would take a minute
+        writer = threading.Thread(target=lambda: [player.put(*message) for message in script], daemon=True)
+        writer.start()
+        got = player.until(b"N")
         kind, used = player.get()
         assert kind == b"M"
         return got, struct.unpack(">I", used)[0]
@@ -174,11 +175,17 @@ def played_on_board(script):
         player.close()
 
 
+def fresh_seeds(n):
+    given = os.environ.get("KINALIGN_SEED")
+    return [int(given)] if given else [random.SystemRandom().getrandbits(32) for _ in range(n)]
+
+
 def same(scene):
+    """Whether the board says what the host said; its stack."""
     got, stack = played_on_board(scene.script)
     for i, (ours, theirs) in enumerate(zip(scene.got, got)):
-        assert ours == theirs, f"message {i}: host {ours}, board {theirs}"
-    assert len(got) == len(scene.got)
+        assert ours == theirs, f"seed {scene.seed}, message {i}: host {ours}, board {theirs}"
+    assert len(got) == len(scene.got), f"seed {scene.seed}"
     return stack
 
 
@@ -190,16 +197,16 @@ def the_image_holds_neither_heap_nor_exceptions(_):
 
 
 @case
-def the_image_needs_less_than_16_KiB_of_code_and_64_KiB_of_memory(_):
+def the_image_needs_less_than_12_KiB_of_code_and_40_KiB_of_memory(_):
     text, data, bss = map(int, output_of("arm-none-eabi-size", image()).splitlines()[1].split()[:3])
     scene = Scene(1, KEY)
-    scene.wander(300)
+    scene.wander(200)
     stack = same(scene.end())
     print(f"image: .text {text}, .data {data}, .bss {bss}, stack {stack} bytes")
     library = output_of("arm-none-eabi-size", "-t", BUILD / "libnode.a").splitlines()[-1].split()
     print(f"of it node and wire, before unused parts are left out: .text {library[0]}, .data {library[1]}, .bss {library[2]}")
-    assert text + data < 16 * 1024
-    assert data + bss + stack < 64 * 1024
+    assert text + data < 12 * 1024
+    assert data + bss + stack < 40 * 1024
 
 
 @case
@@ -241,27 +248,18 @@ def a_counter_past_32_bits_is_the_same_on_both(_):
 
 @case
 def random_lives_are_the_same_on_both(_):
-    given = os.environ.get("KINALIGN_SEED")
-    for seed in [int(given)] if given else [random.SystemRandom().getrandbits(32) for _ in range(8)]:
-        for key in (None, KEY):
-            scene = Scene(seed, key)
-            scene.wander(300)
-            try:
-                same(scene.end())
-            except AssertionError as error:
-                raise AssertionError(f"seed {seed}: {error}") from error
+    for seed in fresh_seeds(4):
+        scene = Scene(seed, KEY if seed % 2 else None)
+        scene.wander(250)
+        same(scene.end())
 
 
 @case
 def random_clockless_lives_are_the_same_on_both(_):
-    given = os.environ.get("KINALIGN_SEED")
-    for seed in [int(given)] if given else [random.SystemRandom().getrandbits(32) for _ in range(4)]:
+    for seed in fresh_seeds(2):
         scene = Scene(seed, KEY, clockless=True)
-        scene.wander(300)
-        try:
-            same(scene.end())
-        except AssertionError as error:
-            raise AssertionError(f"seed {seed}: {error}") from error
+        scene.wander(200)
+        same(scene.end())
         assert any(sent.kind == datagrams.CONFIRM for sent in scene.sent), f"seed {seed}: no confirm"
 
 
