@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <functional>
 #include <string_view>
 
@@ -172,7 +173,7 @@ Tried<HostNodeOptions> completed(HostNodeOptions options) {
   if (options.host.empty())
     return wrong_use("expected --server HOST:PORT; --help says what else there is");
   if (options.node.node_id == 0) options.node.node_id = 1;
-  options.node.frame_period_us = static_cast<std::uint32_t>(1e6 / options.rate_hz + 0.5);
+  options.node.frame_period_us = static_cast<std::uint32_t>(std::lround(1e6 / options.rate_hz));
   std::stable_sort(options.events.begin(), options.events.end(),
                    [](const Event& a, const Event& b) { return a.at_s < b.at_s; });
   return options;
