@@ -205,6 +205,9 @@ def the_image_needs_less_than_12_KiB_of_code_and_40_KiB_of_memory(_):
     print(f"image: .text {text}, .data {data}, .bss {bss}, stack {stack} bytes")
     library = output_of("arm-none-eabi-size", "-t", BUILD / "libnode.a").splitlines()[-1].split()
     print(f"of it node and wire, before unused parts are left out: .text {library[0]}, .data {library[1]}, .bss {library[2]}")
+    page = (ROOT / "firmware/README.md").read_text()
+    for said in (f"{text:,} bytes of code", f"{bss:,} of static memory", f"{stack} bytes of stack", f"is {int(library[0]):,}"):
+        assert said in " ".join(page.split()), f"firmware/README.md: expected {said}"
     assert text + data < 12 * 1024
     assert data + bss + stack < 40 * 1024
 
