@@ -18,7 +18,7 @@ void write_message(Line& line, char kind, std::span<const std::uint8_t> fields) 
                                          static_cast<std::uint8_t>(size),
                                          static_cast<std::uint8_t>(kind)};
   line.write(head);
-  line.write(fields);
+  if (!fields.empty()) line.write(fields);
 }
 
 }  // namespace kinalign
