@@ -172,7 +172,6 @@ Tried<HostNodeOptions> completed(HostNodeOptions options) {
   if (options.help || options.script) return options;
   if (options.host.empty())
     return wrong_use("expected --server HOST:PORT; --help says what else there is");
-  if (options.node.node_id == 0) options.node.node_id = 1;
   options.node.frame_period_us = static_cast<std::uint32_t>(std::lround(1e6 / options.rate_hz));
   std::stable_sort(options.events.begin(), options.events.end(),
                    [](const Event& a, const Event& b) { return a.at_s < b.at_s; });
@@ -183,6 +182,7 @@ Tried<HostNodeOptions> completed(HostNodeOptions options) {
 
 Tried<HostNodeOptions> options_from(std::span<const char* const> words) {
   HostNodeOptions options;
+  options.node.node_id = 1;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string_view word = words[i];
     const auto flag = std::find_if(flags().begin(), flags().end(), [&](const Flag& one) {

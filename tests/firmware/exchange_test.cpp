@@ -191,6 +191,7 @@ TEST_CASE("what is too old for the room there is, is dropped and counted") {
 
 TEST_CASE("lights: link, answers, lock, battery, and no answer for three seconds") {
   FakeBoard board;
+  board.now_us = 3'600'000'000;
   board.battery_mv = 4000;
   Node node(board, settings);
   node.poll();

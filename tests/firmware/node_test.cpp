@@ -175,6 +175,10 @@ TEST_CASE("stamps of a narrow counter leave modulo 2^32, ages as they are") {
   CHECK(frame.n_tx_us < 100'000);
   CHECK(static_cast<std::uint32_t>(frame.n_tx_us) - frame.samples[0].age_us ==
         static_cast<std::uint32_t>(taken));
+  bench.board.arriving.push_back(reply_to(frame, 900));
+  bench.run(100'000);
+  CHECK(bench.last().has_echo);
+  CHECK(bench.last().echo.n_rx_us < 200'000);
 }
 
 TEST_CASE("a sample that is later than its frame is not sent: the counter went back") {
