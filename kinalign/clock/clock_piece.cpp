@@ -92,12 +92,29 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
 
 /// A step by less than the least delay leaves the truth within the certificate.
 std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
+  if (const auto by = narrowed()) {
+    amount_ = *by;
+    if (relax(floors_.window(0)->s) && !narrowed()) return Verdict::relaxed;
+    slip_ = Slip::narrowed;
+    return Verdict::slipped;
+  }
   const auto with_route = stepped_with_route(), between_windows = stepped_between_windows();
   if (!with_route && !between_windows) return std::nullopt;
   amount_ = with_route ? *with_route : *between_windows;
   if (std::abs(amount_) < harmless_share * estimate_.least_round_trip()) return Verdict::uneasy;
   slip_ = with_route ? Slip::with_route : Slip::between_windows;
   return Verdict::slipped;
+}
+
+/// Bounds of before and after a slip leave less between them than the shortest round trip that
+/// there is; told once a window.
+std::optional<double> ClockPiece::narrowed() const {
+  const auto window = floors_.window(0);
+  if (floors_.windows() == windows_judged_ || !window) return std::nullopt;
+  const double least = floors_.shortest().least_width();
+  const auto range = certificate_.at(window->s);
+  const double left = range ? range->high - range->low : 0.0;
+  return left < least ? std::optional(least - left) : std::nullopt;
 }
 
 /// Told once a change of route.
@@ -197,7 +214,8 @@ ClockPiece ClockPiece::next_by_windows(const SlopeBelief& prior) const {
   const double begin = last.s - FloorLog::window_s;
   while (kept < journal_.size() && journal_.newest(kept).s > begin) ++kept;
   const JournalEntry first = journal_.newest(kept - 1);
-  ClockPiece next({origin_.node + rounded_down(first.s), host_time(first)}, assumptions(), prior);
+  ClockPiece next({origin_.node + rounded_down(first.s), host_time(first)}, assumptions(), prior,
+                  floors_.shortest());
   const double node = seconds(next.origin_.node - origin_.node);
   const double host = seconds(next.origin_.host - origin_.host);
   while (kept-- > 0) {
@@ -230,9 +248,12 @@ ClockPiece ClockPiece::next_piece() const {
   if (slip_ == Slip::between_windows) return next_by_windows(prior);
   if (violator_count_ < violators_.size()) {
     const JournalEntry last = journal_.newest(0);
-    return {{origin_.node + rounded_down(last.s), host_time(last)}, assumptions(), prior};
+    return {{origin_.node + rounded_down(last.s), host_time(last)},
+            assumptions(),
+            prior,
+            floors_.shortest()};
   }
-  ClockPiece next({violators_[0].n, violators_[0].h}, assumptions(), prior);
+  ClockPiece next({violators_[0].n, violators_[0].h}, assumptions(), prior, floors_.shortest());
   for (const Crossing& v : violators_) next.add(next.entry(v));
   return next;
 }

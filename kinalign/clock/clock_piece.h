@@ -31,8 +31,9 @@ class ClockPiece {
     NodeTime node{};
     HostTime host{};
   };
-  ClockPiece(const Origin& origin, const Assumptions& assumptions, SlopeBelief prior)
-      : origin_(origin), certificate_(assumptions, corners), estimate_(prior) {}
+  ClockPiece(const Origin& origin, const Assumptions& assumptions, SlopeBelief prior = {},
+             const ShortestRoundTrips& shortest = {})
+      : origin_(origin), certificate_(assumptions, corners), estimate_(prior), floors_(shortest) {}
 
   enum class Verdict : std::uint8_t {
     taken,
@@ -72,6 +73,7 @@ class ClockPiece {
   bool relax(double s);
   std::optional<double> stepped_between_windows();
   std::optional<double> stepped_with_route();
+  std::optional<double> narrowed() const;
   std::optional<Verdict> slipped();
   double first_doubt() const;
   ClockPiece next_by_windows(const SlopeBelief& prior) const;
@@ -85,7 +87,7 @@ class ClockPiece {
   std::uint64_t windows_judged_ = 0;
   std::array<Crossing, 3> violators_{};  // within five seconds
   std::size_t violator_count_ = 0;
-  enum class Slip : std::uint8_t { none, between_windows, with_route };
+  enum class Slip : std::uint8_t { none, between_windows, with_route, narrowed };
   Slip slip_ = Slip::none;
   std::uint32_t routes_judged_ = 0;
   double amount_ = 0.0;

@@ -11,20 +11,53 @@ namespace {
 constexpr double least_step_s = 0.7e-3;  // a thousandth of a second shows, with its noise
 constexpr double sure_deviations = 5.0;
 constexpr double alike_deviations = 4.0;
+constexpr double slope_slack = 5e-6;
+constexpr double agreeing_share = 0.05, agreeing_gaps = 3.0;
+constexpr double narrow_share = 0.1, narrow_gaps = 10.0;
 constexpr std::uint64_t enough_pairs = 4;
 
 }  // namespace
 
+void ShortestRoundTrips::add(const FloorWindow& window) {
+  if (window.round_trip <= 0.0) return;
+  const auto end = shortest_.begin() + static_cast<std::ptrdiff_t>(count_);
+  const auto place = std::find_if(shortest_.begin(), end,
+                                  [&](const RoundTrip& r) { return window.round_trip < r.s; });
+  if (place == shortest_.end()) return;
+  std::move_backward(place, count_ < shortest_.size() ? end : end - 1,
+                     count_ < shortest_.size() ? end + 1 : end);
+  *place = {window.round_trip, window.gap};
+  count_ = std::min(count_ + 1, shortest_.size());
+}
+
+double ShortestRoundTrips::least_width() const {
+  for (std::size_t i = 0; i + 1 < count_; ++i) {
+    const RoundTrip &a = shortest_[i], &b = shortest_[i + 1];
+    const double gap = std::max(a.gap, b.gap);
+    if (b.s - a.s > agreeing_share * a.s + agreeing_gaps * gap) continue;
+    return a.s - std::max(narrow_gaps * gap, narrow_share * a.s);
+  }
+  return 0.0;
+}
+
+void FloorLog::open(std::int64_t index, double slope) {
+  index_ = index;
+  slope_ = slope;
+  now_ = {};
+  corridor_ = Corridor(0.0);
+}
+
 void FloorLog::add(std::size_t side, OffsetBound bound, double slope) {
   const auto index = static_cast<std::int64_t>(std::floor(bound.s / window_s));
   if (index > index_) {
-    close(side == 0 ? slope : -slope);
-    index_ = index;
+    close();
+    open(index, side == 0 ? slope : -slope);
   } else if (index < index_) {
     return;  // reordered over the edge
   }
-  const double middle = (static_cast<double>(index_) + 0.5) * window_s;
-  const double x = bound.x + slope * (middle - bound.s);
+  const double own_slope = side == 0 ? slope_ : -slope_;
+  const double x = bound.x - own_slope * (bound.s - middle_s());
+  (side == 0 ? corridor_.above : corridor_.below).add(bound.s, x);
   Lows& lows = now_[side];
   if (lows.count < lowest) {
     lows.x[lows.count++] = x;
@@ -36,21 +69,23 @@ void FloorLog::add(std::size_t side, OffsetBound bound, double slope) {
   std::sort(lows.x.begin(), lows.x.begin() + static_cast<std::ptrdiff_t>(lows.count));
 }
 
-void FloorLog::close(double slope) {
+/// The floors of a window are those of the widest line whose slope is near to the one expected: a
+/// clock that bends has a slope of its own in each window.
+void FloorLog::close() {
   std::rotate(past_.begin(), past_.end() - 1, past_.end());
   past_[0].reset();
   ++windows_;
   if (now_[0].count == lowest && now_[1].count == lowest) {
-    const double up = now_[0].x.front(), down = now_[1].x.front();
     const auto gap = [](const Lows& l) { return (l.x.back() - l.x.front()) / (lowest - 1); };
-    past_[0] = FloorWindow{(static_cast<double>(index_) + 0.5) * window_s, (up - down) / 2.0,
-                           up + down, std::hypot(gap(now_[0]), gap(now_[1]))};
+    const CorridorLine line = widest_line(corridor_, middle_s(), slope_slack);
+    past_[0] = FloorWindow{middle_s(), line.middle(), line.width(),
+                           std::hypot(gap(now_[0]), gap(now_[1]))};
+    shortest_.add(*past_[0]);
   }
-  now_ = {};
   step_.reset();
-  if (past_[0] && past_[2]) step_ = singles_.step(*past_[0], *past_[2], slope);
-  const auto now = merged(0, 3, slope), then = merged(4, 3, slope);
-  if (now && then && !step_) step_ = threes_.step(*now, *then, slope);
+  if (past_[0] && past_[2]) step_ = singles_.step(*past_[0], *past_[2], slope_);
+  const auto now = merged(0, 3, slope_), then = merged(4, 3, slope_);
+  if (now && then && !step_) step_ = threes_.step(*now, *then, slope_);
 }
 
 /// The lowest of floors over windows in a row, as of their middle one.

@@ -3,6 +3,7 @@
 // the counter leaves where it is too small for the certificate.
 #pragma once
 
+#include "kinalign/clock/corridor.h"
 #include "kinalign/clock/floor.h"
 
 #include <array>
@@ -20,8 +21,29 @@ struct FloorWindow {
   double gap = 0.0;         // how far the floors may lie from where they are seen, s
 };
 
+/// The shortest round trips of windows so far.
+class ShortestRoundTrips {
+ public:
+  void add(const FloorWindow& window);
+  /// What an interval of the certificate can't be narrower than, s: the least that two windows
+  /// agree on, less their noise. One alone, in which a counter stepped, shows less than there is.
+  /// 0: none.
+  double least_width() const;
+
+ private:
+  struct RoundTrip {
+    double s = 0.0, gap = 0.0;
+  };
+  std::array<RoundTrip, 8> shortest_{};  // rising
+  std::size_t count_ = 0;
+};
+
 class FloorLog {
  public:
+  FloorLog() = default;
+  /// Goes on with what earlier pieces of the node have shown.
+  explicit FloorLog(const ShortestRoundTrips& shortest) : shortest_(shortest) {}
+
   /// Bounds from above, or mirrored ones from below; `slope` of the offset as far as it is known.
   void add_above(OffsetBound bound, double slope) { add(0, bound, slope); }
   void add_below(OffsetBound mirrored, double slope) { add(1, mirrored, -slope); }
@@ -30,6 +52,7 @@ class FloorLog {
   /// 0: the last whole window.
   std::optional<FloorWindow> window(std::size_t i) const;
   std::uint64_t windows() const { return windows_; }
+  const ShortestRoundTrips& shortest() const { return shortest_; }
 
   /// By how much the offset stepped within the windows before the last, if their round trips are
   /// alike on both sides: a route that is longer one way and as much shorter the other is unlikely.
@@ -40,11 +63,12 @@ class FloorLog {
  private:
   static constexpr std::size_t lowest = 6, remembered = 7;
   struct Lows {
-    std::array<double, lowest> x{};  // rising, moved to the window's middle
+    std::array<double, lowest> x{};  // rising, less the window's slope
     std::size_t count = 0;
   };
   void add(std::size_t side, OffsetBound bound, double slope);
-  void close(double slope);
+  void open(std::int64_t index, double slope);
+  void close();
   std::optional<FloorWindow> merged(std::size_t first, std::size_t count, double slope) const;
   /// How far offsets of windows usually differ, and whether these do by more.
   struct Comparison {
@@ -54,11 +78,16 @@ class FloorLog {
     std::optional<double> step(const FloorWindow& now, const FloorWindow& then, double slope);
   };
 
+  double middle_s() const { return (static_cast<double>(index_) + 0.5) * window_s; }
+
   std::array<Lows, 2> now_;
+  Corridor corridor_{0.0};  // of the window's bounds, less its slope
   std::int64_t index_ = 0;
+  double slope_ = 0.0;  // of the offset when the window began
   std::array<std::optional<FloorWindow>, remembered> past_;
   std::uint64_t windows_ = 0;
   Comparison singles_, threes_;
+  ShortestRoundTrips shortest_;
   std::optional<double> step_;
 };
 

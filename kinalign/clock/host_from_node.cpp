@@ -56,9 +56,11 @@ std::optional<ClockStamp> host_from_node(const HostFromNode& model, BootKey boot
   ClockStamp stamp;
   stamp.assumptions = piece->assumptions;
   stamp.time = on_host(n, std::round(offset.likeliest)) + counter_resolution / 2;
-  stamp.earliest = on_host(n, std::floor(offset.least));
-  stamp.latest = on_host(n, std::ceil(offset.greatest)) + counter_resolution;
-  if (piece->certified) stamp.certainty = Certainty::certified;
+  if (piece->certified) {
+    stamp.certainty = Certainty::certified;
+    stamp.earliest = on_host(n, std::floor(offset.least));
+    stamp.latest = on_host(n, std::ceil(offset.greatest)) + counter_resolution;
+  }
   for (const DoubtfulStretch& doubt : model.doubtful) {
     if (doubt.begin <= h_rx && h_rx <= doubt.end) stamp.certainty = Certainty::doubtful;
   }

@@ -30,7 +30,8 @@ void LiveClock::begin(BootKey boot, const Crossing& first) {
     prior.deviation += between_lives;
     earlier_[lives_++ % earlier_.size()] = boot_;
   }
-  piece_.emplace(ClockPiece::Origin{first.n, first.h}, assumptions_, prior);
+  piece_.emplace(ClockPiece::Origin{first.n, first.h}, assumptions_, prior,
+                 piece_ ? piece_->floors().shortest() : ShortestRoundTrips{});
   boot_ = boot;
   routes_told_ = 0;
   tell({ClockEvent::Kind::new_boot, boot, first.h, first.h});

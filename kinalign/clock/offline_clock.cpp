@@ -15,7 +15,8 @@ namespace kinalign {
 namespace {
 
 constexpr double knot_s = 1.0;
-constexpr double most_curvature = 2e-6;
+constexpr double most_curvature = 2e-6;  // 1/s
+constexpr double raised = 4.0;
 constexpr double counter_resolution_s = 1e-6;
 
 struct Walk {
@@ -24,6 +25,7 @@ struct Walk {
   std::vector<std::size_t> piece;  // of each exchange
   std::vector<bool> up_left_out, echo_left_out;
   std::size_t pieces = 0;
+  double least_width = 0.0;  // s, that an interval can have: packets took no less, there and back
 };
 
 bool begins_piece(ClockEvent::Kind kind) {
@@ -69,6 +71,7 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
     clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
     for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, true);
   }
+  if (clock.piece()) walk.least_width = clock.piece()->floors().shortest().least_width();
   return walk;
 }
 
@@ -104,9 +107,9 @@ Certificate certificate_of(const PieceBounds& piece, const Assumptions& assumpti
 
 Duration nanoseconds(double s) { return Duration{static_cast<std::int64_t>(s)}; }
 
-/// Knots of a piece; false where its bounds contradict each other.
+/// Knots of a piece; whether its bounds go together everywhere and leave what there is at least.
 bool fill_knots(const PieceBounds& piece, const Certificate& certificate, OfflineEstimate& estimate,
-                std::vector<ClockKnot>& knots) {
+                double least_width, std::vector<ClockKnot>& knots) {
   double begin = piece.bounds.front().s, end = begin;
   for (const JournalEntry& b : piece.bounds) {
     begin = std::min(begin, b.s);
@@ -115,32 +118,42 @@ bool fill_knots(const PieceBounds& piece, const Certificate& certificate, Offlin
   const double widened = certificate.assumptions().curvature * knot_s * knot_s / 8.0;
   const Duration base = piece.host.time_since_epoch() - piece.node.time_since_epoch();
   const auto count = static_cast<std::size_t>(std::ceil((end - begin) / knot_s)) + 1;
+  bool sound = true;
   knots.clear();
   for (std::size_t i = 0; i < count; ++i) {
     const Duration since = nanoseconds(std::round((begin + knot_s * static_cast<double>(i)) * 1e9));
-    const double t = seconds(since);
+    const double t = seconds(since), likeliest = estimate.at(t);
     const auto range = certificate.at(t);
-    if (!range) return false;
-    const double x = std::clamp(estimate.at(t), range->low, range->high);
-    knots.push_back({piece.node + since, base + nanoseconds(std::round(x * 1e9)),
-                     base + nanoseconds(std::floor((range->low - widened) * 1e9)),
-                     base + nanoseconds(std::ceil((range->high + widened) * 1e9))});
+    sound = sound && range && range->high - range->low >= least_width;
+    const double low = range ? range->low : likeliest, high = range ? range->high : likeliest;
+    knots.push_back({piece.node + since,
+                     base + nanoseconds(std::round(std::clamp(likeliest, low, high) * 1e9)),
+                     base + nanoseconds(std::floor((low - widened) * 1e9)),
+                     base + nanoseconds(std::ceil((high + widened) * 1e9))});
   }
-  return true;
+  return sound;
 }
 
-/// Under the least curvature that lets the bounds go together: it says how much the clock wandered.
-void fit(const PieceBounds& piece, ClockPieceModel& model, Assumptions assumptions) {
+/// Under the curvature assumed; where the bounds contradict each other, under several times the
+/// least that lets them go together: the clock bends at least so much, and what is just enough
+/// would put the truth at the edge.
+void fit(const PieceBounds& piece, double least_width, ClockPieceModel& model,
+         Assumptions assumptions) {
   OfflineEstimate estimate(piece.bounds);
   model.routes = estimate.routes();
   model.round_trip = nanoseconds(estimate.least_round_trip() * 1e9);
-  for (;; assumptions.curvature = std::min(2.0 * assumptions.curvature, most_curvature)) {
-    const Certificate certificate = certificate_of(piece, assumptions);
+  const auto goes = [&](double curvature) {
+    assumptions.curvature = curvature;
     model.assumptions = assumptions;
-    model.certified =
-        fill_knots(piece, certificate, estimate, model.knots) && certificate.bounded();
-    if (model.certified || assumptions.curvature >= most_curvature) return;
-  }
+    const Certificate certificate = certificate_of(piece, assumptions);
+    return fill_knots(piece, certificate, estimate, least_width, model.knots) &&
+           certificate.bounded();
+  };
+  double curvature = assumptions.curvature;
+  model.certified = goes(curvature);
+  if (model.certified || piece.up < 2) return;
+  while (!goes(curvature) && curvature < most_curvature) curvature *= 2.0;
+  model.certified = goes(std::min(raised * curvature, most_curvature));
 }
 
 /// All exchanges of a piece but those in doubt and those that can't be.
@@ -176,7 +189,7 @@ OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
   for (std::size_t p = 0; p < walk.pieces; ++p) {
     ClockPieceModel& model = out.model.pieces.emplace_back();
     const PieceBounds piece = collect(exchanges, walk, p, model);
-    if (piece.up > 0 && piece.down > 0) fit(piece, model, assumptions);
+    if (piece.up > 0 && piece.down > 0) fit(piece, walk.least_width, model, assumptions);
   }
   out.model.doubtful = std::move(walk.doubtful);
   out.events = std::move(walk.events);

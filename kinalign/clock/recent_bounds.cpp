@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace kinalign {
 
@@ -41,44 +40,41 @@ void RecentBounds::add(OffsetBound bound, Standing standing) {
   }
 }
 
-namespace {
-
-struct Level {
-  double least = 0.0, spread = 0.0;  // of some delays: the least, and from there to the median
-};
-
-Level level_of(std::span<double> excess) {
-  const auto half = excess.begin() + static_cast<std::ptrdiff_t>(excess.size() / 2);
-  std::nth_element(excess.begin(), half, excess.end());
-  const double least = *std::min_element(excess.begin(), half + 1);
-  return {least, *half - least};
-}
-
-bool another_floor(const Level& level, double window_s, const ExcessCounts& counts) {
-  const double steepness = std::max(steepness_s / window_s, least_steepness);
-  return std::abs(level.least) > steepness * level.spread && level.spread < counts.median();
-}
-
-}  // namespace
-
 std::optional<double> RecentBounds::moved(const FloorLine& line, const ExcessCounts& counts) const {
   const bool below = since_held_ > 0;
   const std::size_t all = below ? since_held_ : above_run_;
   if (all < least_points || all % asked_each != 0) return std::nullopt;
-  std::array<double, capacity> excess;  // NOLINT(*-member-init): filled as far as it is read
   for (const double window : windows_s) {
     if (newest(0).s - newest(all - 1).s < window) return std::nullopt;
-    std::size_t points = all;
-    while (!below && points > 0 && newest(points - 1).s < newest(0).s - window) --points;
+    std::size_t points = below ? all : newest_within(window, all);
     if (points < least_points) return std::nullopt;
-    for (std::size_t i = 0; i < points; ++i) excess[i] = line.excess(newest(i));
-    const Level level = level_of(std::span(excess).first(points));
-    if (!another_floor(level, window, counts)) continue;
-    if (!below && nats(counts, points, level.least) < sure_nats) continue;
+    const Level level = level_of_newest(line, points);
+    const bool sure = below || nats(counts, points, level.least) > sure_nats;
+    if (!sure || !another_floor(level, window, counts)) continue;
     while (points < all && line.excess(newest(points)) >= level.least) ++points;
     return before(points - 1);
   }
   return std::nullopt;
+}
+
+/// How many of the newest `all` came within so many seconds.
+std::size_t RecentBounds::newest_within(double window_s, std::size_t all) const {
+  while (all > 0 && newest(all - 1).s < newest(0).s - window_s) --all;
+  return all;
+}
+
+RecentBounds::Level RecentBounds::level_of_newest(const FloorLine& line, std::size_t points) const {
+  std::array<double, capacity> excess;  // NOLINT(*-member-init): filled as far as it is read
+  for (std::size_t i = 0; i < points; ++i) excess[i] = line.excess(newest(i));
+  const auto begin = excess.begin(), half = begin + static_cast<std::ptrdiff_t>(points / 2);
+  std::nth_element(begin, half, begin + static_cast<std::ptrdiff_t>(points));
+  const double least = *std::min_element(begin, half + 1);
+  return {least, *half - least};
+}
+
+bool RecentBounds::another_floor(const Level& level, double window_s, const ExcessCounts& counts) {
+  const double steepness = std::max(steepness_s / window_s, least_steepness);
+  return std::abs(level.least) > steepness * level.spread && level.spread < counts.median();
 }
 
 double RecentBounds::before(std::size_t i) const {

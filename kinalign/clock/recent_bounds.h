@@ -48,6 +48,12 @@ class RecentBounds {
   const Entry& entry(std::size_t newest) const {
     return entries_[(next_ + capacity - 1 - newest) % capacity];
   }
+  struct Level {
+    double least = 0.0, spread = 0.0;  // of some delays: the least, and from there to the median
+  };
+  Level level_of_newest(const FloorLine& line, std::size_t points) const;
+  static bool another_floor(const Level& level, double window_s, const ExcessCounts& counts);
+  std::size_t newest_within(double window_s, std::size_t all) const;
   double before(std::size_t newest) const;
 
   std::array<Entry, capacity> entries_{};

@@ -21,7 +21,7 @@ constexpr double worst_rate = 100e-6;
 constexpr double far_beyond = 1e4;  // nats: sharp floors may speak against it by hundreds
 
 struct Slopes {
-  std::array<double, grid> slope, middle, gap, likelihood;
+  std::array<double, grid> slope{}, middle{}, gap{}, likelihood{};
   std::size_t likeliest = 0;
 };
 
@@ -43,7 +43,7 @@ Slopes weigh(const Evidence& e, const SlopeBelief& prior, const SlopeBelief& aro
   Slopes s;
   const double first = around.mean - reach * around.deviation;
   const double step = 2.0 * reach * around.deviation / (grid - 1);
-  std::array<double, grid> above, below;  // the lower bounds mirrored: their slopes fall
+  std::array<double, grid> above{}, below{};  // the lower bounds mirrored: their slopes fall
   e.above.bounds_at(e.t, first, step, above);
   e.below.bounds_at(e.t, -first - step * (grid - 1), step, below);
   for (std::size_t i = 0; i < grid; ++i) {

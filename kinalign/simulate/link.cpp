@@ -110,9 +110,17 @@ double congested_delay(const RandomStream& s, std::uint64_t k, bool down, bool b
   return std::min((down ? 60.0 : 25.0) * ms * std::exp(s.normal(k, 0)), 2.0);
 }
 
-/// What is added to the floor; `bad` where the link knows two states.
-double above_floor(Link link, const RandomStream& s, std::uint64_t seed, Way way, std::uint64_t k,
-                   double sent, bool bad) {
+struct Packet {
+  std::uint64_t k = 0;  // its number in its direction
+  double sent = 0.0;
+  Way way = Way::up;
+  bool bad = false;  // state of a link that knows two
+};
+
+/// What is added to the floor.
+double above_floor(Link link, const RandomStream& s, std::uint64_t seed, const Packet& packet) {
+  const std::uint64_t k = packet.k;
+  const bool down = packet.way == Way::down;
   switch (link) {
     case Link::wired:
       return s.exponential(k, 0, 15e-6) +
@@ -128,9 +136,9 @@ double above_floor(Link link, const RandomStream& s, std::uint64_t seed, Way way
     case Link::modem_sleep:
       return s.exponential(k, 0, 0.5 * ms) +
              (s.chance(k, 1, 0.05) ? s.exponential(k, 2, 3.0 * ms) : 0.0) +
-             (way == Way::down ? beacon_wait(s, seed, k, sent) : 0.0);
+             (down ? beacon_wait(s, seed, k, packet.sent) : 0.0);
     case Link::congested:
-      return congested_delay(s, k, way == Way::down, bad);
+      return congested_delay(s, k, down, packet.bad);
   }
   return 0.0;
 }
@@ -183,7 +191,7 @@ std::vector<Transit> transits(const LinkOptions& options, std::uint64_t seed, Wa
   std::vector<Transit> out(sent.size());
   for (std::size_t k = 0; k < sent.size(); ++k) {
     const bool bad = options.link == Link::congested && states.bad(sent[k]);
-    out[k].delay = floor + above_floor(options.link, random, seed, way, k, sent[k], bad);
+    out[k].delay = floor + above_floor(options.link, random, seed, {k, sent[k], way, bad});
     out[k].lost = random.chance(k, 8, bad ? 0.20 : shares(options.link).lost);
     if (options.link == Link::roaming) {
       const Transit route = roams.at(sent[k]);

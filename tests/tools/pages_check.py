@@ -85,7 +85,7 @@ def check_page(page, folder, environment, say):
 
 def main():
     kinalign, demo_recording = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
-    environment = {"PATH": f"{kinalign.parent}:/usr/bin:/bin", "HOME": "/nowhere", "LC_ALL": "C.UTF-8"}
+    environment = {"PATH": f"{kinalign.parent}:{kinalign.parents[2]}/examples:/usr/bin:/bin", "HOME": "/nowhere", "LC_ALL": "C.UTF-8"}
     log = os.environ.get("KINALIGN_TEST_LOG")
     outcomes = []
 

@@ -122,17 +122,21 @@ Table measure(Link link, const Wanted& wanted) {
   return table;
 }
 
+std::vector<double> pooled(const Row& row) {
+  std::vector<double> all;
+  for (const auto& errors : row.errors) all.insert(all.end(), errors.begin(), errors.end());
+  return all;
+}
+
 /// Pooled RMS, p99 averaged over seeds, worst of all, RMS of the worst seed: ms.
 std::string line_of(const Row& row) {
-  std::vector<double> all;
   double p99 = 0.0, worst_seed = 0.0;
   for (const auto& errors : row.errors) {
     const ErrorFigures f = figures(errors);
     p99 += f.p99 / static_cast<double>(row.errors.size());
     worst_seed = std::max(worst_seed, f.rms);
-    all.insert(all.end(), errors.begin(), errors.end());
   }
-  const ErrorFigures f = figures(all);
+  const ErrorFigures f = figures(pooled(row));
   return fmt::format("| {} | {:.4f} | {:.4f} | {:.4f} | {:.4f} |", row.name, f.rms * 1e3, p99 * 1e3,
                      worst_seed * 1e3, f.worst * 1e3);
 }
@@ -168,6 +172,21 @@ void print(Link link, const Table& table) {
   }
 }
 
+/// Pooled RMS of each method on each link.
+void print_overview(const std::string& links, const std::vector<Table>& tables) {
+  fmt::print("\n| pooled RMS, ms |");
+  for (const char link : links) fmt::print(" {} |", link);
+  fmt::print("\n| --- |");
+  for (std::size_t i = 0; i < links.size(); ++i) fmt::print(" --- |");
+  for (std::size_t row = 0; row < tables[0].rows.size(); ++row) {
+    fmt::print("\n| {} |", tables[0].rows[row].name);
+    for (const Table& table : tables) {
+      fmt::print(" {:.3g} |", figures(pooled(table.rows[row])).rms * 1e3);
+    }
+  }
+  fmt::print("\n");
+}
+
 Wanted parse(int argc, char** argv) {
   Wanted wanted;
   for (int i = 1; i < argc; ++i) {
@@ -199,5 +218,6 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < tables.size(); ++i) {
     print(static_cast<Link>(wanted.links[i] - 'A'), tables[i]);
   }
+  print_overview(wanted.links, tables);
   return 0;
 }
