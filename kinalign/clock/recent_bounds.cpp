@@ -64,7 +64,7 @@ std::size_t RecentBounds::newest_within(double window_s, std::size_t all) const 
 }
 
 RecentBounds::Level RecentBounds::level_of_newest(const FloorLine& line, std::size_t points) const {
-  std::array<double, capacity> excess;  // NOLINT(*-member-init): filled as far as it is read
+  std::array<double, capacity> excess{};
   for (std::size_t i = 0; i < points; ++i) excess[i] = line.excess(newest(i));
   const auto begin = excess.begin(), half = begin + static_cast<std::ptrdiff_t>(points / 2);
   std::nth_element(begin, half, begin + static_cast<std::ptrdiff_t>(points));
