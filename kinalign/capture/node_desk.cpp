@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/node_desk.h"
+
+#include "kinalign/wire/node_reply.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace kinalign {
+
+namespace {
+
+using State = NodeLife::State;
+using Found = AnswerTable::Found;
+
+EchoVerdict verdict_of(Found found) {
+  if (found == Found::now) return EchoVerdict::taken;
+  if (found == Found::before) return EchoVerdict::repeated;
+  return found == Found::stale ? EchoVerdict::stale : EchoVerdict::unknown;
+}
+
+std::uint64_t host_ns(HostTime t) {
+  return static_cast<std::uint64_t>(t.time_since_epoch().count());
+}
+
+NodeSign sign_of(const NodeArrival& arrival, const DatagramOrigin& origin) {
+  return {origin.node_id, origin.boot_id, arrival.from, arrival.h_rx, std::nullopt};
+}
+
+bool is_answered(NodeVerdict verdict) {
+  return verdict == NodeVerdict::accepted || verdict == NodeVerdict::held ||
+         verdict == NodeVerdict::replayed || verdict == NodeVerdict::earlier_life;
+}
+
+}  // namespace
+
+NodeDesk::NodeDesk(const NodeDeskOptions& options)
+    : secret_(options.secret), keys_(options.lab_key) {}
+
+NodeNews NodeDesk::receive(const NodeArrival& arrival) {
+  NodeNews news;
+  due_ = {};
+  news.verdict = judge(arrival, news);
+  ++counts_.verdicts[news.verdict];
+  if (!is_answered(news.verdict)) due_.life = nullptr;
+  if (due_.life != nullptr && !due_.life->pace.ask(arrival.h_rx)) due_.life = nullptr;
+  return news;
+}
+
+NodeVerdict NodeDesk::judge(const NodeArrival& arrival, NodeNews& news) {
+  Envelope envelope;
+  const NodeRefusal refusal = open_envelope(arrival.bytes, envelope);
+  if (refusal != NodeRefusal::none) {
+    refuse(refusal, envelope.version, arrival.h_rx);
+    return NodeVerdict::refused;
+  }
+  due_.most = arrival.bytes.size();
+  due_.h_rx = arrival.h_rx;
+  due_.type = envelope.type;
+  due_.origin = envelope.origin;
+  switch (envelope.type) {
+    case DatagramType::request:
+      return judge_request(arrival, envelope, news);
+    case DatagramType::confirm:
+      return judge_confirm(arrival, envelope, news);
+    default:  // decode refuses what only a host sends
+      return judge_frame(arrival, envelope, news);
+  }
+}
+
+void NodeDesk::refuse(NodeRefusal refusal, std::uint8_t version, HostTime now) {
+  ++counts_.refusals[refusal];
+  if (refusal != NodeRefusal::unknown_version || version <= counts_.newest_version) return;
+  counts_.newest_version = version;
+  NodeEvent event;
+  event.kind = NodeEvent::Kind::newer_version;
+  event.at = now;
+  event.version = version;
+  table_.tell(event);
+}
+
+/// With the node's key, or the one before while that lasts.
+template <class Datagram>
+bool NodeDesk::unlock(const Envelope& envelope, HostTime now, Datagram& datagram) {
+  const std::uint32_t id = envelope.origin.node_id;
+  const MacKey* key = keys_.key_of(id);
+  NodeRefusal refusal = decode(envelope, key, datagram);
+  const MacKey* old = refusal == NodeRefusal::wrong_mac ? keys_.old_key_of(id, now) : nullptr;
+  if (old != nullptr) {
+    refusal = decode(envelope, old, datagram);
+    if (refusal == NodeRefusal::none) ++counts_.old_key;
+    key = old;
+  }
+  due_.key = key != nullptr ? std::optional(*key) : std::nullopt;
+  due_.old_key = old != nullptr;
+  if (refusal != NodeRefusal::none) refuse(refusal, envelope.version, now);
+  return refusal == NodeRefusal::none;
+}
+
+NodeVerdict NodeDesk::judge_frame(const NodeArrival& arrival, const Envelope& envelope,
+                                  NodeNews& news) {
+  if (!unlock(envelope, arrival.h_rx, frame_)) return NodeVerdict::refused;
+  if (frame_.n_tx_us > most_counter_us) return NodeVerdict::wrong_counter;
+  NodeSign sign = sign_of(arrival, frame_.origin);
+  sign.counter_us = frame_.n_tx_us;
+  NodeLife* life = nullptr;
+  if (const auto found = find_life(sign, life); found != NodeVerdict::accepted) return found;
+  const std::int64_t n_tx = life->counter.widened(frame_.n_tx_us, sign.at);
+  if (const auto number = take_number(*life, frame_.origin.sequence, news);
+      number != NodeVerdict::accepted) {
+    return number;
+  }
+  const auto echo = take_echo(*life, n_tx);
+  const bool newest = life->counter.behind_us(n_tx) <= 0;
+  life->counter.take(n_tx, sign.at);
+  if (const auto taken = take_life(*life, sign, echo ? std::optional(echo->h_tx) : std::nullopt);
+      taken != NodeVerdict::accepted) {
+    return taken;
+  }
+  news.exchange = Exchange{life->key, node_time(n_tx), sign.at, echo};
+  std::size_t count = 0;
+  for (; count < frame_.sample_count; ++count) {
+    const NodeSample& sample = frame_.samples[count];
+    readings_[count] = {node_time(n_tx - sample.age_us), sample, faults(sample)};
+  }
+  news.readings = std::span(readings_).first(count);
+  accept(*life, sign, newest, news);
+  if (frame_.has_battery) table_.stream(life->stream).battery_mv = frame_.battery_mv;
+  return NodeVerdict::accepted;
+}
+
+NodeVerdict NodeDesk::judge_request(const NodeArrival& arrival, const Envelope& envelope,
+                                    NodeNews& news) {
+  ClocklessRequest request;
+  if (!unlock(envelope, arrival.h_rx, request)) return NodeVerdict::refused;
+  const NodeSign sign = sign_of(arrival, request.origin);
+  NodeLife* life = nullptr;
+  if (const auto found = find_life(sign, life); found != NodeVerdict::accepted) return found;
+  if (const auto number = take_number(*life, request.origin.sequence, news);
+      number != NodeVerdict::accepted) {
+    return number;
+  }
+  if (const auto taken = take_life(*life, sign, std::nullopt); taken != NodeVerdict::accepted) {
+    return taken;
+  }
+  news.clockless = ClocklessExchange{news.frame, sign.at, {}, std::nullopt};
+  if (request.has_sample) {
+    readings_[0] = {NodeTime{}, request.sample, faults(request.sample)};
+    news.readings = std::span(readings_).first(1);
+  }
+  accept(*life, sign, news.frame == life->sequences.newest(), news);
+  if (request.has_battery) table_.stream(life->stream).battery_mv = request.battery_mv;
+  return NodeVerdict::accepted;
+}
+
+NodeVerdict NodeDesk::judge_confirm(const NodeArrival& arrival, const Envelope& envelope,
+                                    NodeNews& news) {
+  ClocklessConfirm confirm;
+  if (!unlock(envelope, arrival.h_rx, confirm)) return NodeVerdict::refused;
+  const NodeSign sign = sign_of(arrival, confirm.origin);
+  NodeLife* life = table_.life_of(sign);
+  GivenAnswer answer;
+  const bool known =
+      life != nullptr &&
+      life->answers.find(confirm.origin.sequence, confirm.times.nonce, answer) == Found::now;
+  if (!known) return NodeVerdict::unknown_answer;
+  if (confirm.times.t2_ns != host_ns(answer.t2) || confirm.times.t3_ns != host_ns(answer.t3)) {
+    ++counts_.wrong_copies;
+  }
+  if (const auto taken = take_life(*life, sign, answer.t3); taken != NodeVerdict::accepted) {
+    return taken;
+  }
+  due_.life = nullptr;  // nothing answers a confirm
+  news.frame = answer.frame;
+  news.stream = life->stream;
+  news.clockless = ClocklessExchange{answer.frame, answer.t2, answer.t3, sign.at};
+  return NodeVerdict::accepted;
+}
+
+NodeVerdict NodeDesk::find_life(const NodeSign& sign, NodeLife*& life) {
+  life = table_.life_of(sign);
+  if (life != nullptr) return NodeVerdict::accepted;
+  if (!table_.knows_address(sign.from.host, sign.at)) {
+    const std::uint64_t hash = siphash_2_4(secret_, stranger(sign.from.host));
+    if (strangers_.ask(hash, sign.at) != RateLimit::Verdict::answer) return NodeVerdict::limited;
+  }
+  life = table_.hold(sign);
+  return life != nullptr ? NodeVerdict::accepted : NodeVerdict::no_room;
+}
+
+NodeVerdict NodeDesk::take_number(NodeLife& life, std::uint32_t sequence, NodeNews& news) {
+  const auto place = life.sequences.place_of(sequence);
+  if (place == SequenceWindow::Place::seen) return NodeVerdict::duplicate;
+  if (place == SequenceWindow::Place::behind) return NodeVerdict::replayed;
+  news.frame = life.sequences.take(sequence);
+  due_.life = &life;
+  due_.frame = news.frame;
+  return NodeVerdict::accepted;
+}
+
+/// `echoed`: when the reply was sent that this datagram names.
+NodeVerdict NodeDesk::take_life(NodeLife& life, const NodeSign& sign,
+                                std::optional<HostTime> echoed) {
+  life.heard = sign.at;
+  if (life.state == State::live) return NodeVerdict::accepted;
+  if (life.state == State::earlier) {
+    // Sent before its node started again, or by another node of the same id: that one alone has
+    // heard what was answered since.
+    if (!echoed || *echoed <= life.replaced) return NodeVerdict::earlier_life;
+    return table_.part(life, sign.at) ? NodeVerdict::accepted : NodeVerdict::no_room;
+  }
+  const bool again = table_.knows_boot(life.node_id, life.boot_id);
+  if (!echoed && (keys_.keyed() || again)) {
+    return again ? NodeVerdict::replayed : NodeVerdict::held;
+  }
+  return table_.admit(life, sign.at) ? NodeVerdict::accepted : NodeVerdict::no_room;
+}
+
+std::optional<Exchange::Echo> NodeDesk::take_echo(NodeLife& life, std::int64_t n_tx_us) {
+  EchoVerdict verdict = EchoVerdict::none;
+  GivenAnswer answer;
+  std::int64_t n_rx = 0;
+  if (frame_.has_echo) {
+    const bool future = frame_.echo.n_rx_us > most_counter_us;
+    n_rx = future ? 0 : life.counter.widened_before(frame_.echo.n_rx_us, n_tx_us);
+    verdict =
+        future || n_rx > n_tx_us
+            ? EchoVerdict::future
+            : verdict_of(life.answers.find(frame_.echo.reply_sequence, frame_.echo.nonce, answer));
+  }
+  ++counts_.echoes[verdict];
+  if (verdict != EchoVerdict::taken) return std::nullopt;
+  return Exchange::Echo{node_time(n_rx), answer.t3};
+}
+
+void NodeDesk::accept(NodeLife& life, const NodeSign& sign, bool newest, NodeNews& news) {
+  NodeStream& stream = table_.stream(life.stream);
+  news.stream = life.stream;
+  life.old_key = due_.old_key;
+  ++life.accepted;
+  if (stream.silent) table_.tell(NodeEvent::Kind::returned, life, sign.at);
+  stream.silent = false;
+  if (!newest || life.address == sign.from) return;
+  life.address = sign.from;
+  table_.tell(NodeEvent::Kind::moved, life, sign.at);
+}
+
+std::span<const std::uint8_t> NodeDesk::answer(HostTime h_tx, std::span<std::uint8_t> out) {
+  if (due_.life == nullptr) return {};
+  NodeLife& life = *due_.life;
+  due_.life = nullptr;
+  std::array<std::uint8_t, sizeof nonces_> number{};
+  std::memcpy(number.data(), &++nonces_, number.size());
+  const auto nonce = static_cast<std::uint32_t>(siphash_2_4(secret_, number));
+  const bool clockless = due_.type == DatagramType::request;
+  const std::uint32_t sequence = clockless ? due_.origin.sequence : life.next_reply++;
+  life.answers.add({sequence, nonce, due_.h_rx, h_tx, due_.frame});
+  ++counts_.answers;
+  const MacKey* key = due_.key ? &*due_.key : nullptr;
+  const auto room = out.first(std::min(out.size(), due_.most));  // never more than was sent
+  if (clockless) {
+    const ClocklessTimes times{nonce, host_ns(due_.h_rx), host_ns(h_tx)};
+    return encode(ClocklessAnswer{due_.origin, times}, key, room);
+  }
+  const bool locked = life.state == State::live && table_.stream(life.stream).locked;
+  return encode(NodeReply{due_.origin, locked, sequence, nonce, host_ns(h_tx)}, key, room);
+}
+
+}  // namespace kinalign

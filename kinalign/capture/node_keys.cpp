@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/node_keys.h"
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <openssl/hmac.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+
+namespace kinalign {
+
+namespace {
+
+constexpr char digits[] = "0123456789abcdef";
+
+class OpenFile {
+ public:
+  OpenFile(FileSystem& files, int fd) : files_(files), fd_(fd) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (fd_ >= 0) files_.close(fd_);
+  }
+  int fd() const { return fd_; }
+
+ private:
+  FileSystem& files_;
+  int fd_;
+};
+
+Failure no_key(const std::string& path, const std::string& expected, const std::string& found) {
+  return Failure(Error{path, 0, expected, found});
+}
+
+std::string octal(unsigned mode) {
+  std::string text = "mode 0000";
+  for (std::size_t i = 0; i < 3; ++i) text[6 + i] = digits[mode >> (6 - 3 * i) & 7U];
+  return text;
+}
+
+/// A file that its owner alone may read.
+Result<void> check_mode(int fd, const std::string& path) {
+  struct stat found {};
+  if (::fstat(fd, &found) != 0) return no_key(path, "a key file", std::strerror(errno));
+  if (!S_ISREG(found.st_mode)) return no_key(path, "a key file", "no regular file");
+  if ((found.st_mode & 077U) == 0) return {};
+  return no_key(path, "a key that nobody else may read (chmod 600)", octal(found.st_mode));
+}
+
+bool parse_digits(std::string_view text, std::span<std::uint8_t> key) {
+  if (text.ends_with('\n')) text.remove_suffix(1);
+  if (text.size() != 2 * key.size()) return false;
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    const char* begin = text.data() + 2 * i;
+    const auto [end, fault] = std::from_chars(begin, begin + 2, key[i], 16);
+    if (fault != std::errc{} || end != begin + 2) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+MacKey node_key(const LabKey& lab, std::uint32_t node_id) {
+  const std::string name = "kinalign node key " + std::to_string(node_id);
+  std::array<std::uint8_t, 32> whole{};
+  unsigned size = 0;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(name.data());
+  const auto* done = ::HMAC(::EVP_sha256(), lab.data(), static_cast<int>(lab.size()), bytes,
+                            name.size(), whole.data(), &size);
+  assert(done != nullptr && size == whole.size());
+  (void)done;
+  MacKey key{};
+  std::copy_n(whole.begin(), key.size(), key.begin());
+  return key;
+}
+
+Result<LabKey> new_lab_key() {
+  LabKey key{};
+  if (::getrandom(key.data(), key.size(), 0) != static_cast<ssize_t>(key.size())) {
+    return Failure(Error{"", 0, "random numbers from the system", "none"});
+  }
+  return key;
+}
+
+std::string key_text(std::span<const std::uint8_t> key) {
+  std::string text;
+  for (const std::uint8_t byte : key) {
+    text += digits[byte >> 4];
+    text += digits[byte & 15];
+  }
+  return text;
+}
+
+Result<LabKey> read_lab_key(FileSystem& files, const std::string& path) {
+  const OpenFile file(files, files.open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0));
+  if (file.fd() < 0) return no_key(path, "a lab key", std::strerror(errno));
+  KA_TRY(check_mode(file.fd(), path));
+  std::array<char, 128> text{};
+  const ssize_t got = files.read(file.fd(), text.data(), text.size());
+  LabKey key{};
+  const auto size = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
+  if (!parse_digits({text.data(), size}, key)) {
+    return no_key(path, "a lab key of 64 hexadecimal digits", "something else");
+  }
+  return key;
+}
+
+Result<void> write_key(FileSystem& files, const std::string& path,
+                       std::span<const std::uint8_t> key) {
+  const OpenFile file(files,
+                      files.open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  if (file.fd() < 0) {
+    const bool there = errno == EEXIST;
+    return no_key(path, "a place for a new key file",
+                  there ? "a file, which stays as it is" : std::strerror(errno));
+  }
+  const std::string text = key_text(key) + '\n';
+  const bool written =
+      files.write(file.fd(), text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      files.sync(file.fd()) == 0;
+  if (written) return {};
+  const std::string why = std::strerror(errno);
+  files.remove(path.c_str());  // half a key is none
+  return no_key(path, "room for a key", why);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lab's key, the nodes' keys that are derived from it, and the files they stand in.
+// docs/formats/imu_node.md, "Keys".
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/wire/node_datagram.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace kinalign {
+
+using LabKey = std::array<std::uint8_t, 32>;
+
+/// The first 16 bytes of HMAC-SHA-256(lab key, "kinalign node key 7"), the id in decimal.
+MacKey node_key(const LabKey& lab, std::uint32_t node_id);
+
+/// Drawn from the system.
+Result<LabKey> new_lab_key();
+
+/// "000102…": two lowercase digits a byte.
+std::string key_text(std::span<const std::uint8_t> key);
+
+/// 64 hexadecimal digits and at most a line end. Refuses a file that others may read; no message
+/// shows a byte of it.
+Result<LabKey> read_lab_key(FileSystem& files, const std::string& path);
+
+/// The key's text and a line end, mode 0600. Refuses to overwrite anything: a lost key is a node
+/// that has to be flashed again.
+Result<void> write_key(FileSystem& files, const std::string& path,
+                       std::span<const std::uint8_t> key);
+
+}  // namespace kinalign

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which of a sender's sequence numbers came already: the newest and the 1023 before it, as RFC 4303
+// section 3.4.3 does against replays. Numbers are widened to 64 bits, so that they never wrap.
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+
+namespace kinalign {
+
+class SequenceWindow {
+ public:
+  static constexpr std::size_t size = 1024;
+
+  enum class Place : std::uint8_t { fresh, seen, behind };
+
+  /// Of a number as it stands in a datagram: modulo 2^32, so it is the nearest to the newest.
+  Place place_of(std::uint32_t sequence) const;
+  /// After `fresh`; returns the number widened.
+  std::uint64_t take(std::uint32_t sequence);
+
+  bool empty() const { return !begun_; }
+  std::uint64_t first() const { return first_; }
+  std::uint64_t newest() const { return newest_; }
+
+ private:
+  std::int64_t steps_to(std::uint32_t sequence) const;
+
+  std::bitset<size> seen_;  // by number modulo size
+  std::uint64_t first_ = 0, newest_ = 0;
+  bool begun_ = false;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every fault that a node or a stranger can bring to the desk (the numbers are those of the list of
+// faults that the clock's scenarios use too).
+#include "tests/capture/test_node.h"
+
+#include "kinalign/capture/node_desk.h"
+#include "kinalign/clock/live_clock.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace kinalign {
+
+namespace {
+
+using Kind = NodeEvent::Kind;
+using Verdict = NodeVerdict;
+
+const LabKey lab = [] {
+  LabKey key{};
+  for (std::size_t i = 0; i < key.size(); ++i) key[i] = static_cast<std::uint8_t>(i);
+  return key;
+}();
+const NodeAddress home = address_of(20), elsewhere = address_of(21);
+
+/// Accepted exchanges of some seconds at 15 frames/s; `beside` does what it likes after each frame.
+template <class Beside>
+std::vector<ClockStamp> stamps_with(TestDesk& host, TestNode& node, Beside beside) {
+  LiveClock clock;
+  std::vector<ClockStamp> stamps;
+  for (int k = 0; k < 300; ++k) {
+    const double t = k / 15.0;
+    const Bytes frame = node.frame(host_s(t));
+    const NodeNews news = host.take(frame, home, host_s(t + 0.001));
+    const Bytes reply = host.reply(host_s(t + 0.0011));
+    if (!reply.empty()) node.take_reply(reply, host_s(t + 0.002));
+    if (news.exchange) {
+      clock.push(*news.exchange);
+      if (auto stamp = clock.host_from_node(news.exchange->boot, news.exchange->n_tx)) {
+        stamps.push_back(*stamp);
+      }
+    }
+    beside(frame, t + 0.01);
+  }
+  return stamps;
+}
+
+bool same(const std::vector<ClockStamp>& a, const std::vector<ClockStamp>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    return x.time == y.time && x.earliest == y.earliest && x.latest == y.latest &&
+           x.certainty == y.certainty;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("fault 2 reboot_same_id: a counter that begins anew is a new life, once it echoes") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  for (int k = 0; k < 100; ++k) host.exchange(node, home, 0.1 * k);
+  const BootKey first = host.exchange(node, home, 10.0).exchange->boot;
+  node.reboot(1, host_s(10.5));
+  CHECK(host.exchange(node, home, 10.6).verdict == Verdict::replayed);
+  const NodeNews second = host.exchange(node, home, 10.7);
+  REQUIRE(second.verdict == Verdict::accepted);
+  CHECK(second.exchange->boot != first);
+  CHECK((second.exchange->boot & 0xffff'ffffU) == 1);
+  CHECK(host.events() == std::vector{Kind::joined, Kind::restarted});
+  CHECK(is_warning(Kind::restarted));
+}
+
+TEST_CASE("fault 3 reboot_storm: ten starts in twenty seconds are ten lives of one stream") {
+  TestDesk host(lab);
+  TestNode node(7, 100, lab);
+  std::map<BootKey, int> frames;
+  std::size_t stream = 0;
+  for (int k = 0; k < 300; ++k) {
+    if (k % 30 == 0) node.reboot(100 + static_cast<unsigned>(k), host_s(k / 15.0));
+    const NodeNews news = host.exchange(node, home, k / 15.0);
+    if (news.verdict != Verdict::accepted) continue;
+    ++frames[news.exchange->boot];
+    stream = news.stream;
+  }
+  CHECK(frames.size() == 10);
+  CHECK(host.desk.stream(stream).lives == 10);
+  CHECK(host.count(Verdict::held) == 10);
+}
+
+TEST_CASE("fault 6 counter_wrap32: a narrow counter is widened through four hours") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  node.narrow = true;
+  node.offset_s = -86'400.0 + 3000.0;  // the first wrap comes after 21 min
+  std::optional<NodeTime> last;
+  bool rises = true, echoes_agree = true;
+  for (int k = 0; k < 4 * 3600; ++k) {
+    const NodeNews news = host.exchange(node, home, k + 0.5);
+    if (news.verdict != Verdict::accepted) continue;
+    const Exchange& exchange = *news.exchange;
+    if (last) rises &= std::abs(seconds(exchange.n_tx - *last) - 1.0) < 0.001;
+    if (exchange.echo)
+      echoes_agree &= std::abs(seconds(exchange.n_tx - exchange.echo->n_rx) - 0.998) < 0.001;
+    last = exchange.n_tx;
+  }
+  CHECK(rises);
+  CHECK(echoes_agree);
+  CHECK(last->time_since_epoch() > std::chrono::hours(4));
+  CHECK(host.count(EchoVerdict::future) == 0);
+}
+
+TEST_CASE("fault 10 duplicate: counted, and the stamps are those of a clean run") {
+  TestDesk clean(lab), twice(lab);
+  TestNode a(7, 1, lab), b(7, 1, lab);
+  const auto expected = stamps_with(clean, a, [](const Bytes&, double) {});
+  const auto found = stamps_with(twice, b, [&](const Bytes& frame, double t) {
+    CHECK(twice.take(frame, home, host_s(t)).verdict == Verdict::duplicate);
+    CHECK(twice.reply(host_s(t)).empty());
+  });
+  CHECK(twice.count(Verdict::duplicate) == 300);
+  CHECK(expected.size() > 290);
+  CHECK(same(expected, found));
+}
+
+TEST_CASE("fault 11 reorder: frames 40 ms late are taken, each once") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  for (int k = 0; k < 10; ++k) host.exchange(node, home, 0.02 * k);
+  const Bytes early = node.frame(host_s(0.3)), late = node.frame(host_s(0.32));
+  CHECK(host.take(late, home, host_s(0.33)).verdict == Verdict::accepted);
+  const NodeNews news = host.take(early, home, host_s(0.34));
+  CHECK(news.verdict == Verdict::accepted);
+  CHECK(news.frame + 1 == host.desk.life_of(host.desk.stream(news.stream)).sequences.newest());
+  CHECK(host.take(early, home, host_s(0.35)).verdict == Verdict::duplicate);
+}
+
+TEST_CASE("fault 12 replay: a capture of this run, and one of an earlier run, move nothing") {
+  TestDesk clean(lab), attacked(lab);
+  TestNode a(7, 1, lab), b(7, 1, lab), yesterday(7, 99, lab);
+  const auto expected = stamps_with(clean, a, [](const Bytes&, double) {});
+  std::vector<Bytes> capture;
+  yesterday.echo() = ReplyEcho{3, 0xdeadbeef, 1000};
+  const auto found = stamps_with(attacked, b, [&](const Bytes& frame, double t) {
+    capture.push_back(frame);
+    const NodeAddress from = t < 10 ? elsewhere : home;  // as its own address too
+    const Verdict old = attacked.take(capture[capture.size() / 2], from, host_s(t)).verdict;
+    CHECK(old != Verdict::accepted);
+    CHECK(attacked.take(yesterday.frame(host_s(t)), from, host_s(t)).verdict != Verdict::accepted);
+  });
+  CHECK(same(expected, found));
+  CHECK(attacked.count(Verdict::held) > 0);
+  CHECK(attacked.count(Verdict::accepted) == clean.count(Verdict::accepted));
+}
+
+TEST_CASE("fault 24 falseticker: what is no reply of ours is no reply to the node") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  host.exchange(node, home, 0.0);
+  CHECK_FALSE(node.take_reply(node.frame(host_s(0.1)), host_s(0.1)));  // its own, sent back
+  host.take(node.frame(host_s(0.2)), home, host_s(0.2));
+  Bytes forged = host.reply(host_s(0.2));
+  forged[35] ^= 1;  // h_tx
+  CHECK_FALSE(node.take_reply(forged, host_s(0.2)));
+}
+
+TEST_CASE("fault 25 spoofed_frame: no MAC, a wrong one, another node's: each by its cause") {
+  TestDesk host(lab), open;
+  LabKey other = lab;
+  other[0] ^= 1;
+  TestNode bare(7, 1), wrong(7, 1, other), eight(8, 1, lab);
+  CHECK(host.take(bare.frame(host_s(0)), home, host_s(0)).verdict == Verdict::refused);
+  CHECK(host.take(wrong.frame(host_s(0)), home, host_s(0)).verdict == Verdict::refused);
+  Bytes renamed = eight.frame(host_s(0));
+  renamed[11] = 7;
+  CHECK(host.take(renamed, home, host_s(0)).verdict == Verdict::refused);
+  CHECK(host.count(NodeRefusal::no_mac) == 1);
+  CHECK(host.count(NodeRefusal::wrong_mac) == 1);
+  CHECK(host.count(NodeRefusal::bad_crc) == 1);
+  CHECK(host.reply(host_s(0)).empty());
+  CHECK(open.take(wrong.frame(host_s(0)), home, host_s(0)).verdict == Verdict::refused);
+  CHECK(open.count(NodeRefusal::no_key) == 1);
+}
+
+TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") {
+  TestDesk host(lab);
+  TestNode a(7, 1, lab), b(7, 2, lab);
+  b.offset_s += 100;
+  std::map<BootKey, std::map<std::size_t, int>> frames;
+  for (int k = 0; k < 60; ++k) {
+    const NodeNews first = host.exchange(a, home, 0.1 * k);
+    if (first.exchange) ++frames[first.exchange->boot][first.stream];
+    if (k < 20) continue;
+    const NodeNews second = host.exchange(b, elsewhere, 0.1 * k + 0.05);
+    if (second.exchange) ++frames[second.exchange->boot][second.stream];
+  }
+  // b takes the place of a until a is heard again, which then has one of its own
+  CHECK(host.events() == std::vector{Kind::joined, Kind::started, Kind::twins});
+  CHECK(is_warning(Kind::twins));
+  REQUIRE(frames.size() == 2);
+  CHECK(frames[2].size() == 1);
+  CHECK(frames[1].size() == 2);
+  CHECK(host.count(Verdict::earlier_life) == 1);  // before it had heard what was answered since
+}
+
+TEST_CASE("fault 29 two_nodes_one_id: one boot id too, told apart by counter and address") {
+  TestDesk host(lab);
+  TestNode a(7, 1, lab), b(7, 1, lab);
+  b.offset_s += 100;
+  std::map<std::size_t, std::map<BootKey, int>> frames;
+  for (int k = 0; k < 60; ++k) {
+    const NodeNews first = host.exchange(a, home, 0.1 * k);
+    const NodeNews second = host.exchange(b, elsewhere, 0.1 * k + 0.05);
+    if (k < 10) continue;
+    REQUIRE(first.verdict == Verdict::accepted);
+    REQUIRE(second.verdict == Verdict::accepted);
+    ++frames[first.stream][first.exchange->boot];
+    ++frames[second.stream][second.exchange->boot];
+  }
+  CHECK(frames.size() == 2);
+  for (const auto& [stream, boots] : frames) CHECK(boots.size() == 1);
+}
+
+TEST_CASE("fault 30 node_id_change: a new stream, with a note who it was") {
+  TestDesk host(lab);
+  TestNode seven(7, 1, lab), nine(9, 2, lab);
+  for (int k = 0; k < 5; ++k) host.exchange(seven, home, 0.1 * k);
+  for (int k = 20; k < 25; ++k) host.exchange(nine, home, 0.1 * k);
+  const auto events = host.desk.take_events();
+  REQUIRE(events.size() == 3);
+  CHECK(events[2].kind == Kind::renamed);
+  CHECK(events[2].node_id == 9);
+  CHECK(events[2].other_id == 7);
+  CHECK(events[2].stream != events[0].stream);
+}
+
+TEST_CASE("fault 31 address_change: the same life of the same stream") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  host.exchange(node, home, 0.0);
+  const NodeNews before = host.exchange(node, home, 0.1);
+  const NodeNews after = host.exchange(node, elsewhere, 0.2);
+  REQUIRE(after.verdict == Verdict::accepted);
+  CHECK(after.stream == before.stream);
+  CHECK(after.exchange->boot == before.exchange->boot);
+  CHECK(host.events() == std::vector{Kind::joined, Kind::moved});
+}
+
+TEST_CASE("fault 32 late_node, node_leaves, node_returns: after ten minutes it is the same life") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  host.exchange(node, home, 300.0);
+  const BootKey life = host.exchange(node, home, 300.1).exchange->boot;
+  host.desk.tick(host_s(305.0));
+  host.desk.tick(host_s(311.0));
+  host.desk.tick(host_s(320.0));
+  const NodeNews back = host.exchange(node, home, 900.0);
+  REQUIRE(back.verdict == Verdict::accepted);
+  CHECK(back.exchange->boot == life);
+  CHECK(host.events() == std::vector{Kind::joined, Kind::left, Kind::returned});
+}
+
+TEST_CASE("fault 33 echo_stale, echo_unknown: the echo is left out, the frame is kept") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  host.exchange(node, home, 0.0);
+  host.exchange(node, home, 0.1);
+  const ReplyEcho first = *node.echo();
+  for (int k = 2; k < 300; ++k) host.exchange(node, home, 0.1 * k);
+  node.echo() = first;
+  NodeNews news = host.take(node.frame(host_s(30.0)), home, host_s(30.0));
+  CHECK(news.verdict == Verdict::accepted);
+  CHECK_FALSE(news.exchange->echo);
+  CHECK(host.count(EchoVerdict::stale) == 1);
+  node.echo() = ReplyEcho{100'000, 1, 1};
+  news = host.take(node.frame(host_s(30.1)), home, host_s(30.1));
+  CHECK(news.verdict == Verdict::accepted);
+  node.echo() = ReplyEcho{298, 1, 1};  // given, with another nonce
+  news = host.take(node.frame(host_s(30.2)), home, host_s(30.2));
+  CHECK_FALSE(news.exchange->echo);
+  CHECK(host.count(EchoVerdict::unknown) == 2);
+}
+
+TEST_CASE("fault 34 echo_future: n_rx behind n_tx is left out and counted") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  host.exchange(node, home, 0.0);
+  host.exchange(node, home, 0.1);
+  for (const std::uint64_t later : {std::uint64_t{1}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+    node.echo()->n_rx_us =
+        later == ~std::uint64_t{0} ? later : node.counter_us(host_s(0.2)) + later;
+    const NodeNews news = host.take(node.frame(host_s(0.2)), home, host_s(0.2));
+    CHECK(news.verdict == Verdict::accepted);
+    CHECK_FALSE(news.exchange->echo);
+  }
+  CHECK(host.count(EchoVerdict::future) == 3);
+}
+
+TEST_CASE("fault 35 bad_crc, truncated, unknown_newer_version: counted, and the version told") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  const Bytes frame = node.frame(host_s(0));
+  Bytes damaged = frame, cut = frame, newer = frame;
+  damaged[30] ^= 1;
+  cut.pop_back();
+  newer[4] = 3;
+  for (const Bytes& bytes : {damaged, cut, newer, Bytes(27), Bytes(60)}) {
+    CHECK(host.take(bytes, home, host_s(0)).verdict == Verdict::refused);
+    CHECK(host.reply(host_s(0)).empty());
+  }
+  CHECK(host.count(NodeRefusal::bad_crc) == 1);
+  CHECK(host.count(NodeRefusal::wrong_length) == 1);
+  CHECK(host.count(NodeRefusal::unknown_version) == 1);
+  CHECK(host.count(NodeRefusal::too_short) == 1);
+  CHECK(host.count(NodeRefusal::bad_magic) == 1);
+  const auto events = host.desk.take_events();
+  REQUIRE(events.size() == 1);
+  CHECK(events[0].kind == Kind::newer_version);
+  CHECK(events[0].version == 3);
+}
+
+TEST_CASE("fault 36 sample_batch: each sample has its own counter, the exchange n_tx alone") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    node.samples.emplace_back().age_us = 45'000 - 5000 * i;
+  }
+  host.exchange(node, home, 0.0);
+  const NodeNews news = host.exchange(node, home, 0.1);
+  REQUIRE(news.readings.size() == 10);
+  const NodeTime n_tx = news.exchange->n_tx;
+  CHECK(n_tx == node_time(static_cast<std::int64_t>(node.counter_us(host_s(0.1)))));
+  for (int i = 0; i < 10; ++i) {
+    CHECK(n_tx - news.readings[static_cast<std::size_t>(i)].n ==
+          std::chrono::milliseconds(45 - 5 * i));
+  }
+}
+
+TEST_CASE("fault 38 nan_inf_sample, zero_quaternion: kept as they are, marked, stamped") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  NodeSample bad;
+  bad.age_us = 100;
+  bad.has_acceleration = bad.has_orientation = true;
+  bad.acceleration = {std::numeric_limits<float>::quiet_NaN(), 0, INFINITY};
+  node.samples = {bad};
+  host.exchange(node, home, 0.0);
+  const NodeNews news = host.exchange(node, home, 0.1);
+  REQUIRE(news.readings.size() == 1);
+  CHECK(news.readings[0].faults.not_finite);
+  CHECK(news.readings[0].faults.zero_orientation);
+  CHECK(std::isnan(news.readings[0].sample.acceleration[0]));
+  CHECK(news.exchange->n_tx - news.readings[0].n == std::chrono::microseconds(100));
+}
+
+TEST_CASE("fault 39 mac_key_rotation: the old key is good for 60 s, then not") {
+  LabKey next = lab;
+  next[31] ^= 1;
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  host.exchange(node, home, 0.0);
+  host.exchange(node, home, 0.1);
+  host.desk.replace_key(next, host_s(1.0));
+  CHECK(host.exchange(node, home, 2.0).verdict == Verdict::accepted);
+  CHECK(host.desk.life_of(host.desk.stream(0)).old_key);
+  CHECK(host.exchange(node, home, 60.9).verdict == Verdict::accepted);
+  CHECK(host.desk.counts().old_key == 2);
+  CHECK(host.exchange(node, home, 61.1).verdict == Verdict::refused);
+  CHECK(host.count(NodeRefusal::wrong_mac) == 1);
+  node.set_key(next);
+  CHECK(host.exchange(node, home, 61.2).verdict == Verdict::accepted);
+}
+
+TEST_CASE("fault 40 ipv6_only, dual_stack_same_node: one stream") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  NodeAddress six;
+  six.host = {0xfd, 0, 0, 1};
+  six.port = 4000;
+  host.exchange(node, six, 0.0);
+  const NodeNews before = host.exchange(node, six, 0.1);
+  const NodeNews after = host.exchange(node, home, 0.2);
+  CHECK(before.exchange->boot == after.exchange->boot);
+  CHECK(before.stream == after.stream);
+}
+
+}  // namespace kinalign
