@@ -32,6 +32,7 @@ std::uint64_t SequenceWindow::take(std::uint32_t sequence) {
   newest_ = std::max(newest_, wide);
   first_ = std::min(first_, wide);
   seen_[wide % size] = true;
+  ++taken_;
   return wide;
 }
 

@@ -23,12 +23,14 @@ class SequenceWindow {
   bool empty() const { return !begun_; }
   std::uint64_t first() const { return first_; }
   std::uint64_t newest() const { return newest_; }
+  /// Between the first and the newest.
+  std::uint64_t missing() const { return begun_ ? newest_ - first_ + 1 - taken_ : 0; }
 
  private:
   std::int64_t steps_to(std::uint32_t sequence) const;
 
   std::bitset<size> seen_;  // by number modulo size
-  std::uint64_t first_ = 0, newest_ = 0;
+  std::uint64_t first_ = 0, newest_ = 0, taken_ = 0;
   bool begun_ = false;
 };
 

@@ -22,26 +22,6 @@ Duration read_clock(clockid_t clock) {
 Time now_utc() { return Time{read_clock(CLOCK_REALTIME)}; }
 HostTime now_host() { return HostTime{read_clock(CLOCK_MONOTONIC_RAW)}; }
 
-/// All addresses of both kinds; a host without IPv6 has IPv4 alone.
-Result<std::vector<UdpSocket>> open_everywhere(std::uint16_t port) {
-  std::vector<UdpSocket> sockets;
-  sockets.push_back(KA_TRY(UdpSocket::open("0.0.0.0", port)));
-  port = sockets.front().port();
-  if (system_knows_ipv6()) sockets.push_back(KA_TRY(UdpSocket::open("::", port)));
-  return sockets;
-}
-
-Result<std::vector<UdpSocket>> open_sockets(const std::vector<std::string>& addresses,
-                                            std::uint16_t port) {
-  if (addresses.empty()) return open_everywhere(port);
-  std::vector<UdpSocket> sockets;
-  for (const std::string& address : addresses) {
-    sockets.push_back(KA_TRY(UdpSocket::open(address, port)));
-    port = sockets.front().port();
-  }
-  return sockets;
-}
-
 NtpAsked asked_of(const Datagram& datagram, std::uint16_t port, Time now) {
   return {.bytes = datagram.bytes,
           .cut = datagram.cut,
@@ -56,7 +36,7 @@ NtpAsked asked_of(const Datagram& datagram, std::uint16_t port, Time now) {
 }  // namespace
 
 Result<TimeServer> TimeServer::open(const TimeServerOptions& options) {
-  return TimeServer(options, KA_TRY(open_sockets(options.addresses, options.port)));
+  return TimeServer(options, KA_TRY(open_udp_sockets(options.addresses, options.port)));
 }
 
 TimeServer::TimeServer(const TimeServerOptions& options, std::vector<UdpSocket> sockets)
@@ -78,22 +58,30 @@ void TimeServer::look_at_clock() {
   responder_.set_state(server_state(kernel, chrony, policy_, now_utc()));
 }
 
-void TimeServer::serve(const std::function<bool()>& go_on) {
+void TimeServer::serve(const std::function<bool()>& go_on, NodeReceiver* nodes) {
+  nodes_ = nodes;
   while (go_on()) {
     look_at_clock();
+    if (nodes_ != nullptr) nodes_->tick();
     serve_until(now_host() + tick);
   }
+  nodes_ = nullptr;
 }
 
 void TimeServer::serve_until(HostTime end) {
   std::vector<pollfd> waiting;
+  if (nodes_ != nullptr) {
+    for (const UdpSocket& socket : nodes_->sockets()) waiting.push_back({socket.fd(), POLLIN, 0});
+  }
+  const std::size_t own = waiting.size();  // the first of ours
   for (const UdpSocket& socket : sockets_) waiting.push_back({socket.fd(), POLLIN, 0});
   for (Duration left = tick; left > Duration{0}; left = end - now_host()) {
     const auto whole_ms = std::chrono::ceil<std::chrono::milliseconds>(left).count();
     const int ready = ::poll(waiting.data(), waiting.size(), static_cast<int>(whole_ms));
     if (ready <= 0) return;  // the time is over, or a signal has come
-    for (std::size_t i = 0; i < waiting.size(); ++i) {
-      if (waiting[i].revents != 0) drain(sockets_[i]);
+    if (nodes_ != nullptr) nodes_->drain();
+    for (std::size_t i = 0; i < sockets_.size(); ++i) {
+      if (waiting[own + i].revents != 0) drain(sockets_[i]);
     }
   }
 }
@@ -103,6 +91,7 @@ void TimeServer::drain(const UdpSocket& socket) {
     const std::size_t datagrams = batch_->receive(socket.fd());
     if (datagrams == 0) return;
     answer(socket, datagrams);
+    if (nodes_ != nullptr) nodes_->drain();  // whatever floods this port
   }
 }
 

@@ -6,6 +6,7 @@
 #include "kinalign/capture/chrony_query.h"
 #include "kinalign/capture/clock_state.h"
 #include "kinalign/capture/datagram_batch.h"
+#include "kinalign/capture/node_receiver.h"
 #include "kinalign/capture/ntp_responder.h"
 #include "kinalign/capture/udp_socket.h"
 
@@ -33,7 +34,8 @@ class TimeServer {
 
   /// Serves until `go_on` says no; it is asked four times a second, and at once when a signal
   /// arrives.
-  void serve(const std::function<bool()>& go_on);
+  /// With `nodes` that port too, which comes first.
+  void serve(const std::function<bool()>& go_on, NodeReceiver* nodes = nullptr);
 
   const std::vector<UdpSocket>& sockets() const { return sockets_; }
   const NtpServerState& state() const { return responder_.state(); }
@@ -52,6 +54,7 @@ class TimeServer {
   NtpResponder responder_;
   NtpCounts counts_;
   std::unique_ptr<DatagramBatch> batch_;
+  NodeReceiver* nodes_ = nullptr;  // while it serves
 };
 
 }  // namespace kinalign

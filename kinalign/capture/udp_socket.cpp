@@ -88,6 +88,19 @@ bool system_knows_ipv6() {
   return fd >= 0 || errno != EAFNOSUPPORT;
 }
 
+Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& addresses,
+                                                std::uint16_t port) {
+  std::vector<std::string> all = addresses;
+  if (all.empty()) all = {"0.0.0.0"};
+  if (addresses.empty() && system_knows_ipv6()) all.emplace_back("::");
+  std::vector<UdpSocket> sockets;
+  for (const std::string& address : all) {
+    sockets.push_back(KA_TRY(UdpSocket::open(address, port)));
+    port = sockets.front().port();
+  }
+  return sockets;
+}
+
 std::string endpoint_text(const std::string& address, std::uint16_t port) {
   const bool six = address.find(':') != std::string::npos;
   return (six ? "[" + address + "]" : address) + ":" + std::to_string(port);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace kinalign {
 
@@ -34,6 +35,11 @@ class UdpSocket {
 };
 
 bool system_knows_ipv6();
+
+/// One for each address, all of one port; without addresses one for all of IPv4 and one for all of
+/// IPv6, where the host has that.
+Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& addresses,
+                                                std::uint16_t port);
 
 /// "192.168.7.1:123", "[::1]:123".
 std::string endpoint_text(const std::string& address, std::uint16_t port);

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/host_clock.h"
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr Duration narrow = std::chrono::microseconds(2);  // a bracket that is not read again
+constexpr Duration reading_noise = std::chrono::microseconds(1);
+constexpr Duration shortest_sleep = std::chrono::milliseconds(10);
+constexpr std::size_t most_events = 64;
+
+Duration read_clock(clockid_t clock) {
+  timespec now{};
+  ::clock_gettime(clock, &now);
+  return std::chrono::seconds(now.tv_sec) + Duration{now.tv_nsec};
+}
+
+Duration share(Duration of, double part) {
+  return Duration{static_cast<std::int64_t>(static_cast<double>(of.count()) * part)};
+}
+
+/// raw - utc, least and greatest.
+std::pair<Duration, Duration> offsets(const ClockBracket& b) {
+  const Duration utc = b.utc.time_since_epoch();
+  return {b.before.time_since_epoch() - utc, b.after.time_since_epoch() - utc};
+}
+
+}  // namespace
+
+HostTime SystemClocks::raw() { return HostTime{read_clock(CLOCK_MONOTONIC_RAW)}; }
+Time SystemClocks::utc() { return Time{read_clock(CLOCK_REALTIME)}; }
+
+Duration SystemClocks::asleep() {
+  Duration least = Duration::max();
+  for (int i = 0; i < 3; ++i) {  // an interruption between two readings looks like sleep
+    const Duration running = read_clock(CLOCK_MONOTONIC);
+    least = std::min(least, read_clock(CLOCK_BOOTTIME) - running);
+  }
+  return least;
+}
+
+bool runs_on(const ClockBracket& earlier, const ClockBracket& later) {
+  const auto [least_then, greatest_then] = offsets(earlier);
+  const auto [least, greatest] = offsets(later);
+  const Duration slack = reading_noise + share(later.after - earlier.before, most_slew);
+  return least - slack <= greatest_then && least_then <= greatest + slack;
+}
+
+HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, bool ran_on) {
+  if (!stamp || !ran_on || *stamp > behind.utc) return behind.after;
+  const Duration since = behind.utc - *stamp;
+  return behind.after - share(since, 1.0 - most_slew);
+}
+
+HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep()) {
+  bracket_ = read();
+}
+
+HostTime HostAxis::now() {
+  const HostTime read = reader_.raw() + shift_;
+  if (read < last_) {
+    ++went_back_;
+    ++epoch_;
+    shift_ += last_ - read;
+    tell({HostClockEvent::Kind::backwards, last_, last_ - read});
+    return last_;
+  }
+  last_ = read;
+  return read;
+}
+
+ClockBracket HostAxis::read() {
+  ClockBracket best;
+  for (int i = 0; i < 3; ++i) {
+    const HostTime before = now();
+    const Time utc = reader_.utc();
+    const ClockBracket bracket{before, utc, now()};
+    if (i == 0 || bracket.after - bracket.before < best.after - best.before) best = bracket;
+    if (best.after - best.before <= narrow) break;
+  }
+  return best;
+}
+
+void HostAxis::look() {
+  const ClockBracket before = std::exchange(bracket_, read());
+  ran_on_ = runs_on(before, bracket_);
+}
+
+ClockPair HostAxis::watch() {
+  const ClockBracket bracket = read();
+  const Duration asleep = reader_.asleep();
+  if (asleep - asleep_ > shortest_sleep) {
+    ++epoch_;
+    tell({HostClockEvent::Kind::suspended, bracket.after, asleep - asleep_});
+  }
+  asleep_ = asleep;
+  if (watched_ && !runs_on(*watched_, bracket)) {
+    const Duration by = offsets(*watched_).first - offsets(bracket).first;
+    tell({HostClockEvent::Kind::wall_stepped, bracket.after, by});
+  }
+  watched_ = bracket;
+  return {bracket.before + (bracket.after - bracket.before) / 2, bracket.utc};
+}
+
+void HostAxis::tell(const HostClockEvent& event) {
+  if (events_.size() < most_events) events_.push_back(event);
+}
+
+std::vector<HostClockEvent> HostAxis::take_events() { return std::exchange(events_, {}); }
+
+}  // namespace kinalign

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The host's axis, HostTime: CLOCK_MONOTONIC_RAW, which nobody steps or slews. The kernel stamps
+// arrivals on CLOCK_REALTIME, which anybody may; they are moved over here, rounded up, since a
+// later arrival bounds a node's clock as truly as the right one.
+#pragma once
+
+#include "kinalign/clock/utc_anchor.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace kinalign {
+
+/// The system's clocks; a test brings its own.
+class ClockReader {
+ public:
+  virtual ~ClockReader() = default;
+  virtual HostTime raw() = 0;     // CLOCK_MONOTONIC_RAW
+  virtual Time utc() = 0;         // CLOCK_REALTIME
+  virtual Duration asleep() = 0;  // CLOCK_BOOTTIME - CLOCK_MONOTONIC
+};
+
+class SystemClocks : public ClockReader {
+ public:
+  HostTime raw() override;
+  Time utc() override;
+  Duration asleep() override;
+};
+
+/// utc was read between the two.
+struct ClockBracket {
+  HostTime before{};
+  Time utc{};
+  HostTime after{};
+};
+
+/// Whether the wall clock ran on between two brackets: no step beyond what a slew of `most_slew`
+/// makes of the time between them.
+inline constexpr double most_slew = 1e-3;  // the kernel's own is 5e-4
+bool runs_on(const ClockBracket& earlier, const ClockBracket& later);
+
+/// When a datagram arrived that the kernel stamped, and that was received before the bracket was
+/// read. Never earlier than the truth while the wall clock runs on; where it did not, or there is
+/// no stamp, the end of the bracket.
+HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, bool ran_on);
+
+struct HostClockEvent {
+  enum class Kind : std::uint8_t {
+    suspended,    // the host slept: nothing is known of nodes' clocks from before
+    backwards,    // the raw clock went back; its axis goes on, and clocks begin anew
+    wall_stepped  // noted alone: no stamp depends on it
+  };
+  Kind kind{};
+  HostTime at{};
+  Duration by{};
+};
+
+class HostAxis {
+ public:
+  explicit HostAxis(ClockReader& reader);
+
+  /// Never earlier than what it said before.
+  HostTime now();
+  /// After datagrams were received, before their arrival is asked for.
+  void look();
+  HostTime arrival(std::optional<Time> stamp) const {
+    return kinalign::arrival(stamp, bracket_, ran_on_);
+  }
+
+  /// Once a second: a pair for the log that gives UTC afterwards.
+  ClockPair watch();
+  /// What was seen since this was asked last.
+  std::vector<HostClockEvent> take_events();
+  /// Rises where clocks of nodes have to begin anew.
+  std::uint32_t epoch() const { return epoch_; }
+  std::uint64_t went_back() const { return went_back_; }
+
+ private:
+  ClockBracket read();
+  void tell(const HostClockEvent& event);
+
+  ClockReader& reader_;
+  HostTime last_ = HostTime::min();
+  Duration shift_{0};  // of the raw clock, since it went back
+  ClockBracket bracket_;
+  bool ran_on_ = false;
+  std::optional<ClockBracket> watched_;
+  Duration asleep_;
+  std::uint32_t epoch_ = 0;
+  std::uint64_t went_back_ = 0;
+  std::vector<HostClockEvent> events_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/node_receiver.h"
+
+#include "kinalign/capture/node_filter.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr int batches_in_turn = 16;  // of a socket, before others have theirs
+constexpr std::size_t most_pairs = 64;
+
+}  // namespace
+
+Result<NodeReceiver> NodeReceiver::open(const NodeReceiverOptions& options, ClockReader& clocks) {
+  std::vector<UdpSocket> sockets = KA_TRY(open_udp_sockets(options.addresses, options.port));
+  for (const UdpSocket& socket : sockets)
+    attach_node_filter(socket);  // the desk checks it all again
+  return NodeReceiver(options, std::move(sockets), clocks);
+}
+
+NodeReceiver::NodeReceiver(const NodeReceiverOptions& options, std::vector<UdpSocket> sockets,
+                           ClockReader& clocks)
+    : sockets_(std::move(sockets)),
+      clock_(clocks),
+      desk_(std::make_unique<NodeDesk>(options.desk)),
+      batch_(std::make_unique<DatagramBatch>()),
+      clocks_(NodeTable::most_streams) {}
+
+void NodeReceiver::drain() {
+  for (const UdpSocket& socket : sockets_) {
+    for (int i = 0; i < batches_in_turn; ++i) {
+      const std::size_t datagrams = batch_->receive(socket.fd());
+      if (datagrams == 0) break;
+      clock_.look();
+      take(socket, datagrams);
+    }
+  }
+}
+
+void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
+  for (std::size_t i = 0; i < datagrams; ++i) {
+    const Datagram datagram = batch_->at(i);
+    if (!datagram.unicast || datagram.from_port == 0) continue;  // many, or nobody, would answer
+    NodeNews news = desk_->receive(
+        {datagram.bytes, {datagram.from, datagram.from_port}, clock_.arrival(datagram.received)});
+    const auto answer = desk_->answer(clock_.now(), batch_->answer_to(i));
+    if (!answer.empty()) batch_->queue(i, datagram, answer.size());
+    if (news.verdict == NodeVerdict::accepted) hear(news);
+  }
+  unsent_ += batch_->send(socket.fd()).size();
+}
+
+NodeReceiver::StreamClock& NodeReceiver::clock_of(std::size_t stream) {
+  std::unique_ptr<StreamClock>& clock = clocks_[stream];
+  const std::uint32_t number = desk_->stream(stream).number;
+  if (clock == nullptr || clock->number != number || clock->epoch != clock_.epoch()) {
+    clock = std::make_unique<StreamClock>();
+    clock->number = number;
+    clock->epoch = clock_.epoch();
+  }
+  return *clock;
+}
+
+void NodeReceiver::hear(NodeNews& news) {
+  StreamClock& clock = clock_of(news.stream);
+  if (news.exchange) {
+    // In the order in which they came, by microseconds of rounding: later is as true.
+    clock.heard = news.exchange->h_rx = std::max(clock.heard, news.exchange->h_rx);
+    clock.clock.push(*news.exchange);
+    clock.counts = true;
+    clock.n = news.exchange->n_tx;
+    const auto stamp = clock.clock.host_from_node(news.exchange->boot, clock.n);
+    desk_->set_locked(news.stream, stamp && stamp->certainty == Certainty::certified);
+  } else if (const auto d = news.clockless ? one_way_delay(*news.clockless) : std::nullopt) {
+    clock.one_way = d;
+    clock.ways += *d;
+    ++clock.confirmed;
+  }
+  if (watcher_) watcher_(news, clock.clock);
+}
+
+void NodeReceiver::tick() {
+  clock_.look();
+  const HostTime now = clock_.now();
+  desk_->tick(now);
+  if (now < next_watch_) return;
+  next_watch_ = now + std::chrono::seconds(1);
+  const ClockPair pair = clock_.watch();
+  if (pairs_.size() < most_pairs) pairs_.push_back(pair);
+}
+
+std::uint64_t NodeReceiver::dropped() const {
+  std::uint64_t sum = 0;
+  for (const UdpSocket& socket : sockets_) sum += dropped_by_kernel(socket);
+  return sum;
+}
+
+std::vector<NodeStatus> NodeReceiver::status() {
+  std::vector<NodeStatus> all;
+  for (std::size_t i = 0; i < NodeTable::most_streams; ++i) {
+    const NodeStream& stream = desk_->stream(i);
+    if (!stream.used) continue;
+    const NodeLife& life = desk_->life_of(stream);
+    NodeStatus& status = all.emplace_back();
+    status.stream = i;
+    status.node_id = stream.node_id;
+    status.boot_id = life.boot_id;
+    status.address = life.address;
+    status.silent = stream.silent;
+    status.old_key = life.old_key;
+    status.lives = stream.lives;
+    status.accepted = life.accepted;
+    status.lost = life.sequences.missing();
+    status.rate_hz = stream.silent ? 0.0 : life.pace.rate_hz();
+    status.battery_mv = stream.battery_mv;
+    add_clock(status, clock_of(i), life);
+  }
+  return all;
+}
+
+void NodeReceiver::add_clock(NodeStatus& status, StreamClock& clock, const NodeLife& life) {
+  if (clock.confirmed > 0) {
+    status.one_way = clock.one_way;
+    status.mean_way = clock.ways / clock.confirmed;
+  }
+  if (!clock.counts) return;
+  status.n = clock.n;
+  status.stamp = clock.clock.host_from_node(life.key, clock.n);
+  const ClockPiece* piece = clock.clock.piece();
+  if (piece == nullptr) return;
+  status.drift = piece->estimate().slope().mean;
+  if (const auto floor = piece->floors().window(0)) {
+    status.round_trip = Duration{static_cast<std::int64_t>(floor->round_trip * 1e9)};
+  }
+}
+
+std::vector<NodeReceiver::StreamEvent> NodeReceiver::take_clock_events() {
+  std::vector<StreamEvent> all;
+  for (std::size_t i = 0; i < clocks_.size(); ++i) {
+    if (clocks_[i] == nullptr) continue;
+    for (const ClockEvent& event : clocks_[i]->clock.take_events()) all.push_back({i, event});
+  }
+  return all;
+}
+
+std::vector<ClockPair> NodeReceiver::take_pairs() { return std::exchange(pairs_, {}); }
+
+}  // namespace kinalign

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nodes' port: sockets around a NodeDesk, and a clock for each node. Waits for nothing: who
+// serves several ports (time_server.h) drains this one first.
+#pragma once
+
+#include "kinalign/capture/datagram_batch.h"
+#include "kinalign/capture/host_clock.h"
+#include "kinalign/capture/node_desk.h"
+#include "kinalign/capture/udp_socket.h"
+#include "kinalign/clock/live_clock.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct NodeReceiverOptions {
+  std::vector<std::string> addresses;  // empty: all, of IPv4 and IPv6
+  std::uint16_t port = 0;              // 0: any free one, the same for all addresses
+  NodeDeskOptions desk;
+};
+
+/// How a node does.
+struct NodeStatus {
+  std::size_t stream = 0;
+  std::uint32_t node_id = 0, boot_id = 0;
+  NodeAddress address;
+  bool silent = false, old_key = false;
+  std::uint64_t lives = 0, accepted = 0, lost = 0;  // frames, of this life
+  double rate_hz = 0.0;
+  std::uint16_t battery_mv = 0;  // 0: it says none
+  // of its clock, where it has one
+  std::optional<NodeTime> n;  // its newest counter, ...
+  std::optional<ClockStamp> stamp;
+  double drift = 0.0;                         // host_from_node's rate less one
+  std::optional<Duration> round_trip;         // the least of the last whole ten seconds
+  std::optional<Duration> one_way, mean_way;  // d of a node without a counter: the last, the mean
+};
+
+class NodeReceiver {
+ public:
+  /// `clocks` has to stay.
+  static Result<NodeReceiver> open(const NodeReceiverOptions& options, ClockReader& clocks);
+
+  /// Takes and answers what has come, at most some hundred datagrams of each socket.
+  void drain();
+  /// Four times a second or so: who left, how the host's clocks run.
+  void tick();
+
+  /// Is told each accepted frame with its node's clock, which has heard of it.
+  using Watcher = std::function<void(const NodeNews& news, LiveClock& clock)>;
+  void watch(Watcher watcher) { watcher_ = std::move(watcher); }
+
+  const std::vector<UdpSocket>& sockets() const { return sockets_; }
+  const NodeCounts& counts() const { return desk_->counts(); }
+  std::uint64_t dropped() const;  // by the kernel
+  std::uint64_t unsent() const { return unsent_; }
+  std::vector<NodeStatus> status();
+  void replace_key(const LabKey& lab) { desk_->replace_key(lab, clock_.now()); }
+
+  std::vector<NodeEvent> take_node_events() { return desk_->take_events(); }
+  std::vector<HostClockEvent> take_host_events() { return clock_.take_events(); }
+  struct StreamEvent {
+    std::size_t stream = 0;
+    ClockEvent event;
+  };
+  std::vector<StreamEvent> take_clock_events();
+  /// Raw and wall clock, read once a second; since this was asked last, at most 64.
+  std::vector<ClockPair> take_pairs();
+
+ private:
+  NodeReceiver(const NodeReceiverOptions& options, std::vector<UdpSocket> sockets,
+               ClockReader& clocks);
+  struct StreamClock {
+    std::uint32_t number = 0, epoch = 0;  // of which stream, since when
+    LiveClock clock;
+    NodeTime n{};
+    HostTime heard = HostTime::min();
+    bool counts = false;  // the node has a counter
+    std::optional<Duration> one_way;
+    Duration ways{0};
+    std::int64_t confirmed = 0;
+  };
+  void take(const UdpSocket& socket, std::size_t datagrams);
+  void hear(NodeNews& news);
+  StreamClock& clock_of(std::size_t stream);
+  void add_clock(NodeStatus& status, StreamClock& clock, const NodeLife& life);
+
+  std::vector<UdpSocket> sockets_;
+  HostAxis clock_;
+  std::unique_ptr<NodeDesk> desk_;
+  std::unique_ptr<DatagramBatch> batch_;
+  std::vector<std::unique_ptr<StreamClock>> clocks_;
+  Watcher watcher_;
+  std::uint64_t unsent_ = 0;
+  HostTime next_watch_ = HostTime::min();
+  std::vector<ClockPair> pairs_;
+};
+
+}  // namespace kinalign

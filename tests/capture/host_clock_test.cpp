@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/host_clock.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+namespace kinalign {
+
+namespace {
+
+using std::chrono::hours;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using Kind = HostClockEvent::Kind;
+
+/// Clocks that stand still until they are told; reading takes 100 ns.
+struct FakeClocks : ClockReader {
+  HostTime raw() override { return raw_now += Duration{50}; }
+  Time utc() override { return utc_now + Duration{50}; }
+  Duration asleep() override { return slept; }
+  void pass(Duration d, double wall_rate = 1.0) {
+    raw_now += d;
+    utc_now += Duration{static_cast<std::int64_t>(static_cast<double>(d.count()) * wall_rate)};
+  }
+  HostTime raw_now{hours(10)};
+  Time utc_now = utc_time(1'700'000'000'000'000'000);
+  Duration slept{0};
+};
+
+std::vector<Kind> kinds(HostAxis& axis) {
+  std::vector<Kind> all;
+  for (const HostClockEvent& event : axis.take_events()) all.push_back(event.kind);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("an arrival is never moved to before it was, and by little behind it") {
+  std::mt19937 random(1);
+  FakeClocks clocks;
+  HostAxis axis(clocks);
+  for (int i = 0; i < 1000; ++i) {
+    const double slew =
+        (static_cast<double>(random() % 1001) - 500) * 1e-6;  // of the kernel: 500 ppm
+    clocks.pass(microseconds(random() % 60'000), 1 + slew);
+    const HostTime truth = clocks.raw_now;
+    const Time stamp = clocks.utc_now;
+    const Duration waits = microseconds(random() % 2000);
+    clocks.pass(waits, 1 + slew);
+    axis.look();
+    const HostTime found = axis.arrival(stamp);
+    REQUIRE(found >= truth);
+    REQUIRE(found - truth < microseconds(1) + waits / 500);
+  }
+}
+
+TEST_CASE("without a stamp, or one from the future, an arrival is now") {
+  FakeClocks clocks;
+  HostAxis axis(clocks);
+  axis.look();
+  CHECK(axis.arrival(std::nullopt) <= clocks.raw_now);
+  CHECK(axis.arrival(std::nullopt) > clocks.raw_now - microseconds(1));
+  CHECK(axis.arrival(clocks.utc_now + hours(1)) == axis.arrival(std::nullopt));
+}
+
+TEST_CASE("fault 17 host_step: a step of the wall clock moves no stamp, and is told") {
+  for (const Duration step : {Duration(hours(1)), -Duration(hours(1)), Duration(milliseconds(5))}) {
+    FakeClocks clocks;
+    HostAxis axis(clocks);
+    axis.watch();
+    clocks.pass(milliseconds(100));
+    const HostTime truth = clocks.raw_now;
+    const Time stamp = clocks.utc_now;
+    clocks.utc_now += step;
+    clocks.pass(microseconds(30));
+    axis.look();
+    CHECK(axis.arrival(stamp) >= truth);
+    CHECK(axis.arrival(stamp) - truth < microseconds(40));
+    axis.watch();
+    const auto events = axis.take_events();
+    REQUIRE(events.size() == 1);
+    CHECK(events[0].kind == Kind::wall_stepped);
+    CHECK(std::abs(seconds(events[0].by - step)) < 1e-6);
+    clocks.pass(milliseconds(100));
+    axis.look();
+    CHECK(axis.epoch() == 0);
+    axis.watch();
+    CHECK(axis.take_events().empty());
+  }
+}
+
+TEST_CASE("fault 18 host_slew: 500 ppm for an hour have no effect and are no step") {
+  FakeClocks clocks;
+  HostAxis axis(clocks);
+  for (int s = 0; s < 3600; ++s) {
+    clocks.pass(std::chrono::seconds(1), 1.0005);
+    const HostTime truth = clocks.raw_now;
+    const Time stamp = clocks.utc_now;
+    clocks.pass(microseconds(50), 1.0005);
+    axis.look();
+    REQUIRE(axis.arrival(stamp) >= truth);
+    REQUIRE(axis.arrival(stamp) - truth < microseconds(1));
+    axis.watch();
+  }
+  CHECK(axis.take_events().empty());
+}
+
+TEST_CASE("fault 19 host_suspend: a sleep ends the epoch") {
+  FakeClocks clocks;
+  HostAxis axis(clocks);
+  axis.watch();
+  clocks.pass(std::chrono::seconds(1));
+  clocks.slept = std::chrono::seconds(30);
+  clocks.utc_now += std::chrono::seconds(30);
+  axis.watch();
+  CHECK(kinds(axis) == std::vector{Kind::suspended, Kind::wall_stepped});
+  CHECK(axis.epoch() == 1);
+  axis.watch();
+  CHECK(axis.epoch() == 1);
+}
+
+TEST_CASE("fault 20 host_backwards: the axis stands still for a moment and goes on") {
+  FakeClocks clocks;
+  HostAxis axis(clocks);
+  const HostTime before = axis.now();
+  clocks.raw_now -= std::chrono::seconds(5);
+  const HostTime at = axis.now();
+  CHECK(at >= before);
+  clocks.pass(std::chrono::seconds(1));
+  CHECK(std::abs(seconds(axis.now() - at) - 1.0) < 1e-6);
+  CHECK(axis.went_back() == 1);
+  CHECK(axis.epoch() == 1);
+  CHECK(kinds(axis) == std::vector{Kind::backwards});
+}
+
+TEST_CASE("the system's clocks run, and a pair lies between its readings") {
+  SystemClocks clocks;
+  HostAxis axis(clocks);
+  const HostTime before = axis.now();
+  const ClockPair pair = axis.watch();
+  CHECK(pair.raw >= before);
+  CHECK(pair.raw <= axis.now());
+  CHECK(to_ns(pair.utc) > 1'600'000'000'000'000'000);
+  CHECK(axis.epoch() == 0);
+}
+
+}  // namespace kinalign

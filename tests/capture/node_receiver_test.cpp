@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nodes' port on loopback: real sockets, the kernel's filter, a clock a node.
+#include "kinalign/capture/node_receiver.h"
+
+#include "tests/capture/loopback.h"
+#include "tests/capture/test_node.h"
+
+#include "kinalign/capture/node_filter.h"
+
+#include <doctest/doctest.h>
+#include <poll.h>
+
+namespace kinalign {
+
+namespace {
+
+const LabKey lab{7};
+
+Result<NodeReceiver> open_receiver(ClockReader& clocks, const std::string& address = "127.0.0.1") {
+  NodeReceiverOptions options;
+  options.addresses = {address};
+  options.desk.lab_key = lab;
+  return NodeReceiver::open(options, clocks);
+}
+
+/// Waits until something has come, two seconds at most.
+void serve(NodeReceiver& receiver) {
+  pollfd waiting{receiver.sockets()[0].fd(), POLLIN, 0};
+  ::poll(&waiting, 1, 2000);
+  receiver.drain();
+}
+
+/// Its counter is then a thousand seconds ahead of the raw clock.
+TestNode node_ahead() {
+  TestNode node(7, 1, lab);
+  node.drift = 0.0;
+  node.offset_s = 1000.0;
+  return node;
+}
+
+/// Exchanges frames and takes the replies: fewer than 30, so that all are answered in any second.
+void talk(NodeReceiver& receiver, SystemClocks& clocks, TestNode& node, const Client& client,
+          int frames, const std::string& to = "127.0.0.1") {
+  for (int k = 0; k < frames; ++k) {
+    client.send(to, receiver.sockets()[0].port(), node.frame(clocks.raw()));
+    serve(receiver);
+    const auto came = client.receive();
+    REQUIRE(came);
+    REQUIRE(node.take_reply(came->bytes, clocks.raw()));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a node's clock is certified after a few frames, and its stamps hold the truth") {
+  SystemClocks clocks;
+  auto receiver = open_receiver(clocks);
+  REQUIRE(receiver);
+  TestNode node = node_ahead();
+  node.battery_mv = 3700;
+  int certified = 0;
+  bool holds = true;
+  receiver->watch([&](const NodeNews& news, LiveClock& clock) {
+    const auto stamp = clock.host_from_node(news.exchange->boot, news.exchange->n_tx);
+    if (!stamp || stamp->certainty != Certainty::certified) return;
+    ++certified;
+    // the truth of TestNode::counter_us, which cuts to whole microseconds
+    const HostTime truth{news.exchange->n_tx.time_since_epoch() - std::chrono::seconds(1000)};
+    holds = holds && *stamp->earliest <= truth + std::chrono::microseconds(1) &&
+            truth <= *stamp->latest;
+  });
+  const Client client;
+  talk(*receiver, clocks, node, client, 28);
+  CHECK(certified > 20);
+  CHECK(holds);
+  CHECK(node.locked);
+  const auto status = receiver->status();
+  REQUIRE(status.size() == 1);
+  CHECK(status[0].node_id == 7);
+  CHECK(status[0].battery_mv == 3700);
+  CHECK(status[0].lost == 0);
+  CHECK(status[0].accepted == 27);
+  CHECK(status[0].stamp->certainty == Certainty::certified);
+}
+
+TEST_CASE("the kernel keeps rubbish out, and says how much of it") {
+  SystemClocks clocks;
+  auto receiver = open_receiver(clocks);
+  REQUIRE(receiver);
+  TestNode node = node_ahead();
+  const Client client;
+  const std::uint16_t port = receiver->sockets()[0].port();
+  Bytes wrong_length = node.frame(clocks.raw()), wrong_magic = wrong_length, newer = wrong_length;
+  wrong_length.push_back(0);
+  wrong_magic[3] = 'd';
+  newer[4] = 9;
+  for (const Bytes& bytes :
+       {wrong_length, wrong_magic, Bytes(27), Bytes(0), Bytes(1411), Bytes(60'000)}) {
+    client.send("127.0.0.1", port, bytes);
+  }
+  client.send("127.0.0.1", port, newer);
+  talk(*receiver, clocks, node, client, 1);
+  CHECK(receiver->dropped() == 6);
+  CHECK(receiver->counts().verdicts.total() == 2);
+  CHECK(receiver->counts().newest_version == 9);
+}
+
+TEST_CASE("fault 40 ipv6_only: the same over IPv6") {
+  if (!has_ipv6_loopback()) return;
+  SystemClocks clocks;
+  auto receiver = open_receiver(clocks, "::1");
+  REQUIRE(receiver);
+  TestNode node = node_ahead();
+  const Client client(AF_INET6);
+  client.send("::1", receiver->sockets()[0].port(), Bytes(60));  // filtered there too
+  talk(*receiver, clocks, node, client, 5, "::1");
+  CHECK(receiver->dropped() == 1);
+  CHECK(receiver->counts().verdicts[NodeVerdict::accepted] == 4);
+}
+
+TEST_CASE("pairs of raw and wall clock are logged once a second") {
+  SystemClocks clocks;
+  auto receiver = open_receiver(clocks);
+  REQUIRE(receiver);
+  for (int i = 0; i < 100; ++i) receiver->tick();
+  CHECK(receiver->take_pairs().size() == 1);
+  CHECK(receiver->take_pairs().empty());
+}
+
+}  // namespace kinalign
