@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/time_server.h"
 
-#include "apps/kinalign/console.h"
+#include "apps/kinalign/node_herald.h"
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/time_server_text.h"
 #include "apps/kinalign/verbs.h"
@@ -20,7 +20,8 @@ using Clock = std::chrono::steady_clock;
 struct TimeServerFlags {
   std::int64_t port = 123;
   std::vector<std::string> listen, exempt;
-  std::optional<std::int64_t> local_stratum;
+  std::optional<std::int64_t> local_stratum, node_port;
+  std::string lab_key;
 };
 
 Result<std::vector<Network>> networks_of(const std::vector<std::string>& texts) {
@@ -39,16 +40,26 @@ Usage describe_time_server(TimeServerFlags& o) {
       {"listen", "an address to serve on (all, where none is given); may be repeated", &o.listen},
       {"exempt", "an address or network that may ask as often as it likes; may be repeated",
        &o.exempt}};
-  usage.settings = {{"port", "UDP port; 0: any free one", &o.port, 0.0, 65535.0},
-                    {"local_stratum",
-                     "serve this machine's clock as the lab's reference while nothing "
-                     "synchronises it, at this stratum; 10 is usual",
-                     &o.local_stratum, 1.0, 15.0}};
+  usage.settings = {
+      {"port", "UDP port; 0: any free one", &o.port, 0.0, 65535.0},
+      {"local_stratum",
+       "serve this machine's clock as the lab's reference while nothing "
+       "synchronises it, at this stratum; 10 is usual",
+       &o.local_stratum, 1.0, 15.0},
+      {"node_port", "UDP port for inertial nodes; 0: any free one", &o.node_port, 0.0, 65535.0},
+      {"lab_key", "file of the key that the nodes' keys come from (see node-key)", &o.lab_key}};
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     KA_TRY(networks_of(o.exempt));
-    return {};
+    if (o.node_port || o.lab_key.empty()) return {};
+    return Failure(Error{"--lab-key", 0, "--node-port beside it", "none"});
   };
   return usage;
+}
+
+Result<SipHashKey> random_key() {
+  SipHashKey key{};
+  if (::getrandom(key.data(), key.size(), 0) == static_cast<ssize_t>(key.size())) return key;
+  return Failure(Error{"", 0, "random numbers from the system", "none"});
 }
 
 Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
@@ -57,10 +68,20 @@ Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
   options.port = static_cast<std::uint16_t>(flags.port);
   if (flags.local_stratum) options.local_stratum = static_cast<std::uint8_t>(*flags.local_stratum);
   options.exempt = KA_TRY(networks_of(flags.exempt));
-  const bool drawn = ::getrandom(options.key.data(), options.key.size(), 0) ==
-                     static_cast<ssize_t>(options.key.size());
-  if (!drawn) return Failure(Error{"", 0, "random numbers from the system", "none"});
+  options.key = KA_TRY(random_key());
   return options;
+}
+
+/// Absent where no port for nodes is wanted.
+Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags, FileSystem& files,
+                                               ClockReader& clocks) {
+  if (!flags.node_port) return std::nullopt;
+  NodeReceiverOptions options;
+  options.addresses = flags.listen;
+  options.port = static_cast<std::uint16_t>(*flags.node_port);
+  options.desk.secret = KA_TRY(random_key());
+  if (!flags.lab_key.empty()) options.desk.lab_key = KA_TRY(read_lab_key(files, flags.lab_key));
+  return KA_TRY(NodeReceiver::open(options, clocks));
 }
 
 std::vector<std::string> advice_on(const Error& error, std::int64_t port) {
@@ -74,30 +95,40 @@ std::vector<std::string> advice_on(const Error& error, std::int64_t port) {
   return {};
 }
 
-ServedPort served_port(const TimeServer& server, const TimeServerFlags& flags) {
+ServedPort served_port(const TimeServer& server, const std::optional<NodeReceiver>& nodes,
+                       const TimeServerFlags& flags) {
   ServedPort served;
   for (const UdpSocket& socket : server.sockets()) served.addresses.push_back(socket.address());
   served.reachable = flags.listen.empty() ? own_addresses() : flags.listen;
   served.port = server.sockets().front().port();
+  if (nodes) served.node_port = nodes->sockets().front().port();
+  served.keyed = !flags.lab_key.empty();
   return served;
 }
 
 /// Tells what changes while the server serves.
 class Herald {
  public:
-  Herald(const TimeServer& server, Console& console)
-      : server_(server), console_(console), progress_(console.progress()), told_(server.state()) {}
+  Herald(const TimeServer& server, std::optional<NodeHerald>& nodes, Console& console)
+      : server_(server),
+        nodes_(nodes),
+        console_(console),
+        progress_(console.progress()),
+        told_(server.state()) {}
 
   /// Whether to go on.
   bool operator()() {
     tell_clock();
     tell_counts();
-    return progress_("serving: " + counts_text(server_.counts()), 0, 0);
+    const std::string nodes = nodes_ ? (*nodes_)() : "";
+    const std::string both = counts_text(server_.counts()) + (nodes.empty() ? "" : "; " + nodes);
+    return progress_("serving: " + both, 0, 0);
   }
   void tell_end() {
     const double s = elapsed_s();
     console_.print(
         fmt::format("served for {}: {}\n", duration_text(s), counts_text(server_.counts())));
+    if (nodes_) nodes_->tell_end();
     console_.print_json(counts_json(server_.counts(), "stopped", s));
   }
 
@@ -121,6 +152,7 @@ class Herald {
   }
 
   const TimeServer& server_;
+  std::optional<NodeHerald>& nodes_;
   Console& console_;
   Progress progress_;
   NtpServerState told_;
@@ -132,7 +164,9 @@ Result<int> run(TimeServerFlags& o, Call& call) {
   Console& console = call.console;
   console.if_it_fails([port = o.port](const Error& error) { return advice_on(error, port); });
   TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));
-  const ServedPort served = served_port(server, o);
+  SystemClocks clocks;
+  auto nodes = KA_TRY(open_nodes(o, call.surroundings.files, clocks));
+  const ServedPort served = served_port(server, nodes, o);
   console.print(harmless(start_lines(served, server.state())));
   console.print_json(start_json(served, server.state()));
   if (server.state().leap == NtpLeap::unsynchronised) {
@@ -141,8 +175,10 @@ Result<int> run(TimeServerFlags& o, Call& call) {
         "of a lab without another");
   }
   console.flush();
-  Herald herald(server, console);
-  server.serve([&herald] { return herald(); });
+  std::optional<NodeHerald> node_herald;
+  if (nodes) node_herald.emplace(*nodes, console, call.surroundings.files, o.lab_key);
+  Herald herald(server, node_herald, console);
+  server.serve([&herald] { return herald(); }, nodes ? &*nodes : nullptr);
   herald.tell_end();
   return 0;
 }
@@ -160,6 +196,8 @@ Verb time_server_verb() {
                      "a lab without another clock; port 123 needs root"},
                     {"kinalign time-server --port 12300 --listen 127.0.0.1",
                      "without rights, for this machine"},
+                    {"kinalign time-server --node-port 5005 --lab-key lab.key",
+                     "inertial nodes too; see node-key"},
                     {"kinalign time-server --json", "a line of JSON for each event"}},
        .common = {"json"}},
       describe_time_server, run);

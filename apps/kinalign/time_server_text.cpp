@@ -57,6 +57,12 @@ std::string client_lines(const ServedPort& served) {
       host, host);
 }
 
+std::string node_lines(const ServedPort& served) {
+  if (!served.node_port) return "";
+  return fmt::format("  nodes    port {}, {}\n", *served.node_port,
+                     served.keyed ? "with keys" : "without keys: anybody may imitate one");
+}
+
 }  // namespace
 
 std::string clock_text(const NtpServerState& state) {
@@ -81,14 +87,18 @@ std::string start_lines(const ServedPort& served, const NtpServerState& state) {
   for (const std::string& address : served.addresses) {
     at.push_back(endpoint_text(address, served.port));
   }
-  return fmt::format("serving time on {}, UDP\n  clock    {}\n{}", fmt::join(at, " and "),
-                     clock_text(state), client_lines(served));
+  return fmt::format("serving time on {}, UDP\n  clock    {}\n{}{}", fmt::join(at, " and "),
+                     clock_text(state), client_lines(served), node_lines(served));
 }
 
 std::string start_json(const ServedPort& served, const NtpServerState& state) {
   nlohmann::ordered_json json = event_json(
       "started",
       {{"addresses", served.addresses}, {"port", served.port}, {"reachable", served.reachable}});
+  if (served.node_port) {
+    json["node_port"] = *served.node_port;
+    json["node_keys"] = served.keyed;
+  }
   json.update(state_json(state));
   return json_text(json);
 }

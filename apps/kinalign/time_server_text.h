@@ -5,6 +5,7 @@
 #include "kinalign/capture/ntp_responder.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct ServedPort {
   std::vector<std::string> addresses;  // that it listens on: "0.0.0.0", "::1"
   std::vector<std::string> reachable;  // of this host, for clients
   std::uint16_t port = 123;
+  std::optional<std::uint16_t> node_port{};  // for inertial nodes
+  bool keyed = false;                        // these have keys
 };
 
 /// What it begins with: where, how good the clock is, what a client is to be told.

@@ -14,6 +14,7 @@ Verb check_verb();
 Verb convert_verb();
 Verb rebuild_verb();
 Verb time_server_verb();
+Verb node_key_verb();
 Verb config_verb();
 Verb completion_verb();
 Verb man_verb();

@@ -27,6 +27,14 @@ std::optional<std::size_t> parse_bits(const std::string& text, std::size_t most)
 
 }  // namespace
 
+std::string to_string(const HostAddress& address) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  const bool four = is_ipv4(address);
+  ::inet_ntop(four ? AF_INET : AF_INET6, address.data() + (four ? 12 : 0), text.data(),
+              text.size());
+  return text.data();
+}
+
 bool Network::has(const HostAddress& address) const {
   for (std::size_t i = 0; i < bits / 8; ++i) {
     if (address[i] != prefix[i]) return false;

@@ -26,6 +26,9 @@ constexpr bool is_ipv4(const HostAddress& address) {
   return address[10] == 0xff && address[11] == 0xff;
 }
 
+/// "192.168.7.20", "fd00::1".
+std::string to_string(const HostAddress& address);
+
 /// What is counted as one stranger: an IPv4 address, an IPv6 network of 64 bits, which is what one
 /// customer has.
 constexpr std::span<const std::uint8_t, 8> stranger(const HostAddress& address) {

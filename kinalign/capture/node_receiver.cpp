@@ -142,7 +142,10 @@ std::vector<NodeReceiver::StreamEvent> NodeReceiver::take_clock_events() {
   std::vector<StreamEvent> all;
   for (std::size_t i = 0; i < clocks_.size(); ++i) {
     if (clocks_[i] == nullptr) continue;
-    for (const ClockEvent& event : clocks_[i]->clock.take_events()) all.push_back({i, event});
+    const std::uint32_t node_id = desk_->stream(i).node_id;
+    for (const ClockEvent& event : clocks_[i]->clock.take_events()) {
+      all.push_back({i, node_id, event});
+    }
   }
   return all;
 }

@@ -65,6 +65,7 @@ class NodeReceiver {
   std::vector<HostClockEvent> take_host_events() { return clock_.take_events(); }
   struct StreamEvent {
     std::size_t stream = 0;
+    std::uint32_t node_id = 0;
     ClockEvent event;
   };
   std::vector<StreamEvent> take_clock_events();

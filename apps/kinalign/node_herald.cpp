@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/node_herald.h"
+
+#include "apps/kinalign/node_text.h"
+
+namespace kinalign {
+
+namespace {
+
+const std::string speaker = "kinalign time-server: ";
+
+}  // namespace
+
+NodeHerald::NodeHerald(NodeReceiver& receiver, Console& console, FileSystem& files,
+                       std::string key_file)
+    : receiver_(receiver), console_(console), files_(files), key_file_(std::move(key_file)) {
+  if (const auto key = read_lab_key(files_, key_file_)) key_ = *key;
+}
+
+std::string NodeHerald::operator()() {
+  tell_events();
+  if (Clock::now() >= next_status_) {
+    next_status_ += std::chrono::seconds(1);
+    tell_status();
+    look_at_key();
+  }
+  console_.flush();
+  return nodes_text(receiver_.status());
+}
+
+void NodeHerald::tell_events() {
+  for (const HostClockEvent& event : receiver_.take_host_events()) {
+    console_.note(speaker + event_text(event));
+    console_.print_json(event_json(event));
+  }
+  for (const NodeEvent& event : receiver_.take_node_events()) {
+    console_.note(speaker + event_text(event));
+    console_.print_json(event_json(event));
+  }
+  for (const auto& [stream, node_id, event] : receiver_.take_clock_events()) {
+    const std::string text = event_text(event, node_id);
+    if (!text.empty()) console_.note(speaker + text);
+    console_.print_json(event_json(event, stream, node_id));
+  }
+}
+
+void NodeHerald::tell_status() {
+  for (const ClockPair& pair : receiver_.take_pairs()) console_.print_json(pair_json(pair));
+  for (const NodeStatus& status : receiver_.status()) console_.print_json(status_json(status));
+  if (--counts_in_s_ > 0) return;
+  counts_in_s_ = 10;
+  console_.print_json(node_counts_json(receiver_));
+}
+
+/// Once a second; what can't be read, half written or gone, leaves the keys as they are.
+void NodeHerald::look_at_key() {
+  if (key_file_.empty()) return;
+  const auto key = read_lab_key(files_, key_file_);
+  if (!key || *key == key_) return;
+  key_ = *key;
+  receiver_.replace_key(key_);
+  console_.note(speaker + key_file_ + " has another key now; the old one is good for 60 s");
+  console_.print_json(R"({"event": "key_replaced"})");
+}
+
+void NodeHerald::tell_end() {
+  tell_events();
+  for (const NodeStatus& status : receiver_.status()) {
+    console_.print("  " + status_text(status) + "\n");
+    console_.print_json(status_json(status));
+  }
+  console_.print_json(node_counts_json(receiver_));
+}
+
+}  // namespace kinalign

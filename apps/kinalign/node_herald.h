@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tells what happens on the nodes' port while the time server serves, and takes a new lab key when
+// its file is replaced.
+#pragma once
+
+#include "apps/kinalign/console.h"
+
+#include "kinalign/capture/node_receiver.h"
+
+#include <chrono>
+#include <string>
+
+namespace kinalign {
+
+class NodeHerald {
+ public:
+  /// `key_file`: empty where nodes have no keys.
+  NodeHerald(NodeReceiver& receiver, Console& console, FileSystem& files, std::string key_file);
+
+  /// Some times a second. Its status in a few words: "3 nodes, 2 locked".
+  std::string operator()();
+  void tell_end();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void tell_events();
+  void tell_status();
+  void look_at_key();
+
+  NodeReceiver& receiver_;
+  Console& console_;
+  FileSystem& files_;
+  std::string key_file_;
+  LabKey key_{};
+  Clock::time_point next_status_ = Clock::now() + std::chrono::seconds(1);
+  int counts_in_s_ = 10;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/node_text.h"
+
+#include "apps/kinalign/json_text.h"
+#include "apps/kinalign/summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double ms(Duration d) { return 1e3 * seconds(d); }
+
+std::int64_t ns(HostTime t) { return t.time_since_epoch().count(); }
+
+std::string address_text(const NodeAddress& address) {
+  return endpoint_text(to_string(address.host), address.port);
+}
+
+bool is_certified(const NodeStatus& status) {
+  return status.stamp && status.stamp->certainty == Certainty::certified;
+}
+
+const char* certainty_name(Certainty certainty) {
+  if (certainty == Certainty::certified) return "certified";
+  return certainty == Certainty::one_sided ? "one_sided" : "doubtful";
+}
+
+const char* name_of(ClockEvent::Kind kind) {
+  static constexpr std::array names{"new_boot",  "step",     "slip",    "host_backwards",
+                                    "withdrawn", "violator", "relaxed", "route"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+const char* name_of(HostClockEvent::Kind kind) {
+  if (kind == HostClockEvent::Kind::suspended) return "suspended";
+  return kind == HostClockEvent::Kind::backwards ? "backwards" : "wall_stepped";
+}
+
+std::string what_happened(const NodeEvent& event) {
+  using Kind = NodeEvent::Kind;
+  switch (event.kind) {
+    case Kind::joined:
+      return "joined";
+    case Kind::started:
+      return "started anew";
+    case Kind::restarted:
+      return "warning: started anew with its old boot id; its firmware draws none";
+    case Kind::twins:
+      return "warning: two nodes have this id; both are kept apart, flash one of them anew";
+    case Kind::renamed:
+      return fmt::format("seems to be what node {} was", event.other_id.value_or(0));
+    case Kind::moved:
+      return "sends from another address";
+    case Kind::left:
+      return "nothing for ten seconds";
+    case Kind::returned:
+      return "is back, its clock goes on";
+    case Kind::newer_version:
+      return fmt::format("speaks version {} of the protocol, which this program does not know",
+                         event.version);
+    case Kind::too_many:
+      return fmt::format("warning: not taken in, there are {} already", NodeTable::most_streams);
+  }
+  return {};
+}
+
+void add_clock(Json& json, const NodeStatus& status) {
+  json["counter_ns"] = status.n->time_since_epoch().count();
+  json["drift_ppm"] = 1e6 * status.drift;
+  if (status.round_trip) json["round_trip_ms"] = ms(*status.round_trip);
+  if (!status.stamp) return;
+  const ClockStamp& stamp = *status.stamp;
+  json["certainty"] = certainty_name(stamp.certainty);
+  json["time_ns"] = ns(stamp.time);
+  if (stamp.earliest) json["earliest_ns"] = ns(*stamp.earliest);
+  if (stamp.latest) json["latest_ns"] = ns(*stamp.latest);
+  json["assumptions"] = to_string(stamp.assumptions);
+}
+
+}  // namespace
+
+std::string event_text(const NodeEvent& event) {
+  if (event.kind == NodeEvent::Kind::newer_version) return "a node " + what_happened(event);
+  return fmt::format("node {}: {} ({})", event.node_id, what_happened(event),
+                     address_text(event.address));
+}
+
+std::string event_json(const NodeEvent& event) {
+  Json json{{"event", "node_event"},
+            {"kind", kinalign::name_of(event.kind)},
+            {"warning", is_warning(event.kind)},
+            {"stream", event.stream},
+            {"node_id", event.node_id},
+            {"boot_id", event.boot_id},
+            {"at_ns", ns(event.at)},
+            {"address", address_text(event.address)}};
+  if (event.other_id) json["other_id"] = *event.other_id;
+  if (event.version != 0) json["version"] = event.version;
+  return json_text(json);
+}
+
+std::string event_text(const ClockEvent& event, std::uint32_t node_id) {
+  using Kind = ClockEvent::Kind;
+  const auto says = [node_id](const std::string& what) {
+    return fmt::format("node {}: {}", node_id, what);
+  };
+  if (event.kind == Kind::step || event.kind == Kind::slip) {
+    return says(fmt::format("warning: its counter stepped by {:+.3f} ms", 1e3 * event.value));
+  }
+  if (event.kind == Kind::withdrawn) {
+    return says(fmt::format("warning: the stamps of {:.1f} s are not certified any more",
+                            seconds(event.end - event.begin)));
+  }
+  return event.kind == Kind::relaxed ? says("warning: its clock bends more than was assumed") : "";
+}
+
+std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_t node_id) {
+  return json_text(Json{{"event", "clock_event"},
+                        {"kind", name_of(event.kind)},
+                        {"stream", stream},
+                        {"node_id", node_id},
+                        {"begin_ns", ns(event.begin)},
+                        {"end_ns", ns(event.end)},
+                        {"value", event.value}});
+}
+
+std::string event_text(const HostClockEvent& event) {
+  using Kind = HostClockEvent::Kind;
+  if (event.kind == Kind::suspended) {
+    return fmt::format("warning: this machine slept for {:.1f} s; the nodes' clocks begin anew",
+                       seconds(event.by));
+  }
+  if (event.kind == Kind::backwards) {
+    return "warning: this machine's raw clock went back; the nodes' clocks begin anew";
+  }
+  return fmt::format("the wall clock was set by {:+.3f} s; stamps of nodes do not depend on it",
+                     seconds(event.by));
+}
+
+std::string event_json(const HostClockEvent& event) {
+  return json_text(Json{{"event", "host_event"},
+                        {"kind", name_of(event.kind)},
+                        {"at_ns", ns(event.at)},
+                        {"by_ms", ms(event.by)}});
+}
+
+std::string status_text(const NodeStatus& status) {
+  std::string text = fmt::format("node {}  {:.1f}/s", status.node_id, status.rate_hz);
+  const std::string lost = share_text(status.lost, status.lost + status.accepted);
+  if (!lost.empty()) text += ", " + lost + " lost";
+  if (is_certified(status)) {
+    const Duration whole = *status.stamp->latest - *status.stamp->earliest;
+    text += fmt::format(", ± {:.2f} ms, drift {:+.1f} ppm", ms(whole) / 2, 1e6 * status.drift);
+  } else if (status.n) {
+    text += ", not locked";
+  }
+  if (status.mean_way) text += fmt::format(", no counter: d {:.1f} ms", ms(*status.mean_way));
+  if (status.round_trip) text += fmt::format(", round trip {:.2f} ms", ms(*status.round_trip));
+  if (status.battery_mv > 0) text += fmt::format(", {:.2f} V", 1e-3 * status.battery_mv);
+  if (status.old_key) text += ", old key";
+  if (status.silent) text += ", silent";
+  return text;
+}
+
+std::string status_json(const NodeStatus& status) {
+  Json json{{"event", "node"},
+            {"stream", status.stream},
+            {"node_id", status.node_id},
+            {"boot_id", status.boot_id},
+            {"address", address_text(status.address)},
+            {"silent", status.silent},
+            {"lives", status.lives},
+            {"rate_hz", status.rate_hz},
+            {"accepted", status.accepted},
+            {"lost", status.lost},
+            {"old_key", status.old_key}};
+  if (status.battery_mv > 0) json["battery_mv"] = status.battery_mv;
+  if (status.one_way) json["d_ms"] = ms(*status.one_way);
+  if (status.mean_way) json["d_mean_ms"] = ms(*status.mean_way);
+  if (status.n) add_clock(json, status);
+  return json_text(json);
+}
+
+std::string nodes_text(const std::vector<NodeStatus>& all) {
+  if (all.empty()) return "";
+  const auto locked = std::count_if(all.begin(), all.end(), is_certified);
+  const auto silent = std::count_if(all.begin(), all.end(), [](const auto& s) { return s.silent; });
+  std::string text =
+      fmt::format("{} node{}, {} locked", all.size(), all.size() == 1 ? "" : "s", locked);
+  if (silent > 0) text += fmt::format(", {} silent", silent);
+  return text;
+}
+
+std::string pair_json(const ClockPair& pair) {
+  return json_text(Json{{"event", "pair"}, {"raw_ns", ns(pair.raw)}, {"utc_ns", to_ns(pair.utc)}});
+}
+
+std::string node_counts_json(const NodeReceiver& receiver) {
+  const NodeCounts& counts = receiver.counts();
+  Json json{{"event", "node_counts"}, {"received", counts.verdicts.total()}};
+  for (std::size_t i = 0; i < node_verdicts; ++i) {
+    const auto verdict = static_cast<NodeVerdict>(i);
+    json[kinalign::name_of(verdict)] = counts.verdicts[verdict];
+  }
+  for (std::size_t i = 1; i < node_refusals; ++i) {
+    const auto refusal = static_cast<NodeRefusal>(i);
+    json[refusal_name(refusal)] = counts.refusals[refusal];
+  }
+  for (std::size_t i = 1; i < echo_verdicts; ++i) {
+    const auto echo = static_cast<EchoVerdict>(i);
+    json[std::string("echo_") + kinalign::name_of(echo)] = counts.echoes[echo];
+  }
+  json["replies"] = counts.answers;
+  json["unsent"] = receiver.unsent();
+  json["wrong_copies"] = counts.wrong_copies;
+  json["with_old_key"] = counts.old_key;
+  json["dropped_by_kernel"] = receiver.dropped();
+  return json_text(json);
+}
+
+}  // namespace kinalign

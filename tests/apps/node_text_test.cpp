@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/node_text.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+namespace kinalign {
+
+namespace {
+
+NodeStatus some_status() {
+  NodeStatus status;
+  status.node_id = 7;
+  status.boot_id = 5;
+  status.address = {mapped_ipv4(std::array<std::uint8_t, 4>{192, 168, 7, 20}), 4000};
+  status.accepted = 998;
+  status.lost = 2;
+  status.rate_hz = 15.02;
+  status.battery_mv = 3912;
+  status.n = NodeTime{std::chrono::seconds(60)};
+  status.drift = 20.1e-6;
+  status.round_trip = std::chrono::microseconds(2004);
+  ClockStamp stamp;
+  stamp.time = HostTime{std::chrono::seconds(100)};
+  stamp.earliest = stamp.time - std::chrono::microseconds(1040);
+  stamp.latest = stamp.time + std::chrono::microseconds(1040);
+  stamp.certainty = Certainty::certified;
+  status.stamp = stamp;
+  return status;
+}
+
+}  // namespace
+
+TEST_CASE("a node's status is one line, and JSON with times in ns") {
+  const NodeStatus status = some_status();
+  CHECK(status_text(status) ==
+        "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ppm, round trip 2.00 ms, 3.91 V");
+  const auto json = nlohmann::json::parse(status_json(status));
+  CHECK(json["address"] == "192.168.7.20:4000");
+  CHECK(json["certainty"] == "certified");
+  CHECK(json["time_ns"] == 100'000'000'000);
+  CHECK(json["latest_ns"].get<std::int64_t>() - json["earliest_ns"].get<std::int64_t>() ==
+        2'080'000);
+  CHECK(json["counter_ns"] == 60'000'000'000);
+  CHECK_FALSE(json.contains("d_ms"));
+}
+
+TEST_CASE("a node without a certificate, a counter or a voice says so") {
+  NodeStatus status = some_status();
+  status.stamp->certainty = Certainty::one_sided;
+  CHECK(status_text(status).find("not locked") != std::string::npos);
+  CHECK(nodes_text({some_status(), status}) == "2 nodes, 1 locked");
+  NodeStatus bare;
+  bare.node_id = 3;
+  bare.mean_way = std::chrono::milliseconds(33);
+  bare.silent = bare.old_key = true;
+  CHECK(status_text(bare) == "node 3  0.0/s, no counter: d 33.0 ms, old key, silent");
+  CHECK(nodes_text({bare}) == "1 node, 0 locked, 1 silent");
+  CHECK(nodes_text({}).empty());
+}
+
+TEST_CASE("every event has a text and a name, and warnings say that they are") {
+  for (std::size_t i = 0; i < node_event_kinds; ++i) {
+    NodeEvent event;
+    event.kind = static_cast<NodeEvent::Kind>(i);
+    event.node_id = 7;
+    event.other_id = 6;
+    event.version = 2;
+    CAPTURE(name_of(event.kind));
+    const std::string text = event_text(event);
+    CHECK(text.size() > 15);
+    CHECK((text.find("warning") != std::string::npos) == is_warning(event.kind));
+    const auto json = nlohmann::json::parse(event_json(event));
+    CHECK(json["kind"] == name_of(event.kind));
+    CHECK(json["warning"] == is_warning(event.kind));
+  }
+  ClockEvent step;
+  step.kind = ClockEvent::Kind::step;
+  step.value = -0.02;
+  CHECK(event_text(step, 7) == "node 7: warning: its counter stepped by -20.000 ms");
+  CHECK(nlohmann::json::parse(event_json(step, 0, 7))["kind"] == "step");
+  HostClockEvent slept{HostClockEvent::Kind::suspended, {}, std::chrono::seconds(30)};
+  CHECK(event_text(slept) ==
+        "warning: this machine slept for 30.0 s; the nodes' clocks begin anew");
+}
+
+}  // namespace kinalign
