@@ -3,10 +3,12 @@
 tests/apps/node_receiver_check.py and the bench bench/node_flood.py."""
 import json
 import math
+import os
 import pathlib
 import signal
 import subprocess
 import tempfile
+import time
 
 NS_READING = 600  # a counter stands for its microsecond: half of it, and rounding
 
@@ -16,12 +18,15 @@ class Server:
 
     def __init__(self, build, *words, lab_key=None):
         key = ("--lab-key", str(lab_key)) if lab_key else ()
+        # What nobody reads until the end must not fill a pipe: the program would wait.
+        self.out = tempfile.TemporaryFile("w+", encoding="utf-8")
         self.program = subprocess.Popen(
             [str(build / "apps/kinalign/kinalign"), "time-server", "--port", "0", "--node-port", "0",
              "--listen", "127.0.0.1", "--local-stratum", "10", *key, *words, "--json"],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        line = self.program.stdout.readline()
-        assert line, self.program.communicate()[1]
+            stdout=self.out, stderr=subprocess.PIPE, text=True)
+        while not (line := self.first_line()):
+            assert self.program.poll() is None, self.program.communicate()[1]
+            time.sleep(0.02)
         self.started = json.loads(line)
         self.node_port, self.ntp_port = self.started["node_port"], self.started["port"]
 
@@ -31,9 +36,15 @@ class Server:
     def __exit__(self, *_):
         self.cpu_s = cpu_seconds(self.program.pid)
         self.program.send_signal(signal.SIGTERM)
-        out, self.err = self.program.communicate(timeout=60)
-        self.lines = [json.loads(line) for line in out.splitlines()]
+        _, self.err = self.program.communicate(timeout=60)
+        self.out.seek(0)
+        self.lines = [json.loads(line) for line in self.out]
+        self.out.close()
         assert self.program.returncode == 0, (self.program.returncode, self.err)
+
+    def first_line(self):
+        text = os.pread(self.out.fileno(), 1 << 16, 0).decode()
+        return text.partition("\n")[0] if "\n" in text else ""
 
     def said(self, event):
         return [line for line in self.lines if line["event"] == event]

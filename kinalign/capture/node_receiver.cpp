@@ -24,21 +24,25 @@ Result<NodeReceiver> NodeReceiver::open(const NodeReceiverOptions& options, Cloc
 
 NodeReceiver::NodeReceiver(const NodeReceiverOptions& options, std::vector<UdpSocket> sockets,
                            ClockReader& clocks)
-    : sockets_(std::move(sockets)),
+    : sockets_(std::make_unique<std::vector<UdpSocket>>(std::move(sockets))),
+      lines_(*sockets_, NodeTable::most_streams),
       clock_(clocks),
       desk_(std::make_unique<NodeDesk>(options.desk)),
       batch_(std::make_unique<DatagramBatch>()),
-      clocks_(NodeTable::most_streams) {}
+      clocks_(NodeTable::most_streams),
+      heard_(NodeTable::most_streams) {}
 
 void NodeReceiver::drain() {
-  for (const UdpSocket& socket : sockets_) {
+  for (const UdpSocket* socket : lines_.ready()) {
     for (int i = 0; i < batches_in_turn; ++i) {
-      const std::size_t datagrams = batch_->receive(socket.fd());
+      const std::size_t datagrams = batch_->receive(socket->fd());
       if (datagrams == 0) break;
       clock_.look();
-      take(socket, datagrams);
+      take(*socket, datagrams);
+      if (datagrams < DatagramBatch::most) break;
     }
   }
+  follow();
 }
 
 void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
@@ -49,9 +53,21 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
         {datagram.bytes, {datagram.from, datagram.from_port}, clock_.arrival(datagram.received)});
     const auto answer = desk_->answer(clock_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());
-    if (news.verdict == NodeVerdict::accepted) hear(news);
+    if (news.verdict != NodeVerdict::accepted) continue;
+    hear(news);
+    heard_[news.stream] = datagram.to;
   }
   unsent_ += batch_->send(socket.fd()).size();
+}
+
+/// Behind all that was ready: it may close one of those sockets.
+void NodeReceiver::follow() {
+  for (std::size_t i = 0; i < heard_.size(); ++i) {
+    if (!heard_[i]) continue;
+    const NodeLife& life = desk_->life_of(desk_->stream(i));
+    lines_.follow(i, life.address, *heard_[i], sockets_->front().port());
+    heard_[i].reset();
+  }
 }
 
 NodeReceiver::StreamClock& NodeReceiver::clock_of(std::size_t stream) {
@@ -91,12 +107,6 @@ void NodeReceiver::tick() {
   next_watch_ = now + std::chrono::seconds(1);
   const ClockPair pair = clock_.watch();
   if (pairs_.size() < most_pairs) pairs_.push_back(pair);
-}
-
-std::uint64_t NodeReceiver::dropped() const {
-  std::uint64_t sum = 0;
-  for (const UdpSocket& socket : sockets_) sum += dropped_by_kernel(socket);
-  return sum;
 }
 
 std::vector<NodeStatus> NodeReceiver::status() {

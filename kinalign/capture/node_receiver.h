@@ -6,6 +6,7 @@
 #include "kinalign/capture/datagram_batch.h"
 #include "kinalign/capture/host_clock.h"
 #include "kinalign/capture/node_desk.h"
+#include "kinalign/capture/node_lines.h"
 #include "kinalign/capture/udp_socket.h"
 #include "kinalign/clock/live_clock.h"
 
@@ -54,9 +55,11 @@ class NodeReceiver {
   using Watcher = std::function<void(const NodeNews& news, LiveClock& clock)>;
   void watch(Watcher watcher) { watcher_ = std::move(watcher); }
 
-  const std::vector<UdpSocket>& sockets() const { return sockets_; }
+  const std::vector<UdpSocket>& sockets() const { return *sockets_; }
+  /// Can be read where something has come.
+  int fd() const { return lines_.fd(); }
   const NodeCounts& counts() const { return desk_->counts(); }
-  std::uint64_t dropped() const;  // by the kernel
+  std::uint64_t dropped() const { return lines_.dropped(); }  // by the kernel
   std::uint64_t unsent() const { return unsent_; }
   std::vector<NodeStatus> status();
   void replace_key(const LabKey& lab) { desk_->replace_key(lab, clock_.now()); }
@@ -87,15 +90,18 @@ class NodeReceiver {
   };
   void take(const UdpSocket& socket, std::size_t datagrams);
   void hear(NodeNews& news);
+  void follow();
   StreamClock& clock_of(std::size_t stream);
   void add_clock(NodeStatus& status, StreamClock& clock, const NodeLife& life);
 
-  std::vector<UdpSocket> sockets_;
+  std::unique_ptr<std::vector<UdpSocket>> sockets_;
+  NodeLines lines_;
   HostAxis clock_;
   std::unique_ptr<NodeDesk> desk_;
   std::unique_ptr<DatagramBatch> batch_;
   std::vector<std::unique_ptr<StreamClock>> clocks_;
   Watcher watcher_;
+  std::vector<std::optional<HostAddress>> heard_;  // by stream: where its frames came to, this time
   std::uint64_t unsent_ = 0;
   HostTime next_watch_ = HostTime::min();
   std::vector<ClockPair> pairs_;

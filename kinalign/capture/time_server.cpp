@@ -71,7 +71,7 @@ void TimeServer::serve(const std::function<bool()>& go_on, NodeReceiver* nodes) 
 void TimeServer::serve_until(HostTime end) {
   std::vector<pollfd> waiting;
   if (nodes_ != nullptr) {
-    for (const UdpSocket& socket : nodes_->sockets()) waiting.push_back({socket.fd(), POLLIN, 0});
+    waiting.push_back({nodes_->fd(), POLLIN, 0});
   }
   const std::size_t own = waiting.size();  // the first of ours
   for (const UdpSocket& socket : sockets_) waiting.push_back({socket.fd(), POLLIN, 0});

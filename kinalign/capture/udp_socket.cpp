@@ -32,11 +32,38 @@ bool set(int fd, int level, int name, int value) {
 }
 
 bool set_options(int fd, int family) {
-  set(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer);  // as much of it as the system allows
+  if (!set(fd, SOL_SOCKET, SO_RCVBUFFORCE, receive_buffer)) {  // needs CAP_NET_ADMIN
+    set(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer);            // net.core.rmem_max at most
+  }
   if (!set(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1)) return false;
   if (family == AF_INET) return set(fd, IPPROTO_IP, IP_PKTINFO, 1);
   return set(fd, IPPROTO_IPV6, IPV6_V6ONLY, 1) && set(fd, IPPROTO_IPV6, IPV6_RECVPKTINFO, 1);
 }
+
+/// An address and port as the system has them.
+struct Socket {
+  Socket(const HostAddress& address, std::uint16_t port) {
+    if (is_ipv4(address)) {
+      sockaddr_in four{};
+      four.sin_family = AF_INET;
+      four.sin_port = htons(port);
+      std::memcpy(&four.sin_addr, address.data() + 12, 4);
+      std::memcpy(&bytes, &four, size = sizeof four);
+    } else {
+      sockaddr_in6 six{};
+      six.sin6_family = AF_INET6;
+      six.sin6_port = htons(port);
+      std::memcpy(&six.sin6_addr, address.data(), address.size());
+      std::memcpy(&bytes, &six, size = sizeof six);
+    }
+    family = bytes.ss_family;
+  }
+  const sockaddr* data() const { return reinterpret_cast<const sockaddr*>(&bytes); }
+
+  sockaddr_storage bytes{};
+  socklen_t size = 0;
+  int family = 0;
+};
 
 std::uint16_t bound_port(int fd) {
   sockaddr_storage bound{};
@@ -66,6 +93,24 @@ Result<UdpSocket> UdpSocket::open(const std::string& address, std::uint16_t port
   }
   socket.port_ = bound_port(socket.fd_);
   return socket;
+}
+
+bool UdpSocket::share_port() const { return set(fd_, SOL_SOCKET, SO_REUSEPORT, 1); }
+
+Result<UdpSocket> UdpSocket::connected(const HostAddress& own, std::uint16_t port,
+                                       const HostAddress& peer, std::uint16_t peer_port) {
+  const Socket here(own, port), there(peer, peer_port);
+  const int type = SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
+  UdpSocket socket(::socket(here.family, type, 0), to_string(own));
+  const bool joined = socket.fd_ >= 0 && set_options(socket.fd_, here.family) &&
+                      socket.share_port() && ::bind(socket.fd_, here.data(), here.size) == 0 &&
+                      ::connect(socket.fd_, there.data(), there.size) == 0;
+  if (joined) {
+    socket.port_ = port;
+    return socket;
+  }
+  return Failure(Error{endpoint_text(to_string(peer), peer_port), 0, "a UDP socket for it alone",
+                       obstacle(errno, port)});
 }
 
 UdpSocket::UdpSocket(UdpSocket&& other) noexcept

@@ -3,7 +3,7 @@
 // (CLOCK_REALTIME) and the address that it was sent to.
 #pragma once
 
-#include "kinalign/core/error.h"
+#include "kinalign/capture/host_address.h"
 
 #include <cstdint>
 #include <string>
@@ -16,6 +16,13 @@ class UdpSocket {
   /// `address`: IPv4 or IPv6, with %interface where it is link-local; "0.0.0.0" and "::" are all of
   /// their kind. Port 0: any free one.
   static Result<UdpSocket> open(const std::string& address, std::uint16_t port);
+  /// For what `peer` alone sends to `own`, beside an open one of the same port that shares it.
+  static Result<UdpSocket> connected(const HostAddress& own, std::uint16_t port,
+                                     const HostAddress& peer, std::uint16_t peer_port);
+  /// From now on sockets of this user may be bound to the same port. Not before it is bound itself:
+  /// so it is refused where another program has the port.
+  bool share_port() const;
+
   UdpSocket(UdpSocket&& other) noexcept;
   UdpSocket& operator=(UdpSocket&& other) noexcept;
   UdpSocket(const UdpSocket&) = delete;

@@ -25,7 +25,7 @@ Result<NodeReceiver> open_receiver(ClockReader& clocks, const std::string& addre
 
 /// Waits until something has come, two seconds at most.
 void serve(NodeReceiver& receiver) {
-  pollfd waiting{receiver.sockets()[0].fd(), POLLIN, 0};
+  pollfd waiting{receiver.fd(), POLLIN, 0};
   ::poll(&waiting, 1, 2000);
   receiver.drain();
 }

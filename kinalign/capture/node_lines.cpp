@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/node_lines.h"
+
+#include "kinalign/capture/node_filter.h"
+
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+/// fe80::/10 is an address of an interface, which we don't know here.
+bool is_link_local(const HostAddress& host) {
+  return host[0] == 0xfe && (host[1] & 0xc0U) == 0x80U;
+}
+
+}  // namespace
+
+NodeLines::NodeLines(std::span<const UdpSocket> open, std::size_t most)
+    : open_(open), lines_(most), poll_(::epoll_create1(EPOLL_CLOEXEC)) {
+  for (std::size_t i = 0; i < open_.size(); ++i) wait_for(open_[i], most + i);
+}
+
+NodeLines::NodeLines(NodeLines&& other) noexcept
+    : open_(other.open_), lines_(std::move(other.lines_)), poll_(std::exchange(other.poll_, -1)) {}
+
+NodeLines::~NodeLines() {
+  if (poll_ >= 0) ::close(poll_);
+}
+
+void NodeLines::wait_for(const UdpSocket& socket, std::uint64_t number) {
+  epoll_event event{};
+  event.events = EPOLLIN;
+  event.data.u64 = number;
+  ::epoll_ctl(poll_, EPOLL_CTL_ADD, socket.fd(), &event);
+}
+
+void NodeLines::follow(std::size_t stream, const NodeAddress& from, const HostAddress& to,
+                       std::uint16_t port) {
+  Line& line = lines_[stream];
+  if (line.from == from && line.to == to) return;
+  line.from = from;
+  line.to = to;
+  line.socket.reset();  // which the kernel takes out of poll_
+  if (is_link_local(from.host) || is_link_local(to)) return;
+  auto socket = UdpSocket::connected(to, port, from.host, from.port);
+  if (!socket) return;
+  attach_node_filter(*socket);
+  line.socket.emplace(std::move(*socket));
+  wait_for(*line.socket, stream);
+}
+
+std::span<const UdpSocket* const> NodeLines::ready() {
+  std::array<epoll_event, 80> events{};
+  ready_.clear();
+  const int found = ::epoll_wait(poll_, events.data(), events.size(), 0);
+  const auto count = static_cast<std::size_t>(std::max(found, 0));
+  std::sort(events.begin(), events.begin() + count,
+            [](const auto& a, const auto& b) { return a.data.u64 < b.data.u64; });
+  for (const epoll_event& event : std::span(events).first(count)) {
+    const auto number = static_cast<std::size_t>(event.data.u64);
+    const bool is_line = number < lines_.size();
+    if (is_line && !lines_[number].socket) continue;
+    ready_.push_back(is_line ? &*lines_[number].socket : &open_[number - lines_.size()]);
+  }
+  return ready_;
+}
+
+std::uint64_t NodeLines::dropped() const {
+  std::uint64_t sum = 0;
+  for (const UdpSocket& socket : open_) sum += dropped_by_kernel(socket);
+  for (const Line& line : lines_) {
+    if (line.socket) sum += dropped_by_kernel(*line.socket);
+  }
+  return sum;
+}
+
+}  // namespace kinalign

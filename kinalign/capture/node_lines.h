@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// A socket of its own for each node that is known, connected to its address: the kernel puts the
+// node's datagrams into that one's buffer, which strangers, however many, can't fill. Besides, the
+// descriptor that a receiver waits for.
+#pragma once
+
+#include "kinalign/capture/node_life.h"
+#include "kinalign/capture/udp_socket.h"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace kinalign {
+
+class NodeLines {
+ public:
+  /// `open`: for everybody; they have to stay where they are.
+  NodeLines(std::span<const UdpSocket> open, std::size_t most);
+  NodeLines(NodeLines&& other) noexcept;
+  NodeLines& operator=(NodeLines&&) = delete;
+  NodeLines(const NodeLines&) = delete;
+  NodeLines& operator=(const NodeLines&) = delete;
+  ~NodeLines();
+
+  /// The node sends from there to that address of ours. Where the system gives no socket, all goes
+  /// on over the open ones.
+  void follow(std::size_t stream, const NodeAddress& from, const HostAddress& to,
+              std::uint16_t port);
+
+  /// Can be read where any socket can.
+  int fd() const { return poll_; }
+  /// Those that can be read, lines of nodes first.
+  std::span<const UdpSocket* const> ready();
+  std::uint64_t dropped() const;
+
+ private:
+  struct Line {
+    NodeAddress from;
+    HostAddress to{};
+    std::optional<UdpSocket> socket;
+  };
+  void wait_for(const UdpSocket& socket, std::uint64_t number);
+
+  std::span<const UdpSocket> open_;
+  std::vector<Line> lines_;
+  int poll_ = -1;
+  std::vector<const UdpSocket*> ready_;
+};
+
+}  // namespace kinalign
