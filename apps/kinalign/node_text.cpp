@@ -33,10 +33,30 @@ const char* certainty_name(Certainty certainty) {
   return certainty == Certainty::one_sided ? "one_sided" : "doubtful";
 }
 
+/// A switch, so that the compiler tells of a kind that is new.
 const char* name_of(ClockEvent::Kind kind) {
-  static constexpr std::array names{"new_boot",  "step",     "slip",    "host_backwards",
-                                    "withdrawn", "violator", "relaxed", "route"};
-  return names[static_cast<std::size_t>(kind)];
+  using Kind = ClockEvent::Kind;
+  switch (kind) {
+    case Kind::new_boot:
+      return "new_boot";
+    case Kind::step:
+      return "step";
+    case Kind::slip:
+      return "slip";
+    case Kind::uneasy:
+      return "uneasy";
+    case Kind::host_backwards:
+      return "host_backwards";
+    case Kind::withdrawn:
+      return "withdrawn";
+    case Kind::violator:
+      return "violator";
+    case Kind::relaxed:
+      return "relaxed";
+    case Kind::route:
+      return "route";
+  }
+  return "";
 }
 
 const char* name_of(HostClockEvent::Kind kind) {
@@ -118,6 +138,10 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id) {
   if (event.kind == Kind::withdrawn) {
     return says(fmt::format("warning: the stamps of {:.1f} s are not certified any more",
                             seconds(event.end - event.begin)));
+  }
+  if (event.kind == Kind::uneasy) {
+    return says(fmt::format("its likeliest stamps may be off by up to {:.3f} ms; certificates hold",
+                            1e3 * std::abs(event.value)));
   }
   return event.kind == Kind::relaxed ? says("warning: its clock bends more than was assumed") : "";
 }

@@ -79,6 +79,13 @@ TEST_CASE("every event has a text and a name, and warnings say that they are") {
   step.value = -0.02;
   CHECK(event_text(step, 7) == "node 7: warning: its counter stepped by -20.000 ms");
   CHECK(nlohmann::json::parse(event_json(step, 0, 7))["kind"] == "step");
+  step.kind = ClockEvent::Kind::uneasy;
+  CHECK(nlohmann::json::parse(event_json(step, 0, 7))["kind"] == "uneasy");
+  CHECK(event_text(step, 7).find("certificates hold") != std::string::npos);
+  for (int kind = 0; kind <= static_cast<int>(ClockEvent::Kind::route); ++kind) {
+    step.kind = static_cast<ClockEvent::Kind>(kind);
+    CHECK(nlohmann::json::parse(event_json(step, 0, 7))["kind"] != "");
+  }
   HostClockEvent slept{HostClockEvent::Kind::suspended, {}, std::chrono::seconds(30)};
   CHECK(event_text(slept) ==
         "warning: this machine slept for 30.0 s; the nodes' clocks begin anew");
