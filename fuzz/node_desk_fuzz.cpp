@@ -18,8 +18,22 @@ namespace {
 
 constexpr std::uint32_t own_id = 7;
 constexpr LabKey lab{1, 2, 3};
+constexpr std::array<std::uint8_t, 4> own_host{10, 0, 0, 1};
 
 using Out = std::array<std::uint8_t, max_node_datagram>;
+
+NodeDeskOptions desk_options() {
+  NodeDeskOptions options;
+  options.lab_key = lab;
+  return options;
+}
+
+NodeAddress own_address() {
+  NodeAddress address;
+  address.host = mapped_ipv4(own_host);
+  address.port = 4000;
+  return address;
+}
 
 /// The node, and the desk of one of the hosts.
 class Pair {
@@ -43,8 +57,8 @@ class Pair {
     }
     return news.exchange;
   }
-  NodeDesk desk{{lab, SipHashKey{}}};
-  NodeAddress from{mapped_ipv4(std::array<std::uint8_t, 4>{10, 0, 0, 1}), 4000};
+  NodeDesk desk{desk_options()};
+  NodeAddress from = own_address();
 
  private:
   std::uint32_t sequence_ = 0;
@@ -63,7 +77,7 @@ std::vector<std::uint8_t> datagram_of(std::span<const std::uint8_t> bytes, std::
   std::vector<std::uint8_t> datagram(bytes.begin(), bytes.end());
   const MacKey key = node_key(lab, 8);
   if (how % 4 == 0 || datagram.size() < 12) return datagram;
-  if (how % 4 == 2) std::copy_n(std::array<std::uint8_t, 4>{0, 0, 0, 8}.begin(), 4, &datagram[8]);
+  if (how % 4 == 2) ByteWriter(std::span(datagram).subspan(8)).put(std::uint32_t{8});
   mend(datagram, static_cast<DatagramType>(1 + how / 4 % 5), how % 4 == 1 ? nullptr : &key);
   return datagram;
 }
