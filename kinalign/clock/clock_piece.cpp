@@ -14,6 +14,7 @@ constexpr double violators_within_s = 5.0;
 constexpr double most_curvature = 2e-6;  // per second: 100 times that of a board that warms up
 constexpr double harmless_share = 0.4;   // of the round trip: half of it is the least delay
 constexpr double before_a_slip_s = 5.0;
+constexpr double longest_piece_s = 1e8;  // three years; doubles keep 20 ns over that
 constexpr double stale_s = 0.5;
 constexpr double between_pieces = 2e-6;  // by which a slope may differ
 constexpr std::uint32_t seldom = 4;
@@ -79,6 +80,10 @@ void ClockPiece::add(const JournalEntry& e) {
 
 ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
   const JournalEntry e = entry(crossing);
+  if (std::abs(e.s) > longest_piece_s || std::abs(e.x) > longest_piece_s) {
+    amount_ = std::abs(e.x);
+    return Verdict::violator;  // no counter that begins to count says that
+  }
   amount_ = violation(e);
   if (amount_ > tolerated_s) return judge(crossing);
   Verdict verdict = Verdict::taken;
@@ -260,6 +265,7 @@ ClockPiece ClockPiece::next_piece() const {
 
 std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
   const double s = seconds(n - origin_.node);
+  if (std::abs(s) > longest_piece_s) return std::nullopt;
   const auto middle = estimate_.at(s);
   if (!middle) return std::nullopt;
   ClockStamp stamp;

@@ -45,7 +45,7 @@ class ClockPiece {
   };
   Verdict push(const Crossing& crossing);
 
-  /// Absent until there is a crossing of each kind.
+  /// Absent until there is a crossing of each kind, and more than three years away.
   std::optional<ClockStamp> at(NodeTime n);
 
   /// After `broken` or `slipped`: the piece that begins here, …

@@ -17,6 +17,8 @@ namespace {
 constexpr double knot_s = 1.0;
 constexpr double most_curvature = 2e-6;  // 1/s
 constexpr double raised = 4.0;
+constexpr double longest_wait_s = 60.0;  // of a packet
+constexpr double longest_piece_s = 1e6;  // eleven days
 constexpr double counter_resolution_s = 1e-6;
 
 struct Walk {
@@ -156,6 +158,20 @@ void fit(const PieceBounds& piece, double least_width, ClockPieceModel& model,
   model.certified = goes(std::min(raised * curvature, most_curvature));
 }
 
+/// Whether a counter counted about as long as the host did: a piece of two frames has no
+/// certificate yet that would have left out a wild one, and knots are one a second.
+bool counted_like_the_host(const PieceBounds& piece) {
+  const auto [first, last] =
+      std::minmax_element(piece.bounds.begin(), piece.bounds.end(),
+                          [](const JournalEntry& a, const JournalEntry& b) { return a.s < b.s; });
+  const auto [least, most] = std::minmax_element(
+      piece.bounds.begin(), piece.bounds.end(),
+      [](const JournalEntry& a, const JournalEntry& b) { return a.s + a.x < b.s + b.x; });
+  const double host = most->s + most->x - least->s - least->x;
+  const double node = last->s - first->s;
+  return node < 1.01 * host + longest_wait_s && node < longest_piece_s;
+}
+
 /// All exchanges of a piece but those in doubt and those that can't be.
 PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::size_t p,
                     ClockPieceModel& model) {
@@ -189,7 +205,8 @@ OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
   for (std::size_t p = 0; p < walk.pieces; ++p) {
     ClockPieceModel& model = out.model.pieces.emplace_back();
     const PieceBounds piece = collect(exchanges, walk, p, model);
-    if (piece.up > 0 && piece.down > 0) fit(piece, walk.least_width, model, assumptions);
+    if (piece.up > 0 && piece.down > 0 && counted_like_the_host(piece))
+      fit(piece, walk.least_width, model, assumptions);
   }
   out.model.doubtful = std::move(walk.doubtful);
   out.events = std::move(walk.events);
