@@ -8,11 +8,9 @@ namespace kinalign {
 
 namespace {
 
-constexpr double counter_resolution_s = 1e-6;
 constexpr double tolerated_s = 5e-6;  // against the certificate, before a bound is a violator
 constexpr double violators_within_s = 5.0;
-constexpr double most_curvature = 2e-6;  // per second: 100 times that of a board that warms up
-constexpr double harmless_share = 0.4;   // of the round trip: half of it is the least delay
+constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
 constexpr double before_a_slip_s = 5.0;
 constexpr double longest_piece_s = 1e8;  // three years; doubles keep 20 ns over that
 constexpr double stale_s = 0.5;
@@ -32,12 +30,8 @@ bool contradict(const JournalEntry& a, const JournalEntry& b, double rate) {
 
 }  // namespace
 
-/// The counter is cut to whole microseconds: a reading n stands for up to n + 1 us.
 JournalEntry ClockPiece::entry(const Crossing& crossing) const {
-  const Duration node = crossing.n - origin_.node;
-  const Duration offset = (crossing.h - origin_.host) - node;
-  const double early = crossing.bound == Bound::below ? counter_resolution_s : 0.0;
-  return {seconds(node), seconds(offset) - early, crossing.bound};
+  return bound_by(origin_, crossing.bound, crossing.n, crossing.h);
 }
 
 HostTime ClockPiece::host_time(const JournalEntry& e) const {

@@ -26,12 +26,7 @@ struct Crossing {
 
 class ClockPiece {
  public:
-  /// Seconds are counted from this pair of readings.
-  struct Origin {
-    NodeTime node{};
-    HostTime host{};
-  };
-  ClockPiece(const Origin& origin, const Assumptions& assumptions, SlopeBelief prior = {},
+  ClockPiece(const ClockOrigin& origin, const Assumptions& assumptions, SlopeBelief prior = {},
              const ShortestRoundTrips& shortest = {})
       : origin_(origin), certificate_(assumptions, corners), estimate_(prior), floors_(shortest) {}
 
@@ -54,7 +49,7 @@ class ClockPiece {
   /// … and since when the stamps of this one are in doubt, by the frames' arrival.
   HostTime doubtful_since() const;
 
-  const Origin& origin() const { return origin_; }
+  const ClockOrigin& origin() const { return origin_; }
   const Assumptions& assumptions() const { return certificate_.assumptions(); }
   const OffsetEstimate& estimate() const { return estimate_; }
   const FloorLog& floors() const { return floors_; }
@@ -79,7 +74,7 @@ class ClockPiece {
   ClockPiece next_by_windows(const SlopeBelief& prior) const;
   ClockPiece next_by_route() const;
 
-  Origin origin_;
+  ClockOrigin origin_;
   Certificate certificate_;
   OffsetEstimate estimate_;
   ExchangeJournal journal_;

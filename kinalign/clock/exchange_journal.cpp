@@ -5,6 +5,13 @@
 
 namespace kinalign {
 
+JournalEntry bound_by(const ClockOrigin& origin, Bound bound, NodeTime n, HostTime h) {
+  const Duration node = n - origin.node;
+  const Duration offset = (h - origin.host) - node;
+  const double early = bound == Bound::below ? counter_resolution_s : 0.0;
+  return {seconds(node), seconds(offset) - early, bound};
+}
+
 void ExchangeJournal::add(const JournalEntry& entry) {
   places_[next_] = {entry.s, entry.x};
   below_[next_] = entry.bound == Bound::below;

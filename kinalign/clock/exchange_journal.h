@@ -3,10 +3,11 @@
 // how far back stamps are in doubt.
 #pragma once
 
+#include "kinalign/wire/time.h"
+
 #include <array>
 #include <bitset>
 #include <cstddef>
-#include <optional>
 
 namespace kinalign {
 
@@ -16,6 +17,18 @@ struct JournalEntry {
   double s = 0.0, x = 0.0;
   Bound bound = Bound::above;
 };
+
+/// Seconds are counted from this pair of readings.
+struct ClockOrigin {
+  NodeTime node{};
+  HostTime host{};
+};
+
+/// A counter is cut to whole microseconds: a reading n stands for up to n + 1 us.
+inline constexpr double counter_resolution_s = 1e-6;
+
+/// What it bounds that the counter read n and the host h.
+JournalEntry bound_by(const ClockOrigin& origin, Bound bound, NodeTime n, HostTime h);
 
 class ExchangeJournal {
  public:

@@ -21,6 +21,14 @@ std::size_t class_of(double excess) {
 
 }  // namespace
 
+double density_above(std::span<double> excess) {
+  if (excess.size() < 2) return 0.0;
+  const std::size_t k = std::min(nearest, excess.size() - 1);
+  const auto place = excess.begin() + static_cast<std::ptrdiff_t>(k);
+  std::nth_element(excess.begin(), place, excess.end());
+  return static_cast<double>(k) / std::max(*place, resolution_s / 4.0);
+}
+
 void ExcessCounts::add(double excess) {
   ++classes_[class_of(excess)];
   ++total_;
@@ -67,13 +75,9 @@ void Floor::keep_low(OffsetBound bound, const FloorLine& line) {
 }
 
 double Floor::density(const FloorLine& line) const {
-  if (lows_ < 2) return 0.0;
   std::array<double, 12> excess{};
   for (std::size_t i = 0; i < lows_; ++i) excess[i] = line.excess(low_[i]);
-  const std::size_t k = std::min(nearest, lows_ - 1);
-  std::nth_element(excess.begin(), excess.begin() + static_cast<std::ptrdiff_t>(k),
-                   excess.begin() + static_cast<std::ptrdiff_t>(lows_));
-  return static_cast<double>(k) / std::max(excess[k], resolution_s / 4.0);
+  return density_above(std::span(excess).first(lows_));
 }
 
 }  // namespace kinalign

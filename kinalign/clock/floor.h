@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace kinalign {
 
@@ -24,6 +25,10 @@ struct FloorLine {
   double at(double t) const { return x + slope * (t - s); }
   double excess(OffsetBound bound) const { return bound.x - at(bound.s); }
 };
+
+/// How densely bounds stand above a floor, in points per second of delay, by the nearest few of
+/// these; they are put into another order. 0 with fewer than two.
+double density_above(std::span<double> excess);
 
 /// Where the delays of a direction lie above its floor: classes of a factor of two from 1 us on.
 class ExcessCounts {

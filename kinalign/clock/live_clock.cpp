@@ -30,7 +30,7 @@ void LiveClock::begin(BootKey boot, const Crossing& first) {
     prior.deviation += between_lives;
     earlier_[lives_++ % earlier_.size()] = boot_;
   }
-  piece_.emplace(ClockPiece::Origin{first.n, first.h}, assumptions_, prior,
+  piece_.emplace(ClockOrigin{first.n, first.h}, assumptions_, prior,
                  piece_ ? piece_->floors().shortest() : ShortestRoundTrips{});
   boot_ = boot;
   routes_told_ = 0;
@@ -52,7 +52,7 @@ void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
   }
   if (!piece_ || boot != boot_) begin(boot, crossing);
   if (h_rx < newest_) {
-    piece_.emplace(ClockPiece::Origin{n_tx, h_rx}, assumptions_, piece_->estimate().slope());
+    piece_.emplace(ClockOrigin{n_tx, h_rx}, assumptions_, piece_->estimate().slope());
     tell({ClockEvent::Kind::host_backwards, boot, h_rx, newest_});
   }
   newest_ = h_rx;

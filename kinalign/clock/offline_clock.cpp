@@ -15,11 +15,9 @@ namespace kinalign {
 namespace {
 
 constexpr double knot_s = 1.0;
-constexpr double most_curvature = 2e-6;  // 1/s
 constexpr double raised = 4.0;
 constexpr double longest_wait_s = 60.0;  // of a packet
 constexpr double longest_piece_s = 1e6;  // eleven days
-constexpr double counter_resolution_s = 1e-6;
 
 struct Walk {
   std::vector<ClockEvent> events;
@@ -84,14 +82,12 @@ bool in_doubt(std::span<const DoubtfulStretch> doubtful, HostTime h) {
 
 /// The bounds of a piece in seconds from its first exchange.
 struct PieceBounds {
-  NodeTime node{};
-  HostTime host{};
+  ClockOrigin origin;
   std::vector<JournalEntry> bounds;
   std::uint64_t up = 0, down = 0;
 
   void add(Bound bound, NodeTime n, HostTime h) {
-    const double early = bound == Bound::below ? counter_resolution_s : 0.0;
-    bounds.push_back({seconds(n - node), seconds((h - host) - (n - node)) - early, bound});
+    bounds.push_back(bound_by(origin, bound, n, h));
     ++(bound == Bound::above ? up : down);
   }
 };
@@ -118,7 +114,7 @@ bool fill_knots(const PieceBounds& piece, const Certificate& certificate, Offlin
     end = std::max(end, b.s);
   }
   const double widened = certificate.assumptions().curvature * knot_s * knot_s / 8.0;
-  const Duration base = piece.host.time_since_epoch() - piece.node.time_since_epoch();
+  const Duration base = piece.origin.host.time_since_epoch() - piece.origin.node.time_since_epoch();
   const auto count = static_cast<std::size_t>(std::ceil((end - begin) / knot_s)) + 1;
   bool sound = true;
   knots.clear();
@@ -128,7 +124,7 @@ bool fill_knots(const PieceBounds& piece, const Certificate& certificate, Offlin
     const auto range = certificate.at(t);
     sound = sound && range && range->high - range->low >= least_width;
     const double low = range ? range->low : likeliest, high = range ? range->high : likeliest;
-    knots.push_back({piece.node + since,
+    knots.push_back({piece.origin.node + since,
                      base + nanoseconds(std::round(std::clamp(likeliest, low, high) * 1e9)),
                      base + nanoseconds(std::floor((low - widened) * 1e9)),
                      base + nanoseconds(std::ceil((high + widened) * 1e9))});
@@ -181,8 +177,8 @@ PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::
     if (walk.piece[i] != p) continue;
     const Exchange& e = exchanges[i];
     if (!std::exchange(begun, true)) {
-      piece.node = e.n_tx;
-      piece.host = model.first = e.h_rx;
+      piece.origin = {e.n_tx, e.h_rx};
+      model.first = e.h_rx;
       model.boot = e.boot;
     }
     model.last = e.h_rx;

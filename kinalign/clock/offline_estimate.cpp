@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace kinalign {
 
@@ -15,10 +14,8 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double bin_s = 10.0;
 constexpr std::size_t lows_each = 12;
-constexpr std::size_t bins_around = 5;  // that tell how sharp a floor is
-constexpr int first_looks = 4;          // each moves the lines that the next one counts from
-constexpr std::size_t nearest = 6;
-constexpr double least_excess_s = 0.25e-6;
+constexpr std::size_t bins_around = 5;    // that tell how sharp a floor is
+constexpr int first_looks = 4;            // each moves the lines that the next one counts from
 constexpr std::size_t least_bounds = 20;  // of each kind, for a route of its own
 constexpr double same_crystal = 1e-6;     // by which slopes of two routes may differ
 constexpr double least_variance = 1e-14;
@@ -86,14 +83,6 @@ void keep_low(std::vector<OffsetBound>& lows, OffsetBound bound, double slope) {
   if (lows.size() > lows_each) lows.pop_back();
 }
 
-double density(std::vector<double>& excess) {
-  if (excess.size() < 2) return 0.0;
-  const std::size_t k = std::min(nearest, excess.size() - 1);
-  const auto place = excess.begin() + static_cast<std::ptrdiff_t>(k);
-  std::nth_element(excess.begin(), place, excess.end());
-  return static_cast<double>(k) / std::max(*place, least_excess_s);
-}
-
 }  // namespace
 
 OfflineEstimate::OfflineEstimate(const std::vector<JournalEntry>& bounds) {
@@ -141,8 +130,8 @@ Middle OfflineEstimate::middle(const Stretch& stretch, double t) {
     for (const OffsetBound& b : stretch.lows[i].above) over.push_back(above.excess(b));
     for (const OffsetBound& b : stretch.lows[i].below) under.push_back(below.excess(b));
   }
-  known.above_density = density(over);
-  known.below_density = density(under);
+  known.above_density = density_above(over);
+  known.below_density = density_above(under);
   return stretch.route.middle_elsewhere(t, known);
 }
 
