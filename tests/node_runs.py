@@ -18,7 +18,7 @@ class Server:
 
     def __init__(self, build, *words, lab_key=None):
         key = ("--lab-key", str(lab_key)) if lab_key else ()
-        # What nobody reads until the end must not fill a pipe: the program would wait.
+        # A file, since nobody reads until the end: of a full pipe the program drops lines.
         self.out = tempfile.TemporaryFile("w+", encoding="utf-8")
         self.program = subprocess.Popen(
             [str(build / "apps/kinalign/kinalign"), "time-server", "--port", "0", "--node-port", "0",

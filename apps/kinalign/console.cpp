@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -31,17 +30,6 @@ std::string painted(bool wanted, Colour colour, std::string_view text) {
   const std::string_view code = codes[static_cast<std::size_t>(colour)];
   if (!wanted || code.empty()) return std::string(text);
   return fmt::format("{}{}{}", code, text, plain);
-}
-
-/// 0, or the errno of the write that failed.
-int write_all(int fd, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t put = ::write(fd, bytes.data(), bytes.size());
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) return errno;
-    bytes.remove_prefix(static_cast<std::size_t>(put));
-  }
-  return 0;
 }
 
 std::size_t width_of(int fd) {
@@ -156,11 +144,18 @@ Console::Console(const Surroundings& surroundings, const Common& common, std::st
       colour_out_(colour_wanted(surroundings, common, surroundings.out_is_terminal)),
       colour_err_(colour_wanted(surroundings, common, surroundings.err_is_terminal)),
       progress_(surroundings.err_is_terminal && !common.quiet &&
-                surroundings.variable("TERM") != "dumb") {}
+                surroundings.variable("TERM") != "dumb"),
+      out_(surroundings.out),
+      err_(surroundings.err) {}
 
 Console::~Console() {
   erase_progress();
   flush();
+}
+
+void Console::never_wait() {
+  out_.never_wait();
+  err_.never_wait();
 }
 
 void Console::print(std::string_view text) {
@@ -170,17 +165,20 @@ void Console::print(std::string_view text) {
 
 void Console::print_json(std::string_view object, int version) {
   if (!common_.json) return;
+  if (const std::uint64_t missed = out_.take_dropped()) {
+    put_json(fmt::format(R"({{"event": "missed", "lines": {}}})", missed), version);
+  }
+  put_json(object, version);
+}
+
+void Console::put_json(std::string_view object, int version) {
   const std::string_view members = object.substr(object.find('{') + 1);
   const bool none = members.find_first_not_of(" \n") == members.find('}');
   put(fmt::format("{{\"schema\": \"kinalign.{}/{}\"{}{}\n", verb_, version, none ? "" : ", ",
                   members.substr(std::min(members.find_first_not_of(" \n"), members.size()))));
 }
 
-void Console::put(std::string_view text) {
-  constexpr std::size_t most_held = std::size_t{64} << 10;
-  held_ += text;
-  if (held_.size() >= most_held) flush();
-}
+void Console::put(std::string_view text) { out_.put(text); }
 
 void Console::note(std::string_view line) {
   if (!common_.quiet) say(line);
@@ -228,10 +226,12 @@ void Console::report(const Error& error) {
 }
 
 Result<void> Console::finish() {
+  constexpr std::chrono::milliseconds last_words{1000};
   erase_progress();
-  flush();
-  if (fault_ == 0 || fault_ == EPIPE) return {};
-  return Failure(Error{"standard output", 0, "room to write", std::strerror(fault_)});
+  out_.flush(last_words);
+  err_.flush(last_words);
+  if (out_.fault() == 0 || out_.fault() == EPIPE) return {};
+  return Failure(Error{"standard output", 0, "room to write", std::strerror(out_.fault())});
 }
 
 void Console::show_progress(std::string_view what, std::uint64_t done, std::uint64_t total) {
@@ -241,17 +241,19 @@ void Console::show_progress(std::string_view what, std::uint64_t done, std::uint
     began_ = now;
   }
   constexpr auto redraw = std::chrono::milliseconds(100);
-  if (shown_ && now - drawn_ < redraw) return;
+  if ((shown_ && now - drawn_ < redraw) || err_.holds()) return;
   drawn_ = now;
   shown_ = true;
   const double elapsed_s = std::chrono::duration<double>(now - began_).count();
   const std::size_t width = width_of(surroundings_.err);
-  write_all(surroundings_.err, fmt::format("{}{}", start_of_line,
-                                           progress_line(what, done, total, elapsed_s, width - 1)));
+  err_.put(
+      fmt::format("{}{}", start_of_line, progress_line(what, done, total, elapsed_s, width - 1)));
+  err_.flush();
 }
 
 void Console::erase_progress() {
-  if (shown_) write_all(surroundings_.err, start_of_line);
+  if (shown_) err_.put(start_of_line);
+  err_.flush();
   shown_ = false;
 }
 
@@ -263,12 +265,8 @@ void Console::say(std::string_view line, Colour colour) {
     text = broken(line, width_of(surroundings_.err));
     text.pop_back();
   }
-  write_all(surroundings_.err, painted(colour_err_, colour, text) + "\n");
-}
-
-void Console::flush() {
-  if (fault_ == 0) fault_ = write_all(surroundings_.out, held_);
-  held_.clear();
+  err_.put(painted(colour_err_, colour, text) + "\n");
+  err_.flush();
 }
 
 }  // namespace kinalign

@@ -3,6 +3,7 @@
 // where they are wanted (docs/commands.md).
 #pragma once
 
+#include "apps/kinalign/outlet.h"
 #include "apps/kinalign/verb.h"
 
 #include "kinalign/core/error.h"
@@ -72,14 +73,19 @@ class Console {
   /// Says what went wrong and what was advised.
   void report(const Error& error);
 
+  /// For a job that must not stand still while nobody reads: see Outlet. What --json then lacks is
+  /// told, once there is room again, by a line {"event": "missed", "lines": N}.
+  void never_wait();
+
   /// Writes what is held, for a job that goes on.
-  void flush();
+  void flush() { out_.flush(); }
   /// Writes what is still held. Fails where stdout took no more; a reader that went away is fine.
   Result<void> finish();
 
  private:
   using Clock = std::chrono::steady_clock;
 
+  void put_json(std::string_view object, int version);
   void erase_progress();
   void show_progress(std::string_view what, std::uint64_t done, std::uint64_t total);
   void say(std::string_view line, Colour colour = Colour::plain);
@@ -90,8 +96,7 @@ class Console {
   Advice advice_;
   bool refused_ = false;
   bool colour_out_ = false, colour_err_ = false, progress_ = false;
-  std::string held_;    // for stdout
-  int fault_ = 0;       // errno of stdout
+  Outlet out_, err_;
   std::string doing_;   // what the progress line says
   bool shown_ = false;  // a progress line stands
   Clock::time_point began_{}, drawn_{};

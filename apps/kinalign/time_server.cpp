@@ -162,6 +162,7 @@ class Herald {
 
 Result<int> run(TimeServerFlags& o, Call& call) {
   Console& console = call.console;
+  console.never_wait();
   console.if_it_fails([port = o.port](const Error& error) { return advice_on(error, port); });
   TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));
   SystemClocks clocks;

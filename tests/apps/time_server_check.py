@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The time server asked by real clients, and by what is none. All traffic stays on loopback.
 time_server_check.py BUILD_FOLDER [CASE...]"""
+import fcntl
 import os
 import pathlib
 import pty
@@ -17,6 +18,8 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
 from cases import SANITIZED, Skip, case, kinalign, main, parsed
+
+from node_runs import ended, start_node
 
 ALL_ADDRESSES = ("--port", "0", "--local-stratum", "10")
 CLIENT = bytes([0x23, 0, 6, 0x20]) + bytes(36) + b"\x01\x02\x03\x04\x05\x06\x07\x08"  # as chrony's
@@ -263,6 +266,21 @@ def port_123_without_rights_is_refused_with_what_to_do(_):
     assert lines[0] == ("kinalign time-server: 0.0.0.0:123: expected a UDP port to serve on, "
                         "found no permission for a port below 1024"), lines
     assert "setcap" in lines[1] and "--port" in lines[2], lines
+
+
+@case
+def a_reader_that_stops_reading_holds_up_nothing(_):
+    with Server("--port", "0", "--listen", "127.0.0.1", "--local-stratum", "10",
+                "--node-port", "0") as server:
+        for pipe in (server.program.stdout, server.program.stderr):
+            fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, 4096)
+        nodes = [start_node(cases.BUILD, server.started["node_port"], node_id, "--seconds", 3)
+                 for node_id in range(1, 9)]  # 8 lines of 400 bytes each second, and more on stderr
+        for node in nodes:
+            ended(node)
+        for _ in range(4):
+            ask(server, CLIENT)
+    assert server.counts["answered"] == 4, server.counts
 
 
 @case

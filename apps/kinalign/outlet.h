@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Text on its way to a file descriptor: waiting for its reader, or never.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+class Outlet {
+ public:
+  explicit Outlet(int fd) : fd_(fd) {}
+
+  /// From here on a reader that doesn't read (a full pipe, a stopped terminal) holds up nothing: up
+  /// to 1 MiB waits for it, what comes then is dropped, by whole texts, and counted.
+  void never_wait() { waits_ = false; }
+
+  /// Holds it until there is enough to write.
+  void put(std::string_view text);
+  /// Writes what is held; what a reader that isn't waited for does not take within so long, stays.
+  void flush(std::chrono::milliseconds patience = {});
+
+  /// Texts dropped since this was asked; 0 as long as there is no room to tell it.
+  std::uint64_t take_dropped();
+  bool holds() const { return !held_.empty(); }
+  int fd() const { return fd_; }
+  /// errno of the write that failed, after which nothing more is written; 0: none.
+  int fault() const { return fault_; }
+
+ private:
+  bool takes_more(std::chrono::milliseconds patience) const;
+
+  int fd_;
+  bool waits_ = true;
+  std::string held_;
+  std::uint64_t dropped_ = 0;
+  int fault_ = 0;
+};
+
+}  // namespace kinalign
