@@ -10,16 +10,12 @@ std::string to_string(const Assumptions& assumptions) {
                      assumptions.curvature * 1e6);
 }
 
-void Certificate::add_above(double s, double x) {
-  corridor_.above.add(s, x);
-  corridor_.above.keep_newest(corners_);
-  ++up_;
-}
-
-void Certificate::add_below(double s, double x) {
-  corridor_.below.add(s, -x);
-  corridor_.below.keep_newest(corners_);
-  ++down_;
+void Certificate::add(const Bound& bound) {
+  const bool up = bound.side == Side::above;
+  LiftedHull& hull = up ? corridor_.above : corridor_.below;
+  const OffsetBound b = from_above(bound);
+  hull.add(b.s, b.x);
+  ++(up ? up_ : down_);
 }
 
 std::optional<ValueRange> Certificate::at(double t) const {

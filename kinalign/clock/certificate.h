@@ -8,21 +8,17 @@
 #include "kinalign/clock/corridor.h"
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 namespace kinalign {
 
 class Certificate {
  public:
-  /// Remembers so many corners of each hull: fewer bound less, and truly.
-  explicit Certificate(const Assumptions& assumptions,
-                       std::size_t corners = std::numeric_limits<std::size_t>::max())
-      : assumptions_(assumptions), corridor_(assumptions.curvature), corners_(corners) {}
+  /// Remembers so many corners of each hull (lifted_hull.h).
+  explicit Certificate(const Assumptions& assumptions, std::size_t corners = LiftedHull::all)
+      : assumptions_(assumptions), corridor_(assumptions.curvature, corners) {}
 
-  /// x(s) <= x, from a packet up; x(s) >= x, from a packet down.
-  void add_above(double s, double x);
-  void add_below(double s, double x);
+  void add(const Bound& bound);
 
   /// There are bounds enough for a claim: two up, one down.
   bool bounded() const { return up_ >= 2 && down_ >= 1; }
@@ -38,7 +34,6 @@ class Certificate {
  private:
   Assumptions assumptions_;
   Corridor corridor_;
-  std::size_t corners_;
   std::uint64_t up_ = 0, down_ = 0;
 };
 

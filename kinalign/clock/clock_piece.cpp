@@ -21,20 +21,20 @@ Duration rounded_down(double s) { return Duration{static_cast<std::int64_t>(std:
 Duration rounded_up(double s) { return Duration{static_cast<std::int64_t>(std::ceil(s * 1e9))}; }
 
 /// Whether two bounds of different kinds leave no way for a function of at most this rate.
-bool contradict(const JournalEntry& a, const JournalEntry& b, double rate) {
-  if (a.bound == b.bound) return false;
-  const JournalEntry& above = a.bound == Bound::above ? a : b;
-  const JournalEntry& below = a.bound == Bound::above ? b : a;
+bool contradict(const Bound& a, const Bound& b, double rate) {
+  if (a.side == b.side) return false;
+  const Bound& above = a.side == Side::above ? a : b;
+  const Bound& below = a.side == Side::above ? b : a;
   return below.x > above.x + rate * std::abs(a.s - b.s) + tolerated_s;
 }
 
 }  // namespace
 
-JournalEntry ClockPiece::entry(const Crossing& crossing) const {
-  return bound_by(origin_, crossing.bound, crossing.n, crossing.h);
+Bound ClockPiece::bound(const Crossing& crossing) const {
+  return bound_by(origin_, crossing.side, crossing.n, crossing.h);
 }
 
-HostTime ClockPiece::host_time(const JournalEntry& e) const {
+HostTime ClockPiece::host_time(const Bound& e) const {
   return origin_.host + rounded_down(e.s + e.x);
 }
 
@@ -44,36 +44,32 @@ void ClockPiece::ask(double s) {
   unseen_ = 0;
 }
 
-/// By how much a bound excludes all that the certificate leaves, s; not positive: it does not. The
-/// certificate of some exchanges ago serves as well.
-double ClockPiece::violation(const JournalEntry& e) {
+/// By how much a bound excludes all that the certificate leaves, s; not positive: it does not. What
+/// was left a moment ago serves as well, until bounds have come that leave less.
+double ClockPiece::violation(const Bound& e) {
   if (!certificate_.bounded()) return 0.0;
   if (!range_ || e.s - range_at_ > stale_s || unseen_ >= seldom) ask(e.s);
   if (!range_) return 0.0;
   const double d = e.s - range_at_;
   const double bent = assumptions().curvature * d * d / 2.0;
-  const double least = std::min(range_->least_slope * d, range_->greatest_slope * d) - bent;
-  const double most = std::max(range_->least_slope * d, range_->greatest_slope * d) + bent;
-  return e.bound == Bound::above ? range_->low + least - e.x : e.x - range_->high - most;
+  const double low =
+      range_->low + std::min(range_->least_slope * d, range_->greatest_slope * d) - bent;
+  const double high =
+      range_->high + std::max(range_->least_slope * d, range_->greatest_slope * d) + bent;
+  unseen_ += (e.side == Side::above ? e.x < high : e.x > low) ? 1 : 0;
+  return e.side == Side::above ? low - e.x : e.x - high;
 }
 
-void ClockPiece::add(const JournalEntry& e) {
+void ClockPiece::add(const Bound& b) {
   const double slope = estimate_.slope().mean;
-  if (e.bound == Bound::above) {
-    certificate_.add_above(e.s, e.x);
-    estimate_.add_above(e.s, e.x);
-    floors_.add_above({e.s, e.x}, slope);
-  } else {
-    certificate_.add_below(e.s, e.x);
-    estimate_.add_below(e.s, e.x);
-    floors_.add_below({e.s, -e.x}, slope);
-  }
-  journal_.add(e);
-  ++unseen_;
+  certificate_.add(b);
+  estimate_.add(b);
+  floors_.add(b, slope);
+  journal_.add(b);
 }
 
 ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
-  const JournalEntry e = entry(crossing);
+  const Bound e = bound(crossing);
   if (std::abs(e.s) > longest_piece_s || std::abs(e.x) > longest_piece_s) {
     amount_ = std::abs(e.x);
     return Verdict::violator;  // no counter that begins to count says that
@@ -91,6 +87,7 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
 
 /// A step by less than the least delay leaves the truth within the certificate.
 std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
+  if (floors_.windows() == windows_judged_ && estimate_.changes() == routes_judged_) return {};
   if (const auto by = narrowed()) {
     amount_ = *by;
     if (relax(floors_.window(0)->s) && !narrowed()) return Verdict::relaxed;
@@ -108,8 +105,9 @@ std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
 /// Bounds of before and after a slip leave less between them than the shortest round trip that
 /// there is; told once a window.
 std::optional<double> ClockPiece::narrowed() const {
+  if (floors_.windows() == windows_judged_) return std::nullopt;
   const auto window = floors_.window(0);
-  if (floors_.windows() == windows_judged_ || !window) return std::nullopt;
+  if (!window) return std::nullopt;
   const double least = floors_.shortest().least_width();
   const auto range = certificate_.at(window->s);
   const double left = range ? range->high - range->low : 0.0;
@@ -157,15 +155,12 @@ ClockPiece::Verdict ClockPiece::judge(const Crossing& violator) {
   violators_[violator_count_++] = violator;
   if (violator_count_ < violators_.size()) return Verdict::violator;
   const Certificate before = certificate_;
-  for (const Crossing& v : violators_) {
-    const JournalEntry e = entry(v);
-    e.bound == Bound::above ? certificate_.add_above(e.s, e.x) : certificate_.add_below(e.s, e.x);
-  }
-  if (!relax(entry(violator).s)) {
+  for (const Crossing& v : violators_) certificate_.add(bound(v));
+  if (!relax(bound(violator).s)) {
     certificate_ = before;
     return Verdict::broken;
   }
-  for (const Crossing& v : violators_) add(entry(v));
+  for (const Crossing& v : violators_) add(bound(v));
   violator_count_ = 0;
   return Verdict::relaxed;
 }
@@ -176,14 +171,14 @@ double ClockPiece::first_doubt() const {
   if (slip_ == Slip::with_route) return estimate_.last_change()->s - before_a_slip_s;
   if (slip_ == Slip::between_windows) return journal_.newest(0).s - FloorLog::longest_reach_s;
   if (violator_count_ < violators_.size()) return 0.0;
-  std::array<JournalEntry, 3> violators{};
+  std::array<Bound, 3> violators{};
   std::transform(violators_.begin(), violators_.end(), violators.begin(),
-                 [this](const Crossing& c) { return entry(c); });
+                 [this](const Crossing& c) { return bound(c); });
   double first = violators[0].s;
-  for (const JournalEntry& v : violators) first = std::min(first, v.s);
+  for (const Bound& v : violators) first = std::min(first, v.s);
   for (std::size_t i = 0; i < journal_.size(); ++i) {
-    const JournalEntry e = journal_.newest(i);
-    for (const JournalEntry& v : violators) {
+    const Bound e = journal_.newest(i);
+    for (const Bound& v : violators) {
       if (contradict(e, v, assumptions().rate)) return std::min(e.s, first - violators_within_s);
     }
   }
@@ -208,18 +203,18 @@ HostTime ClockPiece::next_begins() const {
 
 /// From the last window of floors on.
 ClockPiece ClockPiece::next_by_windows(const SlopeBelief& prior) const {
-  const JournalEntry last = journal_.newest(0);
+  const Bound last = journal_.newest(0);
   std::size_t kept = 1;
   const double begin = last.s - FloorLog::window_s;
   while (kept < journal_.size() && journal_.newest(kept).s > begin) ++kept;
-  const JournalEntry first = journal_.newest(kept - 1);
+  const Bound first = journal_.newest(kept - 1);
   ClockPiece next({origin_.node + rounded_down(first.s), host_time(first)}, assumptions(), prior,
                   floors_.shortest());
   const double node = seconds(next.origin_.node - origin_.node);
   const double host = seconds(next.origin_.host - origin_.host);
   while (kept-- > 0) {
-    const JournalEntry e = journal_.newest(kept);
-    next.add({e.s - node, e.x + node - host, e.bound});
+    const Bound e = journal_.newest(kept);
+    next.add({e.s - node, e.x + node - host, e.side});
   }
   return next;
 }
@@ -232,10 +227,9 @@ ClockPiece ClockPiece::next_by_route() const {
   next.range_.reset();
   const double begin = estimate_.last_change()->s;
   for (std::size_t i = journal_.size(); i-- > 0;) {
-    const JournalEntry e = journal_.newest(i);
+    const Bound e = journal_.newest(i);
     if (e.s <= begin) continue;
-    e.bound == Bound::above ? next.certificate_.add_above(e.s, e.x)
-                            : next.certificate_.add_below(e.s, e.x);
+    next.certificate_.add(e);
   }
   return next;
 }
@@ -246,14 +240,14 @@ ClockPiece ClockPiece::next_piece() const {
   if (slip_ == Slip::with_route) return next_by_route();
   if (slip_ == Slip::between_windows) return next_by_windows(prior);
   if (violator_count_ < violators_.size()) {
-    const JournalEntry last = journal_.newest(0);
+    const Bound last = journal_.newest(0);
     return {{origin_.node + rounded_down(last.s), host_time(last)},
             assumptions(),
             prior,
             floors_.shortest()};
   }
   ClockPiece next({violators_[0].n, violators_[0].h}, assumptions(), prior, floors_.shortest());
-  for (const Crossing& v : violators_) next.add(next.entry(v));
+  for (const Crossing& v : violators_) next.add(next.bound(v));
   return next;
 }
 

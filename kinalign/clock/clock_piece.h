@@ -18,7 +18,7 @@ namespace kinalign {
 /// One way of an exchange: a frame that left at n and arrived at h bounds the offset from above, a
 /// reply that left at h and arrived at n from below.
 struct Crossing {
-  Bound bound = Bound::above;
+  Side side = Side::above;
   NodeTime n{};
   HostTime h{};
   HostTime heard{};  // when the frame arrived that told of it
@@ -59,11 +59,11 @@ class ClockPiece {
  private:
   static constexpr std::size_t corners = 255;
 
-  JournalEntry entry(const Crossing& crossing) const;
-  HostTime host_time(const JournalEntry& e) const;
+  Bound bound(const Crossing& crossing) const;
+  HostTime host_time(const Bound& e) const;
   void ask(double s);
-  double violation(const JournalEntry& e);
-  void add(const JournalEntry& e);
+  double violation(const Bound& e);
+  void add(const Bound& e);
   Verdict judge(const Crossing& violator);
   bool relax(double s);
   std::optional<double> stepped_between_windows();

@@ -2,6 +2,7 @@
 // Between bounds from above and bounds from below: what they leave for a function's value at t.
 #pragma once
 
+#include "kinalign/clock/bound.h"
 #include "kinalign/clock/lifted_hull.h"
 
 #include <optional>
@@ -10,7 +11,8 @@ namespace kinalign {
 
 /// x(s) from above and below. The lower bounds are a hull of -x.
 struct Corridor {
-  explicit Corridor(double rho) : above(rho), below(rho) {}
+  explicit Corridor(double rho, std::size_t corners = LiftedHull::all)
+      : above(rho, corners), below(rho, corners) {}
 
   LiftedHull above, below;
 };

@@ -5,23 +5,23 @@
 
 namespace kinalign {
 
-JournalEntry bound_by(const ClockOrigin& origin, Bound bound, NodeTime n, HostTime h) {
+Bound bound_by(const ClockOrigin& origin, Side side, NodeTime n, HostTime h) {
   const Duration node = n - origin.node;
   const Duration offset = (h - origin.host) - node;
-  const double early = bound == Bound::below ? counter_resolution_s : 0.0;
-  return {seconds(node), seconds(offset) - early, bound};
+  const double early = side == Side::below ? counter_resolution_s : 0.0;
+  return {seconds(node), seconds(offset) - early, side};
 }
 
-void ExchangeJournal::add(const JournalEntry& entry) {
-  places_[next_] = {entry.s, entry.x};
-  below_[next_] = entry.bound == Bound::below;
+void ExchangeJournal::add(const Bound& bound) {
+  places_[next_] = {bound.s, bound.x};
+  below_[next_] = bound.side == Side::below;
   next_ = (next_ + 1) % capacity;
   size_ = std::min(size_ + 1, capacity);
 }
 
-JournalEntry ExchangeJournal::newest(std::size_t i) const {
+Bound ExchangeJournal::newest(std::size_t i) const {
   const std::size_t place = (next_ + capacity - 1 - i) % capacity;
-  return {places_[place].s, places_[place].x, below_[place] ? Bound::below : Bound::above};
+  return {places_[place].s, places_[place].x, below_[place] ? Side::below : Side::above};
 }
 
 }  // namespace kinalign

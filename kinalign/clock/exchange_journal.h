@@ -3,6 +3,7 @@
 // how far back stamps are in doubt.
 #pragma once
 
+#include "kinalign/clock/bound.h"
 #include "kinalign/wire/time.h"
 
 #include <array>
@@ -10,13 +11,6 @@
 #include <cstddef>
 
 namespace kinalign {
-
-enum class Bound : bool { above, below };
-
-struct JournalEntry {
-  double s = 0.0, x = 0.0;
-  Bound bound = Bound::above;
-};
 
 /// Seconds are counted from this pair of readings.
 struct ClockOrigin {
@@ -28,13 +22,13 @@ struct ClockOrigin {
 inline constexpr double counter_resolution_s = 1e-6;
 
 /// What it bounds that the counter read n and the host h.
-JournalEntry bound_by(const ClockOrigin& origin, Bound bound, NodeTime n, HostTime h);
+Bound bound_by(const ClockOrigin& origin, Side side, NodeTime n, HostTime h);
 
 class ExchangeJournal {
  public:
-  void add(const JournalEntry& entry);
+  void add(const Bound& bound);
   std::size_t size() const { return size_; }
-  JournalEntry newest(std::size_t i) const;  // 0: the last one
+  Bound newest(std::size_t i) const;  // 0: the last one
 
  private:
   static constexpr std::size_t capacity = 1024;

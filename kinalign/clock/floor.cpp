@@ -51,7 +51,6 @@ void Floor::add(OffsetBound bound, const FloorLine& line) {
   counts_.add(line.excess(bound));
   keep_low(bound, line);
   hull_.add(bound.s, bound.x);
-  hull_.keep_newest(corners_);
 }
 
 /// Of a full set the worst goes: an old one, else the one farthest above the floor.

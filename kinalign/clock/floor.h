@@ -2,6 +2,7 @@
 // The least delay of one direction of one route, told from the fastest packets.
 #pragma once
 
+#include "kinalign/clock/bound.h"
 #include "kinalign/clock/lifted_hull.h"
 
 #include <array>
@@ -10,13 +11,6 @@
 #include <span>
 
 namespace kinalign {
-
-/// A bound x(s) <= x: seconds from an origin near the data. Of the direction that bounds from below
-/// it is mirrored: -x(s) <= -x.
-struct OffsetBound {
-  double s = 0.0;
-  double x = 0.0;
-};
 
 /// A straight floor under bounds.
 struct FloorLine {
@@ -48,7 +42,7 @@ class ExcessCounts {
 /// Bounds of one direction while its floor does not change.
 class Floor {
  public:
-  explicit Floor(std::size_t corners) : corners_(corners) {}
+  explicit Floor(std::size_t corners) : hull_(usual_curvature, corners) {}
 
   void add(OffsetBound bound, const FloorLine& line);
 
@@ -63,8 +57,8 @@ class Floor {
 
   /// |x''| that is usual, not what can be: with 1e-8 / s each link's error is the least or within
   /// 15 % of it (docs/clock.md).
-  LiftedHull hull_{1e-8};
-  std::size_t corners_;  // that it remembers
+  static constexpr double usual_curvature = 1e-8;
+  LiftedHull hull_;
   ExcessCounts counts_;
   std::array<OffsetBound, 12> low_{};  // the points nearest to the floor, of the last 100 s
   std::size_t lows_ = 0;

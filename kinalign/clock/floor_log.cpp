@@ -44,21 +44,22 @@ void FloorLog::open(std::int64_t index, double slope) {
   index_ = index;
   slope_ = slope;
   now_ = {};
-  corridor_ = Corridor(0.0);
+  corridor_ = Corridor(0.0, corners);
 }
 
-void FloorLog::add(std::size_t side, OffsetBound bound, double slope) {
+void FloorLog::add(const Bound& bound, double slope) {
   const auto index = static_cast<std::int64_t>(std::floor(bound.s / window_s));
   if (index > index_) {
     close();
-    open(index, side == 0 ? slope : -slope);
+    open(index, slope);
   } else if (index < index_) {
     return;  // reordered over the edge
   }
-  const double own_slope = side == 0 ? slope_ : -slope_;
-  const double x = bound.x - own_slope * (bound.s - middle_s());
-  (side == 0 ? corridor_.above : corridor_.below).add(bound.s, x);
-  Lows& lows = now_[side];
+  const bool up = bound.side == Side::above;
+  const double level = bound.x - slope_ * (bound.s - middle_s());
+  const double x = from_above({bound.s, level, bound.side}).x;
+  (up ? corridor_.above : corridor_.below).add(bound.s, x);
+  Lows& lows = now_[up ? 0 : 1];
   if (lows.count < lowest) {
     lows.x[lows.count++] = x;
   } else if (x < lows.x.back()) {

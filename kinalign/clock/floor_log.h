@@ -44,9 +44,8 @@ class FloorLog {
   /// Goes on with what earlier pieces of the node have shown.
   explicit FloorLog(const ShortestRoundTrips& shortest) : shortest_(shortest) {}
 
-  /// Bounds from above, or mirrored ones from below; `slope` of the offset as far as it is known.
-  void add_above(OffsetBound bound, double slope) { add(0, bound, slope); }
-  void add_below(OffsetBound mirrored, double slope) { add(1, mirrored, -slope); }
+  /// `slope`: of the offset, as far as it is known.
+  void add(const Bound& bound, double slope);
 
   static constexpr double window_s = 10.0;
   /// 0: the last whole window.
@@ -66,7 +65,6 @@ class FloorLog {
     std::array<double, lowest> x{};  // rising, less the window's slope
     std::size_t count = 0;
   };
-  void add(std::size_t side, OffsetBound bound, double slope);
   void open(std::int64_t index, double slope);
   void close();
   std::optional<FloorWindow> merged(std::size_t first, std::size_t count, double slope) const;
@@ -81,7 +79,8 @@ class FloorLog {
   double middle_s() const { return (static_cast<double>(index_) + 0.5) * window_s; }
 
   std::array<Lows, 2> now_;
-  Corridor corridor_{0.0};  // of the window's bounds, less its slope
+  static constexpr std::size_t corners = 63;
+  Corridor corridor_{0.0, corners};  // of the window's bounds, less its slope
   std::int64_t index_ = 0;
   double slope_ = 0.0;  // of the offset when the window began
   std::array<std::optional<FloorWindow>, remembered> past_;

@@ -25,14 +25,15 @@ void LiftedHull::append(double s, double lifted) {
     corners_.pop_back();
   }
   if (!corners_.empty()) corners_.back().slope = slope;
+  if (corners_.size() == most_) corners_.erase(corners_.begin());
   corners_.push_back({s, lifted, infinite});
 }
 
 void LiftedHull::add(double s, double bound) {
   const double lifted = bound + rho_ * s * s / 2.0;
+  if (corners_.empty() || s >= corners_.back().s) return append(s, lifted);
   const auto behind = std::upper_bound(corners_.begin(), corners_.end(), s,
                                        [](double at, const Corner& c) { return at < c.s; });
-  if (behind == corners_.end()) return append(s, lifted);
   const std::vector<Corner> later(behind, corners_.end());
   corners_.erase(behind, corners_.end());
   if (!corners_.empty()) corners_.back().slope = infinite;
@@ -79,14 +80,9 @@ LiftedHull::Peak LiftedHull::peak(double t) const {
 }
 
 LiftedHull LiftedHull::relifted(double rho) const {
-  LiftedHull hull(rho);
+  LiftedHull hull(rho, most_);
   for (const Corner& c : corners_) hull.add(c.s, c.lifted - rho_ * c.s * c.s / 2.0);
   return hull;
-}
-
-void LiftedHull::keep_newest(std::size_t n) {
-  if (corners_.size() > n)
-    corners_.erase(corners_.begin(), corners_.end() - static_cast<std::ptrdiff_t>(n));
 }
 
 }  // namespace kinalign

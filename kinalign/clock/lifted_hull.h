@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,9 @@ namespace kinalign {
 /// nanosecond over 1000 hours.
 class LiftedHull {
  public:
-  explicit LiftedHull(double rho) : rho_(rho) {}
+  /// Remembers so many corners, the newest: fewer bound less, and truly.
+  static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
+  explicit LiftedHull(double rho, std::size_t corners = all) : rho_(rho), most_(corners) {}
 
   /// x(s) <= bound. Points may come in any order; late ones reopen the tail.
   void add(double s, double bound);
@@ -41,8 +44,6 @@ class LiftedHull {
   std::size_t size() const { return corners_.size(); }
   double first() const { return corners_.front().s; }
   double last() const { return corners_.back().s; }
-  /// Forgets the oldest corners but `n`: what is left bounds less, and truly.
-  void keep_newest(std::size_t n);
   /// The same corners under another rho; what lay above them before is not known any more.
   LiftedHull relifted(double rho) const;
 
@@ -56,6 +57,7 @@ class LiftedHull {
   void append(double s, double lifted);
 
   double rho_;
+  std::size_t most_;
   std::vector<Corner> corners_;  // s and slope rising
 };
 

@@ -43,7 +43,7 @@ void LiveClock::push(const Exchange& exchange) {
 }
 
 void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
-  const Crossing crossing{Bound::above, n_tx, h_rx, h_rx};
+  const Crossing crossing{Side::above, n_tx, h_rx, h_rx};
   const auto lives =
       earlier_.begin() + static_cast<std::ptrdiff_t>(std::min(lives_, earlier_.size()));
   if (piece_ && boot != boot_ && std::find(earlier_.begin(), lives, boot) != lives) {
@@ -64,7 +64,7 @@ void LiveClock::push_down(BootKey boot, NodeTime n_rx, HostTime h_tx) {
     ++late_;
     return;
   }
-  const Crossing crossing{Bound::below, n_rx, h_tx, newest_};
+  const Crossing crossing{Side::below, n_rx, h_tx, newest_};
   answer(piece_->push(crossing), crossing);
 }
 

@@ -24,6 +24,7 @@ struct Walk {
   std::vector<DoubtfulStretch> doubtful;
   std::vector<std::size_t> piece;  // of each exchange
   std::vector<bool> up_left_out, echo_left_out;
+  std::vector<bool> late;  // exchanges of a life that was over when they came
   std::size_t pieces = 0;
   double least_width = 0.0;  // s, that an interval can have: packets took no less, there and back
 };
@@ -50,7 +51,8 @@ void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const 
   if (!begins_piece(event.kind)) return;
   const std::size_t next = walk.pieces++;
   for (std::size_t k = i + 1;
-       k-- > 0 && exchanges[k].h_rx >= event.begin && exchanges[k].boot == event.boot;) {
+       k-- > 0 && exchanges[k].h_rx >= event.begin &&
+       (walk.late[k] || exchanges[k].boot == event.boot);) {
     walk.piece[k] = next;
     walk.up_left_out[k] = walk.echo_left_out[k] = false;  // violators were the new piece's
   }
@@ -61,11 +63,17 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
   walk.piece.resize(exchanges.size());
   walk.up_left_out.resize(exchanges.size());
   walk.echo_left_out.resize(exchanges.size());
+  walk.late.resize(exchanges.size());
   LiveClock clock(assumptions);
   for (std::size_t i = 0; i < exchanges.size(); ++i) {
     const Exchange& e = exchanges[i];
     walk.piece[i] = walk.pieces == 0 ? 0 : walk.pieces - 1;
+    const auto late = clock.late_crossings();
     clock.push_up(e.boot, e.n_tx, e.h_rx);
+    if (clock.late_crossings() > late) {
+      walk.late[i] = true;
+      continue;
+    }
     for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, false);
     if (!e.echo) continue;
     clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
@@ -83,23 +91,20 @@ bool in_doubt(std::span<const DoubtfulStretch> doubtful, HostTime h) {
 /// The bounds of a piece in seconds from its first exchange.
 struct PieceBounds {
   ClockOrigin origin;
-  std::vector<JournalEntry> bounds;
+  std::vector<Bound> bounds;
   std::uint64_t up = 0, down = 0;
 
-  void add(Bound bound, NodeTime n, HostTime h) {
-    bounds.push_back(bound_by(origin, bound, n, h));
-    ++(bound == Bound::above ? up : down);
+  void add(Side side, NodeTime n, HostTime h) {
+    bounds.push_back(bound_by(origin, side, n, h));
+    ++(side == Side::above ? up : down);
   }
 };
 
 Certificate certificate_of(const PieceBounds& piece, const Assumptions& assumptions) {
-  std::vector<JournalEntry> sorted = piece.bounds;  // appending is cheap, inserting is not
-  std::sort(sorted.begin(), sorted.end(),
-            [](const JournalEntry& a, const JournalEntry& b) { return a.s < b.s; });
+  std::vector<Bound> sorted = piece.bounds;  // appending is cheap, inserting is not
+  std::sort(sorted.begin(), sorted.end(), [](const Bound& a, const Bound& b) { return a.s < b.s; });
   Certificate certificate(assumptions);
-  for (const JournalEntry& b : sorted) {
-    b.bound == Bound::above ? certificate.add_above(b.s, b.x) : certificate.add_below(b.s, b.x);
-  }
+  for (const Bound& b : sorted) certificate.add(b);
   return certificate;
 }
 
@@ -109,7 +114,7 @@ Duration nanoseconds(double s) { return Duration{static_cast<std::int64_t>(s)}; 
 bool fill_knots(const PieceBounds& piece, const Certificate& certificate, OfflineEstimate& estimate,
                 double least_width, std::vector<ClockKnot>& knots) {
   double begin = piece.bounds.front().s, end = begin;
-  for (const JournalEntry& b : piece.bounds) {
+  for (const Bound& b : piece.bounds) {
     begin = std::min(begin, b.s);
     end = std::max(end, b.s);
   }
@@ -159,10 +164,10 @@ void fit(const PieceBounds& piece, double least_width, ClockPieceModel& model,
 bool counted_like_the_host(const PieceBounds& piece) {
   const auto [first, last] =
       std::minmax_element(piece.bounds.begin(), piece.bounds.end(),
-                          [](const JournalEntry& a, const JournalEntry& b) { return a.s < b.s; });
-  const auto [least, most] = std::minmax_element(
-      piece.bounds.begin(), piece.bounds.end(),
-      [](const JournalEntry& a, const JournalEntry& b) { return a.s + a.x < b.s + b.x; });
+                          [](const Bound& a, const Bound& b) { return a.s < b.s; });
+  const auto [least, most] =
+      std::minmax_element(piece.bounds.begin(), piece.bounds.end(),
+                          [](const Bound& a, const Bound& b) { return a.s + a.x < b.s + b.x; });
   const double host = most->s + most->x - least->s - least->x;
   const double node = last->s - first->s;
   return node < 1.01 * host + longest_wait_s && node < longest_piece_s;
@@ -173,8 +178,10 @@ PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::
                     ClockPieceModel& model) {
   PieceBounds piece;
   bool begun = false;
-  for (std::size_t i = 0; i < exchanges.size(); ++i) {
-    if (walk.piece[i] != p) continue;
+  const auto [first, last] = std::equal_range(walk.piece.begin(), walk.piece.end(), p);  // rising
+  for (auto at = first; at != last; ++at) {
+    const auto i = static_cast<std::size_t>(at - walk.piece.begin());
+    if (walk.late[i]) continue;
     const Exchange& e = exchanges[i];
     if (!std::exchange(begun, true)) {
       piece.origin = {e.n_tx, e.h_rx};
@@ -184,8 +191,8 @@ PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::
     model.last = e.h_rx;
     model.violators += (walk.up_left_out[i] ? 1U : 0U) + (walk.echo_left_out[i] ? 1U : 0U);
     if (in_doubt(walk.doubtful, e.h_rx)) continue;
-    if (!walk.up_left_out[i]) piece.add(Bound::above, e.n_tx, e.h_rx);
-    if (e.echo && !walk.echo_left_out[i]) piece.add(Bound::below, e.echo->n_rx, e.echo->h_tx);
+    if (!walk.up_left_out[i]) piece.add(Side::above, e.n_tx, e.h_rx);
+    if (e.echo && !walk.echo_left_out[i]) piece.add(Side::below, e.echo->n_rx, e.echo->h_tx);
   }
   model.up = piece.up;
   model.down = piece.down;

@@ -27,12 +27,12 @@ struct Changes {
   std::vector<SlopeBelief> slopes;  // of the routes before each change, and of the last
 };
 
-Changes find_changes(const std::vector<JournalEntry>& bounds) {
+Changes find_changes(const std::vector<Bound>& bounds) {
   OffsetEstimate estimate;
   Changes changes;
   SlopeBelief slope;
-  for (const JournalEntry& b : bounds) {
-    b.bound == Bound::above ? estimate.add_above(b.s, b.x) : estimate.add_below(b.s, b.x);
+  for (const Bound& b : bounds) {
+    estimate.add(b);
     if (estimate.changes() > changes.at.size()) {
       changes.at.push_back(estimate.last_change()->s);
       changes.slopes.push_back(slope);
@@ -43,10 +43,10 @@ Changes find_changes(const std::vector<JournalEntry>& bounds) {
   return changes;
 }
 
-std::size_t count(const std::vector<JournalEntry>& bounds, Bound kind, double begin, double end) {
-  return static_cast<std::size_t>(std::count_if(
-      bounds.begin(), bounds.end(),
-      [&](const JournalEntry& b) { return b.bound == kind && b.s >= begin && b.s < end; }));
+std::size_t count(const std::vector<Bound>& bounds, Side side, double begin, double end) {
+  return static_cast<std::size_t>(std::count_if(bounds.begin(), bounds.end(), [&](const Bound& b) {
+    return b.side == side && b.s >= begin && b.s < end;
+  }));
 }
 
 struct Span {
@@ -55,9 +55,9 @@ struct Span {
 };
 
 /// The spans between changes. Short ones, in which a route was being changed, are left out.
-std::vector<Span> routes_between(const std::vector<JournalEntry>& bounds, const Changes& changes) {
+std::vector<Span> routes_between(const std::vector<Bound>& bounds, const Changes& changes) {
   double begin = bounds.front().s, end = begin;
-  for (const JournalEntry& b : bounds) {
+  for (const Bound& b : bounds) {
     begin = std::min(begin, b.s);
     end = std::max(end, b.s);
   }
@@ -66,8 +66,8 @@ std::vector<Span> routes_between(const std::vector<JournalEntry>& bounds, const 
   for (std::size_t i = 0; i < changes.slopes.size(); ++i) {
     const double next = i < changes.at.size() ? changes.at[i] : std::nextafter(end, infinite);
     if (next <= begin) continue;
-    const bool enough = count(bounds, Bound::above, begin, next) >= least_bounds &&
-                        count(bounds, Bound::below, begin, next) >= least_bounds;
+    const bool enough = count(bounds, Side::above, begin, next) >= least_bounds &&
+                        count(bounds, Side::below, begin, next) >= least_bounds;
     if (enough) spans.push_back({begin, next, changes.slopes[i].mean});
     begin = next;
   }
@@ -85,15 +85,15 @@ void keep_low(std::vector<OffsetBound>& lows, OffsetBound bound, double slope) {
 
 }  // namespace
 
-OfflineEstimate::OfflineEstimate(const std::vector<JournalEntry>& bounds) {
+OfflineEstimate::OfflineEstimate(const std::vector<Bound>& bounds) {
   const Changes changes = find_changes(bounds);
   const std::vector<Span> spans = routes_between(bounds, changes);
   for (const Span& span : spans) {
     const SlopeBelief prior =
         spans.size() == 1 ? SlopeBelief{} : SlopeBelief{span.slope, same_crystal};
-    stretches_.push_back({span.begin, span.end, Route(prior, all_corners), {}, {}, 0.0});
+    stretches_.push_back({span.begin, span.end, Route(prior, LiftedHull::all), {}, {}, 0.0});
   }
-  for (const JournalEntry& b : bounds) {
+  for (const Bound& b : bounds) {
     const auto stretch = std::find_if(stretches_.begin(), stretches_.end(), [&](const Stretch& s) {
       return s.begin <= b.s && b.s < s.end;
     });
@@ -106,16 +106,14 @@ OfflineEstimate::OfflineEstimate(const std::vector<JournalEntry>& bounds) {
   join();
 }
 
-void OfflineEstimate::add(Stretch& stretch, const JournalEntry& b, double slope) {
+void OfflineEstimate::add(Stretch& stretch, const Bound& b, double slope) {
   const auto bin = static_cast<std::size_t>(std::max(0.0, (b.s - stretch.begin) / bin_s));
   if (stretch.lows.size() <= bin) stretch.lows.resize(bin + 1);
-  if (b.bound == Bound::above) {
-    stretch.route.add_above({b.s, b.x}, stretch.last);
-    keep_low(stretch.lows[bin].above, {b.s, b.x}, slope);
-  } else {
-    stretch.route.add_below({b.s, -b.x}, stretch.last);
-    keep_low(stretch.lows[bin].below, {b.s, -b.x}, -slope);
-  }
+  const OffsetBound bound = from_above(b);
+  stretch.route.add(b.side, bound, stretch.last);
+  const bool up = b.side == Side::above;
+  Lows& lows = stretch.lows[bin];
+  keep_low(up ? lows.above : lows.below, bound, up ? slope : -slope);
 }
 
 /// The middle of one route, with its floors as sharp as the lowest bounds around there say.
@@ -123,7 +121,7 @@ Middle OfflineEstimate::middle(const Stretch& stretch, double t) {
   Middle known = stretch.last;
   const auto bin = static_cast<std::size_t>(
       std::clamp((t - stretch.begin) / bin_s, 0.0, static_cast<double>(stretch.lows.size() - 1)));
-  const FloorLine above = known.above(), below = known.below();
+  const FloorLine above = known.floor(Side::above), below = known.floor(Side::below);
   std::vector<double> over, under;
   const std::size_t first = bin - std::min(bin, bins_around);
   for (std::size_t i = first; i < std::min(bin + bins_around + 1, stretch.lows.size()); ++i) {

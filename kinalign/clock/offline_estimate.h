@@ -7,7 +7,6 @@
 #include "kinalign/clock/route.h"
 
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 namespace kinalign {
@@ -15,7 +14,7 @@ namespace kinalign {
 class OfflineEstimate {
  public:
   /// Bounds in the order in which they became known.
-  explicit OfflineEstimate(const std::vector<JournalEntry>& bounds);
+  explicit OfflineEstimate(const std::vector<Bound>& bounds);
 
   /// x(t); t nearly rising from call to call is fastest. Needs a bound of each kind.
   double at(double t);
@@ -23,8 +22,6 @@ class OfflineEstimate {
   double least_round_trip() const;  // s
 
  private:
-  static constexpr std::size_t all_corners = std::numeric_limits<std::size_t>::max();
-
   /// The lowest bounds of ten seconds, by which a floor's sharpness is known around there.
   struct Lows {
     std::vector<OffsetBound> above, below;
@@ -36,7 +33,7 @@ class OfflineEstimate {
     Middle last;
     double moved = 0.0;  // to join it to the others
   };
-  static void add(Stretch& stretch, const JournalEntry& bound, double slope);
+  static void add(Stretch& stretch, const Bound& bound, double slope);
   static Middle middle(const Stretch& stretch, double t);
   void join();
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kinalign {
 
@@ -15,49 +16,50 @@ constexpr double least_off_s = 20e-6;     // … and at least this
 constexpr double wander = 0.2e-6;         // of a slope between two routes
 constexpr double alike_deviations = 8.0;  // of round trips before and behind a step
 constexpr double step_deviations = 20.0;
-constexpr std::uint32_t often = 64, seldom = 4;
+constexpr std::uint64_t few_points = 64;  // of a route: each one is told apart
+constexpr double far_gaps = 8.0;          // above a floor, where a bound says nothing of it: e^-8
+constexpr std::uint32_t seldom = 4;
+constexpr double stale_s = 1.0, stale_answer_s = 0.25;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-FloorLine OffsetEstimate::line(Side side) const {
-  return side == Side::above ? middle_.above() : middle_.below();
-}
-
-const Floor& OffsetEstimate::floor(Side side) const {
-  return side == Side::above ? route_.above() : route_.below();
-}
-
 bool OffsetEstimate::settled(double s) const {
-  return since_ && s - *since_ > settling_s && middle_.floor_deviation() < 1.0;
+  return since_ && s - *since_ > settling_s && middle_.sharp();
 }
 
 void OffsetEstimate::add_to_route(Side side, OffsetBound bound) {
   if (!since_) since_ = bound.s;
-  if (side == Side::above) {
-    route_.add_above(bound, middle_);
-  } else {
-    route_.add_below(bound, middle_);
-  }
+  route_.add(side, bound, middle_);
 }
 
-void OffsetEstimate::add(Side side, OffsetBound bound) {
-  RecentBounds& recent = recent_[static_cast<std::size_t>(side)];
-  const double density = side == Side::above ? middle_.above_density : middle_.below_density;
-  const bool watched = settled(bound.s) && floor(side).counts().total() >= settling_points;
-  const double limit = watched ? std::max(gaps_off / density, least_off_s) : 0.0;
-  const double excess = watched ? line(side).excess(bound) : 0.0;
+void OffsetEstimate::add(const Bound& b) {
+  const OffsetBound bound = from_above(b);
+  RecentBounds& recent = this->recent(b.side);
+  const FloorLine line = middle_.floor(b.side);
+  const double density = middle_.density(b.side), excess = line.excess(bound);
+  const ExcessCounts& counts = route_.floor(b.side).counts();
+  const bool watched = settled(b.s) && counts.total() >= settling_points;
+  const double limit = watched ? std::max(gaps_off / density, least_off_s) : infinite;
   const Standing standing = excess < -limit  ? Standing::held
                             : excess > limit ? Standing::above
                                              : Standing::usual;
   recent.add(bound, standing);
-  if (standing != Standing::held) add_to_route(side, bound);
-  if (const auto late = recent.release(bound.s)) add_to_route(side, *late);
+  if (standing != Standing::held) add_to_route(b.side, bound);
+  if (const auto late = recent.release(b.s)) add_to_route(b.side, *late);
   if (watched) {
     judge_change();
-    if (const auto s = recent.moved(line(side), floor(side).counts())) return change_route(*s);
+    if (const auto s = recent.moved(line, counts)) return change_route(*s);
   }
-  const auto points = route_.above().counts().total() + route_.below().counts().total();
-  if (route_.bounded() && ++unseen_ >= (points < often ? 1 : seldom)) refresh(bound.s);
+  look(b.s, !(excess * density > far_gaps));
+}
+
+/// Where the middle is, anew, once enough bounds have said something of it.
+void OffsetEstimate::look(double s, bool said) {
+  if (!route_.bounded()) return;
+  const bool young = route_.points() < few_points;
+  if (said || young) ++unseen_;
+  if (unseen_ >= (young ? 1 : seldom) || s - middle_.t > stale_s) refresh(s);
 }
 
 void OffsetEstimate::refresh(double t) {
@@ -83,8 +85,8 @@ Middle OffsetEstimate::joined(const Middle& middle) const {
 
 std::optional<Middle> OffsetEstimate::at(double t) {
   if (route_.bounded()) {
-    refresh(t);
-    return joined(middle_);
+    if (unseen_ > 0 || std::abs(t - middle_.t) > stale_answer_s) refresh(t);
+    return joined(middle_.moved_to(t));
   }
   if (!joint_) return std::nullopt;
   Middle middle = middle_;
@@ -111,46 +113,50 @@ double OffsetEstimate::least_round_trip() const {
   return joint_ ? std::min(least_round_trip_, middle_.round_trip) : middle_.round_trip;
 }
 
+/// The offset is carried over s.
+void OffsetEstimate::join_routes(double s) {
+  const Middle old = *at(s);
+  least_round_trip_ = joint_ ? std::min(least_round_trip_, old.round_trip) : old.round_trip;
+  const double variance = old.deviation * old.deviation;
+  const bool silent = recent(Side::above).silent_around(s);
+  joint_ = Joint{s, old.value, variance, old.round_trip, old.floor_deviation(), silent};
+  route_ = Route({old.slope, route_.belief().deviation + wander});
+}
+
+/// The first guess at the new floors: through the lowest points behind s.
+void OffsetEstimate::guess_floors(double s, const Middle& before) {
+  const auto risen = [&](Side side) {
+    const FloorLine floor = before.floor(side);
+    double least = infinite;
+    for (std::size_t k = 0; k < recent(side).behind(s); ++k) {
+      least = std::min(least, floor.excess(recent(side).newest(k)));
+    }
+    return least < infinite ? least : 0.0;
+  };
+  const double up = risen(Side::above), down = risen(Side::below);
+  middle_ = before.moved_to(s);
+  middle_.value += (up - down) / 2.0;
+  middle_.round_trip += up + down;
+  middle_.above_density = middle_.below_density = 0.0;
+}
+
 /// What came after s is of a new route.
 void OffsetEstimate::change_route(double s) {
   for (const RecentBounds& recent : recent_) s = std::min(s, recent.before_held().value_or(s));
-  const Middle old = *at(s);
-  const bool silent = recent_[0].silent_around(s);
-  least_round_trip_ = joint_ ? std::min(least_round_trip_, old.round_trip) : old.round_trip;
-  joint_ = Joint{
-      s, old.value, old.deviation * old.deviation, old.round_trip, old.floor_deviation(), silent};
-  const Middle before = middle_;
-  route_ = Route({old.slope, route_.belief().deviation + wander});
+  join_routes(s);
   since_.reset();
   unseen_ = 0;
   ++changes_;
-  std::array<double, 2> risen{};
-  const std::array sides{Side::above, Side::below};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const FloorLine floor = sides[i] == Side::above ? before.above() : before.below();
-    bool any = false;
-    for (std::size_t k = 0; k < recent_[i].size() && recent_[i].newest(k).s > s; ++k) {
-      const double excess = floor.excess(recent_[i].newest(k));
-      risen[i] = any ? std::min(risen[i], excess) : excess;
-      any = true;
-    }
-  }
   last_change_ = RouteChange{s, std::nullopt};
-  // The first guess at the new floors: through the lowest points.
-  middle_.t = s;
-  middle_.value = before.at(s) + (risen[0] - risen[1]) / 2.0;
-  middle_.slope = old.slope;
-  middle_.round_trip = before.round_trip + risen[0] + risen[1];
-  middle_.above_density = middle_.below_density = 0.0;
-  for (std::size_t i = 0; i < 2; ++i) {
-    std::size_t k = 0;
-    while (k < recent_[i].size() && recent_[i].newest(k).s > s) ++k;
+  guess_floors(s, middle_);
+  for (const Side side : {Side::above, Side::below}) {
     RecentBounds kept;
-    while (k-- > 0) {
-      kept.add(recent_[i].newest(k), Standing::usual);
-      add_to_route(sides[i], recent_[i].newest(k));
+    for (std::size_t k = recent(side).behind(s); k-- > 0;) {
+      const OffsetBound& bound = recent(side).newest(k);
+      kept.add(bound, Standing::usual);
+      add_to_route(side, bound);
     }
-    recent_[i] = kept;
+    recent(side) = kept;
   }
 }
 

@@ -26,9 +26,8 @@ class OffsetEstimate {
  public:
   explicit OffsetEstimate(SlopeBelief prior = {}) : route_(prior) {}
 
-  /// x(s) <= x, from a packet up; x(s) >= x, from a packet down. Nearly in order of s.
-  void add_above(double s, double x) { add(Side::above, {s, x}); }
-  void add_below(double s, double x) { add(Side::below, {s, -x}); }
+  /// Nearly in order of s.
+  void add(const Bound& bound);
 
   /// Absent until there is a bound of each kind.
   std::optional<Middle> at(double t);
@@ -39,7 +38,6 @@ class OffsetEstimate {
   std::uint32_t changes() const { return changes_; }
 
  private:
-  enum class Side : std::uint8_t { above = 0, below = 1 };
   /// Where the present route was joined to the ones before.
   struct Joint {
     double s = 0.0, x = 0.0, variance = 0.0;
@@ -47,14 +45,15 @@ class OffsetEstimate {
     bool judged = false;                             // whether it was the counter that stepped
   };
 
-  void add(Side side, OffsetBound bound);
   void add_to_route(Side side, OffsetBound bound);
+  void look(double s, bool said);
   void refresh(double t);
   Middle joined(const Middle& middle) const;
   bool settled(double s) const;
-  FloorLine line(Side side) const;
-  const Floor& floor(Side side) const;
+  RecentBounds& recent(Side side) { return recent_[side == Side::above ? 0 : 1]; }
   void change_route(double s);
+  void join_routes(double s);
+  void guess_floors(double s, const Middle& before);
   void judge_change();
 
   Route route_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kinalign {
 
@@ -14,7 +15,7 @@ constexpr std::array windows_s{1.0, 3.0, 9.0};
 constexpr std::size_t least_points = 6;
 constexpr double steepness_s = 2.0;  // over the seconds watched: jumps for each of its spreads, …
 constexpr double least_steepness = 1.0;  // … at the least
-constexpr std::size_t asked_each = 3;    // bounds: sorting a second's delays takes a microsecond
+constexpr std::size_t asked_each = 3;    // bounds: a look at all of nine seconds takes a while
 constexpr double silent_steps = 2.5;
 constexpr double least_gap_s = 1e-3;
 constexpr double sure_nats = 25.0;  // evidence against the old floor
@@ -44,37 +45,39 @@ std::optional<double> RecentBounds::moved(const FloorLine& line, const ExcessCou
   const bool below = since_held_ > 0;
   const std::size_t all = below ? since_held_ : above_run_;
   if (all < least_points || all % asked_each != 0) return std::nullopt;
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t points = 0;
   for (const double window : windows_s) {
     if (newest(0).s - newest(all - 1).s < window) return std::nullopt;
-    std::size_t points = below ? all : newest_within(window, all);
+    const double begin = below ? newest(all - 1).s : newest(0).s - window;
+    for (; points < all && newest(points).s >= begin; ++points) {
+      least = std::min(least, line.excess(newest(points)));
+    }
     if (points < least_points) return std::nullopt;
-    const Level level = level_of_newest(line, points);
-    const bool sure = below || nats(counts, points, level.least) > sure_nats;
-    if (!sure || !another_floor(level, window, counts)) continue;
-    while (points < all && line.excess(newest(points)) >= level.least) ++points;
+    const bool sure = below || nats(counts, points, least) > sure_nats;
+    if (!sure || !another_floor({points, least}, window, line, counts)) continue;
+    while (points < all && line.excess(newest(points)) >= least) ++points;
     return before(points - 1);
   }
   return std::nullopt;
 }
 
-/// How many of the newest `all` came within so many seconds.
-std::size_t RecentBounds::newest_within(double window_s, std::size_t all) const {
-  while (all > 0 && newest(all - 1).s < newest(0).s - window_s) --all;
-  return all;
-}
-
-RecentBounds::Level RecentBounds::level_of_newest(const FloorLine& line, std::size_t points) const {
-  std::array<double, capacity> excess{};
-  for (std::size_t i = 0; i < points; ++i) excess[i] = line.excess(newest(i));
-  const auto begin = excess.begin(), half = begin + static_cast<std::ptrdiff_t>(points / 2);
-  std::nth_element(begin, half, begin + static_cast<std::ptrdiff_t>(points));
-  const double least = *std::min_element(begin, half + 1);
-  return {least, *half - least};
-}
-
-bool RecentBounds::another_floor(const Level& level, double window_s, const ExcessCounts& counts) {
+/// Half of them lie nearer to the least than delays usually do, and than the least rose.
+bool RecentBounds::another_floor(const Level& level, double window_s, const FloorLine& line,
+                                 const ExcessCounts& counts) const {
   const double steepness = std::max(steepness_s / window_s, least_steepness);
-  return std::abs(level.least) > steepness * level.spread && level.spread < counts.median();
+  const double near = level.least + std::min(std::abs(level.least) / steepness, counts.median());
+  std::size_t nearer = 0;
+  for (std::size_t i = 0; i < level.points; ++i) {
+    nearer += line.excess(newest(i)) < near ? 1 : 0;
+  }
+  return nearer > level.points / 2;
+}
+
+std::size_t RecentBounds::behind(double s) const {
+  std::size_t count = 0;
+  while (count < size_ && newest(count).s > s) ++count;
+  return count;
 }
 
 double RecentBounds::before(std::size_t i) const {

@@ -37,6 +37,8 @@ class RecentBounds {
   std::optional<OffsetBound> release(double s);
 
   std::size_t size() const { return size_; }
+  /// How many of the newest came behind s.
+  std::size_t behind(double s) const;
   const OffsetBound& newest(std::size_t i) const { return entry(i).bound; }  // 0: the last one
 
  private:
@@ -48,12 +50,13 @@ class RecentBounds {
   const Entry& entry(std::size_t newest) const {
     return entries_[(next_ + capacity - 1 - newest) % capacity];
   }
+  /// Of some of the newest: how many, and the least delay above a floor.
   struct Level {
-    double least = 0.0, spread = 0.0;  // of some delays: the least, and from there to the median
+    std::size_t points = 0;
+    double least = 0.0;
   };
-  Level level_of_newest(const FloorLine& line, std::size_t points) const;
-  static bool another_floor(const Level& level, double window_s, const ExcessCounts& counts);
-  std::size_t newest_within(double window_s, std::size_t all) const;
+  bool another_floor(const Level& level, double window_s, const FloorLine& line,
+                     const ExcessCounts& counts) const;
   double before(std::size_t newest) const;
 
   std::array<Entry, capacity> entries_{};

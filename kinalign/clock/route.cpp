@@ -89,23 +89,24 @@ std::optional<SlopeBelief> better_grid(const Slopes& s, const Moments& found, do
 
 }  // namespace
 
+FloorLine Middle::floor(Side side) const {
+  const double sign = side == Side::above ? 1.0 : -1.0;
+  return {t, sign * value + round_trip / 2.0, sign * slope};
+}
+
 double Middle::floor_deviation() const {
-  if (above_density <= 0.0 || below_density <= 0.0) return 1.0;
+  if (!sharp()) return 1.0;
   return std::hypot(1.0 / above_density, 1.0 / below_density);
 }
 
-void Route::add_above(OffsetBound bound, const Middle& middle) {
-  above_.add(bound, middle.above());
-}
-
-void Route::add_below(OffsetBound mirrored, const Middle& middle) {
-  below_.add(mirrored, middle.below());
+void Route::add(Side side, OffsetBound bound, const Middle& middle) {
+  (side == Side::above ? above_ : below_).add(bound, middle.floor(side));
 }
 
 Middle Route::middle(double t, const Middle& last) {
   Middle known;
-  known.above_density = above_.density(last.above());
-  known.below_density = below_.density(last.below());
+  known.above_density = above_.density(last.floor(Side::above));
+  known.below_density = below_.density(last.floor(Side::below));
   return average(t, known, belief_);
 }
 
@@ -115,7 +116,7 @@ Middle Route::middle_elsewhere(double t, const Middle& now) const {
 }
 
 Middle Route::average(double t, const Middle& known, SlopeBelief& around) const {
-  const bool sharp = known.above_density > 0.0 && known.below_density > 0.0;
+  const bool sharp = known.sharp();
   const double above_gap = sharp ? 1.0 / known.above_density : 0.0;
   const double below_gap = sharp ? 1.0 / known.below_density : 0.0;
   const Evidence evidence{above_.hull(), below_.hull(), t,

@@ -22,9 +22,16 @@ struct Middle {
   double above_density = 0.0, below_density = 0.0;  // 0: not known yet
 
   double at(double s) const { return value + slope * (s - t); }
-  FloorLine above() const { return {t, value + round_trip / 2.0, slope}; }
-  FloorLine below() const { return {t, -value + round_trip / 2.0, -slope}; }  // mirrored
-  /// How far the two floors may still lie from where they are seen, s.
+  Middle moved_to(double s) const {
+    Middle moved = *this;
+    moved.t = s;
+    moved.value = at(s);
+    return moved;
+  }
+  FloorLine floor(Side side) const;  // mirrored below
+  double density(Side side) const { return side == Side::above ? above_density : below_density; }
+  bool sharp() const { return above_density > 0.0 && below_density > 0.0; }
+  /// How far the two floors may still lie from where they are seen, s; 1 where they are not sharp.
   double floor_deviation() const;
 };
 
@@ -37,11 +44,10 @@ class Route {
   explicit Route(SlopeBelief prior, std::size_t corners = 255)
       : prior_(prior), belief_(prior), above_(corners), below_(corners) {}
 
-  void add_above(OffsetBound bound, const Middle& middle);
-  void add_below(OffsetBound mirrored, const Middle& middle);
+  void add(Side side, OffsetBound bound, const Middle& middle);
   bool bounded() const { return !above_.hull().empty() && !below_.hull().empty(); }
-  const Floor& above() const { return above_; }
-  const Floor& below() const { return below_; }
+  const Floor& floor(Side side) const { return side == Side::above ? above_ : below_; }
+  std::uint64_t points() const { return above_.counts().total() + below_.counts().total(); }
   SlopeBelief belief() const { return belief_; }
 
   /// Averaged over all slopes by how likely they are; `last` is an earlier answer or a guess. Needs

@@ -337,6 +337,35 @@ TEST_CASE("fault 36 sample_batch: each sample has its own counter, the exchange 
   }
 }
 
+TEST_CASE("fault 37 firmware_overload: a sample sent 50 ms late is stamped when it was taken") {
+  TestDesk host(lab), prompt_host(lab);
+  TestNode node(7, 1, lab), prompt(7, 1, lab);
+  node.samples.emplace_back().age_us = 50'000;
+  prompt.samples.emplace_back();
+  LiveClock clock, prompt_clock;
+  const auto stamp_of = [](TestDesk& desk, TestNode& from, LiveClock& of, double t) {
+    const NodeNews news = desk.exchange(from, home, t);
+    if (!news.exchange) return std::optional<ClockStamp>();  // the first one is held: it has a key
+    of.push(*news.exchange);
+    return of.host_from_node(news.exchange->boot, news.readings[0].n);
+  };
+  for (int k = 0; k < 100; ++k) {
+    const double t = k / 15.0;
+    const auto late = stamp_of(host, node, clock, t);
+    const auto at_once = stamp_of(prompt_host, prompt, prompt_clock, t);
+    if (k < 3) continue;
+    REQUIRE(late);
+    const HostTime taken = host_s(t - 0.05);
+    CHECK(late->certainty == Certainty::certified);
+    CHECK(*late->earliest <= taken);
+    CHECK(*late->latest >= taken);
+    CHECK(std::chrono::abs(late->time - taken) < std::chrono::microseconds(100));
+    const Duration width = *late->latest - *late->earliest;
+    const Duration usual = *at_once->latest - *at_once->earliest;
+    CHECK(std::chrono::abs(width - usual) < std::chrono::microseconds(10));  // 100 ppm of 50 ms
+  }
+}
+
 TEST_CASE("fault 38 nan_inf_sample, zero_quaternion: kept as they are, marked, stamped") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);

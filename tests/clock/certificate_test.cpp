@@ -52,9 +52,9 @@ TEST_CASE("the truth lies in the range at every time while the assumptions hold"
     double s = 0.0;
     for (int i = 0; i < 1000 && s < 150.0; ++i) {
       s += wait(random);
-      certificate.add_above(s, truth(s) + delay(random));
+      certificate.add({s, truth(s) + delay(random), Side::above});
       const double later = s + delay(random);
-      certificate.add_below(later, truth(later) - delay(random));
+      certificate.add({later, truth(later) - delay(random), Side::below});
       if (i % 20 != 19) continue;
       for (const double t : {s, s * 0.5, s + 100.0, std::fmod(s * 7.0, s)}) {
         const auto range = certificate.at(t);
@@ -68,12 +68,12 @@ TEST_CASE("the truth lies in the range at every time while the assumptions hold"
 
 TEST_CASE("a claim needs two bounds from above and one from below") {
   Certificate certificate({});
-  certificate.add_above(0.0, 1.0);
+  certificate.add({0.0, 1.0, Side::above});
   CHECK(!certificate.at(0.0));
-  certificate.add_below(0.1, 0.0);
+  certificate.add({0.1, 0.0, Side::below});
   CHECK(!certificate.bounded());
   CHECK(certificate.at(0.0));
-  certificate.add_above(0.2, 1.0);
+  certificate.add({0.2, 1.0, Side::above});
   CHECK(certificate.bounded());
 }
 
@@ -81,8 +81,8 @@ TEST_CASE("a function that bends more contradicts itself, and under a greater cu
   Certificate certificate({});
   for (double s = 0.0; s < 60.0; s += 0.1) {
     const double x = 1e-6 * s * s / 2.0;
-    certificate.add_above(s, x + 1e-5);
-    certificate.add_below(s + 0.05, x);
+    certificate.add({s, x + 1e-5, Side::above});
+    certificate.add({s + 0.05, x, Side::below});
   }
   CHECK(!certificate.at(60.0));
   const auto range = certificate.relaxed(2e-6).at(60.0);

@@ -87,11 +87,10 @@ TEST_CASE("the peak is the greatest bound that any slope leaves") {
 TEST_CASE("a hull that forgets its oldest corners never bounds more") {
   std::mt19937_64 random(1);
   const auto points = random_points(500, random);
-  LiftedHull all(5e-8), few(5e-8);
+  LiftedHull all(5e-8), few(5e-8, 6);
   for (const Point& p : points) {
     all.add(p.s, p.bound);
     few.add(p.s, p.bound);
-    few.keep_newest(6);
     CHECK(few.size() <= 6);
     CHECK(few.at(p.s, 1e-5).bound >= all.at(p.s, 1e-5).bound);
   }

@@ -2,8 +2,10 @@
 #include "kinalign/clock/live_clock.h"
 
 #include <doctest/doctest.h>
+#include <malloc.h>
 
 #include <algorithm>
+#include <memory>
 
 using namespace kinalign;
 using namespace std::chrono_literals;
@@ -100,4 +102,24 @@ TEST_CASE("events beyond sixty-four are counted") {
   CHECK(clock.take_events().size() == 64);
   CHECK(clock.missed_events() == 36);
   CHECK(clock.take_events().empty());
+}
+
+TEST_CASE("a clock holds no more than 64 KiB, whatever a node says") {
+  const auto held = [] { return ::mallinfo2().uordblks; };
+  const auto before = held();
+  const auto clock = std::make_unique<LiveClock>();
+  // Delays that fall and rise: each bound is a corner of the hulls, more of them in a moment of the
+  // counter's time than they remember.
+  std::size_t most = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Duration s = 400us * i, delay{(i - 10'000LL) * (i - 10'000LL) / 10};
+    clock->push({7, node(s), host(s + delay + 1ms), Exchange::Echo{node(s), host(s - delay)}});
+    most = std::max(most, held() - before);
+  }
+  if (most == 0) {
+    MESSAGE("skipped: a sanitizer's heap, of which nothing is told");
+    return;
+  }
+  CHECK(most > sizeof(LiveClock));
+  CHECK(most <= 64U << 10U);
 }

@@ -19,8 +19,8 @@ struct Packets {
   double x(double s) const { return 12e-6 * s + step; }
   void run(OffsetEstimate& estimate, double until) {
     for (; now < until; now += 1.0 / 15.0) {
-      estimate.add_above(now, x(now) + up + delay(random));
-      estimate.add_below(now + 0.01, x(now + 0.01) - down - delay(random));
+      estimate.add({now, x(now) + up + delay(random), Side::above});
+      estimate.add({now + 0.01, x(now + 0.01) - down - delay(random), Side::below});
     }
   }
 
@@ -34,9 +34,9 @@ struct Packets {
 TEST_CASE("nothing is told before a bound of each kind") {
   OffsetEstimate estimate;
   CHECK(!estimate.at(0.0));
-  estimate.add_above(0.0, 3e-3);
+  estimate.add({0.0, 3e-3, Side::above});
   CHECK(!estimate.at(0.0));
-  estimate.add_below(0.01, 1e-3);
+  estimate.add({0.01, 1e-3, Side::below});
   REQUIRE(estimate.at(0.0));
   CHECK(estimate.at(0.0)->value == doctest::Approx(2e-3).epsilon(1e-3));
 }
@@ -94,8 +94,8 @@ TEST_CASE("a step of the counter is told from a route, and followed") {
 TEST_CASE("a crystal worse than any is not believed") {
   OffsetEstimate estimate;
   for (double s = 0.0; s < 20.0; s += 0.1) {  // floors that drift by 500 ppm
-    estimate.add_above(s, 500e-6 * s + 1e-3);
-    estimate.add_below(s, 500e-6 * s - 1e-3);
+    estimate.add({s, 500e-6 * s + 1e-3, Side::above});
+    estimate.add({s, 500e-6 * s - 1e-3, Side::below});
   }
   CHECK(std::abs(estimate.at(20.0)->slope) < 150e-6);
 }

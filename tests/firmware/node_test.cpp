@@ -91,7 +91,7 @@ TEST_CASE("two ticks due at once make one sample, and the other is counted") {
   CHECK(counts.missed == 1);
 }
 
-TEST_CASE("fault 36, sample batch: of 200 Hz each sample keeps its stamp") {
+TEST_CASE("fault 36 sample_batch: of 200 Hz each sample keeps its stamp") {
   Bench bench;
   std::vector<std::uint64_t> stamps, received;
   for (int i = 0; i < 200; ++i) {
@@ -111,7 +111,7 @@ TEST_CASE("fault 36, sample batch: of 200 Hz each sample keeps its stamp") {
   CHECK(received == stamps);
 }
 
-TEST_CASE("fault 37, overload: a frame sent 50 ms after its samples says so") {
+TEST_CASE("fault 37 firmware_overload: a frame sent 50 ms after its samples says so") {
   Bench bench;
   const std::uint64_t taken = bench.board.now_us + 1;
   bench.node.tick(1);

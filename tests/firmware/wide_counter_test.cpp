@@ -15,7 +15,7 @@ TEST_CASE("a counter of 32 bits goes on past its turn") {
   CHECK(counter.widen(0) == 0x100000000);
 }
 
-TEST_CASE("fault 6, wrap of 32 bits: asked once in any time below a turn, it is never wrong") {
+TEST_CASE("fault 6 counter_wrap32: asked once in any time below a turn, it is never wrong") {
   for (const auto seed : fresh_seeds(100)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

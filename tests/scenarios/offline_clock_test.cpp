@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The offline clock over simulated links, on fresh seeds each time.
+#include "tests/scenarios/minutes.h"
 #include "tests/seeds.h"
 #include "tools/clock_table/judge.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 
 using namespace kinalign;
-
-namespace {
-
-constexpr double ms = 1e-3;
-
-ExchangeOptions minutes(Link link, double minutes) {
-  ExchangeOptions options;
-  options.length_s = 60.0 * minutes;
-  options.link.link = link;
-  return options;
-}
-
-}  // namespace
 
 TEST_CASE("offline errors stay under the bars of each link, on any seeds") {
   struct Bar {
@@ -102,4 +91,34 @@ TEST_CASE("a life of one frame, and one without a reply, are pieces of which not
   CHECK(!host_from_node(clock.model, 1, NodeTime{5s}, HostTime{10s}));
   CHECK(host_from_node(clock.model, 2, NodeTime{5s}, HostTime{11s}));
   CHECK(fit_offline_clock({}).model.pieces.empty());
+}
+
+TEST_CASE("a frame of the life before, that comes after the first of the next, spoils neither") {
+  for (const auto seed : fresh_seeds(5)) {
+    CAPTURE(seed);
+    ExchangeOptions options = minutes(Link::quiet, 1.0);
+    options.reboots = {{.at = 30.0, .gap = 1.0}};
+    auto exchanges = exchanges_of(simulate_exchanges(options, seed));
+    const auto second = std::find_if(exchanges.begin(), exchanges.end(), [&](const Exchange& e) {
+      return e.boot != exchanges.front().boot;
+    });
+    REQUIRE(second != exchanges.end());
+    const Exchange last = *(second - 1);
+    Exchange late = last;
+    late.h_rx = (second + 3)->h_rx;
+    const auto clean = fit_offline_clock(exchanges);
+    exchanges.insert(second + 4, late);
+    const auto clock = fit_offline_clock(exchanges);
+    REQUIRE(clock.model.pieces.size() == 2);
+    for (const Exchange& e : exchanges) {
+      if (e.h_rx == late.h_rx && e.boot == late.boot) continue;
+      const auto stamp = host_from_node(clock.model, e.boot, e.n_tx, e.h_rx);
+      const auto other = host_from_node(clean.model, e.boot, e.n_tx, e.h_rx);
+      REQUIRE(stamp);
+      REQUIRE(other);
+      CHECK(stamp->certainty == Certainty::certified);
+      CHECK(stamp->time == other->time);
+    }
+    CHECK(!host_from_node(clock.model, late.boot, late.n_tx, late.h_rx));
+  }
 }
