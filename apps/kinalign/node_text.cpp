@@ -45,6 +45,8 @@ const char* name_of(ClockEvent::Kind kind) {
       return "slip";
     case Kind::uneasy:
       return "uneasy";
+    case Kind::settled:
+      return "settled";
     case Kind::host_backwards:
       return "host_backwards";
     case Kind::withdrawn:
@@ -143,6 +145,7 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id) {
     return says(fmt::format("its likeliest stamps may be off by up to {:.3f} ms; certificates hold",
                             1e3 * std::abs(event.value)));
   }
+  if (event.kind == Kind::settled) return says("its counter runs evenly again");
   return event.kind == Kind::relaxed ? says("warning: its clock bends more than was assumed") : "";
 }
 

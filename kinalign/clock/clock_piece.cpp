@@ -186,50 +186,29 @@ double ClockPiece::first_doubt() const {
 }
 
 HostTime ClockPiece::doubtful_since() const {
-  return origin_.host + rounded_down(std::max(first_doubt(), 0.0));
+  return origin_.host + rounded_down(std::max(first_doubt(), begin_s_));
 }
 
 HostTime ClockPiece::next_begins() const {
-  if (slip_ == Slip::with_route) {
-    return origin_.host + rounded_down(estimate_.last_change()->s);
+  if (violator_count_ < violators_.size()) {
+    return origin_.host + rounded_down(journal_.newest(0).s);
   }
-  const double now = journal_.newest(0).s;
-  if (slip_ == Slip::between_windows) {
-    return origin_.host + rounded_down(now - FloorLog::window_s);
-  }
-  if (violator_count_ < violators_.size()) return origin_.host + rounded_down(now);
   return std::min({violators_[0].heard, violators_[1].heard, violators_[2].heard});
 }
 
-/// From the last window of floors on.
-ClockPiece ClockPiece::next_by_windows(const SlopeBelief& prior) const {
-  const Bound last = journal_.newest(0);
-  std::size_t kept = 1;
-  const double begin = last.s - FloorLog::window_s;
-  while (kept < journal_.size() && journal_.newest(kept).s > begin) ++kept;
-  const Bound first = journal_.newest(kept - 1);
-  ClockPiece next({origin_.node + rounded_down(first.s), host_time(first)}, assumptions(), prior,
-                  floors_.shortest());
-  const double node = seconds(next.origin_.node - origin_.node);
-  const double host = seconds(next.origin_.host - origin_.host);
-  while (kept-- > 0) {
-    const Bound e = journal_.newest(kept);
-    next.add({e.s - node, e.x + node - host, e.side});
-  }
-  return next;
-}
-
-/// With the same estimate, which has begun anew there, and a certificate from there on.
-ClockPiece ClockPiece::next_by_route() const {
+/// When just a counter stepped by little is not known well: nothing is certified by what came
+/// before now. The estimate has begun anew with its route, or does so with the last window.
+ClockPiece ClockPiece::next_after_slip(const SlopeBelief& prior) const {
   ClockPiece next = *this;
   next.slip_ = Slip::none;
   next.certificate_ = Certificate(assumptions(), corners);
   next.range_.reset();
-  const double begin = estimate_.last_change()->s;
+  next.begin_s_ = journal_.newest(0).s;
+  if (slip_ == Slip::with_route) return next;
+  next.estimate_ = OffsetEstimate(prior);
   for (std::size_t i = journal_.size(); i-- > 0;) {
-    const Bound e = journal_.newest(i);
-    if (e.s <= begin) continue;
-    next.certificate_.add(e);
+    const Bound b = journal_.newest(i);
+    if (b.s > next.begin_s_ - FloorLog::window_s) next.estimate_.add(b);
   }
   return next;
 }
@@ -237,8 +216,7 @@ ClockPiece ClockPiece::next_by_route() const {
 ClockPiece ClockPiece::next_piece() const {
   SlopeBelief prior = estimate_.slope();
   prior.deviation += between_pieces;
-  if (slip_ == Slip::with_route) return next_by_route();
-  if (slip_ == Slip::between_windows) return next_by_windows(prior);
+  if (slip_ == Slip::with_route || slip_ == Slip::between_windows) return next_after_slip(prior);
   if (violator_count_ < violators_.size()) {
     const Bound last = journal_.newest(0);
     return {{origin_.node + rounded_down(last.s), host_time(last)},

@@ -71,8 +71,7 @@ class ClockPiece {
   std::optional<double> narrowed() const;
   std::optional<Verdict> slipped();
   double first_doubt() const;
-  ClockPiece next_by_windows(const SlopeBelief& prior) const;
-  ClockPiece next_by_route() const;
+  ClockPiece next_after_slip(const SlopeBelief& prior) const;
 
   ClockOrigin origin_;
   Certificate certificate_;
@@ -86,6 +85,7 @@ class ClockPiece {
   Slip slip_ = Slip::none;
   std::uint32_t routes_judged_ = 0;
   double amount_ = 0.0;
+  double begin_s_ = 0.0;  // of what is certified
   /// What x could be at range_at_ when it was asked last, and how many bounds came since.
   std::optional<ValueRange> range_;
   double range_at_ = 0.0;

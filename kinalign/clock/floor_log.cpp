@@ -11,6 +11,7 @@ namespace {
 constexpr double least_step_s = 0.7e-3;  // a thousandth of a second shows, with its noise
 constexpr double sure_deviations = 5.0;
 constexpr double alike_deviations = 4.0;
+constexpr double alike_share = 0.7;  // of the step: one way alone that is longer makes it 2
 constexpr double slope_slack = 5e-6;
 constexpr double agreeing_share = 0.05, agreeing_gaps = 3.0;
 constexpr double narrow_share = 0.1, narrow_gaps = 10.0;
@@ -125,8 +126,9 @@ std::optional<double> FloorLog::Comparison::step(const FloorWindow& now, const F
   const double least =
       std::max({least_step_s, sure_deviations * usual, sure_deviations * gap / 2.0});
   if (std::abs(moved) < least) return std::nullopt;
-  return std::abs(longer) > alike_deviations * std::max(gap, usual) ? std::nullopt
-                                                                    : std::optional(moved);
+  const double alike =
+      std::min(alike_deviations * std::max(gap, usual), alike_share * std::abs(moved));
+  return std::abs(longer) > alike ? std::nullopt : std::optional(moved);
 }
 
 }  // namespace kinalign

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t most_events = 64;
 constexpr double between_lives = 2e-6;  // by which a slope may differ
+constexpr Duration settling = std::chrono::seconds(5);
 
 }  // namespace
 
@@ -34,6 +35,8 @@ void LiveClock::begin(BootKey boot, const Crossing& first) {
                  piece_ ? piece_->floors().shortest() : ShortestRoundTrips{});
   boot_ = boot;
   routes_told_ = 0;
+  stepped_.reset();
+  settles_.reset();
   tell({ClockEvent::Kind::new_boot, boot, first.h, first.h});
 }
 
@@ -57,6 +60,7 @@ void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
   }
   newest_ = h_rx;
   answer(piece_->push(crossing), crossing);
+  if (settles_ && newest_ >= *settles_) settle(crossing);
 }
 
 void LiveClock::push_down(BootKey boot, NodeTime n_rx, HostTime h_tx) {
@@ -86,14 +90,28 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
       tell({Kind::relaxed, boot_, newest_, newest_, piece_->assumptions().curvature});
       return tell({Kind::withdrawn, boot_, piece_->origin().host, newest_});
     case Verdict::broken:
-      return replace_piece(Kind::step, crossing);
+      return take_step(crossing);
     case Verdict::slipped:
-      return replace_piece(Kind::slip, crossing);
+      return replace_piece(Kind::slip, piece_->amount(), crossing);
   }
 }
 
-void LiveClock::replace_piece(ClockEvent::Kind why, const Crossing& crossing) {
-  tell({why, boot_, piece_->next_begins(), crossing.heard, piece_->amount()});
+/// A counter that runs at another rate, asleep, is seen to step again and again.
+void LiveClock::take_step(const Crossing& crossing) {
+  replace_piece(ClockEvent::Kind::step, piece_->amount(), crossing);
+  const bool again = stepped_ && newest_ - *stepped_ < settling;
+  settles_ = again ? std::optional(newest_ + settling) : std::nullopt;
+  stepped_ = newest_;
+}
+
+void LiveClock::settle(const Crossing& crossing) {
+  settles_.reset();
+  stepped_.reset();
+  replace_piece(ClockEvent::Kind::settled, 0.0, crossing);
+}
+
+void LiveClock::replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing) {
+  tell({why, boot_, piece_->next_begins(), crossing.heard, value});
   tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
   piece_ = piece_->next_piece();
   routes_told_ = 0;
@@ -101,7 +119,9 @@ void LiveClock::replace_piece(ClockEvent::Kind why, const Crossing& crossing) {
 
 std::optional<ClockStamp> LiveClock::host_from_node(BootKey boot, NodeTime n) {
   if (!piece_ || boot != boot_) return std::nullopt;
-  return piece_->at(n);
+  auto stamp = piece_->at(n);
+  if (stamp && settles_) stamp->certainty = Certainty::doubtful;
+  return stamp;
 }
 
 }  // namespace kinalign

@@ -32,7 +32,7 @@ struct Walk {
 bool begins_piece(ClockEvent::Kind kind) {
   using Kind = ClockEvent::Kind;
   return kind == Kind::new_boot || kind == Kind::step || kind == Kind::slip ||
-         kind == Kind::host_backwards;
+         kind == Kind::settled || kind == Kind::host_backwards;
 }
 
 /// What happened with exchange i: pieces that begin reach back to where they do.
@@ -50,9 +50,8 @@ void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const 
     (of_echo ? walk.echo_left_out : walk.up_left_out)[i] = true;
   if (!begins_piece(event.kind)) return;
   const std::size_t next = walk.pieces++;
-  for (std::size_t k = i + 1;
-       k-- > 0 && exchanges[k].h_rx >= event.begin &&
-       (walk.late[k] || exchanges[k].boot == event.boot);) {
+  for (std::size_t k = i + 1; k-- > 0 && exchanges[k].h_rx >= event.begin &&
+                              (walk.late[k] || exchanges[k].boot == event.boot);) {
     walk.piece[k] = next;
     walk.up_left_out[k] = walk.echo_left_out[k] = false;  // violators were the new piece's
   }
@@ -92,19 +91,20 @@ bool in_doubt(std::span<const DoubtfulStretch> doubtful, HostTime h) {
 struct PieceBounds {
   ClockOrigin origin;
   std::vector<Bound> bounds;
+  std::vector<Bound> left_out;  // that can't be
   std::uint64_t up = 0, down = 0;
 
-  void add(Side side, NodeTime n, HostTime h) {
-    bounds.push_back(bound_by(origin, side, n, h));
-    ++(side == Side::above ? up : down);
+  void add(Side side, NodeTime n, HostTime h, bool can_be) {
+    (can_be ? bounds : left_out).push_back(bound_by(origin, side, n, h));
+    if (can_be) ++(side == Side::above ? up : down);
   }
 };
 
-Certificate certificate_of(const PieceBounds& piece, const Assumptions& assumptions) {
-  std::vector<Bound> sorted = piece.bounds;  // appending is cheap, inserting is not
-  std::sort(sorted.begin(), sorted.end(), [](const Bound& a, const Bound& b) { return a.s < b.s; });
+Certificate certificate_of(std::vector<Bound> bounds, const Assumptions& assumptions) {
+  std::sort(bounds.begin(), bounds.end(),  // appending is cheap, inserting is not
+            [](const Bound& a, const Bound& b) { return a.s < b.s; });
   Certificate certificate(assumptions);
-  for (const Bound& b : sorted) certificate.add(b);
+  for (const Bound& b : bounds) certificate.add(b);
   return certificate;
 }
 
@@ -139,24 +139,26 @@ bool fill_knots(const PieceBounds& piece, const Certificate& certificate, Offlin
 
 /// Under the curvature assumed; where the bounds contradict each other, under several times the
 /// least that lets them go together: the clock bends at least so much, and what is just enough
-/// would put the truth at the edge.
+/// would put the truth at the edge. That has to explain all there is, what was left out as well.
 void fit(const PieceBounds& piece, double least_width, ClockPieceModel& model,
          Assumptions assumptions) {
   OfflineEstimate estimate(piece.bounds);
   model.routes = estimate.routes();
   model.round_trip = nanoseconds(estimate.least_round_trip() * 1e9);
-  const auto goes = [&](double curvature) {
+  const auto goes = [&](const std::vector<Bound>& bounds, double curvature) {
     assumptions.curvature = curvature;
     model.assumptions = assumptions;
-    const Certificate certificate = certificate_of(piece, assumptions);
+    const Certificate certificate = certificate_of(bounds, assumptions);
     return fill_knots(piece, certificate, estimate, least_width, model.knots) &&
            certificate.bounded();
   };
   double curvature = assumptions.curvature;
-  model.certified = goes(curvature);
+  model.certified = goes(piece.bounds, curvature);
   if (model.certified || piece.up < 2) return;
-  while (!goes(curvature) && curvature < most_curvature) curvature *= 2.0;
-  model.certified = goes(std::min(raised * curvature, most_curvature));
+  std::vector<Bound> all = piece.bounds;
+  all.insert(all.end(), piece.left_out.begin(), piece.left_out.end());
+  while (!goes(all, curvature) && curvature < most_curvature) curvature *= 2.0;
+  model.certified = goes(all, std::min(raised * curvature, most_curvature));
 }
 
 /// Whether a counter counted about as long as the host did: a piece of two frames has no
@@ -191,8 +193,10 @@ PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::
     model.last = e.h_rx;
     model.violators += (walk.up_left_out[i] ? 1U : 0U) + (walk.echo_left_out[i] ? 1U : 0U);
     if (in_doubt(walk.doubtful, e.h_rx)) continue;
-    if (!walk.up_left_out[i]) piece.add(Side::above, e.n_tx, e.h_rx);
-    if (e.echo && !walk.echo_left_out[i]) piece.add(Side::below, e.echo->n_rx, e.echo->h_tx);
+    piece.add(Side::above, e.n_tx, e.h_rx, !walk.up_left_out[i]);
+    // What the first one echoes reached the node before the counter stepped.
+    if (e.echo && at != first)
+      piece.add(Side::below, e.echo->n_rx, e.echo->h_tx, !walk.echo_left_out[i]);
   }
   model.up = piece.up;
   model.down = piece.down;
