@@ -11,7 +11,6 @@ namespace {
 constexpr double least_step_s = 0.7e-3;  // a thousandth of a second shows, with its noise
 constexpr double sure_deviations = 5.0;
 constexpr double alike_deviations = 4.0;
-constexpr double alike_share = 0.7;  // of the step: one way alone that is longer makes it 2
 constexpr double slope_slack = 5e-6;
 constexpr double agreeing_share = 0.05, agreeing_gaps = 3.0;
 constexpr double narrow_share = 0.1, narrow_gaps = 10.0;
@@ -85,9 +84,22 @@ void FloorLog::close() {
     shortest_.add(*past_[0]);
   }
   step_.reset();
-  if (past_[0] && past_[2]) step_ = singles_.step(*past_[0], *past_[2], slope_);
+  const Expected expected{slope_, usual_round_trip()};
+  if (past_[0] && past_[2]) step_ = singles_.step(*past_[0], *past_[2], expected);
   const auto now = merged(0, 3, slope_), then = merged(4, 3, slope_);
-  if (now && then && !step_) step_ = threes_.step(*now, *then, slope_);
+  if (now && then && !step_) step_ = threes_.step(*now, *then, expected);
+}
+
+/// The median of the windows that are remembered; 0 without one.
+double FloorLog::usual_round_trip() const {
+  std::array<double, remembered> trips{};
+  std::size_t count = 0;
+  for (const auto& window : past_) {
+    if (window) trips[count++] = window->round_trip;
+  }
+  const auto middle = trips.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(trips.begin(), middle, trips.begin() + static_cast<std::ptrdiff_t>(count));
+  return *middle;
 }
 
 /// The lowest of floors over windows in a row, as of their middle one.
@@ -113,8 +125,8 @@ std::optional<FloorWindow> FloorLog::window(std::size_t i) const {
 }
 
 std::optional<double> FloorLog::Comparison::step(const FloorWindow& now, const FloorWindow& then,
-                                                 double slope) {
-  const double moved = now.middle - then.middle - slope * (now.s - then.s);
+                                                 const Expected& expected) {
+  const double moved = now.middle - then.middle - expected.slope * (now.s - then.s);
   const double longer = now.round_trip - then.round_trip;
   const double gap = std::hypot(now.gap, then.gap);
   const double usual =
@@ -123,12 +135,14 @@ std::optional<double> FloorLog::Comparison::step(const FloorWindow& now, const F
   const double counted = pairs >= enough_pairs ? std::min(std::abs(moved), 2.0 * usual) : moved;
   ++pairs;
   moved_squares += counted * counted;
+  // A longer round trip may be so all one way: half of it is in the middle.
+  const double unknown =
+      std::max(0.0, (now.round_trip + then.round_trip) / 2.0 - expected.round_trip);
   const double least =
-      std::max({least_step_s, sure_deviations * usual, sure_deviations * gap / 2.0});
+      unknown + std::max({least_step_s, sure_deviations * usual, sure_deviations * gap / 2.0});
   if (std::abs(moved) < least) return std::nullopt;
-  const double alike =
-      std::min(alike_deviations * std::max(gap, usual), alike_share * std::abs(moved));
-  return std::abs(longer) > alike ? std::nullopt : std::optional(moved);
+  return std::abs(longer) > alike_deviations * std::max(gap, usual) ? std::nullopt
+                                                                    : std::optional(moved);
 }
 
 }  // namespace kinalign

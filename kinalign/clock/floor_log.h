@@ -68,14 +68,20 @@ class FloorLog {
   void open(std::int64_t index, double slope);
   void close();
   std::optional<FloorWindow> merged(std::size_t first, std::size_t count, double slope) const;
+  /// Of windows without a step: the offset's slope, and the usual round trip.
+  struct Expected {
+    double slope = 0.0, round_trip = 0.0;
+  };
   /// How far offsets of windows usually differ, and whether these do by more.
   struct Comparison {
     std::uint64_t pairs = 0;
     double moved_squares = 0.0;
 
-    std::optional<double> step(const FloorWindow& now, const FloorWindow& then, double slope);
+    std::optional<double> step(const FloorWindow& now, const FloorWindow& then,
+                               const Expected& expected);
   };
 
+  double usual_round_trip() const;
   double middle_s() const { return (static_cast<double>(index_) + 0.5) * window_s; }
 
   std::array<Lows, 2> now_;
