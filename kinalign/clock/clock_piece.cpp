@@ -9,10 +9,11 @@ namespace kinalign {
 namespace {
 
 constexpr double tolerated_s = 5e-6;  // against the certificate, before a bound is a violator
-constexpr double violators_within_s = 5.0;
+constexpr Duration violators_within = std::chrono::seconds(5);
 constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
-constexpr double before_a_slip_s = 5.0;
-constexpr double longest_piece_s = 1e8;  // three years; doubles keep 20 ns over that
+constexpr Duration before_a_slip = std::chrono::seconds(5);
+constexpr Duration longest_reach = std::chrono::seconds(70);
+constexpr double longest_piece_s = 1e8;  // three years; lifted, doubles keep 30 ns over that
 constexpr double stale_s = 0.5;
 constexpr double between_pieces = 2e-6;  // by which a slope may differ
 constexpr std::uint32_t seldom = 4;
@@ -61,7 +62,7 @@ double ClockPiece::violation(const Bound& e) {
 }
 
 void ClockPiece::add(const Bound& b) {
-  const double slope = estimate_.slope().mean;
+  const SlopeBelief slope = estimate_.slope();
   certificate_.add(b);
   estimate_.add(b);
   floors_.add(b, slope);
@@ -70,6 +71,7 @@ void ClockPiece::add(const Bound& b) {
 
 ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
   const Bound e = bound(crossing);
+  heard_ = crossing.heard;
   if (std::abs(e.s) > longest_piece_s || std::abs(e.x) > longest_piece_s) {
     amount_ = std::abs(e.x);
     return Verdict::violator;  // no counter that begins to count says that
@@ -78,7 +80,10 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
   if (amount_ > tolerated_s) return judge(crossing);
   Verdict verdict = Verdict::taken;
   if (certificate_.bounded() && !range_) {
-    if (!relax(e.s)) return Verdict::broken;
+    if (!relax(e.s)) {
+      end_ = End::contradiction;
+      return Verdict::broken;
+    }
     verdict = Verdict::relaxed;
   }
   add(e);
@@ -91,14 +96,14 @@ std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
   if (const auto by = narrowed()) {
     amount_ = *by;
     if (relax(floors_.window(0)->s) && !narrowed()) return Verdict::relaxed;
-    slip_ = Slip::narrowed;
+    end_ = End::narrowed;
     return Verdict::slipped;
   }
   const auto with_route = stepped_with_route(), between_windows = stepped_between_windows();
   if (!with_route && !between_windows) return std::nullopt;
   amount_ = with_route ? *with_route : *between_windows;
   if (std::abs(amount_) < harmless_share * estimate_.least_round_trip()) return Verdict::uneasy;
-  slip_ = with_route ? Slip::with_route : Slip::between_windows;
+  end_ = with_route ? End::slip_with_route : End::slip_between_windows;
   return Verdict::slipped;
 }
 
@@ -146,9 +151,7 @@ bool ClockPiece::relax(double s) {
 /// A node that warms up faster than assumed bends away from the certificate bit by bit: three
 /// violators that a greater curvature explains are no step.
 ClockPiece::Verdict ClockPiece::judge(const Crossing& violator) {
-  const auto old = [&](const Crossing& c) {
-    return std::abs(seconds(violator.n - c.n)) > violators_within_s;
-  };
+  const auto old = [&](const Crossing& c) { return violator.heard - c.heard > violators_within; };
   const auto end = violators_.begin() + static_cast<std::ptrdiff_t>(violator_count_);
   violator_count_ =
       static_cast<std::size_t>(std::remove_if(violators_.begin(), end, old) - violators_.begin());
@@ -158,6 +161,7 @@ ClockPiece::Verdict ClockPiece::judge(const Crossing& violator) {
   for (const Crossing& v : violators_) certificate_.add(bound(v));
   if (!relax(bound(violator).s)) {
     certificate_ = before;
+    end_ = End::violators;
     return Verdict::broken;
   }
   for (const Crossing& v : violators_) add(bound(v));
@@ -166,49 +170,55 @@ ClockPiece::Verdict ClockPiece::judge(const Crossing& violator) {
 }
 
 /// Behind the last crossing that can't go with the violators: until then the counter had not
-/// stepped. At least five seconds before the first violator, or three windows of floors.
-double ClockPiece::first_doubt() const {
-  if (slip_ == Slip::with_route) return estimate_.last_change()->s - before_a_slip_s;
-  if (slip_ == Slip::between_windows) return journal_.newest(0).s - FloorLog::longest_reach_s;
-  if (violator_count_ < violators_.size()) return 0.0;
-  std::array<Bound, 3> violators{};
-  std::transform(violators_.begin(), violators_.end(), violators.begin(),
-                 [this](const Crossing& c) { return bound(c); });
-  double first = violators[0].s;
-  for (const Bound& v : violators) first = std::min(first, v.s);
+/// stepped. At least five seconds before the first violator.
+HostTime ClockPiece::doubt_of_violators() const {
+  HostTime since = next_begins() - violators_within;
   for (std::size_t i = 0; i < journal_.size(); ++i) {
     const Bound e = journal_.newest(i);
-    for (const Bound& v : violators) {
-      if (contradict(e, v, assumptions().rate)) return std::min(e.s, first - violators_within_s);
+    for (const Crossing& v : violators_) {
+      if (contradict(e, bound(v), assumptions().rate)) return std::min(host_time(e), since);
     }
   }
-  return 0.0;
+  return begin_;
 }
 
 HostTime ClockPiece::doubtful_since() const {
-  return origin_.host + rounded_down(std::max(first_doubt(), begin_s_));
+  HostTime since = begin_;
+  if (end_ == End::violators) since = doubt_of_violators();
+  if (end_ == End::slip_with_route) since = about(estimate_.last_change()->s) - before_a_slip;
+  if (end_ == End::slip_between_windows) since = heard_ - longest_reach;
+  return std::max(since, begin_);
 }
 
 HostTime ClockPiece::next_begins() const {
-  if (violator_count_ < violators_.size()) {
-    return origin_.host + rounded_down(journal_.newest(0).s);
-  }
+  if (end_ != End::violators) return heard_;
   return std::min({violators_[0].heard, violators_[1].heard, violators_[2].heard});
+}
+
+/// When the host heard of what happened at s, but for delays.
+HostTime ClockPiece::about(double s) const {
+  std::size_t i = 0;
+  while (i + 1 < journal_.size() && journal_.newest(i).s > s) ++i;
+  return origin_.host + rounded_down(s + journal_.newest(i).x);
 }
 
 /// When just a counter stepped by little is not known well: nothing is certified by what came
 /// before now. The estimate has begun anew with its route, or does so with the last window.
 ClockPiece ClockPiece::next_after_slip(const SlopeBelief& prior) const {
   ClockPiece next = *this;
-  next.slip_ = Slip::none;
+  next.begin_ = heard_;
+  next.end_ = End::none;
   next.certificate_ = Certificate(assumptions(), corners);
   next.range_.reset();
-  next.begin_s_ = journal_.newest(0).s;
-  if (slip_ == Slip::with_route) return next;
+  next.floors_ = FloorLog(floors_.shortest());
+  next.windows_judged_ = 0;
+  if (end_ == End::slip_with_route) return next;
   next.estimate_ = OffsetEstimate(prior);
+  next.routes_judged_ = 0;
+  const double now = journal_.newest(0).s;
   for (std::size_t i = journal_.size(); i-- > 0;) {
     const Bound b = journal_.newest(i);
-    if (b.s > next.begin_s_ - FloorLog::window_s) next.estimate_.add(b);
+    if (b.s > now - FloorLog::window_s) next.estimate_.add(b);
   }
   return next;
 }
@@ -216,16 +226,19 @@ ClockPiece ClockPiece::next_after_slip(const SlopeBelief& prior) const {
 ClockPiece ClockPiece::next_piece() const {
   SlopeBelief prior = estimate_.slope();
   prior.deviation += between_pieces;
-  if (slip_ == Slip::with_route || slip_ == Slip::between_windows) return next_after_slip(prior);
-  if (violator_count_ < violators_.size()) {
-    const Bound last = journal_.newest(0);
-    return {{origin_.node + rounded_down(last.s), host_time(last)},
-            assumptions(),
-            prior,
-            floors_.shortest()};
+  if (end_ == End::slip_with_route || end_ == End::slip_between_windows) {
+    return next_after_slip(prior);
   }
-  ClockPiece next({violators_[0].n, violators_[0].h}, assumptions(), prior, floors_.shortest());
-  for (const Crossing& v : violators_) next.add(next.bound(v));
+  if (end_ == End::violators) {
+    ClockPiece next({violators_[0].n, violators_[0].h}, assumptions(), prior, floors_.shortest());
+    for (const Crossing& v : violators_) next.add(next.bound(v));
+    next.begin_ = next.heard_ = next_begins();
+    return next;
+  }
+  const Bound last = journal_.newest(0);
+  ClockPiece next({origin_.node + rounded_down(last.s), host_time(last)}, assumptions(), prior,
+                  floors_.shortest());
+  next.begin_ = next.heard_ = heard_;
   return next;
 }
 

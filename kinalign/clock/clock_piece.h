@@ -28,7 +28,12 @@ class ClockPiece {
  public:
   ClockPiece(const ClockOrigin& origin, const Assumptions& assumptions, SlopeBelief prior = {},
              const ShortestRoundTrips& shortest = {})
-      : origin_(origin), certificate_(assumptions, corners), estimate_(prior), floors_(shortest) {}
+      : origin_(origin),
+        begin_(origin.host),
+        heard_(origin.host),
+        certificate_(assumptions, corners),
+        estimate_(prior),
+        floors_(shortest) {}
 
   enum class Verdict : std::uint8_t {
     taken,
@@ -70,10 +75,12 @@ class ClockPiece {
   std::optional<double> stepped_with_route();
   std::optional<double> narrowed() const;
   std::optional<Verdict> slipped();
-  double first_doubt() const;
+  HostTime doubt_of_violators() const;
+  HostTime about(double s) const;
   ClockPiece next_after_slip(const SlopeBelief& prior) const;
 
   ClockOrigin origin_;
+  HostTime begin_, heard_;  // first and newest arrival of what is certified
   Certificate certificate_;
   OffsetEstimate estimate_;
   ExchangeJournal journal_;
@@ -81,11 +88,17 @@ class ClockPiece {
   std::uint64_t windows_judged_ = 0;
   std::array<Crossing, 3> violators_{};  // within five seconds
   std::size_t violator_count_ = 0;
-  enum class Slip : std::uint8_t { none, between_windows, with_route, narrowed };
-  Slip slip_ = Slip::none;
+  enum class End : std::uint8_t {  // why a piece is over
+    none,
+    violators,
+    contradiction,  // bounds without a way between them, or …
+    narrowed,       // … less than packets take: since when is not known
+    slip_with_route,
+    slip_between_windows
+  };
+  End end_ = End::none;
   std::uint32_t routes_judged_ = 0;
   double amount_ = 0.0;
-  double begin_s_ = 0.0;  // of what is certified
   /// What x could be at range_at_ when it was asked last, and how many bounds came since.
   std::optional<ValueRange> range_;
   double range_at_ = 0.0;

@@ -11,7 +11,7 @@ namespace {
 constexpr double least_step_s = 0.7e-3;  // a thousandth of a second shows, with its noise
 constexpr double sure_deviations = 5.0;
 constexpr double alike_deviations = 4.0;
-constexpr double slope_slack = 5e-6;
+constexpr double slope_slack = 5e-6, worst_rate = 100e-6;
 constexpr double agreeing_share = 0.05, agreeing_gaps = 3.0;
 constexpr double narrow_share = 0.1, narrow_gaps = 10.0;
 constexpr std::uint64_t enough_pairs = 4;
@@ -40,19 +40,21 @@ double ShortestRoundTrips::least_width() const {
   return 0.0;
 }
 
-void FloorLog::open(std::int64_t index, double slope) {
+/// Of a node that was not heard before the slope is not known: all are tried that can be.
+void FloorLog::open(std::int64_t index, const SlopeBelief& slope) {
   index_ = index;
-  slope_ = slope;
+  slope_ = slope.mean;
+  slack_ = slope.deviation < SlopeBelief{}.deviation ? slope_slack : worst_rate;
   now_ = {};
   corridor_ = Corridor(0.0, corners);
 }
 
-void FloorLog::add(const Bound& bound, double slope) {
+void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
   const auto index = static_cast<std::int64_t>(std::floor(bound.s / window_s));
-  if (index > index_) {
-    close();
+  if (!index_ || index > *index_) {
+    if (index_) close();
     open(index, slope);
-  } else if (index < index_) {
+  } else if (index < *index_) {
     return;  // reordered over the edge
   }
   const bool up = bound.side == Side::above;
@@ -78,7 +80,7 @@ void FloorLog::close() {
   ++windows_;
   if (now_[0].count == lowest && now_[1].count == lowest) {
     const auto gap = [](const Lows& l) { return (l.x.back() - l.x.front()) / (lowest - 1); };
-    const CorridorLine line = widest_line(corridor_, middle_s(), slope_slack);
+    const CorridorLine line = widest_line(corridor_, middle_s(), slack_);
     past_[0] = FloorWindow{middle_s(), line.middle(), line.width(),
                            std::hypot(gap(now_[0]), gap(now_[1]))};
     shortest_.add(*past_[0]);

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinalign/clock/corridor.h"
-#include "kinalign/clock/floor.h"
+#include "kinalign/clock/route.h"
 
 #include <array>
 #include <cstddef>
@@ -45,7 +45,7 @@ class FloorLog {
   explicit FloorLog(const ShortestRoundTrips& shortest) : shortest_(shortest) {}
 
   /// `slope`: of the offset, as far as it is known.
-  void add(const Bound& bound, double slope);
+  void add(const Bound& bound, const SlopeBelief& slope);
 
   static constexpr double window_s = 10.0;
   /// 0: the last whole window.
@@ -65,7 +65,7 @@ class FloorLog {
     std::array<double, lowest> x{};  // rising, less the window's slope
     std::size_t count = 0;
   };
-  void open(std::int64_t index, double slope);
+  void open(std::int64_t index, const SlopeBelief& slope);
   void close();
   std::optional<FloorWindow> merged(std::size_t first, std::size_t count, double slope) const;
   /// Of windows without a step: the offset's slope, and the usual round trip.
@@ -82,13 +82,13 @@ class FloorLog {
   };
 
   double usual_round_trip() const;
-  double middle_s() const { return (static_cast<double>(index_) + 0.5) * window_s; }
+  double middle_s() const { return (static_cast<double>(*index_) + 0.5) * window_s; }
 
   std::array<Lows, 2> now_;
   static constexpr std::size_t corners = 63;
-  Corridor corridor_{0.0, corners};  // of the window's bounds, less its slope
-  std::int64_t index_ = 0;
-  double slope_ = 0.0;  // of the offset when the window began
+  Corridor corridor_{0.0, corners};    // of the window's bounds, less its slope
+  std::optional<std::int64_t> index_;  // absent: no window is open
+  double slope_ = 0.0, slack_ = 0.0;   // of the offset when the window began, and to each side
   std::array<std::optional<FloorWindow>, remembered> past_;
   std::uint64_t windows_ = 0;
   Comparison singles_, threes_;

@@ -31,13 +31,17 @@ void LiveClock::begin(BootKey boot, const Crossing& first) {
     prior.deviation += between_lives;
     earlier_[lives_++ % earlier_.size()] = boot_;
   }
-  piece_.emplace(ClockOrigin{first.n, first.h}, assumptions_, prior,
-                 piece_ ? piece_->floors().shortest() : ShortestRoundTrips{});
+  take_piece({ClockOrigin{first.n, first.h}, assumptions_, prior,
+              piece_ ? piece_->floors().shortest() : ShortestRoundTrips{}});
   boot_ = boot;
-  routes_told_ = 0;
   stepped_.reset();
   settles_.reset();
   tell({ClockEvent::Kind::new_boot, boot, first.h, first.h});
+}
+
+void LiveClock::take_piece(const ClockPiece& piece) {
+  piece_ = piece;
+  routes_told_ = piece_->estimate().changes();
 }
 
 void LiveClock::push(const Exchange& exchange) {
@@ -55,7 +59,8 @@ void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
   }
   if (!piece_ || boot != boot_) begin(boot, crossing);
   if (h_rx < newest_) {
-    piece_.emplace(ClockOrigin{n_tx, h_rx}, assumptions_, piece_->estimate().slope());
+    take_piece({ClockOrigin{n_tx, h_rx}, assumptions_, piece_->estimate().slope(),
+                piece_->floors().shortest()});
     tell({ClockEvent::Kind::host_backwards, boot, h_rx, newest_});
   }
   newest_ = h_rx;
@@ -113,8 +118,7 @@ void LiveClock::settle(const Crossing& crossing) {
 void LiveClock::replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing) {
   tell({why, boot_, piece_->next_begins(), crossing.heard, value});
   tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
-  piece_ = piece_->next_piece();
-  routes_told_ = 0;
+  take_piece(piece_->next_piece());
 }
 
 std::optional<ClockStamp> LiveClock::host_from_node(BootKey boot, NodeTime n) {

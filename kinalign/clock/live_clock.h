@@ -69,6 +69,7 @@ class LiveClock {
 
  private:
   void begin(BootKey boot, const Crossing& first);
+  void take_piece(const ClockPiece& piece);
   void answer(ClockPiece::Verdict verdict, const Crossing& crossing);
   void replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing);
   void take_step(const Crossing& crossing);

@@ -22,8 +22,8 @@ Told log_of(double until, double step, std::uint64_t seed) {
   FloorLog& log = told.log;
   for (double s = 0.0; s < until; s += 0.1) {
     const double x = 1e-5 * s + (s >= 100.0 ? step : 0.0);
-    log.add({s, x + 1e-3 + delay(random), Side::above}, 1e-5);
-    log.add({s, x - 1e-3 - delay(random), Side::below}, 1e-5);
+    log.add({s, x + 1e-3 + delay(random), Side::above}, {1e-5, 1e-6});
+    log.add({s, x - 1e-3 - delay(random), Side::below}, {1e-5, 1e-6});
     if (!told.step) told.step = log.step();
   }
   return told;
@@ -50,8 +50,8 @@ TEST_CASE("a step of a millisecond shows within two windows, and nothing shows w
 TEST_CASE("a window with few packets is none") {
   FloorLog log;
   for (double s = 0.0; s < 40.0; s += 0.1) {
-    log.add({s, 1e-3, Side::above}, 0.0);
-    if (s < 20.0) log.add({s, -1e-3, Side::below}, 0.0);
+    log.add({s, 1e-3, Side::above}, {0.0, 1e-6});
+    if (s < 20.0) log.add({s, -1e-3, Side::below}, {0.0, 1e-6});
   }
   CHECK(!log.window(0));
   CHECK(log.window(2));
