@@ -10,7 +10,8 @@ namespace {
 
 constexpr double tolerated_s = 5e-6;  // against the certificate, before a bound is a violator
 constexpr Duration violators_within = std::chrono::seconds(5);
-constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
+constexpr double harmless_share = 0.4;      // of the round trip: half of it is the least delay
+constexpr std::uint64_t few_crossings = 8;  // of a node that says little
 constexpr Duration before_a_slip = std::chrono::seconds(5);
 constexpr Duration longest_reach = std::chrono::seconds(70);
 constexpr double longest_piece_s = 1e8;  // three years; lifted, doubles keep 30 ns over that
@@ -72,6 +73,7 @@ void ClockPiece::add(const Bound& b) {
 ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
   const Bound e = bound(crossing);
   heard_ = crossing.heard;
+  ++crossings_;
   if (std::abs(e.s) > longest_piece_s || std::abs(e.x) > longest_piece_s) {
     amount_ = std::abs(e.x);
     return Verdict::violator;  // no counter that begins to count says that
@@ -148,14 +150,28 @@ bool ClockPiece::relax(double s) {
   return true;
 }
 
+bool ClockPiece::recent(std::size_t violator) const {
+  return heard_ - violators_[violator].heard <= violators_within ||
+         crossings_ - violator_numbers_[violator] <= few_crossings;
+}
+
+std::optional<HostTime> ClockPiece::uneasy_since() const {
+  if (violator_count_ == 0 || !recent(violator_count_ - 1)) return std::nullopt;
+  return std::max(begin_, violators_[0].heard - violators_within);
+}
+
 /// A node that warms up faster than assumed bends away from the certificate bit by bit: three
 /// violators that a greater curvature explains are no step.
 ClockPiece::Verdict ClockPiece::judge(const Crossing& violator) {
-  const auto old = [&](const Crossing& c) { return violator.heard - c.heard > violators_within; };
-  const auto end = violators_.begin() + static_cast<std::ptrdiff_t>(violator_count_);
-  violator_count_ =
-      static_cast<std::size_t>(std::remove_if(violators_.begin(), end, old) - violators_.begin());
-  violators_[violator_count_++] = violator;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < violator_count_; ++i) {
+    if (!recent(i)) continue;
+    violators_[kept] = violators_[i];
+    violator_numbers_[kept++] = violator_numbers_[i];
+  }
+  violators_[kept] = violator;
+  violator_numbers_[kept] = crossings_;
+  violator_count_ = kept + 1;
   if (violator_count_ < violators_.size()) return Verdict::violator;
   const Certificate before = certificate_;
   for (const Crossing& v : violators_) certificate_.add(bound(v));
@@ -255,7 +271,9 @@ std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
     x = std::clamp(x, range->low, range->high);
     stamp.earliest = origin_.host + rounded_down(s + range->low);
     stamp.latest = origin_.host + rounded_up(s + range->high + counter_resolution_s);
-    if (certificate_.bounded()) stamp.certainty = Certainty::certified;
+    if (certificate_.bounded()) {
+      stamp.certainty = uneasy_since() ? Certainty::doubtful : Certainty::certified;
+    }
   } else {
     stamp.certainty = Certainty::doubtful;
   }

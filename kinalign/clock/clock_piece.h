@@ -54,6 +54,10 @@ class ClockPiece {
   /// … and since when the stamps of this one are in doubt, by the frames' arrival.
   HostTime doubtful_since() const;
 
+  /// Since when a step is likely that three violators have not shown yet. Until then nothing is
+  /// certified.
+  std::optional<HostTime> uneasy_since() const;
+
   const ClockOrigin& origin() const { return origin_; }
   const Assumptions& assumptions() const { return certificate_.assumptions(); }
   const OffsetEstimate& estimate() const { return estimate_; }
@@ -75,6 +79,7 @@ class ClockPiece {
   std::optional<double> stepped_with_route();
   std::optional<double> narrowed() const;
   std::optional<Verdict> slipped();
+  bool recent(std::size_t violator) const;
   HostTime doubt_of_violators() const;
   HostTime about(double s) const;
   ClockPiece next_after_slip(const SlopeBelief& prior) const;
@@ -86,7 +91,9 @@ class ClockPiece {
   ExchangeJournal journal_;
   FloorLog floors_;
   std::uint64_t windows_judged_ = 0;
-  std::array<Crossing, 3> violators_{};  // within five seconds
+  std::array<Crossing, 3> violators_{};  // within five seconds, or of the last few crossings
+  std::array<std::uint64_t, 3> violator_numbers_{};
+  std::uint64_t crossings_ = 0;
   std::size_t violator_count_ = 0;
   enum class End : std::uint8_t {  // why a piece is over
     none,

@@ -9,8 +9,9 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_events = 64;
-constexpr double between_lives = 2e-6;  // by which a slope may differ
-constexpr Duration settling = std::chrono::seconds(5);
+constexpr double between_lives = 2e-6;                     // by which a slope may differ
+constexpr Duration settling = std::chrono::seconds(5);     // after several steps, …
+constexpr Duration late_frames = std::chrono::seconds(1);  // … and after one: some were sent before
 
 }  // namespace
 
@@ -27,6 +28,9 @@ std::vector<ClockEvent> LiveClock::take_events() { return std::exchange(events_,
 void LiveClock::begin(BootKey boot, const Crossing& first) {
   SlopeBelief prior;
   if (piece_) {  // it is the same crystal
+    if (const auto since = piece_->uneasy_since()) {
+      tell({ClockEvent::Kind::withdrawn, boot_, *since, newest_});
+    }
     prior = piece_->estimate().slope();
     prior.deviation += between_lives;
     earlier_[lives_++ % earlier_.size()] = boot_;
@@ -105,7 +109,7 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
 void LiveClock::take_step(const Crossing& crossing) {
   replace_piece(ClockEvent::Kind::step, piece_->amount(), crossing);
   const bool again = stepped_ && newest_ - *stepped_ < settling;
-  settles_ = again ? std::optional(newest_ + settling) : std::nullopt;
+  settles_ = newest_ + (again ? settling : late_frames);
   stepped_ = newest_;
 }
 

@@ -28,8 +28,8 @@ struct ClockEvent {
                // small for the certificate
     uneasy,    // likewise, by so little that the certificate holds all the same; likeliest
                // stamps may be off by up to that
-    settled,   // a piece began: the counter had stepped again and again, and has not for five
-               // seconds; what it said meanwhile was not certified
+    settled,  // a piece began: a second without another step since one, or five since several; what
+              // came meanwhile was not certified
     host_backwards,  // a piece begins: the host's clock went back
     withdrawn,       // stamps of frames that arrived from begin to end: certified, and are not
     violator,        // a crossing that can't be was left out
@@ -79,11 +79,11 @@ class LiveClock {
   Assumptions assumptions_;
   std::optional<ClockPiece> piece_;
   BootKey boot_ = 0;
-  std::array<BootKey, 8> earlier_{};  // lives
+  std::array<BootKey, 256> earlier_{};  // lives
   std::size_t lives_ = 0;
   HostTime newest_ = HostTime::min();
   std::optional<HostTime> stepped_;  // last, in this life
-  std::optional<HostTime> settles_;  // after steps in a row, if there is no other
+  std::optional<HostTime> settles_;  // if there is no other
   std::uint32_t routes_told_ = 0;
   std::uint64_t late_ = 0;
   std::vector<ClockEvent> events_;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double knot_s = 1.0;
 constexpr double raised = 4.0;
+constexpr Duration around_violator = std::chrono::seconds(5);
 constexpr double longest_wait_s = 60.0;  // of a packet
 constexpr double longest_piece_s = 1e6;  // eleven days
 
@@ -203,6 +204,24 @@ PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::
   return piece;
 }
 
+/// A crossing that can't be may be the first of a step that a reboot or the end cut short.
+void doubt_what_was_left_out(std::span<const Exchange> exchanges, const Walk& walk,
+                             HostFromNode& model) {
+  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+    if (walk.late[i] || (!walk.up_left_out[i] && !walk.echo_left_out[i])) continue;
+    const ClockPieceModel& piece = model.pieces[walk.piece[i]];
+    const HostTime h = exchanges[i].h_rx;
+    const DoubtfulStretch doubt{std::max(piece.first, h - around_violator),
+                                std::min(piece.last, h + around_violator)};
+    auto& all = model.doubtful;
+    if (!all.empty() && all.back().begin <= doubt.begin && doubt.begin <= all.back().end) {
+      all.back().end = std::max(all.back().end, doubt.end);
+    } else {
+      all.push_back(doubt);
+    }
+  }
+}
+
 }  // namespace
 
 OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
@@ -216,6 +235,7 @@ OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
       fit(piece, walk.least_width, model, assumptions);
   }
   out.model.doubtful = std::move(walk.doubtful);
+  doubt_what_was_left_out(exchanges, walk, out.model);
   out.events = std::move(walk.events);
   return out;
 }
