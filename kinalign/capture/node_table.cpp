@@ -2,6 +2,8 @@
 #include "kinalign/capture/node_table.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <tuple>
 #include <utility>
 
 namespace kinalign {
@@ -32,6 +34,19 @@ bool continues(const NodeLife& life, const NodeSign& sign) {
   return life.address == sign.from || life.counter.ahead_us(n, sign.at) <= most_ahead_us;
 }
 
+/// Which of the lives that a datagram may continue it most likely does; more is better. A counter
+/// that goes back and climbs again passes where its earlier life ended: the present life at the
+/// same address is then the one, else that which foretold the counter.
+auto likelihood(const NodeLife& life, const NodeSign& sign) {
+  const bool live = life.state == State::live, here = life.address == sign.from;
+  bool foretold = true;
+  if (sign.counter_us) {
+    const std::int64_t n = life.counter.widened(*sign.counter_us, sign.at);
+    foretold = std::abs(life.counter.ahead_us(n, sign.at)) <= most_ahead_us;
+  }
+  return std::tuple(foretold || (live && here), here, live);
+}
+
 }  // namespace
 
 std::size_t NodeTable::index(const NodeLife& life) const {
@@ -42,9 +57,7 @@ NodeLife* NodeTable::life_of(const NodeSign& sign) {
   NodeLife* best = nullptr;
   for (NodeLife& life : lives_) {
     if (!has_ids(life, sign.node_id, sign.boot_id) || !continues(life, sign)) continue;
-    const bool better =
-        best == nullptr || (life.address == sign.from && best->address != sign.from);
-    if (better) best = &life;
+    if (best == nullptr || likelihood(life, sign) > likelihood(*best, sign)) best = &life;
   }
   return best;
 }

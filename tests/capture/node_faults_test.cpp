@@ -72,6 +72,43 @@ TEST_CASE("fault 2 reboot_same_id: a counter that begins anew is a new life, onc
   CHECK(is_warning(Kind::restarted));
 }
 
+TEST_CASE("fault 2 reboot_same_id: a new life that outlasts the one before is still one node") {
+  for (const auto& key : {std::optional(lab), std::optional<LabKey>()}) {
+    for (const double back_s : {15.0, 1.5}) {  // all of its counter, or a step of it
+      CAPTURE(key.has_value());
+      CAPTURE(back_s);
+      TestDesk host(key);
+      TestNode node(7, 1, key);
+      int k = 0;
+      for (; k < 100; ++k) host.exchange(node, home, 0.1 * k);
+      if (back_s > 10) node.reboot(1, host_s(10.0));
+      if (back_s < 10) node.offset_s -= back_s;
+      std::map<std::size_t, std::map<BootKey, int>> frames;
+      for (; k < 400; ++k) {
+        const NodeNews news = host.exchange(node, home, 0.1 * k);
+        if (news.exchange) ++frames[news.stream][news.exchange->boot];
+      }
+      CHECK(host.events() == std::vector{Kind::joined, Kind::restarted});
+      REQUIRE(frames.size() == 1);
+      CHECK(frames.begin()->second.size() == 1);
+      CHECK(frames.begin()->second.begin()->second >= 298);  // the first is held
+    }
+  }
+}
+
+TEST_CASE("fault 2 reboot_same_id: nor do its other ports make two nodes of it") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  const NodeAddress other_port = address_of(20, 4001);
+  int k = 0;
+  for (; k < 100; ++k) host.exchange(node, home, 0.1 * k);
+  node.reboot(1, host_s(10.0));
+  for (; k < 250; ++k) host.exchange(node, other_port, 0.1 * k);
+  for (; k < 300; ++k) host.exchange(node, home, 0.1 * k);  // where the earlier life was
+  CHECK(host.events() == std::vector{Kind::joined, Kind::restarted, Kind::moved});
+  CHECK(host.count(Verdict::accepted) == 298);
+}
+
 TEST_CASE("fault 3 reboot_storm: ten starts in twenty seconds are ten lives of one stream") {
   TestDesk host(lab);
   TestNode node(7, 100, lab);
