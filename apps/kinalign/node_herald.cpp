@@ -69,6 +69,8 @@ void NodeHerald::tell_end() {
     console_.print("  " + status_text(status) + "\n");
     console_.print_json(status_json(status));
   }
+  const std::string refused = refused_text(receiver_.counts());
+  if (!refused.empty()) console_.print("  refused  " + refused + "\n");
   console_.print_json(node_counts_json(receiver_));
 }
 

@@ -90,8 +90,24 @@ std::string what_happened(const NodeEvent& event) {
                          event.version);
     case Kind::too_many:
       return fmt::format("warning: not taken in, there are {} already", NodeTable::most_streams);
+    case Kind::wrong_key:
+      break;  // wrong_key_text
   }
   return {};
+}
+
+/// A node that nothing is heard of but this; `refusal` is what its MAC was refused for.
+std::string wrong_key_text(const NodeEvent& event) {
+  const bool no_key = event.refusal == NodeRefusal::no_key;
+  const char* what = no_key ? "sends a MAC, and there is no --lab-key"
+                     : event.refusal == NodeRefusal::no_mac ? "sends no MAC"
+                                                            : "its key is another one";
+  const std::string mend =
+      no_key ? ""
+             : fmt::format("; flash what kinalign node-key --lab-key LAB --node {} prints",
+                           event.node_id);
+  return fmt::format("node {}: warning: {} (from {}){}", event.node_id, what,
+                     address_text(event.address), mend);
 }
 
 void add_clock(Json& json, const NodeStatus& status) {
@@ -111,6 +127,7 @@ void add_clock(Json& json, const NodeStatus& status) {
 
 std::string event_text(const NodeEvent& event) {
   if (event.kind == NodeEvent::Kind::newer_version) return "a node " + what_happened(event);
+  if (event.kind == NodeEvent::Kind::wrong_key) return wrong_key_text(event);
   return fmt::format("node {}: {} ({})", event.node_id, what_happened(event),
                      address_text(event.address));
 }
@@ -126,6 +143,10 @@ std::string event_json(const NodeEvent& event) {
             {"address", address_text(event.address)}};
   if (event.other_id) json["other_id"] = *event.other_id;
   if (event.version != 0) json["version"] = event.version;
+  if (event.kind == NodeEvent::Kind::wrong_key) {
+    json["refusal"] = refusal_name(event.refusal);
+    json.erase("stream");  // it has none
+  }
   return json_text(json);
 }
 
@@ -228,6 +249,18 @@ std::string nodes_text(const std::vector<NodeStatus>& all) {
 
 std::string pair_json(const ClockPair& pair) {
   return json_text(Json{{"event", "pair"}, {"raw_ns", ns(pair.raw)}, {"utc_ns", to_ns(pair.utc)}});
+}
+
+std::string refused_text(const NodeCounts& counts) {
+  std::string text;
+  for (std::size_t i = 1; i < node_refusals; ++i) {
+    const auto refusal = static_cast<NodeRefusal>(i);
+    if (counts.refusals[refusal] == 0) continue;
+    std::string name = refusal_name(refusal);
+    std::replace(name.begin(), name.end(), '_', ' ');
+    text += (text.empty() ? "" : ", ") + grouped(counts.refusals[refusal]) + " " + name;
+  }
+  return text;
 }
 
 std::string node_counts_json(const NodeReceiver& receiver) {

@@ -26,6 +26,9 @@ std::string status_json(const NodeStatus& status);
 /// "3 nodes, 2 locked, 1 silent"; empty without nodes.
 std::string nodes_text(const std::vector<NodeStatus>& all);
 
+/// "12 no mac, 3 bad crc": datagrams by what they were refused for; empty where none was.
+std::string refused_text(const NodeCounts& counts);
+
 std::string pair_json(const ClockPair& pair);
 /// Each count by its name.
 std::string node_counts_json(const NodeReceiver& receiver);

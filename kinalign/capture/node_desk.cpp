@@ -13,6 +13,9 @@ namespace {
 using State = NodeLife::State;
 using Found = AnswerTable::Found;
 
+constexpr Duration wrong_key_every = std::chrono::seconds(10);
+constexpr Duration same_key_every = std::chrono::seconds(60);
+
 EchoVerdict verdict_of(Found found) {
   if (found == Found::now) return EchoVerdict::taken;
   if (found == Found::before) return EchoVerdict::repeated;
@@ -81,8 +84,9 @@ void NodeDesk::refuse(NodeRefusal refusal, std::uint8_t version, HostTime now) {
 
 /// With the node's key, or the one before while that lasts.
 template <class Datagram>
-bool NodeDesk::unlock(const Envelope& envelope, HostTime now, Datagram& datagram) {
+bool NodeDesk::unlock(const Envelope& envelope, const NodeArrival& arrival, Datagram& datagram) {
   const std::uint32_t id = envelope.origin.node_id;
+  const HostTime now = arrival.h_rx;
   const MacKey* key = keys_.key_of(id);
   NodeRefusal refusal = decode(envelope, key, datagram);
   const MacKey* old = refusal == NodeRefusal::wrong_mac ? keys_.old_key_of(id, now) : nullptr;
@@ -93,13 +97,36 @@ bool NodeDesk::unlock(const Envelope& envelope, HostTime now, Datagram& datagram
   }
   due_.key = key != nullptr ? std::optional(*key) : std::nullopt;
   due_.old_key = old != nullptr;
-  if (refusal != NodeRefusal::none) refuse(refusal, envelope.version, now);
-  return refusal == NodeRefusal::none;
+  if (refusal == NodeRefusal::none) return true;
+  refuse(refusal, envelope.version, now);
+  tell_wrong_key(refusal, envelope.origin, arrival);
+  return false;
+}
+
+/// Anybody can bring this about as often as he likes: it is told once in ten seconds, and of one id
+/// once in a minute unless another comes between.
+void NodeDesk::tell_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
+                              const NodeArrival& arrival) {
+  const bool is_key = refusal == NodeRefusal::no_key || refusal == NodeRefusal::no_mac ||
+                      refusal == NodeRefusal::wrong_mac;
+  if (!is_key) return;
+  const bool begun = told_of_key_.at != HostTime::min();
+  const Duration quiet = told_of_key_.node_id == origin.node_id ? same_key_every : wrong_key_every;
+  if (begun && arrival.h_rx - told_of_key_.at < quiet) return;
+  told_of_key_ = {origin.node_id, arrival.h_rx};
+  NodeEvent event;
+  event.kind = NodeEvent::Kind::wrong_key;
+  event.node_id = origin.node_id;
+  event.boot_id = origin.boot_id;
+  event.at = arrival.h_rx;
+  event.address = arrival.from;
+  event.refusal = refusal;
+  table_.tell(event);
 }
 
 NodeVerdict NodeDesk::judge_frame(const NodeArrival& arrival, const Envelope& envelope,
                                   NodeNews& news) {
-  if (!unlock(envelope, arrival.h_rx, frame_)) return NodeVerdict::refused;
+  if (!unlock(envelope, arrival, frame_)) return NodeVerdict::refused;
   if (frame_.n_tx_us > most_counter_us) return NodeVerdict::wrong_counter;
   NodeSign sign = sign_of(arrival, frame_.origin);
   sign.counter_us = frame_.n_tx_us;
@@ -132,7 +159,7 @@ NodeVerdict NodeDesk::judge_frame(const NodeArrival& arrival, const Envelope& en
 NodeVerdict NodeDesk::judge_request(const NodeArrival& arrival, const Envelope& envelope,
                                     NodeNews& news) {
   ClocklessRequest request;
-  if (!unlock(envelope, arrival.h_rx, request)) return NodeVerdict::refused;
+  if (!unlock(envelope, arrival, request)) return NodeVerdict::refused;
   const NodeSign sign = sign_of(arrival, request.origin);
   NodeLife* life = nullptr;
   if (const auto found = find_life(sign, life); found != NodeVerdict::accepted) return found;
@@ -156,7 +183,7 @@ NodeVerdict NodeDesk::judge_request(const NodeArrival& arrival, const Envelope& 
 NodeVerdict NodeDesk::judge_confirm(const NodeArrival& arrival, const Envelope& envelope,
                                     NodeNews& news) {
   ClocklessConfirm confirm;
-  if (!unlock(envelope, arrival.h_rx, confirm)) return NodeVerdict::refused;
+  if (!unlock(envelope, arrival, confirm)) return NodeVerdict::refused;
   const NodeSign sign = sign_of(arrival, confirm.origin);
   NodeLife* life = table_.life_of(sign);
   GivenAnswer answer;

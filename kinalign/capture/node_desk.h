@@ -75,7 +75,7 @@ class NodeDesk {
   NodeVerdict judge_request(const NodeArrival& arrival, const Envelope& envelope, NodeNews& news);
   NodeVerdict judge_confirm(const NodeArrival& arrival, const Envelope& envelope, NodeNews& news);
   template <class Datagram>
-  bool unlock(const Envelope& envelope, HostTime now, Datagram& datagram);
+  bool unlock(const Envelope& envelope, const NodeArrival& arrival, Datagram& datagram);
   NodeVerdict find_life(const NodeSign& sign, NodeLife*& life);
   NodeVerdict new_life(const NodeSign& sign, NodeLife*& life);
   NodeVerdict take_number(NodeLife& life, std::uint32_t sequence, NodeNews& news);
@@ -83,6 +83,8 @@ class NodeDesk {
   std::optional<Exchange::Echo> take_echo(NodeLife& life, std::int64_t n_tx_us);
   void accept(NodeLife& life, const NodeSign& sign, bool newest, NodeNews& news);
   void refuse(NodeRefusal refusal, std::uint8_t version, HostTime now);
+  void tell_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
+                      const NodeArrival& arrival);
 
   SipHashKey secret_;
   KeyRing keys_;
@@ -90,6 +92,10 @@ class NodeDesk {
   RateLimit strangers_;
   NodeCounts counts_;
   std::uint64_t nonces_ = 0;
+  struct {
+    std::uint32_t node_id = 0;
+    HostTime at = HostTime::min();
+  } told_of_key_;  // last
 
   // of the datagram before
   NodeFrame frame_;

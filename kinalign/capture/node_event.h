@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/capture/node_life.h"
+#include "kinalign/wire/node_datagram.h"
 
 #include <optional>
 
@@ -19,7 +20,8 @@ struct NodeEvent {
     left,           // nothing for ten seconds
     returned,       // and here it is again, in the same life
     newer_version,  // something speaks a later version of the protocol: `version`
-    too_many        // warning: a node was not taken in
+    too_many,       // warning: a node was not taken in
+    wrong_key       // warning: a node was not heard, for what `refusal` says of its MAC
   };
   Kind kind{};
   std::size_t stream = 0;
@@ -28,8 +30,9 @@ struct NodeEvent {
   NodeAddress address;
   std::optional<std::uint32_t> other_id;
   std::uint8_t version = 0;
+  NodeRefusal refusal = NodeRefusal::none;
 };
-inline constexpr std::size_t node_event_kinds = 10;
+inline constexpr std::size_t node_event_kinds = 11;
 
 /// As in --json: "newer_version".
 const char* name_of(NodeEvent::Kind kind);

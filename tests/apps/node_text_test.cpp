@@ -91,4 +91,35 @@ TEST_CASE("every event has a text and a name, and warnings say that they are") {
         "warning: this machine slept for 30.0 s; the nodes' clocks begin anew");
 }
 
+TEST_CASE("a node that is refused for its key is told with what mends it") {
+  NodeEvent event;
+  event.kind = NodeEvent::Kind::wrong_key;
+  event.node_id = 7;
+  event.address = some_status().address;
+  event.refusal = NodeRefusal::wrong_mac;
+  CHECK(event_text(event) ==
+        "node 7: warning: its key is another one (from 192.168.7.20:4000); flash what kinalign "
+        "node-key --lab-key LAB --node 7 prints");
+  event.refusal = NodeRefusal::no_mac;
+  CHECK(event_text(event) ==
+        "node 7: warning: sends no MAC (from 192.168.7.20:4000); flash what kinalign node-key "
+        "--lab-key LAB --node 7 prints");
+  const auto json = nlohmann::json::parse(event_json(event));
+  CHECK(json["refusal"] == "no_mac");
+  CHECK(json["node_id"] == 7);
+  CHECK(json["address"] == "192.168.7.20:4000");
+  CHECK_FALSE(json.contains("stream"));
+  event.refusal = NodeRefusal::no_key;
+  CHECK(event_text(event) ==
+        "node 7: warning: sends a MAC, and there is no --lab-key (from 192.168.7.20:4000)");
+}
+
+TEST_CASE("what was refused is counted for people by its causes") {
+  NodeCounts counts;
+  CHECK(refused_text(counts).empty());
+  counts.refusals[NodeRefusal::no_mac] = 1234;
+  counts.refusals[NodeRefusal::bad_crc] = 2;
+  CHECK(refused_text(counts) == "2 bad crc, 1,234 no mac");
+}
+
 }  // namespace kinalign

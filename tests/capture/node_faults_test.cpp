@@ -220,6 +220,31 @@ TEST_CASE("fault 25 spoofed_frame: no MAC, a wrong one, another node's: each by 
   CHECK(open.count(NodeRefusal::no_key) == 1);
 }
 
+TEST_CASE("fault 25 spoofed_frame: a node with a wrong key is told, a flood of them now and then") {
+  TestDesk host(lab);
+  LabKey other = lab;
+  other[0] ^= 1;
+  TestNode wrong(7, 1, other), bare(8, 1);
+  for (int k = 0; k < 700; ++k) host.take(wrong.frame(host_s(0.1 * k)), home, host_s(0.1 * k));
+  auto events = host.desk.take_events();
+  REQUIRE(events.size() == 2);  // at 0 s and 60 s
+  CHECK(events[0].kind == Kind::wrong_key);
+  CHECK(events[0].node_id == 7);
+  CHECK(events[0].address == home);
+  CHECK(events[0].refusal == NodeRefusal::wrong_mac);
+  for (int k = 700; k < 900; ++k)
+    host.take(bare.frame(host_s(0.1 * k)), elsewhere, host_s(0.1 * k));
+  events = host.desk.take_events();
+  REQUIRE(events.size() == 1);  // at 70 s
+  CHECK(events[0].node_id == 8);
+  CHECK(events[0].refusal == NodeRefusal::no_mac);
+  for (std::uint32_t id = 0; id < 10'000; ++id) {
+    const HostTime at = host_s(90.0 + 0.002 * id);
+    host.take(TestNode(id, 1, other).frame(at), home, at);
+  }
+  CHECK(host.desk.take_events().size() == 2);
+}
+
 TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") {
   TestDesk host(lab);
   TestNode a(7, 1, lab), b(7, 2, lab);
