@@ -265,7 +265,9 @@ std::string refused_text(const NodeCounts& counts) {
 
 std::string node_counts_json(const NodeReceiver& receiver) {
   const NodeCounts& counts = receiver.counts();
-  Json json{{"event", "node_counts"}, {"received", counts.verdicts.total()}};
+  Json json{
+      {"event", "node_counts"},
+      {"received", counts.verdicts.total() + receiver.not_unicast() + receiver.from_port_0()}};
   for (std::size_t i = 0; i < node_verdicts; ++i) {
     const auto verdict = static_cast<NodeVerdict>(i);
     json[kinalign::name_of(verdict)] = counts.verdicts[verdict];
@@ -278,6 +280,8 @@ std::string node_counts_json(const NodeReceiver& receiver) {
     const auto echo = static_cast<EchoVerdict>(i);
     json[std::string("echo_") + kinalign::name_of(echo)] = counts.echoes[echo];
   }
+  json["not_unicast"] = receiver.not_unicast();
+  json["from_port_0"] = receiver.from_port_0();
   json["replies"] = counts.answers;
   json["unsent"] = receiver.unsent();
   json["wrong_copies"] = counts.wrong_copies;

@@ -45,10 +45,16 @@ void NodeReceiver::drain() {
   follow();
 }
 
+bool NodeReceiver::may_answer(const Datagram& datagram) {
+  if (!datagram.unicast) ++not_unicast_;
+  if (datagram.unicast && datagram.from_port == 0) ++from_port_0_;
+  return datagram.unicast && datagram.from_port != 0;
+}
+
 void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
   for (std::size_t i = 0; i < datagrams; ++i) {
     const Datagram datagram = batch_->at(i);
-    if (!datagram.unicast || datagram.from_port == 0) continue;  // many, or nobody, would answer
+    if (!may_answer(datagram)) continue;
     NodeNews news = desk_->receive(
         {datagram.bytes, {datagram.from, datagram.from_port}, clock_.arrival(datagram.received)});
     const auto answer = desk_->answer(clock_.now(), batch_->answer_to(i));

@@ -61,6 +61,9 @@ class NodeReceiver {
   const NodeCounts& counts() const { return desk_->counts(); }
   std::uint64_t dropped() const { return lines_.dropped(); }  // by the kernel
   std::uint64_t unsent() const { return unsent_; }
+  /// Datagrams that were not looked into, for how they came.
+  std::uint64_t not_unicast() const { return not_unicast_; }  // many would answer
+  std::uint64_t from_port_0() const { return from_port_0_; }  // nobody would hear the answer
   std::vector<NodeStatus> status();
   void replace_key(const LabKey& lab) { desk_->replace_key(lab, clock_.now()); }
 
@@ -88,6 +91,7 @@ class NodeReceiver {
     Duration ways{0};
     std::int64_t confirmed = 0;
   };
+  bool may_answer(const Datagram& datagram);
   void take(const UdpSocket& socket, std::size_t datagrams);
   void hear(NodeNews& news);
   void follow();
@@ -102,7 +106,7 @@ class NodeReceiver {
   std::vector<std::unique_ptr<StreamClock>> clocks_;
   Watcher watcher_;
   std::vector<std::optional<HostAddress>> heard_;  // by stream: where its frames came to, this time
-  std::uint64_t unsent_ = 0;
+  std::uint64_t unsent_ = 0, not_unicast_ = 0, from_port_0_ = 0;
   HostTime next_watch_ = HostTime::min();
   std::vector<ClockPair> pairs_;
 };

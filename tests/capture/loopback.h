@@ -40,6 +40,8 @@ class Client {
     REQUIRE(fd_ >= 0);
     const timeval patience{2, 0};
     ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    const int may = 1;
+    ::setsockopt(fd_, SOL_SOCKET, SO_BROADCAST, &may, sizeof may);
   }
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;

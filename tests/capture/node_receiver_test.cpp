@@ -105,6 +105,17 @@ TEST_CASE("the kernel keeps rubbish out, and says how much of it") {
   CHECK(receiver->counts().newest_version == 9);
 }
 
+TEST_CASE("a frame that many would answer is counted, and not looked into") {
+  SystemClocks clocks;
+  auto receiver = open_receiver(clocks, "0.0.0.0");
+  REQUIRE(receiver);
+  const Client client;
+  client.send("127.255.255.255", receiver->sockets()[0].port(), node_ahead().frame(clocks.raw()));
+  serve(*receiver);
+  CHECK(receiver->not_unicast() == 1);
+  CHECK(receiver->counts().verdicts.total() == 0);
+}
+
 TEST_CASE("fault 40 ipv6_only: the same over IPv6") {
   if (!has_ipv6_loopback()) return;
   SystemClocks clocks;
