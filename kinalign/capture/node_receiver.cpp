@@ -12,6 +12,7 @@ namespace {
 
 constexpr int batches_in_turn = 16;  // of a socket, before others have theirs
 constexpr std::size_t most_pairs = 64;
+constexpr std::size_t most_last_events = 64;
 
 }  // namespace
 
@@ -78,13 +79,18 @@ void NodeReceiver::follow() {
 
 NodeReceiver::StreamClock& NodeReceiver::clock_of(std::size_t stream) {
   std::unique_ptr<StreamClock>& clock = clocks_[stream];
-  const std::uint32_t number = desk_->stream(stream).number;
-  if (clock == nullptr || clock->number != number || clock->epoch != clock_.epoch()) {
-    clock = std::make_unique<StreamClock>();
-    clock->number = number;
-    clock->epoch = clock_.epoch();
-  }
+  if (clock != nullptr && is_current(*clock, stream)) return *clock;
+  take_events_of(stream, last_events_);
+  last_events_.resize(std::min(last_events_.size(), most_last_events));
+  clock = std::make_unique<StreamClock>();
+  clock->number = desk_->stream(stream).number;
+  clock->node_id = desk_->stream(stream).node_id;
+  clock->epoch = clock_.epoch();
   return *clock;
+}
+
+bool NodeReceiver::is_current(const StreamClock& clock, std::size_t stream) const {
+  return clock.number == desk_->stream(stream).number && clock.epoch == clock_.epoch();
 }
 
 void NodeReceiver::hear(NodeNews& news) {
@@ -115,7 +121,7 @@ void NodeReceiver::tick() {
   if (pairs_.size() < most_pairs) pairs_.push_back(pair);
 }
 
-std::vector<NodeStatus> NodeReceiver::status() {
+std::vector<NodeStatus> NodeReceiver::status() const {
   std::vector<NodeStatus> all;
   for (std::size_t i = 0; i < NodeTable::most_streams; ++i) {
     const NodeStream& stream = desk_->stream(i);
@@ -133,7 +139,7 @@ std::vector<NodeStatus> NodeReceiver::status() {
     status.lost = life.sequences.missing();
     status.rate_hz = stream.silent ? 0.0 : life.pace.rate_hz();
     status.battery_mv = stream.battery_mv;
-    add_clock(status, clock_of(i), life);
+    if (clocks_[i] != nullptr && is_current(*clocks_[i], i)) add_clock(status, *clocks_[i], life);
   }
   return all;
 }
@@ -155,15 +161,17 @@ void NodeReceiver::add_clock(NodeStatus& status, StreamClock& clock, const NodeL
 }
 
 std::vector<NodeReceiver::StreamEvent> NodeReceiver::take_clock_events() {
-  std::vector<StreamEvent> all;
-  for (std::size_t i = 0; i < clocks_.size(); ++i) {
-    if (clocks_[i] == nullptr) continue;
-    const std::uint32_t node_id = desk_->stream(i).node_id;
-    for (const ClockEvent& event : clocks_[i]->clock.take_events()) {
-      all.push_back({i, node_id, event});
-    }
-  }
+  std::vector<StreamEvent> all = std::exchange(last_events_, {});
+  for (std::size_t i = 0; i < clocks_.size(); ++i) take_events_of(i, all);
   return all;
+}
+
+void NodeReceiver::take_events_of(std::size_t stream, std::vector<StreamEvent>& all) {
+  if (clocks_[stream] == nullptr) return;
+  const std::uint32_t node_id = clocks_[stream]->node_id;  // the stream may be another node's now
+  for (const ClockEvent& event : clocks_[stream]->clock.take_events()) {
+    all.push_back({stream, node_id, event});
+  }
 }
 
 std::vector<ClockPair> NodeReceiver::take_pairs() { return std::exchange(pairs_, {}); }

@@ -64,7 +64,7 @@ class NodeReceiver {
   /// Datagrams that were not looked into, for how they came.
   std::uint64_t not_unicast() const { return not_unicast_; }  // many would answer
   std::uint64_t from_port_0() const { return from_port_0_; }  // nobody would hear the answer
-  std::vector<NodeStatus> status();
+  std::vector<NodeStatus> status() const;
   void replace_key(const LabKey& lab) { desk_->replace_key(lab, clock_.now()); }
 
   std::vector<NodeEvent> take_node_events() { return desk_->take_events(); }
@@ -83,6 +83,7 @@ class NodeReceiver {
                ClockReader& clocks);
   struct StreamClock {
     std::uint32_t number = 0, epoch = 0;  // of which stream, since when
+    std::uint32_t node_id = 0;
     LiveClock clock;
     NodeTime n{};
     HostTime heard = HostTime::min();
@@ -96,7 +97,9 @@ class NodeReceiver {
   void hear(NodeNews& news);
   void follow();
   StreamClock& clock_of(std::size_t stream);
-  void add_clock(NodeStatus& status, StreamClock& clock, const NodeLife& life);
+  static void add_clock(NodeStatus& status, StreamClock& clock, const NodeLife& life);
+  bool is_current(const StreamClock& clock, std::size_t stream) const;
+  void take_events_of(std::size_t stream, std::vector<StreamEvent>& all);
 
   std::unique_ptr<std::vector<UdpSocket>> sockets_;
   NodeLines lines_;
@@ -104,6 +107,7 @@ class NodeReceiver {
   std::unique_ptr<NodeDesk> desk_;
   std::unique_ptr<DatagramBatch> batch_;
   std::vector<std::unique_ptr<StreamClock>> clocks_;
+  std::vector<StreamEvent> last_events_;  // of clocks that were replaced, at most 64
   Watcher watcher_;
   std::vector<std::optional<HostAddress>> heard_;  // by stream: where its frames came to, this time
   std::uint64_t unsent_ = 0, not_unicast_ = 0, from_port_0_ = 0;

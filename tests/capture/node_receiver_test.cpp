@@ -10,6 +10,8 @@
 #include <doctest/doctest.h>
 #include <poll.h>
 
+#include <algorithm>
+
 namespace kinalign {
 
 namespace {
@@ -48,6 +50,23 @@ void talk(NodeReceiver& receiver, SystemClocks& clocks, TestNode& node, const Cl
     REQUIRE(came);
     REQUIRE(node.take_reply(came->bytes, clocks.raw()));
   }
+}
+
+/// The system's clocks, but that the host may have slept, or an hour passed.
+class OddClocks : public SystemClocks {
+ public:
+  HostTime raw() override { return SystemClocks::raw() + later; }
+  Duration asleep() override { return SystemClocks::asleep() + slept; }
+  Duration later{0}, slept{0};
+};
+
+/// Each node whose clock has something to tell.
+std::vector<std::uint32_t> tellers(NodeReceiver& receiver) {
+  std::vector<std::uint32_t> ids;
+  for (const auto& told : receiver.take_clock_events()) {
+    if (ids.empty() || ids.back() != told.node_id) ids.push_back(told.node_id);
+  }
+  return ids;
 }
 
 }  // namespace
@@ -114,6 +133,29 @@ TEST_CASE("a frame that many would answer is counted, and not looked into") {
   serve(*receiver);
   CHECK(receiver->not_unicast() == 1);
   CHECK(receiver->counts().verdicts.total() == 0);
+}
+
+TEST_CASE("what a clock has told is not lost when it is replaced, and stays its own node's") {
+  OddClocks clocks;
+  auto receiver = open_receiver(clocks);
+  REQUIRE(receiver);
+  const Client client;
+  const auto talk_as = [&](std::uint32_t id) {
+    TestNode node(id, id, lab);
+    node.offset_s = 1000.0;
+    talk(*receiver, clocks, node, client, 3);
+  };
+  for (std::uint32_t id = 1; id <= NodeTable::most_streams; ++id) talk_as(id);
+  clocks.slept = std::chrono::hours(1);
+  clocks.later = std::chrono::hours(1);
+  receiver->tick();
+  CHECK_FALSE(receiver->status()[0].stamp);  // of the clock from before; looking ends it not
+  talk_as(100);                              // takes the place of the first
+  const auto ids = tellers(*receiver);
+  CHECK(std::count(ids.begin(), ids.end(), 1) == 1);
+  CHECK(std::count(ids.begin(), ids.end(), 64) == 1);
+  CHECK(std::count(ids.begin(), ids.end(), 100) == 1);
+  CHECK(receiver->status()[0].node_id == 100);
 }
 
 TEST_CASE("fault 40 ipv6_only: the same over IPv6") {
