@@ -31,6 +31,7 @@ NodeReceiver::NodeReceiver(const NodeReceiverOptions& options, std::vector<UdpSo
       desk_(std::make_unique<NodeDesk>(options.desk)),
       batch_(std::make_unique<DatagramBatch>()),
       clocks_(NodeTable::most_streams),
+      kept_(DatagramBatch::most),
       heard_(NodeTable::most_streams) {}
 
 void NodeReceiver::drain() {
@@ -52,19 +53,30 @@ bool NodeReceiver::may_answer(const Datagram& datagram) {
   return datagram.unicast && datagram.from_port != 0;
 }
 
+/// What the clocks learn waits until all is answered: an answer says when it was sent, and what is
+/// done between that and its way delays it, on the way down alone.
 void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
+  kept_length_ = 0;
   for (std::size_t i = 0; i < datagrams; ++i) {
     const Datagram datagram = batch_->at(i);
     if (!may_answer(datagram)) continue;
-    NodeNews news = desk_->receive(
+    const NodeNews news = desk_->receive(
         {datagram.bytes, {datagram.from, datagram.from_port}, clock_.arrival(datagram.received)});
     const auto answer = desk_->answer(clock_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());
     if (news.verdict != NodeVerdict::accepted) continue;
-    hear(news);
+    keep(news);
     heard_[news.stream] = datagram.to;
   }
   unsent_ += batch_->send(socket.fd()).size();
+  for (std::size_t i = 0; i < kept_length_; ++i) hear(kept_[i].news);
+}
+
+void NodeReceiver::keep(const NodeNews& news) {
+  Kept& kept = kept_[kept_length_++];
+  kept.readings.assign(news.readings.begin(), news.readings.end());
+  kept.news = news;
+  kept.news.readings = kept.readings;
 }
 
 /// Behind all that was ready: it may close one of those sockets.

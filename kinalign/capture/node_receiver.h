@@ -92,8 +92,14 @@ class NodeReceiver {
     Duration ways{0};
     std::int64_t confirmed = 0;
   };
+  /// An accepted frame that waits until its batch is answered.
+  struct Kept {
+    NodeNews news;
+    std::vector<NodeReading> readings;
+  };
   bool may_answer(const Datagram& datagram);
   void take(const UdpSocket& socket, std::size_t datagrams);
+  void keep(const NodeNews& news);
   void hear(NodeNews& news);
   void follow();
   StreamClock& clock_of(std::size_t stream);
@@ -108,6 +114,8 @@ class NodeReceiver {
   std::unique_ptr<DatagramBatch> batch_;
   std::vector<std::unique_ptr<StreamClock>> clocks_;
   std::vector<StreamEvent> last_events_;  // of clocks that were replaced, at most 64
+  std::vector<Kept> kept_;
+  std::size_t kept_length_ = 0;
   Watcher watcher_;
   std::vector<std::optional<HostAddress>> heard_;  // by stream: where its frames came to, this time
   std::uint64_t unsent_ = 0, not_unicast_ = 0, from_port_0_ = 0;

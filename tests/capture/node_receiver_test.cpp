@@ -135,6 +135,30 @@ TEST_CASE("a frame that many would answer is counted, and not looked into") {
   CHECK(receiver->counts().verdicts.total() == 0);
 }
 
+TEST_CASE("a batch is answered before the clocks hear of it, each frame with its own readings") {
+  SystemClocks clocks;
+  auto receiver = open_receiver(clocks);
+  REQUIRE(receiver);
+  TestNode node = node_ahead();
+  const Client client;
+  talk(*receiver, clocks, node, client, 2);
+  std::vector<Duration> ages;
+  receiver->watch([&](const NodeNews& news, LiveClock&) {
+    REQUIRE(client.receive());  // its answer is there, or never comes
+    for (const NodeReading& reading : news.readings)
+      ages.push_back(news.exchange->n_tx - reading.n);
+  });
+  for (std::uint32_t age_us = 1; age_us <= 3; ++age_us) {
+    node.samples.resize(age_us);
+    node.samples.back().age_us = age_us;
+    client.send("127.0.0.1", receiver->sockets()[0].port(), node.frame(clocks.raw()));
+  }
+  while (ages.size() < 6) serve(*receiver);
+  using std::chrono::microseconds;
+  CHECK(ages == std::vector<Duration>{microseconds(1), microseconds(1), microseconds(2),
+                                      microseconds(1), microseconds(2), microseconds(3)});
+}
+
 TEST_CASE("what a clock has told is not lost when it is replaced, and stays its own node's") {
   OddClocks clocks;
   auto receiver = open_receiver(clocks);
