@@ -26,7 +26,7 @@ ClockTruth first_truth(const HostNodeOptions& options) {
 
 }  // namespace
 
-Life::Life(const HostNodeOptions& options, UdpSocket socket)
+Life::Life(const HostNodeOptions& options, NodeSocket socket)
     : options_(options),
       socket_(std::move(socket)),
       clock_(first_truth(options)),
@@ -64,7 +64,7 @@ Tried<void> Life::befall(const Event& event) {
     ++past_.reboots;
   }
   if (event.kind == EventKind::rebind) {
-    auto socket = UdpSocket::connected_to(options_.host, options_.port);
+    auto socket = NodeSocket::connected_to(options_.host, options_.port);
     if (!socket) return tl::unexpected(socket.error());
     socket_ = *std::move(socket);
   }
@@ -123,7 +123,7 @@ LifeCounts Life::counts() {
   auto next = now.begin();
   const auto add = [&](const char*, std::uint64_t& number) { number += *next++; };
   if (auto* node = std::get_if<Node>(&node_)) {
-    const NodeCounts counts = node->counts();
+    const NodeTally counts = node->counts();
     each_node_count(counts, list);
     next = now.begin();
     each_node_count(sum.node, add);

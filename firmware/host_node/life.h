@@ -12,14 +12,14 @@ namespace kinalign {
 
 /// Summed over all reboots. What belongs to the other kind of node stays 0.
 struct LifeCounts {
-  NodeCounts node;
+  NodeTally node;
   ClocklessCounts clockless;
   std::uint64_t reboots = 0;
 };
 
 class Life {
  public:
-  Life(const HostNodeOptions& options, UdpSocket socket);
+  Life(const HostNodeOptions& options, NodeSocket socket);
 
   /// Until options.seconds are over or `stop`, a descriptor, can be read.
   Tried<void> live(int stop);
@@ -35,8 +35,8 @@ class Life {
   std::uint32_t ticks_due();
 
   HostNodeOptions options_;
-  UdpSocket socket_;
-  SimulatedClock clock_;
+  NodeSocket socket_;
+  PretendedClock clock_;
   PosixBoard board_;
   std::variant<std::monostate, Node, ClocklessNode> node_;
   LifeCounts past_;  // of the starts before this one

@@ -46,7 +46,7 @@ Tried<void> run(HostNodeOptions options) {
     options.node.has_key = true;
     options.node.key = *key;
   }
-  auto socket = UdpSocket::connected_to(options.host, options.port);
+  auto socket = NodeSocket::connected_to(options.host, options.port);
   if (!socket) return tl::unexpected(socket.error());
   const int stop = stop_descriptor();
   const auto life = std::make_unique<Life>(options, *std::move(socket));

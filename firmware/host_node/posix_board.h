@@ -2,9 +2,9 @@
 // The board of a node that is a program: a simulated counter and sensor, a real socket.
 #pragma once
 
+#include "firmware/host_node/node_socket.h"
 #include "firmware/host_node/options.h"
-#include "firmware/host_node/simulated_clock.h"
-#include "firmware/host_node/udp_socket.h"
+#include "firmware/host_node/pretended_clock.h"
 #include "firmware/node/board.h"
 
 namespace kinalign {
@@ -14,7 +14,7 @@ std::int64_t raw_ns();
 
 class PosixBoard : public Board {
  public:
-  PosixBoard(const HostNodeOptions& options, SimulatedClock& clock, UdpSocket& socket)
+  PosixBoard(const HostNodeOptions& options, PretendedClock& clock, NodeSocket& socket)
       : options_(options), clock_(clock), socket_(socket) {}
 
   std::uint64_t counter_us() override { return asked_us_ = clock_.counter_us(raw_ns()); }
@@ -33,8 +33,8 @@ class PosixBoard : public Board {
 
  private:
   const HostNodeOptions& options_;
-  SimulatedClock& clock_;
-  UdpSocket& socket_;
+  PretendedClock& clock_;
+  NodeSocket& socket_;
   std::uint64_t asked_us_ = 0;
   int readings_ = 0;
   Lights lights_;

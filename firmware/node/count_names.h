@@ -19,7 +19,7 @@ void each_answer_count(Answers& counts, Use use) {
   use("not_newer", counts.not_newer);
 }
 
-/// Of a NodeCounts, const or not.
+/// Of a NodeTally, const or not.
 template <class Counts, class Use>
 void each_node_count(Counts& counts, Use use) {
   use("ticks", counts.samples.ticks);

@@ -7,14 +7,14 @@ namespace {
 
 constexpr std::uint16_t low_battery_mv = 3500;  // one lithium cell: a tenth of its charge is left
 
-constexpr Colour dark{}, red{20, 0, 0}, yellow{14, 10, 0}, green{0, 16, 0};
+constexpr LedColour dark{}, red{20, 0, 0}, yellow{14, 10, 0}, green{0, 16, 0};
 
-Colour sync_colour(SyncLight sync) {
+LedColour sync_colour(SyncLight sync) {
   if (sync == SyncLight::locked) return green;
   return sync == SyncLight::answered ? yellow : red;
 }
 
-Colour battery_colour(BatteryLight battery) {
+LedColour battery_colour(BatteryLight battery) {
   if (battery == BatteryLight::unknown) return dark;
   return battery == BatteryLight::good ? green : red;
 }
@@ -27,7 +27,7 @@ BatteryLight battery_light(bool has_battery, std::uint16_t mv) {
 }
 
 Picture picture(const Lights& lights) {
-  const std::array<Colour, matrix_side> rows{
+  const std::array<LedColour, matrix_side> rows{
       lights.link_up ? green : red, lights.link_up ? green : red, sync_colour(lights.sync),
       sync_colour(lights.sync), battery_colour(lights.battery)};
   Picture picture{};

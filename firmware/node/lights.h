@@ -26,14 +26,14 @@ struct Lights {
 
 BatteryLight battery_light(bool has_battery, std::uint16_t mv);
 
-struct Colour {
+struct LedColour {
   std::uint8_t red = 0, green = 0, blue = 0;
 
-  bool operator==(const Colour&) const = default;
+  bool operator==(const LedColour&) const = default;
 };
 
 inline constexpr std::size_t matrix_side = 5;
-using Picture = std::array<Colour, matrix_side * matrix_side>;  // row by row from the top
+using Picture = std::array<LedColour, matrix_side * matrix_side>;  // row by row from the top
 
 /// The upper two rows are the link, the next two the sync, the last one the battery (dark where
 /// unknown): red, yellow, green for bad, half, good. Dim: 25 LEDs at full brightness overheat.

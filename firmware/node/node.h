@@ -20,7 +20,7 @@ struct FrameCounts {
   std::uint64_t unstampable = 0;  // samples later than their frame or over 71 min old: not sent
 };
 
-struct NodeCounts {
+struct NodeTally {
   SampleCounts samples;
   FrameCounts frames;
   AnswerCounts replies;
@@ -43,7 +43,7 @@ class Node {
   void set_link(bool up) { lights_.link_up = up; }
 
   std::uint64_t replies_accepted() const { return gate_.counts().accepted; }
-  NodeCounts counts() { return {sampler_.counts(), counts_, gate_.counts()}; }
+  NodeTally counts() { return {sampler_.counts(), counts_, gate_.counts()}; }
 
  private:
   void accept(std::span<const std::uint8_t> datagram, std::uint64_t n_rx_us);

@@ -71,7 +71,7 @@ void Script::write_counts() {
   std::array<std::uint8_t, most_counts * sizeof(std::uint64_t)> room{};
   ByteWriter writer(room);
   if (auto* node = std::get_if<Node>(&node_)) {
-    const NodeCounts counts = node->counts();
+    const NodeTally counts = node->counts();
     each_node_count(counts, PutCount{writer});
   }
   if (auto* node = std::get_if<ClocklessNode>(&node_)) {

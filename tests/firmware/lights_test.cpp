@@ -12,7 +12,7 @@ namespace {
 /// A letter an LED.
 std::string drawn(const Lights& lights) {
   std::string text;
-  for (const Colour& colour : picture(lights)) {
+  for (const LedColour& colour : picture(lights)) {
     const bool red = colour.red != 0, green = colour.green != 0;
     text += red && green ? 'y' : red ? 'r' : green ? 'g' : '.';
     if (text.size() % (matrix_side + 1) == matrix_side) text += '\n';
@@ -32,7 +32,7 @@ TEST_CASE("two rows of link, two of sync, one of battery") {
 
 TEST_CASE("no LED has more than 24 of 765: 25 bright ones would heat the case") {
   for (const auto sync : {SyncLight::unanswered, SyncLight::answered, SyncLight::locked}) {
-    for (const Colour& colour : picture({false, sync, BatteryLight::low})) {
+    for (const LedColour& colour : picture({false, sync, BatteryLight::low})) {
       CHECK(colour.red + colour.green + colour.blue <= 24);
     }
   }

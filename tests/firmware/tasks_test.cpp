@@ -56,7 +56,7 @@ TEST_CASE("samples taken in a task of their own all arrive or are counted, in or
   while (!done) node.poll();
   sampling.join();
   for (int i = 0; i < 2000; ++i) node.poll();
-  const NodeCounts counts = node.counts();
+  const NodeTally counts = node.counts();
   CHECK(counts.samples.taken == ticks);
   CHECK(counts.frames.samples_sent + counts.samples.dropped == ticks);
   float newest = -1;

@@ -9,16 +9,16 @@
 
 namespace kinalign {
 
-class UdpSocket {
+class NodeSocket {
  public:
   /// From a port that the system chooses.
-  static Tried<UdpSocket> connected_to(const std::string& host, const std::string& port);
+  static Tried<NodeSocket> connected_to(const std::string& host, const std::string& port);
 
-  UdpSocket(UdpSocket&& other) noexcept;
-  UdpSocket& operator=(UdpSocket&& other) noexcept;
-  UdpSocket(const UdpSocket&) = delete;
-  UdpSocket& operator=(const UdpSocket&) = delete;
-  ~UdpSocket();
+  NodeSocket(NodeSocket&& other) noexcept;
+  NodeSocket& operator=(NodeSocket&& other) noexcept;
+  NodeSocket(const NodeSocket&) = delete;
+  NodeSocket& operator=(const NodeSocket&) = delete;
+  ~NodeSocket();
 
   /// False: nothing was sent.
   bool send(std::span<const std::uint8_t> datagram);
@@ -27,7 +27,7 @@ class UdpSocket {
   int descriptor() const { return descriptor_; }
 
  private:
-  explicit UdpSocket(int descriptor) : descriptor_(descriptor) {}
+  explicit NodeSocket(int descriptor) : descriptor_(descriptor) {}
 
   int descriptor_;
 };

@@ -16,9 +16,9 @@ struct ClockTruth {
   double drift_ppm = 0;
 };
 
-class SimulatedClock {
+class PretendedClock {
  public:
-  explicit SimulatedClock(const ClockTruth& start) : truths_{start} {}
+  explicit PretendedClock(const ClockTruth& start) : truths_{start} {}
 
   std::uint64_t counter_us(std::int64_t raw_ns) const;
   void set_drift(std::int64_t raw_ns, double ppm);

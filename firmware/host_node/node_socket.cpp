@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware/host_node/udp_socket.h"
+#include "firmware/host_node/node_socket.h"
 
 #include <netdb.h>
 #include <sys/socket.h>
@@ -30,7 +30,7 @@ ssize_t past_refusals(Call call) {
 
 }  // namespace
 
-Tried<UdpSocket> UdpSocket::connected_to(const std::string& host, const std::string& port) {
+Tried<NodeSocket> NodeSocket::connected_to(const std::string& host, const std::string& port) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_DGRAM;
   addrinfo* found = nullptr;
@@ -38,31 +38,31 @@ Tried<UdpSocket> UdpSocket::connected_to(const std::string& host, const std::str
   const std::unique_ptr<addrinfo, Free> list(found);
   if (error != 0) return failure(host + ": expected an address, found: " + gai_strerror(error));
   for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
-    UdpSocket made(::socket(one->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    NodeSocket made(::socket(one->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     if (made.descriptor_ < 0) continue;
     if (::connect(made.descriptor_, one->ai_addr, one->ai_addrlen) == 0) return made;
   }
   return failure(host + ":" + port + ": expected a way there, found: " + std::strerror(errno));
 }
 
-UdpSocket::UdpSocket(UdpSocket&& other) noexcept
+NodeSocket::NodeSocket(NodeSocket&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
-UdpSocket& UdpSocket::operator=(UdpSocket&& other) noexcept {
+NodeSocket& NodeSocket::operator=(NodeSocket&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   return *this;
 }
 
-UdpSocket::~UdpSocket() {
+NodeSocket::~NodeSocket() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-bool UdpSocket::send(std::span<const std::uint8_t> datagram) {
+bool NodeSocket::send(std::span<const std::uint8_t> datagram) {
   return past_refusals([&] { return ::send(descriptor_, datagram.data(), datagram.size(), 0); }) >=
          0;
 }
 
-bool UdpSocket::receive(std::span<std::uint8_t> room, std::size_t& size) {
+bool NodeSocket::receive(std::span<std::uint8_t> room, std::size_t& size) {
   const ssize_t got =
       past_refusals([&] { return ::recv(descriptor_, room.data(), room.size(), 0); });
   if (got < 0) return false;
