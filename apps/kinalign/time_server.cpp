@@ -119,6 +119,7 @@ class Herald {
   /// Whether to go on.
   bool operator()() {
     tell_clock();
+    tell_strays();
     tell_counts();
     const std::string nodes = nodes_ ? (*nodes_)() : "";
     const std::string both = counts_text(server_.counts()) + (nodes.empty() ? "" : "; " + nodes);
@@ -143,6 +144,14 @@ class Herald {
     console_.print_json(clock_json(now));
     console_.flush();
   }
+  /// Once: the count goes on telling it.
+  void tell_strays() {
+    if (strays_told_ || server_.counts()[NtpOutcome::from_node] == 0) return;
+    strays_told_ = true;
+    console_.note(
+        "kinalign time-server: warning: a node sends to the NTP port; nodes are received "
+        "on another one, --node-port");
+  }
   void tell_counts() {
     constexpr double every_s = 10;
     if (elapsed_s() < every_s * (counts_told_ + 1)) return;
@@ -158,6 +167,7 @@ class Herald {
   NtpServerState told_;
   Clock::time_point began_ = Clock::now();
   int counts_told_ = 0;
+  bool strays_told_ = false;
 };
 
 Result<int> run(TimeServerFlags& o, Call& call) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/ntp_responder.h"
 
+#include "kinalign/wire/node_datagram.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -9,8 +11,9 @@ namespace kinalign {
 namespace {
 
 constexpr std::array<std::string_view, ntp_outcomes> names{
-    "answered",      "limited",     "kissed",      "too_short",   "wrong_version", "wrong_mode",
-    "wrong_trailer", "from_port_0", "from_itself", "not_unicast", "clock_stepped", "unsent"};
+    "answered",      "limited",       "kissed",      "too_short",   "wrong_version",
+    "wrong_mode",    "wrong_trailer", "from_port_0", "from_itself", "not_unicast",
+    "clock_stepped", "unsent",        "from_node"};
 
 NtpOutcome outcome_of(NtpRefusal refusal) {
   switch (refusal) {
@@ -36,6 +39,11 @@ NtpOutcome outcome_of_way(const NtpAsked& asked) {
   return itself ? NtpOutcome::from_itself : NtpOutcome::answered;
 }
 
+bool is_from_node(std::span<const std::uint8_t> bytes) {
+  Envelope envelope;
+  return open_envelope(bytes, envelope) == NodeRefusal::none;
+}
+
 }  // namespace
 
 std::string_view name_of(NtpOutcome outcome) { return names[static_cast<std::size_t>(outcome)]; }
@@ -54,6 +62,7 @@ NtpOutcome NtpResponder::respond(const NtpAsked& asked, Time now, HostTime host_
                                  std::span<std::uint8_t, ntp_packet_size> answer) {
   const NtpOutcome way = outcome_of_way(asked);
   if (way != NtpOutcome::answered) return way;
+  if (is_from_node(asked.bytes)) return NtpOutcome::from_node;
   NtpPacket request;
   const NtpOutcome read = outcome_of(decode_request(asked.bytes, request));
   if (read != NtpOutcome::answered) return read;

@@ -30,8 +30,9 @@ enum class NtpOutcome : std::uint8_t {
   not_unicast,    // asked of a broadcast or multicast address: many would answer
   clock_stepped,  // between its arrival and its answer
   unsent,         // the system did not take the answer
+  from_node,      // an inertial node's datagram: it has its own port
 };
-constexpr std::size_t ntp_outcomes = 12;
+constexpr std::size_t ntp_outcomes = 13;
 
 /// As in --json: "wrong_version".
 std::string_view name_of(NtpOutcome outcome);

@@ -254,6 +254,14 @@ def a_port_that_is_taken_is_named_with_what_to_do(_):
 
 
 @case
+def a_node_that_sends_to_the_ntp_port_is_told_once(_):
+    with Server(*ALL_ADDRESSES) as server:
+        ended(start_node(cases.BUILD, server.port, 7, "--seconds", 1))
+    assert server.counts["from_node"] >= 10 and server.counts["wrong_trailer"] == 0, server.counts
+    assert server.err.count("a node sends to the NTP port") == 1 and "--node-port" in server.err, server.err
+
+
+@case
 def port_123_without_rights_is_refused_with_what_to_do(_):
     least = int(pathlib.Path("/proc/sys/net/ipv4/ip_unprivileged_port_start").read_text())
     if least <= 123:

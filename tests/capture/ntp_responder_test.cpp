@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/ntp_responder.h"
 
+#include "tests/capture/test_node.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>
@@ -77,6 +78,17 @@ TEST_CASE("each cause of refusal is told apart, and none of them writes an answe
   longer.resize(1500);
   CHECK(bench.respond_to(longer) == NtpOutcome::wrong_trailer);
   CHECK(bench.answer == std::array<std::uint8_t, 48>{});
+}
+
+TEST_CASE("a node's datagram is told apart from a client's, which its first byte looks like") {
+  Bench bench;
+  TestNode node(7, 1);
+  CHECK(bench.respond_to(node.frame(host_s(0.0))) == NtpOutcome::from_node);
+  node.samples.resize(3);
+  std::vector<std::uint8_t> damaged = node.frame(host_s(0.0));
+  CHECK(bench.respond_to(damaged) == NtpOutcome::from_node);
+  damaged[40] ^= 1U;
+  CHECK(bench.respond_to(damaged) == NtpOutcome::wrong_trailer);
 }
 
 TEST_CASE("a request that was cut on arrival is not judged by the part that came") {
