@@ -11,12 +11,6 @@ const std::string speaker = "kinalign time-server: ";
 
 }  // namespace
 
-NodeHerald::NodeHerald(NodeReceiver& receiver, Console& console, FileSystem& files,
-                       std::string key_file)
-    : receiver_(receiver), console_(console), files_(files), key_file_(std::move(key_file)) {
-  if (const auto key = read_lab_key(files_, key_file_)) key_ = *key;
-}
-
 std::string NodeHerald::operator()() {
   tell_events();
   if (Clock::now() >= next_status_) {
@@ -54,12 +48,12 @@ void NodeHerald::tell_status() {
 
 /// Once a second; what can't be read, half written or gone, leaves the keys as they are.
 void NodeHerald::look_at_key() {
-  if (key_file_.empty()) return;
-  const auto key = read_lab_key(files_, key_file_);
-  if (!key || *key == key_) return;
-  key_ = *key;
-  receiver_.replace_key(key_);
-  console_.note(speaker + key_file_ + " has another key now; the old one is good for 60 s");
+  if (lab_.path.empty()) return;
+  const auto key = read_lab_key(files_, lab_.path);
+  if (!key || *key == lab_.key) return;
+  lab_.key = *key;
+  receiver_.replace_key(*key);
+  console_.note(speaker + lab_.path + " has another key now; the old one is good for 60 s");
   console_.print_json(R"({"event": "key_replaced"})");
 }
 

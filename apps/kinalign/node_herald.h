@@ -8,14 +8,23 @@
 #include "kinalign/capture/node_receiver.h"
 
 #include <chrono>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace kinalign {
 
+/// A lab's key and the file that it was read from; neither where nodes have no keys.
+struct LabKeyFile {
+  std::string path;
+  std::optional<LabKey> key;
+};
+
 class NodeHerald {
  public:
-  /// `key_file`: empty where nodes have no keys.
-  NodeHerald(NodeReceiver& receiver, Console& console, FileSystem& files, std::string key_file);
+  /// `lab`: as the receiver has it.
+  NodeHerald(NodeReceiver& receiver, Console& console, FileSystem& files, LabKeyFile lab)
+      : receiver_(receiver), console_(console), files_(files), lab_(std::move(lab)) {}
 
   /// Some times a second. Its status in a few words: "3 nodes, 2 locked".
   std::string operator()();
@@ -31,8 +40,7 @@ class NodeHerald {
   NodeReceiver& receiver_;
   Console& console_;
   FileSystem& files_;
-  std::string key_file_;
-  LabKey key_{};
+  LabKeyFile lab_;
   Clock::time_point next_status_ = Clock::now() + std::chrono::seconds(1);
   int counts_in_s_ = 10;
 };

@@ -72,15 +72,24 @@ Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
   return options;
 }
 
+Result<LabKeyFile> read_key_file(const TimeServerFlags& flags, Call& call) {
+  LabKeyFile lab{flags.lab_key, std::nullopt};
+  if (lab.path.empty()) return lab;
+  FileSystem& files = call.surroundings.files;
+  lab.key = KA_TRY(read_lab_key(files, lab.path));
+  return lab;
+}
+
 /// Absent where no port for nodes is wanted.
-Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags, FileSystem& files,
+Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
+                                               const std::optional<LabKey>& lab_key,
                                                ClockReader& clocks) {
   if (!flags.node_port) return std::nullopt;
   NodeReceiverOptions options;
   options.addresses = flags.listen;
   options.port = static_cast<std::uint16_t>(*flags.node_port);
   options.desk.secret = KA_TRY(random_key());
-  if (!flags.lab_key.empty()) options.desk.lab_key = KA_TRY(read_lab_key(files, flags.lab_key));
+  options.desk.lab_key = lab_key;
   return KA_TRY(NodeReceiver::open(options, clocks));
 }
 
@@ -174,9 +183,10 @@ Result<int> run(TimeServerFlags& o, Call& call) {
   Console& console = call.console;
   console.never_wait();
   console.if_it_fails([port = o.port](const Error& error) { return advice_on(error, port); });
+  const LabKeyFile lab = KA_TRY(read_key_file(o, call));
   TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));
   SystemClocks clocks;
-  auto nodes = KA_TRY(open_nodes(o, call.surroundings.files, clocks));
+  auto nodes = KA_TRY(open_nodes(o, lab.key, clocks));
   const ServedPort served = served_port(server, nodes, o);
   console.print(harmless(start_lines(served, server.state())));
   console.print_json(start_json(served, server.state()));
@@ -187,7 +197,7 @@ Result<int> run(TimeServerFlags& o, Call& call) {
   }
   console.flush();
   std::optional<NodeHerald> node_herald;
-  if (nodes) node_herald.emplace(*nodes, console, call.surroundings.files, o.lab_key);
+  if (nodes) node_herald.emplace(*nodes, console, call.surroundings.files, lab);
   Herald herald(server, node_herald, console);
   server.serve([&herald] { return herald(); }, nodes ? &*nodes : nullptr);
   herald.tell_end();
