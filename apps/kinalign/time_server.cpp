@@ -34,6 +34,28 @@ Result<std::vector<Network>> networks_of(const std::vector<std::string>& texts) 
   return networks;
 }
 
+Result<void> check_addresses(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) {
+    if (is_address(text)) continue;
+    return Failure(Error{"--listen", 0, "an IPv4 or IPv6 address", shown(text)});
+  }
+  return {};
+}
+
+/// Flags that forbid one another, or need one another.
+Result<void> check_flags(const TimeServerFlags& o) {
+  KA_TRY(check_addresses(o.listen));
+  KA_TRY(networks_of(o.exempt));
+  if (!o.node_port && !o.lab_key.empty()) {
+    return Failure(Error{"--lab-key", 0, "--node-port beside it", "none"});
+  }
+  if (o.node_port == o.port && o.port != 0) {
+    return Failure(Error{"--node-port", 0, "another port than --port",
+                         fmt::format("{}: both flags name the same port", o.port)});
+  }
+  return {};
+}
+
 Usage describe_time_server(TimeServerFlags& o) {
   Usage usage;
   usage.flags = {
@@ -48,11 +70,7 @@ Usage describe_time_server(TimeServerFlags& o) {
        &o.local_stratum, 1.0, 15.0},
       {"node_port", "UDP port for inertial nodes; 0: any free one", &o.node_port, 0.0, 65535.0},
       {"lab_key", "file of the key that the nodes' keys come from (see node-key)", &o.lab_key}};
-  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
-    KA_TRY(networks_of(o.exempt));
-    if (o.node_port || o.lab_key.empty()) return {};
-    return Failure(Error{"--lab-key", 0, "--node-port beside it", "none"});
-  };
+  usage.check = [&o](const Common&, const Sources&) { return check_flags(o); };
   return usage;
 }
 
@@ -72,10 +90,36 @@ Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
   return options;
 }
 
+/// On a port that could not be opened. `flag`: the one that names it.
+Advice port_advice(const std::string& flag) {
+  return [flag](const Error& error) -> std::vector<std::string> {
+    if (error.found == port_taken) {
+      const std::string port = error.file.substr(error.file.rfind(':'));
+      return {
+          fmt::format("ss -ulpn 'sport = {}' shows which one; {} takes another port", port, flag)};
+    }
+    if (error.found == low_port_forbidden || error.found == port_forbidden) {
+      return {"as root, or once: sudo setcap cap_net_bind_service=+ep $(command -v kinalign)",
+              flag + " 12300 needs no rights, for clients that can be told a port"};
+    }
+    if (error.found == address_elsewhere) {
+      return {"ip -brief address shows this machine's; --listen takes one of them"};
+    }
+    return {};
+  };
+}
+
+/// On a lab key that could not be read.
+std::vector<std::string> key_advice(const Error& error) {
+  if (error.expected == secret_key) return {};
+  return {"kinalign node-key --new-lab-key FILE makes one"};
+}
+
 Result<LabKeyFile> read_key_file(const TimeServerFlags& flags, Call& call) {
   LabKeyFile lab{flags.lab_key, std::nullopt};
   if (lab.path.empty()) return lab;
   FileSystem& files = call.surroundings.files;
+  call.console.if_it_fails(key_advice);
   lab.key = KA_TRY(read_lab_key(files, lab.path));
   return lab;
 }
@@ -91,17 +135,6 @@ Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
   options.desk.secret = KA_TRY(random_key());
   options.desk.lab_key = lab_key;
   return KA_TRY(NodeReceiver::open(options, clocks));
-}
-
-std::vector<std::string> advice_on(const Error& error, std::int64_t port) {
-  if (error.found.starts_with("another program")) {
-    return {fmt::format("ss -ulpn 'sport = :{}' shows which one; --port takes another port", port)};
-  }
-  if (error.found.starts_with("no permission")) {
-    return {"as root, or once: sudo setcap cap_net_bind_service=+ep $(command -v kinalign)",
-            "--port 12300 needs no rights, for clients that can be told a port"};
-  }
-  return {};
 }
 
 ServedPort served_port(const TimeServer& server, const std::optional<NodeReceiver>& nodes,
@@ -182,9 +215,10 @@ class Herald {
 Result<int> run(TimeServerFlags& o, Call& call) {
   Console& console = call.console;
   console.never_wait();
-  console.if_it_fails([port = o.port](const Error& error) { return advice_on(error, port); });
   const LabKeyFile lab = KA_TRY(read_key_file(o, call));
+  console.if_it_fails(port_advice("--port"));
   TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));
+  console.if_it_fails(port_advice("--node-port"));
   SystemClocks clocks;
   auto nodes = KA_TRY(open_nodes(o, lab.key, clocks));
   const ServedPort served = served_port(server, nodes, o);

@@ -50,7 +50,7 @@ Result<void> check_mode(int fd, const std::string& path) {
   if (::fstat(fd, &found) != 0) return no_key(path, "a key file", std::strerror(errno));
   if (!S_ISREG(found.st_mode)) return no_key(path, "a key file", "no regular file");
   if ((found.st_mode & 077U) == 0) return {};
-  return no_key(path, "a key that nobody else may read (chmod 600)", octal(found.st_mode));
+  return no_key(path, std::string(secret_key), octal(found.st_mode));
 }
 
 bool parse_digits(std::string_view text, std::span<std::uint8_t> key) {
@@ -105,10 +105,11 @@ Result<LabKey> read_lab_key(FileSystem& files, const std::string& path) {
   const ssize_t got = files.read(file.fd(), text.data(), text.size());
   LabKey key{};
   const auto size = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
-  if (!parse_digits({text.data(), size}, key)) {
-    return no_key(path, "a lab key of 64 hexadecimal digits", "something else");
-  }
-  return key;
+  if (parse_digits({text.data(), size}, key)) return key;
+  MacKey node{};
+  const bool is_node_key = parse_digits({text.data(), size}, node);
+  return no_key(path, "a lab key of 64 hexadecimal digits",
+                is_node_key ? "32 digits, a node's key" : "something else");
 }
 
 Result<void> write_key(FileSystem& files, const std::string& path,

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace kinalign {
 
@@ -23,6 +24,9 @@ Result<LabKey> new_lab_key();
 
 /// "000102…": two lowercase digits a byte.
 std::string key_text(std::span<const std::uint8_t> key);
+
+/// What read_lab_key expected of a file that others may read, for who advises.
+inline constexpr std::string_view secret_key = "a key that nobody else may read (chmod 600)";
 
 /// 64 hexadecimal digits and at most a line end. Refuses a file that others may read; no message
 /// shows a byte of it.

@@ -19,11 +19,11 @@ constexpr int receive_buffer = 4 << 20;  // a tenth of a second of a flood
 
 /// What stands in the way of an address and port, for who has to clear it.
 std::string obstacle(int code, std::uint16_t port) {
-  if (code == EADDRINUSE) return "another program on it";
+  if (code == EADDRINUSE) return std::string(port_taken);
   if (code == EACCES || code == EPERM) {
-    return port < 1024 ? "no permission for a port below 1024" : "no permission";
+    return std::string(port < 1024 ? low_port_forbidden : port_forbidden);
   }
-  if (code == EADDRNOTAVAIL) return "no interface that has it";
+  if (code == EADDRNOTAVAIL) return std::string(address_elsewhere);
   return std::strerror(code);
 }
 
@@ -73,16 +73,27 @@ std::uint16_t bound_port(int fd) {
   return ntohs(reinterpret_cast<sockaddr_in6&>(bound).sin6_port);
 }
 
-}  // namespace
+using Found = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-Result<UdpSocket> UdpSocket::open(const std::string& address, std::uint16_t port) {
+/// nullptr: it is no address.
+Found find_address(const std::string& address, std::uint16_t port) {
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_PASSIVE;
   hints.ai_socktype = SOCK_DGRAM;
   addrinfo* found = nullptr;
   const int fault = ::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &hints, &found);
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> hold(found, &::freeaddrinfo);
-  if (fault != 0) return Failure(Error{"", 0, "an IPv4 or IPv6 address", shown(address)});
+  return {fault == 0 ? found : nullptr, &::freeaddrinfo};
+}
+
+}  // namespace
+
+bool is_address(const std::string& text) { return find_address(text, 0) != nullptr; }
+
+Result<UdpSocket> UdpSocket::open(const std::string& address, std::uint16_t port) {
+  const Found found = find_address(address, port);
+  if (found == nullptr) {
+    return Failure(Error{"", 0, "an IPv4 or IPv6 address", shown(address)});
+  }
   const int type = SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
   UdpSocket socket(::socket(found->ai_family, type, 0), address);
   const bool bound = socket.fd_ >= 0 && set_options(socket.fd_, found->ai_family) &&

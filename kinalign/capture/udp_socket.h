@@ -7,9 +7,16 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kinalign {
+
+/// What may stand in the `found` of an error of open and open_udp_sockets, for who advises.
+inline constexpr std::string_view port_taken = "another program on it";
+inline constexpr std::string_view port_forbidden = "no permission";
+inline constexpr std::string_view low_port_forbidden = "no permission for a port below 1024";
+inline constexpr std::string_view address_elsewhere = "no interface that has it";
 
 class UdpSocket {
  public:
@@ -40,6 +47,9 @@ class UdpSocket {
   std::uint16_t port_ = 0;
   std::string address_;
 };
+
+/// Whether open takes it: the text of an address, not a name, which might be several.
+bool is_address(const std::string& text);
 
 bool system_knows_ipv6();
 

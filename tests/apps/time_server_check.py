@@ -254,6 +254,24 @@ def a_port_that_is_taken_is_named_with_what_to_do(_):
 
 
 @case
+def advice_names_the_flag_of_the_port_that_failed(folder):
+    with Server(*ALL_ADDRESSES) as server:
+        done = kinalign("time-server", "--port", 0, "--node-port", server.port)
+    advice = f"ss -ulpn 'sport = :{server.port}' shows which one; --node-port takes another port\n"
+    assert done.returncode == 3 and done.stderr.decode().endswith(advice), done
+    done = kinalign("time-server", "--port", 0, "--listen", "192.0.2.77")
+    assert done.returncode == 3 and b"found no interface that has it" in done.stderr, done
+    assert b"ip -brief address" in done.stderr and b"--listen takes one" in done.stderr, done
+    node_key = folder / "node7.key"
+    node_key.write_text("ab" * 16 + "\n")
+    node_key.chmod(0o600)
+    for key, found in ((node_key, "found 32 digits, a node's key"), (folder / "nope.key", "No such file or directory")):
+        done = kinalign("time-server", "--port", 0, "--node-port", 0, "--lab-key", key)
+        assert done.returncode == 3 and found in done.stderr.decode(), done
+        assert b"kinalign node-key --new-lab-key FILE makes one" in done.stderr, done
+
+
+@case
 def a_node_that_sends_to_the_ntp_port_is_told_once(_):
     with Server(*ALL_ADDRESSES) as server:
         ended(start_node(cases.BUILD, server.port, 7, "--seconds", 1))
@@ -335,8 +353,10 @@ def wrong_use_is_told_before_anything_is_served(_):
     cases.wrong("time-server", "--port", "65536", says="--port: expected a whole number from 0 to 65535, found 65536")
     cases.wrong("time-server", "--local-stratum", "16",
                 says="--local-stratum: expected a whole number from 1 to 15, found 16")
-    done = kinalign("time-server", "--port", "0", "--listen", "192.0.2.77")
-    assert done.returncode == 3 and b"found no interface that has it" in done.stderr, done
+    cases.wrong("time-server", "--listen", "localhost",
+                says="--listen: expected an IPv4 or IPv6 address, found localhost")
+    cases.wrong("time-server", "--port", "12399", "--node-port", "12399",
+                says="--node-port: expected another port than --port, found 12399: both flags name the same port")
 
 
 if __name__ == "__main__":

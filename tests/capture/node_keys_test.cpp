@@ -81,6 +81,8 @@ TEST_CASE("what is no lab key is refused, and no byte of it is shown") {
     CHECK(to_string(key.error()) ==
           path + ": expected a lab key of 64 hexadecimal digits, found something else");
   }
+  const std::string node_key_file = folder.file(digits.substr(0, 32) + "\n", 0600);
+  CHECK(read_lab_key(files, node_key_file).error().found == "32 digits, a node's key");
   CHECK(read_lab_key(files, folder.path).error().found == "no regular file");
   CHECK(read_lab_key(files, folder.path + "/none").error().found == "No such file or directory");
 }
