@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/live_clock.h"
 
+#include "tests/seeds.h"
+
+#include "kinalign/clock/offline_clock.h"
+
 #include <doctest/doctest.h>
 #include <malloc.h>
 
 #include <algorithm>
 #include <memory>
+#include <random>
 
 using namespace kinalign;
 using namespace std::chrono_literals;
@@ -122,4 +127,87 @@ TEST_CASE("a clock holds no more than 64 KiB, whatever a node says") {
   }
   CHECK(most > sizeof(LiveClock));
   CHECK(most <= 64U << 10U);
+}
+
+TEST_CASE(
+    "while a crossing that cannot be is recent nothing is certified, and a reboot withdraws") {
+  LiveClock clock;
+  run(clock, 7, 0s, 30s);
+  static_cast<void>(clock.take_events());
+  clock.push_up(7, node(31s), host(30s + 500ms));  // half a second before it was sent
+  CHECK(clock.host_from_node(7, node(31s))->certainty == Certainty::doubtful);
+  clock.push_up(8, node(0s), host(31s));
+  const auto events = clock.take_events();
+  CHECK(count(events, ClockEvent::Kind::withdrawn) == 1);
+  for (const ClockEvent& event : events) {
+    if (event.kind == ClockEvent::Kind::withdrawn) CHECK(event.begin <= host(25s + 500ms));
+  }
+}
+
+TEST_CASE("a crossing that cannot be is forgotten after some seconds") {
+  LiveClock clock;
+  run(clock, 7, 0s, 30s);
+  clock.push_up(7, node(31s), host(30s + 500ms));
+  run(clock, 7, 31s, 40s);
+  CHECK(clock.host_from_node(7, node(40s))->certainty == Certainty::certified);
+}
+
+TEST_CASE("a step of a node that is heard every five seconds is found") {
+  LiveClock clock;
+  for (Duration t = 0s; t < 900s; t += 5s) {
+    const Duration stepped = t < 600s ? 0s : 1s;
+    clock.push_up(7, node(t + stepped), host(t + 1ms));
+    clock.push_down(7, node(t - 50ms + stepped), host(t - 51ms));
+  }
+  CHECK(count(clock.take_events(), ClockEvent::Kind::step) == 1);
+  const auto stamp = clock.host_from_node(7, node(901s));
+  CHECK(stamp->certainty == Certainty::certified);
+  CHECK(std::chrono::abs(stamp->time - host(900s)) < 1ms);
+}
+
+TEST_CASE("a late frame of ten lives ago does not take the present one's place") {
+  LiveClock clock;
+  for (BootKey boot = 1; boot <= 10; ++boot) {
+    const Duration begin = 10s * static_cast<int>(boot);
+    clock.push_up(boot, node(0s), host(begin));
+  }
+  clock.push_up(1, node(1s), host(101s));
+  CHECK(clock.late_crossings() == 1);
+  run(clock, 10, 102s, 110s);
+  CHECK(clock.late_crossings() == 1);
+  CHECK(clock.host_from_node(10, node(110s)));
+}
+
+TEST_CASE("without any delay the truth lies at the interval's ends, and never outside") {
+  const auto seed = fresh_seeds(1).front();
+  CAPTURE(seed);
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<std::int64_t> step(20'000'000, 100'000'000);  // ns
+  LiveClock clock;
+  std::vector<Exchange> exchanges;
+  std::vector<Duration> truths;
+  const auto counted = [](Duration t) {
+    return node(std::chrono::floor<std::chrono::microseconds>(t));
+  };
+  Duration narrowest = 1s;
+  for (Duration t = 0s; t < 60s; t += Duration{step(random)}) {
+    const Duration reply = t - Duration{step(random) / 10};
+    exchanges.push_back({7, counted(t), host(t), Exchange::Echo{counted(reply), host(reply)}});
+    truths.push_back(t);
+    clock.push(exchanges.back());
+    const auto stamp = clock.host_from_node(7, counted(t));
+    if (!stamp || stamp->certainty != Certainty::certified) continue;
+    CHECK(*stamp->earliest <= host(t));
+    CHECK(*stamp->latest >= host(t));
+    narrowest = std::min(narrowest, *stamp->latest - *stamp->earliest);
+  }
+  CHECK(narrowest < 3us);  // so that a microsecond too few would show
+  const auto offline = fit_offline_clock(exchanges);
+  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+    const auto stamp = host_from_node(offline.model, 7, exchanges[i].n_tx, exchanges[i].h_rx);
+    REQUIRE(stamp);
+    CHECK(stamp->certainty == Certainty::certified);
+    CHECK(*stamp->earliest <= host(truths[i]));
+    CHECK(*stamp->latest >= host(truths[i]));
+  }
 }
