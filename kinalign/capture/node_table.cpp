@@ -102,12 +102,16 @@ NodeLife* NodeTable::hold(const NodeSign& sign) {
   });
   NodeLife* life = same != lives_.end() ? &*same : room_for_life(sign);
   if (life == nullptr) return nullptr;
+  // As old as before: who sends two frames of an old life in turn would keep it young, and others
+  // of its id out.
+  const HostTime begun = same != lives_.end() ? same->begun : sign.at;
   *life = {};
   life->state = State::held;
   life->node_id = sign.node_id;
   life->boot_id = sign.boot_id;
   life->address = sign.from;
-  life->begun = life->heard = sign.at;
+  life->begun = begun;
+  life->heard = sign.at;
   return life;
 }
 

@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <map>
 
 namespace kinalign {
@@ -179,6 +180,31 @@ TEST_CASE("fault 40 ipv6_only, dual_stack_same_node: one stream") {
   const NodeNews after = host.exchange(node, home, 0.2);
   CHECK(before.exchange->boot == after.exchange->boot);
   CHECK(before.stream == after.stream);
+}
+
+TEST_CASE("fault 12 replay: captures of former lives, sent on and on, keep no node out") {
+  std::vector<std::array<Bytes, 2>> captured;  // of each life an early frame, and a late one
+  for (std::uint32_t boot = 1; boot <= 4; ++boot) {
+    TestNode node(7, boot, lab);
+    captured.push_back({node.frame(host_s(1.0)), node.frame(host_s(31.0))});
+  }
+  TestDesk host(lab);
+  TestNode node(7, 55, lab);
+  for (int k = 0; k < 100; ++k) host.exchange(node, home, 100.0 + 0.05 * k);
+  node.reboot(56, host_s(105.0));
+  int accepted = 0;
+  for (int k = 0; k < 600; ++k) {
+    const double t = 105.0 + 0.05 * k;
+    for (std::uint8_t i = 0; i < captured.size();
+         ++i) {  // from its own host, which anybody can say
+      const NodeAddress from{home.host, static_cast<std::uint16_t>(6000 + i)};
+      host.take(captured[i][1], from, host_s(t));
+      host.take(captured[i][0], from, host_s(t));
+    }
+    if (k < 100) continue;
+    accepted += host.exchange(node, home, t + 0.02).verdict == Verdict::accepted ? 1 : 0;
+  }
+  CHECK(accepted > 450);  // of 500: it is in within two seconds
 }
 
 }  // namespace kinalign
