@@ -68,6 +68,7 @@ void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
     tell({ClockEvent::Kind::host_backwards, boot, h_rx, newest_});
   }
   newest_ = h_rx;
+  replaced_ = false;
   answer(piece_->push(crossing), crossing);
   if (settles_ && newest_ >= *settles_) settle(crossing);
 }
@@ -77,6 +78,7 @@ void LiveClock::push_down(BootKey boot, NodeTime n_rx, HostTime h_tx) {
     ++late_;
     return;
   }
+  if (replaced_) return;  // the reply reached the node before what the frame has shown
   const Crossing crossing{Side::below, n_rx, h_tx, newest_};
   answer(piece_->push(crossing), crossing);
 }
@@ -120,6 +122,7 @@ void LiveClock::settle(const Crossing& crossing) {
 }
 
 void LiveClock::replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing) {
+  replaced_ = true;
   tell({why, boot_, piece_->next_begins(), crossing.heard, value});
   tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
   take_piece(piece_->next_piece());

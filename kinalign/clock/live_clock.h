@@ -83,6 +83,7 @@ class LiveClock {
   std::size_t lives_ = 0;
   HostTime newest_ = HostTime::min();
   std::optional<HostTime> stepped_;  // last, in this life
+  bool replaced_ = false;            // the piece, by the newest frame
   std::optional<HostTime> settles_;  // if there is no other
   std::uint32_t routes_told_ = 0;
   std::uint64_t late_ = 0;

@@ -48,7 +48,7 @@ void OffsetEstimate::add(const Bound& b) {
   if (standing != Standing::held) add_to_route(b.side, bound);
   if (const auto late = recent.release(b.s)) add_to_route(b.side, *late);
   if (watched) {
-    judge_change();
+    judge_change(b.s);
     if (const auto s = recent.moved(line, counts)) return change_route(*s);
   }
   look(b.s, !(excess * density > far_gaps));
@@ -97,8 +97,9 @@ std::optional<Middle> OffsetEstimate::at(double t) {
 }
 
 /// Asked once the floors of the present route are known.
-void OffsetEstimate::judge_change() {
+void OffsetEstimate::judge_change(double s) {
   if (!joint_ || joint_->judged) return;
+  refresh(s);
   joint_->judged = true;
   const double noise = std::hypot(joint_->floor_deviation, middle_.floor_deviation());
   if (std::abs(middle_.round_trip - joint_->round_trip) > alike_deviations * noise) return;

@@ -54,7 +54,7 @@ class OffsetEstimate {
   void change_route(double s);
   void join_routes(double s);
   void guess_floors(double s, const Middle& before);
-  void judge_change();
+  void judge_change(double s);
 
   Route route_;
   Middle middle_;                // of the route alone; its lines are the floors
