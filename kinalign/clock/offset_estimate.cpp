@@ -40,7 +40,8 @@ void OffsetEstimate::add(const Bound& b) {
   const double density = middle_.density(b.side), excess = line.excess(bound);
   const ExcessCounts& counts = route_.floor(b.side).counts();
   const bool watched = settled(b.s) && counts.total() >= settling_points;
-  const double limit = watched ? std::max(gaps_off / density, least_off_s) : infinite;
+  double limit = infinite;
+  if (watched) limit = std::max(gaps_off / density, least_off_s);
   const Standing standing = excess < -limit  ? Standing::held
                             : excess > limit ? Standing::above
                                              : Standing::usual;
