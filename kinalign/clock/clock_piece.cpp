@@ -3,32 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kinalign {
 
 namespace {
 
-constexpr double tolerated_s = 5e-6;  // against the certificate, before a bound is a violator
-constexpr Duration violators_within = std::chrono::seconds(5);
-constexpr double harmless_share = 0.4;      // of the round trip: half of it is the least delay
-constexpr std::uint64_t few_crossings = 8;  // of a node that says little
+constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
 constexpr Duration before_a_slip = std::chrono::seconds(5);
 constexpr Duration longest_reach = std::chrono::seconds(70);
 constexpr double longest_piece_s = 1e8;  // three years; lifted, doubles keep 30 ns over that
+constexpr double looked_back_s = 120.0;
 constexpr double stale_s = 0.5;
 constexpr double between_pieces = 2e-6;  // by which a slope may differ
 constexpr std::uint32_t seldom = 4;
 
 Duration rounded_down(double s) { return Duration{static_cast<std::int64_t>(std::floor(s * 1e9))}; }
 Duration rounded_up(double s) { return Duration{static_cast<std::int64_t>(std::ceil(s * 1e9))}; }
-
-/// Whether two bounds of different kinds leave no way for a function of at most this rate.
-bool contradict(const Bound& a, const Bound& b, double rate) {
-  if (a.side == b.side) return false;
-  const Bound& above = a.side == Side::above ? a : b;
-  const Bound& below = a.side == Side::above ? b : a;
-  return below.x > above.x + rate * std::abs(a.s - b.s) + tolerated_s;
-}
 
 }  // namespace
 
@@ -40,8 +31,14 @@ HostTime ClockPiece::host_time(const Bound& e) const {
   return origin_.host + rounded_down(e.s + e.x);
 }
 
+std::optional<ValueRange> ClockPiece::left_at(double s) {
+  const auto range = certificate_.at(s);
+  if (certificate_.bounded() && !range) contradicted_ = true;
+  return range;
+}
+
 void ClockPiece::ask(double s) {
-  range_ = certificate_.at(s);
+  range_ = left_at(s);
   range_at_ = s;
   unseen_ = 0;
 }
@@ -79,17 +76,23 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
     return Verdict::violator;  // no counter that begins to count says that
   }
   amount_ = violation(e);
-  if (amount_ > tolerated_s) return judge(crossing);
-  Verdict verdict = Verdict::taken;
-  if (certificate_.bounded() && !range_) {
-    if (!relax(e.s)) {
-      end_ = End::contradiction;
-      return Verdict::broken;
-    }
-    verdict = Verdict::relaxed;
+  if (amount_ > Violators::tolerated_s) {
+    violators_.add({crossing, e, amount_, crossings_});
+    return violators_.full() ? broken(End::violators) : Verdict::violator;
+  }
+  if (contradicted_) return broken(End::contradiction);
+  violators_.hold_against(e, assumptions().rate);
+  if (violators_.overdue(heard_, crossings_)) {
+    amount_ = violators_.pending().front().amount;
+    return broken(End::overdue_violator);
   }
   add(e);
-  return slipped().value_or(verdict);
+  return slipped().value_or(Verdict::taken);
+}
+
+ClockPiece::Verdict ClockPiece::broken(End why) {
+  end_ = why;
+  return Verdict::broken;
 }
 
 /// A step by less than the least delay leaves the truth within the certificate.
@@ -97,7 +100,6 @@ std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
   if (floors_.windows() == windows_judged_ && estimate_.changes() == routes_judged_) return {};
   if (const auto by = narrowed()) {
     amount_ = *by;
-    if (relax(floors_.window(0)->s) && !narrowed()) return Verdict::relaxed;
     end_ = End::narrowed;
     return Verdict::slipped;
   }
@@ -110,14 +112,16 @@ std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
 }
 
 /// Bounds of before and after a slip leave less between them than the shortest round trip that
-/// there is; told once a window.
-std::optional<double> ClockPiece::narrowed() const {
-  if (floors_.windows() == windows_judged_) return std::nullopt;
-  const auto window = floors_.window(0);
-  if (!window) return std::nullopt;
-  const double least = floors_.shortest().least_width();
-  const auto range = certificate_.at(window->s);
-  const double left = range ? range->high - range->low : 0.0;
+/// there is: where that is seen best depends on when it was. Asked once a window.
+std::optional<double> ClockPiece::narrowed() {
+  if (floors_.windows() == windows_judged_ || !certificate_.bounded()) return std::nullopt;
+  const double least = floors_.shortest().least_width(), now = journal_.newest(0).s;
+  double left = std::numeric_limits<double>::infinity();
+  for (double back = FloorLog::window_s / 2.0; back < looked_back_s; back += FloorLog::window_s) {
+    const auto range = left_at(std::max(now - back, 0.0));
+    if (!range) return std::nullopt;  // which is more than a slip
+    left = std::min(left, range->high - range->low);
+  }
   return left < least ? std::optional(least - left) : std::nullopt;
 }
 
@@ -139,60 +143,19 @@ std::optional<double> ClockPiece::stepped_between_windows() {
   return one_route ? floors_.step() : std::nullopt;
 }
 
-/// Once a node bends more than assumed, what is just enough would put the truth at the edge: so far
-/// as crystals go. False: even that leaves no way.
-bool ClockPiece::relax(double s) {
-  if (assumptions().curvature >= most_curvature) return false;
-  Certificate relaxed = certificate_.relaxed(most_curvature);
-  if (!relaxed.at(s)) return false;
-  certificate_ = std::move(relaxed);
-  ask(s);
-  return true;
-}
-
-bool ClockPiece::recent(std::size_t violator) const {
-  return heard_ - violators_[violator].heard <= violators_within ||
-         crossings_ - violator_numbers_[violator] <= few_crossings;
-}
-
 std::optional<HostTime> ClockPiece::uneasy_since() const {
-  if (violator_count_ == 0 || !recent(violator_count_ - 1)) return std::nullopt;
-  return std::max(begin_, violators_[0].heard - violators_within);
-}
-
-/// A node that warms up faster than assumed bends away from the certificate bit by bit: three
-/// violators that a greater curvature explains are no step.
-ClockPiece::Verdict ClockPiece::judge(const Crossing& violator) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < violator_count_; ++i) {
-    if (!recent(i)) continue;
-    violators_[kept] = violators_[i];
-    violator_numbers_[kept++] = violator_numbers_[i];
-  }
-  violators_[kept] = violator;
-  violator_numbers_[kept] = crossings_;
-  violator_count_ = kept + 1;
-  if (violator_count_ < violators_.size()) return Verdict::violator;
-  const Certificate before = certificate_;
-  for (const Crossing& v : violators_) certificate_.add(bound(v));
-  if (!relax(bound(violator).s)) {
-    certificate_ = before;
-    end_ = End::violators;
-    return Verdict::broken;
-  }
-  for (const Crossing& v : violators_) add(bound(v));
-  violator_count_ = 0;
-  return Verdict::relaxed;
+  if (violators_.pending().empty()) return std::nullopt;
+  return std::max(begin_, violators_.pending()[0].crossing.heard - Violators::wait);
 }
 
 /// Behind the last crossing that can't go with the violators: until then the counter had not
 /// stepped. At least five seconds before the first violator.
 HostTime ClockPiece::doubt_of_violators() const {
-  HostTime since = next_begins() - violators_within;
+  HostTime since = violators_.pending()[0].crossing.heard - Violators::wait;
   for (std::size_t i = 0; i < journal_.size(); ++i) {
     const Bound e = journal_.newest(i);
-    for (const Crossing& v : violators_) {
-      if (contradict(e, bound(v), assumptions().rate)) return std::min(host_time(e), since);
+    for (const Violator& v : violators_.pending()) {
+      if (contradict(e, v.bound, assumptions().rate)) return std::min(host_time(e), since);
     }
   }
   return begin_;
@@ -200,7 +163,7 @@ HostTime ClockPiece::doubt_of_violators() const {
 
 HostTime ClockPiece::doubtful_since() const {
   HostTime since = begin_;
-  if (end_ == End::violators) since = doubt_of_violators();
+  if (end_ == End::violators || end_ == End::overdue_violator) since = doubt_of_violators();
   if (end_ == End::slip_with_route) since = about(estimate_.last_change()->s) - before_a_slip;
   if (end_ == End::slip_between_windows) since = heard_ - longest_reach;
   return std::max(since, begin_);
@@ -208,7 +171,9 @@ HostTime ClockPiece::doubtful_since() const {
 
 HostTime ClockPiece::next_begins() const {
   if (end_ != End::violators) return heard_;
-  return std::min({violators_[0].heard, violators_[1].heard, violators_[2].heard});
+  HostTime first = heard_;
+  for (const Violator& v : violators_.pending()) first = std::min(first, v.crossing.heard);
+  return first;
 }
 
 /// When the host heard of what happened at s, but for delays.
@@ -218,14 +183,24 @@ HostTime ClockPiece::about(double s) const {
   return origin_.host + rounded_down(s + journal_.newest(i).x);
 }
 
+/// Whether all that was seen could be a counter that bends, as far as crystals go, and never
+/// stepped. Which of the two it was can't be told then, and the next piece allows for both.
+bool ClockPiece::may_bend() const {
+  Certificate bent = certificate_.relaxed(most_curvature);
+  for (const Violator& v : violators_.pending()) bent.add(v.bound);
+  return bent.at(journal_.newest(0).s).has_value();
+}
+
 /// When just a counter stepped by little is not known well: nothing is certified by what came
 /// before now. The estimate has begun anew with its route, or does so with the last window.
-ClockPiece ClockPiece::next_after_slip(const SlopeBelief& prior) const {
+ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const {
   ClockPiece next = *this;
   next.begin_ = heard_;
   next.end_ = End::none;
-  next.certificate_ = Certificate(assumptions(), corners);
+  next.certificate_ = Certificate(assumed, corners);
   next.range_.reset();
+  next.contradicted_ = false;
+  next.violators_.clear();
   next.floors_ = FloorLog(floors_.shortest());
   next.windows_judged_ = 0;
   if (end_ == End::slip_with_route) return next;
@@ -240,19 +215,22 @@ ClockPiece ClockPiece::next_after_slip(const SlopeBelief& prior) const {
 }
 
 ClockPiece ClockPiece::next_piece() const {
+  Assumptions assumed = assumptions();
+  if (end_ != End::none && may_bend()) assumed.curvature = most_curvature;
   SlopeBelief prior = estimate_.slope();
   prior.deviation += between_pieces;
   if (end_ == End::slip_with_route || end_ == End::slip_between_windows) {
-    return next_after_slip(prior);
+    return next_after_slip(assumed, prior);
   }
   if (end_ == End::violators) {
-    ClockPiece next({violators_[0].n, violators_[0].h}, assumptions(), prior, floors_.shortest());
-    for (const Crossing& v : violators_) next.add(next.bound(v));
+    const Crossing& first = violators_.pending()[0].crossing;
+    ClockPiece next({first.n, first.h}, assumed, prior, floors_.shortest());
+    for (const Violator& v : violators_.pending()) next.add(next.bound(v.crossing));
     next.begin_ = next.heard_ = next_begins();
     return next;
   }
   const Bound last = journal_.newest(0);
-  ClockPiece next({origin_.node + rounded_down(last.s), host_time(last)}, assumptions(), prior,
+  ClockPiece next({origin_.node + rounded_down(last.s), host_time(last)}, assumed, prior,
                   floors_.shortest());
   next.begin_ = next.heard_ = heard_;
   return next;

@@ -8,21 +8,12 @@
 #include "kinalign/clock/exchange_journal.h"
 #include "kinalign/clock/floor_log.h"
 #include "kinalign/clock/offset_estimate.h"
+#include "kinalign/clock/violators.h"
 
-#include <array>
 #include <cstdint>
 #include <optional>
 
 namespace kinalign {
-
-/// One way of an exchange: a frame that left at n and arrived at h bounds the offset from above, a
-/// reply that left at h and arrived at n from below.
-struct Crossing {
-  Side side = Side::above;
-  NodeTime n{};
-  HostTime h{};
-  HostTime heard{};  // when the frame arrived that told of it
-};
 
 class ClockPiece {
  public:
@@ -38,8 +29,7 @@ class ClockPiece {
   enum class Verdict : std::uint8_t {
     taken,
     violator,  // against the certificate: left out
-    relaxed,   // taken; the curvature was raised
-    broken,    // the third violator in five seconds, or bounds without any way between them
+    broken,    // violators that are to be believed, or bounds without any way between them
     slipped,   // taken; the floors say that the counter stepped, by less than the certificate sees
     uneasy     // taken; likewise, by so little that the certificate holds all the same
   };
@@ -68,21 +58,30 @@ class ClockPiece {
  private:
   static constexpr std::size_t corners = 255;
 
+  enum class End : std::uint8_t {  // why a piece is over
+    none,
+    violators,
+    overdue_violator,
+    contradiction,  // bounds without a way between them, or …
+    narrowed,       // … less than packets take: since when is not known
+    slip_with_route,
+    slip_between_windows
+  };
   Bound bound(const Crossing& crossing) const;
   HostTime host_time(const Bound& e) const;
+  std::optional<ValueRange> left_at(double s);
   void ask(double s);
   double violation(const Bound& e);
   void add(const Bound& e);
-  Verdict judge(const Crossing& violator);
-  bool relax(double s);
+  Verdict broken(End why);
   std::optional<double> stepped_between_windows();
   std::optional<double> stepped_with_route();
-  std::optional<double> narrowed() const;
+  std::optional<double> narrowed();
   std::optional<Verdict> slipped();
-  bool recent(std::size_t violator) const;
   HostTime doubt_of_violators() const;
   HostTime about(double s) const;
-  ClockPiece next_after_slip(const SlopeBelief& prior) const;
+  bool may_bend() const;
+  ClockPiece next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const;
 
   ClockOrigin origin_;
   HostTime begin_, heard_;  // first and newest arrival of what is certified
@@ -91,24 +90,15 @@ class ClockPiece {
   ExchangeJournal journal_;
   FloorLog floors_;
   std::uint64_t windows_judged_ = 0;
-  std::array<Crossing, 3> violators_{};  // within five seconds, or of the last few crossings
-  std::array<std::uint64_t, 3> violator_numbers_{};
+  Violators violators_;
   std::uint64_t crossings_ = 0;
-  std::size_t violator_count_ = 0;
-  enum class End : std::uint8_t {  // why a piece is over
-    none,
-    violators,
-    contradiction,  // bounds without a way between them, or …
-    narrowed,       // … less than packets take: since when is not known
-    slip_with_route,
-    slip_between_windows
-  };
   End end_ = End::none;
   std::uint32_t routes_judged_ = 0;
   double amount_ = 0.0;
   /// What x could be at range_at_ when it was asked last, and how many bounds came since.
   std::optional<ValueRange> range_;
   double range_at_ = 0.0;
+  bool contradicted_ = false;  // seen wherever it was asked
   std::uint32_t unseen_ = 0;
 };
 

@@ -25,7 +25,7 @@ struct FloorWindow {
 class ShortestRoundTrips {
  public:
   void add(const FloorWindow& window);
-  /// What an interval of the certificate can't be narrower than, s: the least that two windows
+  /// What an interval of the certificate can't be narrower than, s: the least that three windows
   /// agree on, less their noise. One alone, in which a counter stepped, shows less than there is.
   /// 0: none.
   double least_width() const;

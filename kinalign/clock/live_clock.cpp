@@ -97,9 +97,6 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
       return tell({Kind::violator, boot_, crossing.heard, crossing.heard, piece_->amount()});
     case Verdict::uneasy:
       return tell({Kind::uneasy, boot_, crossing.heard, crossing.heard, piece_->amount()});
-    case Verdict::relaxed:
-      tell({Kind::relaxed, boot_, newest_, newest_, piece_->assumptions().curvature});
-      return tell({Kind::withdrawn, boot_, piece_->origin().host, newest_});
     case Verdict::broken:
       return take_step(crossing);
     case Verdict::slipped:
@@ -125,7 +122,11 @@ void LiveClock::replace_piece(ClockEvent::Kind why, double value, const Crossing
   replaced_ = true;
   tell({why, boot_, piece_->next_begins(), crossing.heard, value});
   tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
+  const double assumed = piece_->assumptions().curvature;
   take_piece(piece_->next_piece());
+  const double curvature = piece_->assumptions().curvature;
+  if (curvature != assumed)
+    tell({ClockEvent::Kind::relaxed, boot_, crossing.heard, crossing.heard, curvature});
 }
 
 std::optional<ClockStamp> LiveClock::host_from_node(BootKey boot, NodeTime n) {

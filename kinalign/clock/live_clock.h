@@ -33,7 +33,7 @@ struct ClockEvent {
     host_backwards,  // a piece begins: the host's clock went back
     withdrawn,       // stamps of frames that arrived from begin to end: certified, and are not
     violator,        // a crossing that can't be was left out
-    relaxed,         // the node's clock bends more than was assumed
+    relaxed,         // the piece that began allows for a clock that bends more than was assumed
     route            // the packets took another route
   };
   Kind kind{};

@@ -15,7 +15,6 @@ namespace kinalign {
 namespace {
 
 constexpr double knot_s = 1.0;
-constexpr double raised = 4.0;
 constexpr Duration around_violator = std::chrono::seconds(5);
 constexpr double longest_wait_s = 60.0;  // of a packet
 constexpr double longest_piece_s = 1e6;  // eleven days
@@ -27,6 +26,7 @@ struct Walk {
   std::vector<bool> up_left_out, echo_left_out;
   std::vector<bool> late;  // exchanges of a life that was over when they came
   std::size_t pieces = 0;
+  std::vector<Assumptions> assumed;  // of each piece
   double least_width = 0.0;  // s, that an interval can have: packets took no less, there and back
 };
 
@@ -40,7 +40,6 @@ bool begins_piece(ClockEvent::Kind kind) {
 void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const ClockEvent& event,
           bool of_echo) {
   if (event.kind == ClockEvent::Kind::withdrawn) {
-    // What was withdrawn since a clock bends more than assumed is certified again under that.
     if (!begins_piece(walk.events.back().kind)) return;
     const HostTime end = walk.events.back().begin - Duration{1};
     if (event.begin <= end) walk.doubtful.push_back({event.begin, end});
@@ -78,12 +77,14 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
     if (!e.echo) continue;
     clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
     for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, true);
+    walk.assumed.resize(walk.pieces);
+    walk.assumed.back() = clock.piece()->assumptions();
   }
   if (clock.piece()) walk.least_width = clock.piece()->floors().shortest().least_width();
   return walk;
 }
 
-bool in_doubt(std::span<const DoubtfulStretch> doubtful, HostTime h) {
+bool is_in(std::span<const DoubtfulStretch> doubtful, HostTime h) {
   return std::any_of(doubtful.begin(), doubtful.end(),
                      [h](const DoubtfulStretch& d) { return d.begin <= h && h <= d.end; });
 }
@@ -92,12 +93,11 @@ bool in_doubt(std::span<const DoubtfulStretch> doubtful, HostTime h) {
 struct PieceBounds {
   ClockOrigin origin;
   std::vector<Bound> bounds;
-  std::vector<Bound> left_out;  // that can't be
   std::uint64_t up = 0, down = 0;
 
-  void add(Side side, NodeTime n, HostTime h, bool can_be) {
-    (can_be ? bounds : left_out).push_back(bound_by(origin, side, n, h));
-    if (can_be) ++(side == Side::above ? up : down);
+  void add(Side side, NodeTime n, HostTime h) {
+    bounds.push_back(bound_by(origin, side, n, h));
+    ++(side == Side::above ? up : down);
   }
 };
 
@@ -138,28 +138,16 @@ bool fill_knots(const PieceBounds& piece, const Certificate& certificate, Offlin
   return sound;
 }
 
-/// Under the curvature assumed; where the bounds contradict each other, under several times the
-/// least that lets them go together: the clock bends at least so much, and what is just enough
-/// would put the truth at the edge. That has to explain all there is, what was left out as well.
-void fit(const PieceBounds& piece, double least_width, ClockPieceModel& model,
-         Assumptions assumptions) {
+/// Under the assumptions of the live clock then: a piece that contradicts them has no certificate.
+void fit(const PieceBounds& piece, double least_width, const Assumptions& assumptions,
+         ClockPieceModel& model) {
   OfflineEstimate estimate(piece.bounds);
   model.routes = estimate.routes();
   model.round_trip = nanoseconds(estimate.least_round_trip() * 1e9);
-  const auto goes = [&](const std::vector<Bound>& bounds, double curvature) {
-    assumptions.curvature = curvature;
-    model.assumptions = assumptions;
-    const Certificate certificate = certificate_of(bounds, assumptions);
-    return fill_knots(piece, certificate, estimate, least_width, model.knots) &&
-           certificate.bounded();
-  };
-  double curvature = assumptions.curvature;
-  model.certified = goes(piece.bounds, curvature);
-  if (model.certified || piece.up < 2) return;
-  std::vector<Bound> all = piece.bounds;
-  all.insert(all.end(), piece.left_out.begin(), piece.left_out.end());
-  while (!goes(all, curvature) && curvature < most_curvature) curvature *= 2.0;
-  model.certified = goes(all, std::min(raised * curvature, most_curvature));
+  model.assumptions = assumptions;
+  const Certificate certificate = certificate_of(piece.bounds, assumptions);
+  model.certified =
+      fill_knots(piece, certificate, estimate, least_width, model.knots) && certificate.bounded();
 }
 
 /// Whether a counter counted about as long as the host did: a piece of two frames has no
@@ -176,12 +164,13 @@ bool counted_like_the_host(const PieceBounds& piece) {
   return node < 1.01 * host + longest_wait_s && node < longest_piece_s;
 }
 
-/// All exchanges of a piece but those in doubt and those that can't be.
+/// All exchanges of a piece but those that can't be, and those in doubt unless they are wanted.
 PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::size_t p,
-                    ClockPieceModel& model) {
+                    bool with_doubtful, ClockPieceModel& model) {
   PieceBounds piece;
   bool begun = false;
   const auto [first, last] = std::equal_range(walk.piece.begin(), walk.piece.end(), p);  // rising
+  model.violators = 0;
   for (auto at = first; at != last; ++at) {
     const auto i = static_cast<std::size_t>(at - walk.piece.begin());
     if (walk.late[i]) continue;
@@ -193,11 +182,11 @@ PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::
     }
     model.last = e.h_rx;
     model.violators += (walk.up_left_out[i] ? 1U : 0U) + (walk.echo_left_out[i] ? 1U : 0U);
-    if (in_doubt(walk.doubtful, e.h_rx)) continue;
-    piece.add(Side::above, e.n_tx, e.h_rx, !walk.up_left_out[i]);
+    if (!with_doubtful && is_in(walk.doubtful, e.h_rx)) continue;
+    if (!walk.up_left_out[i]) piece.add(Side::above, e.n_tx, e.h_rx);
     // What the first one echoes reached the node before the counter stepped.
-    if (e.echo && at != first)
-      piece.add(Side::below, e.echo->n_rx, e.echo->h_tx, !walk.echo_left_out[i]);
+    if (e.echo && at != first && !walk.echo_left_out[i])
+      piece.add(Side::below, e.echo->n_rx, e.echo->h_tx);
   }
   model.up = piece.up;
   model.down = piece.down;
@@ -230,9 +219,12 @@ OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
   OfflineClock out;
   for (std::size_t p = 0; p < walk.pieces; ++p) {
     ClockPieceModel& model = out.model.pieces.emplace_back();
-    const PieceBounds piece = collect(exchanges, walk, p, model);
+    PieceBounds piece = collect(exchanges, walk, p, false, model);
+    const bool in_doubt = piece.bounds.empty();  // something is likeliest all the same
+    if (in_doubt) piece = collect(exchanges, walk, p, true, model);
     if (piece.up > 0 && piece.down > 0 && counted_like_the_host(piece))
-      fit(piece, walk.least_width, model, assumptions);
+      fit(piece, walk.least_width, walk.assumed[p], model);
+    model.certified = model.certified && !in_doubt;
   }
   out.model.doubtful = std::move(walk.doubtful);
   doubt_what_was_left_out(exchanges, walk, out.model);

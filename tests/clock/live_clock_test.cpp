@@ -144,12 +144,66 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a crossing that cannot be is forgotten after some seconds") {
+TEST_CASE("a crossing that cannot be is forgotten once others exclude it") {
   LiveClock clock;
   run(clock, 7, 0s, 30s);
   clock.push_up(7, node(31s), host(30s + 500ms));
-  run(clock, 7, 31s, 40s);
-  CHECK(clock.host_from_node(7, node(40s))->certainty == Certainty::certified);
+  run(clock, 7, 31s, 34s);
+  CHECK(clock.host_from_node(7, node(34s))->certainty == Certainty::certified);
+  CHECK(count(clock.take_events(), ClockEvent::Kind::step) == 0);
+}
+
+TEST_CASE("a crossing that cannot be, and nothing excludes for five seconds, was of a step") {
+  LiveClock clock;
+  run(clock, 7, 0s, 30s);
+  // The counter steps by 2.5 ms, half a millisecond more than both delays. One frame is as fast as
+  // those before, all others take ten milliseconds longer.
+  const Duration step = 2500us;
+  clock.push_up(7, node(31s + step), host(31s + 1ms));
+  const auto slow = [&](Duration from, Duration until) {
+    for (Duration t = from; t < until; t += 100ms) {
+      clock.push_up(7, node(t + step), host(t + 11ms));
+      clock.push_down(7, node(t - 50ms + step), host(t - 61ms));
+    }
+  };
+  slow(31s + 100ms, 36s);
+  auto events = clock.take_events();
+  CHECK(count(events, ClockEvent::Kind::violator) == 1);
+  CHECK(count(events, ClockEvent::Kind::step) == 0);
+  CHECK(clock.host_from_node(7, node(36s))->certainty == Certainty::doubtful);
+  slow(36s, 40s);
+  events = clock.take_events();
+  CHECK(count(events, ClockEvent::Kind::step) == 1);
+  REQUIRE(count(events, ClockEvent::Kind::withdrawn) >= 1);
+  const auto withdrawn = std::find_if(events.begin(), events.end(), [](const ClockEvent& e) {
+    return e.kind == ClockEvent::Kind::withdrawn;
+  });
+  CHECK(withdrawn->begin <= host(26s + 1ms));
+  const auto stamp = clock.host_from_node(7, node(40s + step));
+  CHECK(stamp->certainty == Certainty::certified);
+  CHECK(*stamp->earliest <= host(40s));
+  CHECK(*stamp->latest >= host(40s));
+}
+
+TEST_CASE("after a contradiction that a crystal could be the cause of, the next piece allows it") {
+  LiveClock clock;
+  run(clock, 7, 0s, 30s);
+  CHECK(clock.host_from_node(7, node(30s))->assumptions == Assumptions{});
+  for (Duration t = 30s; t < 34s; t += 100ms) {  // 10 us beyond both delays
+    clock.push_up(7, node(t + 2010us), host(t + 1ms));
+    clock.push_down(7, node(t - 50ms + 2010us), host(t - 51ms));
+  }
+  CHECK(count(clock.take_events(), ClockEvent::Kind::relaxed) == 1);
+  const auto stamp = clock.host_from_node(7, node(34s));
+  CHECK(stamp->certainty == Certainty::certified);
+  CHECK(stamp->assumptions.curvature == most_curvature);
+
+  LiveClock other;  // no crystal is the cause of a second
+  run(other, 7, 0s, 30s);
+  for (Duration t = 30s; t < 34s; t += 100ms) other.push_up(7, node(t + 1s), host(t + 1ms));
+  const auto events = other.take_events();
+  CHECK(count(events, ClockEvent::Kind::step) == 1);
+  CHECK(count(events, ClockEvent::Kind::relaxed) == 0);
 }
 
 TEST_CASE("a step of a node that is heard every five seconds is found") {

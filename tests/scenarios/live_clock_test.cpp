@@ -145,6 +145,24 @@ TEST_CASE(
   CHECK(late <= 4);  // of 160; a seed that is unlucky is so in four of them
 }
 
+TEST_CASE("fault 4 counter_step: from both least delays on none leaves a wrong stamp on A, B, C") {
+  for (const auto seed : fresh_seeds(10)) {
+    CAPTURE(seed);
+    for (const Link link : {Link::wired, Link::quiet, Link::paper}) {
+      for (const double times : {1.1, -1.1, 1.5, -1.5, 3.0, -3.0}) {
+        CAPTURE(letter(link));
+        CAPTURE(times);
+        ExchangeOptions options = minutes(link, 1.0);
+        const Floors least = floors(link, seed);
+        options.steps = {{.at = 30.0, .by = times * (least.up + least.down)}};
+        const auto exchanges = simulate_exchanges(options, seed);
+        CHECK(judge_live(exchanges).lies() == 0);
+        CHECK(judge_offline(exchanges).lies() == 0);
+      }
+    }
+  }
+}
+
 TEST_CASE("fault 5 counter_step_small: one of a millisecond, on C, is warned of") {
   int warned = 0;
   const auto seeds = fresh_seeds(20);
