@@ -22,11 +22,17 @@ bool is_link_local(const HostAddress& host) {
 
 NodeLines::NodeLines(std::span<const UdpSocket> open, std::size_t most)
     : open_(open), lines_(most), poll_(::epoll_create1(EPOLL_CLOEXEC)) {
-  for (std::size_t i = 0; i < open_.size(); ++i) wait_for(open_[i], most + i);
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    open_[i].share_port();  // where it may not, all stays with the open ones
+    wait_for(open_[i], most + i);
+  }
 }
 
 NodeLines::NodeLines(NodeLines&& other) noexcept
-    : open_(other.open_), lines_(std::move(other.lines_)), poll_(std::exchange(other.poll_, -1)) {}
+    : open_(other.open_),
+      lines_(std::move(other.lines_)),
+      poll_(std::exchange(other.poll_, -1)),
+      dropped_before_(other.dropped_before_) {}
 
 NodeLines::~NodeLines() {
   if (poll_ >= 0) ::close(poll_);
@@ -45,6 +51,7 @@ void NodeLines::follow(std::size_t stream, const NodeAddress& from, const HostAd
   if (line.from == from && line.to == to) return;
   line.from = from;
   line.to = to;
+  if (line.socket) dropped_before_ += dropped_by_kernel(*line.socket);
   line.socket.reset();  // which the kernel takes out of poll_
   if (is_link_local(from.host) || is_link_local(to)) return;
   auto socket = UdpSocket::connected(to, port, from.host, from.port);
@@ -71,7 +78,7 @@ std::span<const UdpSocket* const> NodeLines::ready() {
 }
 
 std::uint64_t NodeLines::dropped() const {
-  std::uint64_t sum = 0;
+  std::uint64_t sum = dropped_before_;
   for (const UdpSocket& socket : open_) sum += dropped_by_kernel(socket);
   for (const Line& line : lines_) {
     if (line.socket) sum += dropped_by_kernel(*line.socket);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A socket of its own for each node that is known, connected to its address: the kernel puts the
-// node's datagrams into that one's buffer, which strangers, however many, can't fill. Besides, the
-// descriptor that a receiver waits for.
+// node's datagrams into that one's buffer, which strangers, however many, can't fill. Before it is
+// connected it takes a share of everybody's (SO_REUSEPORT): these wait in it and are read like all
+// others, so who reads one goes by each datagram's address. Besides, the descriptor that a receiver
+// waits for.
 #pragma once
 
 #include "kinalign/capture/node_life.h"
@@ -16,7 +18,7 @@ namespace kinalign {
 
 class NodeLines {
  public:
-  /// `open`: for everybody; they have to stay where they are.
+  /// `open`: for everybody; they have to stay where they are, and share their port from now on.
   NodeLines(std::span<const UdpSocket> open, std::size_t most);
   NodeLines(NodeLines&& other) noexcept;
   NodeLines& operator=(NodeLines&&) = delete;
@@ -47,6 +49,7 @@ class NodeLines {
   std::vector<Line> lines_;
   int poll_ = -1;
   std::vector<const UdpSocket*> ready_;
+  std::uint64_t dropped_before_ = 0;  // by lines that are closed
 };
 
 }  // namespace kinalign

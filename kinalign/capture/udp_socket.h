@@ -26,8 +26,9 @@ class UdpSocket {
   /// For what `peer` alone sends to `own`, beside an open one of the same port that shares it.
   static Result<UdpSocket> connected(const HostAddress& own, std::uint16_t port,
                                      const HostAddress& peer, std::uint16_t peer_port);
-  /// From now on sockets of this user may be bound to the same port. Not before it is bound itself:
-  /// so it is refused where another program has the port.
+  /// From now on sockets of this user, and of nobody else, may be bound to the same port if they
+  /// share it too, which `open` does not: a second server is still refused. Not before it is bound
+  /// itself, so that it is refused likewise.
   bool share_port() const;
 
   UdpSocket(UdpSocket&& other) noexcept;

@@ -25,11 +25,12 @@ Result<NodeReceiver> open_receiver(ClockReader& clocks, const std::string& addre
   return NodeReceiver::open(options, clocks);
 }
 
-/// Waits until something has come, two seconds at most.
-void serve(NodeReceiver& receiver) {
+/// Waits until something has come, two seconds at most; whether it has.
+bool serve(NodeReceiver& receiver) {
   pollfd waiting{receiver.fd(), POLLIN, 0};
-  ::poll(&waiting, 1, 2000);
+  const bool came = ::poll(&waiting, 1, 2000) > 0;
   receiver.drain();
+  return came;
 }
 
 /// Its counter is then a thousand seconds ahead of the raw clock.
@@ -122,6 +123,31 @@ TEST_CASE("the kernel keeps rubbish out, and says how much of it") {
   CHECK(receiver->dropped() == 6);
   CHECK(receiver->counts().verdicts.total() == 2);
   CHECK(receiver->counts().newest_version == 9);
+}
+
+TEST_CASE("strangers who fill the open socket cost a known node no frame") {
+  for (const std::string address : {"127.0.0.1", "0.0.0.0", "::1"}) {
+    if (address == "::1" && !has_ipv6_loopback()) continue;
+    CAPTURE(address);
+    const std::string to = address == "0.0.0.0" ? "127.0.0.1" : address;
+    const int family = address == "::1" ? AF_INET6 : AF_INET;
+    SystemClocks clocks;
+    auto receiver = open_receiver(clocks, address);
+    REQUIRE(receiver);
+    const std::uint16_t port = receiver->sockets()[0].port();
+    TestNode node = node_ahead();
+    const Client client(family), stranger(family);
+    talk(*receiver, clocks, node, client, 3, to);
+    const Bytes well_formed = TestNode(1000, 1).frame(clocks.raw());
+    for (int sent = 0; sent < 200'000 && receiver->dropped() == 0; ++sent) {
+      stranger.send(to, port, well_formed);
+    }
+    REQUIRE(receiver->dropped() > 0);  // nothing more goes in
+    const std::uint64_t before = receiver->status()[0].accepted;
+    for (int k = 0; k < 10; ++k) client.send(to, port, node.frame(clocks.raw()));
+    while (receiver->status()[0].accepted < before + 10 && serve(*receiver)) continue;
+    CHECK(receiver->status()[0].accepted == before + 10);
+  }
 }
 
 TEST_CASE("a frame that many would answer is counted, and not looked into") {

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/udp_socket.h"
 
+#include "tests/capture/loopback.h"
+
+#include "kinalign/capture/datagram_batch.h"
+
 #include <doctest/doctest.h>
+#include <poll.h>
 
 using namespace kinalign;
 
@@ -9,6 +14,16 @@ namespace {
 
 std::string message(const Result<UdpSocket>& socket) {
   return socket ? "opened" : to_string(socket.error());
+}
+
+/// The first byte of each datagram that is there, or comes within two seconds.
+std::vector<int> first_bytes(DatagramBatch& batch, const UdpSocket& socket) {
+  pollfd waiting{socket.fd(), POLLIN, 0};
+  ::poll(&waiting, 1, 2000);
+  std::vector<int> bytes;
+  const std::size_t came = batch.receive(socket.fd());
+  for (std::size_t i = 0; i < came; ++i) bytes.push_back(batch.at(i).bytes[0]);
+  return bytes;
 }
 
 }  // namespace
@@ -32,6 +47,32 @@ TEST_CASE("a port is free again once its socket is gone, or was moved over") {
   *first = std::move(*second);
   second = UdpSocket::open("127.0.0.2", 0);
   CHECK(message(UdpSocket::open("127.0.0.1", port)) == "opened");
+}
+
+TEST_CASE("who is followed has a socket of its own, and the port is no other program's for that") {
+  const Client friend_of_ours, stranger;
+  for (const std::string here : {"127.0.0.1", "0.0.0.0"}) {
+    CAPTURE(here);
+    const auto open = UdpSocket::open(here, 0);
+    REQUIRE(open);
+    DatagramBatch batch;
+    friend_of_ours.send("127.0.0.1", open->port(), {1});
+    REQUIRE(first_bytes(batch, *open) == std::vector{1});
+    const Datagram from = batch.at(0);
+    const auto follow = [&] {
+      return UdpSocket::connected(from.to, open->port(), from.from, from.from_port);
+    };
+    CHECK(message(follow()).ends_with(
+        "expected a UDP socket for it alone, found another program on it"));
+    REQUIRE(open->share_port());
+    const auto line = follow();
+    REQUIRE(line);
+    CHECK_FALSE(UdpSocket::open(here, open->port()));
+    friend_of_ours.send("127.0.0.1", open->port(), {2});
+    stranger.send("127.0.0.1", open->port(), {3});
+    CHECK(first_bytes(batch, *line) == std::vector{2});
+    CHECK(first_bytes(batch, *open) == std::vector{3});
+  }
 }
 
 TEST_CASE("an address that this host has not, or that is none, is named") {
