@@ -51,14 +51,15 @@ bool runs_on(const ClockBracket& earlier, const ClockBracket& later) {
   return least - slack <= greatest_then && least_then <= greatest + slack;
 }
 
-HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, bool ran_on) {
-  if (!stamp || !ran_on || *stamp > behind.utc) return behind.after;
+HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time steady) {
+  if (!stamp || *stamp < steady || *stamp > behind.utc) return behind.after;
   const Duration since = behind.utc - *stamp;
   return behind.after - share(since, 1.0 - most_slew);
 }
 
 HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep()) {
   bracket_ = read();
+  steady_ = bracket_.utc;
 }
 
 HostTime HostAxis::now() {
@@ -86,9 +87,10 @@ ClockBracket HostAxis::read() {
   return best;
 }
 
+/// A datagram may have waited, and be received several looks after a step.
 void HostAxis::look() {
   const ClockBracket before = std::exchange(bracket_, read());
-  ran_on_ = runs_on(before, bracket_);
+  if (!runs_on(before, bracket_)) steady_ = bracket_.utc;
 }
 
 ClockPair HostAxis::watch() {

@@ -41,9 +41,9 @@ inline constexpr double most_slew = 1e-3;  // the kernel's own is 5e-4
 bool runs_on(const ClockBracket& earlier, const ClockBracket& later);
 
 /// When a datagram arrived that the kernel stamped, and that was received before the bracket was
-/// read. Never earlier than the truth while the wall clock runs on; where it did not, or there is
-/// no stamp, the end of the bracket.
-HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, bool ran_on);
+/// read. Never earlier than the truth if the wall clock has run on since `steady`; the end of the
+/// bracket where the stamp is from before that, or there is none.
+HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time steady);
 
 struct HostClockEvent {
   enum class Kind : std::uint8_t {
@@ -65,7 +65,7 @@ class HostAxis {
   /// After datagrams were received, before their arrival is asked for.
   void look();
   HostTime arrival(std::optional<Time> stamp) const {
-    return kinalign::arrival(stamp, bracket_, ran_on_);
+    return kinalign::arrival(stamp, bracket_, steady_);
   }
 
   /// Once a second: a pair for the log that gives UTC afterwards.
@@ -84,7 +84,7 @@ class HostAxis {
   HostTime last_ = HostTime::min();
   Duration shift_{0};  // of the raw clock, since it went back
   ClockBracket bracket_;
-  bool ran_on_ = false;
+  Time steady_{};  // since when the wall clock has run on; as it says
   std::optional<ClockBracket> watched_;
   Duration asleep_;
   std::uint32_t epoch_ = 0;
