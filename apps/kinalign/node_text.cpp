@@ -135,18 +135,16 @@ std::string event_text(const NodeEvent& event) {
 std::string event_json(const NodeEvent& event) {
   Json json{{"event", "node_event"},
             {"kind", kinalign::name_of(event.kind)},
-            {"warning", is_warning(event.kind)},
-            {"stream", event.stream},
-            {"node_id", event.node_id},
-            {"boot_id", event.boot_id},
-            {"at_ns", ns(event.at)},
-            {"address", address_text(event.address)}};
+            {"warning", is_warning(event.kind)}};
+  const bool unheard = event.kind == NodeEvent::Kind::wrong_key;  // it has no stream
+  if (!unheard) json["stream"] = event.stream;
+  json["node_id"] = event.node_id;
+  json["boot_id"] = event.boot_id;
+  json["at_ns"] = ns(event.at);
+  json["address"] = address_text(event.address);
   if (event.other_id) json["other_id"] = *event.other_id;
   if (event.version != 0) json["version"] = event.version;
-  if (event.kind == NodeEvent::Kind::wrong_key) {
-    json["refusal"] = refusal_name(event.refusal);
-    json.erase("stream");  // it has none
-  }
+  if (unheard) json["refusal"] = refusal_name(event.refusal);
   return json_text(json);
 }
 

@@ -6,10 +6,10 @@
 #include "apps/kinalign/time_server_text.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/capture/node_keys.h"
 #include "kinalign/capture/own_addresses.h"
 
 #include <fmt/format.h>
-#include <sys/random.h>
 
 namespace kinalign {
 
@@ -74,19 +74,13 @@ Usage describe_time_server(TimeServerFlags& o) {
   return usage;
 }
 
-Result<SipHashKey> random_key() {
-  SipHashKey key{};
-  if (::getrandom(key.data(), key.size(), 0) == static_cast<ssize_t>(key.size())) return key;
-  return Failure(Error{"", 0, "random numbers from the system", "none"});
-}
-
 Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
   TimeServerOptions options;
   options.addresses = flags.listen;
   options.port = static_cast<std::uint16_t>(flags.port);
   if (flags.local_stratum) options.local_stratum = static_cast<std::uint8_t>(*flags.local_stratum);
   options.exempt = KA_TRY(networks_of(flags.exempt));
-  options.key = KA_TRY(random_key());
+  options.key = KA_TRY(new_secret());
   return options;
 }
 
@@ -132,7 +126,7 @@ Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
   NodeReceiverOptions options;
   options.addresses = flags.listen;
   options.port = static_cast<std::uint16_t>(*flags.node_port);
-  options.desk.secret = KA_TRY(random_key());
+  options.desk.secret = KA_TRY(new_secret());
   options.desk.lab_key = lab_key;
   return KA_TRY(NodeReceiver::open(options, clocks));
 }

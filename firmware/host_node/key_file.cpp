@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/host_node/key_file.h"
 
+#include "kinalign/wire/hex.h"
+
 #include <sys/stat.h>
 
 #include <array>
@@ -25,16 +27,6 @@ std::string octal(unsigned mode) {
   return '0' + std::string(digits.begin(), end);
 }
 
-bool digits_to_key(std::string_view digits, MacKey& key) {
-  if (digits.size() != 2 * key.size()) return false;
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    const std::string_view two = digits.substr(2 * i, 2);
-    const auto [end, error] = std::from_chars(two.begin(), two.end(), key[i], 16);
-    if (error != std::errc{} || end != two.end()) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 Tried<MacKey> read_key_file(const std::string& path) {
@@ -52,7 +44,7 @@ Tried<MacKey> read_key_file(const std::string& path) {
   std::string_view digits(text.data(), std::fread(text.data(), 1, text.size(), file.get()));
   if (!digits.empty() && digits.back() == '\n') digits.remove_suffix(1);
   MacKey key{};
-  if (!digits_to_key(digits, key)) {  // what it is instead is nobody's business
+  if (!take_hex(digits, key)) {  // what it is instead is nobody's business
     return failure(path + ": expected a key of 32 hexadecimal digits, found something else");
   }
   return key;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/clock_state.h"
 
+#include "kinalign/capture/host_clock.h"
+
 #include <sys/timex.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 namespace kinalign {
 
@@ -55,11 +56,11 @@ std::optional<KernelClock> read_kernel_clock() {
 
 std::int8_t measured_precision() {
   constexpr int readings = 1000;
-  timespec first{}, last{};
-  ::clock_gettime(CLOCK_REALTIME, &first);
-  for (int i = 0; i < readings; ++i) ::clock_gettime(CLOCK_REALTIME, &last);
-  const double s = static_cast<double>(last.tv_sec - first.tv_sec) +
-                   1e-9 * static_cast<double>(last.tv_nsec - first.tv_nsec);
+  SystemClocks clocks;
+  const Time first = clocks.utc();
+  Time last = first;
+  for (int i = 0; i < readings; ++i) last = clocks.utc();
+  const double s = seconds(last - first);
   // a step of the clock between the readings is no reading time
   return static_cast<std::int8_t>(std::ceil(std::log2(std::clamp(s / readings, 1e-9, 1e-3))));
 }

@@ -3,7 +3,6 @@
 
 #include "kinalign/wire/node_reply.h"
 
-#include <algorithm>
 #include <cstring>
 
 namespace kinalign {
@@ -42,11 +41,11 @@ NodeDesk::NodeDesk(const NodeDeskOptions& options)
 
 NodeNews NodeDesk::receive(const NodeArrival& arrival) {
   NodeNews news;
-  due_ = {};
+  asked_ = {};
   news.verdict = judge(arrival, news);
   ++counts_.verdicts[news.verdict];
-  if (!is_answered(news.verdict)) due_.life = nullptr;
-  if (due_.life != nullptr && !due_.life->pace.ask(arrival.h_rx)) due_.life = nullptr;
+  if (!is_answered(news.verdict)) asked_.by = nullptr;
+  if (asked_.by != nullptr && !asked_.by->pace.ask(arrival.h_rx)) asked_.by = nullptr;
   return news;
 }
 
@@ -57,10 +56,9 @@ NodeVerdict NodeDesk::judge(const NodeArrival& arrival, NodeNews& news) {
     refuse(refusal, envelope.version, arrival.h_rx);
     return NodeVerdict::refused;
   }
-  due_.most = arrival.bytes.size();
-  due_.h_rx = arrival.h_rx;
-  due_.type = envelope.type;
-  due_.origin = envelope.origin;
+  asked_.h_rx = arrival.h_rx;
+  asked_.type = envelope.type;
+  asked_.origin = envelope.origin;
   switch (envelope.type) {
     case DatagramType::request:
       return judge_request(arrival, envelope, news);
@@ -95,8 +93,8 @@ bool NodeDesk::unlock(const Envelope& envelope, const NodeArrival& arrival, Data
     if (refusal == NodeRefusal::none) ++counts_.old_key;
     key = old;
   }
-  due_.key = key != nullptr ? std::optional(*key) : std::nullopt;
-  due_.old_key = old != nullptr;
+  asked_.key = key != nullptr ? std::optional(*key) : std::nullopt;
+  asked_.old_key = old != nullptr;
   if (refusal == NodeRefusal::none) return true;
   refuse(refusal, envelope.version, now);
   tell_wrong_key(refusal, envelope.origin, arrival);
@@ -131,12 +129,11 @@ NodeVerdict NodeDesk::judge_frame(const NodeArrival& arrival, const Envelope& en
   NodeSign sign = sign_of(arrival, frame_.origin);
   sign.counter_us = frame_.n_tx_us;
   NodeLife* life = nullptr;
-  if (const auto found = find_life(sign, life); found != NodeVerdict::accepted) return found;
-  const std::int64_t n_tx = life->counter.widened(frame_.n_tx_us, sign.at);
-  if (const auto number = take_number(*life, frame_.origin.sequence, news);
-      number != NodeVerdict::accepted) {
-    return number;
+  if (const auto found = find_place(sign, frame_.origin.sequence, life, news);
+      found != NodeVerdict::accepted) {
+    return found;
   }
+  const std::int64_t n_tx = life->counter.widened(frame_.n_tx_us, sign.at);
   const auto echo = take_echo(*life, n_tx);
   const bool newest = life->counter.behind_us(n_tx) <= 0;
   life->counter.take(n_tx, sign.at);
@@ -145,12 +142,7 @@ NodeVerdict NodeDesk::judge_frame(const NodeArrival& arrival, const Envelope& en
     return taken;
   }
   news.exchange = Exchange{life->key, node_time(n_tx), sign.at, echo};
-  std::size_t count = 0;
-  for (; count < frame_.sample_count; ++count) {
-    const NodeSample& sample = frame_.samples[count];
-    readings_[count] = {node_time(n_tx - sample.age_us), sample, faults(sample)};
-  }
-  news.readings = std::span(readings_).first(count);
+  keep(std::span(frame_.samples).first(frame_.sample_count), n_tx, news);
   accept(*life, sign, newest, news);
   if (frame_.has_battery) table_.stream(life->stream).battery_mv = frame_.battery_mv;
   return NodeVerdict::accepted;
@@ -162,19 +154,15 @@ NodeVerdict NodeDesk::judge_request(const NodeArrival& arrival, const Envelope& 
   if (!unlock(envelope, arrival, request)) return NodeVerdict::refused;
   const NodeSign sign = sign_of(arrival, request.origin);
   NodeLife* life = nullptr;
-  if (const auto found = find_life(sign, life); found != NodeVerdict::accepted) return found;
-  if (const auto number = take_number(*life, request.origin.sequence, news);
-      number != NodeVerdict::accepted) {
-    return number;
+  if (const auto found = find_place(sign, request.origin.sequence, life, news);
+      found != NodeVerdict::accepted) {
+    return found;
   }
   if (const auto taken = take_life(*life, sign, std::nullopt); taken != NodeVerdict::accepted) {
     return taken;
   }
   news.clockless = ClocklessExchange{news.frame, sign.at, {}, std::nullopt};
-  if (request.has_sample) {
-    readings_[0] = {NodeTime{}, request.sample, faults(request.sample)};
-    news.readings = std::span(readings_).first(1);
-  }
+  keep(std::span(&request.sample, request.has_sample ? 1 : 0), std::nullopt, news);
   accept(*life, sign, news.frame == life->sequences.newest(), news);
   if (request.has_battery) table_.stream(life->stream).battery_mv = request.battery_mv;
   return NodeVerdict::accepted;
@@ -197,7 +185,6 @@ NodeVerdict NodeDesk::judge_confirm(const NodeArrival& arrival, const Envelope& 
   if (const auto taken = take_life(*life, sign, answer.t3); taken != NodeVerdict::accepted) {
     return taken;
   }
-  due_.life = nullptr;  // nothing answers a confirm
   news.frame = answer.frame;
   news.stream = life->stream;
   news.clockless = ClocklessExchange{answer.frame, answer.t2, answer.t3, sign.at};
@@ -215,13 +202,15 @@ NodeVerdict NodeDesk::find_life(const NodeSign& sign, NodeLife*& life) {
   return life != nullptr ? NodeVerdict::accepted : NodeVerdict::no_room;
 }
 
-NodeVerdict NodeDesk::take_number(NodeLife& life, std::uint32_t sequence, NodeNews& news) {
-  const auto place = life.sequences.place_of(sequence);
+/// Of what may be answered: its life, and its number there, which is taken.
+NodeVerdict NodeDesk::find_place(const NodeSign& sign, std::uint32_t sequence, NodeLife*& life,
+                                 NodeNews& news) {
+  if (const auto found = find_life(sign, life); found != NodeVerdict::accepted) return found;
+  const auto place = life->sequences.place_of(sequence);
   if (place == SequenceWindow::Place::seen) return NodeVerdict::duplicate;
   if (place == SequenceWindow::Place::behind) return NodeVerdict::replayed;
-  news.frame = life.sequences.take(sequence);
-  due_.life = &life;
-  due_.frame = news.frame;
+  news.frame = asked_.frame = life->sequences.take(sequence);
+  asked_.by = life;
   return NodeVerdict::accepted;
 }
 
@@ -260,10 +249,20 @@ std::optional<Exchange::Echo> NodeDesk::take_echo(NodeLife& life, std::int64_t n
   return Exchange::Echo{node_time(n_rx), answer.t3};
 }
 
+/// `n_tx_us`: absent where the node has no counter.
+void NodeDesk::keep(std::span<const NodeSample> samples, std::optional<std::int64_t> n_tx_us,
+                    NodeNews& news) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const NodeTime n = n_tx_us ? node_time(*n_tx_us - samples[i].age_us) : NodeTime{};
+    readings_[i] = {n, samples[i], faults(samples[i])};
+  }
+  news.readings = std::span(readings_).first(samples.size());
+}
+
 void NodeDesk::accept(NodeLife& life, const NodeSign& sign, bool newest, NodeNews& news) {
   NodeStream& stream = table_.stream(life.stream);
   news.stream = life.stream;
-  life.old_key = due_.old_key;
+  life.old_key = asked_.old_key;
   ++life.accepted;
   if (stream.silent) table_.tell(NodeEvent::Kind::returned, life, sign.at);
   stream.silent = false;
@@ -273,24 +272,23 @@ void NodeDesk::accept(NodeLife& life, const NodeSign& sign, bool newest, NodeNew
 }
 
 std::span<const std::uint8_t> NodeDesk::answer(HostTime h_tx, std::span<std::uint8_t> out) {
-  if (due_.life == nullptr) return {};
-  NodeLife& life = *due_.life;
-  due_.life = nullptr;
+  if (asked_.by == nullptr) return {};
+  NodeLife& life = *asked_.by;
+  asked_.by = nullptr;
   std::array<std::uint8_t, sizeof nonces_> number{};
   std::memcpy(number.data(), &++nonces_, number.size());
   const auto nonce = static_cast<std::uint32_t>(siphash_2_4(secret_, number));
-  const bool clockless = due_.type == DatagramType::request;
-  const std::uint32_t sequence = clockless ? due_.origin.sequence : life.next_reply++;
-  life.answers.add({sequence, nonce, due_.h_rx, h_tx, due_.frame});
+  const bool clockless = asked_.type == DatagramType::request;
+  const std::uint32_t sequence = clockless ? asked_.origin.sequence : life.next_reply++;
+  life.answers.add({sequence, nonce, asked_.h_rx, h_tx, asked_.frame});
   ++counts_.answers;
-  const MacKey* key = due_.key ? &*due_.key : nullptr;
-  const auto room = out.first(std::min(out.size(), due_.most));  // never more than was sent
+  const MacKey* key = asked_.key ? &*asked_.key : nullptr;
   if (clockless) {
-    const ClocklessTimes times{nonce, host_ns(due_.h_rx), host_ns(h_tx)};
-    return encode(ClocklessAnswer{due_.origin, times}, key, room);
+    const ClocklessTimes times{nonce, host_ns(asked_.h_rx), host_ns(h_tx)};
+    return encode(ClocklessAnswer{asked_.origin, times}, key, out);
   }
   const bool locked = life.state == State::live && table_.stream(life.stream).locked;
-  return encode(NodeReply{due_.origin, locked, sequence, nonce, host_ns(h_tx)}, key, room);
+  return encode(NodeReply{asked_.origin, locked, sequence, nonce, host_ns(h_tx)}, key, out);
 }
 
 }  // namespace kinalign

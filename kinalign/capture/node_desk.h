@@ -53,8 +53,9 @@ class NodeDesk {
 
   /// In the order of arrival.
   NodeNews receive(const NodeArrival& arrival);
-  /// The answer to the datagram before, at the front of `out`; empty: none is due. `h_tx` was read
-  /// before this call, and what is returned is to be sent at once.
+  /// The answer to the datagram before, at the front of `out`; empty: none is due. It is never the
+  /// longer of the two, as their layouts are. `h_tx` was read before this call, and what is
+  /// returned is to be sent at once.
   std::span<const std::uint8_t> answer(HostTime h_tx, std::span<std::uint8_t> out);
 
   /// Says what replies tell the node: the host has an interval for its clock.
@@ -77,10 +78,12 @@ class NodeDesk {
   template <class Datagram>
   bool unlock(const Envelope& envelope, const NodeArrival& arrival, Datagram& datagram);
   NodeVerdict find_life(const NodeSign& sign, NodeLife*& life);
-  NodeVerdict new_life(const NodeSign& sign, NodeLife*& life);
-  NodeVerdict take_number(NodeLife& life, std::uint32_t sequence, NodeNews& news);
+  NodeVerdict find_place(const NodeSign& sign, std::uint32_t sequence, NodeLife*& life,
+                         NodeNews& news);
   NodeVerdict take_life(NodeLife& life, const NodeSign& sign, std::optional<HostTime> echoed);
   std::optional<Exchange::Echo> take_echo(NodeLife& life, std::int64_t n_tx_us);
+  void keep(std::span<const NodeSample> samples, std::optional<std::int64_t> n_tx_us,
+            NodeNews& news);
   void accept(NodeLife& life, const NodeSign& sign, bool newest, NodeNews& news);
   void refuse(NodeRefusal refusal, std::uint8_t version, HostTime now);
   void tell_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
@@ -100,16 +103,16 @@ class NodeDesk {
   // of the datagram before
   NodeFrame frame_;
   std::array<NodeReading, max_node_samples> readings_{};
-  struct Due {
-    NodeLife* life = nullptr;  // nullptr: no answer
+  /// What `answer` has to know of it.
+  struct Asked {
+    NodeLife* by = nullptr;  // nullptr: it is not answered
     DatagramOrigin origin;
     DatagramType type{};
     HostTime h_rx{};
     std::uint64_t frame = 0;
-    std::optional<MacKey> key;
+    std::optional<MacKey> key;  // that it came with; none: it has no MAC
     bool old_key = false;
-    std::size_t most = 0;  // bytes: those of what is answered
-  } due_;
+  } asked_;
 };
 
 }  // namespace kinalign

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/node_keys.h"
 
+#include "kinalign/wire/hex.h"
+
 #include <fcntl.h>
 #include <openssl/evp.h>
 #include <openssl/hmac.h>
@@ -10,14 +12,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
 namespace kinalign {
 
 namespace {
-
-constexpr char digits[] = "0123456789abcdef";
 
 class OpenFile {
  public:
@@ -40,7 +39,8 @@ Failure no_key(const std::string& path, const std::string& expected, const std::
 
 std::string octal(unsigned mode) {
   std::string text = "mode 0000";
-  for (std::size_t i = 0; i < 3; ++i) text[6 + i] = digits[mode >> (6 - 3 * i) & 7U];
+  for (std::size_t i = 0; i < 3; ++i)
+    text[6 + i] = static_cast<char>('0' + (mode >> (6 - 3 * i) & 7U));
   return text;
 }
 
@@ -53,15 +53,11 @@ Result<void> check_mode(int fd, const std::string& path) {
   return no_key(path, std::string(secret_key), octal(found.st_mode));
 }
 
-bool parse_digits(std::string_view text, std::span<std::uint8_t> key) {
-  if (text.ends_with('\n')) text.remove_suffix(1);
-  if (text.size() != 2 * key.size()) return false;
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    const char* begin = text.data() + 2 * i;
-    const auto [end, fault] = std::from_chars(begin, begin + 2, key[i], 16);
-    if (fault != std::errc{} || end != begin + 2) return false;
-  }
-  return true;
+template <class Key>
+Result<Key> drawn() {
+  Key key{};
+  if (::getrandom(key.data(), key.size(), 0) == static_cast<ssize_t>(key.size())) return key;
+  return Failure(Error{"", 0, "random numbers from the system", "none"});
 }
 
 }  // namespace
@@ -80,20 +76,13 @@ MacKey node_key(const LabKey& lab, std::uint32_t node_id) {
   return key;
 }
 
-Result<LabKey> new_lab_key() {
-  LabKey key{};
-  if (::getrandom(key.data(), key.size(), 0) != static_cast<ssize_t>(key.size())) {
-    return Failure(Error{"", 0, "random numbers from the system", "none"});
-  }
-  return key;
-}
+Result<LabKey> new_lab_key() { return drawn<LabKey>(); }
+
+Result<SipHashKey> new_secret() { return drawn<SipHashKey>(); }
 
 std::string key_text(std::span<const std::uint8_t> key) {
-  std::string text;
-  for (const std::uint8_t byte : key) {
-    text += digits[byte >> 4];
-    text += digits[byte & 15];
-  }
+  std::string text(2 * key.size(), ' ');
+  put_hex(key, text);
   return text;
 }
 
@@ -103,11 +92,12 @@ Result<LabKey> read_lab_key(FileSystem& files, const std::string& path) {
   KA_TRY(check_mode(file.fd(), path));
   std::array<char, 128> text{};
   const ssize_t got = files.read(file.fd(), text.data(), text.size());
+  std::string_view digits(text.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  if (digits.ends_with('\n')) digits.remove_suffix(1);
   LabKey key{};
-  const auto size = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
-  if (parse_digits({text.data(), size}, key)) return key;
+  if (take_hex(digits, key)) return key;
   MacKey node{};
-  const bool is_node_key = parse_digits({text.data(), size}, node);
+  const bool is_node_key = take_hex(digits, node);
   return no_key(path, "a lab key of 64 hexadecimal digits",
                 is_node_key ? "32 digits, a node's key" : "something else");
 }

@@ -5,6 +5,7 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/wire/node_datagram.h"
+#include "kinalign/wire/siphash.h"
 
 #include <array>
 #include <cstdint>
@@ -19,8 +20,9 @@ using LabKey = std::array<std::uint8_t, 32>;
 /// The first 16 bytes of HMAC-SHA-256(lab key, "kinalign node key 7"), the id in decimal.
 MacKey node_key(const LabKey& lab, std::uint32_t node_id);
 
-/// Drawn from the system.
+/// Both are drawn from the system; a secret lasts for a run, and nobody is told it.
 Result<LabKey> new_lab_key();
+Result<SipHashKey> new_secret();
 
 /// "000102…": two lowercase digits a byte.
 std::string key_text(std::span<const std::uint8_t> key);

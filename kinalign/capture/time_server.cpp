@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/time_server.h"
 
+#include "kinalign/capture/host_clock.h"
+
 #include <poll.h>
 
 #include <array>
-#include <ctime>
 
 namespace kinalign {
 
@@ -13,14 +14,8 @@ namespace {
 constexpr Duration tick = std::chrono::milliseconds(250);
 constexpr int batches_in_turn = 16;  // from one socket before the others have theirs
 
-Duration read_clock(clockid_t clock) {
-  timespec now{};
-  ::clock_gettime(clock, &now);
-  return std::chrono::seconds(now.tv_sec) + Duration{now.tv_nsec};
-}
-
-Time now_utc() { return Time{read_clock(CLOCK_REALTIME)}; }
-HostTime now_host() { return HostTime{read_clock(CLOCK_MONOTONIC_RAW)}; }
+Time now_utc() { return SystemClocks{}.utc(); }
+HostTime now_host() { return SystemClocks{}.raw(); }
 
 NtpAsked asked_of(const Datagram& datagram, std::uint16_t port, Time now) {
   return {.bytes = datagram.bytes,

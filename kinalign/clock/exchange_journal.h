@@ -19,7 +19,8 @@ struct ClockOrigin {
 };
 
 /// A counter is cut to whole microseconds: a reading n stands for up to n + 1 us.
-inline constexpr double counter_resolution_s = 1e-6;
+inline constexpr Duration counter_resolution = std::chrono::microseconds(1);
+inline constexpr double counter_resolution_s = seconds(counter_resolution);
 
 /// What it bounds that the counter read n and the host h.
 Bound bound_by(const ClockOrigin& origin, Side side, NodeTime n, HostTime h);

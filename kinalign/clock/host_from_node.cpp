@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/host_from_node.h"
 
+#include "kinalign/clock/exchange_journal.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace kinalign {
 
 namespace {
-
-constexpr Duration counter_resolution{1000};
 
 struct Offset {
   double likeliest = 0.0, least = 0.0, greatest = 0.0;  // ns
@@ -19,7 +19,7 @@ Offset at_knot(const ClockKnot& knot) {
           static_cast<double>(knot.greatest.count())};
 }
 
-/// Straight between knots; outside, at most a second by what assumptions allow.
+/// Straight between knots; outside, the interval opens as fast as the rate may be off.
 Offset offset_at(const ClockPieceModel& piece, NodeTime n) {
   const auto behind =
       std::upper_bound(piece.knots.begin(), piece.knots.end(), n,

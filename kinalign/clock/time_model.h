@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a device's stamps to the axis of a take. So far the identity, a constant offset and a
-// constant drift; the clock room's filters will fill the pieces.
+// From a device's stamps to the axis of a take, in pieces of a constant drift. Readers give one
+// piece; what exchanges say of a node's clock is a HostFromNode, and no such model yet.
 #pragma once
 
 #include "kinalign/wire/time.h"

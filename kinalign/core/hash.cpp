@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/core/hash.h"
 
+#include "kinalign/wire/hex.h"
+
 #include <openssl/evp.h>
 
 #include <array>
@@ -35,12 +37,8 @@ std::string Sha256::hex() {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned size = 0;
   if (EVP_DigestFinal_ex(state_->context, digest.data(), &size) != 1) std::abort();
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string text;
-  for (unsigned i = 0; i < size; ++i) {
-    text += digits[digest[i] >> 4];
-    text += digits[digest[i] & 15];
-  }
+  std::string text(std::size_t{2} * size, ' ');
+  put_hex(std::span(digest).first(size), text);
   return text;
 }
 

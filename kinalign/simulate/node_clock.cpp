@@ -16,7 +16,7 @@ constexpr double first_reading_s = 5.0;   // the node was on before the host hea
 constexpr std::size_t grid_margin = 200;  // steps behind the recording's end
 constexpr double pi = std::numbers::pi;
 
-/// The share of the frequency error that changes, at grid point i of time t.
+/// What `ramp` and `curvature` add to the frequency error at t.
 double bend(const NodeClockOptions& o, double t) {
   const double w = 2.0 * pi / o.period_s;
   return o.ramp * t + o.curvature / w * (1.0 - std::cos(w * t));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three axes of time that can't be subtracted from, compared with or stored as one another. Files
-// of recordings have Time alone, which a TimeModel (kinalign/clock) moves onto the take's; devices
-// that are recorded live will have NodeTime, and the machine that records them HostTime.
+// of recordings have Time alone, which a TimeModel (kinalign/clock) moves onto the take's; a node
+// that is heard live has NodeTime, the machine that hears it HostTime, and a LiveClock or
+// HostFromNode (kinalign/clock) leads from the one to the other.
 #pragma once
 
 #include <chrono>

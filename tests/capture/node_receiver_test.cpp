@@ -18,40 +18,58 @@ namespace {
 
 const LabKey lab{7};
 
-Result<NodeReceiver> open_receiver(ClockReader& clocks, const std::string& address = "127.0.0.1") {
-  NodeReceiverOptions options;
-  options.addresses = {address};
-  options.desk.lab_key = lab;
-  return NodeReceiver::open(options, clocks);
-}
-
-/// Waits until something has come, two seconds at most; whether it has.
-bool serve(NodeReceiver& receiver) {
-  pollfd waiting{receiver.fd(), POLLIN, 0};
-  const bool came = ::poll(&waiting, 1, 2000) > 0;
-  receiver.drain();
-  return came;
-}
-
 /// Its counter is then a thousand seconds ahead of the raw clock.
-TestNode node_ahead() {
-  TestNode node(7, 1, lab);
+TestNode node_ahead(std::uint32_t id = 7) {
+  TestNode node(id, 1, lab);
   node.drift = 0.0;
   node.offset_s = 1000.0;
   return node;
 }
 
-/// Exchanges frames and takes the replies: fewer than 30, so that all are answered in any second.
-void talk(NodeReceiver& receiver, SystemClocks& clocks, TestNode& node, const Client& client,
-          int frames, const std::string& to = "127.0.0.1") {
-  for (int k = 0; k < frames; ++k) {
-    client.send(to, receiver.sockets()[0].port(), node.frame(clocks.raw()));
-    serve(receiver);
-    const auto came = client.receive();
-    REQUIRE(came);
-    REQUIRE(node.take_reply(came->bytes, clocks.raw()));
-  }
+NodeReceiver open_receiver(ClockReader& clocks, const std::string& address) {
+  NodeReceiverOptions options;
+  options.addresses = {address};
+  options.desk.lab_key = lab;
+  auto opened = NodeReceiver::open(options, clocks);
+  REQUIRE(opened);
+  return std::move(*opened);
 }
+
+/// A receiver, a node and the socket that it sends from.
+template <class Clocks = SystemClocks>
+struct Bench {
+  explicit Bench(const std::string& address = "127.0.0.1")
+      : to(address == "0.0.0.0" ? "127.0.0.1" : address),
+        receiver(open_receiver(clocks, address)),
+        client(to == "::1" ? AF_INET6 : AF_INET) {}
+
+  std::uint16_t port() const { return receiver.sockets()[0].port(); }
+  /// Waits until something has come, two seconds at most; whether it has.
+  bool serve() {
+    pollfd waiting{receiver.fd(), POLLIN, 0};
+    const bool came = ::poll(&waiting, 1, 2000) > 0;
+    receiver.drain();
+    return came;
+  }
+  void send(const Bytes& bytes) const { client.send(to, port(), bytes); }
+  /// Exchanges frames and takes the replies: fewer than 30, so that all are answered in any second.
+  void talk(int frames) { talk(node, frames); }
+  void talk(TestNode& who, int frames) {
+    for (int k = 0; k < frames; ++k) {
+      send(who.frame(clocks.raw()));
+      serve();
+      const auto came = client.receive();
+      REQUIRE(came);
+      REQUIRE(who.take_reply(came->bytes, clocks.raw()));
+    }
+  }
+
+  std::string to;
+  Clocks clocks;
+  NodeReceiver receiver;
+  TestNode node = node_ahead();
+  Client client;
+};
 
 /// The system's clocks, but that the host may have slept, or an hour passed.
 class OddClocks : public SystemClocks {
@@ -73,14 +91,11 @@ std::vector<std::uint32_t> tellers(NodeReceiver& receiver) {
 }  // namespace
 
 TEST_CASE("a node's clock is certified after a few frames, and its stamps hold the truth") {
-  SystemClocks clocks;
-  auto receiver = open_receiver(clocks);
-  REQUIRE(receiver);
-  TestNode node = node_ahead();
-  node.battery_mv = 3700;
+  Bench bench;
+  bench.node.battery_mv = 3700;
   int certified = 0;
   bool holds = true;
-  receiver->watch([&](const NodeNews& news, LiveClock& clock) {
+  bench.receiver.watch([&](const NodeNews& news, LiveClock& clock) {
     const auto stamp = clock.host_from_node(news.exchange->boot, news.exchange->n_tx);
     if (!stamp || stamp->certainty != Certainty::certified) return;
     ++certified;
@@ -89,12 +104,11 @@ TEST_CASE("a node's clock is certified after a few frames, and its stamps hold t
     holds = holds && *stamp->earliest <= truth + std::chrono::microseconds(1) &&
             truth <= *stamp->latest;
   });
-  const Client client;
-  talk(*receiver, clocks, node, client, 28);
+  bench.talk(28);
   CHECK(certified > 20);
   CHECK(holds);
-  CHECK(node.locked);
-  const auto status = receiver->status();
+  CHECK(bench.node.locked);
+  const auto status = bench.receiver.status();
   REQUIRE(status.size() == 1);
   CHECK(status[0].node_id == 7);
   CHECK(status[0].battery_mv == 3700);
@@ -104,130 +118,104 @@ TEST_CASE("a node's clock is certified after a few frames, and its stamps hold t
 }
 
 TEST_CASE("the kernel keeps rubbish out, and says how much of it") {
-  SystemClocks clocks;
-  auto receiver = open_receiver(clocks);
-  REQUIRE(receiver);
-  TestNode node = node_ahead();
-  const Client client;
-  const std::uint16_t port = receiver->sockets()[0].port();
-  Bytes wrong_length = node.frame(clocks.raw()), wrong_magic = wrong_length, newer = wrong_length;
+  Bench bench;
+  Bytes wrong_length = bench.node.frame(bench.clocks.raw()), wrong_magic = wrong_length,
+        newer = wrong_length;
   wrong_length.push_back(0);
   wrong_magic[3] = 'd';
   newer[4] = 9;
   for (const Bytes& bytes :
        {wrong_length, wrong_magic, Bytes(27), Bytes(0), Bytes(1411), Bytes(60'000)}) {
-    client.send("127.0.0.1", port, bytes);
+    bench.send(bytes);
   }
-  client.send("127.0.0.1", port, newer);
-  talk(*receiver, clocks, node, client, 1);
-  CHECK(receiver->dropped() == 6);
-  CHECK(receiver->counts().verdicts.total() == 2);
-  CHECK(receiver->counts().newest_version == 9);
+  bench.send(newer);
+  bench.talk(1);
+  CHECK(bench.receiver.dropped() == 6);
+  CHECK(bench.receiver.counts().verdicts.total() == 2);
+  CHECK(bench.receiver.counts().newest_version == 9);
 }
 
 TEST_CASE("strangers who fill the open socket cost a known node no frame") {
   for (const std::string address : {"127.0.0.1", "0.0.0.0", "::1"}) {
     if (address == "::1" && !has_ipv6_loopback()) continue;
     CAPTURE(address);
-    const std::string to = address == "0.0.0.0" ? "127.0.0.1" : address;
-    const int family = address == "::1" ? AF_INET6 : AF_INET;
-    SystemClocks clocks;
-    auto receiver = open_receiver(clocks, address);
-    REQUIRE(receiver);
-    const std::uint16_t port = receiver->sockets()[0].port();
-    TestNode node = node_ahead();
-    const Client client(family), stranger(family);
-    talk(*receiver, clocks, node, client, 3, to);
-    const Bytes well_formed = TestNode(1000, 1).frame(clocks.raw());
-    for (int sent = 0; sent < 200'000 && receiver->dropped() == 0; ++sent) {
-      stranger.send(to, port, well_formed);
+    Bench bench(address);
+    bench.talk(3);
+    const Client stranger(bench.to == "::1" ? AF_INET6 : AF_INET);
+    const Bytes well_formed = TestNode(1000, 1).frame(bench.clocks.raw());
+    for (int sent = 0; sent < 200'000 && bench.receiver.dropped() == 0; ++sent) {
+      stranger.send(bench.to, bench.port(), well_formed);
     }
-    REQUIRE(receiver->dropped() > 0);  // nothing more goes in
-    const std::uint64_t before = receiver->status()[0].accepted;
-    for (int k = 0; k < 10; ++k) client.send(to, port, node.frame(clocks.raw()));
-    while (receiver->status()[0].accepted < before + 10 && serve(*receiver)) continue;
-    CHECK(receiver->status()[0].accepted == before + 10);
+    REQUIRE(bench.receiver.dropped() > 0);  // nothing more goes in
+    const auto accepted = [&] { return bench.receiver.status()[0].accepted; };
+    const std::uint64_t before = accepted();
+    for (int k = 0; k < 10; ++k) bench.send(bench.node.frame(bench.clocks.raw()));
+    while (accepted() < before + 10 && bench.serve()) continue;
+    CHECK(accepted() == before + 10);
   }
 }
 
 TEST_CASE("a frame that many would answer is counted, and not looked into") {
-  SystemClocks clocks;
-  auto receiver = open_receiver(clocks, "0.0.0.0");
-  REQUIRE(receiver);
-  const Client client;
-  client.send("127.255.255.255", receiver->sockets()[0].port(), node_ahead().frame(clocks.raw()));
-  serve(*receiver);
-  CHECK(receiver->not_unicast() == 1);
-  CHECK(receiver->counts().verdicts.total() == 0);
+  Bench bench("0.0.0.0");
+  bench.client.send("127.255.255.255", bench.port(), bench.node.frame(bench.clocks.raw()));
+  bench.serve();
+  CHECK(bench.receiver.not_unicast() == 1);
+  CHECK(bench.receiver.counts().verdicts.total() == 0);
 }
 
 TEST_CASE("a batch is answered before the clocks hear of it, each frame with its own readings") {
-  SystemClocks clocks;
-  auto receiver = open_receiver(clocks);
-  REQUIRE(receiver);
-  TestNode node = node_ahead();
-  const Client client;
-  talk(*receiver, clocks, node, client, 2);
+  Bench bench;
+  bench.talk(2);
   std::vector<Duration> ages;
-  receiver->watch([&](const NodeNews& news, LiveClock&) {
-    REQUIRE(client.receive());  // its answer is there, or never comes
+  bench.receiver.watch([&](const NodeNews& news, LiveClock&) {
+    REQUIRE(bench.client.receive());  // its answer is there, or never comes
     for (const NodeReading& reading : news.readings)
       ages.push_back(news.exchange->n_tx - reading.n);
   });
   for (std::uint32_t age_us = 1; age_us <= 3; ++age_us) {
-    node.samples.resize(age_us);
-    node.samples.back().age_us = age_us;
-    client.send("127.0.0.1", receiver->sockets()[0].port(), node.frame(clocks.raw()));
+    bench.node.samples.resize(age_us);
+    bench.node.samples.back().age_us = age_us;
+    bench.send(bench.node.frame(bench.clocks.raw()));
   }
-  while (ages.size() < 6) serve(*receiver);
+  while (ages.size() < 6 && bench.serve()) continue;
   using std::chrono::microseconds;
   CHECK(ages == std::vector<Duration>{microseconds(1), microseconds(1), microseconds(2),
                                       microseconds(1), microseconds(2), microseconds(3)});
 }
 
 TEST_CASE("what a clock has told is not lost when it is replaced, and stays its own node's") {
-  OddClocks clocks;
-  auto receiver = open_receiver(clocks);
-  REQUIRE(receiver);
-  const Client client;
+  Bench<OddClocks> bench;
   const auto talk_as = [&](std::uint32_t id) {
-    TestNode node(id, id, lab);
-    node.offset_s = 1000.0;
-    talk(*receiver, clocks, node, client, 3);
+    TestNode node = node_ahead(id);
+    bench.talk(node, 3);
   };
   for (std::uint32_t id = 1; id <= NodeTable::most_streams; ++id) talk_as(id);
-  clocks.slept = std::chrono::hours(1);
-  clocks.later = std::chrono::hours(1);
-  receiver->tick();
-  CHECK_FALSE(receiver->status()[0].stamp);  // of the clock from before; looking ends it not
-  talk_as(100);                              // takes the place of the first
-  const auto ids = tellers(*receiver);
+  bench.clocks.slept = std::chrono::hours(1);
+  bench.clocks.later = std::chrono::hours(1);
+  bench.receiver.tick();
+  CHECK_FALSE(bench.receiver.status()[0].stamp);  // of the clock from before; looking ends it not
+  talk_as(100);                                   // takes the place of the first
+  const auto ids = tellers(bench.receiver);
   CHECK(std::count(ids.begin(), ids.end(), 1) == 1);
   CHECK(std::count(ids.begin(), ids.end(), 64) == 1);
   CHECK(std::count(ids.begin(), ids.end(), 100) == 1);
-  CHECK(receiver->status()[0].node_id == 100);
+  CHECK(bench.receiver.status()[0].node_id == 100);
 }
 
 TEST_CASE("fault 40 ipv6_only: the same over IPv6") {
   if (!has_ipv6_loopback()) return;
-  SystemClocks clocks;
-  auto receiver = open_receiver(clocks, "::1");
-  REQUIRE(receiver);
-  TestNode node = node_ahead();
-  const Client client(AF_INET6);
-  client.send("::1", receiver->sockets()[0].port(), Bytes(60));  // filtered there too
-  talk(*receiver, clocks, node, client, 5, "::1");
-  CHECK(receiver->dropped() == 1);
-  CHECK(receiver->counts().verdicts[NodeVerdict::accepted] == 4);
+  Bench bench("::1");
+  bench.send(Bytes(60));  // filtered there too
+  bench.talk(5);
+  CHECK(bench.receiver.dropped() == 1);
+  CHECK(bench.receiver.counts().verdicts[NodeVerdict::accepted] == 4);
 }
 
 TEST_CASE("pairs of raw and wall clock are logged once a second") {
-  SystemClocks clocks;
-  auto receiver = open_receiver(clocks);
-  REQUIRE(receiver);
-  for (int i = 0; i < 100; ++i) receiver->tick();
-  CHECK(receiver->take_pairs().size() == 1);
-  CHECK(receiver->take_pairs().empty());
+  Bench bench;
+  for (int i = 0; i < 100; ++i) bench.receiver.tick();
+  CHECK(bench.receiver.take_pairs().size() == 1);
+  CHECK(bench.receiver.take_pairs().empty());
 }
 
 }  // namespace kinalign
