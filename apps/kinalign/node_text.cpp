@@ -113,6 +113,7 @@ std::string wrong_key_text(const NodeEvent& event) {
 void add_clock(Json& json, const NodeStatus& status) {
   json["counter_ns"] = status.n->time_since_epoch().count();
   json["drift_ppm"] = 1e6 * status.drift;
+  json["drift_deviation_ppm"] = 1e6 * status.drift_deviation;
   if (status.round_trip) json["round_trip_ms"] = ms(*status.round_trip);
   if (!status.stamp) return;
   const ClockStamp& stamp = *status.stamp;
@@ -153,8 +154,12 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id) {
   const auto says = [node_id](const std::string& what) {
     return fmt::format("node {}: {}", node_id, what);
   };
-  if (event.kind == Kind::step || event.kind == Kind::slip) {
-    return says(fmt::format("warning: its counter stepped by {:+.3f} ms", 1e3 * event.value));
+  const double by_ms = 1e3 * std::abs(event.value);  // which way a step went is not always known
+  if (event.kind == Kind::step) {
+    return says(fmt::format("warning: its counter stepped by at least {:.3f} ms", by_ms));
+  }
+  if (event.kind == Kind::slip) {
+    return says(fmt::format("warning: its counter stepped by {:.3f} ms", by_ms));
   }
   if (event.kind == Kind::withdrawn) {
     return says(fmt::format("warning: the stamps of {:.1f} s are not certified any more",
@@ -162,7 +167,7 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id) {
   }
   if (event.kind == Kind::uneasy) {
     return says(fmt::format("its likeliest stamps may be off by up to {:.3f} ms; certificates hold",
-                            1e3 * std::abs(event.value)));
+                            by_ms));
   }
   if (event.kind == Kind::settled) return says("its counter runs evenly again");
   return event.kind == Kind::relaxed ? says("warning: its clock bends more than was assumed") : "";
@@ -175,7 +180,7 @@ std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_
                         {"node_id", node_id},
                         {"begin_ns", ns(event.begin)},
                         {"end_ns", ns(event.end)},
-                        {"value", event.value}});
+                        {"value", std::abs(event.value)}});
 }
 
 std::string event_text(const HostClockEvent& event) {
@@ -204,7 +209,8 @@ std::string status_text(const NodeStatus& status) {
   if (!lost.empty()) text += ", " + lost + " lost";
   if (is_certified(status)) {
     const Duration whole = *status.stamp->latest - *status.stamp->earliest;
-    text += fmt::format(", ± {:.2f} ms, drift {:+.1f} ppm", ms(whole) / 2, 1e6 * status.drift);
+    text += fmt::format(", ± {:.2f} ms, drift {:+.1f} ± {:.1f} ppm", ms(whole) / 2,
+                        1e6 * status.drift, 1e6 * status.drift_deviation);
   } else if (status.n) {
     text += ", not locked";
   }

@@ -20,7 +20,7 @@ std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_
 std::string event_text(const HostClockEvent& event);
 std::string event_json(const HostClockEvent& event);
 
-/// "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ppm, round trip 2.00 ms, 3.91 V".
+/// "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, round trip 2.00 ms, 3.91 V".
 std::string status_text(const NodeStatus& status);
 std::string status_json(const NodeStatus& status);
 /// "3 nodes, 2 locked, 1 silent"; empty without nodes.

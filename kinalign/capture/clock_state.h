@@ -23,7 +23,8 @@ bool is_synchronised(const std::optional<KernelClock>& kernel);
 /// None where the kernel does not answer.
 std::optional<KernelClock> read_kernel_clock();
 
-/// log2 of the seconds that one reading of CLOCK_REALTIME takes, rounded up.
+/// log2 of the seconds that one reading of CLOCK_REALTIME takes, rounded up, as RFC 5905 section
+/// 7.3 has it: -25 where that is 15 to 30 ns. Not cut: whoever reads it adds it to an error.
 std::int8_t measured_precision();
 
 constexpr std::uint32_t local_reference_id = 0x7f7f0100;  // 127.127.1.0, as ntpd has it

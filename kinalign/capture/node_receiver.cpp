@@ -154,6 +154,8 @@ std::vector<NodeStatus> NodeReceiver::status() const {
     status.battery_mv = stream.battery_mv;
     if (clocks_[i] != nullptr && is_current(*clocks_[i], i)) add_clock(status, *clocks_[i], life);
   }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const auto& a, const auto& b) { return a.node_id < b.node_id; });
   return all;
 }
 
@@ -167,7 +169,9 @@ void NodeReceiver::add_clock(NodeStatus& status, StreamClock& clock, const NodeL
   status.stamp = clock.clock.host_from_node(life.key, clock.n);
   const ClockPiece* piece = clock.clock.piece();
   if (piece == nullptr) return;
-  status.drift = piece->estimate().slope().mean;
+  const SlopeBelief drift = piece->estimate().slope();
+  status.drift = drift.mean;
+  status.drift_deviation = drift.deviation;
   if (const auto floor = piece->floors().window(0)) {
     status.round_trip = Duration{static_cast<std::int64_t>(floor->round_trip * 1e9)};
   }

@@ -36,7 +36,7 @@ struct NodeStatus {
   // of its clock, where it has one
   std::optional<NodeTime> n;  // its newest counter, ...
   std::optional<ClockStamp> stamp;
-  double drift = 0.0;                         // host_from_node's rate less one
+  double drift = 0.0, drift_deviation = 0.0;  // host_from_node's rate less one, as estimated
   std::optional<Duration> round_trip;         // the least of the last whole ten seconds
   std::optional<Duration> one_way, mean_way;  // d of a node without a counter: the last, the mean
 };
@@ -64,6 +64,7 @@ class NodeReceiver {
   /// Datagrams that were not looked into, for how they came.
   std::uint64_t not_unicast() const { return not_unicast_; }  // many would answer
   std::uint64_t from_port_0() const { return from_port_0_; }  // nobody would hear the answer
+  /// By node id; of two nodes that have one, by stream.
   std::vector<NodeStatus> status() const;
   void replace_key(const LabKey& lab) { desk_->replace_key(lab, clock_.now()); }
 

@@ -19,6 +19,7 @@ NodeStatus some_status() {
   status.battery_mv = 3912;
   status.n = NodeTime{std::chrono::seconds(60)};
   status.drift = 20.1e-6;
+  status.drift_deviation = 0.42e-6;
   status.round_trip = std::chrono::microseconds(2004);
   ClockStamp stamp;
   stamp.time = HostTime{std::chrono::seconds(100)};
@@ -34,7 +35,7 @@ NodeStatus some_status() {
 TEST_CASE("a node's status is one line, and JSON with times in ns") {
   const NodeStatus status = some_status();
   CHECK(status_text(status) ==
-        "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ppm, round trip 2.00 ms, 3.91 V");
+        "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, round trip 2.00 ms, 3.91 V");
   const auto json = nlohmann::json::parse(status_json(status));
   CHECK(json["address"] == "192.168.7.20:4000");
   CHECK(json["certainty"] == "certified");
@@ -42,6 +43,8 @@ TEST_CASE("a node's status is one line, and JSON with times in ns") {
   CHECK(json["latest_ns"].get<std::int64_t>() - json["earliest_ns"].get<std::int64_t>() ==
         2'080'000);
   CHECK(json["counter_ns"] == 60'000'000'000);
+  CHECK(json["drift_ppm"].get<double>() == doctest::Approx(20.1));
+  CHECK(json["drift_deviation_ppm"].get<double>() == doctest::Approx(0.42));
   CHECK_FALSE(json.contains("d_ms"));
 }
 
@@ -77,8 +80,12 @@ TEST_CASE("every event has a text and a name, and warnings say that they are") {
   ClockEvent step;
   step.kind = ClockEvent::Kind::step;
   step.value = -0.02;
-  CHECK(event_text(step, 7) == "node 7: warning: its counter stepped by -20.000 ms");
-  CHECK(nlohmann::json::parse(event_json(step, 0, 7))["kind"] == "step");
+  CHECK(event_text(step, 7) == "node 7: warning: its counter stepped by at least 20.000 ms");
+  const auto json = nlohmann::json::parse(event_json(step, 0, 7));
+  CHECK(json["kind"] == "step");
+  CHECK(json["value"] == 0.02);
+  step.kind = ClockEvent::Kind::slip;
+  CHECK(event_text(step, 7) == "node 7: warning: its counter stepped by 20.000 ms");
   step.kind = ClockEvent::Kind::uneasy;
   CHECK(nlohmann::json::parse(event_json(step, 0, 7))["kind"] == "uneasy");
   CHECK(event_text(step, 7).find("certificates hold") != std::string::npos);

@@ -194,12 +194,26 @@ TEST_CASE("what a clock has told is not lost when it is replaced, and stays its 
   bench.clocks.later = std::chrono::hours(1);
   bench.receiver.tick();
   CHECK_FALSE(bench.receiver.status()[0].stamp);  // of the clock from before; looking ends it not
-  talk_as(100);                                   // takes the place of the first
+  talk_as(100);                                   // takes the stream of the first
   const auto ids = tellers(bench.receiver);
   CHECK(std::count(ids.begin(), ids.end(), 1) == 1);
   CHECK(std::count(ids.begin(), ids.end(), 64) == 1);
   CHECK(std::count(ids.begin(), ids.end(), 100) == 1);
-  CHECK(bench.receiver.status()[0].node_id == 100);
+  const auto status = bench.receiver.status();
+  CHECK(status.front().node_id == 2);
+  CHECK(status.back().node_id == 100);
+  CHECK(status.back().stream == 0);
+}
+
+TEST_CASE("nodes are listed by their ids, in whatever order they joined") {
+  Bench bench;
+  for (const std::uint32_t id : {9U, 3U, 12U}) {
+    TestNode node = node_ahead(id);
+    bench.talk(node, 2);
+  }
+  std::vector<std::uint32_t> ids;
+  for (const NodeStatus& status : bench.receiver.status()) ids.push_back(status.node_id);
+  CHECK(ids == std::vector<std::uint32_t>{3, 9, 12});
 }
 
 TEST_CASE("fault 40 ipv6_only: the same over IPv6") {
