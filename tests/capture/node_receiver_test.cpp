@@ -16,6 +16,8 @@ namespace kinalign {
 
 namespace {
 
+using namespace std::chrono_literals;
+
 const LabKey lab{7};
 
 /// Its counter is then a thousand seconds ahead of the raw clock.
@@ -77,6 +79,21 @@ class OddClocks : public SystemClocks {
   HostTime raw() override { return SystemClocks::raw() + later; }
   Duration asleep() override { return SystemClocks::asleep() + slept; }
   Duration later{0}, slept{0};
+};
+
+/// Both go on by `reading` between the wall clock's reading and the raw clock's.
+class SlowClocks : public SystemClocks {
+ public:
+  HostTime raw() override { return SystemClocks::raw() + later_; }
+  Time utc() override {
+    const Time read = SystemClocks::utc() + later_;
+    later_ += reading;
+    return read;
+  }
+  Duration reading{0};
+
+ private:
+  Duration later_{0};
 };
 
 /// Each node whose clock has something to tell.
@@ -181,6 +198,25 @@ TEST_CASE("a batch is answered before the clocks hear of it, each frame with its
   using std::chrono::microseconds;
   CHECK(ages == std::vector<Duration>{microseconds(1), microseconds(1), microseconds(2),
                                       microseconds(1), microseconds(2), microseconds(3)});
+}
+
+TEST_CASE("frames are told in the order in which they came, however slowly clocks are read") {
+  Bench<SlowClocks> bench;
+  bench.talk(2);
+  std::vector<HostTime> arrivals;
+  bench.receiver.watch(
+      [&](const NodeNews& news, LiveClock&) { arrivals.push_back(news.exchange->h_rx); });
+  for (const Duration each : {Duration(10s), Duration(0s)}) {
+    bench.clocks.reading = each;
+    bench.send(bench.node.frame(bench.clocks.raw()));
+    const std::size_t before = arrivals.size();
+    while (arrivals.size() == before && bench.serve()) continue;
+  }
+  REQUIRE(arrivals.size() == 2);
+  CHECK(arrivals[0] <= arrivals[1]);
+  for (const auto& told : bench.receiver.take_clock_events()) {
+    CHECK(told.event.kind != ClockEvent::Kind::host_backwards);
+  }
 }
 
 TEST_CASE("what a clock has told is not lost when it is replaced, and stays its own node's") {

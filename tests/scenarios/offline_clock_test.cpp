@@ -97,6 +97,24 @@ TEST_CASE("a life of one frame, and one without a reply, are pieces of which not
   CHECK(fit_offline_clock({}).model.pieces.empty());
 }
 
+TEST_CASE("nothing is claimed of a counter that says a day where the host saw a second") {
+  using namespace std::chrono_literals;
+  for (const Duration counted : {Duration(1s), Duration(24h)}) {
+    CAPTURE(counted.count());
+    const NodeTime begin{5s}, end = begin + counted;
+    const std::vector<Exchange> exchanges{
+        {1, begin, HostTime{11s}, std::nullopt},
+        {1, end, HostTime{12s}, Exchange::Echo{end - 500ms, HostTime{11500ms}}}};
+    const auto clock = fit_offline_clock(exchanges);
+    REQUIRE(clock.model.pieces.size() == 1);
+    const ClockPieceModel& piece = clock.model.pieces[0];
+    const bool like_the_host = counted == 1s;
+    CHECK(piece.certified == like_the_host);
+    CHECK(piece.knots.empty() != like_the_host);
+    CHECK(host_from_node(clock.model, 1, begin, HostTime{11s}).has_value() == like_the_host);
+  }
+}
+
 TEST_CASE("a frame of the life before, that comes after the first of the next, spoils neither") {
   for (const auto seed : fresh_seeds(5)) {
     CAPTURE(seed);
