@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/clock_table/measure.h"
+
+#include "tools/clock_table/judge.h"
+#include "tools/clock_table/peers.h"
+#include "tools/clock_table/promises.h"
+
+#include "kinalign/core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double start_watched_s = 30.0;
+
+using Errors = std::vector<std::vector<double>>;  // s, a vector a seed
+
+/// Intervals of all seeds.
+struct Intervals {
+  IntervalFigures sums;
+  std::vector<double> half_widths;  // s, of frames sent from `begin` on
+
+  void add(const JudgedRun& run, double begin) {
+    sums.frames += run.frames;
+    sums.wrong += run.lies();
+    for (const JudgedStamp& stamp : run.stamps) {
+      sums.outside += stamp.outside ? 1 : 0;
+      if (!stamp.certified || stamp.withdrawn) continue;
+      ++sums.certified;
+      if (stamp.sent >= begin) half_widths.push_back(stamp.half_width);
+    }
+  }
+};
+
+/// What is kept of every seed.
+struct Gathered {
+  std::array<Errors, methods> errors;
+  Errors each_delay_from_the_start;  // as offline's
+  Intervals live, offline;
+  std::vector<std::vector<double>> starts;  // s, a vector a limit of the link
+};
+
+std::vector<double> since(const PeerErrors& found, double begin) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < found.sent.size(); ++i) {
+    if (found.sent[i] >= begin) errors.push_back(found.error[i]);
+  }
+  return errors;
+}
+
+/// Seconds from the first frame until the error of all that follow within half a minute is small.
+double start_time(const JudgedRun& run, double limit) {
+  double last = run.stamps.empty() ? 0.0 : run.stamps.front().heard;
+  for (const JudgedStamp& stamp : run.stamps) {
+    if (stamp.sent < start_watched_s && std::abs(stamp.error) > limit) last = stamp.heard;
+  }
+  return last;
+}
+
+std::vector<double> start_limits(Link link) {
+  std::vector<double> limits;
+  for (const StartBars& start : start_bars) {
+    if (start.link == link) limits.push_back(start.limit);
+  }
+  return limits;
+}
+
+void gather(Link link, const SimulatedExchanges& run, Gathered& all) {
+  std::size_t row = 0;
+  for (const Peer& peer : peers()) {
+    all.errors[row++].push_back(since(peer.errors(run), peer.live ? live_since_s : 0.0));
+  }
+  all.each_delay_from_the_start.push_back(peers().front().errors(run).error);
+  const JudgedRun live = judge_live(run), offline = judge_offline(run);
+  all.errors[row++].push_back(errors_since(live, live_since_s));
+  all.errors[row++].push_back(errors_since(live, live_since_s, live.asymmetry));
+  all.errors[row++].push_back(errors_since(offline, 0.0));
+  all.errors[row].push_back(errors_since(offline, 0.0, offline.asymmetry));
+  all.live.add(live, live_since_s);
+  all.offline.add(offline, 0.0);
+  const auto limits = start_limits(link);
+  all.starts.resize(limits.size());
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    all.starts[i].push_back(start_time(live, limits[i]));
+  }
+}
+
+std::vector<double> pooled(const Errors& errors) {
+  std::vector<double> all;
+  for (const auto& seed : errors) all.insert(all.end(), seed.begin(), seed.end());
+  return all;
+}
+
+double at_share(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();  // no bar is met by that
+  std::sort(values.begin(), values.end());
+  const auto n = static_cast<double>(values.size());
+  return values[static_cast<std::size_t>(std::min(n - 1.0, n * share))];
+}
+
+void raise(Extreme& most, double value, std::uint64_t seed) {
+  if (value > most.value) most = {value, seed};
+}
+
+MethodFigures summary(std::string name, const Errors& errors, std::uint64_t first) {
+  MethodFigures out;
+  out.name = std::move(name);
+  out.pooled = figures(pooled(errors)).rms;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const ErrorFigures f = figures(errors[i]);
+    out.p99 += f.p99 / static_cast<double>(errors.size());
+    raise(out.worst_seed, f.rms, first + i);
+    raise(out.worst_stamp, f.worst, first + i);
+  }
+  return out;
+}
+
+IntervalFigures summary(const Intervals& intervals) {
+  IntervalFigures out = intervals.sums;
+  const auto& widths = intervals.half_widths;
+  out.half_width =
+      std::accumulate(widths.begin(), widths.end(), 0.0) / static_cast<double>(widths.size());
+  out.half_width_p99 = at_share(widths, 0.99);
+  return out;
+}
+
+GainFigures gain(const Errors& paper, const Errors& ours, std::uint64_t first) {
+  std::vector<double> gains;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    gains.push_back(figures(paper[i]).rms / figures(ours[i]).rms);
+  }
+  const auto least = std::min_element(gains.begin(), gains.end());
+  return {at_share(gains, 0.5),
+          {*least, first + static_cast<std::uint64_t>(least - gains.begin())},
+          figures(pooled(paper)).rms / figures(pooled(ours)).rms};
+}
+
+std::string name_of(std::size_t row) {
+  constexpr std::array<std::string_view, 4> ours{"kinalign, live", "  less asymmetry",
+                                                 "kinalign, offline", "  less asymmetry"};
+  return std::string(is_ours(row) ? ours[row - peers().size()] : peers()[row].name);
+}
+
+}  // namespace
+
+LinkFigures measure(Link link, const RunSet& set) {
+  ExchangeOptions options;
+  options.length_s = 60.0 * set.minutes;
+  options.link.link = link;
+  options.link.bursts = set.bursts;
+  Gathered all;
+  for (std::uint64_t seed = set.first; seed < set.first + set.seeds; ++seed) {
+    gather(link, simulate_exchanges(options, seed), all);
+  }
+  LinkFigures out;
+  out.link = link;
+  for (std::size_t row = 0; row < methods; ++row) {
+    out.rows[row] = summary(name_of(row), all.errors[row], set.first);
+  }
+  out.live = summary(all.live);
+  out.offline = summary(all.offline);
+  const auto limits = start_limits(link);
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const auto& times = all.starts[i];
+    out.starts.push_back(
+        {limits[i], at_share(times, 0.5), at_share(times, 0.9), at_share(times, 1.0)});
+  }
+  const auto& offline = all.errors[static_cast<std::size_t>(Method::offline)];
+  const auto& mean_delay = all.errors[static_cast<std::size_t>(Method::mean_delay)];
+  out.over_each_delay = gain(all.each_delay_from_the_start, offline, set.first);
+  out.over_mean_delay = gain(mean_delay, offline, set.first);
+  out.frame_number_gain =
+      figures(pooled(all.each_delay_from_the_start)).rms / out.of(Method::frame_number).pooled;
+  return out;
+}
+
+std::vector<LinkFigures> measure(std::span<const LinkRun> runs) {
+  std::vector<LinkFigures> out(runs.size());
+  parallel_for(runs.size(), 2, [&](std::size_t i) { out[i] = measure(runs[i].link, runs[i].set); });
+  return out;
+}
+
+}  // namespace kinalign

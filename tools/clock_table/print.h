@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// A set for who looks at it in a terminal.
+#pragma once
+
+#include "tools/clock_table/measure.h"
+
+namespace kinalign {
+
+/// "1 min, 15 frames a second, seeds 5 to 24": what a run is made again from.
+std::string describe(const RunSet& set);
+
+/// A table a link, what its certificates and starts were, and all links side by side.
+void print_tables(const RunSet& set, std::span<const LinkFigures> tables);
+
+}  // namespace kinalign
