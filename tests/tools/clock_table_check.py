@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The clock table as a tool: clock_table_check.py KINALIGN_CLOCK_TABLE
+
+That no certified stamp is wrong holds for all seeds: new ones in each run.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+from run_cases import case, run_cases
+
+TABLE = pathlib.Path(sys.argv[1]).resolve()
+
+
+def run(*words):
+    done = subprocess.run([TABLE, *words], capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+WRONG = {
+    "--minuts 3": 'expected a known flag (nearest: --minutes), found "--minuts"',
+    "--links Z": "--links: expected letters of ABCDEFG, each once, found Z",
+    "--links CC": "--links: expected letters of ABCDEFG, each once, found CC",
+    "--minutes 0.1": "--minutes: expected a number of 0.5 to 600, found 0.1",
+    "--minutes ten": "--minutes: expected a number of 0.5 to 600, found ten",
+    "--seeds 2.5": "--seeds: expected a whole number, found 2.5",
+    "--seeds 0": "--seeds: expected a number of 1 to 10000, found 0",
+    "--first -1": "--first: expected a number of 0 to 9e+15, found -1",
+    "--first": "--first: expected a value behind it, found the end",
+    "--seeds 3 --seeds 4": "--seeds: expected to be given once, found given twice",
+}
+
+
+@case
+def words_that_mean_nothing_are_refused(folder):
+    for words, message in WRONG.items():
+        found = run(*words.split())
+        assert found == (2, "", f"kinalign_clock_table: {message}; --help shows examples\n"), found
+
+
+@case
+def the_clock_table_shows_its_usage(folder):
+    code, text, _ = run("--help")
+    assert code == 0 and "kinalign_clock_table --minutes 10 --links CF" in text
+
+
+@case
+def a_run_is_made_again_from_the_seeds_that_it_names(folder):
+    code, text, _ = run("--seeds", "2", "--links", "B")
+    first = re.match(r"1 min, 15 frames a second, seeds (\d+) to \d+: ms\n", text)
+    assert code == 0 and first, text
+    assert run("--links", "B", "--seeds", "2", "--first", first[1]) == (0, text, "")
+
+
+@case
+def no_certified_stamp_is_wrong_on_seeds_that_nobody_has_seen(folder):
+    for words in ((), ("--bursts",)):
+        code, text, _ = run("--seeds", "20", *words)
+        assert code == 0, text
+
+
+sys.exit(run_cases("kinalign clock table "))

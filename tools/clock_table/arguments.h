@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the words behind kinalign_clock_table ask for.
+#pragma once
+
+#include "tools/clock_table/measure.h"
+
+#include "kinalign/core/error.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+struct Wanted {
+  bool help = false;
+  double minutes = 1.0;
+  std::uint64_t seeds = 20;
+  std::optional<std::uint64_t> first;  // absent: seeds that nobody has seen
+  std::string links = "ABCDEFG";
+  bool bursts = false;
+};
+
+/// Fails with an Error whose `file` is the flag at fault: "--minutes".
+Result<Wanted> wanted_from(const std::vector<std::string>& words);
+
+/// What --help prints.
+extern const std::string_view usage;
+
+}  // namespace kinalign
