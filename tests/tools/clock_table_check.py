@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The clock table as a tool: clock_table_check.py KINALIGN_CLOCK_TABLE
 
-That no certified stamp is wrong holds for all seeds: new ones in each run.
+What is promised of the clocks is of many seeds, and now and then one does not keep it (of 2400 two
+on C were less than a hundred times better than T2 - d, six on E live more than 2 ms off), so bars
+are held on seeds that were chosen once, before anybody had seen what they give. That no certified
+stamp is wrong holds for all seeds: new ones in each run.
 """
 import pathlib
 import re
@@ -31,6 +34,11 @@ WRONG = {
     "--first -1": "--first: expected a number of 0 to 9e+15, found -1",
     "--first": "--first: expected a value behind it, found the end",
     "--seeds 3 --seeds 4": "--seeds: expected to be given once, found given twice",
+    "--bars --minutes 5": "--minutes: expected 1, 10 or 60, for which bars are stated, found 5",
+    "--bars --bursts --minutes 10":
+        "--minutes: expected 1, for which bars with --bursts are stated, found 10",
+    "--bars --minutes 10 --seeds 7":
+        "--seeds: expected 8 or more, for which bars are stated, found 7",
 }
 
 
@@ -44,7 +52,7 @@ def words_that_mean_nothing_are_refused(folder):
 @case
 def the_clock_table_shows_its_usage(folder):
     code, text, _ = run("--help")
-    assert code == 0 and "kinalign_clock_table --minutes 10 --links CF" in text
+    assert code == 0 and "kinalign_clock_table --bars --seeds 60 --first 71000" in text
 
 
 @case
@@ -53,6 +61,26 @@ def a_run_is_made_again_from_the_seeds_that_it_names(folder):
     first = re.match(r"1 min, 15 frames a second, seeds (\d+) to \d+: ms\n", text)
     assert code == 0 and first, text
     assert run("--links", "B", "--seeds", "2", "--first", first[1]) == (0, text, "")
+
+
+@case
+def the_bars_of_a_minute_hold_on_the_60_seeds_from_71000(folder):
+    code, text, _ = run("--bars", "--seeds", "60", "--first", "71000")
+    assert code == 0 and "\n105 met, 0 missed\n" in text, text
+
+
+@case
+def the_bars_with_bursts_of_loss_hold_on_the_60_seeds_from_71000(folder):
+    code, text, _ = run("--bars", "--bursts", "--seeds", "60", "--first", "71000")
+    assert code == 0 and "\n61 met, 0 missed\n" in text, text
+
+
+@case
+def a_missed_bar_ends_with_1_and_names_its_seed(folder):
+    # On seed 200107 a node starts into a bad state of link E; another, should a better clock keep it.
+    code, text, _ = run("--bars", "--links", "E", "--seeds", "20", "--first", "200100")
+    assert code == 1 and re.search(r"\| live, worst stamp, ms .* MISSED \| seed 200107 \|", text), text
+    assert text.endswith(", 1 missed\n"), text
 
 
 @case

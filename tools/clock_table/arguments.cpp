@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/clock_table/arguments.h"
 
+#include "tools/clock_table/promises.h"
+
 #include "kinalign/core/nearest_name.h"
 #include "kinalign/core/numbers.h"
 
@@ -15,7 +17,7 @@ namespace kinalign {
 namespace {
 
 const std::vector<std::string> with_value{"--minutes", "--seeds", "--first", "--links"};
-const std::vector<std::string> switches{"--bursts", "--help"};
+const std::vector<std::string> switches{"--bursts", "--bars", "--help"};
 
 /// Flags with the words behind them; a switch has none.
 using Given = std::map<std::string, std::string>;
@@ -81,13 +83,32 @@ Result<std::string> links_of(const Given& given, const std::string& otherwise) {
   return text;
 }
 
+/// Bars are stated for these lengths and of that many seeds; with bursts for a minute.
+Result<void> check_bars(const Wanted& wanted) {
+  const auto* found =
+      std::find_if(least_seeds.begin(), least_seeds.end(),
+                   [&](const LeastSeeds& least) { return least.minutes == wanted.minutes; });
+  const std::string minutes = fmt::format("{}", wanted.minutes);
+  if (found == least_seeds.end()) {
+    return wrong("--minutes", "1, 10 or 60, for which bars are stated", minutes);
+  }
+  if (wanted.bursts && wanted.minutes != 1.0) {
+    return wrong("--minutes", "1, for which bars with --bursts are stated", minutes);
+  }
+  if (wanted.seeds < found->seeds) {
+    return wrong("--seeds", fmt::format("{} or more, for which bars are stated", found->seeds),
+                 fmt::format("{}", wanted.seeds));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Wanted> wanted_from(const std::vector<std::string>& words) {
   const Given given = KA_TRY(flags_of(words));
   Wanted wanted;
   if (given.contains("--help")) {
-    wanted.help = true;
+    wanted.output = Wanted::Output::help;
     return wanted;
   }
   // Half a minute: live errors count from 10 s on, starts are watched for 30 s.
@@ -96,12 +117,16 @@ Result<Wanted> wanted_from(const std::vector<std::string>& words) {
   wanted.links = KA_TRY(links_of(given, wanted.links));
   wanted.bursts = given.contains("--bursts");
   if (given.contains("--first")) wanted.first = KA_TRY(count(given, "--first", {0, 9e15}, 0));
+  if (given.contains("--bars")) {
+    KA_TRY(check_bars(wanted));
+    wanted.output = Wanted::Output::bars;
+  }
   return wanted;
 }
 
 const std::string_view usage =
     R"(usage: kinalign_clock_table [--minutes M] [--seeds N] [--first SEED] [--links LETTERS]
-                            [--bursts]
+                            [--bursts] [--bars]
 
 Every method on every simulated link, on the same traces, held against the truth.
 
@@ -111,11 +136,13 @@ Every method on every simulated link, on the same traces, held against the truth
   --links LETTERS  of A wired, B quiet, C the paper's, D modem sleep, E congested, F roaming,
                    G thin floor (ABCDEFG)
   --bursts         half of all packets lost, 2 s at a time
+  --bars           hold the figures against the promises of that length: 1, 10 or 60 minutes
 
   kinalign_clock_table --minutes 10 --links CF
+  kinalign_clock_table --bars --seeds 60 --first 71000
   kinalign_clock_table --links C --seeds 1 --first 71023
 
-Ends with 0; 1 where a certified stamp is wrong; 2 where it is used wrongly.
+Ends with 0; 1 where a certified stamp is wrong or a bar is missed; 2 where it is used wrongly.
 )";
 
 }  // namespace kinalign

@@ -14,7 +14,8 @@
 namespace kinalign {
 
 struct Wanted {
-  bool help = false;
+  enum class Output : std::uint8_t { tables, bars, help };
+  Output output = Output::tables;
   double minutes = 1.0;
   std::uint64_t seeds = 20;
   std::optional<std::uint64_t> first;  // absent: seeds that nobody has seen

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of docs/performance.md, section "Clocks"; see --help.
+// The tables of docs/performance.md, section "Clocks", and the bars behind them; see --help.
 #include "tools/clock_table/arguments.h"
 #include "tools/clock_table/print.h"
 
@@ -21,13 +21,22 @@ bool no_certified_stamp_is_wrong(const std::vector<LinkFigures>& tables) {
   });
 }
 
-int show_tables(const Wanted& wanted, std::uint64_t first) {
+/// Tables of one set, or its bars.
+int show_set(const Wanted& wanted, std::uint64_t first) {
   const RunSet set{wanted.minutes, wanted.seeds, first, wanted.bursts};
   std::vector<LinkRun> runs;
   for (const char link : wanted.links) runs.push_back({static_cast<Link>(link - 'A'), set});
   const auto tables = measure(runs);
-  print_tables(set, tables);
-  return no_certified_stamp_is_wrong(tables) ? done : findings;
+  bool fine = no_certified_stamp_is_wrong(tables);
+  if (wanted.output == Wanted::Output::bars) {
+    const auto judged = verdicts(set, tables);
+    print_verdicts(set, judged);
+    fine = fine && std::all_of(judged.begin(), judged.end(),
+                               [](const Verdict& verdict) { return verdict.met(); });
+  } else {
+    print_tables(set, tables);
+  }
+  return fine ? done : findings;
 }
 
 int run(const std::vector<std::string>& words) {
@@ -37,11 +46,11 @@ int run(const std::vector<std::string>& words) {
                to_string(wanted.error()));
     return wrong_use;
   }
-  if (wanted->help) {
+  if (wanted->output == Wanted::Output::help) {
     fmt::print("{}", usage);
     return done;
   }
-  return show_tables(*wanted, wanted->first.value_or(std::random_device{}()));
+  return show_set(*wanted, wanted->first.value_or(std::random_device{}()));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
 namespace kinalign {
@@ -52,6 +53,13 @@ void print_overview(std::span<const LinkFigures> tables) {
   fmt::print("\n");
 }
 
+std::string line_of(const Verdict& v) {
+  const std::string seed = v.measured.seed ? fmt::format("seed {}", *v.measured.seed) : "";
+  return fmt::format("| {:9} | {} | {:42} | {:>8.4g} | {} {:>6g} | {:6} | {} |", v.source,
+                     letter(v.link), v.column, v.measured.value, v.at_least ? ">=" : "<=", v.bar,
+                     v.met() ? "met" : "MISSED", seed);
+}
+
 }  // namespace
 
 std::string describe(const RunSet& set) {
@@ -64,6 +72,16 @@ void print_tables(const RunSet& set, std::span<const LinkFigures> tables) {
   fmt::print("{}: ms\n", describe(set));
   for (const LinkFigures& table : tables) print_link(table);
   print_overview(tables);
+}
+
+void print_verdicts(const RunSet& set, std::span<const Verdict> verdicts) {
+  fmt::print("{}: held against the promises\n\n", describe(set));
+  fmt::print("| source | link | column | measured | bar | | worst of |\n");
+  fmt::print("| --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const Verdict& verdict : verdicts) fmt::print("{}\n", line_of(verdict));
+  const auto met = std::count_if(verdicts.begin(), verdicts.end(),
+                                 [](const Verdict& verdict) { return verdict.met(); });
+  fmt::print("\n{} met, {} missed\n", met, std::ssize(verdicts) - met);
 }
 
 }  // namespace kinalign

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A set for who looks at it in a terminal.
+// A set, or what became of its bars, for who looks at it in a terminal.
 #pragma once
 
-#include "tools/clock_table/measure.h"
+#include "tools/clock_table/bars.h"
 
 namespace kinalign {
 
@@ -11,5 +11,8 @@ std::string describe(const RunSet& set);
 
 /// A table a link, what its certificates and starts were, and all links side by side.
 void print_tables(const RunSet& set, std::span<const LinkFigures> tables);
+
+/// A line a column, with the seed to look at, and how many were met.
+void print_verdicts(const RunSet& set, std::span<const Verdict> verdicts);
 
 }  // namespace kinalign
