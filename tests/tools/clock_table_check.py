@@ -39,6 +39,8 @@ WRONG = {
         "--minutes: expected 1, for which bars with --bursts are stated, found 10",
     "--bars --minutes 10 --seeds 7":
         "--seeds: expected 8 or more, for which bars are stated, found 7",
+    "--bars --markdown":
+        "--bars: expected no flag but --first beside --markdown, whose sets are its own, found both",
 }
 
 

@@ -14,7 +14,7 @@
 namespace kinalign {
 
 struct Wanted {
-  enum class Output : std::uint8_t { tables, bars, help };
+  enum class Output : std::uint8_t { tables, bars, markdown, help };
   Output output = Output::tables;
   double minutes = 1.0;
   std::uint64_t seeds = 20;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tables of docs/performance.md, section "Clocks", and the bars behind them; see --help.
 #include "tools/clock_table/arguments.h"
+#include "tools/clock_table/markdown.h"
 #include "tools/clock_table/print.h"
 
 #include <fmt/format.h>
@@ -39,6 +40,16 @@ int show_set(const Wanted& wanted, std::uint64_t first) {
   return fine ? done : findings;
 }
 
+int show_page(std::uint64_t first) {
+  const PageFigures page = measure(page_sets(first));
+  fmt::print("{}", markdown(page));
+  bool fine = true;
+  for (const auto* tables : {&page.minute, &page.ten_minutes, &page.hour, &page.bursts}) {
+    fine = fine && no_certified_stamp_is_wrong(*tables);
+  }
+  return fine ? done : findings;
+}
+
 int run(const std::vector<std::string>& words) {
   const auto wanted = wanted_from(words);
   if (!wanted) {
@@ -46,11 +57,18 @@ int run(const std::vector<std::string>& words) {
                to_string(wanted.error()));
     return wrong_use;
   }
-  if (wanted->output == Wanted::Output::help) {
-    fmt::print("{}", usage);
-    return done;
+  const std::uint64_t first = wanted->first.value_or(std::random_device{}());
+  switch (wanted->output) {
+    case Wanted::Output::help:
+      fmt::print("{}", usage);
+      return done;
+    case Wanted::Output::markdown:
+      return show_page(first);
+    case Wanted::Output::tables:
+    case Wanted::Output::bars:
+      break;
   }
-  return show_set(*wanted, wanted->first.value_or(std::random_device{}()));
+  return show_set(*wanted, first);
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The measured tables of docs/performance.md, section "Clocks": RMS, p99, worst stamp,
+// certificates, widths, gains and starts, between the two comments that stand there.
+#pragma once
+
+#include "tools/clock_table/measure.h"
+
+#include <string>
+
+namespace kinalign {
+
+/// The four sets of the tables on all links, from seed `first` on.
+struct PageSets {
+  RunSet minute, ten_minutes, hour, bursts;
+};
+PageSets page_sets(std::uint64_t first);
+
+/// What was measured of them, a link each, A to G.
+struct PageFigures {
+  PageSets sets;
+  std::vector<LinkFigures> minute, ten_minutes, hour, bursts;
+};
+PageFigures measure(const PageSets& sets);
+
+std::string markdown(const PageFigures& page);
+
+}  // namespace kinalign
