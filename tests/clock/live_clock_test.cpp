@@ -265,3 +265,31 @@ TEST_CASE("without any delay the truth lies at the interval's ends, and never ou
     CHECK(*stamp->latest >= host(truths[i]));
   }
 }
+
+TEST_CASE("the first packet that takes no time, of a clock at the greatest rate, is no violator") {
+  for (const int ppm : {95, -95}) {
+    for (const bool up : {true, false}) {  // the way on which all packets before took ten
+      CAPTURE(ppm);
+      CAPTURE(up);
+      const auto counted = [ppm](Duration h) {
+        return node(std::chrono::floor<std::chrono::microseconds>(h + h / 1'000'000 * ppm));
+      };
+      LiveClock clock;
+      for (int i = 0; i < 200; ++i) {
+        const Duration t = 70ms * i, late = i % 50 == 49 ? 0ms : 10ms;
+        clock.push_up(7, counted(t), host(t + (up ? late : 0ms)));
+        clock.push_down(7, counted(t - 10ms), host(t - 10ms - (up ? 0ms : late)));
+      }
+      CHECK(count(clock.take_events(), ClockEvent::Kind::violator) == 0);
+    }
+  }
+}
+
+TEST_CASE("after a reboot it is known how narrow an interval can be") {
+  LiveClock clock;
+  run(clock, 7, 0s, 60s);
+  const double least = clock.piece()->floors().shortest().least_width();
+  CHECK(least == doctest::Approx(2e-3).epsilon(0.1));
+  run(clock, 8, 61s, 62s);
+  CHECK(clock.piece()->floors().shortest().least_width() == least);
+}
