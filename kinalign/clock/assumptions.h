@@ -13,8 +13,11 @@
 
 namespace kinalign {
 
+/// No crystal of a node is worse.
+inline constexpr double greatest_rate = 100e-6;
+
 struct Assumptions {
-  double rate = 100e-6;
+  double rate = greatest_rate;
   double curvature = 5e-8;  // per second: three times the worst of a crystal that warms up
 
   bool operator==(const Assumptions&) const = default;

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
 constexpr Duration before_a_slip = std::chrono::seconds(5);
-constexpr Duration longest_reach = std::chrono::seconds(70);
 constexpr double longest_piece_s = 1e8;  // three years; lifted, doubles keep 30 ns over that
 constexpr double looked_back_s = 120.0;
 constexpr double stale_s = 0.5;
@@ -31,14 +30,8 @@ HostTime ClockPiece::host_time(const Bound& e) const {
   return origin_.host + rounded_down(e.s + e.x);
 }
 
-std::optional<ValueRange> ClockPiece::left_at(double s) {
-  const auto range = certificate_.at(s);
-  if (certificate_.bounded() && !range) contradicted_ = true;
-  return range;
-}
-
 void ClockPiece::ask(double s) {
-  range_ = left_at(s);
+  range_ = certificate_.at(s);
   range_at_ = s;
   unseen_ = 0;
 }
@@ -48,7 +41,10 @@ void ClockPiece::ask(double s) {
 double ClockPiece::violation(const Bound& e) {
   if (!certificate_.bounded()) return 0.0;
   if (!range_ || e.s - range_at_ > stale_s || unseen_ >= seldom) ask(e.s);
-  if (!range_) return 0.0;
+  if (!range_) {
+    contradicted_ = true;
+    return 0.0;
+  }
   const double d = e.s - range_at_;
   const double bent = assumptions().curvature * d * d / 2.0;
   const double low =
@@ -118,8 +114,11 @@ std::optional<double> ClockPiece::narrowed() {
   const double least = floors_.shortest().least_width(), now = journal_.newest(0).s;
   double left = std::numeric_limits<double>::infinity();
   for (double back = FloorLog::window_s / 2.0; back < looked_back_s; back += FloorLog::window_s) {
-    const auto range = left_at(std::max(now - back, 0.0));
-    if (!range) return std::nullopt;  // which is more than a slip
+    const auto range = certificate_.at(std::max(now - back, 0.0));
+    if (!range) {
+      contradicted_ = true;  // which is more than a slip: told with the next bound
+      return std::nullopt;
+    }
     left = std::min(left, range->high - range->low);
   }
   return left < least ? std::optional(least - left) : std::nullopt;
@@ -165,7 +164,7 @@ HostTime ClockPiece::doubtful_since() const {
   HostTime since = begin_;
   if (end_ == End::violators || end_ == End::overdue_violator) since = doubt_of_violators();
   if (end_ == End::slip_with_route) since = about(estimate_.last_change()->s) - before_a_slip;
-  if (end_ == End::slip_between_windows) since = heard_ - longest_reach;
+  if (end_ == End::slip_between_windows) since = heard_ - rounded_up(FloorLog::longest_reach_s);
   return std::max(since, begin_);
 }
 
@@ -180,7 +179,7 @@ HostTime ClockPiece::next_begins() const {
 HostTime ClockPiece::about(double s) const {
   std::size_t i = 0;
   while (i + 1 < journal_.size() && journal_.newest(i).s > s) ++i;
-  return origin_.host + rounded_down(s + journal_.newest(i).x);
+  return host_time({s, journal_.newest(i).x});
 }
 
 /// Whether all that was seen could be a counter that bends, as far as crystals go, and never

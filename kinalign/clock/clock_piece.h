@@ -69,7 +69,6 @@ class ClockPiece {
   };
   Bound bound(const Crossing& crossing) const;
   HostTime host_time(const Bound& e) const;
-  std::optional<ValueRange> left_at(double s);
   void ask(double s);
   double violation(const Bound& e);
   void add(const Bound& e);
@@ -98,7 +97,7 @@ class ClockPiece {
   /// What x could be at range_at_ when it was asked last, and how many bounds came since.
   std::optional<ValueRange> range_;
   double range_at_ = 0.0;
-  bool contradicted_ = false;  // seen wherever it was asked
+  bool contradicted_ = false;  // bounds leave no way between them
   std::uint32_t unseen_ = 0;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/floor_log.h"
 
+#include "kinalign/clock/assumptions.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +13,7 @@ namespace {
 constexpr double least_step_s = 0.7e-3;  // a thousandth of a second shows, with its noise
 constexpr double sure_deviations = 5.0;
 constexpr double alike_deviations = 4.0;
-constexpr double slope_slack = 5e-6, worst_rate = 100e-6;
+constexpr double slope_slack = 5e-6;
 constexpr double agreeing_share = 0.05, agreeing_gaps = 3.0;
 // Round trips that are alike, one that may be too short, and how far below them the least may be:
 // so that of 460 simulated recordings with all assumptions held one seemed to slip, where a route
@@ -49,7 +51,7 @@ double ShortestRoundTrips::least_width() const {
 void FloorLog::open(std::int64_t index, const SlopeBelief& slope) {
   index_ = index;
   slope_ = slope.mean;
-  slack_ = slope.deviation < SlopeBelief{}.deviation ? slope_slack : worst_rate;
+  slack_ = slope.deviation < SlopeBelief{}.deviation ? slope_slack : greatest_rate;
   now_ = {};
   corridor_ = Corridor(0.0, corners);
 }
@@ -93,7 +95,7 @@ void FloorLog::close() {
   step_.reset();
   const Expected expected{slope_, usual_round_trip()};
   if (past_[0] && past_[2]) step_ = singles_.step(*past_[0], *past_[2], expected);
-  const auto now = merged(0, 3, slope_), then = merged(4, 3, slope_);
+  const auto now = merged(0, 3), then = merged(4, 3);
   if (now && then && !step_) step_ = threes_.step(*now, *then, expected);
 }
 
@@ -110,8 +112,7 @@ double FloorLog::usual_round_trip() const {
 }
 
 /// The lowest of floors over windows in a row, as of their middle one.
-std::optional<FloorWindow> FloorLog::merged(std::size_t first, std::size_t count,
-                                            double slope) const {
+std::optional<FloorWindow> FloorLog::merged(std::size_t first, std::size_t count) const {
   const auto& centre = past_[first + count / 2];
   if (!centre) return std::nullopt;
   double up = centre->middle + centre->round_trip / 2.0;
@@ -119,7 +120,7 @@ std::optional<FloorWindow> FloorLog::merged(std::size_t first, std::size_t count
   double gap = centre->gap;
   for (std::size_t i = first; i < first + count; ++i) {
     if (!past_[i]) return std::nullopt;
-    const double moved = past_[i]->middle + slope * (centre->s - past_[i]->s);
+    const double moved = past_[i]->middle + slope_ * (centre->s - past_[i]->s);
     up = std::min(up, moved + past_[i]->round_trip / 2.0);
     down = std::max(down, moved - past_[i]->round_trip / 2.0);
     gap = std::max(gap, past_[i]->gap);

@@ -67,7 +67,7 @@ class FloorLog {
   };
   void open(std::int64_t index, const SlopeBelief& slope);
   void close();
-  std::optional<FloorWindow> merged(std::size_t first, std::size_t count, double slope) const;
+  std::optional<FloorWindow> merged(std::size_t first, std::size_t count) const;
   /// Of windows without a step: the offset's slope, and the usual round trip.
   struct Expected {
     double slope = 0.0, round_trip = 0.0;

@@ -42,8 +42,6 @@ class LiftedHull {
 
   bool empty() const { return corners_.empty(); }
   std::size_t size() const { return corners_.size(); }
-  double first() const { return corners_.front().s; }
-  double last() const { return corners_.back().s; }
   /// The same corners under another rho; what lay above them before is not known any more.
   LiftedHull relifted(double rho) const;
 

@@ -74,11 +74,14 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
       continue;
     }
     for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, false);
-    if (!e.echo) continue;
-    clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
-    for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, true);
-    walk.assumed.resize(walk.pieces);
-    walk.assumed.back() = clock.piece()->assumptions();
+    walk.assumed.resize(walk.pieces, clock.piece()->assumptions());
+    if (e.echo) {
+      clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
+      for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, true);
+      walk.assumed.resize(walk.pieces, clock.piece()->assumptions());
+    }
+    // Its estimate is refreshed when it is asked: this one sees what one in use does.
+    static_cast<void>(clock.host_from_node(e.boot, e.n_tx));
   }
   if (clock.piece()) walk.least_width = clock.piece()->floors().shortest().least_width();
   return walk;

@@ -36,7 +36,6 @@ class RecentBounds {
   /// A held bound that nothing followed within nine seconds: it is taken for one of the route.
   std::optional<OffsetBound> release(double s);
 
-  std::size_t size() const { return size_; }
   /// How many of the newest came behind s.
   std::size_t behind(double s) const;
   const OffsetBound& newest(std::size_t i) const { return entry(i).bound; }  // 0: the last one

