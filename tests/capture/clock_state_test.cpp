@@ -21,7 +21,7 @@ const KernelClock synchronised{TIME_OK, STA_PLL, 12ms};
 
 }  // namespace
 
-TEST_CASE("unsynchronised: leap 3 and stratum 16, unless this machine is the reference") {
+TEST_CASE("fault 23 unsynchronised: leap 3 and stratum 16, unless this machine is the reference") {
   for (const std::optional<KernelClock>& kernel :
        std::initializer_list<std::optional<KernelClock>>{{},
                                                          KernelClock{TIME_ERROR, STA_UNSYNC, 16s},
@@ -49,7 +49,7 @@ TEST_CASE("a synchronised clock is served as such, also where a local reference 
   }
 }
 
-TEST_CASE("leap_insert, leap_delete: announced on the day, no longer once it is over") {
+TEST_CASE("fault 22 leap_insert, leap_delete: announced on the day, no longer once it is over") {
   const auto leap = [](int state, unsigned status) {
     return state_of(KernelClock{state, status, 1ms}).leap;
   };

@@ -109,7 +109,7 @@ TEST_CASE("a batch is at most 32, the rest waits, and each is answered once") {
   }
 }
 
-TEST_CASE("long: what is longer than the room is marked as cut") {
+TEST_CASE("fault 26 long: what is longer than the room is marked as cut") {
   const UdpSocket socket = socket_on("127.0.0.1");
   const Client client;
   DatagramBatch batch;

@@ -72,20 +72,22 @@ TEST_CASE("root dispersion grows by 15 ppm from when it was read, and never shri
   CHECK(dispersion(1000s) == doctest::Approx(0x10000 * 1.015).epsilon(1e-4));
 }
 
-TEST_CASE("host_backwards: an answer never leaves before its request came") {
+TEST_CASE("fault 20 host_backwards: an answer never leaves before its request came") {
   CHECK(transmit_stamp(t2, t2 + 10us) == t2 + 10us);
   CHECK(transmit_stamp(t2, t2) == t2);
   CHECK(transmit_stamp(t2, t2 - 1ms) == t2);
 }
 
-TEST_CASE("host_step: where the clock was stepped between the stamps nothing is answered") {
+TEST_CASE(
+    "fault 17 host_step: where the clock was stepped between the stamps nothing is answered") {
   for (const Duration step : std::initializer_list<Duration>{1h, -1h, 1001ms, -1001ms}) {
     CHECK(transmit_stamp(t2, t2 + step) == std::nullopt);
   }
   CHECK(transmit_stamp(t2, t2 + 1s) == t2 + 1s);
 }
 
-TEST_CASE("kod: the kiss RATE answers the request with true stamps and asks for 2 s at least") {
+TEST_CASE(
+    "fault 27 kod: the kiss RATE answers the request with true stamps and asks for 2 s at least") {
   const NtpPacket kiss = ntp_kiss_rate(request(), t2, t2 + 1us, state());
   NtpPacket read;
   CHECK(decode_answer(encode(kiss), request().transmit, read) == NtpAnswer::kiss_rate);
@@ -97,7 +99,8 @@ TEST_CASE("kod: the kiss RATE answers the request with true stamps and asks for 
   CHECK(ntp_kiss_rate(eager, t2, t2, state()).poll == 1);
 }
 
-TEST_CASE("era_2036: an answer that spans the wrap has stamps on both sides and none of 0") {
+TEST_CASE(
+    "fault 21 era_2036: an answer that spans the wrap has stamps on both sides and none of 0") {
   const Time wrap = utc_time(2'085'978'496'000'000'000);
   NtpServerState now = state();
   now.reference = now.read = wrap - 1s;

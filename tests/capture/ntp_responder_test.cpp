@@ -111,7 +111,7 @@ TEST_CASE("no answer goes to port 0, to the server itself or to who asked a whol
   CHECK(bench.respond() == NtpOutcome::not_unicast);
 }
 
-TEST_CASE("host_step: a clock stepped while the request waited gives no answer") {
+TEST_CASE("fault 17 host_step: a clock stepped while the request waited gives no answer") {
   Bench bench;
   CHECK(bench.responder.respond(bench.asked, arrival + 1h, host_start, bench.answer) ==
         NtpOutcome::clock_stepped);
@@ -149,7 +149,7 @@ TEST_CASE("what is refused costs its address nothing") {
   CHECK(bench.respond_to(request()) == NtpOutcome::answered);
 }
 
-TEST_CASE("kod: one in 16 refusals by the limit is told RATE") {
+TEST_CASE("fault 27 kod: one in 16 refusals by the limit is told RATE") {
   Bench bench;
   NtpCounts counts;
   for (int i = 0; i < 8 + 160; ++i) ++counts[bench.respond()];
@@ -170,7 +170,8 @@ TEST_CASE("an exempt network asks as often as it likes") {
   CHECK(bench.respond() == NtpOutcome::limited);
 }
 
-TEST_CASE("garbage: any bytes are answered only where they are a client's, and with its stamp") {
+TEST_CASE(
+    "fault 26 garbage: any bytes are answered only where they are a client's, and with its stamp") {
   for (const auto seed : fresh_seeds(2000)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

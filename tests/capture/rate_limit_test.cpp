@@ -105,7 +105,8 @@ TEST_CASE("strangers do not share a bucket, 10,000 of them neither") {
   CHECK(answers <= 300);
 }
 
-TEST_CASE("flood_strangers: who is being refused stays refused under a flood of new addresses") {
+TEST_CASE(
+    "fault 28 flood_strangers: who is being refused stays refused under a flood of new addresses") {
   RateLimit limit;
   for (int i = 0; i < 8; ++i) CHECK(answered(limit, 42, start));
   std::mt19937_64 random(6);

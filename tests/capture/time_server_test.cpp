@@ -56,7 +56,7 @@ std::vector<std::uint8_t> request(std::uint8_t first) {
 
 }  // namespace
 
-TEST_CASE("ipv6_only, dual_stack_same_node: one port answers on both kinds of address") {
+TEST_CASE("fault 40 ipv6_only, dual_stack_same_node: one port answers on both kinds of address") {
   Running running(local_reference());
   std::vector<std::pair<int, std::string>> ways{{AF_INET, "127.0.0.1"}, {AF_INET, "127.0.0.77"}};
   if (has_ipv6_loopback()) ways.emplace_back(AF_INET6, "::1");

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tools' own cases, counted like the others: a sentence, a small tree, the exact outcome."""
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -137,6 +138,16 @@ def dev_names_its_verbs_and_refuses_others(folder):
     assert code == 0 and "./dev test" in text
     code, text = run(ROOT / "dev", "tset", cwd=folder)
     assert code == 2 and "usage" in text
+
+
+@case
+def every_fault_of_time_synchronisation_is_a_named_test(folder):
+    # Section 7 of the reference on it: forty of them, «fault 4 counter_step_fwd».
+    found = set()
+    for path in (ROOT / "tests").rglob("*_test.cpp"):
+        for name in re.findall(r'TEST_CASE\(\s*"faults? ([^"]*)', path.read_text()):
+            found |= {int(n) for n in re.findall(r"(?:^|, )(\d+) [a-z]", name)}
+    assert found == set(range(1, 41)), sorted(set(range(1, 41)) ^ found)
 
 
 sys.exit(run_cases("kinalign tools "))

@@ -92,7 +92,8 @@ TEST_CASE("a stamp is never 0, which would mean unknown") {
 }
 
 TEST_CASE(
-    "era_2036, y2106: every stamp within 68 years of the pivot comes back to the nanosecond") {
+    "fault 21 era_2036, y2106: every stamp within 68 years of the pivot comes back to the "
+    "nanosecond") {
   constexpr std::int64_t years_68 = (std::int64_t{1} << 31) * s - s;
   const std::vector<std::int64_t> pivots{0, y2026, era_1_s * s, y2106_s * s, -3'000'000'000 * s};
   for (const std::int64_t pivot : pivots) {
@@ -125,7 +126,7 @@ TEST_CASE("a time that Time cannot hold is none, not another one") {
   CHECK(ntp_from_time(utc_time(INT64_MAX)).bits != 0);
 }
 
-TEST_CASE("era_2036: a client's offset stays right across the second") {
+TEST_CASE("fault 21 era_2036: a client's offset stays right across the second") {
   // The client is 0.25 s behind, one way takes 1 ms; requests from 2 s before to 2 s after the
   // wrap.
   for (const std::int64_t wrap_s : {era_1_s, y2106_s}) {
@@ -168,7 +169,7 @@ TEST_CASE("requests of real clients are taken: their versions, any leap, zeros e
   }
 }
 
-TEST_CASE("wrong_version, wrong_mode, short: each cause has its name") {
+TEST_CASE("fault 26 wrong_version, wrong_mode, short: each cause has its name") {
   for (std::size_t size = 0; size < 48; ++size) {
     CHECK(refusal_of(std::vector<std::uint8_t>(size, 0x23)) == NtpRefusal::too_short);
   }
@@ -180,7 +181,7 @@ TEST_CASE("wrong_version, wrong_mode, short: each cause has its name") {
   }
 }
 
-TEST_CASE("long: what follows is a chain of extension fields, a MAC, both, or refused") {
+TEST_CASE("fault 26 long: what follows is a chain of extension fields, a MAC, both, or refused") {
   for (const std::size_t mac : {0U, 4U, 20U, 24U}) {
     CHECK(refusal_of(with({}, mac)) == NtpRefusal::none);
     CHECK(refusal_of(with({28}, mac)) == NtpRefusal::none);
