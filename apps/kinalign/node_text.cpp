@@ -155,6 +155,9 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id) {
     return fmt::format("node {}: {}", node_id, what);
   };
   const double by_ms = 1e3 * std::abs(event.value);  // which way a step went is not always known
+  if (event.kind == Kind::step && event.value == 0.0) {
+    return says("warning: its counter stepped, or its crystal bends more than was assumed");
+  }
   if (event.kind == Kind::step) {
     return says(fmt::format("warning: its counter stepped by at least {:.3f} ms", by_ms));
   }
@@ -170,7 +173,7 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id) {
                             by_ms));
   }
   if (event.kind == Kind::settled) return says("its counter runs evenly again");
-  return event.kind == Kind::relaxed ? says("warning: its clock bends more than was assumed") : "";
+  return event.kind == Kind::relaxed ? says("its clock may bend more than was assumed") : "";
 }
 
 std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_t node_id) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A socket of its own for each node that is known, connected to its address: the kernel puts the
-// node's datagrams into that one's buffer, which strangers, however many, can't fill. Before it is
-// connected it takes a share of everybody's (SO_REUSEPORT): these wait in it and are read like all
-// others, so who reads one goes by each datagram's address. Besides, the descriptor that a receiver
-// waits for.
+// node's datagrams into that one's buffer, which no stranger fills but who forges that address and
+// port. Link-local addresses have none. Before it is connected it takes a share of everybody's
+// (SO_REUSEPORT): these wait in it and are read like all others, so who reads one goes by each
+// datagram's address. Besides, the descriptor that a receiver waits for.
 #pragma once
 
 #include "kinalign/capture/node_life.h"

@@ -23,7 +23,7 @@ struct Assumptions {
   bool operator==(const Assumptions&) const = default;
 };
 
-/// What the curvature is raised to at most, per second: 100 times that of a board that warms up.
+/// What it is raised to after a contradiction, per second: twice the fastest ramp that is tested.
 inline constexpr double most_curvature = 2e-6;
 
 /// "H1-H5 rate<=100ppm curvature<=0.05ppm/s": stands with every certificate.

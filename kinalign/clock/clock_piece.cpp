@@ -76,8 +76,11 @@ ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
     violators_.add({crossing, e, amount_, crossings_});
     return violators_.full() ? broken(End::violators) : Verdict::violator;
   }
-  if (contradicted_) return broken(End::contradiction);
-  violators_.hold_against(e, assumptions().rate);
+  if (contradicted_) {
+    amount_ = 0.0;  // which of the bounds are wrong is not known
+    return broken(End::contradiction);
+  }
+  violators_.drop_excluded_by(e, assumptions().rate);
   if (violators_.overdue(heard_, crossings_)) {
     amount_ = violators_.pending().front().amount;
     return broken(End::overdue_violator);
@@ -182,7 +185,7 @@ HostTime ClockPiece::about(double s) const {
   return host_time({s, journal_.newest(i).x});
 }
 
-/// Whether all that was seen could be a counter that bends, as far as crystals go, and never
+/// Whether what is known of now could be of a counter that bends, as far as crystals go, and never
 /// stepped. Which of the two it was can't be told then, and the next piece allows for both.
 bool ClockPiece::may_bend() const {
   Certificate bent = certificate_.relaxed(most_curvature);

@@ -44,7 +44,7 @@ class ClockPiece {
   /// … and since when the stamps of this one are in doubt, by the frames' arrival.
   HostTime doubtful_since() const;
 
-  /// Since when a step is likely that three violators have not shown yet. Until then nothing is
+  /// Since when a step is likely that three violators have not shown yet. While it is, nothing is
   /// certified.
   std::optional<HostTime> uneasy_since() const;
 
@@ -83,7 +83,7 @@ class ClockPiece {
   ClockPiece next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const;
 
   ClockOrigin origin_;
-  HostTime begin_, heard_;  // first and newest arrival of what is certified
+  HostTime begin_, heard_;  // first and newest arrival
   Certificate certificate_;
   OffsetEstimate estimate_;
   ExchangeJournal journal_;

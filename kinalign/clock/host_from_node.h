@@ -40,7 +40,7 @@ struct ClockPieceModel {
   HostTime first{}, last{};      // arrival of its frames, both included
   std::vector<ClockKnot> knots;  // at least one where anything is known
   bool certified = false;        // bounds of both kinds, and they go together
-  Assumptions assumptions;       // under which: the curvature is raised where the data need it
+  Assumptions assumptions;       // under which: those of the live clock then
   std::uint64_t up = 0, down = 0, violators = 0, routes = 0;
   Duration round_trip{};  // the least
 };

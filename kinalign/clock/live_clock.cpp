@@ -16,21 +16,33 @@ constexpr Duration late_frames = std::chrono::seconds(1);  // … and after one:
 }  // namespace
 
 void LiveClock::tell(const ClockEvent& event) {
-  if (events_.size() < most_events) {
-    events_.push_back(event);
-  } else {
-    ++missed_events_;
-  }
+  if (events_.size() < most_events) return events_.push_back(event);
+  ++missed_events_;
+  if (event.kind != ClockEvent::Kind::withdrawn) return;
+  const auto last = std::find_if(events_.rbegin(), events_.rend(), [](const ClockEvent& e) {
+    return e.kind == ClockEvent::Kind::withdrawn;
+  });
+  ClockEvent& kept = last == events_.rend() ? events_.back() : *last;
+  const bool widens = last != events_.rend();
+  kept = {event.kind, event.boot, widens ? std::min(kept.begin, event.begin) : event.begin,
+          widens ? std::max(kept.end, event.end) : event.end};
 }
 
 std::vector<ClockEvent> LiveClock::take_events() { return std::exchange(events_, {}); }
 
+/// What is not decided yet when a piece is cut short is in doubt.
+void LiveClock::cut_short() {
+  if (const auto since = piece_->uneasy_since()) {
+    tell({ClockEvent::Kind::withdrawn, boot_, *since, newest_});
+  }
+  stepped_.reset();
+  settles_.reset();
+}
+
 void LiveClock::begin(BootKey boot, const Crossing& first) {
   SlopeBelief prior;
   if (piece_) {  // it is the same crystal
-    if (const auto since = piece_->uneasy_since()) {
-      tell({ClockEvent::Kind::withdrawn, boot_, *since, newest_});
-    }
+    cut_short();
     prior = piece_->estimate().slope();
     prior.deviation += between_lives;
     earlier_[lives_++ % earlier_.size()] = boot_;
@@ -38,8 +50,6 @@ void LiveClock::begin(BootKey boot, const Crossing& first) {
   take_piece({ClockOrigin{first.n, first.h}, assumptions_, prior,
               piece_ ? piece_->floors().shortest() : ShortestRoundTrips{}});
   boot_ = boot;
-  stepped_.reset();
-  settles_.reset();
   tell({ClockEvent::Kind::new_boot, boot, first.h, first.h});
 }
 
@@ -63,6 +73,7 @@ void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
   }
   if (!piece_ || boot != boot_) begin(boot, crossing);
   if (h_rx < newest_) {
+    cut_short();
     take_piece({ClockOrigin{n_tx, h_rx}, assumptions_, piece_->estimate().slope(),
                 piece_->floors().shortest()});
     tell({ClockEvent::Kind::host_backwards, boot, h_rx, newest_});
@@ -114,7 +125,6 @@ void LiveClock::take_step(const Crossing& crossing) {
 
 void LiveClock::settle(const Crossing& crossing) {
   settles_.reset();
-  stepped_.reset();
   replace_piece(ClockEvent::Kind::settled, 0.0, crossing);
 }
 

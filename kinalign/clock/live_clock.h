@@ -23,9 +23,9 @@ namespace kinalign {
 struct ClockEvent {
   enum class Kind : std::uint8_t {
     new_boot,  // a piece begins with a life of the node
-    step,      // a piece began, at `begin`: the counter stepped
+    step,      // a piece began, at `begin`: the counter stepped, or exchanges contradict each other
     slip,      // a piece began, at `begin`: the floors moved against each other, by a step too
-               // small for the certificate
+               // small for the certificate, or left less between them than packets take
     uneasy,    // likewise, by so little that the certificate holds all the same; likeliest
                // stamps may be off by up to that
     settled,  // a piece began: a second without another step since one, or five since several; what
@@ -59,7 +59,8 @@ class LiveClock {
   /// lives before the present one: the offline clock has those.
   std::optional<ClockStamp> host_from_node(BootKey boot, NodeTime n);
 
-  /// What happened since this was asked last: at most 64, `missed_events` counts the rest.
+  /// What happened since this was asked last: at most 64, `missed_events` counts the rest. Of
+  /// withdrawals none is lost: the last one then reaches over those that had no room.
   std::vector<ClockEvent> take_events();
   std::uint64_t missed_events() const { return missed_events_; }
   std::uint64_t late_crossings() const { return late_; }  // of earlier lives
@@ -68,6 +69,7 @@ class LiveClock {
   const ClockPiece* piece() const { return piece_ ? &*piece_ : nullptr; }
 
  private:
+  void cut_short();
   void begin(BootKey boot, const Crossing& first);
   void take_piece(const ClockPiece& piece);
   void answer(ClockPiece::Verdict verdict, const Crossing& crossing);

@@ -22,7 +22,7 @@ bool contradict(const Bound& a, const Bound& b, double rate) {
 
 void Violators::add(const Violator& violator) { violators_[count_++] = violator; }
 
-void Violators::hold_against(const Bound& taken, double rate) {
+void Violators::drop_excluded_by(const Bound& taken, double rate) {
   const auto end = violators_.begin() + static_cast<std::ptrdiff_t>(count_);
   const auto kept = std::remove_if(violators_.begin(), end, [&](const Violator& v) {
     return taken.s > v.bound.s + overtaken_s && contradict(taken, v.bound, rate);

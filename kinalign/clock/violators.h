@@ -35,13 +35,14 @@ bool contradict(const Bound& a, const Bound& b, double rate);
 
 class Violators {
  public:
-  static constexpr double tolerated_s = 5e-6;  // against the certificate
+  static constexpr double tolerated_s = 5e-6;  // of rounding (time synchronisation, section 4.7)
   static constexpr Duration wait = std::chrono::seconds(5);
 
   /// There must be room.
   void add(const Violator& violator);
-  /// Drops those that a bound which the certificate takes can't go with.
-  void hold_against(const Bound& taken, double rate);
+  /// Drops those that a bound, of more than a second later, which the certificate takes can't go
+  /// with.
+  void drop_excluded_by(const Bound& taken, double rate);
   void clear() { count_ = 0; }
 
   std::span<const Violator> pending() const { return {violators_.data(), count_}; }

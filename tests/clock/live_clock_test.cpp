@@ -99,6 +99,30 @@ TEST_CASE("a host's clock that goes back ends the piece") {
   CHECK(count(clock.take_events(), ClockEvent::Kind::host_backwards) == 1);
 }
 
+TEST_CASE("of what is withdrawn nothing is lost where nobody asks for events") {
+  LiveClock clock;
+  Duration t = 0s;
+  for (int i = 0; i < 100; ++i) {  // each second the counter steps ahead by another
+    run(clock, 7, t, t + 1s);
+    t += 1s;
+  }
+  const auto stepped = [&](Duration by) {
+    for (int i = 0; i < 20; ++i, t += 100ms) {
+      clock.push_up(7, node(t + by), host(t + 1ms));
+      clock.push_down(7, node(t - 50ms + by), host(t - 51ms));
+    }
+  };
+  for (int i = 1; i <= 60; ++i) stepped(1s * i);
+  const auto events = clock.take_events();
+  CHECK(events.size() == 64);
+  REQUIRE(clock.missed_events() > 60);
+  HostTime until{};
+  for (const ClockEvent& event : events) {
+    if (event.kind == ClockEvent::Kind::withdrawn) until = std::max(until, event.end);
+  }
+  CHECK(until > host(t - 6s));
+}
+
 TEST_CASE("events beyond sixty-four are counted") {
   LiveClock clock;
   for (BootKey boot = 0; boot < 100; ++boot) {
@@ -283,6 +307,40 @@ TEST_CASE("the first packet that takes no time, of a clock at the greatest rate,
       CHECK(count(clock.take_events(), ClockEvent::Kind::violator) == 0);
     }
   }
+}
+
+TEST_CASE("after a second step within five seconds it takes five without one") {
+  LiveClock clock;
+  run(clock, 7, 0s, 30s);
+  const auto stepped = [&](Duration by, Duration from, Duration until) {
+    for (Duration t = from; t < until; t += 100ms) {
+      clock.push_up(7, node(t + by), host(t + 1ms));
+      clock.push_down(7, node(t - 50ms + by), host(t - 51ms));
+    }
+  };
+  const auto certainty = [&](Duration t) { return clock.host_from_node(7, node(t))->certainty; };
+  stepped(1s, 30s, 32s);
+  CHECK(certainty(33s) == Certainty::certified);
+  stepped(2s, 32s, 37s);
+  CHECK(certainty(39s) == Certainty::doubtful);
+  stepped(2s, 37s, 38s);
+  CHECK(certainty(40s) == Certainty::certified);
+}
+
+TEST_CASE("where the host's clock goes back nothing is left of a step, nor certified before it") {
+  LiveClock clock;
+  run(clock, 7, 0s, 30s);
+  clock.push_up(7, node(31s), host(30s + 500ms));  // half a second before it was sent
+  clock.push_up(7, node(1s), host(-500s));
+  const auto events = clock.take_events();
+  REQUIRE(count(events, ClockEvent::Kind::withdrawn) == 1);
+  CHECK(count(events, ClockEvent::Kind::host_backwards) == 1);
+
+  LiveClock other;
+  run(other, 7, 0s, 30s);
+  for (Duration t = 30s; t < 30s + 500ms; t += 100ms) other.push_up(7, node(t + 1s), host(t + 1ms));
+  run(other, 7, -500s, -495s);
+  CHECK(other.host_from_node(7, node(-495s))->certainty == Certainty::certified);
 }
 
 TEST_CASE("after a reboot it is known how narrow an interval can be") {

@@ -36,11 +36,11 @@ TEST_CASE("two bounds contradict each other where not even the greatest rate lea
 TEST_CASE("a violator is dropped when a later crossing excludes it, and by no other") {
   Violators violators;
   violators.add(early(10s));
-  violators.hold_against({10.9, 0.0, Side::below}, rate);  // may have been sent before
-  violators.hold_against({12.0, -2e-3, Side::below}, rate);
-  violators.hold_against({12.0, 0.0, Side::above}, rate);
+  violators.drop_excluded_by({10.9, 0.0, Side::below}, rate);  // may have been sent before
+  violators.drop_excluded_by({12.0, -2e-3, Side::below}, rate);
+  violators.drop_excluded_by({12.0, 0.0, Side::above}, rate);
   CHECK(violators.pending().size() == 1);
-  violators.hold_against({12.0, 0.0, Side::below}, rate);
+  violators.drop_excluded_by({12.0, 0.0, Side::below}, rate);
   CHECK(violators.pending().empty());
 }
 
