@@ -16,8 +16,7 @@ namespace kinalign {
 /// all but read_imu by the one that sends; they may be one.
 class Board {
  public:
-  /// us since the start, read now; never backwards. A narrower counter is widened first
-  /// (wide_counter.h).
+  /// us since the start, read now; never backwards. Of a narrower counter the turns are counted.
   virtual std::uint64_t counter_us() = 0;
   /// One reading, all but its age. False: the sensor did not answer.
   virtual bool read_imu(NodeSample& sample) = 0;

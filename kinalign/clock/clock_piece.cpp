@@ -114,7 +114,7 @@ std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
 /// there is: where that is seen best depends on when it was. Asked once a window.
 std::optional<double> ClockPiece::narrowed() {
   if (floors_.windows() == windows_judged_ || !certificate_.bounded()) return std::nullopt;
-  const double least = floors_.shortest().least_width(), now = journal_.newest(0).s;
+  const double least = floors_.least_width(), now = journal_.newest(0).s;
   double left = std::numeric_limits<double>::infinity();
   for (double back = FloorLog::window_s / 2.0; back < looked_back_s; back += FloorLog::window_s) {
     const auto range = certificate_.at(std::max(now - back, 0.0));
@@ -147,7 +147,7 @@ std::optional<double> ClockPiece::stepped_between_windows() {
 
 std::optional<HostTime> ClockPiece::uneasy_since() const {
   if (violators_.pending().empty()) return std::nullopt;
-  return std::max(begin_, violators_.pending()[0].crossing.heard - Violators::wait);
+  return std::max(begin_, doubt_of_violators());
 }
 
 /// Behind the last crossing that can't go with the violators: until then the counter had not
@@ -252,7 +252,7 @@ std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
     stamp.earliest = origin_.host + rounded_down(s + range->low);
     stamp.latest = origin_.host + rounded_up(s + range->high + counter_resolution_s);
     if (certificate_.bounded()) {
-      stamp.certainty = uneasy_since() ? Certainty::doubtful : Certainty::certified;
+      stamp.certainty = violators_.pending().empty() ? Certainty::certified : Certainty::doubtful;
     }
   } else {
     stamp.certainty = Certainty::doubtful;

@@ -15,11 +15,12 @@ constexpr double sure_deviations = 5.0;
 constexpr double alike_deviations = 4.0;
 constexpr double slope_slack = 5e-6;
 constexpr double agreeing_share = 0.05, agreeing_gaps = 3.0;
-// Round trips that are alike, one that may be too short, and how far below them the least may be:
+// Round trips that are alike, those that may be too short, and how far below them the least may be:
 // so that of 460 simulated recordings with all assumptions held one seemed to slip, where a route
 // became shorter than it had ever been.
-constexpr std::size_t alike = 3, most_too_short = 1;
-constexpr double narrow_share = 0.05, narrow_gaps = 2.0, narrow_spreads = 3.0;
+constexpr std::size_t alike = 3, most_too_short = 2;
+constexpr double wander_s = 20e-6;  // of real floors, by schedulers and caches
+constexpr double narrow_share = 0.2, narrow_gaps = 2.0, narrow_spreads = 3.0;
 constexpr std::uint64_t enough_pairs = 4;
 
 }  // namespace
@@ -42,9 +43,17 @@ double ShortestRoundTrips::least_width() const {
     for (std::size_t k = i; k < i + alike; ++k) gap = std::max(gap, shortest_[k].gap);
     const double least = shortest_[i].s, spread = shortest_[i + alike - 1].s - least;
     if (spread > agreeing_share * least + agreeing_gaps * gap) continue;
-    return least - std::max(narrow_share * least, narrow_gaps * gap + narrow_spreads * spread);
+    return least -
+           std::max({wander_s, narrow_share * least, narrow_gaps * gap + narrow_spreads * spread});
   }
   return 0.0;
+}
+
+double FloorLog::least_width() const {
+  const double least = shortest_.least_width();
+  const auto is_short = [least](const auto& w) { return w && w->round_trip < least; };
+  if (!past_[0]) return 0.0;
+  return is_short(past_[0]) && !(is_short(past_[1]) && is_short(past_[2])) ? 0.0 : least;
 }
 
 /// Of a node that was not heard before the slope is not known: all are tried that can be.

@@ -26,8 +26,8 @@ class ShortestRoundTrips {
  public:
   void add(const FloorWindow& window);
   /// What an interval of the certificate can't be narrower than, s: the least that three windows
-  /// agree on, less their noise. One alone, in which a counter stepped, shows less than there is.
-  /// 0: none.
+  /// agree on, less their noise. Up to two, in which a counter stepped, may show less than there
+  /// is. 0: none.
   double least_width() const;
 
  private:
@@ -52,6 +52,10 @@ class FloorLog {
   std::optional<FloorWindow> window(std::size_t i) const;
   std::uint64_t windows() const { return windows_; }
   const ShortestRoundTrips& shortest() const { return shortest_; }
+  /// What an interval can't be narrower than, s; 0 while that is in question: the last window shows
+  /// nothing, or less, be it that a counter stepped in it or that the packets have found a shorter
+  /// route. That three in a row show.
+  double least_width() const;
 
   /// By how much the offset stepped within the windows before the last, if their round trips are
   /// alike on both sides: a route that is longer one way and as much shorter the other is unlikely.

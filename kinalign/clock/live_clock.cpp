@@ -105,7 +105,9 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
     case Verdict::taken:
       return;
     case Verdict::violator:
-      return tell({Kind::violator, boot_, crossing.heard, crossing.heard, piece_->amount()});
+      tell({Kind::violator, boot_, crossing.heard, crossing.heard, piece_->amount()});
+      // If it does not lie the counter has stepped, and may step back before three have shown that.
+      return tell({Kind::withdrawn, boot_, crossing.heard - Violators::wait, crossing.heard});
     case Verdict::uneasy:
       return tell({Kind::uneasy, boot_, crossing.heard, crossing.heard, piece_->amount()});
     case Verdict::broken:

@@ -40,8 +40,8 @@ bool begins_piece(ClockEvent::Kind kind) {
 void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const ClockEvent& event,
           bool of_echo) {
   if (event.kind == ClockEvent::Kind::withdrawn) {
-    if (!begins_piece(walk.events.back().kind)) return;
-    const HostTime end = walk.events.back().begin - Duration{1};
+    const ClockEvent& why = walk.events.back();
+    const HostTime end = begins_piece(why.kind) ? why.begin - Duration{1} : event.end;
     if (event.begin <= end) walk.doubtful.push_back({event.begin, end});
     return;
   }
@@ -83,7 +83,11 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
     // Its estimate is refreshed when it is asked: this one sees what one in use does.
     static_cast<void>(clock.host_from_node(e.boot, e.n_tx));
   }
-  if (clock.piece()) walk.least_width = clock.piece()->floors().shortest().least_width();
+  if (const ClockPiece* last = clock.piece()) {
+    walk.least_width = last->floors().least_width();
+    if (const auto since = last->uneasy_since())
+      walk.doubtful.push_back({*since, exchanges.back().h_rx});
+  }
   return walk;
 }
 

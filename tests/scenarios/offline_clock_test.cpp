@@ -68,6 +68,40 @@ TEST_CASE("pieces are those of the node's lives and steps, and no stamp that sta
   }
 }
 
+TEST_CASE("fault 4 counter_step: what a reboot or the end cuts short leaves no wrong stamp") {
+  for (const auto seed : fresh_seeds(20)) {
+    CAPTURE(seed);
+    for (const double cut : {0.5, 2.0, 4.0}) {  // s behind the step
+      for (const bool reboots : {true, false}) {
+        CAPTURE(cut);
+        CAPTURE(reboots);
+        ExchangeOptions options = minutes(Link::quiet, 1.0);
+        options.rate_hz = 5.0;
+        const Floors least = floors(options.link.link, seed);
+        options.steps = {{.at = 40.0, .by = 1.5 * (least.up + least.down)}};
+        if (reboots) options.reboots = {{.at = 40.0 + cut, .gap = 1.0}};
+        if (!reboots) options.length_s = 40.0 + cut;
+        CHECK(judge_offline(simulate_exchanges(options, seed)).lies() == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("packets that find a shorter route do not look like a step") {
+  for (const auto seed : fresh_seeds(10)) {
+    for (const Link link : {Link::quiet, Link::paper, Link::modem_sleep}) {
+      CAPTURE(seed);
+      CAPTURE(letter(link));
+      ExchangeOptions options = minutes(link, 4.0);
+      options.link.faults = {{.begin = 0.0, .end = 183.0, .extra_up = 5.0 * ms}};
+      const SimulatedExchanges exchanges = simulate_exchanges(options, seed);
+      const JudgedRun live = judge_live(exchanges);
+      CHECK(live.count(ClockEvent::Kind::slip) + live.count(ClockEvent::Kind::step) == 0);
+      CHECK(live.lies() + judge_offline(exchanges).lies() == 0);
+    }
+  }
+}
+
 TEST_CASE("a clock that bends more than assumed is certified once that has shown") {
   for (const auto seed : fresh_seeds(5)) {
     CAPTURE(seed);
