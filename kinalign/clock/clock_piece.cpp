@@ -12,7 +12,7 @@ namespace {
 constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
 constexpr Duration before_a_slip = std::chrono::seconds(5);
 constexpr double longest_piece_s = 1e8;  // three years; lifted, doubles keep 30 ns over that
-constexpr double looked_back_s = 120.0;
+constexpr int looked_back = 12;          // windows
 constexpr double stale_s = 0.5;
 constexpr double between_pieces = 2e-6;  // by which a slope may differ
 constexpr std::uint32_t seldom = 4;
@@ -116,7 +116,8 @@ std::optional<double> ClockPiece::narrowed() {
   if (floors_.windows() == windows_judged_ || !certificate_.bounded()) return std::nullopt;
   const double least = floors_.least_width(), now = journal_.newest(0).s;
   double left = std::numeric_limits<double>::infinity();
-  for (double back = FloorLog::window_s / 2.0; back < looked_back_s; back += FloorLog::window_s) {
+  for (int window = 0; window < looked_back; ++window) {
+    const double back = (window + 0.5) * FloorLog::window_s;
     const auto range = certificate_.at(std::max(now - back, 0.0));
     if (!range) {
       contradicted_ = true;  // which is more than a slip: told with the next bound
