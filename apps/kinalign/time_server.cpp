@@ -11,6 +11,9 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
+
 namespace kinalign {
 
 namespace {
@@ -43,9 +46,12 @@ Result<void> check_addresses(const std::vector<std::string>& texts) {
 }
 
 /// Flags that forbid one another, or need one another.
-Result<void> check_flags(const TimeServerFlags& o) {
+Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
   KA_TRY(check_addresses(o.listen));
   KA_TRY(networks_of(o.exempt));
+  if (given.contains("lab_key") && o.lab_key.empty()) {  // an unset variable is no wish for none
+    return Failure(Error{"--lab-key", 0, "a file's name", "nothing"});
+  }
   if (!o.node_port && !o.lab_key.empty()) {
     return Failure(Error{"--lab-key", 0, "--node-port beside it", "none"});
   }
@@ -70,7 +76,7 @@ Usage describe_time_server(TimeServerFlags& o) {
        &o.local_stratum, 1.0, 15.0},
       {"node_port", "UDP port for inertial nodes; 0: any free one", &o.node_port, 0.0, 65535.0},
       {"lab_key", "file of the key that the nodes' keys come from (see node-key)", &o.lab_key}};
-  usage.check = [&o](const Common&, const Sources&) { return check_flags(o); };
+  usage.check = [&o](const Common&, const Sources& given) { return check_flags(o, given); };
   return usage;
 }
 
@@ -106,7 +112,10 @@ Advice port_advice(const std::string& flag) {
 /// On a lab key that could not be read.
 std::vector<std::string> key_advice(const Error& error) {
   if (error.expected == secret_key) return {};
-  return {"kinalign node-key --new-lab-key FILE makes one"};
+  if (error.found == std::strerror(ENOENT)) {
+    return {"kinalign node-key --new-lab-key FILE makes one, where the lab has none yet"};
+  }
+  return {"--lab-key takes the lab's own file, from which the nodes' keys came"};
 }
 
 Result<LabKeyFile> read_key_file(const TimeServerFlags& flags, Call& call) {

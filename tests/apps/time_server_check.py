@@ -268,7 +268,10 @@ def advice_names_the_flag_of_the_port_that_failed(folder):
     for key, found in ((node_key, "found 32 digits, a node's key"), (folder / "nope.key", "No such file or directory")):
         done = kinalign("time-server", "--port", 0, "--node-port", 0, "--lab-key", key)
         assert done.returncode == 3 and found in done.stderr.decode(), done
-        assert b"kinalign node-key --new-lab-key FILE makes one" in done.stderr, done
+        advice = "--lab-key takes the lab's own file" if key is node_key else "--new-lab-key FILE makes one, where"
+        assert advice in done.stderr.decode(), done
+    done = kinalign("time-server", "--port", 0, "--node-port", 0, "--lab-key", "")
+    assert done.returncode == 2 and b"--lab-key: expected a file's name, found nothing" in done.stderr, done
 
 
 @case
