@@ -173,10 +173,7 @@ HostTime ClockPiece::doubtful_since() const {
 }
 
 HostTime ClockPiece::next_begins() const {
-  if (end_ != End::violators) return heard_;
-  HostTime first = heard_;
-  for (const Violator& v : violators_.pending()) first = std::min(first, v.crossing.heard);
-  return first;
+  return end_ == End::violators ? violators_.pending()[0].crossing.heard : heard_;
 }
 
 /// When the host heard of what happened at s, but for delays.

@@ -22,10 +22,12 @@ void LiveClock::tell(const ClockEvent& event) {
   const auto last = std::find_if(events_.rbegin(), events_.rend(), [](const ClockEvent& e) {
     return e.kind == ClockEvent::Kind::withdrawn;
   });
-  ClockEvent& kept = last == events_.rend() ? events_.back() : *last;
-  const bool widens = last != events_.rend();
-  kept = {event.kind, event.boot, widens ? std::min(kept.begin, event.begin) : event.begin,
-          widens ? std::max(kept.end, event.end) : event.end};
+  if (last == events_.rend()) {
+    events_.back() = event;
+  } else {
+    *last = {event.kind, event.boot, std::min(last->begin, event.begin),
+             std::max(last->end, event.end)};
+  }
 }
 
 std::vector<ClockEvent> LiveClock::take_events() { return std::exchange(events_, {}); }

@@ -15,7 +15,6 @@ namespace kinalign {
 namespace {
 
 constexpr double knot_s = 1.0;
-constexpr Duration around_violator = std::chrono::seconds(5);
 constexpr double longest_wait_s = 60.0;  // of a packet
 constexpr double longest_piece_s = 1e6;  // eleven days
 
@@ -207,8 +206,8 @@ void doubt_what_was_left_out(std::span<const Exchange> exchanges, const Walk& wa
     if (walk.late[i] || (!walk.up_left_out[i] && !walk.echo_left_out[i])) continue;
     const ClockPieceModel& piece = model.pieces[walk.piece[i]];
     const HostTime h = exchanges[i].h_rx;
-    const DoubtfulStretch doubt{std::max(piece.first, h - around_violator),
-                                std::min(piece.last, h + around_violator)};
+    const DoubtfulStretch doubt{std::max(piece.first, h - Violators::wait),
+                                std::min(piece.last, h + Violators::wait)};
     auto& all = model.doubtful;
     if (!all.empty() && all.back().begin <= doubt.begin && doubt.begin <= all.back().end) {
       all.back().end = std::max(all.back().end, doubt.end);

@@ -105,11 +105,8 @@ TEST_CASE("a host's clock that goes back ends the piece") {
 
 TEST_CASE("of what is withdrawn nothing is lost where nobody asks for events") {
   LiveClock clock;
-  Duration t = 0s;
-  for (int i = 0; i < 100; ++i) {  // each second the counter steps ahead by another
-    run(clock, 7, t, t + 1s);
-    t += 1s;
-  }
+  run(clock, 7, 0s, 100s);
+  Duration t = 100s;
   const auto stepped = [&](Duration by) {
     for (int i = 0; i < 20; ++i, t += 100ms) {
       clock.push_up(7, node(t + by), host(t + 1ms));
