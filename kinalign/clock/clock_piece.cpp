@@ -57,8 +57,10 @@ double ClockPiece::violation(const Bound& e) {
 
 void ClockPiece::add(const Bound& b) {
   const SlopeBelief slope = estimate_.slope();
+  const std::uint32_t changes = estimate_.changes();
   certificate_.add(b);
   estimate_.add(b);
+  if (estimate_.changes() != changes) floors_.change_route(estimate_.last_change()->s);
   floors_.add(b, slope);
   journal_.add(b);
 }

@@ -23,6 +23,16 @@ constexpr double wander_s = 20e-6;  // of real floors, by schedulers and caches
 constexpr double narrow_share = 0.2, narrow_gaps = 2.0, narrow_spreads = 3.0;
 constexpr std::uint64_t enough_pairs = 4;
 
+bool agree(double least, double most, double gap) {
+  return most - least <= agreeing_share * least + agreeing_gaps * gap;
+}
+
+/// What an interval can't be narrower than if packets take so long, s.
+double width(double round_trip, double gap, double spread) {
+  const double noise = narrow_gaps * gap + narrow_spreads * spread;
+  return round_trip - std::max({wander_s, narrow_share * round_trip, noise});
+}
+
 }  // namespace
 
 void ShortestRoundTrips::add(const FloorWindow& window) {
@@ -37,16 +47,35 @@ void ShortestRoundTrips::add(const FloorWindow& window) {
   count_ = std::min(count_ + 1, shortest_.size());
 }
 
+void ShortestRoundTrips::leave(const FloorWindow& route) {
+  const double known = width(route.round_trip, route.gap, 0.0);
+  left_ = std::min(left_.value_or(known), known);
+}
+
 double ShortestRoundTrips::least_width() const {
   for (std::size_t i = 0; i <= most_too_short && i + alike <= count_; ++i) {
     double gap = 0.0;
     for (std::size_t k = i; k < i + alike; ++k) gap = std::max(gap, shortest_[k].gap);
-    const double least = shortest_[i].s, spread = shortest_[i + alike - 1].s - least;
-    if (spread > agreeing_share * least + agreeing_gaps * gap) continue;
-    return least -
-           std::max({wander_s, narrow_share * least, narrow_gaps * gap + narrow_spreads * spread});
+    const double least = shortest_[i].s, most = shortest_[i + alike - 1].s;
+    if (!agree(least, most, gap)) continue;
+    return std::min(width(least, gap, most - least), left_.value_or(least));
   }
   return 0.0;
+}
+
+/// If the last two windows until then agree: one alone may be short because a counter stepped in
+/// it.
+void FloorLog::change_route(double s) {
+  const auto last = std::find_if(past_.begin(), past_.end(),
+                                 [s](const auto& window) { return window && window->s <= s; });
+  if (past_.end() - last < 2 || !last[1]) return;
+  const auto& [shorter, longer] = std::minmax(
+      *last[0], *last[1],
+      [](const FloorWindow& a, const FloorWindow& b) { return a.round_trip < b.round_trip; });
+  const double gap = std::max(shorter.gap, longer.gap);
+  if (agree(shorter.round_trip, longer.round_trip, gap)) {
+    shortest_.leave({shorter.s, shorter.middle, shorter.round_trip, gap});
+  }
 }
 
 double FloorLog::least_width() const {

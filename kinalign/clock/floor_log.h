@@ -25,9 +25,11 @@ struct FloorWindow {
 class ShortestRoundTrips {
  public:
   void add(const FloorWindow& window);
+  /// Packets took this route, be it for two windows alone, and left it for another.
+  void leave(const FloorWindow& route);
   /// What an interval of the certificate can't be narrower than, s: the least that three windows
-  /// agree on, less their noise. Up to two, in which a counter stepped, may show less than there
-  /// is. 0: none.
+  /// agree on, or that was left, less their noise. Up to two, in which a counter stepped, may show
+  /// less than there is. 0: none.
   double least_width() const;
 
  private:
@@ -36,6 +38,7 @@ class ShortestRoundTrips {
   };
   std::array<RoundTrip, 8> shortest_{};  // rising
   std::size_t count_ = 0;
+  std::optional<double> left_;  // the width of the shortest route that was left
 };
 
 class FloorLog {
@@ -46,6 +49,8 @@ class FloorLog {
 
   /// `slope`: of the offset, as far as it is known.
   void add(const Bound& bound, const SlopeBelief& slope);
+  /// The packets took another route from s on.
+  void change_route(double s);
 
   static constexpr double window_s = 10.0;
   /// 0: the last whole window.

@@ -3,7 +3,8 @@
 // wrong. A line of JSON each time that one does, with all that the host saw, and one a link and
 // size of the step. For steps.py, which asks whether anything could have told.
 //   kinalign_clock_steps MINUTES SEEDS FIRST_SEED LINKS TIMES...
-// TIMES: of both least delays together; every other seed steps back.
+// TIMES: of both least delays together; every other seed steps back, at any second of the windows
+// by which floors are judged.
 #include "tools/clock_table/judge.h"
 
 #include "kinalign/core/numbers.h"
@@ -46,7 +47,8 @@ void judge(Link link, double times, const Wanted& wanted) {
     ExchangeOptions options;
     options.length_s = 60.0 * wanted.minutes;
     options.link.link = link;
-    options.steps = {{.at = options.length_s / 2.0,
+    const double into_window = static_cast<double>(seed / 2 % 10);
+    options.steps = {{.at = options.length_s / 2.0 + into_window,
                       .by = (seed % 2 == 0 ? 1.0 : -1.0) * times * (least.up + least.down)}};
     const SimulatedExchanges exchanges = simulate_exchanges(options, seed);
     const auto of_live = judge_live(exchanges).lies(), of_offline = judge_offline(exchanges).lies();
