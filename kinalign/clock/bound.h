@@ -2,6 +2,8 @@
 // What a packet says of the offset x(s) between two clocks: it is no more than this, or no less.
 #pragma once
 
+#include "kinalign/wire/time.h"
+
 namespace kinalign {
 
 /// Of x(s): a packet up, from the node to the host, bounds it from above, one down from below.
@@ -12,6 +14,24 @@ struct Bound {
   double s = 0.0, x = 0.0;
   Side side = Side::above;
 };
+
+/// Seconds are counted from this pair of readings.
+struct ClockOrigin {
+  NodeTime node{};
+  HostTime host{};
+};
+
+/// A counter is cut to whole microseconds: a reading n stands for up to n + 1 us.
+inline constexpr Duration counter_resolution = std::chrono::microseconds(1);
+inline constexpr double counter_resolution_s = seconds(counter_resolution);
+
+/// What it bounds that the counter read n and the host h.
+inline Bound bound_by(const ClockOrigin& origin, Side side, NodeTime n, HostTime h) {
+  const Duration node = n - origin.node;
+  const Duration offset = (h - origin.host) - node;
+  const double early = side == Side::below ? counter_resolution_s : 0.0;
+  return {seconds(node), seconds(offset) - early, side};
+}
 
 /// A bound from above, x(s) <= x; of those from below the mirror image, -x(s) <= -x: what is done
 /// with one kind is then done with both.

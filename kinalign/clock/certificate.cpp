@@ -11,11 +11,8 @@ std::string to_string(const Assumptions& assumptions) {
 }
 
 void Certificate::add(const Bound& bound) {
-  const bool up = bound.side == Side::above;
-  LiftedHull& hull = up ? corridor_.above : corridor_.below;
-  const OffsetBound b = from_above(bound);
-  hull.add(b.s, b.x);
-  ++(up ? up_ : down_);
+  corridor_.add(bound);
+  ++(bound.side == Side::above ? up_ : down_);
 }
 
 std::optional<ValueRange> Certificate::at(double t) const {

@@ -10,11 +10,10 @@ namespace kinalign {
 namespace {
 
 constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
-constexpr Duration before_a_slip = std::chrono::seconds(5);
+constexpr Duration before_a_slip = Violators::wait;
 constexpr double longest_piece_s = 1e8;  // three years; lifted, doubles keep 30 ns over that
 constexpr int looked_back = 12;          // windows
 constexpr double stale_s = 0.5;
-constexpr double between_pieces = 2e-6;  // by which a slope may differ
 constexpr std::uint32_t seldom = 4;
 
 Duration rounded_down(double s) { return Duration{static_cast<std::int64_t>(std::floor(s * 1e9))}; }
@@ -219,8 +218,7 @@ ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBe
 ClockPiece ClockPiece::next_piece() const {
   Assumptions assumed = assumptions();
   if (end_ != End::none && may_bend()) assumed.curvature = most_curvature;
-  SlopeBelief prior = estimate_.slope();
-  prior.deviation += between_pieces;
+  const SlopeBelief prior = estimate_.slope().after_a_break();
   if (end_ == End::slip_with_route || end_ == End::slip_between_windows) {
     return next_after_slip(assumed, prior);
   }

@@ -3,9 +3,9 @@
 // over exchanges that can't be.
 #pragma once
 
+#include "kinalign/clock/bound_journal.h"
 #include "kinalign/clock/certificate.h"
 #include "kinalign/clock/clock_stamp.h"
-#include "kinalign/clock/exchange_journal.h"
 #include "kinalign/clock/floor_log.h"
 #include "kinalign/clock/offset_estimate.h"
 #include "kinalign/clock/violators.h"
@@ -48,7 +48,7 @@ class ClockPiece {
   /// certified.
   std::optional<HostTime> uneasy_since() const;
 
-  const ClockOrigin& origin() const { return origin_; }
+  HostTime begins() const { return begin_; }
   const Assumptions& assumptions() const { return certificate_.assumptions(); }
   const OffsetEstimate& estimate() const { return estimate_; }
   const FloorLog& floors() const { return floors_; }
@@ -86,7 +86,7 @@ class ClockPiece {
   HostTime begin_, heard_;  // first and newest arrival
   Certificate certificate_;
   OffsetEstimate estimate_;
-  ExchangeJournal journal_;
+  BoundJournal journal_;
   FloorLog floors_;
   std::uint64_t windows_judged_ = 0;
   Violators violators_;

@@ -14,6 +14,11 @@ struct Corridor {
   explicit Corridor(double rho, std::size_t corners = LiftedHull::all)
       : above(rho, corners), below(rho, corners) {}
 
+  void add(const Bound& bound) {
+    const OffsetBound b = from_above(bound);
+    (bound.side == Side::above ? above : below).add(b.s, b.x);
+  }
+
   LiftedHull above, below;
 };
 

@@ -102,11 +102,10 @@ void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
   } else if (index < *index_) {
     return;  // reordered over the edge
   }
-  const bool up = bound.side == Side::above;
-  const double level = bound.x - slope_ * (bound.s - middle_s());
-  const double x = from_above({bound.s, level, bound.side}).x;
-  (up ? corridor_.above : corridor_.below).add(bound.s, x);
-  Lows& lows = now_[up ? 0 : 1];
+  const Bound level{bound.s, bound.x - slope_ * (bound.s - middle_s()), bound.side};
+  corridor_.add(level);
+  const double x = from_above(level).x;
+  Lows& lows = now_[bound.side == Side::above ? 0 : 1];
   if (lows.count < lowest) {
     lows.x[lows.count++] = x;
   } else if (x < lows.x.back()) {

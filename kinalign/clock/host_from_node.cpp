@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/host_from_node.h"
 
-#include "kinalign/clock/exchange_journal.h"
+#include "kinalign/clock/bound.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +46,13 @@ HostTime on_host(NodeTime n, double offset_ns) {
 
 }  // namespace
 
+bool is_in(std::span<const DoubtfulStretch> doubtful, HostTime h) {
+  const auto behind = std::upper_bound(
+      doubtful.begin(), doubtful.end(), h,
+      [](HostTime t, const DoubtfulStretch& stretch) { return t < stretch.begin; });
+  return behind != doubtful.begin() && h <= (behind - 1)->end;
+}
+
 std::optional<ClockStamp> host_from_node(const HostFromNode& model, BootKey boot, NodeTime n,
                                          HostTime h_rx) {
   const auto piece = std::find_if(model.pieces.begin(), model.pieces.end(), [&](const auto& p) {
@@ -61,9 +68,7 @@ std::optional<ClockStamp> host_from_node(const HostFromNode& model, BootKey boot
     stamp.earliest = on_host(n, std::floor(offset.least));
     stamp.latest = on_host(n, std::ceil(offset.greatest)) + counter_resolution;
   }
-  for (const DoubtfulStretch& doubt : model.doubtful) {
-    if (doubt.begin <= h_rx && h_rx <= doubt.end) stamp.certainty = Certainty::doubtful;
-  }
+  if (is_in(model.doubtful, h_rx)) stamp.certainty = Certainty::doubtful;
   return stamp;
 }
 

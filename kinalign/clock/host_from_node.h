@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace kinalign {
@@ -51,9 +52,12 @@ struct DoubtfulStretch {
 };
 
 struct HostFromNode {
-  std::vector<ClockPieceModel> pieces;  // in the order of arrival
-  std::vector<DoubtfulStretch> doubtful;
+  std::vector<ClockPieceModel> pieces;    // in the order of arrival
+  std::vector<DoubtfulStretch> doubtful;  // rising, apart from each other
 };
+
+/// Whether h is within one of these, rising and apart.
+bool is_in(std::span<const DoubtfulStretch> doubtful, HostTime h);
 
 /// When the counter read n, in the piece of a frame of that life that arrived at h_rx. Absent where
 /// no piece is of that life and time, or nothing is known of it.

@@ -9,8 +9,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_events = 64;
-constexpr double between_lives = 2e-6;                     // by which a slope may differ
-constexpr Duration settling = std::chrono::seconds(5);     // after several steps, …
+constexpr Duration settling = Violators::wait;             // after several steps, …
 constexpr Duration late_frames = std::chrono::seconds(1);  // … and after one: some were sent before
 
 }  // namespace
@@ -45,8 +44,7 @@ void LiveClock::begin(BootKey boot, const Crossing& first) {
   SlopeBelief prior;
   if (piece_) {  // it is the same crystal
     cut_short();
-    prior = piece_->estimate().slope();
-    prior.deviation += between_lives;
+    prior = piece_->estimate().slope().after_a_break();
     earlier_[lives_++ % earlier_.size()] = boot_;
   }
   take_piece({ClockOrigin{first.n, first.h}, assumptions_, prior,
@@ -109,7 +107,8 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
     case Verdict::violator:
       tell({Kind::violator, boot_, crossing.heard, crossing.heard, piece_->amount()});
       // If it does not lie the counter has stepped, and may step back before three have shown that.
-      return tell({Kind::withdrawn, boot_, crossing.heard - Violators::wait, crossing.heard});
+      return tell({Kind::withdrawn, boot_,
+                   std::max(crossing.heard - Violators::wait, piece_->begins()), crossing.heard});
     case Verdict::uneasy:
       return tell({Kind::uneasy, boot_, crossing.heard, crossing.heard, piece_->amount()});
     case Verdict::broken:

@@ -3,7 +3,9 @@
 // in doubt and what can't be; then each piece is fitted to all that is left of it.
 #include "kinalign/clock/offline_clock.h"
 
+#include "kinalign/clock/bound.h"
 #include "kinalign/clock/certificate.h"
+#include "kinalign/clock/live_clock.h"
 #include "kinalign/clock/offline_estimate.h"
 
 #include <algorithm>
@@ -37,7 +39,7 @@ bool begins_piece(ClockEvent::Kind kind) {
 
 /// What happened with exchange i: pieces that begin reach back to where they do.
 void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const ClockEvent& event,
-          bool of_echo) {
+          Side of) {
   if (event.kind == ClockEvent::Kind::withdrawn) {
     const ClockEvent& why = walk.events.back();
     const HostTime end = begins_piece(why.kind) ? why.begin - Duration{1} : event.end;
@@ -46,7 +48,7 @@ void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const 
   }
   walk.events.push_back(event);
   if (event.kind == ClockEvent::Kind::violator)
-    (of_echo ? walk.echo_left_out : walk.up_left_out)[i] = true;
+    (of == Side::below ? walk.echo_left_out : walk.up_left_out)[i] = true;
   if (!begins_piece(event.kind)) return;
   const std::size_t next = walk.pieces++;
   for (std::size_t k = i + 1; k-- > 0 && exchanges[k].h_rx >= event.begin &&
@@ -54,6 +56,41 @@ void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const 
     walk.piece[k] = next;
     walk.up_left_out[k] = walk.echo_left_out[k] = false;  // violators were the new piece's
   }
+}
+
+/// The exchanges of piece p, which follow each other.
+struct ExchangeRange {
+  std::size_t begin = 0, end = 0;
+};
+ExchangeRange exchanges_of(const Walk& walk, std::size_t p) {
+  const auto [first, last] = std::equal_range(walk.piece.begin(), walk.piece.end(), p);  // rising
+  return {static_cast<std::size_t>(first - walk.piece.begin()),
+          static_cast<std::size_t>(last - walk.piece.begin())};
+}
+
+/// A crossing that can't be may be the first of a step that a reboot or the end cut short, or that
+/// was undone: live the five seconds before it are withdrawn, those behind it are in doubt as well.
+void doubt_behind_violators(Walk& walk, std::span<const Exchange> exchanges) {
+  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+    if (!walk.up_left_out[i] && !walk.echo_left_out[i]) continue;
+    const HostTime h = exchanges[i].h_rx,
+                   last = exchanges[exchanges_of(walk, walk.piece[i]).end - 1].h_rx;
+    walk.doubtful.push_back({h, std::min(last, h + Violators::wait)});
+  }
+}
+
+/// Rising, without those that others reach over.
+std::vector<DoubtfulStretch> merged(std::vector<DoubtfulStretch> all) {
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
+  std::vector<DoubtfulStretch> out;
+  for (const DoubtfulStretch& d : all) {
+    if (out.empty() || d.begin > out.back().end) {
+      out.push_back(d);
+    } else {
+      out.back().end = std::max(out.back().end, d.end);
+    }
+  }
+  return out;
 }
 
 Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assumptions) {
@@ -72,11 +109,13 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
       walk.late[i] = true;
       continue;
     }
-    for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, false);
+    for (const ClockEvent& event : clock.take_events())
+      note(walk, exchanges, i, event, Side::above);
     walk.assumed.resize(walk.pieces, clock.piece()->assumptions());
     if (e.echo) {
       clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
-      for (const ClockEvent& event : clock.take_events()) note(walk, exchanges, i, event, true);
+      for (const ClockEvent& event : clock.take_events())
+        note(walk, exchanges, i, event, Side::below);
       walk.assumed.resize(walk.pieces, clock.piece()->assumptions());
     }
     // Its estimate is refreshed when it is asked: this one sees what one in use does.
@@ -87,12 +126,9 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
     if (const auto since = last->uneasy_since())
       walk.doubtful.push_back({*since, exchanges.back().h_rx});
   }
+  doubt_behind_violators(walk, exchanges);
+  walk.doubtful = merged(std::move(walk.doubtful));
   return walk;
-}
-
-bool is_in(std::span<const DoubtfulStretch> doubtful, HostTime h) {
-  return std::any_of(doubtful.begin(), doubtful.end(),
-                     [h](const DoubtfulStretch& d) { return d.begin <= h && h <= d.end; });
 }
 
 /// The bounds of a piece in seconds from its first exchange.
@@ -170,15 +206,14 @@ bool counted_like_the_host(const PieceBounds& piece) {
   return node < 1.01 * host + longest_wait_s && node < longest_piece_s;
 }
 
-/// All exchanges of a piece but those that can't be, and those in doubt unless they are wanted.
+/// All exchanges of a piece but those that can't be and those that are in doubt.
 PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::size_t p,
-                    bool with_doubtful, ClockPieceModel& model) {
+                    std::span<const DoubtfulStretch> doubtful, ClockPieceModel& model) {
   PieceBounds piece;
   bool begun = false;
-  const auto [first, last] = std::equal_range(walk.piece.begin(), walk.piece.end(), p);  // rising
+  const auto [first, end] = exchanges_of(walk, p);
   model.violators = 0;
-  for (auto at = first; at != last; ++at) {
-    const auto i = static_cast<std::size_t>(at - walk.piece.begin());
+  for (std::size_t i = first; i < end; ++i) {
     if (walk.late[i]) continue;
     const Exchange& e = exchanges[i];
     if (!std::exchange(begun, true)) {
@@ -188,33 +223,15 @@ PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::
     }
     model.last = e.h_rx;
     model.violators += (walk.up_left_out[i] ? 1U : 0U) + (walk.echo_left_out[i] ? 1U : 0U);
-    if (!with_doubtful && is_in(walk.doubtful, e.h_rx)) continue;
+    if (is_in(doubtful, e.h_rx)) continue;
     if (!walk.up_left_out[i]) piece.add(Side::above, e.n_tx, e.h_rx);
     // What the first one echoes reached the node before the counter stepped.
-    if (e.echo && at != first && !walk.echo_left_out[i])
+    if (e.echo && i != first && !walk.echo_left_out[i])
       piece.add(Side::below, e.echo->n_rx, e.echo->h_tx);
   }
   model.up = piece.up;
   model.down = piece.down;
   return piece;
-}
-
-/// A crossing that can't be may be the first of a step that a reboot or the end cut short.
-void doubt_what_was_left_out(std::span<const Exchange> exchanges, const Walk& walk,
-                             HostFromNode& model) {
-  for (std::size_t i = 0; i < exchanges.size(); ++i) {
-    if (walk.late[i] || (!walk.up_left_out[i] && !walk.echo_left_out[i])) continue;
-    const ClockPieceModel& piece = model.pieces[walk.piece[i]];
-    const HostTime h = exchanges[i].h_rx;
-    const DoubtfulStretch doubt{std::max(piece.first, h - Violators::wait),
-                                std::min(piece.last, h + Violators::wait)};
-    auto& all = model.doubtful;
-    if (!all.empty() && all.back().begin <= doubt.begin && doubt.begin <= all.back().end) {
-      all.back().end = std::max(all.back().end, doubt.end);
-    } else {
-      all.push_back(doubt);
-    }
-  }
 }
 
 }  // namespace
@@ -225,15 +242,14 @@ OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
   OfflineClock out;
   for (std::size_t p = 0; p < walk.pieces; ++p) {
     ClockPieceModel& model = out.model.pieces.emplace_back();
-    PieceBounds piece = collect(exchanges, walk, p, false, model);
+    PieceBounds piece = collect(exchanges, walk, p, walk.doubtful, model);
     const bool in_doubt = piece.bounds.empty();  // something is likeliest all the same
-    if (in_doubt) piece = collect(exchanges, walk, p, true, model);
+    if (in_doubt) piece = collect(exchanges, walk, p, {}, model);
     if (piece.up > 0 && piece.down > 0 && counted_like_the_host(piece))
       fit(piece, walk.least_width, walk.assumed[p], model);
     model.certified = model.certified && !in_doubt;
   }
   out.model.doubtful = std::move(walk.doubtful);
-  doubt_what_was_left_out(exchanges, walk, out.model);
   out.events = std::move(walk.events);
   return out;
 }

@@ -3,7 +3,7 @@
 // joined by what is continuous over their changes.
 #pragma once
 
-#include "kinalign/clock/exchange_journal.h"
+#include "kinalign/clock/bound.h"
 #include "kinalign/clock/route.h"
 
 #include <cstddef>

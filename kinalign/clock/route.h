@@ -10,6 +10,9 @@ namespace kinalign {
 struct SlopeBelief {
   double mean = 0.0;
   double deviation = 15e-6;  // crystals of such boards: +-10 ppm at 25 C, +-20 ppm from 0 to 50 C
+
+  /// Of the same crystal behind a reboot or a step: it may have warmed meanwhile.
+  SlopeBelief after_a_break() const { return {mean, deviation + 2e-6}; }
 };
 
 /// x(t) in the middle between two floors.

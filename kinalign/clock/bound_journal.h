@@ -4,7 +4,6 @@
 #pragma once
 
 #include "kinalign/clock/bound.h"
-#include "kinalign/wire/time.h"
 
 #include <array>
 #include <bitset>
@@ -12,20 +11,7 @@
 
 namespace kinalign {
 
-/// Seconds are counted from this pair of readings.
-struct ClockOrigin {
-  NodeTime node{};
-  HostTime host{};
-};
-
-/// A counter is cut to whole microseconds: a reading n stands for up to n + 1 us.
-inline constexpr Duration counter_resolution = std::chrono::microseconds(1);
-inline constexpr double counter_resolution_s = seconds(counter_resolution);
-
-/// What it bounds that the counter read n and the host h.
-Bound bound_by(const ClockOrigin& origin, Side side, NodeTime n, HostTime h);
-
-class ExchangeJournal {
+class BoundJournal {
  public:
   void add(const Bound& bound);
   std::size_t size() const { return size_; }
