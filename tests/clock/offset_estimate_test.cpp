@@ -90,7 +90,7 @@ TEST_CASE("a step of the counter is told from a route, and followed") {
     if (!estimate.last_change()->step) continue;  // as in one of a thousand
     ++told;
     CHECK(*estimate.last_change()->step == doctest::Approx(1e-3).epsilon(0.05));
-    CHECK(std::abs(estimate.at(packets.now)->value - packets.x(packets.now)) < 50e-6);
+    CHECK(std::abs(estimate.at(packets.now)->value - packets.x(packets.now)) < 100e-6);
   }
   CHECK(told + 2 >= static_cast<int>(seeds.size()));
 }

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string_view>
 
 namespace kinalign {
@@ -38,12 +39,22 @@ struct Intervals {
   }
 };
 
+/// Within H1 to H5, as section 5.4 of the time-synchronisation reference has them.
+const std::array other_clocks{
+    NodeClockOptions{.frequency_error = 95e-6, .temperature = false},
+    NodeClockOptions{.frequency_error = 0.0, .temperature = false, .ramp = 4.5e-8},
+    NodeClockOptions{.frequency_error = 0.0, .temperature = false, .curvature = 4.5e-8},
+    NodeClockOptions{
+        .frequency_error = 0.0, .temperature = false, .curvature = 4.5e-8, .period_s = 120.0}};
+constexpr Reboot reboot{.at = 20.0, .gap = 1.0};
+
 /// What is kept of every seed.
 struct Gathered {
   std::array<Errors, methods> errors;
   Errors each_delay_from_the_start;  // as offline's
   Intervals live, offline;
-  std::vector<std::vector<double>> starts;  // s, a vector a limit of the link
+  std::vector<std::vector<double>> starts, restarts;  // s, a vector a limit of the link
+  std::uint64_t outside_of_other_clocks = 0;
 };
 
 std::vector<double> since(const PeerErrors& found, double begin) {
@@ -54,13 +65,22 @@ std::vector<double> since(const PeerErrors& found, double begin) {
   return errors;
 }
 
-/// Seconds from the first frame until the error of all that follow within half a minute is small.
-double start_time(const JudgedRun& run, double limit) {
-  double last = run.stamps.empty() ? 0.0 : run.stamps.front().heard;
+/// Seconds of a life until the error of all that follow within half a minute is small.
+double start_time(const JudgedRun& run, double begin, double limit) {
+  std::optional<double> last;
   for (const JudgedStamp& stamp : run.stamps) {
-    if (stamp.sent < start_watched_s && std::abs(stamp.error) > limit) last = stamp.heard;
+    if (stamp.sent < begin || stamp.sent >= begin + start_watched_s) continue;
+    if (!last || std::abs(stamp.error) > limit) last = stamp.heard - begin;
   }
-  return last;
+  return last.value_or(0.0);
+}
+
+void gather_starts(const JudgedRun& run, double begin, const std::vector<double>& limits,
+                   std::vector<std::vector<double>>& starts) {
+  starts.resize(limits.size());
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    starts[i].push_back(start_time(run, begin, limits[i]));
+  }
 }
 
 std::vector<double> start_limits(Link link) {
@@ -84,10 +104,26 @@ void gather(Link link, const SimulatedExchanges& run, Gathered& all) {
   all.errors[row].push_back(errors_since(offline, 0.0, offline.asymmetry));
   all.live.add(live, live_since_s);
   all.offline.add(offline, 0.0);
-  const auto limits = start_limits(link);
-  all.starts.resize(limits.size());
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    all.starts[i].push_back(start_time(live, limits[i]));
+  gather_starts(live, 0.0, start_limits(link), all.starts);
+}
+
+std::uint64_t outside(const JudgedRun& run) {
+  return static_cast<std::uint64_t>(
+      std::count_if(run.stamps.begin(), run.stamps.end(),
+                    [](const JudgedStamp& stamp) { return stamp.outside; }));
+}
+
+/// What is promised of more than the usual clock in its first life.
+void gather_others(const ExchangeOptions& usual, std::uint64_t seed, Gathered& all) {
+  ExchangeOptions options = usual;
+  options.reboots = {reboot};
+  gather_starts(judge_live(simulate_exchanges(options, seed)), reboot.at + reboot.gap,
+                start_limits(usual.link.link), all.restarts);
+  options.reboots.clear();
+  for (const NodeClockOptions& clock : other_clocks) {
+    options.clock = clock;
+    const SimulatedExchanges run = simulate_exchanges(options, seed);
+    all.outside_of_other_clocks += outside(judge_live(run)) + outside(judge_offline(run));
   }
 }
 
@@ -130,6 +166,16 @@ IntervalFigures summary(const Intervals& intervals) {
   return out;
 }
 
+std::vector<StartFigures> summary(const std::vector<double>& limits,
+                                  const std::vector<std::vector<double>>& times) {
+  std::vector<StartFigures> out;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    out.push_back(
+        {limits[i], at_share(times[i], 0.5), at_share(times[i], 0.9), at_share(times[i], 1.0)});
+  }
+  return out;
+}
+
 GainFigures gain(const Errors& paper, const Errors& ours, std::uint64_t first) {
   std::vector<double> gains;
   for (std::size_t i = 0; i < ours.size(); ++i) {
@@ -157,6 +203,7 @@ LinkFigures measure(Link link, const RunSet& set) {
   Gathered all;
   for (std::uint64_t seed = set.first; seed < set.first + set.seeds; ++seed) {
     gather(link, simulate_exchanges(options, seed), all);
+    if (set.minutes == 1.0 && !set.bursts) gather_others(options, seed, all);
   }
   LinkFigures out;
   out.link = link;
@@ -165,12 +212,9 @@ LinkFigures measure(Link link, const RunSet& set) {
   }
   out.live = summary(all.live);
   out.offline = summary(all.offline);
-  const auto limits = start_limits(link);
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    const auto& times = all.starts[i];
-    out.starts.push_back(
-        {limits[i], at_share(times, 0.5), at_share(times, 0.9), at_share(times, 1.0)});
-  }
+  out.starts = summary(start_limits(link), all.starts);
+  out.restarts = summary(start_limits(link), all.restarts);
+  out.outside_of_other_clocks = all.outside_of_other_clocks;
   const auto& offline = all.errors[static_cast<std::size_t>(Method::offline)];
   const auto& mean_delay = all.errors[static_cast<std::size_t>(Method::mean_delay)];
   out.over_each_delay = gain(all.each_delay_from_the_start, offline, set.first);

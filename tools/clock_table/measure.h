@@ -82,6 +82,10 @@ struct LinkFigures {
   std::array<MethodFigures, methods> rows;
   IntervalFigures live, offline;
   std::vector<StartFigures> starts;  // in the order of start_bars
+  /// Sets of a minute without bursts: after a reboot, and what other clocks that the assumptions
+  /// allow have outside their intervals, live and offline.
+  std::vector<StartFigures> restarts;
+  std::uint64_t outside_of_other_clocks = 0;
   GainFigures over_each_delay, over_mean_delay;
   double frame_number_gain = 0.0;  // over T2 - d, each d, pooled
 
