@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/host_clock.h"
 
+#include <sys/timerfd.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <ctime>
+#include <limits>
 #include <utility>
 
 namespace kinalign {
@@ -44,6 +49,21 @@ Duration SystemClocks::asleep() {
   return least;
 }
 
+SystemClocks::~SystemClocks() {
+  if (timer_ && *timer_ >= 0) ::close(*timer_);
+}
+
+bool SystemClocks::wall_was_set() {
+  if (!timer_) {
+    timer_ = ::timerfd_create(CLOCK_REALTIME, TFD_NONBLOCK | TFD_CLOEXEC);
+    itimerspec never{};
+    never.it_value.tv_sec = std::numeric_limits<std::int32_t>::max();  // in 2038 it reads as a tick
+    ::timerfd_settime(*timer_, TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET, &never, nullptr);
+  }
+  std::uint64_t ticks = 0;
+  return ::read(*timer_, &ticks, sizeof ticks) < 0 && errno == ECANCELED;
+}
+
 bool runs_on(const ClockBracket& earlier, const ClockBracket& later) {
   const auto [least_then, greatest_then] = offsets(earlier);
   const auto [least, greatest] = offsets(later);
@@ -58,6 +78,7 @@ HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time ste
 }
 
 HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep()) {
+  static_cast<void>(reader_.wall_was_set());  // from now on
   bracket_ = read();
   steady_ = bracket_.utc;
 }
@@ -90,7 +111,8 @@ ClockBracket HostAxis::read() {
 /// A datagram may have waited, and be received several looks after a step.
 void HostAxis::look() {
   const ClockBracket before = std::exchange(bracket_, read());
-  if (!runs_on(before, bracket_)) steady_ = bracket_.utc;
+  const bool set = reader_.wall_was_set();  // until behind the bracket
+  if (set || !runs_on(before, bracket_)) steady_ = bracket_.utc;
 }
 
 ClockPair HostAxis::watch() {

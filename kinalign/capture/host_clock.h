@@ -19,13 +19,25 @@ class ClockReader {
   virtual HostTime raw() = 0;     // CLOCK_MONOTONIC_RAW
   virtual Time utc() = 0;         // CLOCK_REALTIME
   virtual Duration asleep() = 0;  // CLOCK_BOOTTIME - CLOCK_MONOTONIC
+  /// Whether the wall clock was set, by however little, since this was asked last.
+  virtual bool wall_was_set() = 0;
 };
 
 class SystemClocks : public ClockReader {
  public:
+  SystemClocks() = default;
+  SystemClocks(const SystemClocks&) = delete;
+  SystemClocks& operator=(const SystemClocks&) = delete;
+  ~SystemClocks() override;
+
   HostTime raw() override;
   Time utc() override;
   Duration asleep() override;
+  /// By a timer that the kernel cancels then (timerfd_create(2)); false where there is none.
+  bool wall_was_set() override;
+
+ private:
+  std::optional<int> timer_;  // since it was asked first
 };
 
 /// utc was read between the two.
@@ -36,7 +48,7 @@ struct ClockBracket {
 };
 
 /// Whether the wall clock ran on between two brackets: no step beyond what a slew of `most_slew`
-/// makes of the time between them.
+/// makes of the time between them. Smaller ones the system tells, where it can.
 inline constexpr double most_slew = 1e-3;  // the kernel's own is 5e-4
 bool runs_on(const ClockBracket& earlier, const ClockBracket& later);
 

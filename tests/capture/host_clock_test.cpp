@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <random>
+#include <utility>
 
 namespace kinalign {
 
@@ -19,6 +20,7 @@ struct FakeClocks : ClockReader {
   HostTime raw() override { return raw_now += Duration{50}; }
   Time utc() override { return utc_now + Duration{50}; }
   Duration asleep() override { return slept; }
+  bool wall_was_set() override { return std::exchange(was_set, false); }
   void pass(Duration d, double wall_rate = 1.0) {
     raw_now += d;
     utc_now += Duration{static_cast<std::int64_t>(static_cast<double>(d.count()) * wall_rate)};
@@ -26,6 +28,7 @@ struct FakeClocks : ClockReader {
   HostTime raw_now{hours(10)};
   Time utc_now = utc_time(1'700'000'000'000'000'000);
   Duration slept{0};
+  bool was_set = false;
 };
 
 std::vector<Kind> kinds(HostAxis& axis) {
@@ -95,6 +98,24 @@ TEST_CASE("fault 17 host_step: a step of the wall clock moves no stamp, and is t
   }
 }
 
+TEST_CASE("a step too small to tell from a slew moves no stamp either: the system tells of it") {
+  for (const Duration step : {microseconds(40), microseconds(-40)}) {
+    FakeClocks clocks;
+    HostAxis axis(clocks);
+    clocks.pass(milliseconds(100));
+    const HostTime truth = clocks.raw_now;
+    const Time stamp = clocks.utc_now;
+    clocks.utc_now += step;
+    clocks.was_set = true;
+    for (int batch = 0; batch < 3; ++batch) {
+      clocks.pass(microseconds(30));
+      axis.look();
+      CHECK(axis.arrival(stamp) >= truth);
+      CHECK(axis.arrival(stamp) - truth < microseconds(140));
+    }
+  }
+}
+
 TEST_CASE("fault 18 host_slew: 500 ppm for an hour have no effect and are no step") {
   FakeClocks clocks;
   HostAxis axis(clocks);
@@ -147,6 +168,7 @@ TEST_CASE("the system's clocks run, and a pair lies between its readings") {
   CHECK(pair.raw >= before);
   CHECK(pair.raw <= axis.now());
   CHECK(to_ns(pair.utc) > 1'600'000'000'000'000'000);
+  CHECK(!clocks.wall_was_set());
   CHECK(axis.epoch() == 0);
 }
 
