@@ -50,11 +50,21 @@ void NodeHerald::tell_status() {
 void NodeHerald::look_at_key() {
   if (lab_.path.empty()) return;
   const auto key = read_lab_key(files_, lab_.path);
+  tell_key_trouble(key ? "" : to_string(key.error()));
   if (!key || *key == lab_.key) return;
   lab_.key = *key;
   receiver_.replace_key(*key);
   console_.note(speaker + lab_.path + " has another key now; the old one is good for 60 s");
   console_.print_json(R"({"event": "key_replaced"})");
+}
+
+/// Each trouble once, as long as it lasts.
+void NodeHerald::tell_key_trouble(const std::string& trouble) {
+  if (trouble == key_trouble_) return;
+  key_trouble_ = trouble;
+  if (trouble.empty()) return;
+  console_.note(speaker + "warning: " + trouble + "; the key that was read before stays in force");
+  console_.print_json(R"({"event": "key_unreadable"})");
 }
 
 void NodeHerald::tell_end() {

@@ -36,11 +36,13 @@ class NodeHerald {
   void tell_events();
   void tell_status();
   void look_at_key();
+  void tell_key_trouble(const std::string& trouble);
 
   NodeReceiver& receiver_;
   Console& console_;
   FileSystem& files_;
   LabKeyFile lab_;
+  std::string key_trouble_;  // that was told, and still stands
   Clock::time_point next_status_ = Clock::now() + std::chrono::seconds(1);
   int counts_in_s_ = 10;
 };

@@ -124,6 +124,24 @@ def a_new_lab_key_is_taken_while_it_serves_and_the_old_one_goes_on(folder):
 
 
 @case
+def a_replaced_lab_key_that_can_not_be_read_is_told_once_and_the_old_one_stays(folder):
+    keys = Keys(BUILD, folder)
+    with Server(BUILD, lab_key=keys.lab) as server:
+        keys.of(1)
+        keys.lab.chmod(0o644)
+        time.sleep(3.2)  # looked at three times
+        keys.lab.unlink()
+        time.sleep(1.2)
+        assert ended(start_node(BUILD, server.node_port, 1, "--seconds", 1, key=keys.of(1)))["accepted"] > 0
+    lines = [line for line in server.err.splitlines() if "lab.key" in line]
+    stays = "; the key that was read before stays in force"
+    assert len(lines) == 2 and all(line.endswith(stays) for line in lines), server.err
+    assert "warning: " in lines[0] and "(chmod 600), found mode 0644" in lines[0], lines
+    assert "No such file or directory" in lines[1], lines
+    assert len(server.said("key_unreadable")) == 2 and not server.said("key_replaced")
+
+
+@case
 def keys_are_written_for_their_owner_and_never_over_a_file(folder):
     lab, node = folder / "lab.key", folder / "node.key"
     assert kinalign("node-key", "--new-lab-key", lab).returncode == 0
