@@ -43,6 +43,12 @@ bool colour_wanted(const Surroundings& surroundings, const Common& common, bool 
          surroundings.variable("TERM") != "dumb";
 }
 
+/// Not where it would stand within the lines of --json.
+bool progress_wanted(const Surroundings& surroundings, const Common& common) {
+  return surroundings.err_is_terminal && !common.quiet && surroundings.variable("TERM") != "dumb" &&
+         !(common.json && surroundings.out_is_terminal);
+}
+
 /// Places on a terminal: a character each, none for a colour.
 std::size_t places(std::string_view text) {
   std::size_t count = 0;
@@ -143,8 +149,7 @@ Console::Console(const Surroundings& surroundings, const Common& common, std::st
       verb_(std::move(verb)),
       colour_out_(colour_wanted(surroundings, common, surroundings.out_is_terminal)),
       colour_err_(colour_wanted(surroundings, common, surroundings.err_is_terminal)),
-      progress_(surroundings.err_is_terminal && !common.quiet &&
-                surroundings.variable("TERM") != "dumb"),
+      progress_(progress_wanted(surroundings, common)),
       out_(surroundings.out),
       err_(surroundings.err) {}
 

@@ -56,8 +56,9 @@ class Console {
   /// `text` in a colour where stdout shows one.
   std::string paint(Colour colour, std::string_view text) const;
 
-  /// One line on stderr, on a terminal only, gone when the job is done. Asks the job to stop after
-  /// the first Ctrl-C (the second one ends the program at once).
+  /// One line on stderr, on a terminal only, gone when the job is done; none where --json goes to a
+  /// terminal. Asks the job to stop after the first Ctrl-C (the second one ends the program at
+  /// once).
   Progress progress();
 
   /// To be said if the verb fails; the last call counts. Asked after the verb has returned: it

@@ -89,6 +89,18 @@ TEST_CASE("the progress line stands on a terminal only and is gone when the job 
   CHECK(terminal.run(job, {"mix", "a", "-q"}).err.empty());
 }
 
+TEST_CASE("a progress line never stands within JSON on the same terminal") {
+  const auto job = [](Mix&, Call& call) -> Result<int> {
+    go_on(call.console.progress(), "reading", 1, 4);
+    call.console.print_json("{}");
+    return 0;
+  };
+  const Machine terminal{.out_is_terminal = true, .err_is_terminal = true};
+  CHECK(terminal.run(job, {"mix", "a", "--json"}).err.empty());
+  CHECK_FALSE(terminal.run(job, {"mix", "a"}).err.empty());
+  CHECK_FALSE(Machine{.err_is_terminal = true}.run(job, {"mix", "a", "--json"}).err.empty());
+}
+
 TEST_CASE("the progress line gives rate and time left, cut to the terminal") {
   CHECK(progress_line("reading", 250'000'000, 1'000'000'000, 2.0, 80) ==
         "reading  25 %  125.0 MB/s  6 s left");

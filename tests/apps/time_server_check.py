@@ -350,6 +350,21 @@ def a_terminal_shows_the_counts_in_one_line_that_is_gone_at_the_end(_):
 
 
 @case
+def on_a_terminal_json_stands_alone(_):
+    terminal, end = pty.openpty()
+    with subprocess.Popen([str(cases.PROGRAM), "time-server", *ALL_ADDRESSES, "--json"], stderr=end, stdout=end,
+                          env={**os.environ, "TERM": "xterm"}) as program:
+        shown = os.read(terminal, 4096)
+        time.sleep(1)  # in which a status line would be drawn four times
+        program.send_signal(signal.SIGTERM)
+        assert program.wait(30) == 0
+        shown += os.read(terminal, 4096)
+        os.close(end)
+    events = [parsed(line)["event"] for line in shown.decode().splitlines()]
+    assert events == ["started", "stopped"], shown
+
+
+@case
 def wrong_use_is_told_before_anything_is_served(_):
     cases.wrong("time-server", "--exempt", "lab",
                 says="--exempt: expected an address or a network as 192.168.7.0/24, found lab")
