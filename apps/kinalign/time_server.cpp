@@ -8,11 +8,13 @@
 
 #include "kinalign/capture/node_keys.h"
 #include "kinalign/capture/own_addresses.h"
+#include "kinalign/capture/udp_socket.h"
 
 #include <fmt/format.h>
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace kinalign {
 
@@ -37,17 +39,35 @@ Result<std::vector<Network>> networks_of(const std::vector<std::string>& texts) 
   return networks;
 }
 
-Result<void> check_addresses(const std::vector<std::string>& texts) {
-  for (const std::string& text : texts) {
-    if (is_address(text)) continue;
-    return Failure(Error{"--listen", 0, "an IPv4 or IPv6 address", shown(text)});
+/// Two addresses of which one is in the other's way, which the system would put down to another
+/// program.
+Result<void> check_pair(const std::string& one, const std::string& other) {
+  if (one == other) {
+    return Failure(Error{"--listen", 0, "each address once", one + " twice"});
+  }
+  if (is_ipv6_text(one) != is_ipv6_text(other)) return {};
+  for (const auto& [all, part] : {std::pair{one, other}, std::pair{other, one}}) {
+    if (!is_any_address(all)) continue;
+    return Failure(Error{"--listen", 0, "nothing that " + all + " stands for already", part});
   }
   return {};
 }
 
+/// As the system writes them.
+Result<std::vector<std::string>> addresses_of(const std::vector<std::string>& texts) {
+  std::vector<std::string> addresses;
+  for (const std::string& text : texts) {
+    const auto address = spelt_address(text);
+    if (!address) return Failure(Error{"--listen", 0, "an IPv4 or IPv6 address", shown(text)});
+    for (const std::string& other : addresses) KA_TRY(check_pair(other, *address));
+    addresses.push_back(*address);
+  }
+  return addresses;
+}
+
 /// Flags that forbid one another, or need one another.
 Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
-  KA_TRY(check_addresses(o.listen));
+  KA_TRY(addresses_of(o.listen));
   KA_TRY(networks_of(o.exempt));
   if (given.contains("lab_key") && o.lab_key.empty()) {  // an unset variable is no wish for none
     return Failure(Error{"--lab-key", 0, "a file's name", "nothing"});
@@ -218,6 +238,7 @@ class Herald {
 Result<int> run(TimeServerFlags& o, Call& call) {
   Console& console = call.console;
   console.never_wait();
+  o.listen = KA_TRY(addresses_of(o.listen));
   const LabKeyFile lab = KA_TRY(read_key_file(o, call));
   console.if_it_fails(port_advice("--port"));
   TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));

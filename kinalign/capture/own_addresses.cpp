@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/own_addresses.h"
 
+#include "kinalign/capture/udp_socket.h"
+
 #include <arpa/inet.h>
 #include <ifaddrs.h>
 #include <net/if.h>
-#include <netdb.h>
 #include <netinet/in.h>
 
-#include <array>
 #include <memory>
 
 namespace kinalign {
@@ -22,14 +22,6 @@ bool reaches_others(const ifaddrs& one) {
   return !IN6_IS_ADDR_LINKLOCAL(&reinterpret_cast<const sockaddr_in6*>(one.ifa_addr)->sin6_addr);
 }
 
-std::string text_of(const sockaddr& address) {
-  std::array<char, NI_MAXHOST> text{};
-  const bool four = address.sa_family == AF_INET;
-  const socklen_t size = four ? sizeof(sockaddr_in) : sizeof(sockaddr_in6);
-  ::getnameinfo(&address, size, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST);
-  return text.data();
-}
-
 }  // namespace
 
 std::vector<std::string> own_addresses() {
@@ -40,7 +32,7 @@ std::vector<std::string> own_addresses() {
   for (const int family : {AF_INET, AF_INET6}) {
     for (const ifaddrs* one = all; one != nullptr; one = one->ifa_next) {
       const bool wanted = reaches_others(*one) && one->ifa_addr->sa_family == family;
-      if (wanted) texts.push_back(text_of(*one->ifa_addr));
+      if (wanted) texts.push_back(address_text(*one->ifa_addr));
     }
   }
   return texts;

@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
@@ -87,7 +88,19 @@ Found find_address(const std::string& address, std::uint16_t port) {
 
 }  // namespace
 
-bool is_address(const std::string& text) { return find_address(text, 0) != nullptr; }
+std::optional<std::string> spelt_address(const std::string& text) {
+  const Found found = find_address(text, 0);
+  if (found == nullptr) return std::nullopt;
+  return address_text(*found->ai_addr);
+}
+
+std::string address_text(const sockaddr& address) {
+  std::array<char, NI_MAXHOST> text{};
+  const bool four = address.sa_family == AF_INET;
+  const socklen_t size = four ? sizeof(sockaddr_in) : sizeof(sockaddr_in6);
+  ::getnameinfo(&address, size, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST);
+  return text.data();
+}
 
 Result<UdpSocket> UdpSocket::open(const std::string& address, std::uint16_t port) {
   const Found found = find_address(address, port);
@@ -158,8 +171,7 @@ Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& 
 }
 
 std::string endpoint_text(const std::string& address, std::uint16_t port) {
-  const bool six = address.find(':') != std::string::npos;
-  return (six ? "[" + address + "]" : address) + ":" + std::to_string(port);
+  return (is_ipv6_text(address) ? "[" + address + "]" : address) + ":" + std::to_string(port);
 }
 
 }  // namespace kinalign

@@ -6,9 +6,12 @@
 #include "kinalign/capture/host_address.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+struct sockaddr;  // <sys/socket.h>
 
 namespace kinalign {
 
@@ -49,8 +52,18 @@ class UdpSocket {
   std::string address_;
 };
 
-/// Whether open takes it: the text of an address, not a name, which might be several.
-bool is_address(const std::string& text);
+/// An address that open takes, as the system writes it: "0.0.0.0" of "0". Absent: it is none, or a
+/// name, which might be several.
+std::optional<std::string> spelt_address(const std::string& text);
+std::string address_text(const sockaddr& address);
+
+/// Whether `address`, as the system writes it, stands for all of its kind.
+inline bool is_any_address(std::string_view address) {
+  return address == "0.0.0.0" || address == "::";
+}
+inline bool is_ipv6_text(std::string_view address) {
+  return address.find(':') != std::string_view::npos;
+}
 
 bool system_knows_ipv6();
 

@@ -373,6 +373,11 @@ def wrong_use_is_told_before_anything_is_served(_):
                 says="--local-stratum: expected a whole number from 1 to 15, found 16")
     cases.wrong("time-server", "--listen", "localhost",
                 says="--listen: expected an IPv4 or IPv6 address, found localhost")
+    for one, other, says in (("127.0.0.1", "127.0.0.1", "each address once, found 127.0.0.1 twice"),
+                             ("::1", "0:0::1", "each address once, found ::1 twice"),
+                             ("127.0.0.1", "0.0.0.0", "nothing that 0.0.0.0 stands for already, found 127.0.0.1"),
+                             ("::", "::1", "nothing that :: stands for already, found ::1")):
+        cases.wrong("time-server", "--listen", one, "--listen", other, says=f"--listen: expected {says}")
     cases.wrong("time-server", "--port", "12399", "--node-port", "12399",
                 says="--node-port: expected another port than --port, found 12399: both flags name the same port")
 

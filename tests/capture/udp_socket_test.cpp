@@ -28,6 +28,14 @@ std::vector<int> first_bytes(DatagramBatch& batch, const UdpSocket& socket) {
 
 }  // namespace
 
+TEST_CASE("an address is spelt in one way, and a name is none") {
+  CHECK(spelt_address("0:0::1") == "::1");
+  CHECK(spelt_address("::FFFF") == "::ffff");
+  CHECK(spelt_address("0") == "0.0.0.0");
+  CHECK(spelt_address("127.0.0.1") == "127.0.0.1");
+  CHECK_FALSE(spelt_address("localhost"));
+}
+
 TEST_CASE("port 0 is any free one, and a port that is taken is named") {
   const auto first = UdpSocket::open("127.0.0.1", 0);
   REQUIRE(first);
