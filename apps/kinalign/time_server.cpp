@@ -164,7 +164,7 @@ ServedPort served_port(const TimeServer& server, const std::optional<NodeReceive
                        const TimeServerFlags& flags) {
   ServedPort served;
   for (const UdpSocket& socket : server.sockets()) served.addresses.push_back(socket.address());
-  served.reachable = flags.listen.empty() ? own_addresses() : flags.listen;
+  served.reachable = reachable_at(flags.listen, own_addresses());
   served.port = server.sockets().front().port();
   if (nodes) served.node_port = nodes->sockets().front().port();
   served.keyed = !flags.lab_key.empty();

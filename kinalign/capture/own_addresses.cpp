@@ -8,6 +8,8 @@
 #include <net/if.h>
 #include <netinet/in.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 namespace kinalign {
@@ -34,6 +36,22 @@ std::vector<std::string> own_addresses() {
       const bool wanted = reaches_others(*one) && one->ifa_addr->sa_family == family;
       if (wanted) texts.push_back(address_text(*one->ifa_addr));
     }
+  }
+  return texts;
+}
+
+std::vector<std::string> reachable_at(const std::vector<std::string>& listen,
+                                      const std::vector<std::string>& own) {
+  if (listen.empty()) return own;
+  std::vector<std::string> texts;
+  for (const std::string& address : listen) {
+    if (!is_any_address(address)) {
+      texts.push_back(address);
+      continue;
+    }
+    std::copy_if(own.begin(), own.end(), std::back_inserter(texts), [&](const std::string& one) {
+      return is_ipv6_text(one) == is_ipv6_text(address);
+    });
   }
   return texts;
 }

@@ -334,6 +334,19 @@ def people_are_told_where_it_serves_what_clients_need_and_what_was_done(_):
 
 
 @case
+def what_clients_are_told_can_be_typed_into_their_settings(_):
+    for listen in ("0.0.0.0", "::"):
+        if listen == "::" and not has_ipv6_loopback():
+            continue
+        with subprocess.Popen([str(cases.PROGRAM), "time-server", "--port", "0", "--listen", listen],
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as program:
+            host = [program.stdout.readline() for _ in range(3)][2].split()[3]
+            program.terminate()
+            program.communicate()
+        assert host != listen and re.fullmatch(r"[\d.]+|[0-9a-f:]+|ADDRESS", host), host
+
+
+@case
 def a_terminal_shows_the_counts_in_one_line_that_is_gone_at_the_end(_):
     terminal, end = pty.openpty()
     with subprocess.Popen([str(cases.PROGRAM), "time-server", *ALL_ADDRESSES], stderr=end, stdout=subprocess.PIPE,

@@ -4,6 +4,7 @@
 #include "tests/capture/loopback.h"
 
 #include "kinalign/capture/datagram_batch.h"
+#include "kinalign/capture/own_addresses.h"
 
 #include <doctest/doctest.h>
 #include <poll.h>
@@ -34,6 +35,15 @@ TEST_CASE("an address is spelt in one way, and a name is none") {
   CHECK(spelt_address("0") == "0.0.0.0");
   CHECK(spelt_address("127.0.0.1") == "127.0.0.1");
   CHECK_FALSE(spelt_address("localhost"));
+}
+
+TEST_CASE("clients are told addresses that they can send to, never one that stands for all") {
+  using List = std::vector<std::string>;
+  const List own{"192.168.7.1", "10.0.0.1", "fd00::1"};
+  CHECK(reachable_at({}, own) == own);
+  CHECK(reachable_at({"0.0.0.0"}, own) == List{"192.168.7.1", "10.0.0.1"});
+  CHECK(reachable_at({"127.0.0.1", "::"}, own) == List{"127.0.0.1", "fd00::1"});
+  CHECK(reachable_at({"::"}, {"192.168.7.1"}).empty());
 }
 
 TEST_CASE("port 0 is any free one, and a port that is taken is named") {
