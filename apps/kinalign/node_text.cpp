@@ -17,7 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 double ms(Duration d) { return 1e3 * seconds(d); }
-
 std::int64_t ns(HostTime t) { return t.time_since_epoch().count(); }
 
 std::string address_text(const NodeAddress& address) {
@@ -246,7 +245,8 @@ std::string status_json(const NodeStatus& status) {
 
 std::string nodes_text(const std::vector<NodeStatus>& all) {
   if (all.empty()) return "";
-  const auto locked = std::count_if(all.begin(), all.end(), is_certified);
+  const auto is_locked = [](const auto& s) { return !s.silent && is_certified(s); };
+  const auto locked = std::count_if(all.begin(), all.end(), is_locked);
   const auto silent = std::count_if(all.begin(), all.end(), [](const auto& s) { return s.silent; });
   std::string text =
       fmt::format("{} node{}, {} locked", all.size(), all.size() == 1 ? "" : "s", locked);

@@ -23,7 +23,8 @@ std::string event_json(const HostClockEvent& event);
 /// "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, round trip 2.00 ms, 3.91 V".
 std::string status_text(const NodeStatus& status);
 std::string status_json(const NodeStatus& status);
-/// "3 nodes, 2 locked, 1 silent"; empty without nodes.
+/// "3 nodes, 2 locked, 1 silent": who is silent is not locked, whatever its last frame was. Empty
+/// without nodes.
 std::string nodes_text(const std::vector<NodeStatus>& all);
 
 /// "12 no mac, 3 bad crc": datagrams by what they were refused for; empty where none was.

@@ -59,6 +59,9 @@ TEST_CASE("a node without a certificate, a counter or a voice says so") {
   bare.silent = bare.old_key = true;
   CHECK(status_text(bare) == "node 3  0.0/s, no counter: d 33.0 ms, old key, silent");
   CHECK(nodes_text({bare}) == "1 node, 0 locked, 1 silent");
+  NodeStatus left = some_status();  // certified when it was heard last
+  left.silent = true;
+  CHECK(nodes_text({some_status(), left}) == "2 nodes, 1 locked, 1 silent");
   CHECK(nodes_text({}).empty());
 }
 
