@@ -2,14 +2,13 @@
 #include "apps/kinalign/node_herald.h"
 
 #include "apps/kinalign/node_text.h"
+#include "apps/kinalign/time_server_text.h"
 
 namespace kinalign {
 
-namespace {
-
-const std::string speaker = "kinalign time-server: ";
-
-}  // namespace
+void tell_live(Console& console, std::string_view what) {
+  console.note(live_line(SystemClocks{}.utc(), what));
+}
 
 std::string NodeHerald::operator()() {
   tell_events();
@@ -24,16 +23,16 @@ std::string NodeHerald::operator()() {
 
 void NodeHerald::tell_events() {
   for (const HostClockEvent& event : receiver_.take_host_events()) {
-    console_.note(speaker + event_text(event));
+    tell_live(console_, event_text(event));
     console_.print_json(event_json(event));
   }
   for (const NodeEvent& event : receiver_.take_node_events()) {
-    console_.note(speaker + event_text(event));
+    tell_live(console_, event_text(event));
     console_.print_json(event_json(event));
   }
   for (const auto& [stream, node_id, event] : receiver_.take_clock_events()) {
     const std::string text = event_text(event, node_id);
-    if (!text.empty()) console_.note(speaker + text);
+    if (!text.empty()) tell_live(console_, text);
     console_.print_json(event_json(event, stream, node_id));
   }
 }
@@ -54,7 +53,7 @@ void NodeHerald::look_at_key() {
   if (!key || *key == lab_.key) return;
   lab_.key = *key;
   receiver_.replace_key(*key);
-  console_.note(speaker + lab_.path + " has another key now; the old one is good for 60 s");
+  tell_live(console_, lab_.path + " has another key now; the old one is good for 60 s");
   console_.print_json(R"({"event": "key_replaced"})");
 }
 
@@ -63,7 +62,7 @@ void NodeHerald::tell_key_trouble(const std::string& trouble) {
   if (trouble == key_trouble_) return;
   key_trouble_ = trouble;
   if (trouble.empty()) return;
-  console_.note(speaker + "warning: " + trouble + "; the key that was read before stays in force");
+  tell_live(console_, "warning: " + trouble + "; the key that was read before stays in force");
   console_.print_json(R"({"event": "key_unreadable"})");
 }
 

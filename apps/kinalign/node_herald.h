@@ -10,6 +10,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace kinalign {
@@ -19,6 +20,9 @@ struct LabKeyFile {
   std::string path;
   std::optional<LabKey> key;
 };
+
+/// A message of a server that runs for days, on stderr with the time of day.
+void tell_live(Console& console, std::string_view what);
 
 class NodeHerald {
  public:

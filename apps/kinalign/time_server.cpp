@@ -205,7 +205,7 @@ class Herald {
     const NtpServerState& now = server_.state();
     if (now.leap == told_.leap && now.stratum == told_.stratum) return;
     told_ = now;
-    console_.note("kinalign time-server: the clock is now " + clock_text(now));
+    tell_live(console_, "the clock is now " + clock_text(now));
     console_.print_json(clock_json(now));
     console_.flush();
   }
@@ -213,9 +213,9 @@ class Herald {
   void tell_strays() {
     if (strays_told_ || server_.counts()[NtpOutcome::from_node] == 0) return;
     strays_told_ = true;
-    console_.note(
-        "kinalign time-server: warning: a node sends to the NTP port; nodes are received "
-        "on another one, --node-port");
+    tell_live(console_,
+              "warning: a node sends to the NTP port; nodes are received on another one, "
+              "--node-port");
   }
   void tell_counts() {
     constexpr double every_s = 10;

@@ -7,6 +7,7 @@
 #include "kinalign/capture/clock_state.h"
 #include "kinalign/capture/udp_socket.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 
 namespace kinalign {
 
@@ -107,8 +109,16 @@ std::string clock_json(const NtpServerState& state) {
   return json_text(event_json("clock", state_json(state)));
 }
 
+std::string live_line(Time now, std::string_view what) {
+  const auto whole = std::chrono::floor<std::chrono::seconds>(now.time_since_epoch());
+  return fmt::format("{:%FT%TZ} kinalign time-server: {}",
+                     fmt::gmtime(static_cast<std::time_t>(whole.count())), what);
+}
+
 std::string counts_text(const NtpCounts& counts) {
-  std::string text = grouped(counts[NtpOutcome::answered]) + " answered";
+  const std::uint64_t answered = counts[NtpOutcome::answered];
+  std::string text =
+      fmt::format("{} NTP request{} answered", grouped(answered), answered == 1 ? "" : "s");
   for (std::size_t i = 1; i < ntp_outcomes; ++i) {
     const auto outcome = static_cast<NtpOutcome>(i);
     std::string name(name_of(outcome));

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kinalign {
@@ -28,7 +29,10 @@ std::string start_json(const ServedPort& served, const NtpServerState& state);
 std::string clock_text(const NtpServerState& state);
 std::string clock_json(const NtpServerState& state);
 
-/// "1,234 answered, 5 limited": what there was none of is left out.
+/// "2026-11-22T17:38:23Z kinalign time-server: node 7: joined", as chronyd dates its lines.
+std::string live_line(Time now, std::string_view what);
+
+/// "1,234 NTP requests answered, 5 limited": of the rest, what there was none of is left out.
 std::string counts_text(const NtpCounts& counts);
 /// `event`: "counts" while it serves, "stopped" at the end.
 std::string counts_json(const NtpCounts& counts, const std::string& event, double elapsed_s);

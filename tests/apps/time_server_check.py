@@ -165,7 +165,7 @@ def ntpdate_and_ntpdig_take_the_time_from_port_123(_):
     assert len(answers) == (2 if six else 1), said
     for answer in answers:
         assert answer["stratum"] == 10 and abs(answer["offset"]) < 0.01, answer
-    assert "serving time on 0.0.0.0:123" in said and f"{2 + bool(six)} answered" in said, said
+    assert "serving time on 0.0.0.0:123" in said and f"{2 + bool(six)} NTP requests answered" in said, said
     assert "ended with 0" in said, said
 
 
@@ -280,6 +280,8 @@ def a_node_that_sends_to_the_ntp_port_is_told_once(_):
         ended(start_node(cases.BUILD, server.port, 7, "--seconds", 1))
     assert server.counts["from_node"] >= 10 and server.counts["wrong_trailer"] == 0, server.counts
     assert server.err.count("a node sends to the NTP port") == 1 and "--node-port" in server.err, server.err
+    dated = r"20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ kinalign time-server: warning: a node sends .*\n"
+    assert re.fullmatch(dated, server.err), server.err
 
 
 @case
@@ -330,7 +332,7 @@ def people_are_told_where_it_serves_what_clients_need_and_what_was_done(_):
         assert program.wait(30) == 0
     port = re.fullmatch(r"serving time on 127\.0\.0\.1:(\d+), UDP\n", first[0])[1]
     assert "stratum" in first[1] and first[2] == f"  clients  chrony: server 127.0.0.1 port {port} iburst\n", first
-    assert re.fullmatch(r"served for [\d.]+ m?s: 0 answered\n", last), last
+    assert re.fullmatch(r"served for [\d.]+ m?s: 0 NTP requests answered\n", last), last
 
 
 @case
@@ -354,10 +356,10 @@ def a_terminal_shows_the_counts_in_one_line_that_is_gone_at_the_end(_):
         program.stdout.readline()
         os.close(end)
         shown = ""
-        while "serving: 0 answered" not in shown:  # asked four times a second
+        while "serving: 0 NTP requests answered" not in shown:  # asked four times a second
             shown += os.read(terminal, 4096).decode()
         program.send_signal(signal.SIGTERM)
-        assert program.stdout.read().endswith(": 0 answered\n") and program.wait(30) == 0
+        assert program.stdout.read().endswith(": 0 NTP requests answered\n") and program.wait(30) == 0
         shown += os.read(terminal, 4096).decode()
     assert shown.count("\n") == 0 and shown.endswith("\r\x1b[K"), repr(shown)
 

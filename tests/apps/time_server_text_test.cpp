@@ -51,12 +51,19 @@ TEST_CASE("a synchronised clock is named with its error, a leap second with its 
         "synchronised within 10 us, stratum 9, a leap second at the end of the day (UTC)");
 }
 
+TEST_CASE("a live message has its time of day, in UTC") {
+  CHECK(live_line(utc_time(1'795'369'103'900'000'000), "node 7: joined") ==
+        "2026-11-22T17:38:23Z kinalign time-server: node 7: joined");
+}
+
 TEST_CASE("counts name what there was and leave out the rest; JSON has all of them") {
   NtpCounts counts;
-  CHECK(counts_text(counts) == "0 answered");
+  CHECK(counts_text(counts) == "0 NTP requests answered");
+  counts[NtpOutcome::answered] = 1;
+  CHECK(counts_text(counts) == "1 NTP request answered");
   counts[NtpOutcome::answered] = 12'345;
   counts[NtpOutcome::wrong_mode] = 7;
-  CHECK(counts_text(counts) == "12,345 answered, 7 wrong mode");
+  CHECK(counts_text(counts) == "12,345 NTP requests answered, 7 wrong mode");
   const auto json = nlohmann::json::parse(counts_json(counts, "stopped", 1.23456));
   CHECK(json["event"] == "stopped");
   CHECK(json["elapsed_s"] == 1.235);
