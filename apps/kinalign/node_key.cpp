@@ -13,18 +13,51 @@ struct NodeKeyFlags {
   std::optional<std::int64_t> node;
 };
 
+/// An unset variable is no file's name.
+Result<void> check_named(const NodeKeyFlags& o, const Sources& given) {
+  const bool drawn = given.contains("new_lab_key") && o.new_lab_key.empty();
+  const bool read = given.contains("lab_key") && o.lab_key.empty();
+  if (!drawn && !read) return {};
+  return Failure(Error{drawn ? "--new-lab-key" : "--lab-key", 0, "a file's name", "nothing"});
+}
+
+/// Of a lab's key: nothing else is to be said.
+Result<void> check_drawn(const NodeKeyFlags& o, const Common& common) {
+  if (!common.out.empty()) {
+    return Failure(Error{"--out", 0, "none beside --new-lab-key, which names the new file itself",
+                         shown(common.out)});
+  }
+  if (o.lab_key.empty() && !o.node) return {};
+  return Failure(Error{o.node ? "--node" : "--lab-key", 0,
+                       "none beside --new-lab-key: one call makes the lab's key, the next ones, "
+                       "with --lab-key FILE --node N, the nodes'",
+                       "both"});
+}
+
+Result<void> check_node(const NodeKeyFlags& o) {
+  if (o.lab_key.empty() && !o.node) {
+    return Failure(Error{"", 0,
+                         "--new-lab-key FILE, once in a lab, or --lab-key FILE --node N, for each "
+                         "node",
+                         "none of them"});
+  }
+  if (!o.node) {
+    return Failure(
+        Error{"--lab-key", 0, "--node N beside it, the node that the key is for", "none"});
+  }
+  if (!o.lab_key.empty()) return {};
+  return Failure(
+      Error{"--node", 0, "--lab-key FILE beside it, of which a node's key is made", "none"});
+}
+
 Usage describe_node_key(NodeKeyFlags& o) {
   Usage usage;
   usage.flags = {{"new_lab_key", "draw a lab key, and write it into this new file", &o.new_lab_key},
                  {"lab_key", "the file with the lab's key", &o.lab_key},
                  {"node", "the node's id, as it is flashed", &o.node, 0.0, 4294967295.0}};
-  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
-    const bool draws = !o.new_lab_key.empty(), derives = !o.lab_key.empty() && o.node;
-    if (draws != derives && !(draws && (!o.lab_key.empty() || o.node || !common.out.empty()))) {
-      return {};
-    }
-    return Failure(Error{"", 0, "--new-lab-key FILE alone, or --lab-key FILE with --node N",
-                         draws ? "both" : "neither"});
+  usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
+    KA_TRY(check_named(o, given));
+    return o.new_lab_key.empty() ? check_node(o) : check_drawn(o, common);
   };
   return usage;
 }

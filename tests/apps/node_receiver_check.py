@@ -158,8 +158,25 @@ def keys_are_written_for_their_owner_and_never_over_a_file(folder):
         done = kinalign(*verb, "--lab-key", lab)
         assert done.returncode == 3 and b"chmod 600" in done.stderr and b"mode 0640" in done.stderr, done
         assert text.encode()[:8] not in done.stderr
-    cases.wrong("node-key", says="expected --new-lab-key FILE alone, or --lab-key FILE with --node N, found neither")
     cases.wrong("time-server", "--lab-key", "x", says="--lab-key: expected --node-port beside it, found none")
+
+
+@case
+def flags_of_node_key_that_do_not_go_together_are_told_with_what_is_meant(_):
+    cases.wrong("node-key", says="expected --new-lab-key FILE, once in a lab, or --lab-key FILE --node N, for each node, "
+                "found none of them")
+    cases.wrong("node-key", "--lab-key", "a", says="--lab-key: expected --node N beside it, the node that the key is for, "
+                "found none")
+    cases.wrong("node-key", "--node", 7, says="--node: expected --lab-key FILE beside it, of which a node's key is made, "
+                "found none")
+    for flag, value in (("--lab-key", "b"), ("--node", 7)):
+        cases.wrong("node-key", "--new-lab-key", "a", flag, value,
+                    says=f"{flag}: expected none beside --new-lab-key: one call makes the lab's key, the next ones, "
+                    "with --lab-key FILE --node N, the nodes', found both")
+    cases.wrong("node-key", "--new-lab-key", "a", "-o", "b",
+                says="--out: expected none beside --new-lab-key, which names the new file itself, found b")
+    for flag in ("--lab-key", "--new-lab-key"):
+        cases.wrong("node-key", flag, "", says=f"{flag}: expected a file's name, found nothing")
 
 
 @case
