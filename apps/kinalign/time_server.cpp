@@ -91,8 +91,8 @@ Usage describe_time_server(TimeServerFlags& o) {
   usage.settings = {
       {"port", "UDP port; 0: any free one", &o.port, 0.0, 65535.0},
       {"local_stratum",
-       "serve this machine's clock as the lab's reference while nothing "
-       "synchronises it, at this stratum; 10 is usual",
+       "let clients follow this machine's clock, right or wrong, while nothing synchronises it: "
+       "the lab's reference, at this stratum; 10 is usual",
        &o.local_stratum, 1.0, 15.0},
       {"node_port", "UDP port for inertial nodes; 0: any free one", &o.node_port, 0.0, 65535.0},
       {"lab_key", "file of the key that the nodes' keys come from (see node-key)", &o.lab_key}};
@@ -250,8 +250,9 @@ Result<int> run(TimeServerFlags& o, Call& call) {
   console.print_json(start_json(served, server.state()));
   if (server.state().leap == NtpLeap::unsynchronised) {
     console.note(
-        "kinalign time-server: warning: --local-stratum 10 makes this machine the reference "
-        "of a lab without another");
+        "kinalign time-server: warning: nothing sets this machine's clock, so clients are told "
+        "not to follow it; with --local-stratum 10 they do, right or wrong, in a lab that has no "
+        "other clock");
   }
   console.flush();
   std::optional<NodeHerald> node_herald;
