@@ -111,10 +111,10 @@ std::string progress_line(std::string_view what, std::uint64_t done, std::uint64
 /// line's second column or, where there is none, two blanks further in. Colours have no width.
 std::string broken(std::string_view lines, std::size_t width);
 
-/// From here on the first Ctrl-C or SIGTERM is only noted, and a reader of stdout that goes away is
-/// no signal.
+/// From here on the first Ctrl-C, SIGTERM or SIGHUP is only noted, and a reader of stdout that goes
+/// away is no signal. Who started the program with SIGHUP ignored (nohup) wants it to go on.
 void take_signals();
-/// Ctrl-C was pressed, or SIGTERM came, since take_signals().
+/// Ctrl-C was pressed, or SIGTERM or SIGHUP came, since take_signals().
 bool interrupted();
 
 }  // namespace kinalign

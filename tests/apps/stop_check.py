@@ -67,12 +67,12 @@ def a_kill_at_any_moment_leaves_the_old_file_or_the_new_one(folder):
 @case
 def an_interruption_at_any_moment_ends_with_130_and_no_half_file(folder):
     def check(code, err):
-        if code in (-signal.SIGINT, -signal.SIGTERM):  # before the program took the signal
+        if code in (-signal.SIGINT, -signal.SIGTERM, -signal.SIGHUP):  # before the program took the signal
             assert err == "", err
             return
         assert code in (0, 130), f"exit {code}: {err}"
         assert code == 0 or "no unfinished file is left" in err, err
-    stop_often(folder, (signal.SIGINT, signal.SIGTERM), check)
+    stop_often(folder, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP), check)
 
 
 @case

@@ -315,11 +315,20 @@ def a_reader_that_stops_reading_holds_up_nothing(_):
 
 
 @case
-def both_signals_end_it_with_exit_code_0_and_its_counts(_):
-    for sign in (signal.SIGINT, signal.SIGTERM):
+def ctrl_c_term_and_a_closed_terminal_end_it_with_exit_code_0_and_its_counts(_):
+    for sign in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         with Server(*ALL_ADDRESSES, sign=sign) as server:
             ask(server, CLIENT)
         assert server.counts["answered"] == 1 and server.err == "", (server.counts, server.err)
+
+
+@case
+def under_nohup_a_closed_terminal_does_not_end_it(_):
+    with Server(*ALL_ADDRESSES, prefix=("nohup",)) as server:
+        server.program.send_signal(signal.SIGHUP)
+        time.sleep(0.5)
+        assert len(ask(server, CLIENT)) == 48
+    assert server.counts["answered"] == 1, server.counts
 
 
 @case
