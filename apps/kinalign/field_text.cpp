@@ -134,7 +134,8 @@ std::string placeholder(const Field& field) {
     if (!choice.empty()) choices += (choices.empty() ? "" : "|") + choice;
   }
   if (!choices.empty()) return choices;
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> names{
+  if (field.name.ends_with("layout")) return "LAYOUT";
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 18> names{
       {{"out", "FILE"},
        {"config", "FILE"},
        {"mocap", "FILE"},
@@ -144,7 +145,15 @@ std::string placeholder(const Field& field) {
        {"points", "NAME=FILE"},
        {"joint", "JOINT=JOINT"},
        {"select", "COLUMN=VALUE"},
-       {"root_node", "NODE"}}};
+       {"root_node", "NODE"},
+       {"reference", "STREAM"},
+       {"listen", "ADDRESS"},
+       {"exempt", "NETWORK"},
+       {"port", "PORT"},
+       {"node_port", "PORT"},
+       {"lab_key", "FILE"},
+       {"new_lab_key", "FILE"},
+       {"node", "ID"}}};
   for (const auto& [name, shown_as] : names) {
     if (field.name == name) return std::string(shown_as);
   }

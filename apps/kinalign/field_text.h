@@ -21,7 +21,7 @@ std::string field_text(const Field& field);
 /// Whether a flag of it stands alone: --double, not --double true.
 bool is_switch(const Field& field);
 
-/// What stands behind the flag in a help page: "NUMBER", "spline|slerp", "" for a switch.
+/// What stands behind the flag in a help page: "NUMBER", "FILE", "spline|slerp", "" for a switch.
 std::string placeholder(const Field& field);
 
 /// "--gap-ms" of gap_ms.

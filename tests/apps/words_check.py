@@ -90,6 +90,13 @@ def bash_offers_the_flags_of_the_help_page_and_the_choices_that_the_program_take
 
 
 @case
+def what_stands_behind_a_flag_says_what_it_is(_):
+    text = {f"{verb} {flag}" for verb in verbs() for flag, behind in flags(verb).items() if behind == "TEXT"}
+    assert not text, text
+    assert flags("time-server")["--listen"] == "ADDRESS" and flags("node-key")["--new-lab-key"] == "FILE"
+
+
+@case
 def zsh_and_fish_offer_the_same_flags(folder):
     zsh, fish = (done_with(0, "completion", shell)[0] for shell in ("zsh", "fish"))
     for verb in verbs():
@@ -127,7 +134,7 @@ def another(verb, name, value):
     behind = flags(verb or "align")["--" + name.replace("_", "-")]
     if not behind:
         return "false" if value == "true" else "true"
-    return [word for word in [*behind.split("|"), "7"] if word not in (value, "TEXT", "NUMBER", "NODE")][0]
+    return [word for word in [*behind.split("|"), "7"] if word != value and not word.isupper()][0]
 
 
 @case
