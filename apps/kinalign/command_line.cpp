@@ -167,7 +167,7 @@ Fields common_fields(Common& common, const Page& page) {
   const Fields choosable{
       {"out", "file to write", &common.out},
       {"force", "overwrite what is there", &common.force},
-      {"json", "print one JSON object and nothing else on stdout", &common.json},
+      {"json", "print JSON and nothing else on stdout", &common.json},
       {"dry_run", "say what would be done and write nothing", &common.dry_run},
       {"jobs", "threads to use; 0: one a processor", &common.jobs, 0.0, 1024.0},
   };

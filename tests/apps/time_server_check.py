@@ -389,6 +389,19 @@ def on_a_terminal_json_stands_alone(_):
 
 
 @case
+def the_help_and_the_page_name_every_kind_of_line(_):
+    page = (pathlib.Path(__file__).parents[2] / "docs/time_server.md").read_text()
+    table = page.split("| event | |\n| --- | --- |\n")[1].split("\n\n")[0]
+    listed = {name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.split("|")[1])}
+    assert len(listed) >= 12, listed
+    told = re.split(r"[^\w]+", kinalign("time-server", "--help").stdout.decode())
+    assert not listed - set(told), listed - set(told)
+    source = "".join(path.read_text() for path in pathlib.Path(__file__).parents[2].glob("apps/kinalign/*.cpp"))
+    made = set(re.findall(r'"event"[,:] "(\w+)"', source))
+    assert {"node", "pair", "key_replaced", "missed"} <= made and not made - listed, made - listed
+
+
+@case
 def wrong_use_is_told_before_anything_is_served(_):
     cases.wrong("time-server", "--exempt", "lab",
                 says="--exempt: expected an address or a network as 192.168.7.0/24, found lab")
