@@ -19,6 +19,16 @@ std::uint32_t random_boot_id() {
   return device();
 }
 
+std::string server_text(const HostNodeOptions& options) {
+  const bool six = options.host.find(':') != std::string::npos;
+  return (six ? "[" + options.host + "]" : options.host) + ":" + options.port;
+}
+
+std::uint64_t wrong_key(const AnswerCounts& counts) {
+  const auto of = [&](NodeRefusal why) { return counts.refused[static_cast<std::size_t>(why)]; };
+  return of(NodeRefusal::no_mac) + of(NodeRefusal::wrong_mac);
+}
+
 ClockTruth first_truth(const HostNodeOptions& options) {
   const std::uint32_t boot_id = options.has_boot_id ? options.node.boot_id : random_boot_id();
   return {boot_id, raw_ns(), options.offset_s * 1e6, options.drift_ppm};
@@ -32,6 +42,7 @@ Life::Life(const HostNodeOptions& options, NodeSocket socket)
       clock_(first_truth(options)),
       board_(options_, clock_, socket_),
       begin_ns_(clock_.truths().front().raw_ns),
+      watch_(server_text(options), options.node.has_key),
       tick_period_us_(1e6 / (options.clockless ? options.rate_hz : options.sample_rate_hz)) {
   boot(clock_.truths().front().boot_id);
 }
@@ -101,7 +112,17 @@ std::int64_t Life::idle_ns() {
   return std::clamp(ns(idle_us * 1e-6), std::int64_t{0}, std::int64_t{100'000'000});
 }
 
-Tried<void> Life::live(int stop) {
+void Life::watch(std::int64_t age_ns, const Say& say) {
+  if (age_ns < next_watch_ns_) return;
+  next_watch_ns_ = age_ns + ns(0.25);
+  const LifeCounts now = counts();
+  const AnswerCounts &replies = now.node.replies, &answers = now.clockless.answers;
+  const std::string line = watch_.look(age_ns, replies.accepted + answers.accepted,
+                                       wrong_key(replies) + wrong_key(answers));
+  if (!line.empty()) say(line);
+}
+
+Tried<void> Life::live(int stop, const Say& say) {
   for (;;) {
     const std::int64_t age = raw_ns() - begin_ns_;
     if (options_.seconds > 0 && age >= ns(options_.seconds)) return {};
@@ -109,6 +130,7 @@ Tried<void> Life::live(int stop) {
       if (auto befallen = befall(options_.events[next_event_++]); !befallen) return befallen;
     }
     tick_and_poll();
+    watch(age, say);
     const timespec idle{0, idle_ns()};
     std::array<pollfd, 2> watched{{{socket_.descriptor(), POLLIN, 0}, {stop, POLLIN, 0}}};
     ppoll(watched.data(), watched.size(), &idle, nullptr);

@@ -2,10 +2,13 @@
 // A node's life on the host: ticks, arrivals and what befalls it, until its time is up.
 #pragma once
 
+#include "firmware/host_node/answer_watch.h"
 #include "firmware/host_node/posix_board.h"
 #include "firmware/node/clockless_node.h"
 #include "firmware/node/node.h"
 
+#include <functional>
+#include <string>
 #include <variant>
 
 namespace kinalign {
@@ -21,8 +24,10 @@ class Life {
  public:
   Life(const HostNodeOptions& options, NodeSocket socket);
 
-  /// Until options.seconds are over or `stop`, a descriptor, can be read.
-  Tried<void> live(int stop);
+  /// Until options.seconds are over or `stop`, a descriptor, can be read. `say` is told lines for
+  /// who started it: that nobody answers.
+  using Say = std::function<void(const std::string&)>;
+  Tried<void> live(int stop, const Say& say);
   LifeCounts counts();
   const std::vector<ClockTruth>& truths() const { return clock_.truths(); }
   const Lights& lights() const { return board_.lights(); }
@@ -31,6 +36,7 @@ class Life {
   void boot(std::uint32_t boot_id);
   Tried<void> befall(const Event& event);
   void tick_and_poll();
+  void watch(std::int64_t age_ns, const Say& say);
   std::int64_t idle_ns();
   std::uint32_t ticks_due();
 
@@ -41,6 +47,8 @@ class Life {
   std::variant<std::monostate, Node, ClocklessNode> node_;
   LifeCounts past_;  // of the starts before this one
   std::int64_t begin_ns_;
+  AnswerWatch watch_;
+  std::int64_t next_watch_ns_ = 0;
   std::size_t next_event_ = 0;
   bool link_up_ = true;
   double tick_period_us_;

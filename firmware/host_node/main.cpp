@@ -15,6 +15,8 @@ namespace {
 
 using namespace kinalign;
 
+void complain(const std::string& line) { std::fprintf(stderr, "host_node: %s\n", line.c_str()); }
+
 /// Can be read once the program was asked to end.
 int stop_descriptor() {
   sigset_t signals{};
@@ -50,7 +52,7 @@ Tried<void> run(HostNodeOptions options) {
   if (!socket) return tl::unexpected(socket.error());
   const int stop = stop_descriptor();
   const auto life = std::make_unique<Life>(options, *std::move(socket));
-  if (auto lived = life->live(stop); !lived) return lived;
+  if (auto lived = life->live(stop, complain); !lived) return lived;
   std::puts(report(options, *life).c_str());
   return {};
 }
@@ -62,6 +64,6 @@ int main(int argc, char** argv) {
   auto options = options_from(words);
   const Tried<void> done = options ? run(*std::move(options)) : tl::unexpected(options.error());
   if (done) return 0;
-  std::fprintf(stderr, "host_node: %s\n", done.error().text.c_str());
+  complain(done.error().text);
   return done.error().exit_code;
 }

@@ -73,12 +73,13 @@ class Host:
     def run(self, *options, seconds=1.5):
         """host_node's report."""
         command = [str(HOST_NODE), "--server", self.address(), "--id", "7", "--seconds", str(seconds), *options]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             while process.poll() is None:
                 self.serve_one()
             for _ in range(2):
                 self.serve_one()
             assert process.returncode == 0
+            self.err = process.stderr.read()
             lines = process.stdout.read().splitlines()
         assert len(lines) == 1, lines
         return json.loads(lines[0])
@@ -157,6 +158,38 @@ def a_node_with_a_key_signs_and_believes_nobody_else(folder):
     report = forger.run("--key-file", secret(folder))
     assert report["accepted"] == 0 and report["wrong_mac"] > 10 and report["no_mac"] > 10, report
     assert not any(got.datagram.echo for got in forger.got)
+
+
+@case
+def a_node_that_is_not_answered_says_so_once_with_the_likely_causes_and_when_it_is_answered(folder):
+    for keyed in (False, True):
+        host = Host(key=KEY if keyed else None, answers=False)
+        begin = time.monotonic()
+        answered = host.answers_to
+        host.answers_to = lambda *got: answered(*got) if time.monotonic() > begin + 6.5 else ()
+        host.answers = True
+        host.run(*(("--key-file", secret(folder)) if keyed else ()), seconds=7.5)
+        cause = ("its --lab-key is not the one that this node's key was made from" if keyed else
+                 "it has a --lab-key, and this node needs --key-file")
+        assert host.err == (f"host_node: {host.address()} has not answered for 5 s: either no kinalign time-server "
+                            f"--node-port is there, or {cause}\n"
+                            f"host_node: {host.address()} answers now\n"), host.err
+
+
+@case
+def a_node_whose_answers_have_another_key_says_that(folder):
+    host = Host(key=KEY)
+    host.answers_to = lambda datagram, _: [datagrams.reply(datagram.origin, 1, 1, FORGER)]
+    host.run("--key-file", secret(folder), seconds=6)
+    assert host.err == (f"host_node: answers of {host.address()} do not count: they are signed with another key than "
+                        "--key-file has, or not at all\n"), host.err
+
+
+@case
+def a_node_that_is_answered_is_quiet(_):
+    host = Host()
+    host.run(seconds=6)
+    assert host.err == "", host.err
 
 
 @case

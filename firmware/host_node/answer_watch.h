@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What host_node says while nobody answers it: seldom, but from the first seconds on. A node that
+// is refused sends on all the same, and would look like one that is heard.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+namespace kinalign {
+
+class AnswerWatch {
+ public:
+  /// `server`: as it was given; `keyed`: the node has a key.
+  AnswerWatch(std::string server, bool keyed) : server_(std::move(server)), keyed_(keyed) {}
+
+  /// Some times a second, with the answers so far: those that counted, and those that a wrong key
+  /// was behind. A line to be said now, or "".
+  std::string look(std::int64_t age_ns, std::uint64_t accepted, std::uint64_t wrong_key);
+
+ private:
+  std::string complaint(std::int64_t silent_ns, bool answers_came) const;
+
+  std::string server_;
+  bool keyed_;
+  bool complained_ = false;
+  std::uint64_t accepted_ = 0, wrong_key_ = 0;  // when it was answered last
+  std::int64_t answered_ns_ = 0;
+  std::int64_t next_ns_ = first_ns;
+
+  static constexpr std::int64_t first_ns = 5'000'000'000, every_ns = 60'000'000'000;
+};
+
+}  // namespace kinalign
