@@ -168,6 +168,31 @@ const std::vector<Flag>& flags() {
   return all;
 }
 
+/// Whether one or two letters beside each other are all that differs.
+bool resembles(std::string_view word, std::string_view name) {
+  const std::size_t longer = std::max(word.size(), name.size());
+  while (!word.empty() && !name.empty() && word.front() == name.front()) {
+    word.remove_prefix(1);
+    name.remove_prefix(1);
+  }
+  while (!word.empty() && !name.empty() && word.back() == name.back()) {
+    word.remove_suffix(1);
+    name.remove_suffix(1);
+  }
+  const std::size_t differing = std::max(word.size(), name.size());
+  return differing <= 2 && 2 * differing <= longer;
+}
+
+tl::unexpected<Trouble> no_option(const std::string& word) {
+  const std::string_view name =
+      std::string_view(word).substr(std::min(word.find_first_not_of('-'), word.size()));
+  const auto near = std::find_if(flags().begin(), flags().end(),
+                                 [&](const Flag& one) { return resembles(name, one.name); });
+  const std::string meant =
+      near == flags().end() ? "" : std::string("did you mean --") + near->name + "? ";
+  return wrong_use("no option " + word + "; " + meant + "--help says which there are");
+}
+
 Tried<HostNodeOptions> completed(HostNodeOptions options) {
   if (options.help || options.script) return options;
   if (options.host.empty())
@@ -189,7 +214,7 @@ Tried<HostNodeOptions> options_from(std::span<const char* const> words) {
       return word.substr(0, 2) == "--" && word.substr(2) == one.name;
     });
     if (flag == flags().end()) {
-      return wrong_use("no option " + std::string(word) + "; --help says which there are");
+      return no_option(words[i]);
     }
     const std::string value = flag->expected != nullptr && i + 1 < words.size() ? words[++i] : "";
     if (!flag->read(value, options)) {
