@@ -59,4 +59,15 @@ def words_that_are_not_understood_are_refused(folder):
         assert done.returncode == 2 and "usage" in done.stderr, words
 
 
-sys.exit(run_cases("kinalign clock steps "))
+@case
+def a_program_that_is_not_built_is_named_with_what_builds_it(folder):
+    script = ROOT / "tools/clock_steps/steps.py"
+    done = subprocess.run([sys.executable, script, folder / "kinalign_clock_steps"], capture_output=True, text=True,
+                          check=False)
+    assert done.returncode == 1 and done.stdout == "", done
+    assert done.stderr == (
+        f"steps.py: {folder}/kinalign_clock_steps: expected kinalign_clock_steps, found no such program\n"
+        "  ./dev build makes it, as build/dev/tools/kinalign_clock_steps\n"), done
+
+
+sys.exit(run_cases("kinalign clock steps ", sys.argv[2:]))

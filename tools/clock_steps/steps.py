@@ -13,6 +13,7 @@ Needs SciPy.
 """
 import argparse
 import json
+import shutil
 import subprocess
 import sys
 
@@ -74,6 +75,9 @@ def least_violation(up, down):
 
 def judged(program, minutes, seeds, first, links, times):
     """What the program says, a wrong recording with its `violation`."""
+    if not shutil.which(program):
+        sys.exit(f"steps.py: {program}: expected kinalign_clock_steps, found no such program\n"
+                 "  ./dev build makes it, as build/dev/tools/kinalign_clock_steps")
     words = [str(word) for word in (program, minutes, seeds, first, links, *times)]
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as told:
         for line in told.stdout:
