@@ -33,6 +33,15 @@ std::vector<std::string> row_names(const std::string& text) {
   return names;
 }
 
+std::vector<std::string> captions(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("**")) lines.push_back(line);
+  }
+  return lines;
+}
+
 /// Of half a minute and one seed each, for what does not hang on figures.
 const PageFigures& short_page() {
   static const PageFigures page = measure({.minute = {.minutes = 0.5, .seeds = 1, .first = 1},
@@ -54,6 +63,39 @@ TEST_CASE("docs/performance.md has the rows that the clock table makes, between 
   const std::string made = markdown(short_page());
   CHECK(made.ends_with(mark));
   CHECK(row_names(page.substr(begin, end - begin)) == row_names(made));
+  CHECK(captions(page.substr(begin, end - begin)) == captions(made));
+}
+
+TEST_CASE("each table of the page stands below what it shows, in which unit, and its bar") {
+  std::string before;
+  std::size_t tables = 0;
+  std::istringstream made(markdown(short_page()));
+  for (std::string line, last; std::getline(made, line); last = line) {
+    if (line.starts_with("**")) before = line;
+    if (!line.starts_with("| ") || last.starts_with("|")) continue;
+    CAPTURE(line);
+    ++tables;
+    CHECK(before.find("--bars") != std::string::npos);
+    const bool has_unit = before.find(" in ms") != std::string::npos ||
+                          before.find(" in s,") != std::string::npos ||
+                          before.find("in percent") != std::string::npos ||
+                          before.find("without a unit") != std::string::npos;
+    CHECK(has_unit);
+    before.clear();  // each has one of its own
+  }
+  CHECK(tables == 8);
+}
+
+TEST_CASE("the page's bars are those that are judged") {
+  PageFigures page = short_page();
+  page.sets = page_sets(1);  // the page's own lengths: bars hang on them
+  const std::string made = markdown(page);
+  const auto has = [&](const char* line) { return made.find(line) != std::string::npos; };
+  CHECK(has("\n| bar: kinalign, live | 0.005 / 0.005 | 0.08 / 0.09 | 0.22 / 0.14 |"));
+  CHECK(has("| 0.02 / 0.012 | 0.05 / 0.015 | none / none | 0.75 / 0.25 |\n"));  // less asymmetry
+  CHECK(has("\n| bar: live, p99 | 0.08 | 1.3 | 5 | 2.2 | 3.2 | 5.5 | 11 |\n"));
+  CHECK(has("\n| bar: both least | none | none | 100 / 150 | none | none | none | none |\n"));
+  CHECK(has("\n| bar: kinalign, live | 0.006 / 0.01 | 0.11 / 0.16 |"));  // an hour, bursts
 }
 
 TEST_CASE("each set stands in the column that is named for it") {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/clock_table/bars.h"
 
-#include "tools/clock_table/promises.h"
-
 #include <fmt/format.h>
 
 namespace kinalign {
@@ -46,11 +44,22 @@ const ErrorBars& error_bars(double minutes) {
   return minutes == 10.0 ? errors_of_ten_minutes : errors_of_a_minute;
 }
 
+}  // namespace
+
+std::array<Bar, 7> error_bars(const RunSet& set, Link link) {
+  std::array<Bar, 7> bars = error_bars(set.minutes)[static_cast<std::size_t>(link)];
+  for (Bar& bar : bars) {
+    if (bar && set.bursts) bar = *bar * bursts_allow;
+  }
+  return bars;
+}
+
+namespace {
+
 void judge_errors(const RunSet& set, const LinkFigures& f, Sheet& sheet) {
   const MethodFigures &offline = f.of(Method::offline), &live = f.of(Method::live);
-  const auto& bars = error_bars(set.minutes)[static_cast<std::size_t>(f.link)];
+  const auto bars = error_bars(set, f.link);
   const auto judge = [&](const char* column, Extreme measured, Bar bar) {
-    if (bar && set.bursts) bar = *bar * bursts_allow;
     sheet.at_most(set.bursts ? "5.5" : "5.3", column, measured, bar);
   };
   judge("offline, pooled RMS, ms", in_ms(offline.pooled), bars[0]);
@@ -61,10 +70,6 @@ void judge_errors(const RunSet& set, const LinkFigures& f, Sheet& sheet) {
   judge("live, p99, ms", in_ms(live.p99), bars[5]);
   judge("live, worst stamp, ms", in_ms(live.worst_stamp), bars[6]);
 }
-
-/// Ours: what section 5.4 takes for granted. The first frames have no certificate yet, and with
-/// bursts a slip that was none withdraws some.
-constexpr double least_certified = 0.97;
 
 double certified_share(const IntervalFigures& f) {
   return static_cast<double>(f.certified) / static_cast<double>(f.frames);

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "tools/clock_table/measure.h"
+#include "tools/clock_table/promises.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,9 @@ struct Verdict {
   /// A figure that is not a number meets no bar.
   bool met() const { return at_least ? measured.value >= bar : measured.value <= bar; }
 };
+
+/// What is promised of the errors of such a set on a link: columns as in ErrorBars, ms.
+std::array<Bar, 7> error_bars(const RunSet& set, Link link);
 
 /// All columns that are promised of sets like this one (promises.h), link by link.
 std::vector<Verdict> verdicts(const RunSet& set, std::span<const LinkFigures> tables);
