@@ -144,7 +144,9 @@ def on_a_terminal_json_stands_alone(_):
         assert program.wait(30) == 0
         shown += os.read(terminal, 4096)
         os.close(end)
-    events = [parsed(line)["event"] for line in shown.decode().splitlines()]
+    lines = shown.decode().splitlines()
+    assert all(line.startswith("{") for line in lines), shown
+    events = [parsed(line)["event"] for line in lines]
     assert events == ["started", "stopped"], shown
 
 
