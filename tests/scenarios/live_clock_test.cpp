@@ -255,19 +255,22 @@ TEST_CASE("fault 13 loss_burst_50: the interval widens and does not lie") {
     for (const JudgedStamp& stamp : run.stamps) sum += stamp.half_width;
     return sum / static_cast<double>(run.stamps.size());
   };
-  for (const auto seed : fresh_seeds(10)) {
-    CAPTURE(seed);
-    for (int i = 0; i < links; ++i) {
-      CAPTURE(letter(static_cast<Link>(i)));
+  const auto seeds = fresh_seeds(10);
+  for (int i = 0; i < links; ++i) {
+    CAPTURE(letter(static_cast<Link>(i)));
+    double widened = 0.0;
+    for (const auto seed : seeds) {
+      CAPTURE(seed);
       ExchangeOptions options = minutes(static_cast<Link>(i), 1.0);
       const auto clean = judge_live(simulate_exchanges(options, seed));
       options.link.bursts = true;
       const auto run = judge_live(simulate_exchanges(options, seed));
       CHECK(run.lies() == 0);
       CHECK(run.frames < 0.9 * static_cast<double>(clean.frames));
-      // On the others that lies within the chance of when the fast packets come.
-      if (options.link.link <= Link::quiet) CHECK(mean_half_width(run) > mean_half_width(clean));
+      widened += mean_half_width(run) - mean_half_width(clean);
     }
+    // Of one seed, and on the others, that lies within the chance of when the fast packets come.
+    if (static_cast<Link>(i) <= Link::quiet && seeds.size() > 1) CHECK(widened > 0.0);
   }
 }
 
