@@ -13,6 +13,8 @@ namespace kinalign {
 
 namespace {
 
+constexpr Duration between_sockets = std::chrono::seconds(1);
+
 /// fe80::/10 is an address of an interface, which we don't know here.
 bool is_link_local(const HostAddress& host) {
   return host[0] == 0xfe && (host[1] & 0xc0U) == 0x80U;
@@ -45,16 +47,16 @@ void NodeLines::wait_for(const UdpSocket& socket, std::uint64_t number) {
   ::epoll_ctl(poll_, EPOLL_CTL_ADD, socket.fd(), &event);
 }
 
-void NodeLines::follow(std::size_t stream, const NodeAddress& from, const HostAddress& to,
-                       std::uint16_t port) {
+void NodeLines::follow(std::size_t stream, const Way& way, std::uint16_t port, HostTime now) {
   Line& line = lines_[stream];
-  if (line.from == from && line.to == to) return;
-  line.from = from;
-  line.to = to;
+  if (line.socket && line.way == way) return;
+  if (line.asked != HostTime::min() && now - line.asked < between_sockets) return;
+  line.asked = now;
+  line.way = way;
   if (line.socket) dropped_before_ += dropped_by_kernel(*line.socket);
   line.socket.reset();  // which the kernel takes out of poll_
-  if (is_link_local(from.host) || is_link_local(to)) return;
-  auto socket = UdpSocket::connected(to, port, from.host, from.port);
+  if (is_link_local(way.from.host) || is_link_local(way.to)) return;
+  auto socket = UdpSocket::connected(way.to, port, way.from.host, way.from.port);
   if (!socket) return;
   attach_node_filter(*socket);
   line.socket.emplace(std::move(*socket));

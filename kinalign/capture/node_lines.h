@@ -26,10 +26,15 @@ class NodeLines {
   NodeLines& operator=(const NodeLines&) = delete;
   ~NodeLines();
 
-  /// The node sends from there to that address of ours. Where the system gives no socket, all goes
-  /// on over the open ones.
-  void follow(std::size_t stream, const NodeAddress& from, const HostAddress& to,
-              std::uint16_t port);
+  /// The node sends from `way.from` to `way.to`, an address of ours. Where the system gives no
+  /// socket all goes on over the open ones, and a second later it is asked again; no sooner does a
+  /// line follow one that sends from, or to, several addresses in turn.
+  struct Way {
+    NodeAddress from;
+    HostAddress to{};
+    bool operator==(const Way&) const = default;
+  };
+  void follow(std::size_t stream, const Way& way, std::uint16_t port, HostTime now);
 
   /// Can be read where any socket can.
   int fd() const { return poll_; }
@@ -39,9 +44,9 @@ class NodeLines {
 
  private:
   struct Line {
-    NodeAddress from;
-    HostAddress to{};
+    Way way;
     std::optional<UdpSocket> socket;
+    HostTime asked = HostTime::min();  // for the socket
   };
   void wait_for(const UdpSocket& socket, std::uint64_t number);
 

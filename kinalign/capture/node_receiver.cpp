@@ -85,7 +85,7 @@ void NodeReceiver::follow() {
   for (std::size_t i = 0; i < heard_.size(); ++i) {
     if (!heard_[i]) continue;
     const NodeLife& life = desk_->life_of(desk_->stream(i));
-    lines_.follow(i, life.address, *heard_[i], sockets_->front().port());
+    lines_.follow(i, {life.address, *heard_[i]}, sockets_->front().port(), clock_.now());
     heard_[i].reset();
   }
 }
