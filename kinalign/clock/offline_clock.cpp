@@ -21,6 +21,7 @@ constexpr double longest_wait_s = 60.0;  // of a packet
 constexpr double longest_piece_s = 1e6;  // eleven days
 
 struct Walk {
+  std::span<const Exchange> exchanges;
   std::vector<ClockEvent> events;
   std::vector<DoubtfulStretch> doubtful;
   std::vector<std::size_t> piece;  // of each exchange
@@ -38,8 +39,7 @@ bool begins_piece(ClockEvent::Kind kind) {
 }
 
 /// What happened with exchange i: pieces that begin reach back to where they do.
-void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const ClockEvent& event,
-          Side of) {
+void note(Walk& walk, std::size_t i, const ClockEvent& event, Side of) {
   if (event.kind == ClockEvent::Kind::withdrawn) {
     const ClockEvent& why = walk.events.back();
     const HostTime end = begins_piece(why.kind) ? why.begin - Duration{1} : event.end;
@@ -51,8 +51,11 @@ void note(Walk& walk, std::span<const Exchange> exchanges, std::size_t i, const 
     (of == Side::below ? walk.echo_left_out : walk.up_left_out)[i] = true;
   if (!begins_piece(event.kind)) return;
   const std::size_t next = walk.pieces++;
-  for (std::size_t k = i + 1; k-- > 0 && exchanges[k].h_rx >= event.begin &&
-                              (walk.late[k] || exchanges[k].boot == event.boot);) {
+  const auto is_of_it = [&](std::size_t k) {
+    const Exchange& e = walk.exchanges[k];
+    return e.h_rx >= event.begin && (walk.late[k] || e.boot == event.boot);
+  };
+  for (std::size_t k = i + 1; k-- > 0 && is_of_it(k);) {
     walk.piece[k] = next;
     walk.up_left_out[k] = walk.echo_left_out[k] = false;  // violators were the new piece's
   }
@@ -70,12 +73,12 @@ ExchangeRange exchanges_of(const Walk& walk, std::size_t p) {
 
 /// A crossing that can't be may be the first of a step that a reboot or the end cut short, or that
 /// was undone: live the five seconds before it are withdrawn, those behind it are in doubt as well.
-void doubt_behind_violators(Walk& walk, std::span<const Exchange> exchanges) {
-  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+void doubt_behind_violators(Walk& walk) {
+  for (std::size_t i = 0; i < walk.exchanges.size(); ++i) {
     if (!walk.up_left_out[i] && !walk.echo_left_out[i]) continue;
-    const HostTime h = exchanges[i].h_rx,
-                   last = exchanges[exchanges_of(walk, walk.piece[i]).end - 1].h_rx;
-    walk.doubtful.push_back({h, std::min(last, h + Violators::wait)});
+    const HostTime h = walk.exchanges[i].h_rx;
+    const Exchange& last = walk.exchanges[exchanges_of(walk, walk.piece[i]).end - 1];
+    walk.doubtful.push_back({h, std::min(last.h_rx, h + Violators::wait)});
   }
 }
 
@@ -95,6 +98,7 @@ std::vector<DoubtfulStretch> merged(std::vector<DoubtfulStretch> all) {
 
 Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assumptions) {
   Walk walk;
+  walk.exchanges = exchanges;
   walk.piece.resize(exchanges.size());
   walk.up_left_out.resize(exchanges.size());
   walk.echo_left_out.resize(exchanges.size());
@@ -109,13 +113,11 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
       walk.late[i] = true;
       continue;
     }
-    for (const ClockEvent& event : clock.take_events())
-      note(walk, exchanges, i, event, Side::above);
+    for (const ClockEvent& event : clock.take_events()) note(walk, i, event, Side::above);
     walk.assumed.resize(walk.pieces, clock.piece()->assumptions());
     if (e.echo) {
       clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
-      for (const ClockEvent& event : clock.take_events())
-        note(walk, exchanges, i, event, Side::below);
+      for (const ClockEvent& event : clock.take_events()) note(walk, i, event, Side::below);
       walk.assumed.resize(walk.pieces, clock.piece()->assumptions());
     }
     // Its estimate is refreshed when it is asked: this one sees what one in use does.
@@ -126,7 +128,7 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
     if (const auto since = last->uneasy_since())
       walk.doubtful.push_back({*since, exchanges.back().h_rx});
   }
-  doubt_behind_violators(walk, exchanges);
+  doubt_behind_violators(walk);
   walk.doubtful = merged(std::move(walk.doubtful));
   return walk;
 }
@@ -153,9 +155,13 @@ Certificate certificate_of(std::vector<Bound> bounds, const Assumptions& assumpt
 
 Duration nanoseconds(double s) { return Duration{static_cast<std::int64_t>(s)}; }
 
-/// Knots of a piece; whether its bounds go together everywhere and leave what there is at least.
-bool fill_knots(const PieceBounds& piece, const Certificate& certificate, OfflineEstimate& estimate,
-                double least_width, std::vector<ClockKnot>& knots) {
+struct Knots {
+  std::vector<ClockKnot> knots;
+  bool sound = true;  // bounds go together everywhere, and leave what there is at least
+};
+
+Knots knots_of(const PieceBounds& piece, const Certificate& certificate, OfflineEstimate& estimate,
+               double least_width) {
   double begin = piece.bounds.front().s, end = begin;
   for (const Bound& b : piece.bounds) {
     begin = std::min(begin, b.s);
@@ -164,20 +170,19 @@ bool fill_knots(const PieceBounds& piece, const Certificate& certificate, Offlin
   const double widened = certificate.assumptions().curvature * knot_s * knot_s / 8.0;
   const Duration base = piece.origin.host.time_since_epoch() - piece.origin.node.time_since_epoch();
   const auto count = static_cast<std::size_t>(std::ceil((end - begin) / knot_s)) + 1;
-  bool sound = true;
-  knots.clear();
+  Knots out;
   for (std::size_t i = 0; i < count; ++i) {
     const Duration since = nanoseconds(std::round((begin + knot_s * static_cast<double>(i)) * 1e9));
     const double t = seconds(since), likeliest = estimate.at(t);
     const auto range = certificate.at(t);
-    sound = sound && range && range->high - range->low >= least_width;
+    out.sound = out.sound && range && range->high - range->low >= least_width;
     const double low = range ? range->low : likeliest, high = range ? range->high : likeliest;
-    knots.push_back({piece.origin.node + since,
-                     base + nanoseconds(std::round(std::clamp(likeliest, low, high) * 1e9)),
-                     base + nanoseconds(std::floor((low - widened) * 1e9)),
-                     base + nanoseconds(std::ceil((high + widened) * 1e9))});
+    out.knots.push_back({piece.origin.node + since,
+                         base + nanoseconds(std::round(std::clamp(likeliest, low, high) * 1e9)),
+                         base + nanoseconds(std::floor((low - widened) * 1e9)),
+                         base + nanoseconds(std::ceil((high + widened) * 1e9))});
   }
-  return sound;
+  return out;
 }
 
 /// Under the assumptions of the live clock then: a piece that contradicts them has no certificate.
@@ -188,8 +193,9 @@ void fit(const PieceBounds& piece, double least_width, const Assumptions& assump
   model.round_trip = nanoseconds(estimate.least_round_trip() * 1e9);
   model.assumptions = assumptions;
   const Certificate certificate = certificate_of(piece.bounds, assumptions);
-  model.certified =
-      fill_knots(piece, certificate, estimate, least_width, model.knots) && certificate.bounded();
+  Knots found = knots_of(piece, certificate, estimate, least_width);
+  model.knots = std::move(found.knots);
+  model.certified = found.sound && certificate.bounded();
 }
 
 /// Whether a counter counted about as long as the host did: a piece of two frames has no
@@ -207,15 +213,15 @@ bool counted_like_the_host(const PieceBounds& piece) {
 }
 
 /// All exchanges of a piece but those that can't be and those that are in doubt.
-PieceBounds collect(std::span<const Exchange> exchanges, const Walk& walk, std::size_t p,
-                    std::span<const DoubtfulStretch> doubtful, ClockPieceModel& model) {
+PieceBounds collect(const Walk& walk, std::size_t p, std::span<const DoubtfulStretch> doubtful,
+                    ClockPieceModel& model) {
   PieceBounds piece;
   bool begun = false;
   const auto [first, end] = exchanges_of(walk, p);
   model.violators = 0;
   for (std::size_t i = first; i < end; ++i) {
     if (walk.late[i]) continue;
-    const Exchange& e = exchanges[i];
+    const Exchange& e = walk.exchanges[i];
     if (!std::exchange(begun, true)) {
       piece.origin = {e.n_tx, e.h_rx};
       model.first = e.h_rx;
@@ -242,9 +248,9 @@ OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
   OfflineClock out;
   for (std::size_t p = 0; p < walk.pieces; ++p) {
     ClockPieceModel& model = out.model.pieces.emplace_back();
-    PieceBounds piece = collect(exchanges, walk, p, walk.doubtful, model);
+    PieceBounds piece = collect(walk, p, walk.doubtful, model);
     const bool in_doubt = piece.bounds.empty();  // something is likeliest all the same
-    if (in_doubt) piece = collect(exchanges, walk, p, {}, model);
+    if (in_doubt) piece = collect(walk, p, {}, model);
     if (piece.up > 0 && piece.down > 0 && counted_like_the_host(piece))
       fit(piece, walk.least_width, walk.assumed[p], model);
     model.certified = model.certified && !in_doubt;
