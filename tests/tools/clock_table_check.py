@@ -24,15 +24,16 @@ def run(*words):
 
 
 WRONG = {
-    "--minuts 3": 'expected a known flag (nearest: --minutes), found "--minuts"',
+    "--minuts 3": "expected a known flag (did you mean --minutes?), found --minuts",
+    "B": "expected no further word, found B",
     "--links Z": "--links: expected letters of ABCDEFG, each once, found Z",
     "--links CC": "--links: expected letters of ABCDEFG, each once, found CC",
-    "--minutes 0.1": "--minutes: expected a number of 0.5 to 600, found 0.1",
-    "--minutes ten": "--minutes: expected a number of 0.5 to 600, found ten",
-    "--seeds 2.5": "--seeds: expected a whole number, found 2.5",
-    "--seeds 0": "--seeds: expected a number of 1 to 10000, found 0",
-    "--first -1": "--first: expected a number of 0 to 9e+15, found -1",
-    "--first": "--first: expected a value behind it, found the end",
+    "--minutes 0.1": "--minutes: expected a number from 0.5 to 600, found 0.1",
+    "--minutes ten": "--minutes: expected a number from 0.5 to 600, found ten",
+    "--seeds 2.5": "--seeds: expected a whole number from 1 to 10000, found 2.5",
+    "--seeds 0": "--seeds: expected a whole number from 1 to 10000, found 0",
+    "--first -1": "--first: expected a whole number from 0 to 9e+15, found -1",
+    "--first": "--first: expected a value behind it (NUMBER), found the end",
     "--seeds 3 --seeds 4": "--seeds: expected to be given once, found given twice",
     "--bars --minutes 5": "--minutes: expected 1, 10 or 60, for which bars are stated, found 5",
     "--bars --bursts --minutes 10":

@@ -1,93 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/clock_table/arguments.h"
 
+#include "apps/kinalign/command_line.h"
+#include "apps/kinalign/field_text.h"
 #include "tools/clock_table/promises.h"
-
-#include "kinalign/core/nearest_name.h"
-#include "kinalign/core/numbers.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 namespace kinalign {
 
 namespace {
 
-const std::vector<std::string> with_value{"--minutes", "--seeds", "--first", "--links"};
-const std::vector<std::string> switches{"--bursts", "--bars", "--markdown", "--help"};
+/// Two words, of which the table makes one choice (Wanted::output).
+struct Switches {
+  bool bars = false, markdown = false;
+};
 
-/// Flags with the words behind them; a switch has none.
-using Given = std::map<std::string, std::string>;
-
-bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+// Half a minute: live errors count from 10 s on, starts are watched for 30 s.
+Usage describe(Wanted& o, Switches& switches) {
+  Usage usage;
+  usage.flags = {{"minutes", "length of a recording", &o.minutes, 0.5, 600.0},
+                 {"seeds", "recordings of each link", &o.seeds, 1.0, 10'000.0},
+                 {"first", "the first seed", &o.first, 0.0, 9e15},
+                 {"links", "by their letters", &o.links},
+                 {"bursts", "half of all packets lost, 2 s at a time", &o.bursts},
+                 {"bars", "hold the figures against the promises", &switches.bars},
+                 {"markdown", "the tables of docs/performance.md", &switches.markdown}};
+  return usage;
 }
 
 Failure wrong(std::string flag, std::string expected, std::string found) {
   return Failure(Error{std::move(flag), 0, std::move(expected), std::move(found)});
 }
 
-Result<Given> flags_of(const std::vector<std::string>& words) {
-  Given given;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::string flag = words[i];
-    const bool takes_value = is_one_of(with_value, flag);
-    if (!takes_value && !is_one_of(switches, flag)) {
-      std::vector<std::string> known = with_value;
-      known.insert(known.end(), switches.begin(), switches.end());
-      return Failure(unknown_name(flag, "a known flag", known));
-    }
-    if (given.contains(flag)) return wrong(flag, "to be given once", "given twice");
-    if (takes_value && i + 1 == words.size()) return wrong(flag, "a value behind it", "the end");
-    given[flag] = takes_value ? words[++i] : "";
-  }
-  return given;
-}
-
-struct Range {
-  double least, most;
-};
-
-/// The number behind a flag, or what stood there before.
-Result<double> number(const Given& given, const std::string& flag, Range range, double otherwise) {
-  const auto found = given.find(flag);
-  if (found == given.end()) return otherwise;
-  double value = 0.0;
-  if (!parse_number(found->second, value) || value < range.least || value > range.most) {
-    return wrong(flag, fmt::format("a number of {:g} to {:g}", range.least, range.most),
-                 shown(found->second));
-  }
-  return value;
-}
-
-Result<std::uint64_t> count(const Given& given, const std::string& flag, Range range,
-                            std::uint64_t otherwise) {
-  const double value = KA_TRY(number(given, flag, range, static_cast<double>(otherwise)));
-  if (value != std::floor(value)) return wrong(flag, "a whole number", given.at(flag));
-  return static_cast<std::uint64_t>(value);
-}
-
-Result<std::string> links_of(const Given& given, const std::string& otherwise) {
-  const auto found = given.find("--links");
-  if (found == given.end()) return otherwise;
-  const std::string& text = found->second;
+Result<void> check_links(const std::string& text) {
+  const std::string all = Wanted{}.links;
   std::string sorted = text;
   std::sort(sorted.begin(), sorted.end());
   const bool once = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-  if (text.empty() || !once || text.find_first_not_of(otherwise) != std::string::npos) {
-    return wrong("--links", "letters of " + otherwise + ", each once", shown(text));
+  if (text.empty() || !once || text.find_first_not_of(all) != std::string::npos) {
+    return wrong("--links", "letters of " + all + ", each once", shown(text));
   }
-  return text;
+  return {};
 }
 
 /// The sets of the table in docs/performance.md are its own.
-Result<void> check_markdown(const Given& given) {
-  for (const auto& [flag, value] : given) {
-    if (flag != "--markdown" && flag != "--first") {
-      return wrong(flag, "no flag but --first beside --markdown, whose sets are its own", "both");
+Result<void> check_markdown(const Sources& given) {
+  for (const auto& [name, source] : given) {
+    if (name != "markdown" && name != "first") {
+      return wrong(flag_of(name), "no flag but --first beside --markdown, whose sets are its own",
+                   "both");
     }
   }
   return {};
@@ -105,7 +69,7 @@ Result<void> check_bars(const Wanted& wanted) {
   if (wanted.bursts && wanted.minutes != 1.0) {
     return wrong("--minutes", "1, for which bars with --bursts are stated", minutes);
   }
-  if (wanted.seeds < found->seeds) {
+  if (static_cast<std::uint64_t>(wanted.seeds) < found->seeds) {
     return wrong("--seeds", fmt::format("{} or more, for which bars are stated", found->seeds),
                  fmt::format("{}", wanted.seeds));
   }
@@ -115,29 +79,25 @@ Result<void> check_bars(const Wanted& wanted) {
 }  // namespace
 
 Result<Wanted> wanted_from(const std::vector<std::string>& words) {
-  const Given given = KA_TRY(flags_of(words));
   Wanted wanted;
-  if (given.contains("--help")) {
+  Switches switches;
+  const Parsed parsed = KA_TRY(parse_words(words, describe(wanted, switches), {}));
+  if (parsed.help) {
     wanted.output = Wanted::Output::help;
     return wanted;
   }
-  // Half a minute: live errors count from 10 s on, starts are watched for 30 s.
-  wanted.minutes = KA_TRY(number(given, "--minutes", {0.5, 600}, wanted.minutes));
-  wanted.seeds = KA_TRY(count(given, "--seeds", {1, 10'000}, wanted.seeds));
-  wanted.links = KA_TRY(links_of(given, wanted.links));
-  wanted.bursts = given.contains("--bursts");
-  if (given.contains("--first")) wanted.first = KA_TRY(count(given, "--first", {0, 9e15}, 0));
-  if (given.contains("--markdown")) {
-    KA_TRY(check_markdown(given));
+  KA_TRY(check_links(wanted.links));
+  if (switches.markdown) {
+    KA_TRY(check_markdown(parsed.given));
     wanted.output = Wanted::Output::markdown;
-  } else if (given.contains("--bars")) {
+  } else if (switches.bars) {
     KA_TRY(check_bars(wanted));
     wanted.output = Wanted::Output::bars;
   }
   return wanted;
 }
 
-const std::string_view usage =
+const std::string_view help_page =
     R"(usage: kinalign_clock_table [--minutes M] [--seeds N] [--first SEED] [--links LETTERS]
                             [--bursts] [--bars | --markdown]
 

@@ -2,10 +2,9 @@
 // What the words behind kinalign_clock_table ask for.
 #pragma once
 
-#include "tools/clock_table/measure.h"
-
 #include "kinalign/core/error.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,8 +16,8 @@ struct Wanted {
   enum class Output : std::uint8_t { tables, bars, markdown, help };
   Output output = Output::tables;
   double minutes = 1.0;
-  std::uint64_t seeds = 20;
-  std::optional<std::uint64_t> first;  // absent: seeds that nobody has seen
+  std::int64_t seeds = 20;
+  std::optional<std::int64_t> first;  // absent: seeds that nobody has seen
   std::string links = "ABCDEFG";
   bool bursts = false;
 };
@@ -27,6 +26,6 @@ struct Wanted {
 Result<Wanted> wanted_from(const std::vector<std::string>& words);
 
 /// What --help prints.
-extern const std::string_view usage;
+extern const std::string_view help_page;
 
 }  // namespace kinalign

@@ -24,7 +24,7 @@ bool no_certified_stamp_is_wrong(const std::vector<LinkFigures>& tables) {
 
 /// Tables of one set, or its bars.
 int show_set(const Wanted& wanted, std::uint64_t first) {
-  const RunSet set{wanted.minutes, wanted.seeds, first, wanted.bursts};
+  const RunSet set{wanted.minutes, static_cast<std::uint64_t>(wanted.seeds), first, wanted.bursts};
   std::vector<LinkRun> runs;
   for (const char link : wanted.links) runs.push_back({static_cast<Link>(link - 'A'), set});
   const auto tables = measure(runs);
@@ -57,10 +57,10 @@ int run(const std::vector<std::string>& words) {
                to_string(wanted.error()));
     return wrong_use;
   }
-  const std::uint64_t first = wanted->first.value_or(std::random_device{}());
+  const auto first = static_cast<std::uint64_t>(wanted->first.value_or(std::random_device{}()));
   switch (wanted->output) {
     case Wanted::Output::help:
-      fmt::print("{}", usage);
+      fmt::print("{}", help_page);
       return done;
     case Wanted::Output::markdown:
       return show_page(first);
