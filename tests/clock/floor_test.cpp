@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/floor.h"
 
+#include "tests/about.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>
@@ -28,9 +29,9 @@ std::uint64_t above(const std::vector<double>& all, double excess) {
 TEST_CASE("a bound's excess is how far it lies above a line") {
   const FloorLine line{10.0, 3e-3, 2e-5};
   CHECK(line.at(10.0) == 3e-3);
-  CHECK(line.at(110.0) == doctest::Approx(5e-3));
-  CHECK(line.excess({110.0, 6e-3}) == doctest::Approx(1e-3));
-  CHECK(line.excess({-90.0, 0.0}) == doctest::Approx(-1e-3));
+  CHECK(line.at(110.0) == about(5e-3));
+  CHECK(line.excess({110.0, 6e-3}) == about(1e-3));
+  CHECK(line.excess({-90.0, 0.0}) == about(-1e-3));
 }
 
 TEST_CASE("of delays that stand evenly above a floor the density is one by their distance") {
@@ -39,7 +40,7 @@ TEST_CASE("of delays that stand evenly above a floor the density is one by their
     std::vector<double> excess;
     for (std::size_t i = 0; i < count; ++i) excess.push_back(20 * us * static_cast<double>(i));
     std::shuffle(excess.begin(), excess.end(), std::mt19937_64(count));
-    CHECK(density_above(excess) == doctest::Approx(1.0 / (20 * us)));
+    CHECK(density_above(excess) == about(1.0 / (20 * us)));
   }
 }
 
@@ -48,10 +49,10 @@ TEST_CASE("a density is told by the seven nearest, and not from fewer than two")
   CHECK(density_above(none) == 0.0);
   CHECK(density_above(one) == 0.0);
   std::vector<double> ten{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 60 * us, 1.0, 1.0, 1.0};
-  CHECK(density_above(ten) == doctest::Approx(6.0 / (60 * us)));
+  CHECK(density_above(ten) == about(6.0 / (60 * us)));
   // Nearer than a counter can tell: as if the seventh lay a quarter of a microsecond above.
   std::vector<double> all_there(12, 0.0);
-  CHECK(density_above(all_there) == doctest::Approx(6.0 / (0.25 * us)));
+  CHECK(density_above(all_there) == about(6.0 / (0.25 * us)));
 }
 
 TEST_CASE("of random delays the density is right on the average") {
@@ -67,7 +68,7 @@ TEST_CASE("of random delays the density is right on the average") {
     for (double e = step(random); excess.size() < 12; e += step(random)) excess.push_back(e);
     sum += density_above(excess);
   }
-  CHECK(sum / 20'000 == doctest::Approx(4000.0).epsilon(0.02));
+  CHECK(sum / 20'000 == about(4000.0, 0.02));
 }
 
 TEST_CASE("law: counts say of delays above a level, and of their median, within a factor of two") {
@@ -118,7 +119,7 @@ TEST_CASE("law: a floor is as dense as its lowest points of the last hundred sec
       all.push_back(delay(random));
       floor.add({s, line.at(s) + all.back()}, line);
       std::vector<double> told = all;
-      CHECK(floor.density(line) == doctest::Approx(density_above(told)).epsilon(1e-6));
+      CHECK(floor.density(line) == about(density_above(told), 1e-6));
     }
   }
 }
@@ -129,7 +130,7 @@ TEST_CASE("what lay low a hundred seconds ago is forgotten, and what lies lower 
     Floor floor(255);
     for (int i = 0; i < 12; ++i) floor.add({0.0, 0.0}, level);
     for (int i = 0; i < 12; ++i) floor.add({later, 1e-3 * i}, level);
-    CHECK(floor.density(level) == doctest::Approx(later < 100.0 ? 6.0 / (0.25 * us) : 1000.0));
+    CHECK(floor.density(level) == about(later < 100.0 ? 6.0 / (0.25 * us) : 1000.0));
     CHECK(floor.counts().total() == 24);
   }
 }
@@ -141,7 +142,7 @@ TEST_CASE("a floor's points bound it as far off as a clock usually bends, 0.01 p
     for (const double slope : {0.0, 3e-5}) {
       const double tau = 50.0 - t;
       CHECK(floor.hull().at(t, slope).bound ==
-            doctest::Approx(2e-3 + 1e-8 * tau * tau / 2.0 - slope * tau).epsilon(1e-12));
+            about(2e-3 + 1e-8 * tau * tau / 2.0 - slope * tau, 1e-12));
     }
   }
 }

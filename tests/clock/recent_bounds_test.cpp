@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/recent_bounds.h"
 
+#include "tests/about.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>
@@ -49,7 +50,7 @@ TEST_CASE("a floor that rose is seen once a second is over, between its bounds a
     watched.add(0.1 * i, 5 * ms + 0.1 * ms * (i % 5), Standing::above);
   }
   REQUIRE(watched.moved);
-  CHECK(*watched.moved == doctest::Approx(10.05));
+  CHECK(*watched.moved == about(10.05));
   CHECK(*watched.seen_at >= 11.1);
   CHECK(*watched.seen_at <= 11.4);  // it looks at each third bound
 }
@@ -61,7 +62,7 @@ TEST_CASE("a floor that fell is seen by the bounds that were held") {
     watched.add(0.1 * i, -5 * ms + 0.1 * ms * (i % 5), Standing::held);
   }
   REQUIRE(watched.moved);
-  CHECK(*watched.moved == doctest::Approx(10.05));
+  CHECK(*watched.moved == about(10.05));
   CHECK(*watched.seen_at >= 11.1);
   CHECK(*watched.seen_at <= 11.4);
 }
@@ -82,8 +83,8 @@ TEST_CASE("half of the first second's delays lie nearer than half of what the le
     }
     return watched.seen_at.value_or(0.0);
   };
-  CHECK(seen_behind(14.0) == doctest::Approx(1.0).epsilon(0.15));
-  CHECK(seen_behind(16.0) == doctest::Approx(3.0).epsilon(0.05));  // than all of it
+  CHECK(seen_behind(14.0) == about(1.0, 0.15));
+  CHECK(seen_behind(16.0) == about(3.0, 0.05));  // than all of it
 }
 
 TEST_CASE("one bound near the old floor begins the seconds anew") {
@@ -107,9 +108,9 @@ TEST_CASE("where delays were often as long before it takes three seconds, or nin
   };
   // n delays that lie as high as f of a thousand did: as likely as ((f + 1) / 1002)^n. At e^-25
   // that are 4 (f = 0), 37 (500) and 154 (850); of these 20 come in a second.
-  CHECK(seen_behind(1000, 0) == doctest::Approx(1.0).epsilon(0.15));
-  CHECK(seen_behind(500, 500) == doctest::Approx(3.0).epsilon(0.05));
-  CHECK(seen_behind(150, 850) == doctest::Approx(9.0).epsilon(0.02));
+  CHECK(seen_behind(1000, 0) == about(1.0, 0.15));
+  CHECK(seen_behind(500, 500) == about(3.0, 0.05));
+  CHECK(seen_behind(150, 850) == about(9.0, 0.02));
 }
 
 TEST_CASE("one that is heard five times in nine seconds is not watched") {
@@ -195,7 +196,7 @@ TEST_CASE("before the first held bound is half way to the one before it, or a mi
   CHECK(*bounds.before_held() == 1.5);
   RecentBounds first;
   first.add({2.0, -1.0}, Standing::held);
-  CHECK(*first.before_held() == doctest::Approx(1.999));
+  CHECK(*first.before_held() == about(1.999));
 }
 
 TEST_CASE("each held bound is released once, nine seconds later, the oldest first") {
