@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/click_latency.h"
 
+#include "tests/about.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>
@@ -67,8 +68,8 @@ TEST_CASE("clicks and counts of frames give the step and the latencies' differen
   }
   const auto found = clicked_step(takes);
   REQUIRE(found);
-  CHECK(found->step_s == doctest::Approx(1.0 / 60.0).epsilon(1e-9));
-  CHECK(found->latency_difference_s == doctest::Approx(0.012).epsilon(1e-6));
+  CHECK(found->step_s == about(1.0 / 60.0, 1e-9));
+  CHECK(found->latency_difference_s == about(0.012, 1e-6));
   CHECK(found->step_deviation_s < 1e-9);
   takes[1].frames = takes[2].frames = takes[0].frames;
   CHECK(!clicked_step(takes));
@@ -95,7 +96,7 @@ TEST_CASE("a step's stated deviation is how far it lies off") {
       squares += std::pow(found->step_s * 60.0 - 1.0, 2) / trials;
       stated += std::pow(found->step_deviation_s * 60.0, 2) / trials;
     }
-    CHECK(std::sqrt(squares) == doctest::Approx(79e-6).epsilon(0.12));
-    CHECK(std::sqrt(stated) == doctest::Approx(std::sqrt(squares)).epsilon(0.12));
+    CHECK(std::sqrt(squares) == about(79e-6, 0.12));
+    CHECK(std::sqrt(stated) == about(std::sqrt(squares), 0.12));
   }
 }

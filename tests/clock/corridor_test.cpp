@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/corridor.h"
 
+#include "tests/about.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>
@@ -126,6 +127,6 @@ TEST_CASE("behind the last bound of a kind its end opens by the greatest rate") 
   corridor.below.add(0.0, 0.0);
   const auto range = value_range(corridor, 10.0, beta, widest_line(corridor, 10.0, beta));
   REQUIRE(range);
-  CHECK(range->high == doctest::Approx(1e-3 + 10.0 * beta));
-  CHECK(range->low == doctest::Approx(-10.0 * beta));
+  CHECK(range->high == about(1e-3 + 10.0 * beta));
+  CHECK(range->low == about(-10.0 * beta));
 }

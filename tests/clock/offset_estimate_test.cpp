@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/offset_estimate.h"
 
+#include "tests/about.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>
@@ -38,7 +39,7 @@ TEST_CASE("nothing is told before a bound of each kind") {
   CHECK(!estimate.at(0.0));
   estimate.add({0.01, 1e-3, Side::below});
   REQUIRE(estimate.at(0.0));
-  CHECK(estimate.at(0.0)->value == doctest::Approx(2e-3).epsilon(1e-3));
+  CHECK(estimate.at(0.0)->value == about(2e-3, 1e-3));
 }
 
 TEST_CASE("offset and slope are found to what the fastest packets allow") {
@@ -51,7 +52,7 @@ TEST_CASE("offset and slope are found to what the fastest packets allow") {
     // 900 packets each way, 0.25 ms above the floor on average: floors to 0.3 us each.
     CHECK(std::abs(middle->value - packets.x(packets.now)) < 10e-6);
     CHECK(std::abs(middle->slope - 12e-6) < 1e-6);
-    CHECK(middle->round_trip == doctest::Approx(2e-3).epsilon(0.02));
+    CHECK(middle->round_trip == about(2e-3, 0.02));
     CHECK(estimate.changes() == 0);
   }
 }
@@ -77,8 +78,9 @@ TEST_CASE("the offset is carried over a longer and a shorter route, of either wa
 }
 
 TEST_CASE("a step of the counter is told from a route, and followed") {
-  int told = 0;
+  // Of 5000 seeds one was taken for a route, and of five the step was told more than 5 % wrong.
   const auto seeds = fresh_seeds(20);
+  int missed = 0;
   for (const auto seed : seeds) {
     CAPTURE(seed);
     Packets packets(seed);
@@ -87,12 +89,11 @@ TEST_CASE("a step of the counter is told from a route, and followed") {
     packets.step = 1e-3;
     packets.run(estimate, 60.0);
     REQUIRE(estimate.last_change());
-    if (!estimate.last_change()->step) continue;  // as in one of a thousand
-    ++told;
-    CHECK(*estimate.last_change()->step == doctest::Approx(1e-3).epsilon(0.05));
-    CHECK(std::abs(estimate.at(packets.now)->value - packets.x(packets.now)) < 100e-6);
+    const double told = estimate.last_change()->step.value_or(0.0);
+    const double error = estimate.at(packets.now)->value - packets.x(packets.now);
+    missed += told == about(1e-3, 0.05) && std::abs(error) < 50e-6 ? 0 : 1;
   }
-  CHECK(told + 2 >= static_cast<int>(seeds.size()));
+  CHECK(missed <= (seeds.size() > 1 ? 2 : 0));
 }
 
 TEST_CASE("a crystal worse than any is not believed") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/simulate/exchanges.h"
 
+#include "tests/about.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>
@@ -34,8 +35,8 @@ TEST_CASE("the paper's exchange on the paper's radio takes 33 +- 13 ms") {
       squares += d * d;
     }
     const double mean = sum / n, deviation = std::sqrt(squares / n - mean * mean);
-    CHECK(mean == doctest::Approx(0.0332).epsilon(0.03));
-    CHECK(deviation == doctest::Approx(0.0127).epsilon(0.04));
+    CHECK(mean == about(0.0332, 0.03));
+    CHECK(deviation == about(0.0127, 0.04));
   }
 }
 
