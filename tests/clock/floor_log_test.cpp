@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/clock/floor_log.h"
 
+#include "tests/about.h"
+
 #include <doctest/doctest.h>
 
 #include <random>
+#include <vector>
 
 using namespace kinalign;
 
@@ -35,8 +38,8 @@ TEST_CASE("a window tells the least round trip and the offset between the floors
   const FloorLog log = log_of(25.0, 0.0, 1).log;
   REQUIRE(log.window(0));
   CHECK(log.window(0)->s == 15.0);
-  CHECK(log.window(0)->round_trip == doctest::Approx(2e-3).epsilon(0.05));
-  CHECK(log.window(0)->middle == doctest::Approx(1e-5 * 15.0).epsilon(0.2));
+  CHECK(log.window(0)->round_trip == about(2e-3, 0.05));
+  CHECK(log.window(0)->middle == about(1e-5 * 15.0, 0.2));
   CHECK(log.windows() == 2);
 }
 
@@ -44,7 +47,7 @@ TEST_CASE("a step of a millisecond shows within two windows, and nothing shows w
   CHECK(!log_of(200.0, 0.0, 2).step);
   const auto by = log_of(120.5, 1e-3, 2).step;
   REQUIRE(by);
-  CHECK(*by == doctest::Approx(1e-3).epsilon(0.1));
+  CHECK(*by == about(1e-3, 0.1));
 }
 
 TEST_CASE("an interval may be as narrow as a route that was left, once two windows agree on that") {
@@ -73,4 +76,27 @@ TEST_CASE("a window with few packets is none") {
   }
   CHECK(!log.window(0));
   CHECK(log.window(2));
+}
+
+TEST_CASE("an interval can't be narrower than the least that three round trips agree on") {
+  const auto least_of = [](const std::vector<FloorWindow>& windows) {
+    ShortestRoundTrips shortest;
+    for (const FloorWindow& window : windows) shortest.add(window);
+    return shortest.least_width();
+  };
+  const auto trip = [](double s, double gap) { return FloorWindow{0.0, 0.0, s, gap}; };
+  CHECK(least_of({trip(10e-3, 0.0), trip(10e-3, 0.0)}) == 0.0);
+  // Less a fifth of it, …
+  CHECK(least_of({trip(10e-3, 0.0), trip(10e-3, 0.0), trip(10e-3, 0.0)}) == about(8e-3));
+  // … or what schedulers make of floors, 20 us, …
+  CHECK(least_of({trip(50e-6, 0.0), trip(50e-6, 0.0), trip(50e-6, 0.0)}) == about(30e-6));
+  // … or twice what the floors may be off, and thrice by how much the three differ.
+  CHECK(least_of({trip(10e-3, 0.5e-3), trip(11e-3, 0.2e-3), trip(10.5e-3, 0.1e-3)}) ==
+        about(10e-3 - 2 * 0.5e-3 - 3 * 1e-3));
+  // Three agree within a twentieth, and thrice what floors may be off; two may be too short.
+  CHECK(least_of({trip(10e-3, 0.0), trip(10.4e-3, 0.0), trip(10.6e-3, 0.0)}) == 0.0);
+  CHECK(least_of({trip(2e-3, 0.0), trip(3e-3, 0.0), trip(10e-3, 0.0), trip(10e-3, 0.0),
+                  trip(10e-3, 0.0)}) == about(8e-3));
+  CHECK(least_of({trip(2e-3, 0.0), trip(3e-3, 0.0), trip(4e-3, 0.0), trip(10e-3, 0.0),
+                  trip(10e-3, 0.0), trip(10e-3, 0.0)}) == 0.0);
 }
