@@ -4,11 +4,14 @@
 #include "tests/capture/test_node.h"
 
 #include "kinalign/capture/node_desk.h"
+#include "kinalign/clock/live_clock.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
+#include <string>
 
 namespace kinalign {
 
@@ -130,6 +133,61 @@ TEST_CASE("fault 29 two_nodes_one_id: one boot id too, told apart by counter and
   for (const auto& [stream, boots] : frames) CHECK(boots.size() == 1);
 }
 
+TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") {
+  // Told apart by boot id, or where that is one, too, by counter and address.
+  for (const std::uint32_t boot_of_b : {2U, 1U}) {
+    CAPTURE(boot_of_b);
+    TestDesk host(lab);
+    TestNode a(7, 1, lab), b(7, boot_of_b, lab);
+    b.offset_s += 100;
+    std::map<BootKey, std::string> of_boot;  // which nodes' frames had this key
+    std::map<std::size_t, std::string> of_stream;
+    std::map<std::size_t, LiveClock> clocks;
+    std::vector<NodeEvent> events;
+    int taken = 0;
+    const auto exchange = [&](TestNode& node, char name, const NodeAddress& from, double t) {
+      const NodeNews news = host.exchange(node, from, t);
+      for (const NodeEvent& event : host.desk.take_events()) events.push_back(event);
+      if (!news.exchange) return;
+      ++taken;
+      std::string& boot = of_boot[news.exchange->boot];
+      if (boot.find(name) == std::string::npos) boot += name;
+      std::string& stream = of_stream[news.stream];
+      if (t >= 4.0 && stream.find(name) == std::string::npos) stream += name;
+      LiveClock& clock = clocks[news.stream];
+      clock.push(*news.exchange);
+      if (t < 4.0) return;
+      const auto stamp = clock.host_from_node(news.exchange->boot, news.exchange->n_tx);
+      REQUIRE(stamp);
+      CHECK(stamp->certainty == Certainty::certified);
+      CHECK(std::chrono::abs(stamp->time - host_s(t)) < std::chrono::milliseconds(1));
+    };
+    for (int k = 0; k < 100; ++k) {
+      exchange(a, 'a', home, 0.1 * k);
+      if (k >= 20) exchange(b, 'b', elsewhere, 0.1 * k + 0.05);
+    }
+    for (const auto& [boot, nodes] : of_boot) CHECK(nodes.size() == 1);
+    int of_a = 0, of_b = 0;  // streams, once both were heard for two seconds
+    for (const auto& [stream, nodes] : of_stream) {
+      of_a += nodes == "a" ? 1 : 0;
+      of_b += nodes == "b" ? 1 : 0;
+      CHECK(nodes.size() <= 1);
+    }
+    CHECK(of_a == 1);
+    CHECK(of_b == 1);
+    CHECK(taken >= 180 - 3);  // each is held at first, and one is of an earlier life
+    const auto warns = std::count_if(events.begin(), events.end(), [](const NodeEvent& event) {
+      return event.node_id == 7 && is_warning(event.kind);
+    });
+    CHECK(warns >= 1);
+    for (auto& [stream, clock] : clocks) {
+      for (const ClockEvent& event : clock.take_events()) {
+        CHECK(event.kind == ClockEvent::Kind::new_boot);  // no clock saw the other's counter
+      }
+    }
+  }
+}
+
 TEST_CASE("fault 30 node_id_change: a new stream, with a note who it was") {
   TestDesk host(lab);
   TestNode seven(7, 1, lab), nine(9, 2, lab);
@@ -155,6 +213,35 @@ TEST_CASE("fault 31 address_change: the same life of the same stream") {
   CHECK(host.events() == std::vector{Kind::joined, Kind::moved});
 }
 
+TEST_CASE("fault 31 address_change: the rate limit follows, that of a node and that of strangers") {
+  const auto answers_of = [](bool moves) {
+    TestDesk host(lab);
+    TestNode node(7, 1, lab);
+    for (int k = 0; k < 500; ++k) {
+      host.exchange(node, moves && k / 5 % 2 == 1 ? elsewhere : home, 0.01 * k);
+    }
+    CHECK(host.count(Verdict::accepted) == 499);
+    return host.desk.counts().answers;
+  };
+  CHECK(answers_of(true) == answers_of(false));  // as one node, of 30 a second at most
+  CHECK(answers_of(true) <= 5 * 30);
+
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  for (int k = 0; k < 5; ++k) host.exchange(node, home, 0.1 * k);
+  Verdict of_stranger = Verdict::held;
+  for (std::uint32_t boot = 2; boot < 20; ++boot) {  // they use up what the address is allowed
+    of_stranger =
+        host.take(TestNode(8, boot, lab).frame(host_s(0.5)), elsewhere, host_s(0.5)).verdict;
+  }
+  CHECK(of_stranger == Verdict::limited);
+  CHECK(host.exchange(node, elsewhere, 0.6).verdict == Verdict::accepted);
+  // And where a node is known, one that begins is not a stranger.
+  TestNode begins(9, 1, lab);
+  CHECK(host.exchange(begins, elsewhere, 0.7).verdict == Verdict::held);
+  CHECK(host.exchange(begins, elsewhere, 0.8).verdict == Verdict::accepted);
+}
+
 TEST_CASE("fault 32 late_node, node_leaves, node_returns: after ten minutes it is the same life") {
   TestDesk host(lab);
   TestNode node(7, 1, lab);
@@ -167,6 +254,64 @@ TEST_CASE("fault 32 late_node, node_leaves, node_returns: after ten minutes it i
   REQUIRE(back.verdict == Verdict::accepted);
   CHECK(back.exchange->boot == life);
   CHECK(host.events() == std::vector{Kind::joined, Kind::left, Kind::returned});
+}
+
+TEST_CASE("fault 32 node_returns: the same piece if its counter agrees within 100 ppm of the gap") {
+  // Of ten minutes that are 60 ms; its crystal is 20 ppm off, and known to be.
+  for (const double wrong_s : {0.0, 0.1, -0.1}) {
+    CAPTURE(wrong_s);
+    TestDesk host(lab);
+    TestNode node(7, 1, lab);
+    LiveClock clock;
+    const auto exchange = [&](double t) {
+      const NodeNews news = host.exchange(node, home, t);
+      if (!news.exchange) return std::optional<ClockStamp>();
+      clock.push(*news.exchange);
+      return clock.host_from_node(news.exchange->boot, news.exchange->n_tx);
+    };
+    for (int k = 0; k < 600; ++k) exchange(0.1 * k);
+    const ClockOrigin piece = clock.piece()->origin();
+    static_cast<void>(clock.take_events());
+    host.desk.tick(host_s(300.0));
+    node.offset_s += wrong_s;
+    const auto first = exchange(660.0);
+    REQUIRE(first);
+    for (int k = 1; k < 200; ++k) exchange(660.0 + 0.1 * k);
+    CHECK(host.events() == std::vector{Kind::joined, Kind::left, Kind::returned});
+    CHECK(host.count(Verdict::held) == 1);
+    const auto events = clock.take_events();
+    if (wrong_s == 0.0) {
+      // Its floors are known from ten minutes ago: that they are seen anew is all that is told.
+      for (const ClockEvent& event : events) CHECK(event.kind == ClockEvent::Kind::route);
+      CHECK(clock.piece()->origin().node == piece.node);
+      CHECK(first->certainty == Certainty::certified);
+      CHECK(*first->earliest <= host_s(660.0));
+      CHECK(*first->latest >= host_s(660.0));
+      CHECK(*first->latest - *first->earliest < std::chrono::milliseconds(62));
+    } else {
+      CHECK(std::count_if(events.begin(), events.end(), [](const ClockEvent& event) {
+              return event.kind == ClockEvent::Kind::step;
+            }) == 1);
+      CHECK(clock.piece()->origin().node != piece.node);
+    }
+    const auto last = exchange(680.0);
+    CHECK(last->certainty == Certainty::certified);
+    CHECK(*last->earliest <= host_s(680.0));
+    CHECK(*last->latest >= host_s(680.0));
+  }
+}
+
+TEST_CASE("fault 32 node_returns: with another boot id it is another life") {
+  TestDesk host(lab);
+  TestNode node(7, 1, lab);
+  for (int k = 0; k < 10; ++k) host.exchange(node, home, 0.1 * k);
+  host.desk.tick(host_s(300.0));
+  node.reboot(2, host_s(600.0));
+  CHECK(host.exchange(node, home, 601.0).verdict == Verdict::held);
+  const NodeNews back = host.exchange(node, home, 601.1);
+  REQUIRE(back.verdict == Verdict::accepted);
+  CHECK(back.exchange->boot == 2);
+  CHECK(host.desk.stream(back.stream).lives == 2);
 }
 
 TEST_CASE("fault 40 ipv6_only, dual_stack_same_node: one stream") {

@@ -6,6 +6,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <random>
+#include <vector>
 
 using namespace kinalign;
 using namespace std::chrono_literals;
@@ -117,4 +119,27 @@ TEST_CASE(
     answers += answered(limit, 42, now) ? 1 : 0;
   }
   CHECK(answers == 0);
+}
+
+TEST_CASE("fault 28 flood_strangers: 10,000 at 50,000 a second get eight each, and one in 2 s") {
+  static_assert(RateLimit::entries == 65'536 && RateLimit::ways == 4);
+  static_assert(RateLimit::burst == 8 && RateLimit::interval == 2s);
+  RateLimit limit;
+  std::mt19937_64 random(7);
+  std::vector<std::uint64_t> hashes(10'000);
+  for (auto& hash : hashes) hash = random();
+  std::vector<int> answers(hashes.size());
+  int kisses = 0, drops = 0;
+  for (int packet = 0; packet < 500'000; ++packet) {
+    const auto who = static_cast<std::size_t>(packet) % hashes.size();
+    const Verdict verdict = limit.ask(hashes[who], start + 20us * packet);
+    answers[who] += verdict == Verdict::answer ? 1 : 0;
+    kisses += verdict == Verdict::kiss ? 1 : 0;
+    drops += verdict == Verdict::drop ? 1 : 0;
+  }
+  // One asks each 200 ms, 50 times: eight, and one more at 2, 4, 6 and 8 s.
+  const auto as_stated = std::count(answers.begin(), answers.end(), 12);
+  CHECK(as_stated > 9'900);  // others share their set of four with four more, and are forgotten
+  CHECK(*std::min_element(answers.begin(), answers.end()) >= 12);
+  CHECK(kisses * 16 <= kisses + drops);
 }

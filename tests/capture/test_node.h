@@ -46,6 +46,7 @@ class TestNode {
     offset_s = -86'400.0 - seconds(now - host_s(0.0));
   }
   void set_key(const LabKey& lab) { key_ = node_key(lab, id_); }
+  void set_key(const MacKey& key) { key_ = key; }
   void drop_echo() { echo_.reset(); }
   std::optional<ReplyEcho>& echo() { return echo_; }
   std::uint32_t& sequence() { return sequence_; }

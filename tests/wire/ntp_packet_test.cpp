@@ -212,7 +212,7 @@ TEST_CASE("before version 4 there are no extension fields, and a MAC may have 8 
   }
 }
 
-TEST_CASE("falseticker, kod: an answer counts only where it answers what was sent") {
+TEST_CASE("fault 27 kod, falseticker: an answer counts only where it answers what was sent") {
   NtpPacket packet;
   packet.mode = ntp_mode_server;
   packet.stratum = 10;
@@ -233,6 +233,14 @@ TEST_CASE("falseticker, kod: an answer counts only where it answers what was sen
     CHECK(judged({77}) == kiss);
     CHECK(judged({76}) == NtpAnswer::not_ours);
   }
+  // A kiss is one whatever else it says, as that of a server that is not synchronised.
+  packet.reference_id = ntp_code("RATE");
+  packet.leap = NtpLeap::unsynchronised;
+  packet.transmit = {0};
+  CHECK(judged({77}) == NtpAnswer::kiss_rate);
+  CHECK(judged({0}) == NtpAnswer::not_ours);  // nothing was asked
+  packet.leap = NtpLeap::none;
+  packet.transmit = {78};
   packet.stratum = 16;
   CHECK(judged({77}) == NtpAnswer::unsynchronised);
   packet.stratum = 10;
