@@ -10,8 +10,6 @@
 #include <lwip/netdb.h>
 #include <lwip/sockets.h>
 
-#include <algorithm>
-
 namespace kinalign {
 
 namespace {

@@ -6,7 +6,6 @@
 #include "kinalign/wire/time.h"
 
 #include <cstdint>
-#include <optional>
 
 namespace kinalign {
 

@@ -9,7 +9,6 @@
 #include "kinalign/capture/node_life.h"
 #include "kinalign/capture/udp_socket.h"
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>

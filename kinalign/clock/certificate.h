@@ -22,8 +22,6 @@ class Certificate {
 
   /// There are bounds enough for a claim: two up, one down.
   bool bounded() const { return up_ >= 2 && down_ >= 1; }
-  std::uint64_t up() const { return up_; }
-  std::uint64_t down() const { return down_; }
   /// All that x(t) can be. Absent where there are no bounds of one kind, or where they contradict
   /// each other.
   std::optional<ValueRange> at(double t) const;

@@ -48,7 +48,8 @@ class ClockPiece {
   /// certified.
   std::optional<HostTime> uneasy_since() const;
 
-  HostTime begins() const { return begin_; }
+  const ClockOrigin& origin() const { return origin_; }
+  HostTime begins() const { return begin_; }  // its first arrival
   const Assumptions& assumptions() const { return certificate_.assumptions(); }
   const OffsetEstimate& estimate() const { return estimate_; }
   const FloorLog& floors() const { return floors_; }

@@ -5,7 +5,6 @@
 
 #include "kinalign/clock/clock_stamp.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>

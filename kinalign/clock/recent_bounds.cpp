@@ -53,7 +53,7 @@ std::optional<double> RecentBounds::moved(const FloorLine& line, const ExcessCou
     for (; points < all && newest(points).s >= begin; ++points) {
       least = std::min(least, line.excess(newest(points)));
     }
-    if (points < least_points) return std::nullopt;
+    if (points < least_points) continue;
     const bool sure = below || nats(counts, points, least) > sure_nats;
     if (!sure || !another_floor({points, least}, window, line, counts)) continue;
     while (points < all && line.excess(newest(points)) >= least) ++points;

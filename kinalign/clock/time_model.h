@@ -5,7 +5,6 @@
 
 #include "kinalign/wire/time.h"
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 

@@ -63,8 +63,8 @@ TEST_CASE("an interval may be as narrow as a route that was left, once two windo
       if (s > left_at + 3.0 && s < left_at + 3.1) log.change_route(left_at);
     }
     // Three windows agree on 6 ms; of the first two both saw 2 ms if it was left in the third.
-    if (left_at < 20.0) CHECK(log.least_width() == doctest::Approx(0.8 * 6e-3).epsilon(0.05));
-    if (left_at > 20.0) CHECK(log.least_width() == doctest::Approx(0.8 * 2e-3).epsilon(0.05));
+    if (left_at < 20.0) CHECK(log.least_width() == about(0.8 * 6e-3, 0.05));
+    if (left_at > 20.0) CHECK(log.least_width() == about(0.8 * 2e-3, 0.05));
   }
 }
 

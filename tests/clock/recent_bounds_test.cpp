@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <random>
 #include <utility>
 #include <vector>
@@ -113,10 +114,17 @@ TEST_CASE("where delays were often as long before it takes three seconds, or nin
   CHECK(seen_behind(150, 850) == about(9.0, 0.02));
 }
 
-TEST_CASE("one that is heard five times in nine seconds is not watched") {
-  Watched watched;
-  for (int i = 0; i < 60; ++i) watched.add(2.0 * i, 5 * ms, Standing::above);
-  CHECK(!watched.moved);
+TEST_CASE("who is heard seldom is watched for three seconds or nine, and for six bounds in them") {
+  const auto bounds_until_seen = [](double step) {
+    Watched watched;
+    for (int i = 1; i <= 30; ++i) watched.add(step * i, 5 * ms, Standing::above);
+    return watched.seen_at ? std::llround(*watched.seen_at / step) : 0;
+  };
+  // The eleventh is a second behind the first; each third is looked at.
+  CHECK(bounds_until_seen(0.1) == 12);
+  CHECK(bounds_until_seen(0.4) == 9);
+  CHECK(bounds_until_seen(1.0) == 12);
+  CHECK(bounds_until_seen(2.0) == 0);
 }
 
 TEST_CASE("a floor is said to have moved where the old one has such delays once in e^25") {
