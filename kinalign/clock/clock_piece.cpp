@@ -11,8 +11,10 @@ namespace {
 
 constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
 constexpr Duration before_a_slip = Violators::wait;
-constexpr double longest_piece_s = 1e8;  // three years; lifted, doubles keep 30 ns over that
-constexpr int looked_back = 12;          // windows
+// Lifted, doubles keep 11 ns over a year of a clock that bends as crystals do, 1 us over three.
+constexpr double longest_piece_s = 1e8;
+constexpr Duration oldest_reading = std::chrono::seconds(10);
+constexpr int looked_back = 12;  // windows
 constexpr double stale_s = 0.5;
 constexpr std::uint32_t seldom = 4;
 
@@ -215,10 +217,17 @@ ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBe
   return next;
 }
 
-ClockPiece ClockPiece::next_piece() const {
-  Assumptions assumed = assumptions();
-  if (end_ != End::none && may_bend()) assumed.curvature = most_curvature;
-  const SlopeBelief prior = estimate_.slope().after_a_break();
+/// By which the counter may have stepped back: beyond the certificate, and over all that it left.
+Duration ClockPiece::greatest_step_back() const {
+  if (end_ == End::none) return Duration{0};
+  const auto violators = violators_.pending();
+  if (!violators.empty() && violators[0].bound.side == Side::above) return Duration{0};  // ahead
+  const auto range = certificate_.at(journal_.newest(0).s);
+  const double width = range ? range->high - range->low : 2.0 * estimate_.least_round_trip();
+  return rounded_up(std::min(std::abs(amount_) + width, seconds(oldest_reading)));
+}
+
+ClockPiece ClockPiece::next_behind(const Assumptions& assumed, const SlopeBelief& prior) const {
   if (end_ == End::slip_with_route || end_ == End::slip_between_windows) {
     return next_after_slip(assumed, prior);
   }
@@ -236,6 +245,16 @@ ClockPiece ClockPiece::next_piece() const {
   return next;
 }
 
+/// What a counter that stepped ahead read before lies, by the new piece, before the step was seen;
+/// one that stepped back shows some readings twice.
+ClockPiece ClockPiece::next_piece() const {
+  Assumptions assumed = assumptions();
+  if (end_ != End::none && may_bend()) assumed.curvature = most_curvature;
+  ClockPiece next = next_behind(assumed, estimate_.slope().after_a_break());
+  next.certified_from_ = std::max(certified_from_, heard_ + greatest_step_back());
+  return next;
+}
+
 std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
   const double s = seconds(n - origin_.node);
   if (std::abs(s) > longest_piece_s) return std::nullopt;
@@ -250,7 +269,9 @@ std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
     stamp.earliest = origin_.host + rounded_down(s + range->low);
     stamp.latest = origin_.host + rounded_up(s + range->high + counter_resolution_s);
     if (certificate_.bounded()) {
-      stamp.certainty = violators_.pending().empty() ? Certainty::certified : Certainty::doubtful;
+      const bool stands =
+          violators_.pending().empty() && is_behind_step(*stamp.earliest, certified_from_, heard_);
+      stamp.certainty = stands ? Certainty::certified : Certainty::doubtful;
     }
   } else {
     stamp.certainty = Certainty::doubtful;

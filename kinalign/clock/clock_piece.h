@@ -50,6 +50,10 @@ class ClockPiece {
 
   const ClockOrigin& origin() const { return origin_; }
   HostTime begins() const { return begin_; }  // its first arrival
+  /// Readings of before this may be of before the counter stepped, and are not certified. Nobody
+  /// asks for readings of more than ten seconds before a frame in which one that stepped back is
+  /// heard.
+  HostTime certified_from() const { return certified_from_; }
   const Assumptions& assumptions() const { return certificate_.assumptions(); }
   const OffsetEstimate& estimate() const { return estimate_; }
   const FloorLog& floors() const { return floors_; }
@@ -81,10 +85,13 @@ class ClockPiece {
   HostTime doubt_of_violators() const;
   HostTime about(double s) const;
   bool may_bend() const;
+  Duration greatest_step_back() const;
+  ClockPiece next_behind(const Assumptions& assumed, const SlopeBelief& prior) const;
   ClockPiece next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const;
 
   ClockOrigin origin_;
   HostTime begin_, heard_;  // first and newest arrival
+  HostTime certified_from_ = HostTime::min();
   Certificate certificate_;
   OffsetEstimate estimate_;
   BoundJournal journal_;

@@ -16,6 +16,13 @@ enum class Certainty : std::uint8_t {
   doubtful    // the exchanges contradict the assumptions around here
 };
 
+/// Whether a reading that can be as early as `earliest`, asked for when `heard` had arrived, is
+/// surely not of before the counter stepped: such readings lie before `from`, or until then as if
+/// they were still to come. HostTime::min(): it has not stepped.
+constexpr bool is_behind_step(HostTime earliest, HostTime from, HostTime heard) {
+  return from <= earliest && (earliest <= heard || from <= heard);
+}
+
 struct ClockStamp {
   HostTime time{};                           // the likeliest
   std::optional<HostTime> earliest, latest;  // the interval; absent: that end is open

@@ -67,6 +67,8 @@ std::optional<ClockStamp> host_from_node(const HostFromNode& model, BootKey boot
     stamp.certainty = Certainty::certified;
     stamp.earliest = on_host(n, std::floor(offset.least));
     stamp.latest = on_host(n, std::ceil(offset.greatest)) + counter_resolution;
+    if (!is_behind_step(*stamp.earliest, piece->certified_from, h_rx))
+      stamp.certainty = Certainty::doubtful;
   }
   if (is_in(model.doubtful, h_rx)) stamp.certainty = Certainty::doubtful;
   return stamp;

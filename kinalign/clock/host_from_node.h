@@ -42,7 +42,8 @@ struct ClockPieceModel {
   bool certified = false;        // bounds of both kinds, and they go together
   Assumptions assumptions;       // under which: those of the live clock then
   std::uint64_t up = 0, down = 0, violators = 0, routes = 0;
-  Duration round_trip{};  // the least
+  Duration round_trip{};                      // the least
+  HostTime certified_from = HostTime::min();  // readings of before may be of before a step
 };
 
 /// Stamps of frames that arrived in there are not certified: a counter stepped about then.

@@ -114,15 +114,17 @@ void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
     case Verdict::broken:
       return take_step(crossing);
     case Verdict::slipped:
-      return replace_piece(Kind::slip, piece_->amount(), crossing);
+      replace_piece(Kind::slip, piece_->amount(), crossing);
+      return;
   }
 }
 
-/// A counter that runs at another rate, asleep, is seen to step again and again.
+/// A counter that runs at another rate, asleep, is seen to step again and again, by as little as
+/// one that bends.
 void LiveClock::take_step(const Crossing& crossing) {
-  replace_piece(ClockEvent::Kind::step, piece_->amount(), crossing);
+  const bool relaxed = replace_piece(ClockEvent::Kind::step, piece_->amount(), crossing);
   const bool again = stepped_ && newest_ - *stepped_ < settling;
-  settles_ = newest_ + (again ? settling : late_frames);
+  settles_ = newest_ + (again || relaxed ? settling : late_frames);
   stepped_ = newest_;
 }
 
@@ -131,15 +133,17 @@ void LiveClock::settle(const Crossing& crossing) {
   replace_piece(ClockEvent::Kind::settled, 0.0, crossing);
 }
 
-void LiveClock::replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing) {
+/// Whether the new piece allows for a clock that bends more.
+bool LiveClock::replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing) {
   replaced_ = true;
   tell({why, boot_, piece_->next_begins(), crossing.heard, value});
   tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
   const double assumed = piece_->assumptions().curvature;
   take_piece(piece_->next_piece());
   const double curvature = piece_->assumptions().curvature;
-  if (curvature != assumed)
-    tell({ClockEvent::Kind::relaxed, boot_, crossing.heard, crossing.heard, curvature});
+  if (curvature == assumed) return false;
+  tell({ClockEvent::Kind::relaxed, boot_, crossing.heard, crossing.heard, curvature});
+  return true;
 }
 
 std::optional<ClockStamp> LiveClock::host_from_node(BootKey boot, NodeTime n) {

@@ -65,6 +65,10 @@ class LiveClock {
   std::uint64_t missed_events() const { return missed_events_; }
   std::uint64_t late_crossings() const { return late_; }  // of earlier lives
 
+  /// Since when nothing is certified for a step just seen. While it has not settled.
+  std::optional<HostTime> unsettled_since() const {
+    return settles_ ? std::optional(piece_->begins()) : std::nullopt;
+  }
   /// The stretch of the counter that is being told; nullptr before the first frame.
   const ClockPiece* piece() const { return piece_ ? &*piece_ : nullptr; }
 
@@ -73,7 +77,7 @@ class LiveClock {
   void begin(BootKey boot, const Crossing& first);
   void take_piece(const ClockPiece& piece);
   void answer(ClockPiece::Verdict verdict, const Crossing& crossing);
-  void replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing);
+  bool replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing);
   void take_step(const Crossing& crossing);
   void settle(const Crossing& crossing);
   void tell(const ClockEvent& event);

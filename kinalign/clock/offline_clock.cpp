@@ -28,7 +28,8 @@ struct Walk {
   std::vector<bool> up_left_out, echo_left_out;
   std::vector<bool> late;  // exchanges of a life that was over when they came
   std::size_t pieces = 0;
-  std::vector<Assumptions> assumed;  // of each piece
+  std::vector<Assumptions> assumed;      // of each piece
+  std::vector<HostTime> certified_from;  // likewise
   double least_width = 0.0;  // s, that an interval can have: packets took no less, there and back
 };
 
@@ -53,12 +54,10 @@ void note(Walk& walk, std::size_t i, const ClockEvent& event, Side of) {
   const std::size_t next = walk.pieces++;
   const auto is_of_it = [&](std::size_t k) {
     const Exchange& e = walk.exchanges[k];
+    if (event.kind == ClockEvent::Kind::host_backwards) return k == i;  // what was is of that time
     return e.h_rx >= event.begin && (walk.late[k] || e.boot == event.boot);
   };
-  for (std::size_t k = i + 1; k-- > 0 && is_of_it(k);) {
-    walk.piece[k] = next;
-    walk.up_left_out[k] = walk.echo_left_out[k] = false;  // violators were the new piece's
-  }
+  for (std::size_t k = i + 1; k-- > 0 && is_of_it(k);) walk.piece[k] = next;
 }
 
 /// The exchanges of piece p, which follow each other.
@@ -96,6 +95,17 @@ std::vector<DoubtfulStretch> merged(std::vector<DoubtfulStretch> all) {
   return out;
 }
 
+/// What the clock says of exchange i, or of its echo.
+void hear(Walk& walk, std::size_t i, LiveClock& clock, Side of) {
+  for (const ClockEvent& event : clock.take_events()) note(walk, i, event, of);
+  walk.assumed.resize(walk.pieces, clock.piece()->assumptions());
+  walk.certified_from.resize(walk.pieces, clock.piece()->certified_from());
+}
+
+bool cuts_short(ClockEvent::Kind kind) {
+  return kind == ClockEvent::Kind::new_boot || kind == ClockEvent::Kind::host_backwards;
+}
+
 Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assumptions) {
   Walk walk;
   walk.exchanges = exchanges;
@@ -108,25 +118,27 @@ Walk walk_through(std::span<const Exchange> exchanges, const Assumptions& assump
     const Exchange& e = exchanges[i];
     walk.piece[i] = walk.pieces == 0 ? 0 : walk.pieces - 1;
     const auto late = clock.late_crossings();
+    const auto unsettled = clock.unsettled_since();
     clock.push_up(e.boot, e.n_tx, e.h_rx);
     if (clock.late_crossings() > late) {
       walk.late[i] = true;
       continue;
     }
-    for (const ClockEvent& event : clock.take_events()) note(walk, i, event, Side::above);
-    walk.assumed.resize(walk.pieces, clock.piece()->assumptions());
+    hear(walk, i, clock, Side::above);
+    if (unsettled && cuts_short(walk.events.back().kind))  // it never will settle
+      walk.doubtful.push_back({*unsettled, exchanges[i - 1].h_rx});
     if (e.echo) {
       clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
-      for (const ClockEvent& event : clock.take_events()) note(walk, i, event, Side::below);
-      walk.assumed.resize(walk.pieces, clock.piece()->assumptions());
+      hear(walk, i, clock, Side::below);
     }
     // Its estimate is refreshed when it is asked: this one sees what one in use does.
     static_cast<void>(clock.host_from_node(e.boot, e.n_tx));
   }
   if (const ClockPiece* last = clock.piece()) {
     walk.least_width = last->floors().least_width();
-    if (const auto since = last->uneasy_since())
-      walk.doubtful.push_back({*since, exchanges.back().h_rx});
+    for (const auto& since : {last->uneasy_since(), clock.unsettled_since()}) {
+      if (since) walk.doubtful.push_back({*since, exchanges.back().h_rx});
+    }
   }
   doubt_behind_violators(walk);
   walk.doubtful = merged(std::move(walk.doubtful));
@@ -254,6 +266,7 @@ OfflineClock fit_offline_clock(std::span<const Exchange> exchanges,
     if (piece.up > 0 && piece.down > 0 && counted_like_the_host(piece))
       fit(piece, walk.least_width, walk.assumed[p], model);
     model.certified = model.certified && !in_doubt;
+    model.certified_from = walk.certified_from[p];
   }
   out.model.doubtful = std::move(walk.doubtful);
   out.events = std::move(walk.events);

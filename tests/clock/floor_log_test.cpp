@@ -53,18 +53,22 @@ TEST_CASE("a step of a millisecond shows within two windows, and nothing shows w
 TEST_CASE("an interval may be as narrow as a route that was left, once two windows agree on that") {
   std::mt19937_64 random(3);
   std::exponential_distribution<double> delay(1e4);
-  for (const double left_at : {14.0, 24.0}) {
+  struct Case {
+    double left_at, second_ms, least_ms;
+  };
+  // Three windows agree on 6 ms; one before saw 2 ms, or two that don't agree, or two that do.
+  for (const auto& [left_at, second_ms, least_ms] :
+       {Case{10.0, 4.0, 6.0}, Case{20.0, 1.0, 6.0}, Case{20.0, 0.0, 2.0}}) {
     CAPTURE(left_at);
+    CAPTURE(second_ms);
     FloorLog log;
     for (double s = 0.0; s < 65.0; s += 0.1) {
-      const double longer = s < left_at ? 0.0 : 4e-3;  // one way
+      const double longer = s < 10.0 ? 0.0 : s < left_at ? second_ms * 1e-3 : 4e-3;  // one way
       log.add({s, 1e-3 + longer + delay(random), Side::above}, {0.0, 1e-6});
       log.add({s, -1e-3 - delay(random), Side::below}, {0.0, 1e-6});
       if (s > left_at + 3.0 && s < left_at + 3.1) log.change_route(left_at);
     }
-    // Three windows agree on 6 ms; of the first two both saw 2 ms if it was left in the third.
-    if (left_at < 20.0) CHECK(log.least_width() == about(0.8 * 6e-3, 0.05));
-    if (left_at > 20.0) CHECK(log.least_width() == about(0.8 * 2e-3, 0.05));
+    CHECK(log.least_width() == about(0.8e-3 * least_ms, 0.05));
   }
 }
 

@@ -149,6 +149,41 @@ TEST_CASE("a clock that bends more than assumed is certified once that has shown
   }
 }
 
+TEST_CASE("behind a step that was shown an offline stamp is certified a second later") {
+  for (const auto seed : fresh_seeds(10)) {
+    CAPTURE(seed);
+    ExchangeOptions options = minutes(Link::wired, 1.0);
+    options.steps = {{.at = 30.0, .by = 1.0}};
+    const JudgedRun run = judge_offline(simulate_exchanges(options, seed));
+    CHECK(run.lies() == 0);
+    for (const JudgedStamp& stamp : run.stamps) {
+      if (stamp.sent > 32.0) CHECK(stamp.certified);
+    }
+  }
+}
+
+TEST_CASE("a stretch of doubt within a longer one does not end that") {
+  using namespace std::chrono_literals;
+  std::vector<Exchange> exchanges;
+  for (Duration t = 0s; t < 90s; t += 100ms) {
+    const Duration stepped = t < 65s ? 0s : 1500us;  // less than both delays: the floors show it
+    const Duration lie = t == 66s ? 1s : 0s;
+    exchanges.push_back({1, NodeTime{t + stepped + lie}, HostTime{t + 1ms},
+                         Exchange::Echo{NodeTime{t + stepped - 50ms}, HostTime{t - 51ms}}});
+  }
+  const OfflineClock clock = fit_offline_clock(exchanges);
+  const auto count = [&](ClockEvent::Kind kind) {
+    return std::count_if(clock.events.begin(), clock.events.end(),
+                         [kind](const ClockEvent& event) { return event.kind == kind; });
+  };
+  CHECK(count(ClockEvent::Kind::violator) == 1);
+  CHECK(count(ClockEvent::Kind::slip) == 1);
+  for (const Duration t : {62s, 68s, 73s}) {
+    CAPTURE(t.count());
+    CHECK(is_in(clock.model.doubtful, HostTime{t}));
+  }
+}
+
 TEST_CASE("a life of one frame, and one without a reply, are pieces of which nothing is claimed") {
   using namespace std::chrono_literals;
   const std::vector<Exchange> exchanges{
