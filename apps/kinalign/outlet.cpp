@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/outlet.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <climits>
+#include <string>
 #include <utility>
 
 namespace kinalign {
@@ -18,6 +20,19 @@ constexpr std::size_t most_waiting = std::size_t{1} << 20;
 
 }  // namespace
 
+Outlet::~Outlet() {
+  if (terminal_ >= 0) ::close(terminal_);
+}
+
+/// A terminal has room by poll(2) where a write of more than that sleeps; and not to block is a
+/// property that others who have it open would share.
+void Outlet::never_wait() {
+  waits_ = false;
+  if (terminal_ >= 0 || ::isatty(fd_) == 0) return;
+  const std::string path = "/proc/self/fd/" + std::to_string(fd_);
+  terminal_ = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+}
+
 void Outlet::put(std::string_view text) {
   if (!waits_ && held_.size() + text.size() > most_waiting) {
     ++dropped_;
@@ -28,7 +43,7 @@ void Outlet::put(std::string_view text) {
 }
 
 bool Outlet::takes_more(std::chrono::milliseconds patience) const {
-  pollfd waiting{fd_, POLLOUT, 0};
+  pollfd waiting{writes_to(), POLLOUT, 0};
   return ::poll(&waiting, 1, static_cast<int>(patience.count())) == 1;  // write tells of faults
 }
 
@@ -41,8 +56,9 @@ void Outlet::flush(std::chrono::milliseconds patience) {
     if (!waits_ && !takes_more(std::max(still, std::chrono::milliseconds{0}))) break;
     // A pipe that takes anything takes so much without waiting.
     const std::size_t piece = waits_ ? left.size() : std::min<std::size_t>(left.size(), PIPE_BUF);
-    const ssize_t put = ::write(fd_, left.data(), piece);
+    const ssize_t put = ::write(writes_to(), left.data(), piece);
     if (put < 0 && errno == EINTR) continue;
+    if (put < 0 && errno == EAGAIN && !waits_) break;
     if (put < 0) {
       fault_ = errno;
     } else {

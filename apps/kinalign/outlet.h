@@ -13,10 +13,13 @@ namespace kinalign {
 class Outlet {
  public:
   explicit Outlet(int fd) : fd_(fd) {}
+  Outlet(const Outlet&) = delete;
+  Outlet& operator=(const Outlet&) = delete;
+  ~Outlet();
 
   /// From here on a reader that doesn't read (a full pipe, a stopped terminal) holds up nothing: up
   /// to 1 MiB waits for it, what comes then is dropped, by whole texts, and counted.
-  void never_wait() { waits_ = false; }
+  void never_wait();
 
   /// Holds it until there is enough to write.
   void put(std::string_view text);
@@ -32,8 +35,10 @@ class Outlet {
 
  private:
   bool takes_more(std::chrono::milliseconds patience) const;
+  int writes_to() const { return terminal_ >= 0 ? terminal_ : fd_; }
 
   int fd_;
+  int terminal_ = -1;  // the same one opened anew, so that writing never blocks
   bool waits_ = true;
   std::string held_;
   std::uint64_t dropped_ = 0;

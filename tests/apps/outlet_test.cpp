@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <pty.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <array>
@@ -52,6 +54,36 @@ TEST_CASE("what is put is written in order, at the latest when it is flushed") {
   outlet.flush();
   CHECK(!outlet.holds());
   CHECK(pipe.read() == "one\ntwo\n");
+}
+
+TEST_CASE("nor is a terminal that nobody reads") {
+  int master = -1, slave = -1;
+  REQUIRE(::openpty(&master, &slave, nullptr, nullptr, nullptr) == 0);
+  termios raw{};
+  ::cfmakeraw(&raw);
+  ::tcsetattr(slave, TCSANOW, &raw);
+  {
+    Outlet outlet(slave);
+    outlet.never_wait();
+    for (int i = 0; i < 100; ++i) {
+      outlet.put(std::string(999, 'x') + "\n");
+      outlet.flush();
+    }
+    CHECK(outlet.holds());
+    CHECK(outlet.fault() == 0);
+    std::size_t read = 0;
+    std::array<char, 4096> text{};
+    while (outlet.holds() || read < 100'000) {
+      const ssize_t got = ::read(master, text.data(), text.size());
+      if (got <= 0) break;
+      read += static_cast<std::size_t>(got);
+      outlet.flush(std::chrono::milliseconds{10});
+    }
+    CHECK(read == 100'000);
+  }
+  CHECK((::fcntl(slave, F_GETFL) & O_NONBLOCK) == 0);  // who else has it is not concerned
+  ::close(master);
+  ::close(slave);
 }
 
 TEST_CASE("a reader that does not read is not waited for, and what it misses is counted") {
