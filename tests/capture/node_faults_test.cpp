@@ -79,6 +79,16 @@ TEST_CASE("fault 6 counter_wrap32: a narrow counter is widened through four hour
   CHECK(host.count(EchoVerdict::future) == 0);
 }
 
+TEST_CASE("a counter that no node reaches in a century is refused") {
+  for (const int bits : {51, 53}) {
+    TestDesk host;
+    TestNode node(7, 1);
+    node.offset_s = -86'400.0 + std::ldexp(1e-6, bits);
+    CHECK(host.exchange(node, home, 0.0).verdict ==
+          (bits < 52 ? Verdict::accepted : Verdict::wrong_counter));
+  }
+}
+
 TEST_CASE("fault 10 duplicate: counted, and the stamps are those of a clean run") {
   TestDesk clean(lab), twice(lab);
   TestNode a(7, 1, lab), b(7, 1, lab);
@@ -367,7 +377,9 @@ TEST_CASE("fault 39 mac_key_rotation: the old key is good for 60 s, then not") {
   host.exchange(node, home, 0.0);
   host.exchange(node, home, 0.1);
   host.desk.replace_key(next, host_s(1.0));
+  node.drop_echo();
   CHECK(host.exchange(node, home, 2.0).verdict == Verdict::accepted);
+  CHECK(node.echo());  // it took the reply: that was under the key that it has
   CHECK(host.desk.life_of(host.desk.stream(0)).old_key);
   CHECK(host.exchange(node, home, 60.9).verdict == Verdict::accepted);
   CHECK(host.desk.counts().old_key == 2);

@@ -115,6 +115,16 @@ TEST_CASE("fault 29 two_nodes_one_id: two streams and a warning, never merged") 
   CHECK(host.count(Verdict::earlier_life) == 1);  // before it had heard what was answered since
 }
 
+TEST_CASE("replies go where the newest frame came from, not where a late one did") {
+  TestDesk host;
+  TestNode node(7, 1);
+  for (int k = 0; k < 20; ++k) host.exchange(node, home, 0.1 * k);
+  const Bytes late = node.frame(host_s(2.0));
+  host.exchange(node, elsewhere, 2.1);
+  CHECK(host.take(late, home, host_s(2.11)).verdict == Verdict::accepted);
+  CHECK(host.desk.life_of(host.desk.stream(0)).address == elsewhere);
+}
+
 TEST_CASE("fault 29 two_nodes_one_id: one boot id too, told apart by counter and address") {
   TestDesk host(lab);
   TestNode a(7, 1, lab), b(7, 1, lab);

@@ -4,6 +4,8 @@
 
 #include "tests/wire/node_cases.h"
 
+#include "kinalign/wire/bytes.h"
+#include "kinalign/wire/crc32.h"
 #include "kinalign/wire/node_layout.h"
 
 #include <doctest/doctest.h>
@@ -104,6 +106,19 @@ TEST_CASE("the node of an undamaged frame is known before its key") {
   CHECK(envelope.type == DatagramType::frame);
   CHECK(envelope.origin == DatagramOrigin{7, 0x5eedf00d, 1000});
   CHECK(envelope.has_mac);
+}
+
+TEST_CASE("each of the MAC's bytes counts") {
+  for (std::size_t i = 0; i < node_mac_size; ++i) {
+    CAPTURE(i);
+    Bytes bytes = encoded(frame_of(1), &counted_key);
+    const std::span whole(bytes);
+    const auto covered =
+        whole.first(whole.size() - node_crc_size);  // by the CRC, which stands last
+    covered[covered.size() - node_mac_size + i] ^= 1;
+    ByteWriter(whole.last(node_crc_size)).put(crc32(covered));
+    CHECK(fate<NodeFrame>(bytes, &counted_key) == "wrong_mac");
+  }
 }
 
 TEST_CASE("fields are not looked at before the MAC is right") {
