@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/node_herald.h"
 
+#include "apps/kinalign/node_event_text.h"
 #include "apps/kinalign/node_text.h"
 #include "apps/kinalign/time_server_text.h"
 

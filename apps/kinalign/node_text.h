@@ -4,21 +4,15 @@
 
 #include "kinalign/capture/node_receiver.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace kinalign {
 
-/// "node 7: two nodes have this id (192.168.7.21:4000)"; no line end.
-std::string event_text(const NodeEvent& event);
-std::string event_json(const NodeEvent& event);
-
-/// `node_id`: whose clock. Empty where people need not be told.
-std::string event_text(const ClockEvent& event, std::uint32_t node_id);
-std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_t node_id);
-
-std::string event_text(const HostClockEvent& event);
-std::string event_json(const HostClockEvent& event);
+/// "192.168.7.21:4000".
+std::string address_text(const NodeAddress& address);
+inline std::int64_t json_ns(HostTime t) { return t.time_since_epoch().count(); }
 
 /// "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, round trip 2.00 ms, 3.91 V".
 std::string status_text(const NodeStatus& status);

@@ -65,65 +65,6 @@ TEST_CASE("a node without a certificate, a counter or a voice says so") {
   CHECK(nodes_text({}).empty());
 }
 
-TEST_CASE("every event has a text and a name, and warnings say that they are") {
-  for (std::size_t i = 0; i < node_event_kinds; ++i) {
-    NodeEvent event;
-    event.kind = static_cast<NodeEvent::Kind>(i);
-    event.node_id = 7;
-    event.other_id = 6;
-    event.version = 2;
-    CAPTURE(name_of(event.kind));
-    const std::string text = event_text(event);
-    CHECK(text.size() > 15);
-    CHECK((text.find("warning") != std::string::npos) == is_warning(event.kind));
-    const auto json = nlohmann::json::parse(event_json(event));
-    CHECK(json["kind"] == name_of(event.kind));
-    CHECK(json["warning"] == is_warning(event.kind));
-  }
-  ClockEvent step;
-  step.kind = ClockEvent::Kind::step;
-  step.value = -0.02;
-  CHECK(event_text(step, 7) == "node 7: warning: its counter stepped by at least 20.000 ms");
-  const auto json = nlohmann::json::parse(event_json(step, 0, 7));
-  CHECK(json["kind"] == "step");
-  CHECK(json["value"] == 0.02);
-  step.kind = ClockEvent::Kind::slip;
-  CHECK(event_text(step, 7) == "node 7: warning: its counter stepped by 20.000 ms");
-  step.kind = ClockEvent::Kind::uneasy;
-  CHECK(nlohmann::json::parse(event_json(step, 0, 7))["kind"] == "uneasy");
-  CHECK(event_text(step, 7).find("certificates hold") != std::string::npos);
-  for (int kind = 0; kind <= static_cast<int>(ClockEvent::Kind::route); ++kind) {
-    step.kind = static_cast<ClockEvent::Kind>(kind);
-    CHECK(nlohmann::json::parse(event_json(step, 0, 7))["kind"] != "");
-  }
-  HostClockEvent slept{HostClockEvent::Kind::suspended, {}, std::chrono::seconds(30)};
-  CHECK(event_text(slept) ==
-        "warning: this machine slept for 30.0 s; the nodes' clocks begin anew");
-}
-
-TEST_CASE("a node that is refused for its key is told with what mends it") {
-  NodeEvent event;
-  event.kind = NodeEvent::Kind::wrong_key;
-  event.node_id = 7;
-  event.address = some_status().address;
-  event.refusal = NodeRefusal::wrong_mac;
-  CHECK(event_text(event) ==
-        "node 7: warning: its key is another one (from 192.168.7.20:4000); flash what kinalign "
-        "node-key --lab-key LAB --node 7 prints");
-  event.refusal = NodeRefusal::no_mac;
-  CHECK(event_text(event) ==
-        "node 7: warning: sends no MAC (from 192.168.7.20:4000); flash what kinalign node-key "
-        "--lab-key LAB --node 7 prints");
-  const auto json = nlohmann::json::parse(event_json(event));
-  CHECK(json["refusal"] == "no_mac");
-  CHECK(json["node_id"] == 7);
-  CHECK(json["address"] == "192.168.7.20:4000");
-  CHECK_FALSE(json.contains("stream"));
-  event.refusal = NodeRefusal::no_key;
-  CHECK(event_text(event) ==
-        "node 7: warning: sends a MAC, and there is no --lab-key (from 192.168.7.20:4000)");
-}
-
 TEST_CASE("what was refused is counted for people by its causes") {
   NodeCounts counts;
   CHECK(refused_text(counts).empty());
