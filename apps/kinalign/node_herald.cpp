@@ -31,11 +31,16 @@ void NodeHerald::tell_events() {
     tell_live(console_, event_text(event));
     console_.print_json(event_json(event));
   }
+  const HostTime now = SystemClocks{}.raw();
   for (const auto& [stream, node_id, event] : receiver_.take_clock_events()) {
-    const std::string text = event_text(event, node_id);
-    if (!text.empty()) tell_live(console_, text);
+    clock_news_.hear(stream, node_id, event, now);
     console_.print_json(event_json(event, stream, node_id));
   }
+  tell_clocks(clock_news_.lines(now));
+}
+
+void NodeHerald::tell_clocks(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) tell_live(console_, line);
 }
 
 void NodeHerald::tell_status() {
@@ -67,10 +72,17 @@ void NodeHerald::tell_key_trouble(const std::string& trouble) {
   console_.print_json(R"({"event": "key_unreadable"})");
 }
 
+std::string NodeHerald::summary_of(const NodeStatus& status) const {
+  const HostTime now = SystemClocks{}.raw();
+  const bool bad = clock_news_.contradicts(status.stream, status.node_id, now);
+  return status_text(status, bad ? contradiction : "");
+}
+
 void NodeHerald::tell_end() {
   tell_events();
+  tell_clocks(clock_news_.last_lines());
   for (const NodeStatus& status : receiver_.status()) {
-    console_.print("  " + status_text(status) + "\n");
+    console_.print("  " + summary_of(status) + "\n");
     console_.print_json(status_json(status));
   }
   const std::string refused = refused_text(receiver_.counts());

@@ -3,6 +3,7 @@
 // its file is replaced.
 #pragma once
 
+#include "apps/kinalign/clock_news.h"
 #include "apps/kinalign/console.h"
 
 #include "kinalign/capture/node_receiver.h"
@@ -12,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace kinalign {
 
@@ -42,10 +44,14 @@ class NodeHerald {
   void look_at_key();
   void tell_key_trouble(const std::string& trouble);
 
+  void tell_clocks(const std::vector<std::string>& lines);
+  std::string summary_of(const NodeStatus& status) const;
+
   NodeReceiver& receiver_;
   Console& console_;
   FileSystem& files_;
   LabKeyFile lab_;
+  ClockNews clock_news_;
   std::string key_trouble_;  // that was told, and still stands
   Clock::time_point next_status_ = Clock::now() + std::chrono::seconds(1);
   int counts_in_s_ = 10;

@@ -26,6 +26,12 @@ const char* certainty_name(Certainty certainty) {
   return certainty == Certainty::one_sided ? "one_sided" : "doubtful";
 }
 
+std::string_view why_not_locked(const NodeStatus& status) {
+  if (!status.stamp) return "it has echoed no answer of this server";
+  if (status.stamp->certainty == Certainty::one_sided) return "too few exchanges";
+  return "its exchanges contradict the assumptions";
+}
+
 void add_clock(Json& json, const NodeStatus& status) {
   json["counter_ns"] = status.n->time_since_epoch().count();
   json["drift_ppm"] = 1e6 * status.drift;
@@ -46,7 +52,7 @@ std::string address_text(const NodeAddress& address) {
   return endpoint_text(to_string(address.host), address.port);
 }
 
-std::string status_text(const NodeStatus& status) {
+std::string status_text(const NodeStatus& status, std::string_view why) {
   std::string text = fmt::format("node {}  {:.1f}/s", status.node_id, status.rate_hz);
   const std::string lost = share_text(status.lost, status.lost + status.accepted);
   if (!lost.empty()) text += ", " + lost + " lost";
@@ -55,7 +61,7 @@ std::string status_text(const NodeStatus& status) {
     text += fmt::format(", ± {:.2f} ms, drift {:+.1f} ± {:.1f} ppm", ms(whole) / 2,
                         1e6 * status.drift, 1e6 * status.drift_deviation);
   } else if (status.n) {
-    text += ", not locked";
+    text += fmt::format(", not locked: {}", why.empty() ? why_not_locked(status) : why);
   }
   if (status.mean_way) text += fmt::format(", no counter: d {:.1f} ms", ms(*status.mean_way));
   if (status.round_trip) text += fmt::format(", round trip {:.2f} ms", ms(*status.round_trip));

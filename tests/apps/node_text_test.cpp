@@ -51,7 +51,13 @@ TEST_CASE("a node's status is one line, and JSON with times in ns") {
 TEST_CASE("a node without a certificate, a counter or a voice says so") {
   NodeStatus status = some_status();
   status.stamp->certainty = Certainty::one_sided;
-  CHECK(status_text(status).find("not locked") != std::string::npos);
+  CHECK(status_text(status).find(", not locked: too few exchanges, ") != std::string::npos);
+  CHECK(status_text(status, "asleep").find(", not locked: asleep, ") != std::string::npos);
+  status.stamp->certainty = Certainty::doubtful;
+  CHECK(status_text(status).find("not locked: its exchanges contradict") != std::string::npos);
+  NodeStatus unheard = status;
+  unheard.stamp.reset();
+  CHECK(status_text(unheard).find("not locked: it has echoed no answer") != std::string::npos);
   CHECK(nodes_text({some_status(), status}) == "2 nodes, 1 locked");
   NodeStatus bare;
   bare.node_id = 3;

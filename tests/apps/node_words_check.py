@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the time server tells people of its nodes, while it runs and at its end.
+node_words_check.py BUILD_FOLDER [CASE...]"""
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import cases
+from cases import BUILD, case, main
+
+from node_runs import ended, start_node
+
+
+class TextServer:
+    """The program without --json, until the end of the block: then `said` is its summary, `told` its
+    live lines without their time of day."""
+
+    def __init__(self, *words):
+        self.program = subprocess.Popen(
+            [str(cases.PROGRAM), "time-server", "--port", "0", "--node-port", "0", "--listen", "127.0.0.1",
+             "--local-stratum", "10", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        for line in self.program.stdout:
+            if found := re.match(r"  nodes    port (\d+),", line):
+                self.node_port = int(found[1])
+                return
+        raise AssertionError(self.program.communicate()[1])
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.program.send_signal(signal.SIGINT)
+        self.said, err = self.program.communicate(timeout=30)
+        assert self.program.returncode == 0, err
+        self.told = [re.sub(r"^\S+Z kinalign time-server: ", "", line) for line in err.splitlines()]
+
+
+@case
+def a_clock_beyond_the_assumptions_is_named_once_and_in_the_summary(_):
+    with TextServer() as server:
+        ended(start_node(BUILD, server.node_port, 7, "--seconds", 10, "--drift-ppm", 300))
+    keeps = "its clock keeps contradicting the assumptions (more than 100 ppm off, or asleep)"
+    assert len(server.told) <= 8, server.told
+    assert [keeps in line for line in server.told] == [False] * (len(server.told) - 1) + [True], server.told
+    assert f"not locked: {keeps}" in server.said, server.said
+
+
+@case
+def a_step_is_told_first_then_what_it_costs_then_that_it_is_over(_):
+    with TextServer() as server:
+        ended(start_node(BUILD, server.node_port, 7, "--seconds", 8, "--step", "6:0.5"))
+    assert re.fullmatch(r"node 7: joined .*\n"
+                        r"node 7: warning: its counter stepped by at least (499|500)\.\d+ ms\n"
+                        r"node 7: warning: the stamps of 5\.\d s are not certified any more\n"
+                        r"node 7: its counter runs evenly again", "\n".join(server.told)), server.told
+
+
+if __name__ == "__main__":
+    sys.exit(main())
