@@ -80,18 +80,21 @@ std::string what_happened(const NodeEvent& event) {
   return {};
 }
 
-/// A node that nothing is heard of but this; `refusal` is what its MAC was refused for.
+/// What is refused for its MAC may be anybody, whatever node it says it is.
 std::string wrong_key_text(const NodeEvent& event) {
   const bool no_key = event.refusal == NodeRefusal::no_key;
-  const char* what = no_key ? "sends a MAC, and there is no --lab-key"
-                     : event.refusal == NodeRefusal::no_mac ? "sends no MAC"
-                                                            : "its key is another one";
+  const char* what = no_key ? "with a MAC, and there is no --lab-key"
+                     : event.refusal == NodeRefusal::no_mac ? "without a MAC"
+                                                            : "with another key";
   const std::string mend =
       no_key ? ""
-             : fmt::format("; flash what kinalign node-key --lab-key LAB --node {} prints",
-                           event.node_id);
-  return fmt::format("node {}: warning: {} (from {}){}", event.node_id, what,
-                     address_text(event.address), mend);
+             : fmt::format(
+                   "; if it is that node, flash what kinalign node-key --lab-key LAB --node {} "
+                   "prints",
+                   event.node_id);
+  return fmt::format(
+      "warning: something that says it is node {} is not heard: it sends {} (from {}){}",
+      event.node_id, what, address_text(event.address), mend);
 }
 
 }  // namespace

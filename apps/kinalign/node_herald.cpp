@@ -87,6 +87,9 @@ void NodeHerald::tell_end() {
   }
   const std::string refused = refused_text(receiver_.counts());
   if (!refused.empty()) console_.print("  refused  " + refused + "\n");
+  for (const std::string& line : claims_text(receiver_.refused_nodes(), receiver_.counts())) {
+    console_.print("  " + line + "\n");
+  }
   console_.print_json(node_counts_json(receiver_));
 }
 

@@ -5,9 +5,12 @@
 #include "apps/kinalign/summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 namespace kinalign {
 
@@ -30,6 +33,13 @@ std::string_view why_not_locked(const NodeStatus& status) {
   if (!status.stamp) return "it has echoed no answer of this server";
   if (status.stamp->certainty == Certainty::one_sided) return "too few exchanges";
   return "its exchanges contradict the assumptions";
+}
+
+/// "wrong mac"
+std::string words(NodeRefusal refusal) {
+  std::string name = refusal_name(refusal);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 void add_clock(Json& json, const NodeStatus& status) {
@@ -111,11 +121,21 @@ std::string refused_text(const NodeCounts& counts) {
   for (std::size_t i = 1; i < node_refusals; ++i) {
     const auto refusal = static_cast<NodeRefusal>(i);
     if (counts.refusals[refusal] == 0) continue;
-    std::string name = refusal_name(refusal);
-    std::replace(name.begin(), name.end(), '_', ' ');
-    text += (text.empty() ? "" : ", ") + grouped(counts.refusals[refusal]) + " " + name;
+    text += (text.empty() ? "" : ", ") + grouped(counts.refusals[refusal]) + " " + words(refusal);
   }
   return text;
+}
+
+std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCounts& counts) {
+  std::map<NodeRefusal, std::set<std::uint32_t>> claimed;
+  for (const auto& claim : refused.claims()) claimed[claim.refusal].insert(claim.node_id);
+  std::vector<std::string> lines;
+  for (const auto& [refusal, ids] : claimed) {
+    lines.push_back(fmt::format("{}: from what says it is node {}{} ({} in all)", words(refusal),
+                                fmt::join(ids, ", "), refused.others(refusal) ? " and others" : "",
+                                grouped(counts.refusals[refusal])));
+  }
+  return lines;
 }
 
 std::string node_counts_json(const NodeReceiver& receiver) {

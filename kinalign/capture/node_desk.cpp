@@ -12,9 +12,6 @@ namespace {
 using State = NodeLife::State;
 using Found = AnswerTable::Found;
 
-constexpr Duration wrong_key_every = std::chrono::seconds(10);
-constexpr Duration same_key_every = std::chrono::seconds(60);
-
 EchoVerdict verdict_of(Found found) {
   if (found == Found::now) return EchoVerdict::taken;
   if (found == Found::before) return EchoVerdict::repeated;
@@ -101,17 +98,12 @@ bool NodeDesk::unlock(const Envelope& envelope, const NodeArrival& arrival, Data
   return false;
 }
 
-/// Anybody can bring this about as often as he likes: it is told once in ten seconds, and of one id
-/// once in a minute unless another comes between.
+/// Anybody can bring this about as often as he likes.
 void NodeDesk::tell_wrong_key(NodeRefusal refusal, const DatagramOrigin& origin,
                               const NodeArrival& arrival) {
   const bool is_key = refusal == NodeRefusal::no_key || refusal == NodeRefusal::no_mac ||
                       refusal == NodeRefusal::wrong_mac;
-  if (!is_key) return;
-  const bool begun = told_of_key_.at != HostTime::min();
-  const Duration quiet = told_of_key_.node_id == origin.node_id ? same_key_every : wrong_key_every;
-  if (begun && arrival.h_rx - told_of_key_.at < quiet) return;
-  told_of_key_ = {origin.node_id, arrival.h_rx};
+  if (!is_key || !refused_nodes_.take(refusal, origin.node_id, arrival.h_rx)) return;
   NodeEvent event;
   event.kind = NodeEvent::Kind::wrong_key;
   event.node_id = origin.node_id;

@@ -8,6 +8,7 @@
 #include "kinalign/capture/node_table.h"
 #include "kinalign/capture/node_verdict.h"
 #include "kinalign/capture/rate_limit.h"
+#include "kinalign/capture/refused_nodes.h"
 #include "kinalign/clock/clockless.h"
 #include "kinalign/wire/clockless.h"
 #include "kinalign/wire/node_frame.h"
@@ -68,6 +69,7 @@ class NodeDesk {
   const NodeStream& stream(std::size_t i) const { return table_.stream(i); }
   const NodeLife& life_of(const NodeStream& stream) const { return table_.life(stream.life); }
   const NodeCounts& counts() const { return counts_; }
+  const RefusedNodes& refused_nodes() const { return refused_nodes_; }
   std::vector<NodeEvent> take_events() { return table_.take_events(); }
 
  private:
@@ -95,10 +97,7 @@ class NodeDesk {
   RateLimit strangers_;
   NodeCounts counts_;
   std::uint64_t nonces_ = 0;
-  struct {
-    std::uint32_t node_id = 0;
-    HostTime at = HostTime::min();
-  } told_of_key_;  // last
+  RefusedNodes refused_nodes_;
 
   // of the datagram before
   NodeFrame frame_;

@@ -21,7 +21,7 @@ struct NodeEvent {
     returned,       // and here it is again, in the same life
     newer_version,  // something speaks a later version of the protocol: `version`
     too_many,       // warning: a node was not taken in
-    wrong_key       // warning: a node was not heard, for what `refusal` says of its MAC
+    wrong_key       // warning: not heard, for what `refusal` says; the node's id is only claimed
   };
   Kind kind{};
   std::size_t stream = 0;

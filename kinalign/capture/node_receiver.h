@@ -59,6 +59,7 @@ class NodeReceiver {
   /// Can be read where something has come.
   int fd() const { return lines_.fd(); }
   const NodeCounts& counts() const { return desk_->counts(); }
+  const RefusedNodes& refused_nodes() const { return desk_->refused_nodes(); }
   std::uint64_t dropped() const { return lines_.dropped(); }  // by the kernel
   std::uint64_t unsent() const { return unsent_; }
   /// Datagrams that were not looked into, for how they came.

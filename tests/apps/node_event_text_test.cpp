@@ -49,12 +49,14 @@ TEST_CASE("a node that is refused for its key is told with what mends it") {
   event.address = {mapped_ipv4(std::array<std::uint8_t, 4>{192, 168, 7, 20}), 4000};
   event.refusal = NodeRefusal::wrong_mac;
   CHECK(event_text(event) ==
-        "node 7: warning: its key is another one (from 192.168.7.20:4000); flash what kinalign "
-        "node-key --lab-key LAB --node 7 prints");
+        "warning: something that says it is node 7 is not heard: it sends with another key (from "
+        "192.168.7.20:4000); if it is that node, flash what kinalign node-key --lab-key LAB --node "
+        "7 prints");
   event.refusal = NodeRefusal::no_mac;
   CHECK(event_text(event) ==
-        "node 7: warning: sends no MAC (from 192.168.7.20:4000); flash what kinalign node-key "
-        "--lab-key LAB --node 7 prints");
+        "warning: something that says it is node 7 is not heard: it sends without a MAC (from "
+        "192.168.7.20:4000); if it is that node, flash what kinalign node-key --lab-key LAB --node "
+        "7 prints");
   const auto json = nlohmann::json::parse(event_json(event));
   CHECK(json["refusal"] == "no_mac");
   CHECK(json["node_id"] == 7);
@@ -62,7 +64,8 @@ TEST_CASE("a node that is refused for its key is told with what mends it") {
   CHECK_FALSE(json.contains("stream"));
   event.refusal = NodeRefusal::no_key;
   CHECK(event_text(event) ==
-        "node 7: warning: sends a MAC, and there is no --lab-key (from 192.168.7.20:4000)");
+        "warning: something that says it is node 7 is not heard: it sends with a MAC, and there is "
+        "no --lab-key (from 192.168.7.20:4000)");
 }
 
 }  // namespace kinalign

@@ -79,4 +79,22 @@ TEST_CASE("what was refused is counted for people by its causes") {
   CHECK(refused_text(counts) == "2 bad crc, 1,234 no mac");
 }
 
+TEST_CASE("who was refused for a key is listed by what he says he is") {
+  NodeCounts counts;
+  RefusedNodes refused;
+  CHECK(claims_text(refused, counts).empty());
+  counts.refusals[NodeRefusal::wrong_mac] = 6;
+  counts.refusals[NodeRefusal::no_mac] = 1200;
+  for (const std::uint32_t id : {13U, 11U, 12U, 11U}) refused.take(NodeRefusal::wrong_mac, id, {});
+  for (std::uint32_t id = 1; id < 62; ++id) refused.take(NodeRefusal::no_mac, id, {});
+  const auto lines = claims_text(refused, counts);
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0].starts_with("no mac: from what says it is node 1, 2, 3, "));
+  CHECK(lines[0].ends_with(", 60, 61 (1,200 in all)"));
+  CHECK(lines[1] == "wrong mac: from what says it is node 11, 12, 13 (6 in all)");
+  refused.take(NodeRefusal::wrong_mac, 99, {});  // one more than there is room for
+  CHECK(claims_text(refused, counts)[1] ==
+        "wrong mac: from what says it is node 11, 12, 13 and others (6 in all)");
+}
+
 }  // namespace kinalign

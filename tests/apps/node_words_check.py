@@ -12,7 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
 from cases import BUILD, case, main
 
-from node_runs import ended, start_node
+from node_runs import Keys, ended, start_node
 
 
 class TextServer:
@@ -57,6 +57,23 @@ def a_step_is_told_first_then_what_it_costs_then_that_it_is_over(_):
                         r"node 7: warning: its counter stepped by at least (499|500)\.\d+ ms\n"
                         r"node 7: warning: the stamps of 5\.\d s are not certified any more\n"
                         r"node 7: its counter runs evenly again", "\n".join(server.told)), server.told
+
+
+@case
+def every_node_with_a_wrong_key_is_told_and_stands_in_the_summary(folder):
+    keys = Keys(BUILD, folder)
+    with TextServer("--lab-key", keys.lab) as server:
+        wrong = [start_node(BUILD, server.node_port, i, "--seconds", 5, key=keys.of(i + 10)) for i in (13, 11, 12)]
+        wrong.append(start_node(BUILD, server.node_port, 9, "--seconds", 5))
+        for node in wrong:
+            ended(node)
+    assert len(server.told) == 4, server.told
+    for node, how in ((9, "without a MAC"), (11, "with another key"), (12, "with another key"), (13, "with another key")):
+        said = f"warning: something that says it is node {node} is not heard: it sends {how} (from "
+        assert sum(line.startswith(said) for line in server.told) == 1, server.told
+    assert re.search(r"\n  refused  \d+ no mac, \d+ wrong mac\n"
+                     r"  no mac: from what says it is node 9 \(\d+ in all\)\n"
+                     r"  wrong mac: from what says it is node 11, 12, 13 \(\d+ in all\)\n$", server.said), server.said
 
 
 if __name__ == "__main__":
