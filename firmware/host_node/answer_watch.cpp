@@ -11,7 +11,7 @@ std::string AnswerWatch::complaint(std::int64_t silent_ns, bool answers_came) co
   const std::string silent = std::to_string(silent_ns / 1'000'000'000);
   return server_ + " has not answered for " + silent +
          " s: either no kinalign time-server --node-port is there, or " +
-         (keyed_ ? "its --lab-key is not the one that this node's key was made from"
+         (keyed_ ? "its --lab-key is not the one that this node's key was made from, or is missing"
                  : "it has a --lab-key, and this node needs --key-file");
 }
 

@@ -40,14 +40,14 @@ Tried<MacKey> read_key_file(const std::string& path) {
     return failure(path + ": expected mode 0600, since nobody else may read a key, found " +
                    octal(found.st_mode) + ": chmod 600 " + path);
   }
-  std::array<char, 64> text{};
+  std::array<char, 80> text{};
   std::string_view digits(text.data(), std::fread(text.data(), 1, text.size(), file.get()));
   if (!digits.empty() && digits.back() == '\n') digits.remove_suffix(1);
   MacKey key{};
-  if (!take_hex(digits, key)) {  // what it is instead is nobody's business
-    return failure(path + ": expected a key of 32 hexadecimal digits, found something else");
-  }
-  return key;
+  if (take_hex(digits, key)) return key;
+  std::array<std::uint8_t, 32> lab{};  // what else it is is nobody's business
+  const char* instead = take_hex(digits, lab) ? "64 digits, the lab's key" : "something else";
+  return failure(path + ": expected a key of 32 hexadecimal digits, found " + instead);
 }
 
 }  // namespace kinalign

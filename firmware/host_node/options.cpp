@@ -216,7 +216,11 @@ Tried<HostNodeOptions> options_from(std::span<const char* const> words) {
     if (flag == flags().end()) {
       return no_option(words[i]);
     }
-    const std::string value = flag->expected != nullptr && i + 1 < words.size() ? words[++i] : "";
+    if (flag->expected != nullptr && i + 1 == words.size()) {
+      return wrong_use(std::string(word) + ": expected a value behind it (" + flag->expected +
+                       "), found the end");
+    }
+    const std::string value = flag->expected != nullptr ? words[++i] : "";
     if (!flag->read(value, options)) {
       return wrong_use(std::string(word) + ": expected " + flag->expected + ", found \"" + value +
                        "\"");

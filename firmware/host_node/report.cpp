@@ -26,9 +26,11 @@ class Object {
   std::string text_;
 };
 
+/// Without an exponent: of a counter the microseconds are to be seen.
 std::string shortest(double value) {
-  std::array<char, 32> digits{};
-  return {digits.begin(), std::to_chars(digits.begin(), digits.end(), value).ptr};
+  std::array<char, 400> digits{};  // the longest double
+  const auto format = std::chars_format::fixed;
+  return {digits.begin(), std::to_chars(digits.begin(), digits.end(), value, format).ptr};
 }
 
 std::string truths(const std::vector<ClockTruth>& all) {

@@ -169,7 +169,7 @@ def a_node_that_is_not_answered_says_so_once_with_the_likely_causes_and_when_it_
         host.answers_to = lambda *got: answered(*got) if time.monotonic() > begin + 6.5 else ()
         host.answers = True
         host.run(*(("--key-file", secret(folder)) if keyed else ()), seconds=7.5)
-        cause = ("its --lab-key is not the one that this node's key was made from" if keyed else
+        cause = ("its --lab-key is not the one that this node's key was made from, or is missing" if keyed else
                  "it has a --lab-key, and this node needs --key-file")
         assert host.err == (f"host_node: {host.address()} has not answered for 5 s: either no kinalign time-server "
                             f"--node-port is there, or {cause}\n"
@@ -301,6 +301,12 @@ def sensor_and_battery(_):
 
 
 @case
+def the_counter_at_the_start_is_printed_in_all_its_digits(_):
+    (truth,) = Host().run("--offset", "1e9", seconds=0.2)["truth"]
+    assert isinstance(truth["counter_us"], int) and truth["counter_us"] == 10**15, truth
+
+
+@case
 def what_it_can_not_do_it_says_in_one_line(folder):
     (folder / "folder").mkdir()
     key = secret(folder)
@@ -315,7 +321,8 @@ def what_it_can_not_do_it_says_in_one_line(folder):
             (["-clokcless"], 2, "no option -clokcless; did you mean --clockless? --help says which there are"),
             (["--xy"], 2, "no option --xy; --help says which there are"),
             (["--loud"], 2, "no option --loud; --help says which there are"),
-            (["--rate"], 2, '--rate: expected 0.1 to 1000 Hz, found ""'),
+            (["--rate"], 2, "--rate: expected a value behind it (0.1 to 1000 Hz), found the end"),
+            (["--rate", ""], 2, '--rate: expected 0.1 to 1000 Hz, found ""'),
             (["--rate", "nan"], 2, '--rate: expected 0.1 to 1000 Hz, found "nan"'),
             (["--step", "3"], 2, '--step: expected AT:S, both in seconds, found "3"'),
             (["--outage", "3:-1"], 2, '--outage: expected AT:S, both in seconds, found "3:-1"'),
@@ -330,6 +337,8 @@ def what_it_can_not_do_it_says_in_one_line(folder):
             (0o640, KEY.hex(), "expected mode 0600, since nobody else may read a key, found 0640: chmod 600 " + key),
             (0o600, KEY.hex()[1:], "expected a key of 32 hexadecimal digits, found something else"),
             (0o600, KEY.hex() + "0", "expected a key of 32 hexadecimal digits, found something else"),
+            (0o600, 2 * KEY.hex(), "expected a key of 32 hexadecimal digits, found 64 digits, the lab's key"),
+            (0o600, 3 * KEY.hex(), "expected a key of 32 hexadecimal digits, found something else"),
             (0o600, "", "expected a key of 32 hexadecimal digits, found something else"),
             (0o600, "-" + KEY.hex()[1:], "expected a key of 32 hexadecimal digits, found something else")]:
         done = subprocess.run([HOST_NODE, "--server", "127.0.0.1:9", "--key-file", secret(folder, text, mode)],
