@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
+#include "apps/kinalign/key_advice.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/node_keys.h"
@@ -69,7 +70,9 @@ Result<int> run_node_key(NodeKeyFlags& o, Call& call) {
     call.console.print(o.new_lab_key + ": a new lab key; keep a copy where nobody else reads it\n");
     return 0;
   }
+  call.console.if_it_fails(key_advice);
   const LabKey lab = KA_TRY(read_lab_key(files, o.lab_key));
+  call.console.if_it_fails({});
   const MacKey key = node_key(lab, static_cast<std::uint32_t>(*o.node));
   if (call.common.out.empty()) {
     call.console.put(key_text(key) + "\n");

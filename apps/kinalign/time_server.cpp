@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/time_server.h"
 
+#include "apps/kinalign/key_advice.h"
 #include "apps/kinalign/node_herald.h"
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/time_server_text.h"
@@ -12,8 +13,6 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
 namespace kinalign {
@@ -127,15 +126,6 @@ Advice port_advice(const std::string& flag) {
     }
     return {};
   };
-}
-
-/// On a lab key that could not be read.
-std::vector<std::string> key_advice(const Error& error) {
-  if (error.expected == secret_key) return {};
-  if (error.found == std::strerror(ENOENT)) {
-    return {"kinalign node-key --new-lab-key FILE makes one, where the lab has none yet"};
-  }
-  return {"--lab-key takes the lab's own file, from which the nodes' keys came"};
 }
 
 Result<LabKeyFile> read_key_file(const TimeServerFlags& flags, Call& call) {

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <openssl/evp.h>
 #include <openssl/hmac.h>
+#include <pwd.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 
@@ -13,6 +14,7 @@
 #include <cassert>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 namespace kinalign {
 
@@ -53,6 +55,25 @@ Result<void> check_mode(int fd, const std::string& path) {
   return no_key(path, std::string(secret_key), octal(found.st_mode));
 }
 
+/// Of a file that may not be read: whose it is, where that may be known.
+std::string forbidden(const std::string& path) {
+  std::string text(no_permission);
+  struct stat found {};
+  if (::stat(path.c_str(), &found) != 0) return text;
+  const passwd* owner = ::getpwuid(found.st_uid);
+  const std::string name = owner != nullptr ? owner->pw_name : std::to_string(found.st_uid);
+  return text + ": it is " + name + "'s, " + octal(found.st_mode);
+}
+
+/// Of a file that could not be made.
+std::string no_place(const std::string& path, int error) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code unknown;
+  const bool nowhere =
+      error == ENOENT && !folder.empty() && !std::filesystem::exists(folder, unknown);
+  return nowhere ? "no folder " + folder.string() : std::strerror(error);
+}
+
 template <class Key>
 Result<Key> drawn() {
   Key key{};
@@ -88,7 +109,9 @@ std::string key_text(std::span<const std::uint8_t> key) {
 
 Result<LabKey> read_lab_key(FileSystem& files, const std::string& path) {
   const OpenFile file(files, files.open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0));
-  if (file.fd() < 0) return no_key(path, "a lab key", std::strerror(errno));
+  if (file.fd() < 0) {
+    return no_key(path, "a lab key", errno == EACCES ? forbidden(path) : std::strerror(errno));
+  }
   KA_TRY(check_mode(file.fd(), path));
   std::array<char, 128> text{};
   const ssize_t got = files.read(file.fd(), text.data(), text.size());
@@ -109,7 +132,7 @@ Result<void> write_key(FileSystem& files, const std::string& path,
   if (file.fd() < 0) {
     const bool there = errno == EEXIST;
     return no_key(path, "a place for a new key file",
-                  there ? "a file, which stays as it is" : std::strerror(errno));
+                  there ? "a file, which stays as it is" : no_place(path, errno));
   }
   const std::string text = key_text(key) + '\n';
   const bool written =

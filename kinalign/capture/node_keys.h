@@ -30,6 +30,9 @@ std::string key_text(std::span<const std::uint8_t> key);
 /// What read_lab_key expected of a file that others may read, for who advises.
 inline constexpr std::string_view secret_key = "a key that nobody else may read (chmod 600)";
 
+/// What it found of a file that is another user's begins so, and goes on with whose and which mode.
+inline constexpr std::string_view no_permission = "no permission to read it";
+
 /// 64 hexadecimal digits and at most a line end. Refuses a file that others may read; no message
 /// shows a byte of it.
 Result<LabKey> read_lab_key(FileSystem& files, const std::string& path);

@@ -158,6 +158,10 @@ def keys_are_written_for_their_owner_and_never_over_a_file(folder):
         done = kinalign(*verb, "--lab-key", lab)
         assert done.returncode == 3 and b"chmod 600" in done.stderr and b"mode 0640" in done.stderr, done
         assert text.encode()[:8] not in done.stderr
+    for verb in (("node-key", "--node", 7), ("time-server", "--port", 0, "--node-port", 0)):
+        done = kinalign(*verb, "--lab-key", node)
+        assert done.returncode == 3 and done.stderr.decode().endswith(
+            "found 32 digits, a node's key\n  --lab-key takes the lab's own file, from which the nodes' keys came\n"), done
     cases.wrong("time-server", "--lab-key", "x", says="--lab-key: expected --node-port beside it, found none")
 
 

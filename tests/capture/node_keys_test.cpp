@@ -4,9 +4,11 @@
 #include "kinalign/capture/key_ring.h"
 
 #include <doctest/doctest.h>
+#include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -102,6 +104,30 @@ TEST_CASE("a key is written for its owner alone, and never over anything") {
   REQUIRE_FALSE(again);
   CHECK(again.error().found == "a file, which stays as it is");
   CHECK(*read_lab_key(files, path) == *key);
+}
+
+TEST_CASE("a lab key of another user's is told with whose it is") {
+  struct Forbidden : PosixFiles {
+    int open(const char*, int, mode_t) override {
+      errno = EACCES;
+      return -1;
+    }
+  } files;
+  const Folder folder;
+  const passwd* me = ::getpwuid(::getuid());
+  const std::string owner = me != nullptr ? me->pw_name : std::to_string(::getuid());
+  CHECK(read_lab_key(files, folder.file(digits, 0400)).error().found ==
+        "no permission to read it: it is " + owner + "'s, mode 0400");
+  CHECK(read_lab_key(files, folder.path + "/none").error().found == no_permission);
+}
+
+TEST_CASE("a key for a folder that is not there names the folder") {
+  const Folder folder;
+  PosixFiles files;
+  const auto written = write_key(files, folder.path + "/nodir/x", LabKey{});
+  REQUIRE_FALSE(written);
+  CHECK(to_string(written.error()) == folder.path + "/nodir/x: expected a place for a new key " +
+                                          "file, found no folder " + folder.path + "/nodir");
 }
 
 TEST_CASE("keys that were replaced are good for a minute") {
