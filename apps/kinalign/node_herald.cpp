@@ -73,9 +73,10 @@ void NodeHerald::tell_key_trouble(const std::string& trouble) {
 }
 
 std::string NodeHerald::summary_of(const NodeStatus& status) const {
-  const HostTime now = SystemClocks{}.raw();
-  const bool bad = clock_news_.contradicts(status.stream, status.node_id, now);
-  return status_text(status, bad ? contradiction : "");
+  SystemClocks clocks;
+  const ClockPair now{.raw = clocks.raw(), .utc = clocks.utc()};
+  const bool bad = clock_news_.contradicts(status.stream, status.node_id, now.raw);
+  return status_text(status, now, bad ? contradiction : "");
 }
 
 void NodeHerald::tell_end() {

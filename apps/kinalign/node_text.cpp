@@ -3,6 +3,7 @@
 
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/summary.h"
+#include "apps/kinalign/time_server_text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,6 +30,17 @@ const char* certainty_name(Certainty certainty) {
   return certainty == Certainty::one_sided ? "one_sided" : "doubtful";
 }
 
+/// A clock that is far off may make the least round trip nothing, or less: then it says nothing.
+bool has_round_trip(const NodeStatus& status) {
+  return status.round_trip && *status.round_trip > Duration{0};
+}
+
+/// "15.0/s", or what stands there instead.
+std::string pace_text(const NodeStatus& status, const ClockPair& now) {
+  if (status.silent) return "silent since " + utc_text(now.utc - (now.raw - status.heard));
+  return status.rate_hz ? fmt::format("{:.1f}/s", *status.rate_hz) : "just heard";
+}
+
 std::string_view why_not_locked(const NodeStatus& status) {
   if (!status.stamp) return "it has echoed no answer of this server";
   if (status.stamp->certainty == Certainty::one_sided) return "too few exchanges";
@@ -46,7 +58,7 @@ void add_clock(Json& json, const NodeStatus& status) {
   json["counter_ns"] = status.n->time_since_epoch().count();
   json["drift_ppm"] = 1e6 * status.drift;
   json["drift_deviation_ppm"] = 1e6 * status.drift_deviation;
-  if (status.round_trip) json["round_trip_ms"] = ms(*status.round_trip);
+  if (has_round_trip(status)) json["round_trip_ms"] = ms(*status.round_trip);
   if (!status.stamp) return;
   const ClockStamp& stamp = *status.stamp;
   json["certainty"] = certainty_name(stamp.certainty);
@@ -62,8 +74,8 @@ std::string address_text(const NodeAddress& address) {
   return endpoint_text(to_string(address.host), address.port);
 }
 
-std::string status_text(const NodeStatus& status, std::string_view why) {
-  std::string text = fmt::format("node {}  {:.1f}/s", status.node_id, status.rate_hz);
+std::string status_text(const NodeStatus& status, const ClockPair& now, std::string_view why) {
+  std::string text = fmt::format("node {}  {}", status.node_id, pace_text(status, now));
   const std::string lost = share_text(status.lost, status.lost + status.accepted);
   if (!lost.empty()) text += ", " + lost + " lost";
   if (is_certified(status)) {
@@ -74,10 +86,9 @@ std::string status_text(const NodeStatus& status, std::string_view why) {
     text += fmt::format(", not locked: {}", why.empty() ? why_not_locked(status) : why);
   }
   if (status.mean_way) text += fmt::format(", no counter: d {:.1f} ms", ms(*status.mean_way));
-  if (status.round_trip) text += fmt::format(", round trip {:.2f} ms", ms(*status.round_trip));
+  if (has_round_trip(status)) text += fmt::format(", round trip {:.2f} ms", ms(*status.round_trip));
   if (status.battery_mv > 0) text += fmt::format(", {:.2f} V", 1e-3 * status.battery_mv);
   if (status.old_key) text += ", old key";
-  if (status.silent) text += ", silent";
   return text;
 }
 
@@ -89,10 +100,10 @@ std::string status_json(const NodeStatus& status) {
             {"address", address_text(status.address)},
             {"silent", status.silent},
             {"lives", status.lives},
-            {"rate_hz", status.rate_hz},
             {"accepted", status.accepted},
             {"lost", status.lost},
             {"old_key", status.old_key}};
+  if (status.rate_hz) json["rate_hz"] = *status.rate_hz;
   if (status.battery_mv > 0) json["battery_mv"] = status.battery_mv;
   if (status.one_way) json["d_ms"] = ms(*status.one_way);
   if (status.mean_way) json["d_mean_ms"] = ms(*status.mean_way);

@@ -15,9 +15,10 @@ namespace kinalign {
 std::string address_text(const NodeAddress& address);
 inline std::int64_t json_ns(HostTime t) { return t.time_since_epoch().count(); }
 
-/// "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, round trip 2.00 ms, 3.91 V".
-/// `why` it is not locked, where more is known than its stamp says.
-std::string status_text(const NodeStatus& status, std::string_view why = {});
+/// "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, round trip 2.00 ms, 3.91 V"; of
+/// who is silent "node 7  silent since 2026-11-22T17:38:23Z, …". `why` it
+/// is not locked, where more is known than its stamp says.
+std::string status_text(const NodeStatus& status, const ClockPair& now, std::string_view why = {});
 std::string status_json(const NodeStatus& status);
 /// "3 nodes, 2 locked, 1 silent": who is silent is not locked, whatever its last frame was. Empty
 /// without nodes.

@@ -109,10 +109,13 @@ std::string clock_json(const NtpServerState& state) {
   return json_text(event_json("clock", state_json(state)));
 }
 
+std::string utc_text(Time t) {
+  const auto whole = std::chrono::floor<std::chrono::seconds>(t.time_since_epoch());
+  return fmt::format("{:%FT%TZ}", fmt::gmtime(static_cast<std::time_t>(whole.count())));
+}
+
 std::string live_line(Time now, std::string_view what) {
-  const auto whole = std::chrono::floor<std::chrono::seconds>(now.time_since_epoch());
-  return fmt::format("{:%FT%TZ} kinalign time-server: {}",
-                     fmt::gmtime(static_cast<std::time_t>(whole.count())), what);
+  return fmt::format("{} kinalign time-server: {}", utc_text(now), what);
 }
 
 std::string counts_text(const NtpCounts& counts) {

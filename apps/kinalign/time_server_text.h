@@ -29,6 +29,9 @@ std::string start_json(const ServedPort& served, const NtpServerState& state);
 std::string clock_text(const NtpServerState& state);
 std::string clock_json(const NtpServerState& state);
 
+/// "2026-11-22T17:38:23Z"
+std::string utc_text(Time t);
+
 /// "2026-11-22T17:38:23Z kinalign time-server: node 7: joined", as chronyd dates its lines.
 std::string live_line(Time now, std::string_view what);
 

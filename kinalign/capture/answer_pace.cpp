@@ -11,7 +11,7 @@ bool AnswerPace::ask(HostTime now) {
   if (now - begin_ >= second) {
     rate_hz_ = static_cast<double>(frames_) / seconds(now - begin_);
     // a frame more in a second that began early is no higher rate
-    stride_ = static_cast<std::int64_t>(std::ceil((rate_hz_ - 1.5) / most_per_s));
+    stride_ = static_cast<std::int64_t>(std::ceil((*rate_hz_ - 1.5) / most_per_s));
     if (stride_ < 1) stride_ = 1;
     begin_ = now;
     frames_ = answers_ = 0;

@@ -6,6 +6,7 @@
 #include "kinalign/wire/time.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace kinalign {
 
@@ -15,13 +16,13 @@ class AnswerPace {
 
   /// A frame came; whether to answer it.
   bool ask(HostTime now);
-  /// Frames a second, of the last second that is over.
-  double rate_hz() const { return rate_hz_; }
+  /// Frames a second, of the last second that is over; absent before the first is.
+  std::optional<double> rate_hz() const { return rate_hz_; }
 
  private:
   HostTime begin_{HostTime::min()};
   std::int64_t frames_ = 0, answers_ = 0, stride_ = 1;
-  double rate_hz_ = 0.0;
+  std::optional<double> rate_hz_;
 };
 
 }  // namespace kinalign

@@ -150,7 +150,8 @@ std::vector<NodeStatus> NodeReceiver::status() const {
     status.lives = stream.lives;
     status.accepted = life.accepted;
     status.lost = life.sequences.missing();
-    status.rate_hz = stream.silent ? 0.0 : life.pace.rate_hz();
+    status.rate_hz = stream.silent ? std::nullopt : life.pace.rate_hz();
+    status.heard = life.heard;
     status.battery_mv = stream.battery_mv;
     if (clocks_[i] != nullptr && is_current(*clocks_[i], i)) add_clock(status, *clocks_[i], life);
   }

@@ -31,8 +31,9 @@ struct NodeStatus {
   NodeAddress address;
   bool silent = false, old_key = false;
   std::uint64_t lives = 0, accepted = 0, lost = 0;  // frames, of this life
-  double rate_hz = 0.0;
-  std::uint16_t battery_mv = 0;  // 0: it says none
+  std::optional<double> rate_hz;  // absent before it is known, and of who is silent
+  HostTime heard{};               // last
+  std::uint16_t battery_mv = 0;   // 0: it says none
   // of its clock, where it has one
   std::optional<NodeTime> n;  // its newest counter, ...
   std::optional<ClockStamp> stamp;

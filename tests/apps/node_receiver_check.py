@@ -78,6 +78,8 @@ def a_reboot_a_new_port_and_an_outage_are_told_and_cost_no_certificate(folder):
     last = server.node(1)
     assert last["lives"] == 2 and last["battery_mv"] == 3712 and last["certainty"] == "certified", last
     assert "node 1: started anew" in server.err, server.err
+    rates = [line.get("rate_hz") for line in server.said("node")]
+    assert rates[0] is None and rates[-1] > 10 and 0.0 not in rates, rates
 
 
 @case

@@ -8,6 +8,9 @@ namespace kinalign {
 
 namespace {
 
+const ClockPair now{.raw = HostTime{std::chrono::hours(1)},
+                    .utc = utc_time(1'795'369'168'000'000'000)};  // 2026-11-22T17:39:28Z
+
 NodeStatus some_status() {
   NodeStatus status;
   status.node_id = 7;
@@ -34,7 +37,7 @@ NodeStatus some_status() {
 
 TEST_CASE("a node's status is one line, and JSON with times in ns") {
   const NodeStatus status = some_status();
-  CHECK(status_text(status) ==
+  CHECK(status_text(status, now) ==
         "node 7  15.0/s, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, round trip 2.00 ms, 3.91 V");
   const auto json = nlohmann::json::parse(status_json(status));
   CHECK(json["address"] == "192.168.7.20:4000");
@@ -51,24 +54,42 @@ TEST_CASE("a node's status is one line, and JSON with times in ns") {
 TEST_CASE("a node without a certificate, a counter or a voice says so") {
   NodeStatus status = some_status();
   status.stamp->certainty = Certainty::one_sided;
-  CHECK(status_text(status).find(", not locked: too few exchanges, ") != std::string::npos);
-  CHECK(status_text(status, "asleep").find(", not locked: asleep, ") != std::string::npos);
+  CHECK(status_text(status, now).find(", not locked: too few exchanges, ") != std::string::npos);
+  CHECK(status_text(status, now, "asleep").find(", not locked: asleep, ") != std::string::npos);
   status.stamp->certainty = Certainty::doubtful;
-  CHECK(status_text(status).find("not locked: its exchanges contradict") != std::string::npos);
+  CHECK(status_text(status, now).find("not locked: its exchanges contradict") != std::string::npos);
   NodeStatus unheard = status;
   unheard.stamp.reset();
-  CHECK(status_text(unheard).find("not locked: it has echoed no answer") != std::string::npos);
+  CHECK(status_text(unheard, now).find("not locked: it has echoed no answer") != std::string::npos);
   CHECK(nodes_text({some_status(), status}) == "2 nodes, 1 locked");
   NodeStatus bare;
   bare.node_id = 3;
   bare.mean_way = std::chrono::milliseconds(33);
   bare.silent = bare.old_key = true;
-  CHECK(status_text(bare) == "node 3  0.0/s, no counter: d 33.0 ms, old key, silent");
+  bare.rate_hz = 15.0;
+  bare.heard = now.raw - std::chrono::seconds(65);
+  CHECK(status_text(bare, now) ==
+        "node 3  silent since 2026-11-22T17:38:23Z, no counter: d 33.0 ms, old key");
   CHECK(nodes_text({bare}) == "1 node, 0 locked, 1 silent");
   NodeStatus left = some_status();  // certified when it was heard last
   left.silent = true;
   CHECK(nodes_text({some_status(), left}) == "2 nodes, 1 locked, 1 silent");
   CHECK(nodes_text({}).empty());
+}
+
+TEST_CASE("what is not known of a node is left out") {
+  NodeStatus status = some_status();
+  CHECK(nlohmann::json::parse(status_json(status))["rate_hz"] == 15.02);
+  CHECK(nlohmann::json::parse(status_json(status))["round_trip_ms"] == doctest::Approx(2.004));
+  status.rate_hz.reset();
+  for (const auto round_trip : {Duration{0}, Duration{-5000}}) {
+    status.round_trip = round_trip;
+    CHECK(status_text(status, now) ==
+          "node 7  just heard, 0.2 % lost, ± 1.04 ms, drift +20.1 ± 0.4 ppm, 3.91 V");
+    const auto json = nlohmann::json::parse(status_json(status));
+    CHECK_FALSE(json.contains("rate_hz"));
+    CHECK_FALSE(json.contains("round_trip_ms"));
+  }
 }
 
 TEST_CASE("what was refused is counted for people by its causes") {
