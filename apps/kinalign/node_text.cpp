@@ -141,6 +141,7 @@ std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCoun
   std::map<NodeRefusal, std::set<std::uint32_t>> claimed;
   for (const auto& claim : refused.claims()) claimed[claim.refusal].insert(claim.node_id);
   std::vector<std::string> lines;
+  lines.reserve(claimed.size());
   for (const auto& [refusal, ids] : claimed) {
     lines.push_back(fmt::format("{}: from what says it is node {}{} ({} in all)", words(refusal),
                                 fmt::join(ids, ", "), refused.others(refusal) ? " and others" : "",
