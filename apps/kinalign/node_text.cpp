@@ -143,7 +143,7 @@ std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCoun
   std::vector<std::string> lines;
   lines.reserve(claimed.size());
   for (const auto& [refusal, ids] : claimed) {
-    lines.push_back(fmt::format("{}: from what says it is node {}{} ({} in all)", words(refusal),
+    lines.push_back(fmt::format("{}: from what says it is node {}{} ({} frames)", words(refusal),
                                 fmt::join(ids, ", "), refused.others(refusal) ? " and others" : "",
                                 grouped(counts.refusals[refusal])));
   }

@@ -111,11 +111,11 @@ TEST_CASE("who was refused for a key is listed by what he says he is") {
   const auto lines = claims_text(refused, counts);
   REQUIRE(lines.size() == 2);
   CHECK(lines[0].starts_with("no mac: from what says it is node 1, 2, 3, "));
-  CHECK(lines[0].ends_with(", 60, 61 (1,200 in all)"));
-  CHECK(lines[1] == "wrong mac: from what says it is node 11, 12, 13 (6 in all)");
+  CHECK(lines[0].ends_with(", 60, 61 (1,200 frames)"));
+  CHECK(lines[1] == "wrong mac: from what says it is node 11, 12, 13 (6 frames)");
   refused.take(NodeRefusal::wrong_mac, 99, {});  // one more than there is room for
   CHECK(claims_text(refused, counts)[1] ==
-        "wrong mac: from what says it is node 11, 12, 13 and others (6 in all)");
+        "wrong mac: from what says it is node 11, 12, 13 and others (6 frames)");
 }
 
 }  // namespace kinalign

@@ -72,8 +72,8 @@ def every_node_with_a_wrong_key_is_told_and_stands_in_the_summary(folder):
         said = f"warning: something that says it is node {node} is not heard: it sends {how} (from "
         assert sum(line.startswith(said) for line in server.told) == 1, server.told
     assert re.search(r"\n  refused  \d+ no mac, \d+ wrong mac\n"
-                     r"  no mac: from what says it is node 9 \(\d+ in all\)\n"
-                     r"  wrong mac: from what says it is node 11, 12, 13 \(\d+ in all\)\n$", server.said), server.said
+                     r"  no mac: from what says it is node 9 \(\d+ frames\)\n"
+                     r"  wrong mac: from what says it is node 11, 12, 13 \(\d+ frames\)\n$", server.said), server.said
 
 
 if __name__ == "__main__":
