@@ -9,8 +9,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t longest = 128;            // a request with a sample and a MAC: 101 bytes
-constexpr std::uint32_t unanswered_after = 45;  // requests: 3 s of 15 a second
+constexpr std::size_t longest = 128;  // a request with a sample and a MAC: 101 bytes
+constexpr std::uint32_t unanswered_after_us = 3'000'000;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void ClocklessNode::tick(std::uint32_t due) {
   request.has_battery = board_.read_battery(request.battery_mv);
   std::array<std::uint8_t, longest> room{};
   ++(board_.send(encode(request, key(), room)) ? counts_.requests : counts_.request_fails);
-  if (++unanswered_ > unanswered_after) answered_ = false;
+  if (++unanswered_ > unanswered_after_us / settings_.frame_period_us) answered_ = false;
   lights_.battery = battery_light(request.has_battery, request.battery_mv);
   show();
 }

@@ -64,10 +64,10 @@ bool SystemClocks::wall_was_set() {
   return ::read(*timer_, &ticks, sizeof ticks) < 0 && errno == ECANCELED;
 }
 
-bool runs_on(const ClockBracket& earlier, const ClockBracket& later) {
+bool runs_on(const ClockBracket& earlier, const ClockBracket& later, double slew) {
   const auto [least_then, greatest_then] = offsets(earlier);
   const auto [least, greatest] = offsets(later);
-  const Duration slack = reading_noise + share(later.after - earlier.before, most_slew);
+  const Duration slack = reading_noise + share(later.after - earlier.before, slew);
   return least - slack <= greatest_then && least_then <= greatest + slack;
 }
 
@@ -112,7 +112,8 @@ ClockBracket HostAxis::read() {
 void HostAxis::look() {
   const ClockBracket before = std::exchange(bracket_, read());
   const bool set = reader_.wall_was_set();  // until behind the bracket
-  if (set || !runs_on(before, bracket_)) steady_ = bracket_.utc;
+  was_set_ = was_set_ || set;
+  if (set || !runs_on(before, bracket_, most_slew)) steady_ = bracket_.utc;
 }
 
 ClockPair HostAxis::watch() {
@@ -123,7 +124,10 @@ ClockPair HostAxis::watch() {
     tell({HostClockEvent::Kind::suspended, bracket.after, asleep - asleep_});
   }
   asleep_ = asleep;
-  if (watched_ && !runs_on(*watched_, bracket)) {
+  const bool seen = std::exchange(was_set_, false);
+  const bool set = reader_.wall_was_set();
+  if (set) steady_ = bracket.utc;
+  if (watched_ && (seen || set || !runs_on(*watched_, bracket, fastest_slew))) {
     const Duration by = offsets(*watched_).first - offsets(bracket).first;
     tell({HostClockEvent::Kind::wall_stepped, bracket.after, by});
   }

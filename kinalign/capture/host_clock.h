@@ -47,10 +47,13 @@ struct ClockBracket {
   HostTime after{};
 };
 
-/// Whether the wall clock ran on between two brackets: no step beyond what a slew of `most_slew`
-/// makes of the time between them. Smaller ones the system tells, where it can.
-inline constexpr double most_slew = 1e-3;  // the kernel's own is 5e-4
-bool runs_on(const ClockBracket& earlier, const ClockBracket& later);
+/// Whether the wall clock ran on between two brackets: no step beyond what such a slew makes of the
+/// time between them. Smaller ones the system tells, where it can.
+bool runs_on(const ClockBracket& earlier, const ClockBracket& later, double slew);
+
+/// As much is allowed for where a stamp is moved to the raw axis: the kernel's own is 5e-4, and one
+/// that is slewed faster has no stamps of use.
+inline constexpr double most_slew = 1e-3;
 
 /// When a datagram arrived that the kernel stamped, and that was received before the bracket was
 /// read. Never earlier than the truth if the wall clock has run on since `steady`; the end of the
@@ -98,6 +101,7 @@ class HostAxis {
   ClockBracket bracket_;
   Time steady_{};  // since when the wall clock has run on; as it says
   std::optional<ClockBracket> watched_;
+  bool was_set_ = false;  // the wall clock, since then
   Duration asleep_;
   std::uint32_t epoch_ = 0;
   std::uint64_t went_back_ = 0;

@@ -63,7 +63,7 @@ class NodeDesk {
   void set_locked(std::size_t stream, bool locked) { table_.stream(stream).locked = locked; }
   /// The present keys are good for a minute more.
   void replace_key(const LabKey& lab, HostTime now) { keys_.replace(lab, now); }
-  /// Once a second or so.
+  /// Now and then.
   void tick(HostTime now) { table_.tick(now); }
 
   const NodeStream& stream(std::size_t i) const { return table_.stream(i); }

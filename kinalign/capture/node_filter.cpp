@@ -4,6 +4,7 @@
 #include "kinalign/capture/node_filter.h"
 
 #include "kinalign/wire/node_datagram.h"
+#include "kinalign/wire/node_layout.h"
 
 #include <linux/filter.h>
 #include <linux/sock_diag.h>
@@ -15,7 +16,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint32_t header = 8, magic = 0x4b414e44, least = 28;
+constexpr std::uint32_t header = 8;
+constexpr std::uint32_t least = node_datagram_size(0, false);
 
 constexpr sock_filter step(int code, std::uint32_t k, int if_true = 0, int if_false = 0) {
   return {static_cast<std::uint16_t>(code), static_cast<std::uint8_t>(if_true),
@@ -35,7 +37,7 @@ bool attach_node_filter(const UdpSocket& socket) {
       step(BPF_LD | BPF_H | BPF_ABS, header + 6),  // its length, as it says
       step(BPF_JMP | BPF_JEQ | BPF_X, 0, 0, 3),
       step(BPF_LD | BPF_W | BPF_ABS, header),
-      step(BPF_JMP | BPF_JEQ | BPF_K, magic, 0, 1),
+      step(BPF_JMP | BPF_JEQ | BPF_K, node_magic, 0, 1),
       step(BPF_RET | BPF_K, 0xffff),
       step(BPF_RET | BPF_K, 0),
   };

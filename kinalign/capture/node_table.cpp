@@ -74,17 +74,16 @@ bool NodeTable::knows_address(const HostAddress& host, HostTime now) const {
   });
 }
 
-/// A free place, else that of a held life of the same node, else of the longest silent life that is
-/// not the present one of a stream.
+/// A free place, else that of the longest silent life that is not the present one of a stream. A
+/// node of which as many lives are held as may be has no more: its oldest held one makes room.
 NodeLife* NodeTable::room_for_life(const NodeSign& sign) {
   NodeLife* oldest = nullptr;
   NodeLife* oldest_held = nullptr;
   std::size_t held = 0;
   for (NodeLife& life : lives_) {
     const bool own = life.state == State::held && life.node_id == sign.node_id;
-    if (own && ++held > 0 && (oldest_held == nullptr || life.begun < oldest_held->begun)) {
-      oldest_held = &life;
-    }
+    if (own) ++held;
+    if (own && (oldest_held == nullptr || life.begun < oldest_held->begun)) oldest_held = &life;
     if (life.state == State::live) continue;
     const auto age = [](const NodeLife& l) { return std::pair(l.state != State::free, l.heard); };
     if (oldest == nullptr || age(life) < age(*oldest)) oldest = &life;

@@ -70,7 +70,7 @@ void TimeServer::serve_until(HostTime end) {
   }
   const std::size_t own = waiting.size();  // the first of ours
   for (const UdpSocket& socket : sockets_) waiting.push_back({socket.fd(), POLLIN, 0});
-  for (Duration left = tick; left > Duration{0}; left = end - now_host()) {
+  for (Duration left = tick; left > Duration{0}; left = std::min(end - now_host(), tick)) {
     const auto whole_ms = std::chrono::ceil<std::chrono::milliseconds>(left).count();
     const int ready = ::poll(waiting.data(), waiting.size(), static_cast<int>(whole_ms));
     if (ready <= 0) return;  // the time is over, or a signal has come

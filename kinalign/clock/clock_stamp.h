@@ -18,7 +18,9 @@ enum class Certainty : std::uint8_t {
 
 /// Whether a reading that can be as early as `earliest`, asked for when `heard` had arrived, is
 /// surely not of before the counter stepped: such readings lie before `from`, or until then as if
-/// they were still to come. HostTime::min(): it has not stepped.
+/// they were still to come. A counter that stepped back by 20 ms at 30 s reads what it did then
+/// again at 30.02 s: `from`. After one of an hour such a reading is one of 59 minutes ahead.
+/// HostTime::min(): it has not stepped.
 constexpr bool is_behind_step(HostTime earliest, HostTime from, HostTime heard) {
   return from <= earliest && (earliest <= heard || from <= heard);
 }

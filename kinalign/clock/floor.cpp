@@ -10,7 +10,7 @@ namespace kinalign {
 namespace {
 
 constexpr double remembered_s = 100.0;
-constexpr std::size_t nearest = 6;  // points that tell a density
+constexpr std::size_t nearest = 6;  // gaps between points that tell a density
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double resolution_s = 1e-6;
 

@@ -39,7 +39,7 @@ struct ClockEvent {
   Kind kind{};
   BootKey boot = 0;
   HostTime begin{}, end{};
-  double value = 0.0;  // step, slip, violator: by how much, s; relaxed: the curvature, 1/s
+  double value = 0.0;  // step, slip, uneasy, violator: by how much, s; relaxed: the curvature, 1/s
 
   bool operator==(const ClockEvent&) const = default;
 };
@@ -55,8 +55,10 @@ class LiveClock {
   /// … and what it says: that the reply sent at h_tx reached the node at n_rx.
   void push_down(BootKey boot, NodeTime n_rx, HostTime h_tx);
 
-  /// When the counter of this life read n. Absent where too little is known of that life, and for
-  /// lives before the present one: the offline clock has those.
+  /// When the counter of this life read n. What it works out for that serves the next crossing,
+  /// too: stamps may differ, by less than their noise, with how often it is asked. Absent where too
+  /// little is known of that life, and for lives before the present one: the offline clock has
+  /// those.
   std::optional<ClockStamp> host_from_node(BootKey boot, NodeTime n);
 
   /// What happened since this was asked last: at most 64, `missed_events` counts the rest. Of

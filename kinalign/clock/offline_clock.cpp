@@ -17,8 +17,8 @@ namespace kinalign {
 namespace {
 
 constexpr double knot_s = 1.0;
-constexpr double longest_wait_s = 60.0;  // of a packet
-constexpr double longest_piece_s = 1e6;  // eleven days
+constexpr double longest_wait_s = 60.0;    // of a packet
+constexpr double longest_offline_s = 1e6;  // eleven days, of a knot a second
 
 struct Walk {
   std::span<const Exchange> exchanges;
@@ -42,7 +42,7 @@ bool begins_piece(ClockEvent::Kind kind) {
 /// What happened with exchange i: pieces that begin reach back to where they do.
 void note(Walk& walk, std::size_t i, const ClockEvent& event, Side of) {
   if (event.kind == ClockEvent::Kind::withdrawn) {
-    const ClockEvent& why = walk.events.back();
+    const ClockEvent& why = walk.events.back();  // told before, but for what a reboot cuts short
     const HostTime end = begins_piece(why.kind) ? why.begin - Duration{1} : event.end;
     if (event.begin <= end) walk.doubtful.push_back({event.begin, end});
     return;
@@ -165,7 +165,7 @@ Certificate certificate_of(std::vector<Bound> bounds, const Assumptions& assumpt
   return certificate;
 }
 
-Duration nanoseconds(double s) { return Duration{static_cast<std::int64_t>(s)}; }
+Duration nanoseconds(double ns) { return Duration{static_cast<std::int64_t>(ns)}; }
 
 struct Knots {
   std::vector<ClockKnot> knots;
@@ -221,7 +221,7 @@ bool counted_like_the_host(const PieceBounds& piece) {
                           [](const Bound& a, const Bound& b) { return a.s + a.x < b.s + b.x; });
   const double host = most->s + most->x - least->s - least->x;
   const double node = last->s - first->s;
-  return node < 1.01 * host + longest_wait_s && node < longest_piece_s;
+  return node < 1.01 * host + longest_wait_s && node < longest_offline_s;
 }
 
 /// All exchanges of a piece but those that can't be and those that are in doubt.

@@ -7,7 +7,6 @@ namespace kinalign {
 
 namespace {
 
-constexpr double fastest_slew = 0.1;  // chronyd slews by up to 83,333 ppm
 constexpr double least_step_s = 1e-3;
 
 Duration offset(const ClockPair& pair) {

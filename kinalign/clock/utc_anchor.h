@@ -16,6 +16,8 @@ struct ClockPair {
   Time utc{};
 };
 
+inline constexpr double fastest_slew = 0.1;  // chronyd slews by up to 83,333 ppm
+
 /// The wall clock was moved between two pairs.
 struct WallClockStep {
   HostTime at{};  // of the later pair

@@ -10,8 +10,6 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint32_t magic = 0x4b414e44;  // "KAND"
-
 constexpr std::array<const char*, node_refusals> names{
     "none",       "too_short",        "bad_magic",   "unknown_version", "wrong_length",
     "bad_crc",    "wrong_type",       "no_key",      "no_mac",          "wrong_mac",
@@ -57,7 +55,7 @@ NodeRefusal open_envelope(std::span<const std::uint8_t> datagram, Envelope& enve
   envelope = {};
   if (datagram.size() < node_datagram_size(0, false)) return NodeRefusal::too_short;
   ByteReader head(datagram);
-  if (head.take<std::uint32_t>() != magic) return NodeRefusal::bad_magic;
+  if (head.take<std::uint32_t>() != node_magic) return NodeRefusal::bad_magic;
   envelope.version = head.take<std::uint8_t>();
   if (envelope.version != node_protocol_version) return NodeRefusal::unknown_version;
   const auto type = static_cast<DatagramType>(head.take<std::uint8_t>());
@@ -79,7 +77,7 @@ ByteWriter begin_datagram(std::span<std::uint8_t> out, std::size_t size, const N
                           const MacKey* key) {
   const std::uint8_t mac = key == nullptr ? 0 : mac_flag;
   ByteWriter writer(out.first(size));
-  writer.put(magic);
+  writer.put(node_magic);
   writer.put(node_protocol_version);
   writer.put(static_cast<std::uint8_t>(head.type));
   writer.put(static_cast<std::uint16_t>(size));

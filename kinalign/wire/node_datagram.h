@@ -14,7 +14,8 @@
 namespace kinalign {
 
 inline constexpr std::uint8_t node_protocol_version = 1;
-inline constexpr std::size_t max_node_datagram = 1410;  // bytes; a buffer of this size holds any
+inline constexpr std::uint32_t node_magic = 0x4b414e44;  // "KAND", its first bytes
+inline constexpr std::size_t max_node_datagram = 1410;   // bytes; a buffer of this size holds any
 
 /// A node's own; nullptr in its place means that the node has none.
 using MacKey = SipHashKey;

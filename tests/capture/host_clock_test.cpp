@@ -76,6 +76,7 @@ TEST_CASE("fault 17 host_step: a step of the wall clock moves no stamp, and is t
     const HostTime truth = clocks.raw_now;
     const Time stamp = clocks.utc_now;
     clocks.utc_now += step;
+    clocks.was_set = true;
     clocks.pass(microseconds(30));
     axis.look();
     CHECK(axis.arrival(stamp) >= truth);
@@ -127,6 +128,22 @@ TEST_CASE("fault 18 host_slew: 500 ppm for an hour have no effect and are no ste
     axis.look();
     REQUIRE(axis.arrival(stamp) >= truth);
     REQUIRE(axis.arrival(stamp) - truth < microseconds(1));
+    axis.watch();
+  }
+  CHECK(axis.take_events().empty());
+}
+
+TEST_CASE("fault 18 host_slew: as fast as chronyd slews it moves no stamp, and is no step") {
+  FakeClocks clocks;
+  HostAxis axis(clocks);
+  for (int s = 0; s < 60; ++s) {
+    clocks.pass(std::chrono::seconds(1), 1.083);
+    const HostTime truth = clocks.raw_now;
+    const Time stamp = clocks.utc_now;
+    clocks.pass(microseconds(50), 1.083);
+    axis.look();
+    REQUIRE(axis.arrival(stamp) >= truth);
+    REQUIRE(axis.arrival(stamp) - truth < microseconds(60));
     axis.watch();
   }
   CHECK(axis.take_events().empty());
