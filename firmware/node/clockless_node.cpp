@@ -31,7 +31,9 @@ void ClocklessNode::tick(std::uint32_t due) {
   request.has_battery = board_.read_battery(request.battery_mv);
   std::array<std::uint8_t, longest> room{};
   ++(board_.send(encode(request, key(), room)) ? counts_.requests : counts_.request_fails);
-  if (++unanswered_ > unanswered_after_us / settings_.frame_period_us) answered_ = false;
+  if (++unanswered_ >
+      (unanswered_after_us + settings_.frame_period_us / 2) / settings_.frame_period_us)
+    answered_ = false;
   lights_.battery = battery_light(request.has_battery, request.battery_mv);
   show();
 }
