@@ -4,6 +4,7 @@
 #include "tests/scenarios/minutes.h"
 #include "tests/seeds.h"
 #include "tools/clock_table/judge.h"
+#include "tools/clock_table/promises.h"
 
 #include <doctest/doctest.h>
 
@@ -73,50 +74,17 @@ TEST_CASE("fault 15 route_change_asym: the estimate moves no more than the chang
 }
 
 TEST_CASE("every clock within the assumptions is certified at all times") {
-  const std::array clocks{
-      NodeClockOptions{.frequency_error = 95e-6, .temperature = false},
-      NodeClockOptions{.frequency_error = 0.0, .temperature = false, .ramp = 4.5e-8},
-      NodeClockOptions{.frequency_error = 0.0, .temperature = false, .curvature = 4.5e-8},
-      NodeClockOptions{
-          .frequency_error = 0.0, .temperature = false, .curvature = 4.5e-8, .period_s = 120.0}};
   for (const auto seed : fresh_seeds(3)) {
     CAPTURE(seed);
-    for (std::size_t clock = 0; clock < clocks.size(); ++clock) {
+    for (std::size_t clock = 0; clock < other_clocks.size(); ++clock) {
       CAPTURE(clock);
       for (const Link link : {Link::wired, Link::paper, Link::thin_floor}) {
         CAPTURE(letter(link));
         ExchangeOptions options = minutes(link, 2.0);
-        options.clock = clocks[clock];
+        options.clock = other_clocks[clock];
         CHECK(judge_live(simulate_exchanges(options, seed)).lies() == 0);
       }
     }
-  }
-}
-
-TEST_CASE("fault 1 reboot: a new piece with the first frame, and the bars of a start") {
-  for (const auto seed : fresh_seeds(20)) {
-    CAPTURE(seed);
-    ExchangeOptions options = minutes(Link::quiet, 1.0);
-    options.reboots = {{.at = 30.0, .gap = 1.0}};
-    const auto run = judge_live(simulate_exchanges(options, seed));
-    CHECK(run.count(ClockEvent::Kind::new_boot) == 2);
-    CHECK(run.lies() == 0);
-    for (const JudgedStamp& stamp : run.stamps) {
-      if (stamp.sent > 31.7) CHECK(std::abs(stamp.error) < 1.0 * ms);
-    }
-  }
-}
-
-TEST_CASE(
-    "fault 3 reboot_storm: ten lives in twenty seconds are ten pieces, and nothing is claimed "
-    "early") {
-  for (const auto seed : fresh_seeds(10)) {
-    CAPTURE(seed);
-    ExchangeOptions options = minutes(Link::paper, 1.0);
-    for (int i = 0; i < 10; ++i) options.reboots.push_back({.at = 20.0 + 2.0 * i, .gap = 0.5});
-    const auto run = judge_live(simulate_exchanges(options, seed));
-    CHECK(run.count(ClockEvent::Kind::new_boot) == 11);
-    CHECK(run.lies() == 0);
   }
 }
 

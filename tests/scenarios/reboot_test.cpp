@@ -107,7 +107,9 @@ TEST_CASE("fault 1 reboot: after it the bars of a start hold") {
     std::vector<double> times;
     for (const auto seed : seeds) {
       const auto exchanges = simulate_exchanges(rebooting(bar.link, 30.0), seed);
-      times.push_back(good_after(judge_live(exchanges), second_life(exchanges), bar.limit));
+      const auto run = judge_live(exchanges);
+      CHECK(run.lies() == 0);
+      times.push_back(good_after(run, second_life(exchanges), bar.limit));
     }
     std::sort(times.begin(), times.end());
     if (seeds.size() == 1) continue;
@@ -160,6 +162,11 @@ TEST_CASE("fault 3 reboot_storm: each life is a piece, certified from two up and
           if (life.down == 0) CHECK(!stamp);
           if (stamp && life.up < 2) CHECK(stamp->certainty != Certainty::certified);
         }
+
+        const auto events = live.take_events();
+        CHECK(std::count_if(events.begin(), events.end(), [](const ClockEvent& event) {
+                return event.kind == ClockEvent::Kind::new_boot;
+              }) == static_cast<int>(lives.size()));
 
         const OfflineClock offline = fit_offline_clock(exchanges);
         std::map<BootKey, int> pieces;

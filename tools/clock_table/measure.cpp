@@ -39,13 +39,6 @@ struct Intervals {
   }
 };
 
-/// Within H1 to H5, as section 5.4 of the time-synchronisation reference has them.
-const std::array other_clocks{
-    NodeClockOptions{.frequency_error = 95e-6, .temperature = false},
-    NodeClockOptions{.frequency_error = 0.0, .temperature = false, .ramp = 4.5e-8},
-    NodeClockOptions{.frequency_error = 0.0, .temperature = false, .curvature = 4.5e-8},
-    NodeClockOptions{
-        .frequency_error = 0.0, .temperature = false, .curvature = 4.5e-8, .period_s = 120.0}};
 constexpr Reboot reboot{.at = 20.0, .gap = 1.0};
 
 /// What is kept of every seed.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/simulate/link.h"
+#include "kinalign/simulate/node_clock.h"
 
 #include <array>
 #include <cstddef>
@@ -80,6 +81,14 @@ inline constexpr std::array<std::array<double, 3>, links> width_bars{{
 /// Ours: what section 5.4 takes for granted, of frames. The first ones have no certificate yet, and
 /// with bursts a slip that was none withdraws some.
 inline constexpr double least_certified = 0.97;
+
+/// 5.4: other clocks within H1 to H5, whose stamps are never outside their interval.
+inline constexpr std::array other_clocks{
+    NodeClockOptions{.frequency_error = 95e-6, .temperature = false},
+    NodeClockOptions{.frequency_error = 0.0, .temperature = false, .ramp = 4.5e-8},
+    NodeClockOptions{.frequency_error = 0.0, .temperature = false, .curvature = 4.5e-8},
+    NodeClockOptions{
+        .frequency_error = 0.0, .temperature = false, .curvature = 4.5e-8, .period_s = 120.0}};
 
 /// 5.5: from the first frame until the live error stays under the limit, s.
 struct StartBars {
