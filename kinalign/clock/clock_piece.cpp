@@ -149,7 +149,7 @@ std::optional<double> ClockPiece::stepped_between_windows() {
   return one_route ? floors_.step() : std::nullopt;
 }
 
-std::optional<HostTime> ClockPiece::uneasy_since() const {
+std::optional<HostTime> ClockPiece::step_pending_since() const {
   if (violators_.pending().empty()) return std::nullopt;
   return std::max(begin_, doubt_of_violators());
 }

@@ -46,7 +46,7 @@ class ClockPiece {
 
   /// Since when a step is likely that three violators have not shown yet. While it is, nothing is
   /// certified.
-  std::optional<HostTime> uneasy_since() const;
+  std::optional<HostTime> step_pending_since() const;
 
   const ClockOrigin& origin() const { return origin_; }
   HostTime begins() const { return begin_; }  // its first arrival

@@ -33,7 +33,7 @@ std::vector<ClockEvent> LiveClock::take_events() { return std::exchange(events_,
 
 /// What is not decided yet when a piece is cut short is in doubt.
 void LiveClock::cut_short() {
-  if (const auto since = piece_->uneasy_since()) {
+  if (const auto since = piece_->step_pending_since()) {
     tell({ClockEvent::Kind::withdrawn, boot_, *since, newest_});
   }
   stepped_.reset();
@@ -134,15 +134,15 @@ void LiveClock::settle(const Crossing& crossing) {
 }
 
 /// Whether the new piece allows for a clock that bends more.
-bool LiveClock::replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing) {
+bool LiveClock::replace_piece(ClockEvent::Kind why, double by, const Crossing& crossing) {
   replaced_ = true;
-  tell({why, boot_, piece_->next_begins(), crossing.heard, value});
+  tell({why, boot_, piece_->next_begins(), crossing.heard, by});
   tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
   const double assumed = piece_->assumptions().curvature;
   take_piece(piece_->next_piece());
   const double curvature = piece_->assumptions().curvature;
   if (curvature == assumed) return false;
-  tell({ClockEvent::Kind::relaxed, boot_, crossing.heard, crossing.heard, curvature});
+  tell({ClockEvent::Kind::relaxed, boot_, crossing.heard, crossing.heard, 0.0, curvature});
   return true;
 }
 

@@ -39,7 +39,8 @@ struct ClockEvent {
   Kind kind{};
   BootKey boot = 0;
   HostTime begin{}, end{};
-  double value = 0.0;  // step, slip, uneasy, violator: by how much, s; relaxed: the curvature, 1/s
+  double by = 0.0;         // s, how far: of step, slip, uneasy, violator; 0 where that is not known
+  double curvature = 0.0;  // 1/s, of relaxed: what is allowed for now
 
   bool operator==(const ClockEvent&) const = default;
 };
@@ -79,7 +80,7 @@ class LiveClock {
   void begin(BootKey boot, const Crossing& first);
   void take_piece(const ClockPiece& piece);
   void answer(ClockPiece::Verdict verdict, const Crossing& crossing);
-  bool replace_piece(ClockEvent::Kind why, double value, const Crossing& crossing);
+  bool replace_piece(ClockEvent::Kind why, double by, const Crossing& crossing);
   void take_step(const Crossing& crossing);
   void settle(const Crossing& crossing);
   void tell(const ClockEvent& event);

@@ -24,7 +24,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-bool OffsetEstimate::settled(double s) const {
+bool OffsetEstimate::floors_known(double s) const {
   return since_ && s - *since_ > settling_s && middle_.sharp();
 }
 
@@ -39,7 +39,7 @@ void OffsetEstimate::add(const Bound& b) {
   const FloorLine line = middle_.floor(b.side);
   const double density = middle_.density(b.side), excess = line.excess(bound);
   const ExcessCounts& counts = route_.floor(b.side).counts();
-  const bool watched = settled(b.s) && counts.total() >= settling_points;
+  const bool watched = floors_known(b.s) && counts.total() >= settling_points;
   double limit = infinite;
   if (watched) limit = std::max(gaps_off / density, least_off_s);
   const Standing standing = excess < -limit  ? Standing::held

@@ -49,7 +49,7 @@ class OffsetEstimate {
   void look(double s, bool said);
   void refresh(double t);
   Middle joined(const Middle& middle) const;
-  bool settled(double s) const;
+  bool floors_known(double s) const;
   RecentBounds& recent(Side side) { return recent_[side == Side::above ? 0 : 1]; }
   void change_route(double s);
   void join_routes(double s);

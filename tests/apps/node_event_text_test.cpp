@@ -23,11 +23,18 @@ TEST_CASE("every event has a text and a name, and warnings say that they are") {
   }
   ClockEvent step;
   step.kind = ClockEvent::Kind::step;
-  step.value = -0.02;
+  step.by = -0.02;
   CHECK(event_text(step, 7) == "node 7: warning: its counter stepped by at least 20.000 ms");
   const auto json = nlohmann::json::parse(event_json(step, 0, 7));
   CHECK(json["kind"] == "step");
-  CHECK(json["value"] == 0.02);
+  CHECK(json["by_ms"] == doctest::Approx(20.0));
+  CHECK(!json.contains("curvature_ppm_per_s"));
+  ClockEvent relaxed;
+  relaxed.kind = ClockEvent::Kind::relaxed;
+  relaxed.curvature = 2e-6;
+  const auto bends = nlohmann::json::parse(event_json(relaxed, 0, 7));
+  CHECK(bends["curvature_ppm_per_s"] == doctest::Approx(2.0));
+  CHECK(!bends.contains("by_ms"));
   step.kind = ClockEvent::Kind::slip;
   CHECK(event_text(step, 7) == "node 7: warning: its counter stepped by 20.000 ms");
   step.kind = ClockEvent::Kind::uneasy;

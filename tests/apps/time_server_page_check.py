@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs/time_server.md").read_text()
 BARE = {"key_replaced", "key_unreadable"}  # whose event says it all
 RARE = {"host_event": {"kind", "at_ns", "by_ms"}, "missed": {"lines"}, "clock": set()}  # not brought about here
-LATER = {"other_id", "version", "round_trip_ms"}  # of other kinds of events, and of longer runs
+LATER = {"other_id", "version", "round_trip_ms", "curvature_ppm_per_s"}  # of other kinds of events, and of longer runs
 NAME = re.compile(r"`(\w+)`")
 
 
