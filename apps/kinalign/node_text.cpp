@@ -87,7 +87,7 @@ std::string status_text(const NodeStatus& status, const ClockPair& now, std::str
   }
   if (status.mean_way) text += fmt::format(", no counter: d {:.1f} ms", ms(*status.mean_way));
   if (has_round_trip(status)) text += fmt::format(", round trip {:.2f} ms", ms(*status.round_trip));
-  if (status.battery_mv > 0) text += fmt::format(", {:.2f} V", 1e-3 * status.battery_mv);
+  if (status.battery_mv) text += fmt::format(", {:.2f} V", 1e-3 * *status.battery_mv);
   if (status.old_key) text += ", old key";
   return text;
 }
@@ -104,7 +104,7 @@ std::string status_json(const NodeStatus& status) {
             {"lost", status.lost},
             {"old_key", status.old_key}};
   if (status.rate_hz) json["rate_hz"] = *status.rate_hz;
-  if (status.battery_mv > 0) json["battery_mv"] = status.battery_mv;
+  if (status.battery_mv) json["battery_mv"] = *status.battery_mv;
   if (status.one_way) json["d_ms"] = ms(*status.one_way);
   if (status.mean_way) json["d_mean_ms"] = ms(*status.mean_way);
   if (status.n) add_clock(json, status);
@@ -174,6 +174,7 @@ std::string node_counts_json(const NodeReceiver& receiver) {
   json["wrong_copies"] = counts.wrong_copies;
   json["with_old_key"] = counts.old_key;
   json["dropped_by_kernel"] = receiver.dropped();
+  json["missed_events"] = receiver.missed_events();
   return json_text(json);
 }
 

@@ -134,7 +134,7 @@ std::string counts_text(const NtpCounts& counts) {
 std::string counts_json(const NtpCounts& counts, const std::string& event, double elapsed_s) {
   nlohmann::ordered_json json{{"event", event},
                               {"elapsed_s", std::round(elapsed_s * 1e3) / 1e3},
-                              {"received", counts.received()}};
+                              {"received", counts.total()}};
   for (std::size_t i = 0; i < ntp_outcomes; ++i) {
     const auto outcome = static_cast<NtpOutcome>(i);
     json[std::string(name_of(outcome))] = counts[outcome];

@@ -17,7 +17,6 @@ namespace {
 constexpr Duration narrow = std::chrono::microseconds(2);  // a bracket that is not read again
 constexpr Duration reading_noise = std::chrono::microseconds(1);
 constexpr Duration shortest_sleep = std::chrono::milliseconds(10);
-constexpr std::size_t most_events = 64;
 
 Duration read_clock(clockid_t clock) {
   timespec now{};
@@ -89,7 +88,7 @@ HostTime HostAxis::now() {
     ++went_back_;
     ++epoch_;
     shift_ += last_ - read;
-    tell({HostClockEvent::Kind::backwards, last_, last_ - read});
+    events_.add({HostClockEvent::Kind::backwards, last_, last_ - read});
     return last_;
   }
   last_ = read;
@@ -121,7 +120,7 @@ ClockPair HostAxis::watch() {
   const Duration asleep = reader_.asleep();
   if (asleep - asleep_ > shortest_sleep) {
     ++epoch_;
-    tell({HostClockEvent::Kind::suspended, bracket.after, asleep - asleep_});
+    events_.add({HostClockEvent::Kind::suspended, bracket.after, asleep - asleep_});
   }
   asleep_ = asleep;
   const bool seen = std::exchange(was_set_, false);
@@ -129,16 +128,10 @@ ClockPair HostAxis::watch() {
   if (set) steady_ = bracket.utc;
   if (watched_ && (seen || set || !runs_on(*watched_, bracket, fastest_slew))) {
     const Duration by = offsets(*watched_).first - offsets(bracket).first;
-    tell({HostClockEvent::Kind::wall_stepped, bracket.after, by});
+    events_.add({HostClockEvent::Kind::wall_stepped, bracket.after, by});
   }
   watched_ = bracket;
   return {bracket.before + (bracket.after - bracket.before) / 2, bracket.utc};
 }
-
-void HostAxis::tell(const HostClockEvent& event) {
-  if (events_.size() < most_events) events_.push_back(event);
-}
-
-std::vector<HostClockEvent> HostAxis::take_events() { return std::exchange(events_, {}); }
 
 }  // namespace kinalign

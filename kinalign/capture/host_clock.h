@@ -4,6 +4,7 @@
 // later arrival bounds a node's clock as truly as the right one.
 #pragma once
 
+#include "kinalign/capture/event_queue.h"
 #include "kinalign/clock/utc_anchor.h"
 
 #include <cstdint>
@@ -85,15 +86,15 @@ class HostAxis {
 
   /// Once a second: a pair for the log that gives UTC afterwards.
   ClockPair watch();
-  /// What was seen since this was asked last.
-  std::vector<HostClockEvent> take_events();
+  /// What was seen since this was asked last, and how many more had no room.
+  std::vector<HostClockEvent> take_events() { return events_.take(); }
+  std::uint64_t missed_events() const { return events_.missed(); }
   /// Rises where clocks of nodes have to begin anew.
   std::uint32_t epoch() const { return epoch_; }
   std::uint64_t went_back() const { return went_back_; }
 
  private:
   ClockBracket read();
-  void tell(const HostClockEvent& event);
 
   ClockReader& reader_;
   HostTime last_ = HostTime::min();
@@ -105,7 +106,7 @@ class HostAxis {
   Duration asleep_;
   std::uint32_t epoch_ = 0;
   std::uint64_t went_back_ = 0;
-  std::vector<HostClockEvent> events_;
+  EventQueue<HostClockEvent> events_;
 };
 
 }  // namespace kinalign

@@ -71,6 +71,7 @@ class NodeDesk {
   const NodeCounts& counts() const { return counts_; }
   const RefusedNodes& refused_nodes() const { return refused_nodes_; }
   std::vector<NodeEvent> take_events() { return table_.take_events(); }
+  std::uint64_t missed_events() const { return table_.missed_events(); }
 
  private:
   NodeVerdict judge(const NodeArrival& arrival, NodeNews& news);

@@ -15,6 +15,7 @@ namespace kinalign {
 namespace {
 
 constexpr Duration between_sockets = std::chrono::seconds(1);
+constexpr std::size_t most_ready = 80;  // at once: a line each of 64 nodes, and those they left
 
 /// fe80::/10 is an address of an interface, which we don't know here.
 bool is_link_local(const HostAddress& host) {
@@ -65,7 +66,7 @@ void NodeLines::follow(std::size_t stream, const Way& way, std::uint16_t port, H
 }
 
 std::span<const UdpSocket* const> NodeLines::ready() {
-  std::array<epoll_event, 80> events{};
+  std::array<epoll_event, most_ready> events{};
   ready_.clear();
   const int found = ::epoll_wait(poll_, events.data(), events.size(), 0);
   const auto count = static_cast<std::size_t>(std::max(found, 0));

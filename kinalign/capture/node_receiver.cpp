@@ -11,8 +11,6 @@ namespace kinalign {
 namespace {
 
 constexpr int batches_in_turn = 16;  // of a socket, before others have theirs
-constexpr std::size_t most_pairs = 64;
-constexpr std::size_t most_last_events = 64;
 
 }  // namespace
 
@@ -93,8 +91,10 @@ void NodeReceiver::follow() {
 NodeReceiver::StreamClock& NodeReceiver::clock_of(std::size_t stream) {
   std::unique_ptr<StreamClock>& clock = clocks_[stream];
   if (clock != nullptr && is_current(*clock, stream)) return *clock;
-  take_events_of(stream, last_events_);
-  last_events_.resize(std::min(last_events_.size(), most_last_events));
+  if (clock != nullptr) {
+    for (const StreamEvent& event : take_events_of(stream)) last_events_.add(event);
+    missed_events_ += clock->clock.missed_events();
+  }
   clock = std::make_unique<StreamClock>();
   clock->number = desk_->stream(stream).number;
   clock->node_id = desk_->stream(stream).node_id;
@@ -114,8 +114,8 @@ void NodeReceiver::hear(NodeNews& news) {
     clock.clock.push(*news.exchange);
     clock.counts = true;
     clock.n = news.exchange->n_tx;
-    const auto stamp = clock.clock.host_from_node(news.exchange->boot, clock.n);
-    desk_->set_locked(news.stream, stamp && stamp->certainty == Certainty::certified);
+    clock.stamp = clock.clock.host_from_node(news.exchange->boot, clock.n);
+    desk_->set_locked(news.stream, clock.stamp && clock.stamp->certainty == Certainty::certified);
   } else if (const auto d = news.clockless ? one_way_delay(*news.clockless) : std::nullopt) {
     clock.one_way = d;
     clock.ways += *d;
@@ -130,8 +130,7 @@ void NodeReceiver::tick() {
   desk_->tick(now);
   if (now < next_watch_) return;
   next_watch_ = now + std::chrono::seconds(1);
-  const ClockPair pair = clock_.watch();
-  if (pairs_.size() < most_pairs) pairs_.push_back(pair);
+  pairs_.add(clock_.watch());
 }
 
 std::vector<NodeStatus> NodeReceiver::status() const {
@@ -153,21 +152,21 @@ std::vector<NodeStatus> NodeReceiver::status() const {
     status.rate_hz = stream.silent ? std::nullopt : life.pace.rate_hz();
     status.heard = life.heard;
     status.battery_mv = stream.battery_mv;
-    if (clocks_[i] != nullptr && is_current(*clocks_[i], i)) add_clock(status, *clocks_[i], life);
+    if (clocks_[i] != nullptr && is_current(*clocks_[i], i)) add_clock(status, *clocks_[i]);
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const auto& a, const auto& b) { return a.node_id < b.node_id; });
   return all;
 }
 
-void NodeReceiver::add_clock(NodeStatus& status, StreamClock& clock, const NodeLife& life) {
+void NodeReceiver::add_clock(NodeStatus& status, const StreamClock& clock) {
   if (clock.confirmed > 0) {
     status.one_way = clock.one_way;
     status.mean_way = clock.ways / clock.confirmed;
   }
   if (!clock.counts) return;
   status.n = clock.n;
-  status.stamp = clock.clock.host_from_node(life.key, clock.n);
+  status.stamp = clock.stamp;
   const ClockPiece* piece = clock.clock.piece();
   if (piece == nullptr) return;
   const SlopeBelief drift = piece->estimate().slope();
@@ -179,19 +178,29 @@ void NodeReceiver::add_clock(NodeStatus& status, StreamClock& clock, const NodeL
 }
 
 std::vector<NodeReceiver::StreamEvent> NodeReceiver::take_clock_events() {
-  std::vector<StreamEvent> all = std::exchange(last_events_, {});
-  for (std::size_t i = 0; i < clocks_.size(); ++i) take_events_of(i, all);
+  std::vector<StreamEvent> all = last_events_.take();
+  for (std::size_t i = 0; i < clocks_.size(); ++i) {
+    if (clocks_[i] == nullptr) continue;
+    const std::vector<StreamEvent> of_one = take_events_of(i);
+    all.insert(all.end(), of_one.begin(), of_one.end());
+  }
   return all;
 }
 
-void NodeReceiver::take_events_of(std::size_t stream, std::vector<StreamEvent>& all) {
-  if (clocks_[stream] == nullptr) return;
-  const std::uint32_t node_id = clocks_[stream]->node_id;  // the stream may be another node's now
-  for (const ClockEvent& event : clocks_[stream]->clock.take_events()) {
-    all.push_back({stream, node_id, event});
+std::vector<NodeReceiver::StreamEvent> NodeReceiver::take_events_of(std::size_t stream) {
+  std::vector<StreamEvent> all;
+  StreamClock& clock = *clocks_[stream];  // the stream may be another node's now
+  for (const ClockEvent& event : clock.clock.take_events()) {
+    all.push_back({stream, clock.node_id, event});
   }
+  return all;
 }
 
-std::vector<ClockPair> NodeReceiver::take_pairs() { return std::exchange(pairs_, {}); }
+std::uint64_t NodeReceiver::missed_events() const {
+  std::uint64_t sum = missed_events_ + last_events_.missed() + pairs_.missed() +
+                      desk_->missed_events() + clock_.missed_events();
+  for (const auto& clock : clocks_) sum += clock != nullptr ? clock->clock.missed_events() : 0;
+  return sum;
+}
 
 }  // namespace kinalign

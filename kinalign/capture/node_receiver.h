@@ -31,9 +31,9 @@ struct NodeStatus {
   NodeAddress address;
   bool silent = false, old_key = false;
   std::uint64_t lives = 0, accepted = 0, lost = 0;  // frames, of this life
-  std::optional<double> rate_hz;  // absent before it is known, and of who is silent
-  HostTime heard{};               // last
-  std::uint16_t battery_mv = 0;   // 0: it says none
+  std::optional<double> rate_hz;            // absent before it is known, and of who is silent
+  HostTime heard{};                         // last
+  std::optional<std::uint16_t> battery_mv;  // where it says that
   // of its clock, where it has one
   std::optional<NodeTime> n;  // its newest counter, ...
   std::optional<ClockStamp> stamp;
@@ -78,8 +78,10 @@ class NodeReceiver {
     ClockEvent event;
   };
   std::vector<StreamEvent> take_clock_events();
-  /// Raw and wall clock, read once a second; since this was asked last, at most 64.
-  std::vector<ClockPair> take_pairs();
+  /// Raw and wall clock, read once a second; since this was asked last.
+  std::vector<ClockPair> take_pairs() { return pairs_.take(); }
+  /// For want of room: who does not take them loses events and pairs.
+  std::uint64_t missed_events() const;
 
  private:
   NodeReceiver(const NodeReceiverOptions& options, std::vector<UdpSocket> sockets,
@@ -88,7 +90,8 @@ class NodeReceiver {
     std::uint32_t number = 0, epoch = 0;  // of which stream, since when
     std::uint32_t node_id = 0;
     LiveClock clock;
-    NodeTime n{};
+    NodeTime n{};                     // of its newest frame, …
+    std::optional<ClockStamp> stamp;  // … and what that is on the host's axis
     HostTime heard = HostTime::min();
     bool counts = false;  // the node has a counter
     std::optional<Duration> one_way;
@@ -106,9 +109,9 @@ class NodeReceiver {
   void hear(NodeNews& news);
   void follow();
   StreamClock& clock_of(std::size_t stream);
-  static void add_clock(NodeStatus& status, StreamClock& clock, const NodeLife& life);
+  static void add_clock(NodeStatus& status, const StreamClock& clock);
   bool is_current(const StreamClock& clock, std::size_t stream) const;
-  void take_events_of(std::size_t stream, std::vector<StreamEvent>& all);
+  std::vector<StreamEvent> take_events_of(std::size_t stream);
 
   std::unique_ptr<std::vector<UdpSocket>> sockets_;
   NodeLines lines_;
@@ -116,14 +119,15 @@ class NodeReceiver {
   std::unique_ptr<NodeDesk> desk_;
   std::unique_ptr<DatagramBatch> batch_;
   std::vector<std::unique_ptr<StreamClock>> clocks_;
-  std::vector<StreamEvent> last_events_;  // of clocks that were replaced, at most 64
+  EventQueue<StreamEvent> last_events_;  // of clocks that were replaced
+  std::uint64_t missed_events_ = 0;      // of these
   std::vector<Kept> kept_;
   std::size_t kept_length_ = 0;
   Watcher watcher_;
   std::vector<std::optional<HostAddress>> heard_;  // by stream: where its frames came to, this time
   std::uint64_t unsent_ = 0, not_unicast_ = 0, from_port_0_ = 0;
   HostTime next_watch_ = HostTime::min();
-  std::vector<ClockPair> pairs_;
+  EventQueue<ClockPair> pairs_;
 };
 
 }  // namespace kinalign

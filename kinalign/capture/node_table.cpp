@@ -19,7 +19,6 @@ constexpr Duration known_for = std::chrono::seconds(60);
 constexpr Duration left_after = std::chrono::seconds(10);
 constexpr Duration held_for = std::chrono::seconds(1);  // at least, if others want the room
 constexpr std::size_t most_held = 4;                    // lives of one node id
-constexpr std::size_t most_events = 64;
 
 bool has_ids(const NodeLife& life, std::uint32_t node_id, std::uint32_t boot_id) {
   return life.state != State::free && life.node_id == node_id && life.boot_id == boot_id;
@@ -213,11 +212,5 @@ void NodeTable::tick(HostTime now) {
 void NodeTable::tell(NodeEvent::Kind kind, const NodeLife& life, HostTime at) {
   tell({kind, life.stream, life.node_id, life.boot_id, at, life.address, std::nullopt});
 }
-
-void NodeTable::tell(const NodeEvent& event) {
-  if (events_.size() < most_events) events_.push_back(event);
-}
-
-std::vector<NodeEvent> NodeTable::take_events() { return std::exchange(events_, {}); }
 
 }  // namespace kinalign

@@ -5,6 +5,7 @@
 // counters and addresses tell. A stream is what one node sends, over all its lives.
 #pragma once
 
+#include "kinalign/capture/event_queue.h"
 #include "kinalign/capture/node_event.h"
 
 #include <vector>
@@ -17,9 +18,9 @@ struct NodeStream {
   std::uint32_t node_id = 0;
   std::size_t life = 0;  // the present one
   std::uint64_t lives = 0;
-  std::uint16_t battery_mv = 0;  // 0: the node says none
-  bool locked = false;           // as its replies say
-  bool silent = false;           // `left` was told
+  std::optional<std::uint16_t> battery_mv;  // as the node said last
+  bool locked = false;                      // as its replies say
+  bool silent = false;                      // `left` was told
 };
 
 /// One datagram as far as the table is concerned.
@@ -58,9 +59,10 @@ class NodeTable {
   const NodeStream& stream(std::size_t i) const { return streams_[i]; }
 
   void tell(NodeEvent::Kind kind, const NodeLife& life, HostTime at);
-  void tell(const NodeEvent& event);
-  /// Since this was asked last, at most 64.
-  std::vector<NodeEvent> take_events();
+  void tell(const NodeEvent& event) { events_.add(event); }
+  /// What was told since this was asked last, and how many more had no room.
+  std::vector<NodeEvent> take_events() { return events_.take(); }
+  std::uint64_t missed_events() const { return events_.missed(); }
 
  private:
   NodeStream* stream_for(const NodeLife& life);
@@ -75,7 +77,7 @@ class NodeTable {
   std::uint32_t streams_made_ = 0;
   std::uint64_t restarts_ = 0;
   HostTime tell_too_many_ = HostTime::min();  // not sooner
-  std::vector<NodeEvent> events_;
+  EventQueue<NodeEvent> events_;
 };
 
 }  // namespace kinalign

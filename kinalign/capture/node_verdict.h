@@ -3,12 +3,11 @@
 // itself.
 #pragma once
 
+#include "kinalign/capture/counts_by.h"
 #include "kinalign/wire/node_datagram.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 
 namespace kinalign {
 
@@ -39,18 +38,6 @@ inline constexpr std::size_t echo_verdicts = 6;
 /// As in --json: "wrong_counter".
 const char* name_of(NodeVerdict verdict);
 const char* name_of(EchoVerdict verdict);
-
-/// A count for each value of an enumeration.
-template <class Cause, std::size_t causes>
-class CountsBy {
- public:
-  std::uint64_t& operator[](Cause cause) { return of_[static_cast<std::size_t>(cause)]; }
-  std::uint64_t operator[](Cause cause) const { return of_[static_cast<std::size_t>(cause)]; }
-  std::uint64_t total() const { return std::accumulate(of_.begin(), of_.end(), std::uint64_t{0}); }
-
- private:
-  std::array<std::uint64_t, causes> of_{};
-};
 
 struct NodeCounts {
   CountsBy<NodeVerdict, node_verdicts> verdicts;  // each datagram once

@@ -48,10 +48,6 @@ bool is_from_node(std::span<const std::uint8_t> bytes) {
 
 std::string_view name_of(NtpOutcome outcome) { return names[static_cast<std::size_t>(outcome)]; }
 
-std::uint64_t NtpCounts::received() const {
-  return std::accumulate(of_.begin(), of_.end(), std::uint64_t{0});
-}
-
 RateLimit::Verdict NtpResponder::limit(const HostAddress& from, HostTime now) {
   const bool exempt = std::any_of(exempt_.begin(), exempt_.end(),
                                   [&from](const Network& network) { return network.has(from); });

@@ -3,12 +3,12 @@
 // No socket and no clock, so that every rule is tested without either.
 #pragma once
 
+#include "kinalign/capture/counts_by.h"
 #include "kinalign/capture/host_address.h"
 #include "kinalign/capture/ntp_answer.h"
 #include "kinalign/capture/rate_limit.h"
 #include "kinalign/wire/siphash.h"
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -37,17 +37,8 @@ constexpr std::size_t ntp_outcomes = 13;
 /// As in --json: "wrong_version".
 std::string_view name_of(NtpOutcome outcome);
 
-class NtpCounts {
- public:
-  std::uint64_t& operator[](NtpOutcome outcome) { return of_[static_cast<std::size_t>(outcome)]; }
-  std::uint64_t operator[](NtpOutcome outcome) const {
-    return of_[static_cast<std::size_t>(outcome)];
-  }
-  std::uint64_t received() const;
-
- private:
-  std::array<std::uint64_t, ntp_outcomes> of_{};
-};
+/// Of datagrams.
+using NtpCounts = CountsBy<NtpOutcome, ntp_outcomes>;
 
 /// A datagram as it arrived.
 struct NtpAsked {
