@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a certified stamp stands on. While H1 to H5 hold, the truth lies in its interval:
-//   H1  no delay is negative: the host's stamps are taken early on sending and late on receiving,
-//   on
-//       one continuous clock that nobody steps or slews (CLOCK_MONOTONIC_RAW);
+//   H1  no delay is negative: the host stamps early on sending and late on receiving, on one
+//       continuous clock that nobody steps or slews (CLOCK_MONOTONIC_RAW);
 //   H2  the node's clock is at most `rate` off the host's;
 //   H3  that error changes by at most `curvature` per second;
 //   H4  within one boot id the node's counter is continuous: no step, no sleep that loses time;
@@ -18,7 +17,9 @@ inline constexpr double greatest_rate = 100e-6;
 
 struct Assumptions {
   double rate = greatest_rate;
-  double curvature = 5e-8;  // per second: three times the worst of a crystal that warms up
+  /// Per second. Three times what a crystal does that changes by 0.3 ppm per degree in a board that
+  /// warms by 12 degrees in four minutes: an estimate (time synchronisation, sections 2 and 10).
+  double curvature = 5e-8;
 
   bool operator==(const Assumptions&) const = default;
 };

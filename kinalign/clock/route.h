@@ -6,10 +6,13 @@
 
 namespace kinalign {
 
-/// What is known of a slope: a mean with a standard deviation.
+/// What is known of a slope: a mean with a standard deviation. At first between what an ESP32's
+/// crystal may be off at 25 C (+-10 ppm, Espressif's hardware guidelines) and uncompensated ones
+/// are from 0 to 50 C (+-20 ppm; table 1 of "Time synchronisation for millisecond-precision on
+/// bio-loggers", Movement Ecology 2024).
 struct SlopeBelief {
   double mean = 0.0;
-  double deviation = 15e-6;  // crystals of such boards: +-10 ppm at 25 C, +-20 ppm from 0 to 50 C
+  double deviation = 15e-6;
 
   /// Of the same crystal behind a reboot or a step: it may have warmed meanwhile.
   SlopeBelief after_a_break() const { return {mean, deviation + 2e-6}; }

@@ -21,7 +21,7 @@ std::vector<ClockPair> a_minute(Duration stepped_by, Duration slewed_by_each) {
 
 }  // namespace
 
-TEST_CASE("fault host_step: an hour's step of the wall clock moves no stamp, and is told") {
+TEST_CASE("fault 17 host_step: an hour's step of the wall clock moves no stamp, and is told") {
   for (const Duration step : {Duration{3600s}, Duration{-3600s}}) {
     const auto anchor = utc_anchor(a_minute(step, 0s));
     REQUIRE(anchor);
@@ -32,7 +32,7 @@ TEST_CASE("fault host_step: an hour's step of the wall clock moves no stamp, and
   }
 }
 
-TEST_CASE("fault host_slew: 500 ppm are no step and move no stamp") {
+TEST_CASE("fault 18 host_slew: 500 ppm are no step and move no stamp") {
   const auto anchor = utc_anchor(a_minute(0s, 500us));
   REQUIRE(anchor);
   CHECK(anchor->steps.empty());

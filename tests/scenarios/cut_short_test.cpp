@@ -44,7 +44,7 @@ void withdraw(const std::vector<ClockEvent>& events, std::vector<Given>& all) {
 
 }  // namespace
 
-TEST_CASE("fault 36 old samples: readings of before a step are not certified behind it") {
+TEST_CASE("fault 36 sample_batch: readings of before a step are not certified behind it") {
   for (const auto seed : fresh_seeds(10)) {
     CAPTURE(seed);
     for (const double by : {0.02, -0.02, 30.0, -30.0}) {

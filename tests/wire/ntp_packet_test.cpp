@@ -212,7 +212,7 @@ TEST_CASE("before version 4 there are no extension fields, and a MAC may have 8 
   }
 }
 
-TEST_CASE("fault 27 kod, falseticker: an answer counts only where it answers what was sent") {
+TEST_CASE("fault 27 kod: an answer counts only where it answers what was sent") {
   NtpPacket packet;
   packet.mode = ntp_mode_server;
   packet.stratum = 10;
