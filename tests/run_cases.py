@@ -28,6 +28,13 @@ def case(function):
     return function
 
 
+def tell(outcome, name):
+    """A line of the log that tools/count_cases.py reads."""
+    if log := os.environ.get("KINALIGN_TEST_LOG"):
+        with open(log, "a", encoding="utf-8") as out:
+            out.write(f"{outcome}\t{name}\n")
+
+
 def run_case(one, prefix):
     for tries_left in (2, 1, 0):
         with tempfile.TemporaryDirectory(prefix=prefix) as folder:
@@ -35,12 +42,11 @@ def run_case(one, prefix):
                 return one(pathlib.Path(folder))
             except Late as why:
                 assert tries_left, f"late three times: {why}"
-                print(f"{one.__name__.replace('_', ' ')}: late, so once more: {why}")
+                tell("late", f"{one.__name__.replace('_', ' ')}: {why}".replace("\n", " "))
 
 
 def run_cases(prefix, wanted=()):
     """Runs all cases, or the wanted ones; 1 where one failed."""
-    log = os.environ.get("KINALIGN_TEST_LOG")
     failed = False
     for one in CASES:
         name = one.__name__.replace("_", " ")
@@ -55,7 +61,5 @@ def run_cases(prefix, wanted=()):
             outcome = "failed"
             failed = True
             print(f"{name}: {error}")
-        if log:
-            with open(log, "a", encoding="utf-8") as out:
-                out.write(f"{outcome}\t{name}\n")
+        tell(outcome, name)
     return 1 if failed else 0

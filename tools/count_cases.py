@@ -34,6 +34,8 @@ def main():
         print("failed outside the test cases: see above")
     for name in cases["failed"]:
         print(f"failed: {name}")
+    for name in cases["late"]:
+        print(f"late, run again: {name}")
     reasons = collections.defaultdict(list)
     for name in cases["skipped"]:
         text, _, reason = name.partition("\t")

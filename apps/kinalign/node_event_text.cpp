@@ -127,8 +127,8 @@ std::string event_text(const ClockEvent& event, std::uint32_t node_id) {
   const auto says = [node_id](const std::string& what) {
     return fmt::format("node {}: {}", node_id, what);
   };
-  const double by_ms = 1e3 * std::abs(event.by);  // which way a step went is not always known
-  if (event.kind == Kind::step && event.by == 0.0) {
+  const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // which way is not always known
+  if (event.kind == Kind::step && !event.by) {
     return says("warning: its counter stepped, or its crystal bends more than was assumed");
   }
   if (event.kind == Kind::step) {
@@ -153,8 +153,8 @@ std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_
   Json json{
       {"event", "clock_event"}, {"kind", name_of(event.kind)},      {"stream", stream},
       {"node_id", node_id},     {"begin_ns", json_ns(event.begin)}, {"end_ns", json_ns(event.end)}};
-  if (event.by != 0.0) json["by_ms"] = 1e3 * std::abs(event.by);
-  if (event.curvature != 0.0) json["curvature_ppm_per_s"] = 1e6 * event.curvature;
+  if (event.by) json["by_ms"] = 1e3 * std::abs(*event.by);
+  if (event.curvature) json["curvature_ppm_per_s"] = 1e6 * *event.curvature;
   return json_text(json);
 }
 

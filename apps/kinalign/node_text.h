@@ -27,8 +27,8 @@ std::string nodes_text(const std::vector<NodeStatus>& all);
 /// "12 no mac, 3 bad crc": datagrams by what they were refused for; empty where none was.
 std::string refused_text(const NodeCounts& counts);
 
-/// "wrong mac: from what says it is node 11, 12, 13 (6 in all)": a line for each cause of the three
-/// that have to do with keys; of datagrams whose ids nobody vouches for.
+/// "wrong mac: from what says it is node 11, 12, 13 (12 frames)": a line for each cause of the
+/// three that have to do with keys; of datagrams whose ids nobody vouches for.
 std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCounts& counts);
 
 std::string pair_json(const ClockPair& pair);

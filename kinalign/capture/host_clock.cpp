@@ -85,7 +85,6 @@ HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep
 HostTime HostAxis::now() {
   const HostTime read = reader_.raw() + shift_;
   if (read < last_) {
-    ++went_back_;
     ++epoch_;
     shift_ += last_ - read;
     events_.add({HostClockEvent::Kind::backwards, last_, last_ - read});

@@ -91,7 +91,6 @@ class HostAxis {
   std::uint64_t missed_events() const { return events_.missed(); }
   /// Rises where clocks of nodes have to begin anew.
   std::uint32_t epoch() const { return epoch_; }
-  std::uint64_t went_back() const { return went_back_; }
 
  private:
   ClockBracket read();
@@ -105,7 +104,6 @@ class HostAxis {
   bool was_set_ = false;  // the wall clock, since then
   Duration asleep_;
   std::uint32_t epoch_ = 0;
-  std::uint64_t went_back_ = 0;
   EventQueue<HostClockEvent> events_;
 };
 

@@ -25,7 +25,7 @@ NodeReceiver::NodeReceiver(const NodeReceiverOptions& options, std::vector<UdpSo
                            ClockReader& clocks)
     : sockets_(std::make_unique<std::vector<UdpSocket>>(std::move(sockets))),
       lines_(*sockets_, NodeTable::most_streams),
-      clock_(clocks),
+      axis_(clocks),
       desk_(std::make_unique<NodeDesk>(options.desk)),
       batch_(std::make_unique<DatagramBatch>()),
       clocks_(NodeTable::most_streams),
@@ -37,7 +37,7 @@ void NodeReceiver::drain() {
     for (int i = 0; i < batches_in_turn; ++i) {
       const std::size_t datagrams = batch_->receive(socket->fd());
       if (datagrams == 0) break;
-      clock_.look();
+      axis_.look();
       take(*socket, datagrams);
       if (datagrams < DatagramBatch::most) break;
     }
@@ -60,8 +60,8 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
     const Datagram datagram = batch_->at(i);
     if (!may_answer(datagram)) continue;
     const NodeNews news = desk_->receive(
-        {datagram.bytes, {datagram.from, datagram.from_port}, clock_.arrival(datagram.received)});
-    const auto answer = desk_->answer(clock_.now(), batch_->answer_to(i));
+        {datagram.bytes, {datagram.from, datagram.from_port}, axis_.arrival(datagram.received)});
+    const auto answer = desk_->answer(axis_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());
     if (news.verdict != NodeVerdict::accepted) continue;
     keep(news);
@@ -83,7 +83,7 @@ void NodeReceiver::follow() {
   for (std::size_t i = 0; i < heard_.size(); ++i) {
     if (!heard_[i]) continue;
     const NodeLife& life = desk_->life_of(desk_->stream(i));
-    lines_.follow(i, {life.address, *heard_[i]}, sockets_->front().port(), clock_.now());
+    lines_.follow(i, {life.address, *heard_[i]}, sockets_->front().port(), axis_.now());
     heard_[i].reset();
   }
 }
@@ -98,12 +98,12 @@ NodeReceiver::StreamClock& NodeReceiver::clock_of(std::size_t stream) {
   clock = std::make_unique<StreamClock>();
   clock->number = desk_->stream(stream).number;
   clock->node_id = desk_->stream(stream).node_id;
-  clock->epoch = clock_.epoch();
+  clock->epoch = axis_.epoch();
   return *clock;
 }
 
 bool NodeReceiver::is_current(const StreamClock& clock, std::size_t stream) const {
-  return clock.number == desk_->stream(stream).number && clock.epoch == clock_.epoch();
+  return clock.number == desk_->stream(stream).number && clock.epoch == axis_.epoch();
 }
 
 void NodeReceiver::hear(NodeNews& news) {
@@ -125,12 +125,12 @@ void NodeReceiver::hear(NodeNews& news) {
 }
 
 void NodeReceiver::tick() {
-  clock_.look();
-  const HostTime now = clock_.now();
+  axis_.look();
+  const HostTime now = axis_.now();
   desk_->tick(now);
   if (now < next_watch_) return;
   next_watch_ = now + std::chrono::seconds(1);
-  pairs_.add(clock_.watch());
+  pairs_.add(axis_.watch());
 }
 
 std::vector<NodeStatus> NodeReceiver::status() const {
@@ -198,7 +198,7 @@ std::vector<NodeReceiver::StreamEvent> NodeReceiver::take_events_of(std::size_t 
 
 std::uint64_t NodeReceiver::missed_events() const {
   std::uint64_t sum = missed_events_ + last_events_.missed() + pairs_.missed() +
-                      desk_->missed_events() + clock_.missed_events();
+                      desk_->missed_events() + axis_.missed_events();
   for (const auto& clock : clocks_) sum += clock != nullptr ? clock->clock.missed_events() : 0;
   return sum;
 }

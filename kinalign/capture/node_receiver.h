@@ -68,10 +68,10 @@ class NodeReceiver {
   std::uint64_t from_port_0() const { return from_port_0_; }  // nobody would hear the answer
   /// By node id; of two nodes that have one, by stream.
   std::vector<NodeStatus> status() const;
-  void replace_key(const LabKey& lab) { desk_->replace_key(lab, clock_.now()); }
+  void replace_key(const LabKey& lab) { desk_->replace_key(lab, axis_.now()); }
 
   std::vector<NodeEvent> take_node_events() { return desk_->take_events(); }
-  std::vector<HostClockEvent> take_host_events() { return clock_.take_events(); }
+  std::vector<HostClockEvent> take_host_events() { return axis_.take_events(); }
   struct StreamEvent {
     std::size_t stream = 0;
     std::uint32_t node_id = 0;
@@ -80,7 +80,8 @@ class NodeReceiver {
   std::vector<StreamEvent> take_clock_events();
   /// Raw and wall clock, read once a second; since this was asked last.
   std::vector<ClockPair> take_pairs() { return pairs_.take(); }
-  /// For want of room: who does not take them loses events and pairs.
+  /// Events and pairs that were lost for want of room, since nobody took them. Of the events of a
+  /// clock that was replaced (another node, another epoch) withdrawals may be among them.
   std::uint64_t missed_events() const;
 
  private:
@@ -115,7 +116,7 @@ class NodeReceiver {
 
   std::unique_ptr<std::vector<UdpSocket>> sockets_;
   NodeLines lines_;
-  HostAxis clock_;
+  HostAxis axis_;
   std::unique_ptr<NodeDesk> desk_;
   std::unique_ptr<DatagramBatch> batch_;
   std::vector<std::unique_ptr<StreamClock>> clocks_;

@@ -4,7 +4,7 @@
 #include "kinalign/wire/node_datagram.h"
 
 #include <algorithm>
-#include <numeric>
+#include <array>
 
 namespace kinalign {
 

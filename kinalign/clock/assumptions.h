@@ -18,7 +18,7 @@ inline constexpr double greatest_rate = 100e-6;
 struct Assumptions {
   double rate = greatest_rate;
   /// Per second. Three times what a crystal does that changes by 0.3 ppm per degree in a board that
-  /// warms by 12 degrees in four minutes: an estimate (time synchronisation, sections 2 and 10).
+  /// warms by 12 degrees in four minutes: an estimate.
   double curvature = 5e-8;
 
   bool operator==(const Assumptions&) const = default;

@@ -57,8 +57,11 @@ class ClockPiece {
   const Assumptions& assumptions() const { return certificate_.assumptions(); }
   const OffsetEstimate& estimate() const { return estimate_; }
   const FloorLog& floors() const { return floors_; }
-  /// Behind the verdict: how far beyond the certificate, or how far the counter stepped, s.
-  double amount() const { return amount_; }
+  /// Behind the verdict: how far beyond the certificate, or how far the counter stepped, s. Absent
+  /// where bounds contradict each other.
+  std::optional<double> amount() const {
+    return end_ == End::contradiction ? std::nullopt : std::optional(amount_);
+  }
 
  private:
   static constexpr std::size_t corners = 255;

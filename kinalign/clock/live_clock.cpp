@@ -130,11 +130,12 @@ void LiveClock::take_step(const Crossing& crossing) {
 
 void LiveClock::settle(const Crossing& crossing) {
   settles_.reset();
-  replace_piece(ClockEvent::Kind::settled, 0.0, crossing);
+  replace_piece(ClockEvent::Kind::settled, std::nullopt, crossing);
 }
 
 /// Whether the new piece allows for a clock that bends more.
-bool LiveClock::replace_piece(ClockEvent::Kind why, double by, const Crossing& crossing) {
+bool LiveClock::replace_piece(ClockEvent::Kind why, std::optional<double> by,
+                              const Crossing& crossing) {
   replaced_ = true;
   tell({why, boot_, piece_->next_begins(), crossing.heard, by});
   tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
@@ -142,7 +143,7 @@ bool LiveClock::replace_piece(ClockEvent::Kind why, double by, const Crossing& c
   take_piece(piece_->next_piece());
   const double curvature = piece_->assumptions().curvature;
   if (curvature == assumed) return false;
-  tell({ClockEvent::Kind::relaxed, boot_, crossing.heard, crossing.heard, 0.0, curvature});
+  tell({ClockEvent::Kind::relaxed, boot_, crossing.heard, crossing.heard, std::nullopt, curvature});
   return true;
 }
 

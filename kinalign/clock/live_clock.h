@@ -39,8 +39,10 @@ struct ClockEvent {
   Kind kind{};
   BootKey boot = 0;
   HostTime begin{}, end{};
-  double by = 0.0;         // s, how far: of step, slip, uneasy, violator; 0 where that is not known
-  double curvature = 0.0;  // 1/s, of relaxed: what is allowed for now
+  /// s; of slip, uneasy, violator, and of step where it is known.
+  std::optional<double> by = std::nullopt;
+  /// 1/s; of relaxed: what is allowed for now.
+  std::optional<double> curvature = std::nullopt;
 
   bool operator==(const ClockEvent&) const = default;
 };
@@ -80,7 +82,7 @@ class LiveClock {
   void begin(BootKey boot, const Crossing& first);
   void take_piece(const ClockPiece& piece);
   void answer(ClockPiece::Verdict verdict, const Crossing& crossing);
-  bool replace_piece(ClockEvent::Kind why, double by, const Crossing& crossing);
+  bool replace_piece(ClockEvent::Kind why, std::optional<double> by, const Crossing& crossing);
   void take_step(const Crossing& crossing);
   void settle(const Crossing& crossing);
   void tell(const ClockEvent& event);

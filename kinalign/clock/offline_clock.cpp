@@ -103,7 +103,7 @@ PieceBounds collect(const OfflineWalk& walk, std::size_t p,
                     std::span<const DoubtfulStretch> doubtful, ClockPieceModel& model) {
   PieceBounds piece;
   bool begun = false;
-  const auto [first, end] = exchanges_of(walk, p);
+  const auto [first, end] = range_of(walk, p);
   model.violators = 0;
   for (std::size_t i = first; i < end; ++i) {
     if (walk.late[i]) continue;

@@ -43,7 +43,7 @@ void doubt_behind_violators(OfflineWalk& walk) {
   for (std::size_t i = 0; i < walk.exchanges.size(); ++i) {
     if (!walk.up_left_out[i] && !walk.echo_left_out[i]) continue;
     const HostTime h = walk.exchanges[i].h_rx;
-    const Exchange& last = walk.exchanges[exchanges_of(walk, walk.piece[i]).end - 1];
+    const Exchange& last = walk.exchanges[range_of(walk, walk.piece[i]).end - 1];
     walk.doubtful.push_back({h, std::min(last.h_rx, h + Violators::wait)});
   }
 }
@@ -73,7 +73,7 @@ bool cuts_short(ClockEvent::Kind kind) {
 
 }  // namespace
 
-ExchangeRange exchanges_of(const OfflineWalk& walk, std::size_t p) {
+ExchangeRange range_of(const OfflineWalk& walk, std::size_t p) {
   const auto [first, last] = std::equal_range(walk.piece.begin(), walk.piece.end(), p);  // rising
   return {static_cast<std::size_t>(first - walk.piece.begin()),
           static_cast<std::size_t>(last - walk.piece.begin())};

@@ -21,9 +21,10 @@ struct OfflineWalk {
   std::vector<ClockEvent> events;
   std::vector<DoubtfulStretch> doubtful;  // rising, apart from each other
   std::vector<Piece> pieces;
-  std::vector<std::size_t> piece;  // of each exchange; rising
-  std::vector<bool> up_left_out, echo_left_out;
-  std::vector<bool> late;    // exchanges of a life that was over when they came
+  // of each exchange:
+  std::vector<std::size_t> piece;                // rising
+  std::vector<bool> up_left_out, echo_left_out;  // it, or what it echoes, can't be
+  std::vector<bool> late;                        // its life was over when it came
   double least_width = 0.0;  // s, that an interval can have: packets took no less, there and back
 };
 
@@ -34,6 +35,6 @@ OfflineWalk walk_offline(std::span<const Exchange> exchanges, const Assumptions&
 struct ExchangeRange {
   std::size_t begin = 0, end = 0;
 };
-ExchangeRange exchanges_of(const OfflineWalk& walk, std::size_t p);
+ExchangeRange range_of(const OfflineWalk& walk, std::size_t p);
 
 }  // namespace kinalign

@@ -9,8 +9,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr double settling_s = 8.0;  // before a route's floors are known
-constexpr std::uint64_t settling_points = 100;
+constexpr double floors_known_after_s = 8.0;  // before a route's floors are known
+constexpr std::uint64_t floors_known_from_points = 100;
 constexpr double gaps_off = 20.0;         // a floor's usual gaps that make a bound stand apart, …
 constexpr double least_off_s = 20e-6;     // … and at least this
 constexpr double wander = 0.2e-6;         // of a slope between two routes
@@ -25,7 +25,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 }  // namespace
 
 bool OffsetEstimate::floors_known(double s) const {
-  return since_ && s - *since_ > settling_s && middle_.sharp();
+  return since_ && s - *since_ > floors_known_after_s && middle_.sharp();
 }
 
 void OffsetEstimate::add_to_route(Side side, OffsetBound bound) {
@@ -39,7 +39,7 @@ void OffsetEstimate::add(const Bound& b) {
   const FloorLine line = middle_.floor(b.side);
   const double density = middle_.density(b.side), excess = line.excess(bound);
   const ExcessCounts& counts = route_.floor(b.side).counts();
-  const bool watched = floors_known(b.s) && counts.total() >= settling_points;
+  const bool watched = floors_known(b.s) && counts.total() >= floors_known_from_points;
   double limit = infinite;
   if (watched) limit = std::max(gaps_off / density, least_off_s);
   const Standing standing = excess < -limit  ? Standing::held

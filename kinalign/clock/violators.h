@@ -34,7 +34,7 @@ bool contradict(const Bound& a, const Bound& b, double rate);
 
 class Violators {
  public:
-  static constexpr double tolerated_s = 5e-6;  // of rounding (time synchronisation, section 4.7)
+  static constexpr double tolerated_s = 5e-6;  // counters of 1 us, both ways, and what reads them
   static constexpr Duration wait = std::chrono::seconds(5);
 
   /// There must be room.

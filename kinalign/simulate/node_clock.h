@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The counter of a node whose crystal is a little off, ages, warms up and is noisy. All times in
-// seconds; the axis of truth is the host's. Constants: sized after uncompensated crystals of ESP32
-// boards (table 1 of «Time synchronisation for millisecond-precision on bio-loggers», Movement
-// Ecology 2024): at most 20 ppm off, 0.3 ppm per degree, 12 degrees of warming in some minutes.
+// seconds; the axis of truth is the host's. Constants: an uncompensated crystal at most 20 ppm off
+// (table 1 of «Time synchronisation for millisecond-precision on bio-loggers», Movement Ecology
+// 2024); 0.3 ppm per degree and 12 degrees of warming in some minutes are estimates.
 #pragma once
 
 #include <cstdint>

@@ -42,8 +42,8 @@ class Listener:
 
     def pass_on(self):
         node = None
-        while not self.over.is_set():
-            for one in select.select(self.side, [], [], 0.1)[0]:
+        while (ready := select.select(self.side, [], [], 0.1)[0]) or not self.over.is_set():
+            for one in ready:
                 if one is self.side[0]:
                     data, node = one.recvfrom(2048)
                     self.read.append((raw_ns(), datagrams.opened(data)))

@@ -165,7 +165,6 @@ TEST_CASE("fault 20 host_backwards: the axis stands still for a moment and goes 
   CHECK(at >= before);
   clocks.pass(std::chrono::seconds(1));
   CHECK(std::abs(seconds(axis.now() - at) - 1.0) < 1e-6);
-  CHECK(axis.went_back() == 1);
   CHECK(axis.epoch() == 1);
   CHECK(kinds(axis) == std::vector{Kind::backwards});
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tells nodes and their starts apart (the numbers are those of the list of faults that the
-// clock's scenarios use too). What else goes wrong: node_faults_test.cpp.
+// What tells nodes and their starts apart (numbers as in docs/faults.md). What else goes wrong:
+// node_faults_test.cpp.
 #include "tests/capture/test_node.h"
 
 #include "kinalign/capture/node_desk.h"

@@ -219,7 +219,7 @@ TEST_CASE("frames are told in the order in which they came, however slowly clock
   }
 }
 
-TEST_CASE("what a clock has told is not lost when it is replaced, and stays its own node's") {
+TEST_CASE("fault 19 host_suspend: clocks begin anew, and what the earlier ones told is not lost") {
   Bench<OddClocks> bench;
   const auto talk_as = [&](std::uint32_t id) {
     TestNode node = node_ahead(id);
@@ -239,6 +239,29 @@ TEST_CASE("what a clock has told is not lost when it is replaced, and stays its 
   CHECK(status.front().node_id == 2);
   CHECK(status.back().node_id == 100);
   CHECK(status.back().stream == 0);
+}
+
+TEST_CASE("events and pairs that nobody takes are counted, whichever list has no room") {
+  Bench<OddClocks> bench;
+  for (int i = 0; i < 66; ++i) {
+    bench.clocks.later += 1s;
+    bench.receiver.tick();
+    bench.receiver.take_host_events();  // that the wall clock seems to be stepped
+  }
+  std::uint64_t missed = 66 - 64;  // pairs
+  CHECK(bench.receiver.missed_events() == missed);
+  for (std::uint32_t boot = 1; boot <= 68; ++boot) {
+    if (boot > 1) bench.node.reboot(boot, bench.clocks.raw());
+    bench.talk(2);
+  }
+  missed += 68 - 64;  // of the node, that it started, ...
+  missed += 68 - 64;  // ... and of its clock
+  CHECK(bench.receiver.missed_events() == missed);
+  bench.clocks.slept = std::chrono::hours(1);
+  bench.clocks.later += std::chrono::hours(1);
+  bench.receiver.tick();
+  bench.talk(2);  // its clock is replaced
+  CHECK(bench.receiver.missed_events() >= missed);
 }
 
 TEST_CASE("nodes are listed by their ids, in whatever order they joined") {

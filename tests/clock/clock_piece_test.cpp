@@ -138,7 +138,7 @@ TEST_CASE("a crossing is against the certificate by more than five microseconds"
           side == Side::above ? *stamp->earliest - by : *stamp->latest + by;  // + 1 us each way
       CHECK(talk.piece.push({side, node(30s), h, host(30s)}) ==
             (by > 5us ? Verdict::violator : Verdict::taken));
-      CHECK(talk.piece.amount() == about(seconds(by), 1e-3));
+      CHECK(*talk.piece.amount() == about(seconds(by), 1e-3));
     }
   }
 }
@@ -152,7 +152,7 @@ TEST_CASE("the third violator ends a piece; the next begins with the first of th
   CHECK(talk.piece.at(node(30s))->certainty == Certainty::doubtful);
   CHECK(talk.frame(30s + 100ms) == Verdict::violator);
   CHECK(talk.frame(30s + 200ms) == Verdict::broken);
-  CHECK(talk.piece.amount() == about(0.998, 1e-3));  // the step, less the delays both ways
+  CHECK(*talk.piece.amount() == about(0.998, 1e-3));  // the step, less the delays both ways
   CHECK(talk.piece.next_begins() == host(30s + 1ms));
   CHECK(talk.piece.doubtful_since() == host(25s + 1ms));  // five seconds before
   const ClockPiece next = talk.piece.next_piece();
@@ -198,7 +198,7 @@ TEST_CASE("bounds that leave no way between them end a piece, which is in doubt 
   talk.stepped = 4us;  // less than is tolerated, more than is left
   CHECK(talk.run(10s, 20s, 100ms) == Verdict::broken);
   CHECK(talk.at < 11s);
-  CHECK(talk.piece.amount() == 0.0);  // which of them is wrong is not known
+  CHECK(!talk.piece.amount());  // which of them is wrong is not known
   CHECK(talk.piece.doubtful_since() == host(0s));
   CHECK(talk.piece.next_begins() >= host(10s));
 }
@@ -223,7 +223,7 @@ TEST_CASE("an interval narrower than packets take, a minute ago, ends a piece") 
   CHECK(narrowest < 1.3e-3);
   const double least = talk.piece.floors().least_width();
   CHECK(least == about(0.8 * 2e-3, 0.02));  // of what packets take a fifth is allowed for
-  CHECK(talk.piece.amount() == about(least - narrowest, 0.01));
+  CHECK(*talk.piece.amount() == about(least - narrowest, 0.01));
   CHECK(talk.piece.doubtful_since() == host(0s));  // since when is not known
   CHECK(talk.piece.next_begins() == host(talk.at + 500ms + 1ms));
 }
@@ -238,7 +238,7 @@ TEST_CASE("a step that leaves the truth inside is a warning, a greater one ends 
     const Verdict verdict = talk.run(100s, 130s);
     if (std::chrono::abs(by) == 1ms) {  // of a round trip of 6 ms
       CHECK(verdict == Verdict::uneasy);
-      CHECK(talk.piece.amount() == about(-seconds(by), 0.05));  // the offset's
+      CHECK(*talk.piece.amount() == about(-seconds(by), 0.05));  // the offset's
       CHECK(talk.piece.at(node(talk.at))->certainty == Certainty::certified);
     } else {
       CHECK(verdict == Verdict::slipped);
@@ -254,7 +254,7 @@ TEST_CASE("where both floors are seen to move, what came five seconds before is 
   talk.stepped = 3ms;
   CHECK(talk.run(101s, 130s) == Verdict::slipped);
   CHECK(talk.at < 113s);  // a second to see it, eight to know the new floors
-  CHECK(talk.piece.amount() == about(-3e-3, 0.05));
+  CHECK(*talk.piece.amount() == about(-3e-3, 0.05));
   CHECK(std::chrono::abs(talk.piece.doubtful_since() - host(96s)) < 200ms);
   CHECK(talk.piece.next_begins() >= host(talk.at));
   // The next piece knows where it is, and certifies nothing by what came before.

@@ -96,7 +96,7 @@ TEST_CASE("one crossing that cannot be is left out, three are a step") {
   CHECK(events.back().begin < host(27s));  // five seconds before the first of them
 }
 
-TEST_CASE("a host's clock that goes back ends the piece") {
+TEST_CASE("fault 20 host_backwards: the piece ends") {
   LiveClock clock;
   run(clock, 7, 0s, 10s);
   static_cast<void>(clock.take_events());
@@ -354,7 +354,7 @@ TEST_CASE("after a second step within five seconds it takes five without one") {
   CHECK(certainty(40s) == Certainty::certified);
 }
 
-TEST_CASE("where the host's clock goes back nothing is left of a step, nor certified before it") {
+TEST_CASE("fault 20 host_backwards: nothing is left of a step, nor certified before it") {
   LiveClock clock;
   run(clock, 7, 0s, 30s);
   clock.push_up(7, node(31s), host(30s + 500ms));  // half a second before it was sent

@@ -45,8 +45,8 @@ TEST_CASE("of two lives whose frames arrive at one moment each has its own") {
   CHECK(walk.pieces.size() == 2);
   CHECK(walk.piece[99] == 0);
   CHECK(walk.piece[100] == 1);
-  CHECK(exchanges_of(walk, 0).end == 100);
-  CHECK(exchanges_of(walk, 1).end == 201);
+  CHECK(range_of(walk, 0).end == 100);
+  CHECK(range_of(walk, 1).end == 201);
 }
 
 TEST_CASE("what the first frame behind a step echoes is of before it") {

@@ -75,7 +75,7 @@ TEST_CASE("a host that starts anew is heard at once, whatever its reply sequence
 }
 
 TEST_CASE(
-    "fault 24, falseticker: replies with no MAC, a wrong one or numbers made up change nothing") {
+    "fault 24 falseticker: replies with no MAC, a wrong one or numbers made up change nothing") {
   Bench bench(keyed());
   bench.run(60'000);
   const NodeFrame frame = bench.last();

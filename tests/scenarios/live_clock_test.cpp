@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The live clock over simulated links, on fresh seeds each time: what it promises while its
 // assumptions hold, and what it does when they don't.
+#include "tests/about.h"
 #include "tests/scenarios/minutes.h"
 #include "tests/seeds.h"
 #include "tools/clock_table/judge.h"
@@ -22,6 +23,15 @@ double delay_of(const JudgedRun& run, ClockEvent::Kind kind, double at) {
     if (event.kind == kind && seconds_of(event.end) >= at) return seconds_of(event.end) - at;
   }
   return 1e9;
+}
+
+/// Of the last whole window of ten seconds, s, when no more than so many seconds were heard.
+double last_round_trip(const SimulatedExchanges& simulated, double until) {
+  LiveClock clock;
+  for (const Exchange& e : exchanges_of(simulated)) {
+    if (seconds_of(e.h_rx) < until) clock.push(e);
+  }
+  return clock.piece()->floors().window(0)->round_trip;
 }
 
 }  // namespace
@@ -65,9 +75,13 @@ TEST_CASE("fault 15 route_change_asym: the estimate moves no more than the chang
     CAPTURE(seed);
     ExchangeOptions options = minutes(Link::quiet, 2.0);
     options.link.faults = {{.begin = 60.0, .end = 1e9, .extra_up = 5.0 * ms}};  // one way alone
-    const auto run = judge_live(simulate_exchanges(options, seed));
+    const auto simulated = simulate_exchanges(options, seed);
+    const auto run = judge_live(simulated);
     CHECK(run.lies() == 0);
     CHECK(run.count(ClockEvent::Kind::route) >= 1);
+    const Floors least = floors(Link::quiet, seed);
+    CHECK(last_round_trip(simulated, 60.0) == about(least.up + least.down, 0.1));
+    CHECK(last_round_trip(simulated, 120.0) == about(least.up + least.down + 5.0 * ms, 0.1));
     // What a method that halves round trips would be off by: 2.5 ms.
     CHECK(figures(errors_since(run, 10.0, run.asymmetry)).worst < 0.2 * ms);
   }
@@ -127,7 +141,9 @@ TEST_CASE(
   CHECK(late <= 4);  // of 160; a seed that is unlucky is so in four of them
 }
 
-TEST_CASE("fault 4 counter_step: from both least delays on none leaves a wrong stamp on A, B, C") {
+TEST_CASE(
+    "fault 4 counter_step_fwd, counter_step_back: from both least delays on none leaves a wrong "
+    "stamp on A, B, C") {
   for (const auto seed : fresh_seeds(10)) {
     CAPTURE(seed);
     for (const Link link : {Link::wired, Link::quiet, Link::paper}) {

@@ -93,7 +93,9 @@ TEST_CASE("pieces are those of the node's lives and steps, and no stamp that sta
   }
 }
 
-TEST_CASE("fault 4 counter_step: what a reboot or the end cuts short leaves no wrong stamp") {
+TEST_CASE(
+    "fault 4 counter_step_fwd, counter_step_back: what a reboot or the end cuts short leaves no "
+    "wrong stamp") {
   int seen = 0, all = 0;
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);

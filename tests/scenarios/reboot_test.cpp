@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults 1 and 3 to the letter (section 7 of the reference on time synchronisation): what a node's
+// Faults 1 and 3 to the letter (docs/faults.md): what a node's
 // new life begins with, and how soon its stamps are good.
 #include "tests/scenarios/minutes.h"
 #include "tests/seeds.h"

@@ -142,17 +142,16 @@ def dev_names_its_verbs_and_refuses_others(folder):
 
 @case
 def every_fault_of_docs_faults_has_tests_by_its_number_and_name(folder):
-    # Forty of them, «fault 4 counter_step_fwd»: section 7 of the reference on time synchronisation.
+    # Forty of them, «fault 4 counter_step_fwd».
     listed, tested = {}, {}
     for number, names in re.findall(r"^\| (\d+) \| ([^|]*)", (ROOT / "docs/faults.md").read_text(), re.M):
         listed[int(number)] = set(re.findall(r"`(\w+)`", names))
     for path in (ROOT / "tests").rglob("*_test.cpp"):
-        for number, names in re.findall(r'TEST_CASE\(\s*"fault (\d+),? ([^":]*):', path.read_text()):
+        for number, names in re.findall(r'TEST_CASE\(\s*"fault (\d+) ([^":]*):', path.read_text()):
             tested.setdefault(int(number), set()).update(re.split(r", ", names))
-    assert sorted(listed) == sorted(tested) == list(range(1, 41)), set(listed) ^ set(tested)
-    for number, names in tested.items():
-        unknown = {name for name in names if not any(own.startswith(name) for own in listed[number])}
-        assert not unknown, (number, unknown)
+    assert sorted(listed) == list(range(1, 41)), set(range(1, 41)) ^ set(listed)
+    for number, names in listed.items():
+        assert tested.get(number) == names, (number, names ^ tested.get(number, set()))
 
 
 sys.exit(run_cases("kinalign tools "))

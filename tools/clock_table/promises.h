@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the clocks promise, as data: section 5 of the specification (time-sync.md), whose numbers
-// stand beside each table so that the two can be compared by eye. A promise is of many seeds.
+// What the clocks promise, as data: the bars that this project was begun with (docs/clock.md, «The
+// promises»), by the numbers of their sections. A promise is of many seeds.
 #pragma once
 
 #include "kinalign/simulate/link.h"
