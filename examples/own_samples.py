@@ -34,6 +34,8 @@ class Stamper:
         """`lines`: of the log, parsed, in their order, which says between which cuts each stands."""
         self.runs, self.withdrawn = {}, {}
         for line in lines:
+            if line["event"] == "missed" or line.get("missed_events"):
+                raise ValueError("lines are missing in it, and one may have been a step or a withdrawal")
             kind = line.get("kind") if line["event"] == "clock_event" else line.get("certainty")
             runs = self.runs.setdefault(line["stream"], []) if "stream" in line else []
             if kind in CUTS:
@@ -43,6 +45,8 @@ class Stamper:
             elif kind == "withdrawn":
                 self.withdrawn.setdefault(line["stream"], []).append((line["begin_ns"], line["end_ns"]))
             elif kind == "certified":
+                if not runs:  # the log begins in the middle
+                    runs.append(Run(line["time_ns"]))
                 runs[-1].lines.append(line)
         for stream, runs in self.runs.items():
             for run in runs:
@@ -67,11 +71,32 @@ class Stamper:
         return min(found)[1:] if found else None
 
 
+def parsed(log):
+    """Its lines; what a disk that was full has left of the last one is passed over."""
+    texts = log.read().splitlines(keepends=True)
+    for number, text in enumerate(texts, 1):
+        try:
+            yield json.loads(text)
+        except json.JSONDecodeError:
+            if number < len(texts) or text.endswith("\n"):
+                raise ValueError(f"line {number}: expected a line of kinalign time-server --json, found "
+                                 f"{text[:40]!r}") from None
+
+
 def main():
-    with open(sys.argv[1], encoding="utf-8") as log:
-        stamper = Stamper(json.loads(line) for line in log)
-    for row in sys.stdin:
-        stamp = stamper.stamp(*map(int, row.split()))
+    if len(sys.argv) != 2:
+        sys.exit("usage: own_samples.py LOG <ROWS    (docs/time_server.md, One's own samples)")
+    try:
+        with open(sys.argv[1], encoding="utf-8") as log:
+            stamper = Stamper(parsed(log))
+    except (OSError, ValueError) as error:
+        sys.exit(f"own_samples.py: {sys.argv[1]}: {error}")
+    for number, row in enumerate(sys.stdin, 1):
+        try:
+            stream, boot_id, lives, n = map(int, row.split())
+        except ValueError:
+            sys.exit(f"own_samples.py: row {number}: expected stream, boot_id, lives and counter_ns, found {row!r}")
+        stamp = stamper.stamp(stream, boot_id, lives, n)
         print(*stamp if stamp else ("not certified",))
 
 

@@ -233,6 +233,10 @@ void Console::report(const Error& error) {
   for (const std::string& line : advice_(error)) say("  " + line);
 }
 
+std::string Console::out_trouble() const {
+  return out_.fault() == 0 ? "" : std::strerror(out_.fault());
+}
+
 Result<void> Console::finish() {
   constexpr std::chrono::milliseconds last_words{1000};
   erase_progress();

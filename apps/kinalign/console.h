@@ -80,6 +80,9 @@ class Console {
 
   /// Writes what is held, for a job that goes on.
   void flush() { out_.flush(); }
+  /// What keeps stdout from taking it, for a job that goes on: "No space left on device"; empty:
+  /// nothing.
+  std::string out_trouble() const;
   /// Writes what is still held. Fails where stdout took no more; a reader that went away is fine.
   Result<void> finish();
 

@@ -87,7 +87,7 @@ std::string wrong_key_text(const NodeEvent& event) {
                      : event.refusal == NodeRefusal::no_mac ? "without a MAC"
                                                             : "with another key";
   const std::string mend =
-      no_key ? ""
+      no_key ? "; --lab-key FILE, the lab's, lets it in"
              : fmt::format(
                    "; if it is that node, flash what kinalign node-key --lab-key LAB --node {} "
                    "prints",

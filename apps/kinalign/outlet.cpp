@@ -47,11 +47,14 @@ bool Outlet::takes_more(std::chrono::milliseconds patience) const {
   return ::poll(&waiting, 1, static_cast<int>(patience.count())) == 1;  // write tells of faults
 }
 
+/// A disk that may have room again, where nobody waits to hear that it has none.
+bool Outlet::is_full() const { return !waits_ && (fault_ == ENOSPC || fault_ == EDQUOT); }
+
 void Outlet::flush(std::chrono::milliseconds patience) {
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + patience;
   std::string_view left = held_;
-  while (!left.empty() && fault_ == 0) {
+  while (!left.empty() && !gave_up()) {
     const auto still = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
     if (!waits_ && !takes_more(std::max(still, std::chrono::milliseconds{0}))) break;
     // A pipe that takes anything takes so much without waiting.
@@ -59,13 +62,11 @@ void Outlet::flush(std::chrono::milliseconds patience) {
     const ssize_t put = ::write(writes_to(), left.data(), piece);
     if (put < 0 && errno == EINTR) continue;
     if (put < 0 && errno == EAGAIN && !waits_) break;
-    if (put < 0) {
-      fault_ = errno;
-    } else {
-      left.remove_prefix(static_cast<std::size_t>(put));
-    }
+    fault_ = put < 0 ? errno : 0;
+    if (put < 0) break;
+    left.remove_prefix(static_cast<std::size_t>(put));
   }
-  held_.erase(0, fault_ == 0 ? held_.size() - left.size() : held_.size());
+  held_.erase(0, gave_up() ? held_.size() : held_.size() - left.size());
 }
 
 std::uint64_t Outlet::take_dropped() {

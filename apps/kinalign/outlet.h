@@ -17,8 +17,9 @@ class Outlet {
   Outlet& operator=(const Outlet&) = delete;
   ~Outlet();
 
-  /// From here on a reader that doesn't read (a full pipe, a stopped terminal) holds up nothing: up
-  /// to 1 MiB waits for it, what comes then is dropped, by whole texts, and counted.
+  /// From here on a reader that doesn't read (a full pipe, a stopped terminal), or a full disk,
+  /// holds up nothing: up to 1 MiB waits for it, what comes then is dropped, by whole texts, and
+  /// counted.
   void never_wait();
 
   /// Holds it until there is enough to write.
@@ -30,11 +31,14 @@ class Outlet {
   std::uint64_t take_dropped();
   bool holds() const { return !held_.empty(); }
   int fd() const { return fd_; }
-  /// errno of the write that failed, after which nothing more is written; 0: none.
+  /// errno of the write that failed last; 0: none, or another went well since.
   int fault() const { return fault_; }
+  /// Nothing more is written.
+  bool gave_up() const { return fault_ != 0 && !is_full(); }
 
  private:
   bool takes_more(std::chrono::milliseconds patience) const;
+  bool is_full() const;
   int writes_to() const { return terminal_ >= 0 ? terminal_ : fd_; }
 
   int fd_;

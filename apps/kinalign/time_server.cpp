@@ -176,6 +176,7 @@ class Herald {
     tell_clock();
     tell_strays();
     tell_counts();
+    tell_trouble();
     const std::string nodes = nodes_ ? (*nodes_)() : "";
     const std::string both = counts_text(server_.counts()) + (nodes.empty() ? "" : "; " + nodes);
     return progress_("serving: " + both, 0, 0);
@@ -207,6 +208,14 @@ class Herald {
               "warning: a node sends to the NTP port; nodes are received on another one, "
               "--node-port");
   }
+  /// Each trouble with stdout once, as long as it lasts: nobody else may notice for hours.
+  void tell_trouble() {
+    const std::string trouble = console_.out_trouble();
+    if (std::exchange(out_trouble_, trouble) == trouble) return;
+    tell_live(console_, trouble.empty() ? "standard output takes lines again"
+                                        : "warning: standard output takes no more (" + trouble +
+                                              "): what is not written is lost; serving goes on");
+  }
   void tell_counts() {
     constexpr double every_s = 10;
     if (elapsed_s() < every_s * (counts_told_ + 1)) return;
@@ -220,6 +229,7 @@ class Herald {
   Console& console_;
   Progress progress_;
   NtpServerState told_;
+  std::string out_trouble_;  // that was told, and still stands
   Clock::time_point began_ = Clock::now();
   int counts_told_ = 0;
   bool strays_told_ = false;
@@ -262,10 +272,13 @@ Verb time_server_verb() {
        .text =
            "Serves the system's clock by NTP (RFC 5905) until Ctrl-C. Strangers get 8 answers at "
            "once, then one in 2 s; --exempt is for clients that ask more often. With --json each "
-           "line is an object, by its member event: started and stopped; pair and, for each node, "
-           "node (node_id, certainty, time_ns, earliest_ns, latest_ns, drift_ppm and more), once a "
-           "second; counts and node_counts, every 10 s; clock, node_event, clock_event, "
-           "host_event, key_replaced, key_unreadable and missed when it happens. Members in _ns "
+           "line is an object, by its member event: started and stopped; with --node-port pair "
+           "and, "
+           "for each node, node (node_id, certainty, time_ns, earliest_ns, latest_ns, drift_ppm "
+           "and "
+           "more), once a second; counts and node_counts, every 10 s; clock, node_event, "
+           "clock_event, host_event, key_replaced, key_unreadable and missed when it happens. "
+           "Members in _ns "
            "are on CLOCK_MONOTONIC_RAW, but utc_ns and the node's own counter_ns: "
            R"({"schema": "kinalign.time-server/1", "event": "pair", "raw_ns": 4521080113, )"
            R"("utc_ns": 1790000000000000000}. docs/time_server.md has every member.)",

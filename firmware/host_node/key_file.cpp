@@ -31,7 +31,10 @@ std::string octal(unsigned mode) {
 
 Tried<MacKey> read_key_file(const std::string& path) {
   const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "re"));
-  if (!file) return failure(path + ": expected a key, found: " + std::strerror(errno));
+  if (!file) {
+    return failure(path + ": expected a key, found: " + std::strerror(errno) +
+                   "; kinalign node-key --lab-key LAB --node N -o FILE makes one");
+  }
   struct stat found {};
   if (fstat(fileno(file.get()), &found) != 0 || !S_ISREG(found.st_mode)) {
     return failure(path + ": expected a file with a key, found none");

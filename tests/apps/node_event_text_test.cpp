@@ -72,7 +72,7 @@ TEST_CASE("a node that is refused for its key is told with what mends it") {
   event.refusal = NodeRefusal::no_key;
   CHECK(event_text(event) ==
         "warning: something that says it is node 7 is not heard: it sends with a MAC, and there is "
-        "no --lab-key (from 192.168.7.20:4000)");
+        "no --lab-key (from 192.168.7.20:4000); --lab-key FILE, the lab's, lets it in");
 }
 
 }  // namespace kinalign

@@ -125,3 +125,22 @@ TEST_CASE("a reader that went away is a fault, and nothing is held for it") {
     CHECK(!outlet.holds());
   }
 }
+
+TEST_CASE("a full disk is a fault, and what it did not take is written once it has room") {
+  const int fd = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
+  Outlet outlet(fd);
+  outlet.never_wait();
+  outlet.put("one\n");
+  outlet.flush();
+  CHECK(outlet.fault() == ENOSPC);
+  CHECK(!outlet.gave_up());
+  CHECK(outlet.holds());
+  Pipe pipe;
+  REQUIRE(::dup2(pipe.in(), fd) == fd);  // it has
+  outlet.put("two\n");
+  outlet.flush();
+  CHECK(outlet.fault() == 0);
+  CHECK(!outlet.holds());
+  CHECK(pipe.read() == "one\ntwo\n");
+  ::close(fd);
+}

@@ -159,5 +159,30 @@ def the_example_prints_a_stamp_or_that_there_is_none(folder):
     assert done.stdout == "9500010000 9498950000 9501050000\n" + 3 * none, done.stdout
 
 
+def own_samples(log, rows, *more):
+    done = subprocess.run([sys.executable, ROOT / "examples/own_samples.py", *log, *more], text=True, input=rows,
+                          capture_output=True, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+@case
+def the_example_says_what_is_wrong_with_a_log_and_certifies_nothing_by_one_with_gaps(folder):
+    path = folder / "log"
+    certified = {"event": "node", "stream": 0, "boot_id": 5, "lives": 1, "counter_ns": 0, "time_ns": 9,
+                 "earliest_ns": 8, "latest_ns": 10, "certainty": "certified", "drift_ppm": 0}
+    line = json.dumps(certified) + "\n"
+    path.write_text(line + line[:30])  # begun in the middle, and cut short
+    assert own_samples([path], "0 5 1 0\n") == (0, "9 8 10\n", "")
+    for text, says in ((line + '{"event": "missed", "lines": 1}\n', "lines are missing"),
+                       (line + '{"event": "node_counts", "missed_events": 1}\n', "lines are missing"),
+                       ("2026-11-23 node 7: joined\n" + line, "line 1: expected a line of kinalign time-server --json")):
+        path.write_text(text)
+        code, out, err = own_samples([path], "0 5 1 0\n")
+        assert (code, out) == (1, "") and says in err and str(path) in err, err
+    path.write_text(line)
+    assert "row 2: expected stream" in own_samples([path], "0 5 1 0\n1 2 3\n")[2]
+    assert "usage" in own_samples([], "")[2] and "No such file" in own_samples([folder / "nope"], "")[2]
+
+
 if __name__ == "__main__":
     sys.exit(main())

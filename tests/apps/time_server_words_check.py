@@ -134,6 +134,20 @@ def a_terminal_shows_the_counts_in_one_line_that_is_gone_at_the_end(_):
 
 
 @case
+def a_disk_that_is_full_is_told_while_it_serves(_):
+    with open("/dev/full", "w", encoding="utf-8") as full:
+        server = subprocess.Popen([cases.PROGRAM, "time-server", *ALL_ADDRESSES, "--json"], stdout=full,
+                                  stderr=subprocess.PIPE, text=True)
+        line = server.stderr.readline()
+        assert line.endswith("warning: standard output takes no more (No space left on device): what is not written is "
+                             "lost; serving goes on\n"), line
+        assert server.poll() is None
+        server.send_signal(signal.SIGTERM)
+        assert "expected room to write, found No space left" in server.communicate(timeout=30)[1]
+    assert server.returncode == 3
+
+
+@case
 def on_a_terminal_json_stands_alone(_):
     terminal, end = pty.openpty()
     with subprocess.Popen([str(cases.PROGRAM), "time-server", *ALL_ADDRESSES, "--json"], stderr=end, stdout=end,
