@@ -40,6 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     clock.push(e);
     exchanges.push_back(e);
     const auto stamp = clock.host_from_node(e.boot, e.n_tx);
+    // No slope is known for sure: the next piece would divide by that.
+    if (!(clock.piece()->estimate().slope().deviation > 0.0)) std::abort();
     if (!stamp || stamp->certainty != Certainty::certified) continue;
     if (*stamp->latest < *stamp->earliest || stamp->time < *stamp->earliest - Duration{1000} ||
         stamp->time > *stamp->latest + Duration{1000}) {

@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t grid = 24;  // slopes that are averaged over, …
 constexpr double reach = 5.0;     // … this many deviations to each side
 constexpr int most_rounds = 24;
-constexpr double far_beyond = 1e4;  // nats: sharp floors may speak against it by hundreds
+constexpr double least_deviation = 1e-15;  // of a slope: a microsecond in thirty years
+constexpr double far_beyond = 1e4;         // nats: sharp floors may speak against it by hundreds
 
 struct Slopes {
   std::array<double, grid> slope{}, middle{}, gap{}, likelihood{};
@@ -84,7 +85,9 @@ std::optional<SlopeBelief> better_grid(const Slopes& s, const Moments& found, do
     return SlopeBelief{s.slope[s.likeliest], 2.0 * deviation};
   }
   if (found.deviation > 1.8 * deviation) return SlopeBelief{found.mean, found.deviation};
-  if (found.deviation < 0.7 * step) return SlopeBelief{s.slope[s.likeliest], 0.7 * step};
+  if (found.deviation < 0.7 * step && deviation > least_deviation) {
+    return SlopeBelief{s.slope[s.likeliest], std::max(0.7 * step, least_deviation)};
+  }
   return std::nullopt;
 }
 
@@ -130,7 +133,7 @@ Middle Route::average(double t, const Middle& known, SlopeBelief& around) const 
       around = *better;
       continue;
     }
-    around = {slope.mean, slope.deviation};
+    around = {slope.mean, std::max(slope.deviation, least_deviation)};
     const Moments value = moments(s.middle, s.likelihood);
     Middle middle = known;
     middle.t = t;
