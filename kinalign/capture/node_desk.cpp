@@ -23,7 +23,8 @@ std::uint64_t host_ns(HostTime t) {
 }
 
 NodeSign sign_of(const NodeArrival& arrival, const DatagramOrigin& origin) {
-  return {origin.node_id, origin.boot_id, arrival.from, arrival.h_rx, std::nullopt};
+  return {origin.node_id, origin.boot_id,  arrival.from,
+          arrival.h_rx,   origin.sequence, std::nullopt};
 }
 
 bool is_answered(NodeVerdict verdict) {

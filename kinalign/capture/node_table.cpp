@@ -24,11 +24,15 @@ bool has_ids(const NodeLife& life, std::uint32_t node_id, std::uint32_t boot_id)
   return life.state != State::free && life.node_id == node_id && life.boot_id == boot_id;
 }
 
-/// By counter and address, of one that has the same ids.
+/// By counter, number and address, of one that has the same ids.
 bool continues(const NodeLife& life, const NodeSign& sign) {
   if (!sign.counter_us) return true;
   const std::int64_t n = life.counter.widened(*sign.counter_us, sign.at);
-  if (life.counter.behind_us(n) > most_back_us) return false;
+  const std::int64_t behind = life.counter.behind_us(n);
+  if (behind > most_back_us) return false;
+  // A later reading under an earlier number: both began anew, and the counter, taken for a narrow
+  // one that has gone round or being nearly as old, seems to go on.
+  if (behind < 0 && !life.sequences.is_ahead(sign.sequence)) return false;
   // From where it always came a jump ahead is a step of its counter, which the clock will see.
   return life.address == sign.from || life.counter.ahead_us(n, sign.at) <= most_ahead_us;
 }

@@ -28,6 +28,7 @@ struct NodeSign {
   std::uint32_t node_id = 0, boot_id = 0;
   NodeAddress from;
   HostTime at{};
+  std::uint32_t sequence = 0;
   std::optional<std::uint64_t> counter_us;  // absent: the node has none
 };
 

@@ -21,6 +21,8 @@ class SequenceWindow {
   std::uint64_t take(std::uint32_t sequence);
 
   bool empty() const { return !begun_; }
+  /// Newer than all that came.
+  bool is_ahead(std::uint32_t sequence) const { return !begun_ || steps_to(sequence) > 0; }
   std::uint64_t first() const { return first_; }
   std::uint64_t newest() const { return newest_; }
   /// Between the first and the newest.

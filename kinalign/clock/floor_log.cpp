@@ -97,7 +97,11 @@ void FloorLog::open(std::int64_t index, const SlopeBelief& slope) {
 void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
   const auto index = static_cast<std::int64_t>(std::floor(bound.s / window_s));
   if (!index_ || index > *index_) {
-    if (index_) close();
+    if (index_) {
+      close();
+      const auto silent = std::min<std::int64_t>(index - *index_ - 1, remembered);
+      for (std::int64_t i = 0; i < silent; ++i) pass();
+    }
     open(index, slope);
   } else if (index < *index_) {
     return;  // reordered over the edge
@@ -116,11 +120,17 @@ void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
   std::sort(lows.x.begin(), lows.x.begin() + static_cast<std::ptrdiff_t>(lows.count));
 }
 
+/// So that those that are compared as neighbours are: a clock may have warmed while its node was
+/// away.
+void FloorLog::pass() {
+  std::rotate(past_.begin(), past_.end() - 1, past_.end());
+  past_[0].reset();
+}
+
 /// The floors of a window are those of the widest line whose slope is near to the one expected: a
 /// clock that bends has a slope of its own in each window.
 void FloorLog::close() {
-  std::rotate(past_.begin(), past_.end() - 1, past_.end());
-  past_[0].reset();
+  pass();
   ++windows_;
   if (now_[0].count == lowest && now_[1].count == lowest) {
     const auto gap = [](const Lows& l) { return (l.x.back() - l.x.front()) / (lowest - 1); };

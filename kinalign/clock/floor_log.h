@@ -76,6 +76,7 @@ class FloorLog {
   };
   void open(std::int64_t index, const SlopeBelief& slope);
   void close();
+  void pass();
   std::optional<FloorWindow> merged(std::size_t first, std::size_t count) const;
   /// Of windows without a step: the offset's slope, and the usual round trip.
   struct Expected {

@@ -10,13 +10,16 @@ namespace kinalign {
 
 namespace {
 
+/// In whole ns, each end rounded away from the others: an offset of more than 104 days is no
+/// double.
 struct Offset {
-  double likeliest = 0.0, least = 0.0, greatest = 0.0;  // ns
+  Duration likeliest{}, least{}, greatest{};
 };
 
-Offset at_knot(const ClockKnot& knot) {
-  return {static_cast<double>(knot.offset.count()), static_cast<double>(knot.least.count()),
-          static_cast<double>(knot.greatest.count())};
+Duration nanoseconds(double ns) { return Duration{static_cast<std::int64_t>(ns)}; }
+
+double between(Duration a, Duration b, double share) {
+  return static_cast<double>((b - a).count()) * share;
 }
 
 /// Straight between knots; outside, the interval opens as fast as the rate may be off.
@@ -26,23 +29,19 @@ Offset offset_at(const ClockPieceModel& piece, NodeTime n) {
                        [](NodeTime t, const ClockKnot& knot) { return t < knot.node; });
   if (behind == piece.knots.begin() || behind == piece.knots.end()) {
     const ClockKnot& end = behind == piece.knots.begin() ? piece.knots.front() : piece.knots.back();
-    Offset offset = at_knot(end);
-    const double open =
-        piece.assumptions.rate * std::abs(static_cast<double>((n - end.node).count()));
-    offset.least -= open;
-    offset.greatest += open;
-    return offset;
+    const Duration open = nanoseconds(
+        std::ceil(piece.assumptions.rate * std::abs(static_cast<double>((n - end.node).count()))));
+    return {end.offset, end.least - open, end.greatest + open};
   }
-  const Offset a = at_knot(*(behind - 1)), b = at_knot(*behind);
-  const double share = static_cast<double>((n - (behind - 1)->node).count()) /
-                       static_cast<double>((behind->node - (behind - 1)->node).count());
-  return {std::lerp(a.likeliest, b.likeliest, share), std::lerp(a.least, b.least, share),
-          std::lerp(a.greatest, b.greatest, share)};
+  const ClockKnot &a = *(behind - 1), &b = *behind;
+  const double share =
+      static_cast<double>((n - a.node).count()) / static_cast<double>((b.node - a.node).count());
+  return {a.offset + nanoseconds(std::round(between(a.offset, b.offset, share))),
+          a.least + nanoseconds(std::floor(between(a.least, b.least, share))),
+          a.greatest + nanoseconds(std::ceil(between(a.greatest, b.greatest, share)))};
 }
 
-HostTime on_host(NodeTime n, double offset_ns) {
-  return HostTime{n.time_since_epoch() + Duration{static_cast<std::int64_t>(offset_ns)}};
-}
+HostTime on_host(NodeTime n, Duration offset) { return HostTime{n.time_since_epoch() + offset}; }
 
 }  // namespace
 
@@ -62,11 +61,11 @@ std::optional<ClockStamp> host_from_node(const HostFromNode& model, BootKey boot
   const Offset offset = offset_at(*piece, n);
   ClockStamp stamp;
   stamp.assumptions = piece->assumptions;
-  stamp.time = on_host(n, std::round(offset.likeliest)) + counter_resolution / 2;
+  stamp.time = on_host(n, offset.likeliest) + counter_resolution / 2;
   if (piece->certified) {
     stamp.certainty = Certainty::certified;
-    stamp.earliest = on_host(n, std::floor(offset.least));
-    stamp.latest = on_host(n, std::ceil(offset.greatest)) + counter_resolution;
+    stamp.earliest = on_host(n, offset.least);
+    stamp.latest = on_host(n, offset.greatest) + counter_resolution;
     if (!is_behind_step(*stamp.earliest, piece->certified_from, h_rx))
       stamp.certainty = Certainty::doubtful;
   }

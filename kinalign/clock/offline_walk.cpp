@@ -24,6 +24,8 @@ void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
     return;
   }
   walk.events.push_back(event);
+  if (event.kind == ClockEvent::Kind::host_backwards)  // these moments were twice
+    walk.doubtful.push_back({event.begin, event.end});
   if (event.kind == ClockEvent::Kind::violator)
     (of == Side::below ? walk.echo_left_out : walk.up_left_out)[i] = true;
   if (!begins_piece(event.kind)) return;

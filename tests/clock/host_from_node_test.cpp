@@ -36,6 +36,27 @@ TEST_CASE(
   CHECK(stamp->certainty == Certainty::certified);
 }
 
+TEST_CASE("of offsets that no double has, not a nanosecond is lost") {
+  const Duration far = -130 * 365 * 24h - 123'456'789ns;  // the counter was set to the time of day
+  ClockPieceModel piece = one_piece().pieces[0];
+  for (ClockKnot& knot : piece.knots) {
+    knot.node -= far;
+    knot.offset += far;
+    knot.least += far;
+    knot.greatest += far;
+  }
+  const HostFromNode model{{piece}, {}};
+  for (const Duration n :
+       {Duration{9s}, Duration{10s}, 10s + 500'000'000ns, 10s + 999'999'999ns, Duration{12s}}) {
+    const auto near = host_from_node(one_piece(), 7, node(n), host(101s));
+    const auto stamp = host_from_node(model, 7, node(n) - far, host(101s));
+    REQUIRE(stamp);
+    CHECK(stamp->time == near->time);
+    CHECK(stamp->earliest == near->earliest);
+    CHECK(stamp->latest == near->latest);
+  }
+}
+
 TEST_CASE("beyond the knots the interval opens by the greatest rate") {
   const auto stamp = host_from_node(one_piece(), 7, node(13s), host(105s));
   REQUIRE(stamp);

@@ -299,6 +299,22 @@ TEST_CASE("fault 16 roam: without a link for up to two seconds, and the counter 
   }
 }
 
+TEST_CASE("fault 32 node_returns: a crystal that warmed while its node was away is no step") {
+  for (const auto seed : fresh_seeds(5)) {
+    CAPTURE(seed);
+    for (int link = 0; link <= static_cast<int>(Link::congested); ++link) {
+      CAPTURE(letter(static_cast<Link>(link)));
+      ExchangeOptions options = minutes(static_cast<Link>(link), 13.0);
+      options.link.faults = {{.begin = 60.0, .end = 660.0, .lost_up = 1.0, .lost_down = 1.0}};
+      const auto run = judge_live(simulate_exchanges(options, seed));
+      CHECK(run.lies() == 0);
+      CHECK(run.count(ClockEvent::Kind::new_boot) == 1);
+      CHECK(run.count(ClockEvent::Kind::step) + run.count(ClockEvent::Kind::slip) == 0);
+      CHECK(run.count(ClockEvent::Kind::withdrawn) == 0);
+    }
+  }
+}
+
 TEST_CASE("fault 11 reorder: what comes in another order tells the same within a microsecond") {
   std::vector<double> moved;
   const auto seeds = fresh_seeds(10);
