@@ -16,7 +16,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/firmware")]
 import datagrams
-from run_cases import case, run_cases
+from run_cases import case, in_time, run_cases
 
 HOST_NODE = pathlib.Path(sys.argv[1]).resolve() / "firmware/host_node"
 KEY = bytes(range(16))
@@ -119,7 +119,8 @@ def samples_arrive_as_they_were_taken_with_stamps_on_a_grid(_):
     host = Host()
     report = host.run("--sample-rate", "200", "--rate", "20", "--orientation", "--offset", "1000")
     frames = host.kinds(datagrams.FRAME)
-    assert 10 <= report["sent"] == len(frames) <= 30, report
+    assert report["sent"] == len(frames) <= 30, report
+    in_time(len(frames) >= 10, report)
     stamps = stamps_of(frames)
     assert len(stamps) == report["samples_sent"] >= report["taken"] - 11
     assert all(1e9 <= stamp for stamp in stamps)
@@ -128,7 +129,8 @@ def samples_arrive_as_they_were_taken_with_stamps_on_a_grid(_):
         check_sample(sample, stamp)
     # where the machine is busy a tick is late or missed, but never early
     assert all(stamp - 1e9 >= 5_000 * (k + 1) - 1 for k, stamp in enumerate(stamps))
-    assert report["ticks"] == report["taken"] + report["missed"] >= 1.4 * 200, report
+    assert report["ticks"] == report["taken"] + report["missed"], report
+    in_time(report["ticks"] >= 1.4 * 200, report)
 
 
 @case
@@ -139,13 +141,13 @@ def counter_and_echo_bound_the_truth_on_both_sides(_):
         (truth,) = report["truth"]
         frames = host.kinds(datagrams.FRAME)
         echoes = [frame.datagram.echo for frame in frames if frame.datagram.echo]
-        assert len(echoes) >= len(frames) // 2 and report["accepted"] >= len(frames) - 4
         for frame in frames:
             assert host_from_node(truth, frame.datagram.n_tx) <= frame.h_rx, "sent before it was stamped"
         for number, nonce, n_rx in echoes:
             h_tx, ours = host.replied[number]
             assert nonce == ours
             assert h_tx <= host_from_node(truth, n_rx + 1), "received before it was sent"
+        in_time(len(echoes) >= len(frames) // 2 and report["accepted"] >= len(frames) - 4, report)
 
 
 @case
@@ -195,7 +197,9 @@ def a_node_that_is_answered_is_quiet(_):
 @case
 def over_IPv6_it_is_the_same(_):
     host = Host(socket.AF_INET6)
-    assert host.run()["accepted"] > 15
+    accepted = host.run()["accepted"]
+    assert accepted > 0
+    in_time(accepted > 15, accepted)
 
 
 @case
@@ -203,12 +207,12 @@ def without_a_counter_each_answer_is_confirmed(folder):
     host = Host(key=KEY)
     report = host.run("--clockless", "--key-file", secret(folder))
     requests, confirms = host.kinds(datagrams.REQUEST), host.kinds(datagrams.CONFIRM)
-    assert len(requests) == report["requests"] >= 15
-    assert len(confirms) == report["confirms"] >= len(requests) - 4
+    assert len(requests) == report["requests"] and len(confirms) == report["confirms"], report
     assert all(len(r.datagram.samples) == 1 and r.datagram.samples[0].age_us == 0 for r in requests)
     for confirm in confirms:
         nonce, *times = confirm.datagram.times
         assert tuple(times) == host.confirmed[nonce]
+    in_time(len(requests) >= 15 and len(confirms) >= len(requests) - 4, report)
 
 
 @case
@@ -237,7 +241,9 @@ def steps_and_drifts_of_the_counter_are_in_the_truth(_):
     for truth, end in zip(truths, ends):
         frames = [frame for frame in host.got if truth["raw_ns"] + 100e6 < frame.h_rx < end]
         late = [frame.h_rx - host_from_node(truth, frame.datagram.n_tx) for frame in frames]
-        assert 0 <= min(late) < 10e6, late  # 20 ms, were a step not in it
+        in_time(late, truth)
+        assert min(late) >= 0, late
+        in_time(min(late) < 10e6, late)  # 20 ms, were a step not in it
 
 
 @case
@@ -248,7 +254,7 @@ def an_outage_loses_nothing_that_fits(_):
     assert [frame.datagram.origin[2] for frame in frames] == list(range(len(frames)))
     stamps = stamps_of(frames)
     assert report["dropped"] == 0
-    assert max(b - a for a, b in zip(stamps, stamps[1:])) < 150_000, "a hole in the samples"
+    in_time(max(b - a for a, b in zip(stamps, stamps[1:])) < 150_000, "a hole in the samples")
     assert max(b.h_rx - a.h_rx for a, b in zip(frames, frames[1:])) > 0.9e9, "no outage"
 
 
@@ -258,7 +264,7 @@ def another_port_is_the_same_node(_):
     report = host.run("--rebind-at", "0.7")
     assert len({frame.sender for frame in host.got}) == 2
     assert len({frame.datagram.origin[1] for frame in host.got}) == 1
-    assert report["accepted"] >= len(host.got) - 6
+    in_time(report["accepted"] >= len(host.got) - 6, report)
 
 
 @case
@@ -326,7 +332,9 @@ def what_it_can_not_do_it_says_in_one_line(folder):
             (["--rate", "nan"], 2, '--rate: expected 0.1 to 1000 Hz, found "nan"'),
             (["--step", "3"], 2, '--step: expected AT:S, both in seconds, found "3"'),
             (["--outage", "3:-1"], 2, '--outage: expected AT:S, both in seconds, found "3:-1"'),
-            (["--server", "h:1", "--key-file", missing], 3, f"{missing}: expected a key, found: No such file or directory"),
+            (["--server", "h:1", "--key-file", missing], 3,
+             f"{missing}: expected a key, found: No such file or directory; "
+             "kinalign node-key --lab-key LAB --node N -o FILE makes one"),
             (["--server", "h:1", "--key-file", str(folder / "folder")], 3,
              f"{folder}/folder: expected a file with a key, found none"),
             (["--server", "127.0.0.1:x"], 2, '--server: expected HOST:PORT, or [HOST]:PORT for IPv6, found "127.0.0.1:x"')]:
