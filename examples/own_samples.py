@@ -12,6 +12,7 @@ import sys
 
 CUTS = ("new_boot", "step", "slip", "settled")
 MARGIN_NS = 10**9  # a line does not say when its frame arrived, but it was less than that later
+UNTOLD_NS = 130 * 10**9  # so far back may a withdrawal reach that a log which was cut short lacks
 WIDENING = 1e-4  # H2: so much each way, for each second between a sample and its line
 
 
@@ -33,9 +34,14 @@ class Stamper:
     def __init__(self, lines):
         """`lines`: of the log, parsed, in their order, which says between which cuts each stands."""
         self.runs, self.withdrawn = {}, {}
+        begun, stopped = False, False
         for line in lines:
             if line["event"] == "missed" or line.get("missed_events"):
                 raise ValueError("lines are missing in it, and one may have been a step or a withdrawal")
+            if line["event"] == "started" and (begun or self.runs):
+                raise ValueError("it is of several runs of the server; give each a file of its own, from its line "
+                                 "`started` on")
+            begun, stopped = begun or line["event"] == "started", line["event"] == "stopped"
             kind = line.get("kind") if line["event"] == "clock_event" else line.get("certainty")
             runs = self.runs.setdefault(line["stream"], []) if "stream" in line else []
             if kind in CUTS:
@@ -49,6 +55,11 @@ class Stamper:
                     runs.append(Run(line["time_ns"]))
                 runs[-1].lines.append(line)
         for stream, runs in self.runs.items():
+            heard = [line["time_ns"] for run in runs for line in run.lines]
+            if heard:  # what nobody watched is not certified
+                runs[-1].end_ns = min(runs[-1].end_ns, max(heard) + MARGIN_NS)
+            if heard and not stopped:
+                self.withdrawn.setdefault(stream, []).append((max(heard) - UNTOLD_NS, math.inf))
             for run in runs:
                 run.lines = [line for line in run.lines if not self.is_withdrawn(stream, line["time_ns"])]
 
@@ -76,8 +87,11 @@ def parsed(log):
     texts = log.read().splitlines(keepends=True)
     for number, text in enumerate(texts, 1):
         try:
-            yield json.loads(text)
-        except json.JSONDecodeError:
+            line = json.loads(text)
+            if not isinstance(line, dict) or "event" not in line:
+                raise ValueError
+            yield line
+        except ValueError:
             if number < len(texts) or text.endswith("\n"):
                 raise ValueError(f"line {number}: expected a line of kinalign time-server --json, found "
                                  f"{text[:40]!r}") from None

@@ -212,9 +212,10 @@ class Herald {
   void tell_trouble() {
     const std::string trouble = console_.out_trouble();
     if (std::exchange(out_trouble_, trouble) == trouble) return;
-    tell_live(console_, trouble.empty() ? "standard output takes lines again"
-                                        : "warning: standard output takes no more (" + trouble +
-                                              "): what is not written is lost; serving goes on");
+    tell_live(console_, trouble.empty()
+                            ? "standard output takes lines again"
+                            : "warning: standard output takes no more (" + trouble +
+                                  "): at most 1 MiB of lines waits for room; serving goes on");
   }
   void tell_counts() {
     constexpr double every_s = 10;

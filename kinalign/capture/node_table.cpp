@@ -30,9 +30,11 @@ bool continues(const NodeLife& life, const NodeSign& sign) {
   const std::int64_t n = life.counter.widened(*sign.counter_us, sign.at);
   const std::int64_t behind = life.counter.behind_us(n);
   if (behind > most_back_us) return false;
-  // A later reading under an earlier number: both began anew, and the counter, taken for a narrow
-  // one that has gone round or being nearly as old, seems to go on.
+  // A later reading under an earlier number, or a number of long ago within a second: both began
+  // anew, and the counter, taken for a narrow one that has gone round or being nearly as old, seems
+  // to go on.
   if (behind < 0 && !life.sequences.is_ahead(sign.sequence)) return false;
+  if (life.sequences.place_of(sign.sequence) == SequenceWindow::Place::behind) return false;
   // From where it always came a jump ahead is a step of its counter, which the clock will see.
   return life.address == sign.from || life.counter.ahead_us(n, sign.at) <= most_ahead_us;
 }

@@ -22,6 +22,7 @@ constexpr std::size_t alike = 3, most_too_short = 2;
 constexpr double wander_s = 20e-6;  // of real floors, by schedulers and caches
 constexpr double narrow_share = 0.2, narrow_gaps = 2.0, narrow_spreads = 3.0;
 constexpr std::uint64_t enough_pairs = 4;
+constexpr double row_s = 1.5 * FloorLog::window_s;  // of windows in a row, from one to the next
 
 bool agree(double least, double most, double gap) {
   return most - least <= agreeing_share * least + agreeing_gaps * gap;
@@ -31,6 +32,13 @@ bool agree(double least, double most, double gap) {
 double width(double round_trip, double gap, double spread) {
   const double noise = narrow_gaps * gap + narrow_spreads * spread;
   return round_trip - std::max({wander_s, narrow_share * round_trip, noise});
+}
+
+/// By how much an offset may have moved, for a crystal that warms, between windows that are farther
+/// apart than what is compared, s: their node was away.
+double silence(double apart_s, double slope_deviation) {
+  if (apart_s <= FloorLog::longest_reach_s) return 0.0;
+  return Assumptions{}.curvature * apart_s * apart_s / 2.0 + 3.0 * slope_deviation * apart_s;
 }
 
 }  // namespace
@@ -89,6 +97,7 @@ double FloorLog::least_width() const {
 void FloorLog::open(std::int64_t index, const SlopeBelief& slope) {
   index_ = index;
   slope_ = slope.mean;
+  slope_deviation_ = slope.deviation;
   slack_ = slope.deviation < SlopeBelief{}.deviation ? slope_slack : greatest_rate;
   now_ = {};
   corridor_ = Corridor(0.0, corners);
@@ -97,11 +106,7 @@ void FloorLog::open(std::int64_t index, const SlopeBelief& slope) {
 void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
   const auto index = static_cast<std::int64_t>(std::floor(bound.s / window_s));
   if (!index_ || index > *index_) {
-    if (index_) {
-      close();
-      const auto silent = std::min<std::int64_t>(index - *index_ - 1, remembered);
-      for (std::int64_t i = 0; i < silent; ++i) pass();
-    }
+    if (index_) close();
     open(index, slope);
   } else if (index < *index_) {
     return;  // reordered over the edge
@@ -120,17 +125,11 @@ void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
   std::sort(lows.x.begin(), lows.x.begin() + static_cast<std::ptrdiff_t>(lows.count));
 }
 
-/// So that those that are compared as neighbours are: a clock may have warmed while its node was
-/// away.
-void FloorLog::pass() {
-  std::rotate(past_.begin(), past_.end() - 1, past_.end());
-  past_[0].reset();
-}
-
 /// The floors of a window are those of the widest line whose slope is near to the one expected: a
 /// clock that bends has a slope of its own in each window.
 void FloorLog::close() {
-  pass();
+  std::rotate(past_.begin(), past_.end() - 1, past_.end());
+  past_[0].reset();
   ++windows_;
   if (now_[0].count == lowest && now_[1].count == lowest) {
     const auto gap = [](const Lows& l) { return (l.x.back() - l.x.front()) / (lowest - 1); };
@@ -140,7 +139,7 @@ void FloorLog::close() {
     shortest_.add(*past_[0]);
   }
   step_.reset();
-  const Expected expected{slope_, usual_round_trip()};
+  const Expected expected{slope_, slope_deviation_, usual_round_trip()};
   if (past_[0] && past_[2]) step_ = singles_.step(*past_[0], *past_[2], expected);
   const auto now = merged(0, 3), then = merged(4, 3);
   if (now && then && !step_) step_ = threes_.step(*now, *then, expected);
@@ -166,7 +165,7 @@ std::optional<FloorWindow> FloorLog::merged(std::size_t first, std::size_t count
   double down = centre->middle - centre->round_trip / 2.0;
   double gap = centre->gap;
   for (std::size_t i = first; i < first + count; ++i) {
-    if (!past_[i]) return std::nullopt;
+    if (!past_[i] || std::abs(past_[i]->s - centre->s) > row_s) return std::nullopt;
     const double moved = past_[i]->middle + slope_ * (centre->s - past_[i]->s);
     up = std::min(up, moved + past_[i]->round_trip / 2.0);
     down = std::max(down, moved - past_[i]->round_trip / 2.0);
@@ -186,15 +185,19 @@ std::optional<double> FloorLog::Comparison::step(const FloorWindow& now, const F
   const double gap = std::hypot(now.gap, then.gap);
   const double usual =
       pairs >= enough_pairs ? std::sqrt(moved_squares / static_cast<double>(pairs)) : gap;
-  // A step on its way through the windows is not usual.
-  const double counted = pairs >= enough_pairs ? std::min(std::abs(moved), 2.0 * usual) : moved;
-  ++pairs;
-  moved_squares += counted * counted;
+  const double silent = silence(now.s - then.s, expected.slope_deviation);
+  if (silent == 0.0) {
+    // A step on its way through the windows is not usual.
+    const double counted = pairs >= enough_pairs ? std::min(std::abs(moved), 2.0 * usual) : moved;
+    ++pairs;
+    moved_squares += counted * counted;
+  }
   // A longer round trip may be so all one way: half of it is in the middle.
   const double unknown =
       std::max(0.0, (now.round_trip + then.round_trip) / 2.0 - expected.round_trip);
   const double least =
-      unknown + std::max({least_step_s, sure_deviations * usual, sure_deviations * gap / 2.0});
+      unknown + silent +
+      std::max({least_step_s, sure_deviations * usual, sure_deviations * gap / 2.0});
   if (std::abs(moved) < least) return std::nullopt;
   return std::abs(longer) > alike_deviations * std::max(gap, usual) ? std::nullopt
                                                                     : std::optional(moved);

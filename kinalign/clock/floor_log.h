@@ -76,11 +76,10 @@ class FloorLog {
   };
   void open(std::int64_t index, const SlopeBelief& slope);
   void close();
-  void pass();
   std::optional<FloorWindow> merged(std::size_t first, std::size_t count) const;
   /// Of windows without a step: the offset's slope, and the usual round trip.
   struct Expected {
-    double slope = 0.0, round_trip = 0.0;
+    double slope = 0.0, slope_deviation = 0.0, round_trip = 0.0;
   };
   /// How far offsets of windows usually differ, and whether these do by more.
   struct Comparison {
@@ -99,6 +98,7 @@ class FloorLog {
   Corridor corridor_{0.0, corners};    // of the window's bounds, less its slope
   std::optional<std::int64_t> index_;  // absent: no window is open
   double slope_ = 0.0, slack_ = 0.0;   // of the offset when the window began, and to each side
+  double slope_deviation_ = 0.0;       // as it was believed then
   std::array<std::optional<FloorWindow>, remembered> past_;
   std::uint64_t windows_ = 0;
   Comparison singles_, threes_;

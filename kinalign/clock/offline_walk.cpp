@@ -14,6 +14,17 @@ bool begins_piece(ClockEvent::Kind kind) {
          kind == Kind::settled || kind == Kind::host_backwards;
 }
 
+/// Arrivals of before the host's clock went back, with exchange i, and of behind that.
+void doubt_what_was_twice(OfflineWalk& walk, std::size_t i, const ClockEvent& event) {
+  HostTime newest = event.begin;
+  for (std::size_t k = i; k < walk.exchanges.size() && newest < event.end; ++k) {
+    if (walk.exchanges[k].h_rx < newest) break;  // it went back again
+    newest = walk.exchanges[k].h_rx;
+  }
+  const DoubtfulStretch twice{std::max(event.begin, walk.earliest), std::min(event.end, newest)};
+  if (twice.begin <= twice.end) walk.doubtful.push_back(twice);
+}
+
 /// What happened with exchange i: pieces that begin reach back to where they do.
 void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
           const ClockPiece& now) {
@@ -24,8 +35,7 @@ void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
     return;
   }
   walk.events.push_back(event);
-  if (event.kind == ClockEvent::Kind::host_backwards)  // these moments were twice
-    walk.doubtful.push_back({event.begin, event.end});
+  if (event.kind == ClockEvent::Kind::host_backwards) doubt_what_was_twice(walk, i, event);
   if (event.kind == ClockEvent::Kind::violator)
     (of == Side::below ? walk.echo_left_out : walk.up_left_out)[i] = true;
   if (!begins_piece(event.kind)) return;
@@ -100,6 +110,7 @@ OfflineWalk walk_offline(std::span<const Exchange> exchanges, const Assumptions&
       continue;
     }
     hear(walk, i, clock, Side::above);
+    walk.earliest = std::min(walk.earliest, e.h_rx);
     if (unsettled && cuts_short(walk.events.back().kind))  // it never will settle
       walk.doubtful.push_back({*unsettled, exchanges[i - 1].h_rx});
     if (e.echo) {

@@ -25,6 +25,7 @@ struct OfflineWalk {
   std::vector<std::size_t> piece;                // rising
   std::vector<bool> up_left_out, echo_left_out;  // it, or what it echoes, can't be
   std::vector<bool> late;                        // its life was over when it came
+  HostTime earliest = HostTime::max();           // arrival, so far
   double least_width = 0.0;  // s, that an interval can have: packets took no less, there and back
 };
 

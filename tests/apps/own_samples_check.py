@@ -149,12 +149,13 @@ def the_example_prints_a_stamp_or_that_there_is_none(folder):
                  "time_ns": 9_000_000_000, "earliest_ns": 8_999_000_000, "latest_ns": 9_001_000_000,
                  "certainty": "certified", "drift_ppm": 20}
     begun = {"event": "clock_event", "kind": "new_boot", "stream": 0, "begin_ns": 7_000_000_000, "end_ns": 0}
-    (folder / "log").write_text("".join(json.dumps(line) + "\n" for line in ({"event": "pair"}, begun, certified)))
+    (folder / "log").write_text("".join(json.dumps(line) + "\n" for line in (
+        {"event": "started"}, {"event": "pair"}, begun, certified, {"event": "stopped"})))
     done = subprocess.run([sys.executable, ROOT / "examples/own_samples.py", folder / "log"], text=True,
-                          input="0 5 1 2500000000\n0 5 2 2500000000\n1 5 1 2500000000\n0 5 1 -100000000\n",
+                          input="0 5 1 3500000000\n0 5 1 2500000000\n0 5 2 2500000000\n1 5 1 2500000000\n0 5 1 -100000000\n",
                           capture_output=True, check=True)
     none = "not certified\n"
-    assert done.stdout == "9500010000 9498950000 9501050000\n" + 3 * none, done.stdout
+    assert done.stdout == none + "9500010000 9498950000 9501050000\n" + 3 * none, done.stdout
 
 
 def own_samples(log, rows, *more):
@@ -169,15 +170,21 @@ def the_example_says_what_is_wrong_with_a_log_and_certifies_nothing_by_one_with_
     certified = {"event": "node", "stream": 0, "boot_id": 5, "lives": 1, "counter_ns": 0, "time_ns": 9,
                  "earliest_ns": 8, "latest_ns": 10, "certainty": "certified", "drift_ppm": 0}
     line = json.dumps(certified) + "\n"
-    path.write_text(line + line[:30])  # begun in the middle, and cut short
+    stopped = '{"event": "stopped"}\n'
+    path.write_text(line + stopped)  # begun in the middle
     assert own_samples([path], "0 5 1 0\n") == (0, "9 8 10\n", "")
+    late = json.dumps({**certified, "counter_ns": 140 * 10**9, "time_ns": 140 * 10**9 + 9}) + "\n"
+    path.write_text(line + late + late[:30])  # cut short: a withdrawal may be missing
+    assert own_samples([path], "0 5 1 0\n0 5 1 20000000000\n") == (0, "9 8 10\nnot certified\n", "")
     for text, says in ((line + '{"event": "missed", "lines": 1}\n', "lines are missing"),
                        (line + '{"event": "node_counts", "missed_events": 1}\n', "lines are missing"),
+                       (line + '{"event": "started"}\n', "several runs"),
+                       ("null\n" + line, "line 1: expected a line of kinalign time-server --json"),
                        ("2026-11-23 node 7: joined\n" + line, "line 1: expected a line of kinalign time-server --json")):
         path.write_text(text)
         code, out, err = own_samples([path], "0 5 1 0\n")
         assert (code, out) == (1, "") and says in err and str(path) in err, err
-    path.write_text(line)
+    path.write_text(line + stopped)
     assert "row 2: expected stream" in own_samples([path], "0 5 1 0\n1 2 3\n")[2]
     assert "usage" in own_samples([], "")[2] and "No such file" in own_samples([folder / "nope"], "")[2]
 
