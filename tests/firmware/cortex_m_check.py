@@ -17,7 +17,7 @@ import threading
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/firmware")]
 import datagrams
-from run_cases import Skip, case, run_cases
+from run_cases import Skip, case, in_time, run_cases
 
 BINARY = pathlib.Path(sys.argv[1]).resolve()
 HOST_NODE = BINARY / "firmware/host_node"
@@ -58,7 +58,8 @@ class Player:
 
     def get(self):
         head = self.process.stdout.read(2)
-        assert len(head) == 2, "the player ended early, or did not answer in time"
+        # QEMU stands still for good once in some hundred lives, on a busy machine; the same life then passes.
+        in_time(len(head) == 2, "the player ended early, or did not answer in time")
         message = self.process.stdout.read(struct.unpack(">H", head)[0])
         return message[:1], message[1:]
 
