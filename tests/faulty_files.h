@@ -48,6 +48,7 @@ class FaultyFiles final : public FileSystem {
     return fails() ? -1 : files_.write_at(fd, data, std::min(size, most), at);
   }
   int allocate(int fd, off_t size) override { return fails() ? -1 : files_.allocate(fd, size); }
+  int truncate(int fd, off_t size) override { return fails() ? -1 : files_.truncate(fd, size); }
   int sync(int fd) override { return fails() ? -1 : files_.sync(fd); }
   int link(const char* from, const char* to) override {
     return fails() ? -1 : files_.link(from, to);

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/core/files.h"
 
+#include "kinalign/core/file_calls.h"
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 
 namespace kinalign {
 
 namespace {
-
-Failure failed(const std::string& path, std::string expected, int code) {
-  return Failure(Error{path, 0, std::move(expected), std::strerror(code)});
-}
 
 std::string kind_of(mode_t mode) {
   if (S_ISDIR(mode)) return "a directory";
@@ -23,34 +20,6 @@ std::string kind_of(mode_t mode) {
   if (S_ISSOCK(mode)) return "a socket";
   if (S_ISLNK(mode)) return "a symbolic link";
   return "a device";
-}
-
-/// Reads until `to` is full or the file ends.
-Result<std::size_t> fill(FileSystem& files, const std::string& path, int fd, std::uint64_t at,
-                         std::span<char> to) {
-  std::size_t done = 0;
-  while (done < to.size()) {
-    const ssize_t got =
-        files.read_at(fd, to.data() + done, to.size() - done, static_cast<off_t>(at + done));
-    if (got == 0) break;
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return failed(path, "a readable file", errno);
-    done += static_cast<std::size_t>(got);
-  }
-  return done;
-}
-
-/// Hands `bytes` to put(rest) -> ssize_t until all are taken; 0, or why not.
-template <class Put>
-int put_all(std::string_view bytes, const Put& put) {
-  while (!bytes.empty()) {
-    const ssize_t taken = put(bytes);
-    if (taken < 0 && errno == EINTR) continue;
-    if (taken < 0) return errno;
-    if (taken == 0) return ENOSPC;
-    bytes.remove_prefix(static_cast<std::size_t>(taken));
-  }
-  return 0;
 }
 
 }  // namespace
@@ -69,6 +38,7 @@ ssize_t PosixFiles::write_at(int fd, const void* data, std::size_t size, off_t a
   return ::pwrite(fd, data, size, at);
 }
 int PosixFiles::allocate(int fd, off_t size) { return ::fallocate(fd, 0, 0, size); }
+int PosixFiles::truncate(int fd, off_t size) { return ::ftruncate(fd, size); }
 int PosixFiles::sync(int fd) { return ::fsync(fd); }
 int PosixFiles::link(const char* from, const char* to) {
   return ::linkat(AT_FDCWD, from, AT_FDCWD, to, AT_SYMLINK_FOLLOW);
@@ -154,8 +124,7 @@ Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overw
     }
   }
   OutputFile file(files, std::move(path), overwrite);
-  const std::string place = folder(file.path_).empty() ? "." : std::string(folder(file.path_));
-  file.fd_ = files.open(place.c_str(), O_TMPFILE | O_RDWR, 0644);
+  file.fd_ = files.open(place_of(file.path_).c_str(), O_TMPFILE | O_RDWR, 0644);
   if (file.fd_ >= 0) {
     file.unfinished_ = "/proc/self/fd/" + std::to_string(file.fd_);
     return file;
@@ -269,14 +238,7 @@ Result<void> OutputFile::place() {
 Result<void> OutputFile::commit() {
   if (files_->sync(fd_) != 0) return failed(path_, "data that reach the disk", errno);
   KA_TRY(place());
-  const std::string place = folder(path_).empty() ? "." : std::string(folder(path_));
-  const int directory = files_->open(place.c_str(), O_RDONLY | O_DIRECTORY, 0);
-  if (directory >= 0) {
-    // The name reaches the disk with the folder. Some file systems can't sync one; the data are
-    // safe.
-    files_->sync(directory);
-    files_->close(directory);
-  }
+  sync_folder(*files_, path_);  // some file systems can't; the data are safe
   discard();
   return {};
 }

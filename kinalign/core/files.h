@@ -28,6 +28,7 @@ class FileSystem {
   virtual ssize_t read_at(int fd, void* data, std::size_t size, off_t at) = 0;         // pread
   virtual ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) = 0;  // pwrite
   virtual int allocate(int fd, off_t size) = 0;  // fallocate of all bytes up to `size`
+  virtual int truncate(int fd, off_t size) = 0;
   virtual int sync(int fd) = 0;
   virtual int link(const char* from, const char* to) = 0;  // follows a /proc/self/fd link
   virtual int rename(const char* from, const char* to) = 0;
@@ -44,6 +45,7 @@ class PosixFiles : public FileSystem {
   ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override;
   ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override;
   int allocate(int fd, off_t size) override;
+  int truncate(int fd, off_t size) override;
   int sync(int fd) override;
   int link(const char* from, const char* to) override;
   int rename(const char* from, const char* to) override;

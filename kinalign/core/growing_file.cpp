@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/core/growing_file.h"
+
+#include "kinalign/core/file_calls.h"
+
+#include <utility>
+
+namespace kinalign {
+
+Result<GrowingFile> GrowingFile::create(FileSystem& files, std::string path) {
+  if (file_name(path).empty()) return Failure(Error{path, 0, "the name of a file", "a folder's"});
+  int fd = -1;
+  do {
+    fd = files.open(path.c_str(), O_RDWR | O_CREAT | O_EXCL, 0644);
+  } while (fd < 0 && errno == EINTR);
+  if (fd < 0) {
+    if (errno == EEXIST) return Failure(Error{path, 0, "no file of that name", "one"});
+    return failed(path, "a folder that can be written", errno);
+  }
+  GrowingFile file(files, std::move(path), fd);
+  sync_folder(files, file.path_);  // some file systems can't; the file's own sync is what counts
+  return file;
+}
+
+GrowingFile::GrowingFile(GrowingFile&& other) noexcept
+    : files_(other.files_),
+      path_(std::move(other.path_)),
+      fd_(std::exchange(other.fd_, -1)),
+      size_(other.size_),
+      ragged_(other.ragged_) {}
+
+GrowingFile& GrowingFile::operator=(GrowingFile&& other) noexcept {
+  std::swap(files_, other.files_);
+  std::swap(path_, other.path_);
+  std::swap(fd_, other.fd_);
+  std::swap(size_, other.size_);
+  std::swap(ragged_, other.ragged_);
+  return *this;
+}
+
+GrowingFile::~GrowingFile() { close(); }
+
+Result<void> GrowingFile::append(std::string_view bytes) {
+  if (ragged_) KA_TRY(cut(size_));
+  const int code = put_all(bytes, [&, end = size_ + bytes.size()](std::string_view rest) {
+    return files_->write_at(fd_, rest.data(), rest.size(), static_cast<off_t>(end - rest.size()));
+  });
+  if (code != 0) {
+    ragged_ = true;
+    (void)cut(size_);
+    return failed(path_, "room to write", code);
+  }
+  size_ += bytes.size();
+  return {};
+}
+
+Result<void> GrowingFile::cut(std::uint64_t size) {
+  while (files_->truncate(fd_, static_cast<off_t>(size)) != 0) {
+    if (errno != EINTR) return failed(path_, "a file that can be cut off", errno);
+  }
+  size_ = size;
+  ragged_ = false;
+  return {};
+}
+
+Result<void> GrowingFile::read_at(std::uint64_t at, std::span<char> to) const {
+  const std::size_t got = KA_TRY(fill(*files_, path_, fd_, at, to));
+  if (got == to.size()) return {};
+  return Failure(Error{path_, 0, "the bytes that were written", "the file's end"});
+}
+
+Result<void> GrowingFile::sync() const {
+  while (files_->sync(fd_) != 0) {
+    if (errno != EINTR) return failed(path_, "data that reach the disk", errno);
+  }
+  return {};
+}
+
+void GrowingFile::close() {
+  if (fd_ < 0) return;
+  if (ragged_) (void)cut(size_);
+  files_->close(std::exchange(fd_, -1));
+}
+
+}  // namespace kinalign
