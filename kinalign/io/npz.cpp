@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/npz.h"
 
+#include "kinalign/io/crc.h"
 #include "kinalign/io/utf8.h"
-
-#include <zlib.h>
 
 #include <algorithm>
 #include <cassert>
@@ -160,13 +159,11 @@ Result<NpzWriter> NpzWriter::create(FileSystem& files, std::string path, Overwri
 }
 
 Result<void> NpzWriter::append(std::size_t array, std::string_view bytes) {
-  if (bytes.empty()) return {};  // zlib would begin the checksum anew
   Member& member = members_[array];
   assert(bytes.size() <= member.end - member.at);
   KA_TRY(file_.write_at(member.at, bytes));
   member.at += bytes.size();
-  member.checksum = static_cast<std::uint32_t>(
-      crc32_z(member.checksum, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+  member.checksum = crc_of(bytes, member.checksum);
   return {};
 }
 

@@ -3,10 +3,10 @@
 
 #include "kinalign/core/numbers.h"
 #include "kinalign/io/cells.h"
-#include "kinalign/io/kinect_joints.h"
 #include "kinalign/io/named_lines.h"
 #include "kinalign/io/point_rows.h"
 #include "kinalign/io/row_stamps.h"
+#include "kinalign/motion/kinect_joints.h"
 
 #include <algorithm>
 #include <charconv>

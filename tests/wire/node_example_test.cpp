@@ -1,32 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The example of docs/formats/imu_node.md, read from the page: what it shows is what we send.
-#include "tests/folder.h"
+#include "tests/page_bytes.h"
 #include "tests/wire/node_cases.h"
 
 #include <doctest/doctest.h>
-
-#include <sstream>
 
 using namespace kinalign;
 
 namespace {
 
-/// The bytes of the block ```text that begins with the line `name`: "0008  00 00 00 07  node id".
-Bytes bytes_of_page(const std::string& name) {
-  const std::string page = bytes_in(KINALIGN_SOURCE_DIR "/docs/formats/imu_node.md");
-  const std::string begin = "```text\n" + name + "\n";
-  REQUIRE(page.find(begin) != std::string::npos);
-  std::istringstream lines(page.substr(page.find(begin) + begin.size()));
-  Bytes bytes;
-  for (std::string line; std::getline(lines, line) && line != "```";) {
-    CHECK(std::stoul(line.substr(0, 4), nullptr, 16) == bytes.size());
-    std::istringstream numbers(line.substr(6, 23));
-    for (std::string number; numbers >> number;) {
-      bytes.push_back(static_cast<std::uint8_t>(std::stoul(number, nullptr, 16)));
-    }
-  }
-  return bytes;
-}
+constexpr const char* page = "imu_node.md";
 
 }  // namespace
 
@@ -44,17 +27,17 @@ TEST_CASE("the page's frame is what we send") {
   sample.has_acceleration = sample.has_angular_velocity = sample.gravity_included = true;
   sample.acceleration = {0.25F, 9.8125F, -0.5F};
   sample.angular_velocity = {0.5F, -0.25F, 0.125F};
-  CHECK(encoded(frame, &counted_key) == bytes_of_page("frame"));
+  CHECK(encoded(frame, &counted_key) == bytes_of_page(page, "frame"));
 }
 
 TEST_CASE("the page's reply is what we send") {
   const NodeReply reply{{7, 0x5eedf00d, 1000}, true, 999, 0x1badcafe, 86'400'123'456'789};
-  CHECK(encoded(reply, &counted_key) == bytes_of_page("reply"));
+  CHECK(encoded(reply, &counted_key) == bytes_of_page(page, "reply"));
 }
 
 TEST_CASE("the page's answer is what we send, and its confirm differs in type and CRC") {
   const ClocklessTimes times{0x1badcafe, 86'400'123'456'789, 86'400'123'556'789};
-  const Bytes answer = bytes_of_page("answer");
+  const Bytes answer = bytes_of_page(page, "answer");
   CHECK(encoded(ClocklessAnswer{{7, 0x5eedf00d, 1000}, times}, nullptr) == answer);
   Bytes confirm = encoded(ClocklessConfirm{{7, 0x5eedf00d, 1000}, times}, nullptr);
   REQUIRE(confirm.size() == answer.size());

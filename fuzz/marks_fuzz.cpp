@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls and broadcasts for marks: what is accepted is written and read again to the same, and an
+// answer is never longer than what it answers.
+#include "fuzz/pieces.h"
+
+#include "kinalign/io/mark_call.h"
+#include "kinalign/io/vicon_trigger.h"
+
+using namespace kinalign;
+
+namespace {
+
+void check_call(std::string_view text) {
+  Mark mark, again;
+  if (decode_mark_call(text, mark) != MarkCallRefusal::none) {
+    if (!(mark == Mark{})) std::abort();
+    return;
+  }
+  const std::string written = encode_mark_call(mark);
+  if (written.size() <= most_mark_call &&
+      (decode_mark_call(written, again) != MarkCallRefusal::none || !(again == mark))) {
+    std::abort();
+  }
+  if (answer_to_mark_call(mark, MarkAnswer::repeat, text.size()).size() > text.size()) {
+    std::abort();
+  }
+}
+
+void check_broadcast(std::string_view text) {
+  ViconTrigger trigger, again;
+  if (decode_vicon_trigger(text, trigger) != ViconRefusal::none) {
+    if (!(trigger == ViconTrigger{})) std::abort();
+    return;
+  }
+  const std::string written = encode_vicon_trigger(trigger);
+  if (written.size() <= most_vicon_trigger &&
+      (decode_vicon_trigger(written, again) != ViconRefusal::none || !(again == trigger))) {
+    std::abort();
+  }
+  if (!is_mark_text(mark_of(trigger).text)) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  check_call(text_of(data, size));
+  check_broadcast(text_of(data, size));
+  return 0;
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two hosts, one tracker that is never silent: what it brings is the same whether or not others
+// send what they like in between, in its name too. No address gets more bytes than it sent.
+#include "kinalign/capture/slimevr_desk.h"
+#include "kinalign/wire/bytes.h"
+
+#include <cstdlib>
+#include <map>
+#include <memory>
+
+using namespace kinalign;
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::uint8_t own = 0;
+
+NodeAddress address(std::uint8_t last) {
+  NodeAddress at;
+  at.host = mapped_ipv4(std::array<std::uint8_t, 4>{10, 0, 0, last});
+  at.port = 6969;
+  return at;
+}
+
+/// With the head that types of packets have; its body is `rest`.
+Bytes packet(std::uint8_t type, std::uint64_t number, std::span<const std::uint8_t> rest) {
+  Bytes bytes(12 + rest.size());
+  ByteWriter writer(bytes);
+  writer.put(std::uint32_t{type});
+  writer.put(number);
+  std::copy(rest.begin(), rest.end(), bytes.begin() + 12);
+  return bytes;
+}
+
+/// As far as the MAC, whose last byte is `name`.
+Bytes handshake(std::uint8_t name) {
+  Bytes body(28 + 1 + 6);
+  body[28 + 6] = name;
+  return packet(3, 0, body);
+}
+
+class Host {
+ public:
+  SlimeNews hear(std::uint8_t from, const Bytes& bytes, HostTime now) {
+    came_[from] += bytes.size();
+    const SlimeNews news = desk_.receive({bytes, address(from), now});
+    settle();
+    return news;
+  }
+  void tick(HostTime now) {
+    desk_.tick(now);
+    settle();
+  }
+
+ private:
+  void settle() {
+    for (const auto& one : desk_.take_sendings()) {
+      const std::uint8_t to = one.to.host[15];
+      went_[to] += one.answer.size;
+      if (went_[to] > came_[to]) std::abort();
+    }
+  }
+  SlimeDesk desk_{SipHashKey{7}};
+  std::map<std::uint8_t, std::size_t> came_, went_;
+};
+
+bool same(const SlimeNews& a, const SlimeNews& b) {
+  if (a.verdict != b.verdict || a.number != b.number) return false;
+  if (a.samples.size() != b.samples.size()) return false;
+  for (std::size_t i = 0; i < a.samples.size(); ++i) {
+    if (a.samples[i].sensor != b.samples[i].sensor) return false;
+    if (a.samples[i].orientation != b.samples[i].orientation) return false;
+    if (a.samples[i].acceleration != b.samples[i].acceleration) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto quiet = std::make_unique<Host>(), noisy = std::make_unique<Host>();
+  HostTime now{std::chrono::hours(1)};
+  std::uint64_t number = 0;
+  quiet->hear(own, handshake(1), now);
+  noisy->hear(own, handshake(1), now);
+  ByteReader reader({data, size});
+  while (reader.left() > 4) {
+    const auto how = reader.take<std::uint8_t>(), from = reader.take<std::uint8_t>();
+    const auto type = reader.take<std::uint8_t>();
+    const std::size_t length = std::min<std::size_t>(reader.take<std::uint8_t>(), reader.left());
+    const std::span<const std::uint8_t> rest(data + size - reader.left(), length);
+    for (std::size_t i = 0; i < length; ++i) reader.take<std::uint8_t>();
+    now += std::chrono::milliseconds(4 * (how % 64));
+    Bytes bytes = how >= 192 ? handshake(type % 4) : packet(type, how, rest);
+    if (how % 5 == 0) bytes.assign(rest.begin(), rest.end());
+    if (from != own) noisy->hear(from, bytes, now);
+    const Bytes mine = packet(type % 2 == 0 ? 17 : 23, ++number, rest);
+    if (!same(quiet->hear(own, mine, now), noisy->hear(own, mine, now))) std::abort();
+    if (how % 3 != 0) continue;
+    quiet->tick(now);
+    noisy->tick(now);
+  }
+  return 0;
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Kinect's frames as one goes on with them: parts joined, losses counted, rows of joints, and
+// what a ping says of the sender's clock. docs/formats/kinect_stream.md.
+#pragma once
+
+#include "kinalign/clock/host_from_node.h"
+#include "kinalign/io/kinect_message.h"
+#include "kinalign/io/sequence_count.h"
+#include "kinalign/motion/streams.h"
+
+#include <map>
+
+namespace kinalign {
+
+struct JoinedKinectFrame {
+  KinectFrame frame;   // of all its parts; `sent_ticks` is the first one's
+  bool whole = false;  // no part lacks
+};
+
+struct KinectFrameCounts {
+  SequenceCounts frames;  // of all sessions so far
+  std::uint64_t sessions = 0;
+  std::uint64_t stale = 0;       // messages of a session that is over
+  std::uint64_t parts_lost = 0;  // frames that were not whole
+  std::uint64_t parts_late = 0;  // came when their frame was handed on already
+  std::uint64_t parts_doubled = 0;
+  std::uint64_t contradicting = 0;  // parts that can't be of one frame: the later one is dropped
+
+  bool operator==(const KinectFrameCounts&) const = default;
+};
+
+/// Frames of one sensor, in the order of arrival.
+class KinectFrameJoiner {
+ public:
+  /// Appends what is done: frames that are whole, and the one before if it never will be.
+  void take(KinectFrame message, std::vector<JoinedKinectFrame>& out);
+  /// What waits for its parts still.
+  void finish(std::vector<JoinedKinectFrame>& out);
+
+  KinectFrameCounts counts() const;
+
+ private:
+  bool is_stale(std::uint32_t session);
+  void begin(KinectFrame message, std::vector<JoinedKinectFrame>& out);
+  void join(KinectFrame message);
+  void close(std::vector<JoinedKinectFrame>& out);
+  std::optional<KinectFrame> open_;
+  std::uint32_t have_ = 0;               // parts of the open frame, a bit each
+  std::optional<std::uint8_t> last_;     // its last part
+  std::array<std::uint32_t, 8> over_{};  // sessions, as many as there were
+  std::optional<std::uint32_t> session_;
+  SequenceCount sequence_{32};
+  KinectFrameCounts counts_;
+};
+
+/// Appends a row, stamped by the device's ticks: the body of this id, or where it isn't in the
+/// frame 25 missing joints. Joints that are not finite are missing and their number is returned.
+std::size_t append_kinect_row(const KinectFrame& frame, std::uint64_t body, PointFrames& out);
+
+/// The same for every body in the frame, in a stream of its own.
+std::size_t append_kinect_rows(const KinectFrame& frame, std::map<std::uint64_t, PointFrames>& out);
+
+/// Ticks on the sender's clock.
+NodeTime kinect_sender_time(std::int64_t ticks);
+
+/// What a ping that arrived at `h_rx` says of the sender's clock. `h_tx`: when the pong was sent
+/// that its echo names, of the host's own table; absent: it names none.
+Exchange exchange_of(const KinectPing& ping, HostTime h_rx, std::optional<HostTime> h_tx);
+/// A frame bounds that clock from one side.
+Exchange exchange_of(const KinectFrame& frame, HostTime h_rx);
+
+}  // namespace kinalign

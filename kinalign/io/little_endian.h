@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers whose lowest byte stands first, as recordings, Noitom's packets and XDF have them. What
+// goes over the network in network order has wire/bytes.h.
+#pragma once
+
+#include <cassert>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace kinalign {
+
+/// The number at `at`; its bytes must be there.
+template <std::unsigned_integral T>
+T little_at(std::span<const std::uint8_t> bytes, std::size_t at) {
+  assert(at <= bytes.size() && sizeof(T) <= bytes.size() - at);
+  std::uint64_t value = 0;
+  for (std::size_t i = sizeof(T); i-- > 0;) value = value << 8 | bytes[at + i];
+  return static_cast<T>(value);
+}
+
+/// Where there is room for it: to[0] and behind.
+template <std::unsigned_integral T, class Byte>
+void put_little(T value, Byte* to) {
+  for (std::size_t i = 0; i < sizeof(T); ++i) {
+    to[i] = static_cast<Byte>(static_cast<std::uint64_t>(value) >> (8 * i) & 0xffU);
+  }
+}
+
+/// At the end of a string or of a vector of bytes.
+template <std::unsigned_integral T, class Bytes>
+void append_little(T value, Bytes& out) {
+  typename Bytes::value_type bytes[sizeof(T)];
+  put_little(value, bytes);
+  out.insert(out.end(), bytes, bytes + sizeof(T));
+}
+
+}  // namespace kinalign

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/mark_call.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Refusal = MarkCallRefusal;
+
+constexpr const char* schema = "kinalign.mark/1";
+constexpr double most_latency_ms = 60'000.0;
+
+std::optional<std::string> text_at(const Json& call, const char* key) {
+  const auto found = call.find(key);
+  if (found == call.end() || !found->is_string()) return std::nullopt;
+  return found->get<std::string>();
+}
+
+std::optional<Mark::Kind> kind_named(std::string_view name) {
+  for (std::size_t i = 0; i < mark_kinds; ++i) {
+    const auto kind = static_cast<Mark::Kind>(i);
+    if (name == name_of(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+bool is_id(std::string_view id) {
+  return !id.empty() && id.size() <= 64 &&
+         std::all_of(id.begin(), id.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+Refusal take_latency(const Json& call, Mark& mark) {
+  const auto found = call.find("latency_ms");
+  if (found == call.end()) return Refusal::none;
+  const bool may = mark.kind == Mark::Kind::start || mark.kind == Mark::Kind::stop;
+  if (!may || !found->is_number()) return Refusal::wrong_latency;
+  const auto ms = found->get<double>();
+  if (!(ms >= 0.0) || ms > most_latency_ms) return Refusal::wrong_latency;
+  mark.latency = Duration{std::llround(ms * 1e6)};
+  return Refusal::none;
+}
+
+Refusal take_text(const Json& call, Mark& mark) {
+  if (!call.contains("text")) {
+    return mark.kind == Mark::Kind::text ? Refusal::wrong_text : Refusal::none;
+  }
+  const auto text = text_at(call, "text");
+  if (!text || text->size() > 500 || !is_mark_text(*text)) return Refusal::wrong_text;
+  if (text->empty() && mark.kind == Mark::Kind::text) return Refusal::wrong_text;
+  mark.text = *text;
+  return Refusal::none;
+}
+
+Refusal take(const Json& call, Mark& mark) {
+  if (!call.is_object()) return Refusal::bad_json;
+  if (text_at(call, "schema") != schema) return Refusal::wrong_schema;
+  const auto kind = kind_named(text_at(call, "kind").value_or(""));
+  if (!kind) return Refusal::wrong_kind;
+  mark.kind = *kind;
+  mark.id = text_at(call, "id").value_or("");
+  if (!is_id(mark.id)) return Refusal::wrong_id;
+  if (const auto refusal = take_latency(call, mark); refusal != Refusal::none) return refusal;
+  return take_text(call, mark);
+}
+
+}  // namespace
+
+const char* name_of(MarkCallRefusal refusal) {
+  static constexpr std::array<const char*, mark_call_refusals> names{
+      "none",       "too_long", "bad_json",      "wrong_schema",
+      "wrong_kind", "wrong_id", "wrong_latency", "wrong_text"};
+  return names[static_cast<std::size_t>(refusal)];
+}
+
+MarkCallRefusal decode_mark_call(std::string_view datagram, Mark& mark) {
+  mark = {};
+  if (datagram.size() > most_mark_call) return Refusal::too_long;
+  const Json call = Json::parse(datagram.begin(), datagram.end(), nullptr, false);
+  const Refusal refusal = call.is_discarded() ? Refusal::bad_json : take(call, mark);
+  if (refusal != Refusal::none) mark = {};
+  return refusal;
+}
+
+std::string encode_mark_call(const Mark& mark) {
+  Json call = {{"schema", schema}, {"kind", name_of(mark.kind)}, {"id", mark.id}};
+  if (mark.latency) call["latency_ms"] = static_cast<double>(mark.latency->count()) / 1e6;
+  if (!mark.text.empty()) call["text"] = mark.text;
+  return call.dump();
+}
+
+std::string answer_to_mark_call(const Mark& mark, MarkAnswer answer, std::size_t call_size) {
+  const char* is = answer == MarkAnswer::fresh ? "new" : "repeat";
+  const std::string text = Json{{"mark", mark.id}, {"is", is}}.dump();
+  return text.size() <= call_size ? text : std::string();
+}
+
+}  // namespace kinalign

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/mcap_chunk.h"
+
+#include "kinalign/io/crc.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace kinalign {
+
+namespace {
+
+constexpr int zstd_level = 1;
+
+std::string compressed(std::string_view bytes) {
+  std::string out(ZSTD_compressBound(bytes.size()), '\0');
+  const std::size_t size =
+      ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), zstd_level);
+  out.resize(ZSTD_isError(size) != 0 ? 0 : size);  // an error: no memory is left
+  return out;
+}
+
+/// What `stored` holds, up to where it breaks off; of more than `most` bytes somewhat more.
+std::string decompressed(std::string_view stored, std::uint64_t most) {
+  std::string records;
+  const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
+                                                                          &ZSTD_freeDStream);
+  if (stream == nullptr) return records;
+  ZSTD_inBuffer in{stored.data(), stored.size(), 0};
+  std::string block(ZSTD_DStreamOutSize(), '\0');
+  for (std::size_t more = 1; more != 0 && records.size() <= most;) {
+    const std::size_t had = in.pos;
+    ZSTD_outBuffer out{block.data(), block.size(), 0};
+    more = ZSTD_decompressStream(stream.get(), &out, &in);
+    if (ZSTD_isError(more) != 0) break;
+    records.append(block, 0, out.pos);
+    if (out.pos == 0 && in.pos == had) break;
+  }
+  return records;
+}
+
+Failure unfit(std::string expected, std::string found) {
+  return Failure(Error{"", 0, std::move(expected), std::move(found)});
+}
+
+}  // namespace
+
+void McapChunkContent::add(const McapSchema& schema) {
+  definitions_.schemas.insert_or_assign(schema.id, schema);
+  append_mcap(records_, schema);
+}
+
+void McapChunkContent::add(const McapChannel& channel) {
+  definitions_.channels.insert_or_assign(channel.id, channel);
+  append_mcap(records_, channel);
+}
+
+void McapChunkContent::add(const McapMessage& message) {
+  start_ = empty() ? message.log_time : std::min(start_, message.log_time);
+  end_ = std::max(end_, message.log_time);
+  messages_[message.channel].push_back({message.log_time, records_.size()});
+  append_mcap(records_, message);
+}
+
+McapStoredChunk store(const McapChunkContent& content, McapCompression compression) {
+  const std::string_view records = content.records();
+  const std::string packed =
+      compression == McapCompression::zstd ? compressed(records) : std::string();
+  const bool is_packed = !packed.empty();
+  const std::string_view stored = is_packed ? std::string_view(packed) : records;
+  const McapChunkHead head{content.start(), content.end(), records.size(), crc_of(records),
+                           is_packed ? "zstd" : ""};
+
+  McapStoredChunk chunk;
+  chunk.definitions = content.definitions();
+  constexpr std::size_t heads = 128;  // of the chunk and of an index, at most
+  chunk.bytes.reserve(stored.size() + heads * (1 + content.messages().size()));
+  append_mcap(chunk.bytes, head, stored);
+  chunk.index = {head.start,    head.end,      0, chunk.bytes.size(), {}, 0, head.compression,
+                 stored.size(), records.size()};
+  for (const auto& [channel, entries] : content.messages()) {
+    chunk.index.message_index_offsets[channel] = chunk.bytes.size();
+    chunk.channel_messages[channel] = entries.size();
+    append_mcap_message_index(chunk.bytes, channel, entries);
+  }
+  chunk.index.message_index_length = chunk.bytes.size() - chunk.index.chunk_length;
+  return chunk;
+}
+
+Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
+  const McapChunkHead& head = chunk.head;
+  if (!chunk.whole()) return unfit("a whole chunk", "its beginning");
+  if (head.uncompressed_size > most) {
+    return unfit("a chunk of at most " + std::to_string(most >> 20) + " MiB",
+                 std::to_string(head.uncompressed_size >> 20) + " MiB");
+  }
+  if (!head.compression.empty() && head.compression != "zstd") {
+    return unfit("a chunk that is not compressed or by zstd", shown(head.compression));
+  }
+  std::string records = unpack_torn(chunk, most);
+  if (records.size() != head.uncompressed_size) {
+    return unfit("a chunk of " + std::to_string(head.uncompressed_size) + " bytes",
+                 std::to_string(records.size()));
+  }
+  if (head.uncompressed_crc != 0 && head.uncompressed_crc != crc_of(records)) {
+    return unfit("a chunk whose checksum fits", "another one");
+  }
+  return records;
+}
+
+std::string unpack_torn(const McapChunkView& chunk, std::uint64_t most) {
+  most = std::min(most, chunk.head.uncompressed_size);
+  if (chunk.head.compression == "zstd") return decompressed(chunk.stored, most);
+  return std::string(chunk.head.compression.empty() ? chunk.stored : std::string_view());
+}
+
+}  // namespace kinalign

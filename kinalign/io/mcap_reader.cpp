@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/mcap_reader.h"
+
+#include "kinalign/io/crc.h"
+#include "kinalign/io/little_endian_reader.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_findings = 200;
+
+struct RecordHead {
+  McapOp op{};
+  std::uint64_t length = 0;
+};
+/// Absent: fewer bytes than a head has.
+std::optional<RecordHead> head_of(std::string_view bytes) {
+  LittleEndianReader from(octets(bytes));
+  const auto op = static_cast<McapOp>(from.take<std::uint8_t>());
+  const auto length = from.take<std::uint64_t>();
+  return from.complete() ? std::optional(RecordHead{op, length}) : std::nullopt;
+}
+
+constexpr std::size_t longest_chunk_head = mcap_record_head + McapChunkView::fields + 4;
+
+}  // namespace
+
+void McapReader::feed(std::string_view piece) {
+  if (state_ > State::behind_footer) return;
+  buffer_.erase(0, taken_);
+  taken_ = 0;
+  buffer_ += piece;
+}
+
+void McapReader::consume(std::size_t size) {
+  taken_ += size;
+  offset_ += size;
+}
+
+void McapReader::say(Severity severity, std::string expected, std::string found,
+                     std::string meaning) {
+  if (findings_.size() >= most_findings) return;
+  found += " at byte " + std::to_string(offset_);
+  findings_.push_back(
+      {severity, {"", 0, std::move(expected), std::move(found)}, std::move(meaning), ""});
+}
+
+/// What stands here is no record: reading goes on at the next chunk.
+void McapReader::lose(std::string expected, std::string found) {
+  say(Severity::error, std::move(expected), std::move(found),
+      "what stands there is left out, up to the next whole chunk");
+  state_ = State::lost;
+  crc_counts_ = false;
+  consume(1);
+}
+
+std::optional<McapRecord> McapReader::next() {
+  if (auto record = next_in_chunk()) return record;
+  return next_in_file();
+}
+
+std::optional<McapRecord> McapReader::next_in_chunk() {
+  while (chunk_taken_ < chunk_.size()) {
+    const std::string_view bytes = std::string_view(chunk_).substr(chunk_taken_);
+    const auto head = head_of(bytes);
+    const bool whole = head && head->length <= bytes.size() - mcap_record_head;
+    if (!whole && in_torn_chunk_) break;
+    std::optional<McapRecord> record;
+    if (!whole || !take(head->op, bytes.substr(mcap_record_head, head->length), record)) {
+      say(Severity::error, "records in the chunk", "something else",
+          "the chunk's rest is left out");
+      break;
+    }
+    chunk_taken_ += mcap_record_head + head->length;
+    if (record) return record;
+  }
+  chunk_.clear();
+  chunk_taken_ = 0;
+  return std::nullopt;
+}
+
+/// Whether the content fits its record. `record` stays empty where it is of no use here.
+bool McapReader::take(McapOp op, std::string_view content, std::optional<McapRecord>& record) {
+  if (op == McapOp::message_index) {
+    constexpr std::size_t padding = 64;  // bytes that a reader is to skip, ever seen: 3
+    LittleEndianReader from(octets(content));
+    from.take<std::uint16_t>();
+    from.take_bytes(from.take<std::uint32_t>());
+    return from.complete() && from.left() <= padding;
+  }
+  if (op > McapOp::data_end) return true;  // unknown
+  record = decode_mcap_record(op, content);
+  return record.has_value();
+}
+
+void McapReader::start() {
+  const std::string_view bytes = rest();
+  const std::size_t some = std::min(bytes.size(), mcap_magic.size());
+  if (bytes.substr(0, some) != mcap_magic.substr(0, some) || (ended_ && some < mcap_magic.size())) {
+    state_ = State::foreign;
+    say(Severity::error, "an MCAP file", "another beginning", "nothing was read");
+    return;
+  }
+  if (some < mcap_magic.size()) return;
+  crc_ = crc_of(mcap_magic, crc_);
+  consume(mcap_magic.size());
+  state_ = State::records;
+}
+
+std::optional<McapRecord> McapReader::next_in_file() {
+  for (;;) {
+    if (state_ == State::start) start();
+    if (state_ == State::lost) find_chunk();
+    if (state_ == State::behind_footer) find_magic();
+    if (state_ != State::records) return std::nullopt;
+    switch (look()) {
+      case Stand::nothing:
+        return std::nullopt;
+      case Stand::torn:
+        return next_in_chunk();
+      case Stand::damaged:
+        continue;
+      case Stand::whole:
+        break;
+    }
+    if (auto record = read_record()) return record;
+  }
+}
+
+/// What stands here. Says what is damaged, and goes behind it.
+McapReader::Stand McapReader::look() {
+  const std::string_view bytes = rest();
+  const auto head = head_of(bytes);
+  if (head && head->op == McapOp{}) {
+    lose("a record", "a byte 0");
+    return Stand::damaged;
+  }
+  if (head && head->length > most_record) {
+    lose("a record of at most 256 MiB", std::to_string(head->length >> 20) + " MiB");
+    return Stand::damaged;
+  }
+  if (head && head->length <= bytes.size() - mcap_record_head) return Stand::whole;
+  if (!ended_ || bytes.empty()) return Stand::nothing;
+  end_in_record();
+  return state_ == State::records ? Stand::damaged : Stand::torn;
+}
+
+/// The whole record that stands here; absent where it is of no use, or damaged.
+std::optional<McapRecord> McapReader::read_record() {
+  record_at_ = offset_;
+  const RecordHead head = *head_of(rest());
+  const std::string_view whole = rest().substr(0, mcap_record_head + head.length);
+  const std::string_view content = whole.substr(mcap_record_head);
+  std::optional<McapRecord> record;
+  const bool is_chunk = head.op == McapOp::chunk;
+  if (!(is_chunk ? open_chunk(content) : take(head.op, content, record))) {
+    lose("a record whose fields and checksum fit", "another one");
+    return std::nullopt;
+  }
+  if (is_chunk) record = next_in_chunk();
+  if (record) check_crc(*record, whole);
+  crc_ = crc_of(whole, crc_);
+  if (head.op == McapOp::data_end) crc_ = 0;
+  if (head.op == McapOp::footer) state_ = State::behind_footer;
+  consume(whole.size());
+  return record;
+}
+
+/// `bytes`: of the whole record, behind those that crc_ covers.
+void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
+  if (!crc_counts_) return;
+  std::uint32_t stated = 0, covered = crc_;
+  if (const auto* end = std::get_if<McapDataEnd>(&record)) {
+    stated = end->data_crc;
+  } else if (const auto* footer = std::get_if<McapFooter>(&record)) {
+    constexpr std::size_t fields = mcap_record_head + 8 + 8;
+    stated = footer->summary_crc;
+    covered = crc_of(bytes.substr(0, fields), crc_);
+  }
+  if (stated != 0 && stated != covered) {
+    say(Severity::error, "a checksum that fits what stands before it", "another one",
+        "something there was altered");
+  }
+}
+
+/// Whether what stands here is a chunk, be it a spoilt one, that ends where it says.
+bool McapReader::open_chunk(std::string_view content) {
+  const auto chunk = decode_mcap_chunk(content);
+  if (!chunk || content.size() != chunk->size()) return false;
+  auto records = unpack(*chunk, most_record);
+  if (records) {
+    chunk_ = *std::move(records);
+  } else {
+    say(Severity::error, records.error().expected, records.error().found,
+        "the chunk's messages are left out");
+  }
+  return true;
+}
+
+/// The file has ended within a record: because that is damaged, if chunks stand behind its head;
+/// else the file was cut off.
+void McapReader::end_in_record() {
+  const std::size_t taken = taken_;
+  const std::uint64_t offset = offset_;
+  consume(1);
+  state_ = State::lost;
+  find_chunk();
+  const bool damaged = state_ == State::records;
+  const std::size_t skipped = taken_ - taken;
+  taken_ = taken;
+  offset_ = offset;
+  if (damaged) {
+    say(Severity::error, "a record", "one that is longer than the file",
+        "what stands there is left out, up to the next whole chunk");
+    crc_counts_ = false;
+    consume(skipped);
+    return;
+  }
+  const std::string_view bytes = rest();
+  const auto chunk = head_of(bytes) && head_of(bytes)->op == McapOp::chunk
+                         ? decode_mcap_chunk(bytes.substr(mcap_record_head))
+                         : std::nullopt;
+  say(Severity::warning, "a whole record", "the file's end in the midst of one",
+      chunk ? "messages of the chunk are read as far as they go, unchecked" : "it is left out");
+  record_at_ = offset_;
+  in_torn_chunk_ = true;
+  if (chunk) chunk_ = unpack_torn(*chunk, most_record);
+  consume(bytes.size());
+}
+
+/// A chunk tells itself by its sizes, and proves it by its checksum.
+bool McapReader::is_chunk(std::string_view bytes) {
+  const auto chunk = decode_mcap_chunk(bytes.substr(mcap_record_head, head_of(bytes)->length));
+  if (!chunk) return false;
+  const bool is = unpack(*chunk, most_record).has_value();
+  if (!is) tried_ += chunk->head.uncompressed_size;
+  return is;
+}
+
+void McapReader::find_chunk() {
+  constexpr std::uint64_t most_tried = std::uint64_t{1} << 30;
+  while (!rest().empty()) {
+    const std::size_t candidate = rest().find(static_cast<char>(McapOp::chunk));
+    consume(std::min(candidate, rest().size()));
+    const std::string_view bytes = rest();
+    if (bytes.size() < longest_chunk_head && !ended_) return;
+    const auto head = head_of(bytes);
+    const auto chunk = head ? decode_mcap_chunk(bytes.substr(mcap_record_head)) : std::nullopt;
+    const bool likely = chunk && head->length <= most_record && tried_ < most_tried &&
+                        chunk->head.uncompressed_size <= most_record &&
+                        chunk->head.compression.size() <= 4 && head->length == chunk->size();
+    if (likely && !chunk->whole() && !ended_) return;
+    if (likely && chunk->whole() && is_chunk(bytes)) {
+      state_ = State::records;
+      return;
+    }
+    if (!bytes.empty()) consume(1);
+  }
+}
+
+void McapReader::find_magic() {
+  const std::string_view bytes = rest();
+  if (bytes.size() <= mcap_magic.size() && !ended_) return;
+  if (bytes != mcap_magic) {
+    say(Severity::error, "the file's last eight bytes behind its footer", "others",
+        "they are left out");
+  }
+  state_ = bytes == mcap_magic ? State::closed : State::spoilt;
+  consume(bytes.size());
+}
+
+}  // namespace kinalign

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// The records of MCAP, bytes to structures and back: https://mcap.dev/spec, of which
+// docs/formats/recording.md repeats what a recording uses. A record is an opcode, a length of 64
+// bits and that much content; unknown opcodes are skipped, and so are bytes behind the fields that
+// are known.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace kinalign {
+
+inline constexpr std::string_view mcap_magic = "\x89MCAP0\r\n";
+inline constexpr std::size_t mcap_record_head = 9;  // opcode and length
+
+enum class McapOp : std::uint8_t {
+  header = 0x01,
+  footer = 0x02,
+  schema = 0x03,
+  channel = 0x04,
+  message = 0x05,
+  chunk = 0x06,
+  message_index = 0x07,
+  chunk_index = 0x08,
+  attachment = 0x09,
+  attachment_index = 0x0A,
+  statistics = 0x0B,
+  metadata = 0x0C,
+  metadata_index = 0x0D,
+  summary_offset = 0x0E,
+  data_end = 0x0F,
+  index_page = 0x81  // ours: chunk index records, kept in the file until its summary is written
+};
+
+using McapTexts = std::map<std::string, std::string>;
+
+struct McapHeader {
+  std::string profile, library;
+};
+
+/// What the messages of a channel hold. Id 0 is none.
+struct McapSchema {
+  std::uint16_t id = 0;
+  std::string name, encoding, data;
+
+  bool operator==(const McapSchema&) const = default;
+};
+
+struct McapChannel {
+  std::uint16_t id = 0, schema_id = 0;
+  std::string topic, message_encoding;
+  McapTexts metadata;
+
+  bool operator==(const McapChannel&) const = default;
+};
+
+struct McapMessage {
+  std::uint16_t channel = 0;
+  std::uint32_t sequence = 0;
+  std::uint64_t log_time = 0, publish_time = 0;  // ns
+  std::string_view data;                         // somebody else's
+};
+
+struct McapAttachment {
+  std::uint64_t log_time = 0, create_time = 0;
+  std::string name, media_type, data;
+};
+
+struct McapMetadata {
+  std::string name;
+  McapTexts texts;
+};
+
+/// A chunk before its records.
+struct McapChunkHead {
+  std::uint64_t start = 0, end = 0;  // log times
+  std::uint64_t uncompressed_size = 0;
+  std::uint32_t uncompressed_crc = 0;  // 0: not checked
+  std::string compression;             // "", "zstd", "lz4"
+};
+
+struct McapChunkIndex {
+  std::uint64_t start = 0, end = 0, chunk_offset = 0, chunk_length = 0;
+  std::map<std::uint16_t, std::uint64_t> message_index_offsets;
+  std::uint64_t message_index_length = 0;
+  std::string compression;
+  std::uint64_t compressed_size = 0, uncompressed_size = 0;
+};
+
+struct McapAttachmentIndex {
+  std::uint64_t offset = 0, length = 0, log_time = 0, create_time = 0, data_size = 0;
+  std::string name, media_type;
+};
+
+struct McapMetadataIndex {
+  std::uint64_t offset = 0, length = 0;
+  std::string name;
+};
+
+struct McapStatistics {
+  std::uint64_t messages = 0;
+  std::uint16_t schemas = 0;
+  std::uint32_t channels = 0, attachments = 0, metadata = 0, chunks = 0;
+  std::uint64_t start = 0, end = 0;  // log times
+  std::map<std::uint16_t, std::uint64_t> channel_messages;
+};
+
+struct McapSummaryOffset {
+  McapOp group{};
+  std::uint64_t start = 0, length = 0;
+};
+
+struct McapDataEnd {
+  std::uint32_t data_crc = 0;  // 0: not checked
+};
+
+struct McapFooter {
+  std::uint64_t summary_start = 0, summary_offset_start = 0;  // 0: none
+  std::uint32_t summary_crc = 0;                              // 0: not checked
+};
+
+/// What a reader hands on; of chunks their content.
+using McapRecord =
+    std::variant<McapHeader, McapSchema, McapChannel, McapMessage, McapAttachment, McapMetadata,
+                 McapChunkIndex, McapAttachmentIndex, McapMetadataIndex, McapStatistics,
+                 McapSummaryOffset, McapDataEnd, McapFooter>;
+
+/// The content of a record that is no chunk, message index or page of ours: absent where its fields
+/// do not fit into it, or the opcode is none of the variant's.
+std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content);
+
+/// A chunk's head and, behind it, its records as they are stored, or as many of them as there are.
+struct McapChunkView {
+  McapChunkHead head;
+  std::uint64_t stored_size = 0;
+  std::string_view stored;
+
+  /// Of the content but for what is stored and the compression's name.
+  static constexpr std::size_t fields = 8 + 8 + 8 + 4 + 4 + 8;
+
+  bool whole() const { return stored.size() == stored_size; }
+  /// Of the content, as it should be.
+  std::uint64_t size() const { return fields + head.compression.size() + stored_size; }
+};
+/// Absent where the head does not fit into `content`.
+std::optional<McapChunkView> decode_mcap_chunk(std::string_view content);
+
+/// Appends the whole record.
+void append_mcap(std::string& out, const McapHeader& header);
+void append_mcap(std::string& out, const McapSchema& schema);
+void append_mcap(std::string& out, const McapChannel& channel);
+void append_mcap(std::string& out, const McapMessage& message);
+void append_mcap(std::string& out, const McapAttachment& attachment);
+void append_mcap(std::string& out, const McapMetadata& metadata);
+void append_mcap(std::string& out, const McapChunkHead& head, std::string_view stored);
+void append_mcap(std::string& out, const McapChunkIndex& index);
+void append_mcap(std::string& out, const McapAttachmentIndex& index);
+void append_mcap(std::string& out, const McapMetadataIndex& index);
+void append_mcap(std::string& out, const McapStatistics& statistics);
+void append_mcap(std::string& out, const McapSummaryOffset& offset);
+void append_mcap(std::string& out, const McapDataEnd& end);
+void append_mcap(std::string& out, const McapFooter& footer);
+
+/// A message's log time, and its record's place among a chunk's records.
+struct McapMessageEntry {
+  std::uint64_t log_time = 0, offset = 0;
+};
+void append_mcap_message_index(std::string& out, std::uint16_t channel,
+                               const std::vector<McapMessageEntry>& entries);
+/// A record of any opcode around `content`.
+void append_mcap_record(std::string& out, McapOp op, std::string_view content);
+
+}  // namespace kinalign

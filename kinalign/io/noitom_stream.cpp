@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/noitom_stream.h"
+
+#include "kinalign/io/little_endian.h"
+#include "kinalign/io/noitom_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t slice = 4096;
+// 360 values of 40 characters and a name; what writes longer ones is no text of this kind.
+constexpr std::size_t longest_text = 16'384;
+constexpr std::size_t most_avatars = 64;
+constexpr std::size_t zipped_head = 10;  // CCCC, a length, gzip's 1F 8B
+
+bool is_digit(std::uint8_t b) { return b >= '0' && b <= '9'; }
+bool is_white(std::uint8_t b) { return b == ' ' || b == '\t' || b == '\r' || b == '\n'; }
+bool may_stand_in_text(std::uint8_t b) {
+  return is_white(b) || (b > ' ' && b != 0x7f && b != 0xff);
+}
+
+/// Where within the values another frame's header begins; their end where none does.
+std::size_t next_header(std::span<const std::uint8_t> frame) {
+  for (std::size_t at = noitom_header_size; at < frame.size(); ++at) {
+    const void* found = std::memchr(&frame[at], 0xff, frame.size() - at);
+    if (found == nullptr) break;
+    at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - frame.data());
+    if (begins_noitom_header(frame.subspan(at))) return at;
+  }
+  return frame.size();
+}
+
+struct Advice {
+  NoitomRefusal refusal;
+  std::string_view expected, meaning, repair;
+};
+
+constexpr std::string_view plain =
+    "switch the capture program to plain BVH broadcast (binary or string, no compression)";
+constexpr std::array<Advice, 7> advice{{
+    {NoitomRefusal::compressed, "plain BVH frames", "compressed frames are not read", plain},
+    {NoitomRefusal::calculation, "BVH frames", "this is the calculation stream (0x88FF)",
+     "connect to the port of the BVH broadcast"},
+    {NoitomRefusal::command, "BVH frames", "replies of the command channel are not read", ""},
+    {NoitomRefusal::wrong_count, "180, 186, 354 or 360 values in a frame",
+     "frames of other sizes were dropped", "broadcast the 59 joints of Axis Neuron or Axis Studio"},
+    {NoitomRefusal::torn, "whole frames", "frames that lacked a piece were dropped",
+     "prefer TCP, or a wired network: a UDP frame with displacement is sent in two pieces"},
+    {NoitomRefusal::too_long, "text whose frames end in ||", "it was dropped", ""},
+    {NoitomRefusal::too_many_avatars, "at most 64 avatars", "frames of further ones were dropped",
+     ""},
+}};
+
+}  // namespace
+
+std::string_view to_string(NoitomRefusal refusal) {
+  constexpr std::array<std::string_view, 7> names{"wrong_count",     "torn",    "compressed",
+                                                  "calculation",     "command", "too_long",
+                                                  "too_many_avatars"};
+  return names[static_cast<std::size_t>(refusal)];
+}
+
+void NoitomDecoder::feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out) {
+  while (!bytes.empty()) {
+    const auto piece = bytes.first(std::min(slice, bytes.size()));
+    bytes = bytes.subspan(piece.size());
+    held_.insert(held_.end(), piece.begin(), piece.end());
+    take_all(out);
+    held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(at_));
+    at_ = 0;
+  }
+}
+
+void NoitomDecoder::take_all(std::vector<NoitomArrival>& out) {
+  while (at_ < held_.size() && step(out) == Step::go_on) {
+  }
+}
+
+void NoitomDecoder::take(std::size_t bytes) {
+  at_ += bytes;
+  searched_ = 0;
+  behind_text_ = false;
+}
+
+void NoitomDecoder::skip(std::size_t bytes) {
+  take(bytes);
+  counts_.bytes_skipped += bytes;
+}
+
+NoitomDecoder::Step NoitomDecoder::step(std::vector<NoitomArrival>& out) {
+  const std::uint8_t first = ahead()[0];
+  if (first == 0xff) return marked(out);
+  if (first == 'C') return zipped();
+  if (is_digit(first)) return text(out);
+  if (behind_text_ && is_white(first)) {
+    ++at_;
+    return Step::go_on;
+  }
+  skip(1);
+  return Step::go_on;
+}
+
+// FF and what may follow it: the tokens of Noitom's three kinds of header.
+NoitomDecoder::Step NoitomDecoder::marked(std::vector<NoitomArrival>& out) {
+  const auto bytes = ahead();
+  if (bytes.size() < 2) return Step::wait;
+  if (bytes[1] == 0xdd) return binary(out);
+  if (bytes[1] == 0x88) return other_header(0x99, NoitomRefusal::calculation);
+  if (bytes[1] == 0xaa) return other_header(0xbb, NoitomRefusal::command);
+  skip(1);
+  return Step::go_on;
+}
+
+NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
+  const auto bytes = ahead();
+  if (bytes.size() < noitom_header_size) return Step::wait;
+  if (!has_noitom_tokens(bytes)) {
+    skip(1);
+    return Step::go_on;
+  }
+  auto header = parse_noitom_header(bytes);
+  if (!header) {
+    refuse(NoitomRefusal::wrong_count);
+    skip(2);
+    return Step::go_on;
+  }
+  if (header->compressed) {
+    refuse(NoitomRefusal::compressed);
+    take(noitom_header_size);
+    return Step::go_on;
+  }
+  const std::size_t size = noitom_header_size + 4 * header->values;
+  if (bytes.size() < size) return Step::wait;
+  if (const std::size_t next = next_header(bytes.first(size)); next < size) {
+    refuse(NoitomRefusal::torn);
+    skip(next);
+    return Step::go_on;
+  }
+  for (std::size_t at = noitom_header_size; at < size; at += 4) {
+    header->frame.values.push_back(std::bit_cast<float>(little_at<std::uint32_t>(bytes, at)));
+  }
+  take(size);
+  give(std::move(header->frame), out);
+  return Step::go_on;
+}
+
+// 64 bytes that end in FF and `last_byte`. What follows them is skipped as it comes: their own
+// length is no reason to swallow a frame.
+NoitomDecoder::Step NoitomDecoder::other_header(std::uint8_t last_byte, NoitomRefusal meaning) {
+  const auto bytes = ahead();
+  if (bytes.size() < noitom_header_size) return Step::wait;
+  if (bytes[62] != 0xff || bytes[63] != last_byte) {
+    skip(1);
+    return Step::go_on;
+  }
+  refuse(meaning);
+  take(noitom_header_size);
+  return Step::go_on;
+}
+
+NoitomDecoder::Step NoitomDecoder::zipped() {
+  const auto bytes = ahead();
+  const auto mark = bytes.first(std::min<std::size_t>(4, bytes.size()));
+  if (!std::all_of(mark.begin(), mark.end(), [](std::uint8_t b) { return b == 'C'; })) {
+    skip(1);
+    return Step::go_on;
+  }
+  if (bytes.size() < zipped_head) return Step::wait;
+  if (bytes[8] != 0x1f || bytes[9] != 0x8b) {
+    skip(1);
+    return Step::go_on;
+  }
+  refuse(NoitomRefusal::compressed);
+  take(zipped_head);
+  return Step::go_on;
+}
+
+// From a digit to "||". A byte that no text holds ends the attempt in front of it.
+NoitomDecoder::Step NoitomDecoder::text(std::vector<NoitomArrival>& out) {
+  const auto bytes = ahead();
+  for (std::size_t at = searched_; at < bytes.size(); ++at) {
+    if (!may_stand_in_text(bytes[at])) {
+      skip(at);
+      return Step::go_on;
+    }
+    if (bytes[at] == '|' && bytes[at - 1] == '|') {
+      text_frame(at + 1, out);
+      return Step::go_on;
+    }
+    if (at >= longest_text) {
+      refuse(NoitomRefusal::too_long);
+      skip(at);
+      return Step::go_on;
+    }
+  }
+  searched_ = bytes.size();
+  return Step::wait;
+}
+
+void NoitomDecoder::text_frame(std::size_t size, std::vector<NoitomArrival>& out) {
+  auto frame = parse_noitom_text({reinterpret_cast<const char*>(&held_[at_]), size - 2});
+  if (frame) {
+    take(size);
+    give(*std::move(frame), out);
+  } else {
+    refuse(NoitomRefusal::wrong_count);
+    skip(size);
+  }
+  behind_text_ = true;
+}
+
+void NoitomDecoder::give(NoitomFrame frame, std::vector<NoitomArrival>& out) {
+  if (avatars_.size() == most_avatars && !avatars_.contains(frame.avatar)) {
+    refuse(NoitomRefusal::too_many_avatars);
+    return;
+  }
+  NoitomAvatar& avatar = avatars_[frame.avatar];
+  avatar.index = frame.avatar;
+  avatar.name = frame.name;
+  ++avatar.frames;
+  ++counts_.frames;
+  const Order order = frame.frame_index ? avatar.by_index.push(*frame.frame_index) : Order::newest;
+  out.push_back({std::move(frame), order});
+}
+
+Findings NoitomDecoder::findings(const std::string& name) const {
+  Findings findings;
+  for (const Advice& a : advice) {
+    const std::uint64_t times = counts_[a.refusal];
+    if (times == 0) continue;
+    findings.push_back({Severity::warning,
+                        Error{name, 0, std::string(a.expected),
+                              fmt::format("{} ({} times)", to_string(a.refusal), times)},
+                        std::string(a.meaning), std::string(a.repair)});
+  }
+  return findings;
+}
+
+}  // namespace kinalign

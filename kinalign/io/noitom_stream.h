@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// The BVH broadcast of Noitom's Axis Neuron and Axis Studio, as one sender's bytes arrive over TCP
+// or in datagrams. Layout and rules: docs/formats/noitom_stream.md.
+#pragma once
+
+#include "kinalign/io/noitom_header.h"
+#include "kinalign/io/sequence_count.h"
+
+#include <array>
+#include <map>
+#include <string_view>
+
+namespace kinalign {
+
+/// Why a thing that was recognised gave no frame.
+enum class NoitomRefusal : std::uint8_t {
+  wrong_count,       // count and flags fit neither layout, or a text of another number of words
+  torn,              // another frame begins before this one is complete
+  compressed,        // Axis Studio's compressed port, or the old header's compressed mode
+  calculation,       // the calculation stream
+  command,           // a pack of the command channel
+  too_long,          // text that does not end
+  too_many_avatars,  // the 65th and later
+  count_of_refusals  // none: how many there are
+};
+
+std::string_view to_string(NoitomRefusal refusal);
+
+struct NoitomCounts {
+  std::uint64_t frames = 0;
+  std::uint64_t bytes_skipped =
+      0;  // in no frame and no refused header; blanks behind text are free
+  std::array<std::uint64_t, static_cast<std::size_t>(NoitomRefusal::count_of_refusals)> refused{};
+
+  std::uint64_t operator[](NoitomRefusal r) const { return refused[static_cast<std::size_t>(r)]; }
+  bool operator==(const NoitomCounts&) const = default;
+};
+
+struct NoitomArrival {
+  NoitomFrame frame;
+  Order order = Order::newest;  // by the source's frame index; without one always newest
+};
+
+struct NoitomAvatar {
+  std::uint32_t index = 0;
+  std::string name;  // of its last frame
+  std::uint64_t frames = 0;
+  SequenceCount by_index;  // empty where the source gives no frame index
+};
+
+/// One sender. Which form it uses is seen by content, at every frame anew.
+class NoitomDecoder {
+ public:
+  /// Takes bytes cut anywhere and appends the frames that they complete, duplicates and late ones
+  /// too. The frames don't depend on where the bytes were cut.
+  void feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out);
+
+  const NoitomCounts& counts() const { return counts_; }
+  const std::map<std::uint32_t, NoitomAvatar>& avatars() const { return avatars_; }
+  /// Bytes that wait for their rest: never more than 20 kB.
+  std::size_t waiting() const { return held_.size() - at_; }
+
+  /// What the user should know of this stream; `name` stands in the messages.
+  Findings findings(const std::string& name) const;
+
+ private:
+  enum class Step { go_on, wait };
+
+  std::span<const std::uint8_t> ahead() const { return std::span(held_).subspan(at_); }
+  void take_all(std::vector<NoitomArrival>& out);
+  Step step(std::vector<NoitomArrival>& out);
+  Step marked(std::vector<NoitomArrival>& out);
+  Step binary(std::vector<NoitomArrival>& out);
+  Step other_header(std::uint8_t last_byte, NoitomRefusal meaning);
+  Step zipped();
+  Step text(std::vector<NoitomArrival>& out);
+  void text_frame(std::size_t size, std::vector<NoitomArrival>& out);
+  void give(NoitomFrame frame, std::vector<NoitomArrival>& out);
+  void refuse(NoitomRefusal refusal) { ++counts_.refused[static_cast<std::size_t>(refusal)]; }
+  void skip(std::size_t bytes);
+  void take(std::size_t bytes);
+
+  std::vector<std::uint8_t> held_;
+  std::size_t at_ = 0;        // of `held_`: what is before is done
+  std::size_t searched_ = 0;  // bytes of a text that hold no end
+  bool behind_text_ = false;
+  NoitomCounts counts_;
+  std::map<std::uint32_t, NoitomAvatar> avatars_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame of the string mode: `<index> <name> v v ... ||`.
+#pragma once
+
+#include "kinalign/io/noitom_frame.h"
+
+#include <string_view>
+
+namespace kinalign {
+
+/// The frame that ends where `text` does, before its "||"; what stands in front of it is passed
+/// over: a frame that has lost its end. Nothing where none of the four counts of values stands
+/// there.
+std::optional<NoitomFrame> parse_noitom_text(std::string_view text);
+
+}  // namespace kinalign

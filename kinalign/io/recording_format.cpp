@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/recording_format.h"
+
+#include "kinalign/io/little_endian_reader.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::string_view format = "1";
+
+/// Empty where the key is missing.
+std::string text_of(const McapTexts& texts, const std::string& key) {
+  const auto found = texts.find(key);
+  return found == texts.end() ? std::string() : found->second;
+}
+
+std::optional<std::int64_t> number_of(const McapTexts& texts, const std::string& key) {
+  const std::string text = text_of(texts, key);
+  std::int64_t number = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+void append_ns(std::string& out, Duration since) {
+  append_little(static_cast<std::uint64_t>(since.count()), out);
+}
+template <class Stamp>
+Stamp take_stamp(LittleEndianReader& from) {
+  return Stamp{Duration{static_cast<std::int64_t>(from.take<std::uint64_t>())}};
+}
+
+}  // namespace
+
+McapMetadata to_metadata(const RecordingFacts& facts) {
+  return {std::string(recording_metadata),
+          {{"format", std::string(format)},
+           {"subject", facts.subject},
+           {"action", facts.action},
+           {"host", facts.host},
+           {"first", facts.first},
+           {"part", std::to_string(facts.part)},
+           {"raw_ns", std::to_string(facts.anchor.raw.time_since_epoch().count())},
+           {"utc_ns", std::to_string(facts.anchor.utc.time_since_epoch().count())}}};
+}
+
+std::optional<RecordingFacts> to_facts(const McapMetadata& metadata) {
+  const McapTexts& texts = metadata.texts;
+  const auto part = number_of(texts, "part"), raw = number_of(texts, "raw_ns"),
+             utc = number_of(texts, "utc_ns");
+  const bool is_ours = metadata.name == recording_metadata && text_of(texts, "format") == format;
+  if (!is_ours || !part || !raw || !utc || *part < 1 || *part > 1'000'000) return std::nullopt;
+  return RecordingFacts{
+      text_of(texts, "subject"), text_of(texts, "action"),
+      text_of(texts, "host"),    text_of(texts, "first"),
+      static_cast<int>(*part),   {HostTime{Duration{*raw}}, Time{Duration{*utc}}}};
+}
+
+McapChannel to_channel(std::string topic, const RawChannel& raw) {
+  McapChannel channel{0, 0, std::move(topic), raw.protocol, {}};
+  channel.metadata = {{"stream", raw.stream}, {"transport", raw.transport}, {"sender", raw.sender}};
+  if (!raw.node.empty()) channel.metadata["node"] = raw.node;
+  return channel;
+}
+
+std::optional<RawChannel> to_raw(const McapChannel& channel) {
+  const std::string stream = text_of(channel.metadata, "stream");
+  if (stream.empty() || channel.metadata.count("transport") == 0) return std::nullopt;
+  return RawChannel{stream, channel.message_encoding, text_of(channel.metadata, "transport"),
+                    text_of(channel.metadata, "sender"), text_of(channel.metadata, "node")};
+}
+
+McapSchema clock_pair_schema() {
+  return {0, "kinalign.ClockPair", "jsonschema",
+          R"({"type": "object", "properties": {)"
+          R"("raw_ns": {"type": "integer", "description": "CLOCK_MONOTONIC_RAW"}, )"
+          R"("utc_ns": {"type": "integer", "description": "CLOCK_REALTIME at that moment"}}, )"
+          R"("required": ["raw_ns", "utc_ns"]})"};
+}
+
+std::string to_json(const ClockPair& pair) {
+  return fmt::format(R"({{"raw_ns": {}, "utc_ns": {}}})", pair.raw.time_since_epoch().count(),
+                     pair.utc.time_since_epoch().count());
+}
+
+std::optional<ClockPair> to_clock_pair(std::string_view json) {
+  const auto object = nlohmann::json::parse(json, nullptr, false);
+  const auto ns = [&](const char* key) -> std::optional<Duration> {
+    if (!object.is_object() || !object.contains(key) || !object[key].is_number_integer()) {
+      return std::nullopt;
+    }
+    return Duration{object[key].get<std::int64_t>()};
+  };
+  const auto raw = ns("raw_ns"), utc = ns("utc_ns");
+  if (!raw || !utc) return std::nullopt;
+  return ClockPair{HostTime{*raw}, Time{*utc}};
+}
+
+McapSchema sender_counts_schema() {
+  std::string properties;
+  for (const std::string_view name :
+       {"messages", "bytes", "frames", "lost", "late", "duplicates", "restarts", "refused"}) {
+    properties += fmt::format(R"(, "{}": {{"type": "integer"}})", name);
+  }
+  return {0, "kinalign.SenderCounts", "jsonschema",
+          R"({"type": "object", "properties": {"stream": {"type": "string"}, )"
+          R"("sender": {"type": "string"})" +
+              properties + R"(}, "required": ["stream", "sender", "messages"]})"};
+}
+
+std::string to_json(const std::string& stream, const std::string& sender,
+                    const SenderCounts& counts) {
+  const nlohmann::ordered_json json{{"stream", stream},
+                                    {"sender", sender},
+                                    {"messages", counts.messages},
+                                    {"bytes", counts.bytes},
+                                    {"frames", counts.frames},
+                                    {"lost", counts.order.lost},
+                                    {"late", counts.order.late},
+                                    {"duplicates", counts.order.duplicates},
+                                    {"restarts", counts.order.restarts},
+                                    {"refused", counts.refused}};
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::string to_bytes(const RecordedExchange& recorded) {
+  const Exchange& exchange = recorded.exchange;
+  const Exchange::Echo echo = exchange.echo.value_or(Exchange::Echo{});
+  std::string out;
+  append_little(exchange.boot, out);
+  append_little(recorded.epoch, out);
+  append_little(std::uint32_t{exchange.echo ? 1U : 0U}, out);
+  append_ns(out, exchange.n_tx.time_since_epoch());
+  append_ns(out, exchange.h_rx.time_since_epoch());
+  append_ns(out, echo.n_rx.time_since_epoch());
+  append_ns(out, echo.h_tx.time_since_epoch());
+  return out;
+}
+
+std::optional<RecordedExchange> to_exchange(std::string_view bytes) {
+  LittleEndianReader from(octets(bytes));
+  RecordedExchange recorded;
+  recorded.exchange.boot = from.take<std::uint64_t>();
+  recorded.epoch = from.take<std::uint32_t>();
+  const auto flags = from.take<std::uint32_t>();
+  recorded.exchange.n_tx = take_stamp<NodeTime>(from);
+  recorded.exchange.h_rx = take_stamp<HostTime>(from);
+  const Exchange::Echo echo{take_stamp<NodeTime>(from), take_stamp<HostTime>(from)};
+  if (flags == 1) recorded.exchange.echo = echo;
+  if (!from.complete() || from.left() > 0 || flags > 1) return std::nullopt;
+  return recorded;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a recording's MCAP file holds beside raw payloads: docs/formats/recording.md, which is
+// written first.
+#pragma once
+
+#include "kinalign/clock/host_from_node.h"
+#include "kinalign/clock/utc_anchor.h"
+#include "kinalign/io/mcap_records.h"
+#include "kinalign/io/sequence_count.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+inline constexpr std::string_view recording_profile = "kinalign";
+inline constexpr std::string_view recording_metadata = "kinalign.recording";
+
+/// The metadata record of that name, which each file of a recording begins with.
+struct RecordingFacts {
+  std::string subject, action;
+  std::string host;   // the machine's name
+  std::string first;  // name of the recording's first file
+  int part = 1;       // which file of the recording this is
+  ClockPair anchor;   // log times are UTC = host time + (utc - raw), in all of the recording
+};
+McapMetadata to_metadata(const RecordingFacts& facts);
+/// Absent where a field is missing or no number.
+std::optional<RecordingFacts> to_facts(const McapMetadata& metadata);
+
+/// What a channel of raw payloads is, as its metadata.
+struct RawChannel {
+  std::string stream;     // "mocap"
+  std::string protocol;   // "noitom"
+  std::string transport;  // "udp"
+  std::string sender;     // "192.168.7.20:51234"
+  std::string node;       // of inertial nodes: the id, decimal
+};
+McapChannel to_channel(std::string topic, const RawChannel& raw);
+std::optional<RawChannel> to_raw(const McapChannel& channel);
+
+/// What is said to be a channel's content: schema and the text of its JSON.
+McapSchema clock_pair_schema();
+std::string to_json(const ClockPair& pair);
+std::optional<ClockPair> to_clock_pair(std::string_view json);
+
+/// What has come of a stream so far, and what its sender's own numbers say of the way.
+struct SenderCounts {
+  std::uint64_t messages = 0, bytes = 0;  // as they came
+  std::uint64_t frames = 0;               // that were complete, where the protocol is decoded
+  SequenceCounts order;                   // of these, where the sender numbers them
+  std::uint64_t refused = 0;              // recognised and of no use
+};
+McapSchema sender_counts_schema();
+std::string to_json(const std::string& stream, const std::string& sender,
+                    const SenderCounts& counts);
+
+/// An exchange as 48 bytes, little-endian. `epoch`: of the host's axis, which begins anew when the
+/// host has slept.
+inline constexpr std::string_view exchange_encoding = "kinalign-exchange";
+struct RecordedExchange {
+  std::uint32_t epoch = 0;
+  Exchange exchange;
+};
+std::string to_bytes(const RecordedExchange& recorded);
+std::optional<RecordedExchange> to_exchange(std::string_view bytes);
+
+}  // namespace kinalign

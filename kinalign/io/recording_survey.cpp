@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/recording_survey.h"
+
+#include <algorithm>
+#include <array>
+
+namespace kinalign {
+
+namespace {
+
+/// Collects what the records of one file say.
+class Surveyor {
+ public:
+  explicit Surveyor(const McapReader& reader) : reader_(reader) {}
+
+  Result<void> take(const McapRecord& record) {
+    std::visit([this](const auto& one) { add(one); }, record);
+    return {};
+  }
+
+  RecordingSurvey finish() {
+    for (auto& [id, channel] : channels_) survey_.channels.push_back(std::move(channel));
+    std::stable_sort(
+        survey_.channels.begin(), survey_.channels.end(),
+        [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
+    return std::move(survey_);
+  }
+
+ private:
+  void add(const McapChannel& channel) { channels_[channel.id].channel = channel; }
+  void add(const McapMetadata& metadata) {
+    if (!survey_.facts) survey_.facts = to_facts(metadata);
+  }
+  void add(const McapAttachment& attachment) { survey_.attachments.push_back(attachment.name); }
+  void add(const McapMessage& message) {
+    ++survey_.messages;
+    if (reader_.unchecked()) ++survey_.unchecked;
+    ChannelSurvey& channel = channels_[message.channel];
+    if (channel.messages == 0) {
+      channel.first = channel.last = message.log_time;
+    } else {
+      // Of a writer that does not number its messages nothing is missing.
+      const std::uint32_t step = message.sequence - channel.last_number;
+      if (step > 1 && step < 1U << 31U) channel.missing += step - 1;
+    }
+    channel.last_number = message.sequence;
+    channel.first = std::min(channel.first, message.log_time);
+    channel.last = std::max(channel.last, message.log_time);
+    ++channel.messages;
+    channel.bytes += message.data.size();
+  }
+  template <class Other>
+  void add(const Other&) {}
+
+  const McapReader& reader_;
+  std::map<std::uint16_t, ChannelSurvey> channels_;
+  RecordingSurvey survey_;
+};
+
+}  // namespace
+
+Result<void> read_recording(const PieceSource& source, McapReader& reader, const TakeRecord& take,
+                            const Progress& progress) {
+  std::uint64_t done = 0;
+  for (bool ended = false; !ended;) {
+    const std::string_view piece = KA_TRY(source.next());
+    ended = piece.empty();
+    if (ended) {
+      reader.end();
+    } else {
+      reader.feed(piece);
+    }
+    while (const auto record = reader.next()) KA_TRY(take(*record));
+    done += piece.size();
+    if (!go_on(progress, "reading", done, source.size)) return Failure(interruption(source.path));
+  }
+  if (reader.is_mcap()) return {};
+  return Failure(Error{source.path, 0, "an MCAP file", "another beginning"});
+}
+
+Result<void> read_recording(FileSystem& files, const std::string& path, McapReader& reader,
+                            const TakeRecord& take, const Progress& progress) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  return read_recording({path, file.size(), [&file] { return file.next(); }}, reader, take,
+                        progress);
+}
+
+Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progress& progress) {
+  McapReader reader;
+  Surveyor surveyor(reader);
+  std::uint64_t bytes = 0;
+  const auto count = [&](std::string_view what, std::uint64_t done, std::uint64_t total) {
+    bytes = done;
+    return go_on(progress, what, done, total);
+  };
+  KA_TRY(read_recording(
+      source, reader, [&](const McapRecord& record) { return surveyor.take(record); }, count));
+  RecordingSurvey survey = surveyor.finish();
+  survey.bytes = bytes;
+  survey.closed = reader.closed();
+  survey.findings = reader.findings();
+  for (Finding& finding : survey.findings) finding.what.file = source.path;
+  return survey;
+}
+
+Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,
+                                         const Progress& progress) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  return survey_recording({path, file.size(), [&file] { return file.next(); }}, progress);
+}
+
+Result<bool> is_recording(FileSystem& files, const std::string& path) {
+  const InputFile file = KA_TRY(InputFile::open(files, path));
+  std::array<char, mcap_magic.size()> head{};
+  const std::size_t got = KA_TRY(file.read_at(0, head));
+  return std::string_view(head.data(), got) == mcap_magic;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is in a recording's file, and whether all of it: read once from front to end, every checksum
+// checked. Works on torn files and on MCAP files of others, too.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/io/mcap_reader.h"
+#include "kinalign/io/recording_format.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct ChannelSurvey {
+  McapChannel channel;
+  std::uint64_t messages = 0, bytes = 0;  // of payload
+  std::uint64_t first = 0, last = 0;      // log time, the least and the greatest, ns
+  std::uint64_t missing = 0;              // numbers left out between the first and the last
+  std::uint32_t last_number = 0;
+};
+
+struct RecordingSurvey {
+  std::optional<RecordingFacts> facts;  // absent: not ours
+  std::vector<ChannelSurvey> channels;  // by topic
+  std::uint64_t messages = 0;
+  std::uint64_t unchecked = 0;           // of these at a torn end
+  bool closed = false;                   // index and end are there
+  std::vector<std::string> attachments;  // names
+  std::uint64_t bytes = 0;               // of the file
+  Findings findings;
+};
+
+/// Fails where the file can't be read or is no MCAP file.
+Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,
+                                         const Progress& progress = {});
+
+/// Pieces of a file, one a call; empty at its end.
+struct PieceSource {
+  std::string path;
+  std::uint64_t size = 0;
+  std::function<Result<std::string_view>()> next;
+};
+/// The same of a file that is not complete yet, or has no name.
+Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progress& progress = {});
+
+/// Hands every record to `take`, in the file's order. What the reader found is left in `reader`.
+using TakeRecord = std::function<Result<void>(const McapRecord&)>;
+Result<void> read_recording(const PieceSource& source, McapReader& reader, const TakeRecord& take,
+                            const Progress& progress = {});
+Result<void> read_recording(FileSystem& files, const std::string& path, McapReader& reader,
+                            const TakeRecord& take, const Progress& progress = {});
+
+/// Whether a file begins as MCAP does. Fails where it can't be read.
+Result<bool> is_recording(FileSystem& files, const std::string& path);
+
+}  // namespace kinalign

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/recover_recording.h"
+
+#include "kinalign/io/mcap_writer.h"
+
+#include <map>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
+
+/// The new file, from its front, before it has its name.
+PieceSource pieces_of(const OutputFile& file, std::uint64_t size, std::string& buffer) {
+  return {file.path(), size,
+          [&file, &buffer, at = std::uint64_t{0}]() mutable -> Result<std::string_view> {
+            buffer.resize(InputFile::piece_size);
+            const std::size_t got = KA_TRY(file.read_at(at, buffer));
+            at += got;
+            return std::string_view(buffer).substr(0, got);
+          }};
+}
+
+/// Takes the records of all files one after the other and writes them anew.
+class Copier {
+ public:
+  explicit Copier(OutputFile& out)
+      : writer_({[&out](std::string_view bytes) { return out.write(bytes); },
+                 [&out](std::uint64_t at, std::span<char> to) -> Result<void> {
+                   const std::size_t got = KA_TRY(out.read_at(at, to));
+                   if (got == to.size()) return {};
+                   return Failure(Error{out.path(), 0, "the bytes that were written", "fewer"});
+                 }}) {}
+
+  /// The numbers of the files before tell what stands twice.
+  void begin_file() { before_ = last_; }
+
+  Result<void> take(const McapRecord& record, bool unchecked) {
+    unchecked_ = unchecked;
+    if (!std::holds_alternative<McapHeader>(record)) KA_TRY(begin({}));
+    return std::visit([this](const auto& one) { return add(one); }, record);
+  }
+
+  Result<void> finish() {
+    KA_TRY(begin({}));
+    KA_TRY(close_chunk());
+    return writer_.finish();
+  }
+  std::uint64_t size() const { return writer_.size(); }
+
+  Recovered recovered;
+
+ private:
+  Result<void> begin(const McapHeader& header) {
+    return writer_.size() == 0 ? writer_.begin(header) : Result<void>();
+  }
+  Result<void> add(const McapHeader& header) { return begin(header); }
+  Result<void> add(const McapSchema& schema) {
+    schemas_[schema.id] = schema;
+    return {};
+  }
+  Result<void> add(const McapChannel& channel) {
+    channels_[channel.id] = channel;
+    return {};
+  }
+  Result<void> add(const McapMetadata& metadata) {
+    if (!written_.insert("metadata " + metadata.name).second) return {};
+    KA_TRY(close_chunk());
+    return writer_.write(metadata);
+  }
+  Result<void> add(const McapAttachment& attachment) {
+    if (!written_.insert("attachment " + attachment.name).second) return {};
+    KA_TRY(close_chunk());
+    return writer_.write(attachment);
+  }
+  Result<void> add(const McapMessage& message) {
+    const std::uint16_t id = message.channel;
+    const auto known = channels_.find(id);
+    if (known == channels_.end()) {
+      ++recovered.nameless;
+      return {};
+    }
+    const auto before = before_.find(id);
+    if (before != before_.end() && message.sequence - before->second - 1 >= 1U << 31U) {
+      ++recovered.twice;
+      return {};
+    }
+    last_[id] = message.sequence;
+    if (!chunk_.messages().contains(id)) {
+      const auto schema = schemas_.find(known->second.schema_id);
+      if (schema != schemas_.end()) chunk_.add(schema->second);
+      chunk_.add(known->second);
+    }
+    chunk_.add(message);
+    ++recovered.messages;
+    if (unchecked_) ++recovered.unchecked;
+    return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
+  }
+  template <class Other>
+  Result<void> add(const Other&) {
+    return {};  // the summary is made anew
+  }
+
+  Result<void> close_chunk() {
+    if (chunk_.empty()) return {};
+    return writer_.write(store(std::exchange(chunk_, {}), McapCompression::zstd));
+  }
+
+  McapWriter writer_;
+  bool unchecked_ = false;
+  std::map<std::uint16_t, McapSchema> schemas_;
+  std::map<std::uint16_t, McapChannel> channels_;
+  std::map<std::uint16_t, std::uint32_t> last_, before_;  // numbers by channel
+  std::set<std::string> written_;
+  McapChunkContent chunk_;
+};
+
+}  // namespace
+
+Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,
+                                    const std::string& out, Overwrite overwrite,
+                                    const Progress& progress) {
+  OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
+  Copier copier(file);
+  Recovered& recovered = copier.recovered;
+  for (const std::string& path : paths) {
+    McapReader reader;
+    copier.begin_file();
+    KA_TRY(read_recording(
+        files, path, reader,
+        [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); },
+        progress));
+    for (Finding finding : reader.findings()) {
+      finding.what.file = path;
+      recovered.findings.push_back(std::move(finding));
+    }
+  }
+  KA_TRY(copier.finish());
+
+  std::string buffer;
+  recovered.proof = KA_TRY(survey_recording(pieces_of(file, copier.size(), buffer), progress));
+  const RecordingSurvey& proof = recovered.proof;
+  if (!proof.closed || !proof.findings.empty() || proof.messages != recovered.messages) {
+    return Failure(Error{out, 0, std::to_string(recovered.messages) + " messages, read again",
+                         std::to_string(proof.messages) + (proof.closed ? "" : " and no end")});
+  }
+  KA_TRY(file.commit());
+  return std::move(recovered);
+}
+
+}  // namespace kinalign

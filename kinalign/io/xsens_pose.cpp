@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/xsens_pose.h"
+
+#include "kinalign/io/axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::array<std::string_view, xsens_segments> names{"Pelvis",
+                                                             "L5",
+                                                             "L3",
+                                                             "T12",
+                                                             "T8",
+                                                             "Neck",
+                                                             "Head",
+                                                             "RightShoulder",
+                                                             "RightUpperArm",
+                                                             "RightForeArm",
+                                                             "RightHand",
+                                                             "LeftShoulder",
+                                                             "LeftUpperArm",
+                                                             "LeftForeArm",
+                                                             "LeftHand",
+                                                             "RightUpperLeg",
+                                                             "RightLowerLeg",
+                                                             "RightFoot",
+                                                             "RightToe",
+                                                             "LeftUpperLeg",
+                                                             "LeftLowerLeg",
+                                                             "LeftFoot",
+                                                             "LeftToe"};
+constexpr std::array<int, xsens_segments> parents{-1, 0,  1,  2, 3,  4,  5,  4, 7,  8,  9, 4,
+                                                  11, 12, 13, 0, 15, 16, 17, 0, 19, 20, 21};
+
+template <std::size_t n>
+bool sound(const std::array<float, n>& values) {
+  return std::all_of(values.begin(), values.end(), [](float x) { return std::abs(x) < 1e15F; });
+}
+
+std::optional<Quat> unit_quaternion(const std::array<float, 4>& q) {
+  const Quat turn(q[0], q[1], q[2], q[3]);
+  // Chosen: floats round by 1e-7; what is off by more than a hundredth is no rotation.
+  if (!sound(q) || std::abs(turn.norm() - 1.0) > 0.01) return std::nullopt;
+  return turn.normalized();
+}
+
+Vec3 vector_of(const std::array<float, 3>& values) { return {values[0], values[1], values[2]}; }
+
+Vec3 ours(const std::array<float, 3>& values) {
+  const Vec3 file = vector_of(values);
+  return turned(z_up, file.data());
+}
+
+struct Global {
+  std::array<Vec3, xsens_segments> places;  // of the stream's unit, y up
+  std::array<Quat, xsens_segments> turns;   // space and segments turned: at rest both are y up
+};
+
+Result<Global> global_of(const XsensPose& pose, const std::string& name) {
+  const auto refused = [&name](const std::string& expected, const std::string& found) {
+    return Failure(Error{name, 0, expected, found});
+  };
+  if (pose.segments.size() < xsens_segments) {
+    return refused("23 segments in a pose", std::to_string(pose.segments.size()));
+  }
+  const Quat up = rotation_of(z_up);
+  Global global;
+  std::array<bool, xsens_segments> here{};
+  for (std::size_t k = 0; k < xsens_segments; ++k) {
+    const XsensSegment& s = pose.segments[k];
+    if (s.id < 1 || s.id > static_cast<int>(xsens_segments) ||
+        here[static_cast<std::size_t>(s.id - 1)]) {
+      return refused("the segments 1 to 23, each once, first in a pose",
+                     fmt::format("segment {} as item {}", s.id, k + 1));
+    }
+    const auto at = static_cast<std::size_t>(s.id - 1);
+    const auto turn = unit_quaternion(s.rotation);
+    if (!turn || !sound(s.position)) {
+      return refused("a place and a unit quaternion",
+                     fmt::format("other numbers of {}", names[at]));
+    }
+    here[at] = true;
+    global.places[at] = ours(s.position);
+    global.turns[at] = up * *turn * up.conjugate();
+  }
+  return global;
+}
+
+constexpr double centimetre = 0.01;
+
+}  // namespace
+
+std::span<const std::string_view, xsens_segments> xsens_segment_names() { return names; }
+
+// The document says centimetres, MVN sends metres. A pelvis 0.3 to 3 above the lowest segment is in
+// metres, one above 30 in centimetres; of who lies, the segment farthest from the pelvis decides.
+void XsensPoser::begin(std::span<const double> heights, double reach) {
+  const double height = heights[0] - *std::min_element(heights.begin(), heights.end());
+  const bool clear = (height >= 0.3 && height < 3.0) || height >= 30.0;
+  const bool metres = clear ? height < 3.0 : reach < 3.0;
+  metres_per_unit_ = metres ? 1.0 : centimetre;
+  findings.push_back(
+      {Severity::note,
+       Error{name_, 0, "a unit of length: the stream names none",
+             clear ? fmt::format("a pelvis {:.3g} above the lowest segment", height)
+                   : fmt::format("a pelvis {:.3g} above the lowest segment, and one {:.3g} from it",
+                                 height, reach)},
+       metres ? "lengths are read as metres" : "lengths are read as centimetres", ""});
+}
+
+Result<void> XsensPoser::append(const XsensPose& pose, Time stamp, ClipFrames& out) {
+  const Global global = KA_TRY(global_of(pose, name_));
+  if (!skeleton_) {
+    std::array<double, xsens_segments> heights{};
+    double reach = 0.0;
+    for (std::size_t k = 0; k < xsens_segments; ++k) {
+      heights[k] = global.places[k].y();
+      reach = std::max(reach, (global.places[k] - global.places[0]).norm());
+    }
+    begin(heights, reach);
+  }
+  const std::size_t first = out.size() * xsens_segments;
+  out.stamps.push_back(stamp);
+  out.local_positions.resize(3 * (first + xsens_segments));
+  out.local_rotations.resize(4 * (first + xsens_segments));
+  for (std::size_t k = 0; k < xsens_segments; ++k) {
+    Vec3 place = global.places[k] * metres_per_unit_;
+    Quat turn = global.turns[k];
+    if (parents[k] >= 0) {
+      const auto p = static_cast<std::size_t>(parents[k]);
+      const Quat parent = global.turns[p].conjugate();
+      place = parent * (place - global.places[p] * metres_per_unit_);
+      turn = parent * turn;
+    }
+    vec3(out.local_positions, first + k) = place;
+    put_quat(out.local_rotations, first + k, turn.normalized());
+  }
+  if (skeleton_) return {};
+  skeleton_.emplace();
+  skeleton_->joint_names.assign(names.begin(), names.end());
+  skeleton_->parents.assign(parents.begin(), parents.end());
+  for (std::size_t k = 0; k < xsens_segments; ++k) {
+    skeleton_->rest_offsets.push_back(vec3(out.local_positions, first + k));
+  }
+  return {};
+}
+
+Result<void> XsensNodes::begin(const XsensTrackers& trackers) {
+  std::vector<std::int32_t> ids;
+  for (const XsensTracker& t : trackers.trackers) {
+    const bool known = t.id >= 1 && t.id <= static_cast<int>(xsens_segments);
+    if (!known || std::find(ids.begin(), ids.end(), t.id) != ids.end()) {
+      return Failure(Error{name_, 0, "trackers of the segments 1 to 23, each once",
+                           fmt::format("segment {} as item {}", t.id, ids.size() + 1)});
+    }
+    ids.push_back(t.id);
+  }
+  if (ids.empty()) return Failure(Error{name_, 0, "a tracker", "none"});
+  ids_ = std::move(ids);
+  for (const std::int32_t id : ids_) {
+    node_names_.emplace_back(names[static_cast<std::size_t>(id - 1)]);
+  }
+  const bool raw = trackers.trackers[0].raw.has_value();
+  content_ = {.orientation = true, .acceleration = true, .angular_velocity = raw, .gravity = raw};
+  return {};
+}
+
+namespace {
+
+/// One tracker of a sample that is all zeros and not valid so far.
+void put(const XsensTracker& t, std::size_t at, ImuSamples& out) {
+  const auto turn = unit_quaternion(t.rotation);
+  const bool raw = t.raw.has_value();
+  if (!turn || !sound(t.free_acceleration)) return;
+  if (raw && !(sound(t.raw->acceleration) && sound(t.raw->angular_velocity))) return;
+  put_quat(out.orientation, at, rotation_of(z_up) * *turn);
+  if (raw) {
+    vec3(out.acceleration, at) = vector_of(t.raw->acceleration);
+    vec3(out.angular_velocity, at) = vector_of(t.raw->angular_velocity);
+  } else {
+    vec3(out.acceleration, at) = turn->conjugate() * vector_of(t.free_acceleration);
+  }
+  out.valid[at] = 1;
+}
+
+}  // namespace
+
+Result<void> XsensNodes::append(const XsensTrackers& trackers, Time stamp, ImuSamples& out) {
+  if (ids_.empty()) KA_TRY(begin(trackers));
+  const auto other_kind = [this](const XsensTracker& t) {
+    return t.raw.has_value() != content_.angular_velocity;
+  };
+  if (std::any_of(trackers.trackers.begin(), trackers.trackers.end(), other_kind)) {
+    return Failure(Error{name_, 0, "items of one size throughout", "items of 44 and of 68 bytes"});
+  }
+  const std::size_t first = out.size() * ids_.size(), cells = first + ids_.size();
+  out.stamps.push_back(stamp);
+  out.orientation.resize(4 * cells);
+  out.acceleration.resize(3 * cells);
+  if (content_.angular_velocity) out.angular_velocity.resize(3 * cells);
+  out.valid.resize(cells);
+  for (const XsensTracker& t : trackers.trackers) {
+    const auto known = std::find(ids_.begin(), ids_.end(), t.id);
+    if (known != ids_.end()) put(t, first + static_cast<std::size_t>(known - ids_.begin()), out);
+  }
+  return {};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/io/mcap_files.h"
+#include "tests/seeds.h"
+
+#include "kinalign/io/mcap_reader.h"
+#include "kinalign/io/mcap_writer.h"
+
+#include <doctest/doctest.h>
+
+namespace kinalign {
+
+namespace {
+
+/// The messages before the k-th are those that were written.
+bool are_the_first(const std::vector<OwnedMessage>& messages) {
+  for (std::uint32_t k = 0; k < messages.size(); ++k) {
+    const OwnedMessage expected = nth_message(k);
+    const McapMessage& m = messages[k].message;
+    if (m.channel != expected.message.channel || m.sequence != k ||
+        m.log_time != expected.message.log_time ||
+        m.publish_time != expected.message.publish_time || messages[k].data != expected.data) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <class T>
+std::vector<T> records_of(const ReadMcap& read) {
+  std::vector<T> found;
+  for (const McapRecord& record : read.records) {
+    if (const auto* one = std::get_if<T>(&record)) found.push_back(*one);
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("what was written is read, in pieces of any size") {
+  for (const auto compression : {McapCompression::none, McapCompression::zstd}) {
+    const std::string bytes = mcap_file(100, 17, compression);
+    for (const std::size_t piece : {1, 7, 1000, 1 << 20}) {
+      const ReadMcap read = read_mcap(bytes, piece);
+      CHECK(read.findings.empty());
+      CHECK(read.closed);
+      CHECK(read.messages.size() == 100);
+      CHECK(are_the_first(read.messages));
+      CHECK(!read.unchecked);
+    }
+  }
+}
+
+TEST_CASE("the summary counts what is there and says where it stands") {
+  std::vector<std::size_t> ends;
+  const std::string bytes = mcap_file(100, 30, McapCompression::zstd, &ends);
+  const ReadMcap read = read_mcap(bytes);
+  const auto statistics = records_of<McapStatistics>(read);
+  REQUIRE(statistics.size() == 1);
+  CHECK(statistics[0].messages == 100);
+  CHECK(statistics[0].chunks == 4);
+  CHECK(statistics[0].schemas == 3);
+  CHECK(statistics[0].channels == 3);
+  CHECK(statistics[0].metadata == 1);
+  CHECK(statistics[0].start == 1000);
+  CHECK(statistics[0].end == 1990);
+  CHECK(statistics[0].channel_messages ==
+        std::map<std::uint16_t, std::uint64_t>{{1, 34}, {2, 33}, {3, 33}});
+  const auto indexes = records_of<McapChunkIndex>(read);
+  REQUIRE(indexes.size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(bytes[indexes[i].chunk_offset] == static_cast<char>(McapOp::chunk));
+    CHECK(indexes[i].chunk_offset + indexes[i].chunk_length + indexes[i].message_index_length ==
+          ends[i]);
+    for (const auto& [channel, offset] : indexes[i].message_index_offsets) {
+      CHECK(bytes[offset] == static_cast<char>(McapOp::message_index));
+      CHECK(bytes[offset + mcap_record_head] == static_cast<char>(channel));
+    }
+  }
+  for (const McapSummaryOffset& offset : records_of<McapSummaryOffset>(read)) {
+    CHECK(bytes[offset.start] == static_cast<char>(offset.group));
+  }
+}
+
+TEST_CASE("an index of many chunks goes through the file, not through memory") {
+  const std::string bytes = mcap_file(2000, 1, McapCompression::none);
+  const ReadMcap read = read_mcap(bytes);
+  CHECK(read.findings.empty());
+  CHECK(are_the_first(read.messages));
+  const auto indexes = records_of<McapChunkIndex>(read);
+  REQUIRE(indexes.size() == 2000);
+  for (std::size_t i = 0; i < indexes.size(); ++i) {
+    CHECK(indexes[i].start == 1000 + 10 * i);
+    CHECK(bytes[indexes[i].chunk_offset] == static_cast<char>(McapOp::chunk));
+  }
+  const auto page = std::string(1, static_cast<char>(McapOp::index_page));
+  CHECK(bytes.find(page) != std::string::npos);
+}
+
+TEST_CASE("a file that is cut anywhere gives every message of the chunks before") {
+  for (const auto compression : {McapCompression::none, McapCompression::zstd}) {
+    std::vector<std::size_t> ends;
+    const std::string whole = mcap_file(60, 10, compression, &ends);
+    for (std::size_t cut = 0; cut < whole.size(); ++cut) {
+      CAPTURE(cut);
+      const ReadMcap read = read_mcap(std::string_view(whole).substr(0, cut));
+      const auto chunks = static_cast<std::size_t>(
+          std::count_if(ends.begin(), ends.end(), [&](std::size_t end) { return end <= cut; }));
+      CHECK(read.messages.size() >= 10 * chunks);
+      CHECK(are_the_first(read.messages));
+      CHECK(!read.closed);
+    }
+  }
+}
+
+TEST_CASE("of an uncompressed chunk at which the file breaks off messages are read one by one") {
+  std::vector<std::size_t> ends;
+  const std::string whole = mcap_file(20, 10, McapCompression::none, &ends);
+  const ReadMcap read = read_mcap(std::string_view(whole).substr(0, ends[0] + 900));
+  CHECK(read.messages.size() > 10);
+  CHECK(read.messages.size() < 20);
+  CHECK(read.unchecked);
+  REQUIRE(read.findings.size() == 1);
+  CHECK(to_string(read.findings[0].what)
+            .starts_with(
+                "expected a whole record, found the file's end in the midst of one at byte"));
+}
+
+TEST_CASE("a chunk with a flipped bit is left out, those behind it are read") {
+  std::vector<std::size_t> ends;
+  const std::string whole = mcap_file(30, 10, McapCompression::none, &ends);
+  for (std::size_t at = ends[0]; at < ends[1]; ++at) {
+    CAPTURE(at);
+    std::string flipped = whole;
+    flipped[at] = static_cast<char>(flipped[at] ^ 0x10);
+    const ReadMcap read = read_mcap(flipped, 100);
+    CHECK(!read.findings.empty());
+    REQUIRE(read.messages.size() >= 20);
+    for (std::size_t i = 0; i < 10; ++i) {
+      CHECK(read.messages[i].message.sequence == i);
+      CHECK(read.messages[read.messages.size() - 1 - i].message.sequence == 29 - i);
+    }
+    for (const OwnedMessage& m : read.messages) {
+      CHECK(m.data == nth_message(m.message.sequence).data);
+    }
+  }
+}
+
+TEST_CASE("zeros at the end, as a power cut leaves them, end the reading") {
+  std::string bytes = mcap_file(20, 10, McapCompression::zstd, nullptr, false);
+  bytes.append(5000, '\0');
+  const ReadMcap read = read_mcap(bytes);
+  CHECK(read.messages.size() == 20);
+  CHECK(!read.closed);
+  REQUIRE(read.findings.size() == 1);
+  CHECK(read.findings[0].what.found.starts_with("a byte 0 at byte "));
+}
+
+TEST_CASE("what is no MCAP file is said to be none") {
+  for (const std::string text : {"", "\x89MCAP", "HIERARCHY\nROOT Hips", "\x89MCAP1\r\n"}) {
+    McapReader reader;
+    reader.feed(text);
+    reader.end();
+    CHECK(!reader.next());
+    CHECK(!reader.is_mcap());
+    CHECK(reader.findings().size() == 1);
+  }
+}
+
+TEST_CASE("a chunk that states more than it holds takes no memory for it") {
+  std::string bytes(mcap_magic);
+  append_mcap(bytes, McapChunkHead{0, 0, std::uint64_t{200} << 20, 0, "zstd"}, "x");
+  append_mcap(bytes, McapChunkHead{0, 0, std::uint64_t{1} << 60, 0, ""}, "x");
+  append_mcap(bytes, McapChunkHead{0, 0, 1, 0, "brotli"}, "x");
+  const ReadMcap read = read_mcap(bytes);
+  REQUIRE(read.findings.size() == 3);
+  CHECK(read.findings[0].what.expected == "a chunk of 209715200 bytes");
+  CHECK(read.findings[1].what.expected == "a chunk of at most 256 MiB");
+  CHECK(read.findings[2].what.found.starts_with("brotli"));
+}
+
+TEST_CASE("rubbish of any kind ends in findings") {
+  for (const auto seed : fresh_seeds(300)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    std::string bytes =
+        mcap_file(40, 7, random() % 2 == 0 ? McapCompression::none : McapCompression::zstd);
+    for (std::uint64_t i = 0, n = 1 + random() % 20; i < n; ++i) {
+      bytes[8 + random() % (bytes.size() - 8)] = static_cast<char>(random());
+    }
+    const ReadMcap read = read_mcap(bytes, 1 + random() % 300);
+    for (const OwnedMessage& m : read.messages) {
+      const bool is_whole =
+          m.message.sequence < 40 && m.data == nth_message(m.message.sequence).data;
+      CHECK((is_whole || read.unchecked));
+    }
+    CHECK(read.findings.size() <= 200);
+  }
+}
+
+}  // namespace kinalign

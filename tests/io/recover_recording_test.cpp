@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/recover_recording.h"
+
+#include "tests/faulty_files.h"
+#include "tests/folder.h"
+#include "tests/io/mcap_files.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+TEST_CASE("of a file that is cut anywhere recover makes a whole one with all that can be read") {
+  for (const auto compression : {McapCompression::none, McapCompression::zstd}) {
+    const std::string whole = mcap_file(60, 10, compression);
+    for (std::size_t cut = mcap_magic.size(); cut < whole.size(); cut += 13) {
+      CAPTURE(cut);
+      const FreshFolder folder;
+      PosixFiles files;
+      const std::string torn = whole.substr(0, cut);
+      const std::string path = folder.write("a.mcap", torn);
+      const auto recovered = recover_recording(files, {path}, folder / "b.mcap", Overwrite::no);
+      REQUIRE(recovered);
+      const ReadMcap read = read_mcap(folder.read("b.mcap")), before = read_mcap(torn);
+      CHECK(read.closed);
+      CHECK(read.findings.empty());
+      REQUIRE(read.messages.size() == before.messages.size());
+      for (std::size_t i = 0; i < read.messages.size(); ++i) {
+        CHECK(read.messages[i].data == before.messages[i].data);
+        CHECK(read.messages[i].message.log_time == before.messages[i].message.log_time);
+      }
+      CHECK(recovered->messages == before.messages.size());
+      CHECK((recovered->unchecked > 0) == before.unchecked);
+      CHECK(folder.read("a.mcap") == torn);  // the torn one stays as it is
+    }
+  }
+}
+
+TEST_CASE("of two files of a recording recover takes what stands in both once") {
+  const FreshFolder folder;
+  PosixFiles files;
+  MemoryFile first, second;
+  for (const auto& [file, from, to] : {std::tuple(&first, 0, 30), std::tuple(&second, 20, 60)}) {
+    McapWriter writer(file->store());
+    CHECK(writer.begin({"kinalign", "test"}));
+    CHECK(writer.write(McapMetadata{"kinalign.recording", {{"part", from == 0 ? "1" : "2"}}}));
+    McapChunkContent content;
+    for (int k = from; k < to; ++k) add(content, nth_message(static_cast<std::uint32_t>(k)));
+    CHECK(writer.write(store(content, McapCompression::zstd)));
+  }
+  const auto recovered = recover_recording(
+      files, {folder.write("a.mcap", first.bytes), folder.write("a.part2.mcap", second.bytes)},
+      folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->messages == 60);
+  CHECK(recovered->twice == 10);
+  const ReadMcap read = read_mcap(folder.read("b.mcap"));
+  REQUIRE(read.messages.size() == 60);
+  for (std::uint32_t k = 0; k < 60; ++k) CHECK(read.messages[k].message.sequence == k);
+}
+
+TEST_CASE("whichever call fails, recover leaves a whole file or none") {
+  const std::string whole = mcap_file(60, 10, McapCompression::zstd);
+  for (int fail_at = 1;; ++fail_at) {
+    CAPTURE(fail_at);
+    const FreshFolder folder;
+    FaultyFiles files;
+    files.fail_at = fail_at;
+    files.code = EIO;
+    const std::string path = folder.write("a.mcap", whole.substr(0, whole.size() / 2));
+    const auto recovered = recover_recording(files, {path}, folder / "b.mcap", Overwrite::no);
+    const std::string written = folder.read("b.mcap");
+    CHECK((written.empty() || read_mcap(written).closed));
+    CHECK((!recovered || !written.empty()));
+    if (!files.failed()) break;
+  }
+}
+
+TEST_CASE("a survey says of each channel what came, when, and what is missing") {
+  const FreshFolder folder;
+  PosixFiles files;
+  MemoryFile file;
+  McapWriter writer(file.store());
+  CHECK(writer.begin({"kinalign", "test"}));
+  McapChunkContent content;
+  for (const std::uint32_t k : {0U, 3U, 6U, 15U, 18U}) add(content, nth_message(k));
+  CHECK(writer.write(store(content, McapCompression::zstd)));
+  CHECK(writer.finish());
+  const auto survey = survey_recording(files, folder.write("a.mcap", file.bytes));
+  REQUIRE(survey);
+  CHECK(survey->closed);
+  REQUIRE(survey->channels.size() == 1);
+  const ChannelSurvey& channel = survey->channels.front();
+  CHECK(channel.channel.topic == "/topic1");
+  CHECK(channel.messages == 5);
+  CHECK(channel.first == 1000);
+  CHECK(channel.last == 1180);
+  CHECK(channel.missing == 2 + 2 + 8 + 2);
+  CHECK(survey->bytes == file.bytes.size());
+}
+
+TEST_CASE("a file that is no recording is refused by its name") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string path = folder.write("a.bvh", "HIERARCHY");
+  const auto survey = survey_recording(files, path);
+  REQUIRE(!survey);
+  CHECK(to_string(survey.error()) == path + ": expected an MCAP file, found another beginning");
+  CHECK(!*is_recording(files, path));
+  CHECK(*is_recording(files, folder.write("b.mcap", mcap_magic)));
+}
