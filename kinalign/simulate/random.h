@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 namespace kinalign {
 
@@ -34,6 +35,12 @@ class RandomStream {
   double normal(std::uint64_t k, std::uint64_t lane) const {
     return std::sqrt(-2.0 * std::log(uniform(k, lane))) *
            std::cos(2.0 * std::numbers::pi * uniform(k, lane + 1));
+  }
+  /// Two independent ones from the same two lanes.
+  std::pair<double, double> normals(std::uint64_t k, std::uint64_t lane) const {
+    const double radius = std::sqrt(-2.0 * std::log(uniform(k, lane)));
+    const double angle = 2.0 * std::numbers::pi * uniform(k, lane + 1);
+    return {radius * std::cos(angle), radius * std::sin(angle)};
   }
   bool chance(std::uint64_t k, std::uint64_t lane, double probability) const {
     return uniform(k, lane) < probability;

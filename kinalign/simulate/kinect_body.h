@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// The body as Kinect v2 reports it: 25 joints in the SDK's order, who hangs on whom, and the
+// capsules that hide joints from a camera.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace kinalign {
+
+/// JointType's numbers; kinalign/io/kinect_joints.h has their names.
+enum KinectJoint : std::uint8_t {
+  spine_base,
+  spine_mid,
+  neck,
+  head,
+  shoulder_left,
+  elbow_left,
+  wrist_left,
+  hand_left,
+  shoulder_right,
+  elbow_right,
+  wrist_right,
+  hand_right,
+  hip_left,
+  knee_left,
+  ankle_left,
+  foot_left,
+  hip_right,
+  knee_right,
+  ankle_right,
+  foot_right,
+  spine_shoulder,
+  hand_tip_left,
+  thumb_left,
+  hand_tip_right,
+  thumb_right
+};
+inline constexpr std::size_t kinect_joint_count = 25;
+
+enum class KinectPart : std::uint8_t { trunk, arm, leg };
+enum class KinectSide : std::uint8_t { middle, left, right };
+
+struct KinectLimb {
+  KinectJoint parent;  // of the root: itself
+  KinectPart part;
+  KinectSide side;
+  KinectJoint partner;  // the same joint of the other side; in the middle: itself
+};
+
+/// [25] in JointType order.
+inline constexpr std::array<KinectLimb, kinect_joint_count> kinect_limbs = [] {
+  using enum KinectPart;
+  using enum KinectSide;
+  return std::array<KinectLimb, kinect_joint_count>{{
+      {spine_base, trunk, middle, spine_base},     {spine_base, trunk, middle, spine_mid},
+      {spine_shoulder, trunk, middle, neck},       {neck, trunk, middle, head},
+      {spine_shoulder, arm, left, shoulder_right}, {shoulder_left, arm, left, elbow_right},
+      {elbow_left, arm, left, wrist_right},        {wrist_left, arm, left, hand_right},
+      {spine_shoulder, arm, right, shoulder_left}, {shoulder_right, arm, right, elbow_left},
+      {elbow_right, arm, right, wrist_left},       {wrist_right, arm, right, hand_left},
+      {spine_base, leg, left, hip_right},          {hip_left, leg, left, knee_right},
+      {knee_left, leg, left, ankle_right},         {ankle_left, leg, left, foot_right},
+      {spine_base, leg, right, hip_left},          {hip_right, leg, right, knee_left},
+      {knee_right, leg, right, ankle_left},        {ankle_right, leg, right, foot_left},
+      {spine_mid, trunk, middle, spine_shoulder},  {hand_left, arm, left, hand_tip_right},
+      {hand_left, arm, left, thumb_right},         {hand_right, arm, right, hand_tip_left},
+      {hand_right, arm, right, thumb_left},
+  }};
+}();
+
+/// All 25, each behind its parent.
+inline constexpr std::array<KinectJoint, kinect_joint_count> kinect_tree_order{
+    spine_base,     spine_mid,      spine_shoulder, neck,        head,
+    shoulder_left,  elbow_left,     wrist_left,     hand_left,   hand_tip_left,
+    thumb_left,     shoulder_right, elbow_right,    wrist_right, hand_right,
+    hand_tip_right, thumb_right,    hip_left,       knee_left,   ankle_left,
+    foot_left,      hip_right,      knee_right,     ankle_right, foot_right};
+
+/// How thick parts of the body are, m. Estimates.
+struct KinectRadii {
+  double head = 0.10, trunk = 0.12, upper_arm = 0.05, forearm = 0.04, thigh = 0.08, shank = 0.055;
+};
+
+}  // namespace kinalign
