@@ -71,10 +71,11 @@ std::size_t put_source(const Datagram& asked, std::uint32_t scope,
 
 }  // namespace
 
-DatagramBatch::DatagramBatch() : slots_(most), in_(most), out_(most) {
+DatagramBatch::DatagramBatch(std::size_t bytes) : slots_(most), in_(most), out_(most) {
   unsent_.reserve(most);
   for (std::size_t i = 0; i < most; ++i) {
     Slot& slot = slots_[i];
+    slot.bytes.resize(bytes);
     slot.in = {slot.bytes.data(), slot.bytes.size()};
     in_[i].msg_hdr.msg_iov = &slot.in;
     in_[i].msg_hdr.msg_iovlen = 1;

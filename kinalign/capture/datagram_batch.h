@@ -31,11 +31,13 @@ struct Datagram {
 
 class DatagramBatch {
  public:
-  static constexpr std::size_t most = 32;         // datagrams of one batch
-  static constexpr std::size_t room = 1536;       // bytes of one that comes: a frame of Ethernet
-  static constexpr std::size_t answer_room = 64;  // bytes of one that goes
+  static constexpr std::size_t most = 32;    // datagrams of one batch
+  static constexpr std::size_t room = 1536;  // bytes of one that comes: a frame of Ethernet
+  static constexpr std::size_t any_room = std::size_t{64} << 10;  // for the longest there is
+  static constexpr std::size_t answer_room = 64;                  // bytes of one that goes
 
-  DatagramBatch();
+  /// `bytes`: of a datagram that comes, at most; longer ones are cut.
+  explicit DatagramBatch(std::size_t bytes = room);
   DatagramBatch(const DatagramBatch&) = delete;
   DatagramBatch& operator=(const DatagramBatch&) = delete;
   ~DatagramBatch() = default;
@@ -59,7 +61,7 @@ class DatagramBatch {
     iovec in, out;
     alignas(cmsghdr) std::array<std::uint8_t, control_room> control, answer_control;
     std::array<std::uint8_t, answer_room> answer;
-    std::array<std::uint8_t, room> bytes;
+    std::vector<std::uint8_t> bytes;
   };
 
   std::vector<Slot> slots_;

@@ -45,11 +45,4 @@ bool attach_node_filter(const UdpSocket& socket) {
   return ::setsockopt(socket.fd(), SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter) == 0;
 }
 
-std::uint64_t dropped_by_kernel(const UdpSocket& socket) {
-  std::array<std::uint32_t, SK_MEMINFO_VARS> found{};
-  socklen_t size = sizeof found;
-  if (::getsockopt(socket.fd(), SOL_SOCKET, SO_MEMINFO, found.data(), &size) != 0) return 0;
-  return found[SK_MEMINFO_DROPS];
-}
-
 }  // namespace kinalign

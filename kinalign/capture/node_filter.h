@@ -4,15 +4,10 @@
 
 #include "kinalign/capture/udp_socket.h"
 
-#include <cstdint>
-
 namespace kinalign {
 
 /// From now on the socket takes only what begins as a node's datagram and has the length that it
 /// says. False: the system has no such filters, and nothing is changed.
 bool attach_node_filter(const UdpSocket& socket);
-
-/// Datagrams that the kernel dropped: filtered, or without room in the buffer.
-std::uint64_t dropped_by_kernel(const UdpSocket& socket);
 
 }  // namespace kinalign

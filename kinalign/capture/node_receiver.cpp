@@ -59,20 +59,22 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
   for (std::size_t i = 0; i < datagrams; ++i) {
     const Datagram datagram = batch_->at(i);
     if (!may_answer(datagram)) continue;
-    const NodeNews news = desk_->receive(
-        {datagram.bytes, {datagram.from, datagram.from_port}, axis_.arrival(datagram.received)});
+    const NodeArrival arrival{
+        datagram.bytes, {datagram.from, datagram.from_port}, axis_.arrival(datagram.received)};
+    const NodeNews news = desk_->receive(arrival);
     const auto answer = desk_->answer(axis_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());
     if (news.verdict != NodeVerdict::accepted) continue;
-    keep(news);
+    keep(arrival, news);
     heard_[news.stream] = datagram.to;
   }
   unsent_ += batch_->send(socket.fd()).size();
-  for (std::size_t i = 0; i < kept_length_; ++i) hear(kept_[i].news);
+  for (std::size_t i = 0; i < kept_length_; ++i) hear(kept_[i]);
 }
 
-void NodeReceiver::keep(const NodeNews& news) {
+void NodeReceiver::keep(const NodeArrival& arrival, const NodeNews& news) {
   Kept& kept = kept_[kept_length_++];
+  kept.arrival = arrival;  // its bytes stay until the next batch
   kept.readings.assign(news.readings.begin(), news.readings.end());
   kept.news = news;
   kept.news.readings = kept.readings;
@@ -106,7 +108,8 @@ bool NodeReceiver::is_current(const StreamClock& clock, std::size_t stream) cons
   return clock.number == desk_->stream(stream).number && clock.epoch == axis_.epoch();
 }
 
-void NodeReceiver::hear(NodeNews& news) {
+void NodeReceiver::hear(Kept& kept) {
+  NodeNews& news = kept.news;
   StreamClock& clock = clock_of(news.stream);
   if (news.exchange) {
     // In the order in which they came, by microseconds of rounding: later is as true.
@@ -121,7 +124,7 @@ void NodeReceiver::hear(NodeNews& news) {
     clock.ways += *d;
     ++clock.confirmed;
   }
-  if (watcher_) watcher_(news, clock.clock);
+  if (watcher_) watcher_(kept.arrival, news, clock.clock);
 }
 
 void NodeReceiver::tick() {

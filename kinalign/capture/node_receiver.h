@@ -52,8 +52,9 @@ class NodeReceiver {
   /// Four times a second or so: who left, how the host's clocks run.
   void tick();
 
-  /// Is told each accepted frame with its node's clock, which has heard of it.
-  using Watcher = std::function<void(const NodeNews& news, LiveClock& clock)>;
+  /// Is told each accepted datagram with its node's clock, which has heard of it.
+  using Watcher =
+      std::function<void(const NodeArrival& arrival, const NodeNews& news, LiveClock& clock)>;
   void watch(Watcher watcher) { watcher_ = std::move(watcher); }
 
   const std::vector<UdpSocket>& sockets() const { return *sockets_; }
@@ -63,6 +64,8 @@ class NodeReceiver {
   const RefusedNodes& refused_nodes() const { return desk_->refused_nodes(); }
   std::uint64_t dropped() const { return lines_.dropped(); }  // by the kernel
   std::uint64_t unsent() const { return unsent_; }
+  std::uint32_t epoch() const { return axis_.epoch(); }
+  std::uint32_t node_id(std::size_t stream) const { return desk_->stream(stream).node_id; }
   /// Datagrams that were not looked into, for how they came.
   std::uint64_t not_unicast() const { return not_unicast_; }  // many would answer
   std::uint64_t from_port_0() const { return from_port_0_; }  // nobody would hear the answer
@@ -101,13 +104,14 @@ class NodeReceiver {
   };
   /// An accepted frame that waits until its batch is answered.
   struct Kept {
+    NodeArrival arrival;
     NodeNews news;
     std::vector<NodeReading> readings;
   };
   bool may_answer(const Datagram& datagram);
   void take(const UdpSocket& socket, std::size_t datagrams);
-  void keep(const NodeNews& news);
-  void hear(NodeNews& news);
+  void keep(const NodeArrival& arrival, const NodeNews& news);
+  void hear(Kept& kept);
   void follow();
   StreamClock& clock_of(std::size_t stream);
   static void add_clock(NodeStatus& status, const StreamClock& clock);

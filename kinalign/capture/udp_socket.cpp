@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/udp_socket.h"
 
+#include "kinalign/capture/socket_address.h"
+
+#include <linux/sock_diag.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -9,7 +12,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <memory>
 #include <utility>
 
 namespace kinalign {
@@ -66,30 +68,10 @@ struct Socket {
   int family = 0;
 };
 
-std::uint16_t bound_port(int fd) {
-  sockaddr_storage bound{};
-  socklen_t size = sizeof bound;
-  ::getsockname(fd, reinterpret_cast<sockaddr*>(&bound), &size);
-  if (bound.ss_family == AF_INET) return ntohs(reinterpret_cast<sockaddr_in&>(bound).sin_port);
-  return ntohs(reinterpret_cast<sockaddr_in6&>(bound).sin6_port);
-}
-
-using Found = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
-
-/// nullptr: it is no address.
-Found find_address(const std::string& address, std::uint16_t port) {
-  addrinfo hints{};
-  hints.ai_flags = AI_NUMERICHOST | AI_PASSIVE;
-  hints.ai_socktype = SOCK_DGRAM;
-  addrinfo* found = nullptr;
-  const int fault = ::getaddrinfo(address.c_str(), std::to_string(port).c_str(), &hints, &found);
-  return {fault == 0 ? found : nullptr, &::freeaddrinfo};
-}
-
 }  // namespace
 
 std::optional<std::string> spelt_address(const std::string& text) {
-  const Found found = find_address(text, 0);
+  const FoundAddress found = find_address(text, 0, SOCK_DGRAM);
   if (found == nullptr) return std::nullopt;
   return address_text(*found->ai_addr);
 }
@@ -103,7 +85,7 @@ std::string address_text(const sockaddr& address) {
 }
 
 Result<UdpSocket> UdpSocket::open(const std::string& address, std::uint16_t port) {
-  const Found found = find_address(address, port);
+  const FoundAddress found = find_address(address, port, SOCK_DGRAM);
   if (found == nullptr) {
     return Failure(Error{"", 0, "an IPv4 or IPv6 address", shown(address)});
   }
@@ -168,6 +150,13 @@ Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& 
     port = sockets.front().port();
   }
   return sockets;
+}
+
+std::uint64_t dropped_by_kernel(const UdpSocket& socket) {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> found{};
+  socklen_t size = sizeof found;
+  if (::getsockopt(socket.fd(), SOL_SOCKET, SO_MEMINFO, found.data(), &size) != 0) return 0;
+  return found[SK_MEMINFO_DROPS];
 }
 
 std::string endpoint_text(const std::string& address, std::uint16_t port) {

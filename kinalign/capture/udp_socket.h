@@ -52,6 +52,9 @@ class UdpSocket {
   std::string address_;
 };
 
+/// Datagrams that the kernel dropped: filtered, or without room in the buffer.
+std::uint64_t dropped_by_kernel(const UdpSocket& socket);
+
 /// An address that open takes, as the system writes it: "0.0.0.0" of "0". Absent: it is none, or a
 /// name, which might be several.
 std::optional<std::string> spelt_address(const std::string& text);

@@ -25,6 +25,9 @@ struct ClockOrigin {
 inline constexpr Duration counter_resolution = std::chrono::microseconds(1);
 inline constexpr double counter_resolution_s = seconds(counter_resolution);
 
+/// Of so many whole ones: who calls has rounded.
+inline Duration nanoseconds(double ns) { return Duration{static_cast<std::int64_t>(ns)}; }
+
 /// What it bounds that the counter read n and the host h.
 inline Bound bound_by(const ClockOrigin& origin, Side side, NodeTime n, HostTime h) {
   const Duration node = n - origin.node;

@@ -93,12 +93,9 @@ double FloorLog::least_width() const {
   return is_short(past_[0]) && !(is_short(past_[1]) && is_short(past_[2])) ? 0.0 : least;
 }
 
-/// Of a node that was not heard before the slope is not known: all are tried that can be.
 void FloorLog::open(std::int64_t index, const SlopeBelief& slope) {
   index_ = index;
-  slope_ = slope.mean;
-  slope_deviation_ = slope.deviation;
-  slack_ = slope.deviation < SlopeBelief{}.deviation ? slope_slack : greatest_rate;
+  slope_ = slope;
   now_ = {};
   corridor_ = Corridor(0.0, corners);
 }
@@ -111,7 +108,7 @@ void FloorLog::add(const Bound& bound, const SlopeBelief& slope) {
   } else if (index < *index_) {
     return;  // reordered over the edge
   }
-  const Bound level{bound.s, bound.x - slope_ * (bound.s - middle_s()), bound.side};
+  const Bound level{bound.s, bound.x - slope_.mean * (bound.s - middle_s()), bound.side};
   corridor_.add(level);
   const double x = from_above(level).x;
   Lows& lows = now_[bound.side == Side::above ? 0 : 1];
@@ -133,13 +130,16 @@ void FloorLog::close() {
   ++windows_;
   if (now_[0].count == lowest && now_[1].count == lowest) {
     const auto gap = [](const Lows& l) { return (l.x.back() - l.x.front()) / (lowest - 1); };
-    const CorridorLine line = widest_line(corridor_, middle_s(), slack_);
+    // Of a node that was not heard before the slope is not known: all are tried that can be.
+    const bool known = slope_.deviation < SlopeBelief{}.deviation;
+    const CorridorLine line =
+        widest_line(corridor_, middle_s(), known ? slope_slack : greatest_rate);
     past_[0] = FloorWindow{middle_s(), line.middle(), line.width(),
                            std::hypot(gap(now_[0]), gap(now_[1]))};
     shortest_.add(*past_[0]);
   }
   step_.reset();
-  const Expected expected{slope_, slope_deviation_, usual_round_trip()};
+  const Expected expected{slope_, usual_round_trip()};
   if (past_[0] && past_[2]) step_ = singles_.step(*past_[0], *past_[2], expected);
   const auto now = merged(0, 3), then = merged(4, 3);
   if (now && then && !step_) step_ = threes_.step(*now, *then, expected);
@@ -166,7 +166,7 @@ std::optional<FloorWindow> FloorLog::merged(std::size_t first, std::size_t count
   double gap = centre->gap;
   for (std::size_t i = first; i < first + count; ++i) {
     if (!past_[i] || std::abs(past_[i]->s - centre->s) > row_s) return std::nullopt;
-    const double moved = past_[i]->middle + slope_ * (centre->s - past_[i]->s);
+    const double moved = past_[i]->middle + slope_.mean * (centre->s - past_[i]->s);
     up = std::min(up, moved + past_[i]->round_trip / 2.0);
     down = std::max(down, moved - past_[i]->round_trip / 2.0);
     gap = std::max(gap, past_[i]->gap);
@@ -180,12 +180,12 @@ std::optional<FloorWindow> FloorLog::window(std::size_t i) const {
 
 std::optional<double> FloorLog::Comparison::step(const FloorWindow& now, const FloorWindow& then,
                                                  const Expected& expected) {
-  const double moved = now.middle - then.middle - expected.slope * (now.s - then.s);
+  const double moved = now.middle - then.middle - expected.slope.mean * (now.s - then.s);
   const double longer = now.round_trip - then.round_trip;
   const double gap = std::hypot(now.gap, then.gap);
   const double usual =
       pairs >= enough_pairs ? std::sqrt(moved_squares / static_cast<double>(pairs)) : gap;
-  const double silent = silence(now.s - then.s, expected.slope_deviation);
+  const double silent = silence(now.s - then.s, expected.slope.deviation);
   if (silent == 0.0) {
     // A step on its way through the windows is not usual.
     const double counted = pairs >= enough_pairs ? std::min(std::abs(moved), 2.0 * usual) : moved;

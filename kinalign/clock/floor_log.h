@@ -79,7 +79,8 @@ class FloorLog {
   std::optional<FloorWindow> merged(std::size_t first, std::size_t count) const;
   /// Of windows without a step: the offset's slope, and the usual round trip.
   struct Expected {
-    double slope = 0.0, slope_deviation = 0.0, round_trip = 0.0;
+    SlopeBelief slope;
+    double round_trip = 0.0;
   };
   /// How far offsets of windows usually differ, and whether these do by more.
   struct Comparison {
@@ -97,8 +98,7 @@ class FloorLog {
   static constexpr std::size_t corners = 63;
   Corridor corridor_{0.0, corners};    // of the window's bounds, less its slope
   std::optional<std::int64_t> index_;  // absent: no window is open
-  double slope_ = 0.0, slack_ = 0.0;   // of the offset when the window began, and to each side
-  double slope_deviation_ = 0.0;       // as it was believed then
+  SlopeBelief slope_;                  // of the offset, when the window began
   std::array<std::optional<FloorWindow>, remembered> past_;
   std::uint64_t windows_ = 0;
   Comparison singles_, threes_;

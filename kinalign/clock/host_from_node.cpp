@@ -16,8 +16,6 @@ struct Offset {
   Duration likeliest{}, least{}, greatest{};
 };
 
-Duration nanoseconds(double ns) { return Duration{static_cast<std::int64_t>(ns)}; }
-
 double between(Duration a, Duration b, double share) {
   return static_cast<double>((b - a).count()) * share;
 }

@@ -39,8 +39,6 @@ Certificate certificate_of(std::vector<Bound> bounds, const Assumptions& assumpt
   return certificate;
 }
 
-Duration nanoseconds(double ns) { return Duration{static_cast<std::int64_t>(ns)}; }
-
 struct Knots {
   std::vector<ClockKnot> knots;
   bool sound = true;  // bounds go together everywhere, and leave what there is at least

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/disk_thread.h"
+
+#include <utility>
+
+namespace kinalign {
+
+DiskThread::DiskThread(RecordingDisk disk, McapCompression compression)
+    : disk_(std::move(disk)), compression_(compression) {
+  publish({});
+  writer_ = std::thread([this] { write(); });
+  syncer_ = std::thread([this] { sync(); });
+}
+
+DiskThread::~DiskThread() {
+  finish();
+  writer_.join();
+  syncer_.join();
+}
+
+void DiskThread::push(McapChunkContent chunk) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (status_.waiting_bytes + queue_bytes_ + chunk.size() > most_waiting) {
+      for (const auto& [channel, entries] : chunk.messages()) status_.dropped += entries.size();
+      return;
+    }
+    queue_bytes_ += chunk.size();
+    queue_.push_back(std::move(chunk));
+  }
+  written_.notify_one();
+}
+
+void DiskThread::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    finishing_ = true;
+  }
+  written_.notify_one();
+}
+
+DiskStatus DiskThread::status() const {
+  const std::lock_guard lock(mutex_);
+  DiskStatus status = status_;
+  status.waiting_bytes += queue_bytes_;
+  return status;
+}
+
+std::vector<PartFailure> DiskThread::take_failures() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(failures_, {});
+}
+
+/// After each step on the disk, under the lock.
+void DiskThread::publish(const Result<void>& result) {
+  status_.paths = disk_.paths();
+  status_.bytes = disk_.bytes();
+  status_.messages = disk_.messages();
+  status_.waiting_bytes = disk_.kept_bytes();
+  status_.refused = result ? std::nullopt : std::optional(result.error());
+  for (PartFailure& failure : disk_.take_failures()) failures_.push_back(std::move(failure));
+}
+
+void DiskThread::write() {
+  std::unique_lock lock(mutex_);
+  while (!done_) {
+    written_.wait(lock, [this] { return !queue_.empty() || synced_ || finishing_; });
+    work_on(lock);
+    if (!done_ && !syncing_) due_ = disk_.unsynced();
+    if (due_) asked_.notify_one();
+  }
+  asked_.notify_one();
+}
+
+/// One step, the lock being open while it lasts. A sync's answer comes first: it may say that the
+/// file is spoilt.
+void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
+  Result<void> result;
+  bool finished = false;
+  if (synced_) {
+    const Result<void> answer = *std::exchange(synced_, std::nullopt);
+    const RecordingDisk::Sync sync = *std::exchange(due_, std::nullopt);
+    syncing_ = false;
+    if (answer) ++status_.syncs;
+    lock.unlock();
+    result = disk_.synced(sync, answer);
+  } else if (!queue_.empty()) {
+    const McapChunkContent chunk = std::move(queue_.front());
+    queue_.pop_front();
+    lock.unlock();
+    result = disk_.write(store(chunk, compression_));
+    lock.lock();
+    queue_bytes_ -= chunk.size();
+    lock.unlock();
+  } else if (!syncing_) {
+    due_.reset();  // finish() syncs itself
+    lock.unlock();
+    result = disk_.finish();
+    finished = true;
+  } else {
+    written_.wait(lock, [this] { return synced_.has_value(); });
+    return;
+  }
+  lock.lock();
+  publish(result);
+  done_ = status_.finished = finished;  // together with how it went
+}
+
+void DiskThread::sync() {
+  std::unique_lock lock(mutex_);
+  while (!done_) {
+    asked_.wait(lock, [this] { return (due_ && !syncing_) || done_; });
+    if (done_) return;
+    syncing_ = true;
+    const RecordingDisk::Sync sync = *due_;
+    lock.unlock();
+    const Result<void> answer = sync.file->sync();
+    lock.lock();
+    synced_ = answer;
+    written_.notify_one();
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A RecordingDisk behind two threads: one packs and writes, one syncs, so that who receives never
+// waits, and a kill during a slow sync costs no more than at any other time.
+#pragma once
+
+#include "kinalign/capture/recording_disk.h"
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace kinalign {
+
+struct DiskStatus {
+  std::vector<std::string> paths;   // the recording's files
+  std::uint64_t bytes = 0;          // in them
+  std::uint64_t messages = 0;       // in the present one
+  std::uint64_t syncs = 0;          // that reached the disk
+  std::uint64_t waiting_bytes = 0;  // that only memory has
+  std::uint64_t dropped = 0;        // messages: the disk was refused too long, memory was full
+  std::optional<Error> refused;     // by the disk just now; tried again with what comes next
+  bool finished = false;            // nothing more is written; `refused`: not all could be
+};
+
+class DiskThread {
+ public:
+  /// Bytes that wait for the disk at most: 19 minutes of the paper's devices.
+  static constexpr std::uint64_t most_waiting = std::uint64_t{256} << 20;
+
+  DiskThread(RecordingDisk disk, McapCompression compression);
+  /// As finish(), and waits.
+  ~DiskThread();
+  DiskThread(const DiskThread&) = delete;
+  DiskThread& operator=(const DiskThread&) = delete;
+
+  /// Waits for nothing.
+  void push(McapChunkContent chunk);
+  /// No more will be pushed. Returns at once: status().finished says when all is done.
+  void finish();
+
+  DiskStatus status() const;
+  /// Since this was asked last.
+  std::vector<PartFailure> take_failures();
+
+ private:
+  void write();
+  void sync();
+  void work_on(std::unique_lock<std::mutex>& lock);
+  void publish(const Result<void>& result);
+
+  RecordingDisk disk_;  // the writing thread's
+  McapCompression compression_;
+
+  mutable std::mutex mutex_;  // of all below
+  std::condition_variable written_, asked_;
+  std::deque<McapChunkContent> queue_;
+  std::uint64_t queue_bytes_ = 0;
+  std::optional<RecordingDisk::Sync> due_;  // for the syncing thread
+  std::optional<Result<void>> synced_;      // and its answer
+  bool syncing_ = false, finishing_ = false, done_ = false;
+  DiskStatus status_;
+  std::vector<PartFailure> failures_;
+
+  std::thread writer_, syncer_;  // last: they use all above
+};
+
+}  // namespace kinalign

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Devices' ports, whatever they speak: datagrams or connections, handed on as they came, with their
+// arrival on the host's axis and a number for who sent them. Nothing here waits, and one port's
+// flood takes no more than its turn.
+#pragma once
+
+#include "kinalign/capture/datagram_batch.h"
+#include "kinalign/capture/host_clock.h"
+#include "kinalign/capture/udp_socket.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+/// A datagram, or what a connection had at once.
+struct Piece {
+  std::size_t sender = 0;
+  std::string_view bytes;  // good during the call alone
+  HostTime arrival{};
+};
+using TakePiece = std::function<void(const Piece& piece)>;
+
+/// Who sends to a port, by number. The number of one who is silent may become another's.
+class Senders {
+ public:
+  static constexpr std::size_t most = 16;
+
+  struct Sender {
+    HostAddress host{};
+    std::uint16_t port = 0;
+    HostTime heard{};
+    std::uint64_t life = 0;  // which sender this is, of all that ever had a number
+  };
+  /// Absent: too many others sent within the last minute.
+  std::optional<std::size_t> number(const HostAddress& host, std::uint16_t port, HostTime now);
+  const Sender& at(std::size_t number) const { return senders_[number]; }
+  std::size_t size() const { return senders_.size(); }
+
+ private:
+  std::vector<Sender> senders_;
+  std::uint64_t lives_ = 0;
+};
+
+struct PortCounts {
+  std::uint64_t pieces = 0, bytes = 0;
+  std::uint64_t refused = 0;  // of one sender too many
+  std::uint64_t cut = 0;      // datagrams longer than any can be
+  std::uint64_t dropped = 0;  // by the kernel, for want of room
+  std::uint64_t links = 0;    // connections that were made
+};
+
+/// A UDP port.
+class UdpPieces {
+ public:
+  /// `address` empty: all.
+  static Result<UdpPieces> open(const std::string& address, std::uint16_t port);
+
+  void add_fds(std::vector<int>& fds) const;
+  void drain(HostAxis& axis, const TakePiece& take);
+  std::uint16_t port() const { return sockets_.front().port(); }
+  const Senders& senders() const { return senders_; }
+  PortCounts counts() const;
+
+ private:
+  explicit UdpPieces(std::vector<UdpSocket> sockets);
+  void take_datagram(const Datagram& datagram, const HostAxis& axis, const TakePiece& take);
+
+  std::vector<UdpSocket> sockets_;
+  std::unique_ptr<DatagramBatch> batch_;
+  Senders senders_;
+  PortCounts counts_;
+};
+
+/// TCP: a connection to a device that serves, made anew whenever it breaks, or those of devices
+/// that connect to us.
+class TcpPieces {
+ public:
+  /// To the device at `address`, in the background: what is not there yet may come.
+  static Result<TcpPieces> connect(const std::string& address, std::uint16_t port);
+  static Result<TcpPieces> listen(const std::string& address, std::uint16_t port);
+
+  void add_fds(std::vector<int>& fds) const;
+  /// Also connects anew, now and then.
+  void drain(HostAxis& axis, const TakePiece& take);
+  std::uint16_t port() const { return port_; }
+  const Senders& senders() const { return senders_; }
+  PortCounts counts() const { return counts_; }
+
+ private:
+  /// A descriptor of our own.
+  class Handle {
+   public:
+    Handle() = default;
+    explicit Handle(int fd) : fd_(fd) {}
+    Handle(Handle&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+    Handle& operator=(Handle&& other) noexcept {
+      std::swap(fd_, other.fd_);
+      return *this;
+    }
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    ~Handle();
+    int fd() const { return fd_; }
+
+   private:
+    int fd_ = -1;
+  };
+  struct Link {
+    Handle socket;
+    bool connected = false;
+    HostAddress host{};  // of the other end
+    std::uint16_t port = 0;
+  };
+  TcpPieces(std::string address, std::uint16_t port, Handle listener);
+  void accept();
+  void try_to_connect(HostTime now);
+  bool drain_link(Link& link, HostAxis& axis, const TakePiece& take);
+  bool settle(Link& link);
+
+  std::string address_;
+  std::uint16_t port_ = 0;
+  Handle listener_;  // none: we connect
+  std::vector<Link> links_;
+  HostTime next_try_ = HostTime::min();
+  std::vector<char> buffer_;
+  Senders senders_;
+  PortCounts counts_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What devices say, put into chunks: by channels, stamped, counted, a chunk closed four times a
+// second. Before a take it keeps the last seconds (the pre-roll), which the take begins with. Has
+// no thread, clock or file: time is an argument, and chunks go where start() says.
+#pragma once
+
+#include "kinalign/io/mcap_chunk.h"
+#include "kinalign/wire/time.h"
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+struct RecorderOptions {
+  Duration chunk = std::chrono::milliseconds(250);      // what a kill costs at most, nearly
+  std::size_t chunk_bytes = std::size_t{1} << 20;       // or earlier at that size
+  Duration pre_roll = std::chrono::seconds(5);          // kept before a take
+  std::size_t pre_roll_bytes = std::size_t{256} << 20;  // at most
+  /// UTC less the host's axis, the same for the whole run: log times in a file are UTC.
+  Duration utc_minus_host{};
+};
+
+class Recorder {
+ public:
+  using Take = std::function<void(McapChunkContent)>;
+
+  explicit Recorder(const RecorderOptions& options) : options_(options) {}
+
+  /// A channel to record on; its number. `schema`'s id is set here, absent: none.
+  std::uint16_t add_channel(McapChannel channel, const McapSchema* schema = nullptr);
+
+  /// `device`: on the device's own clock, ns; absent where it has none.
+  void record(std::uint16_t channel, HostTime arrival, std::string_view data,
+              std::optional<std::uint64_t> device_ns = std::nullopt);
+  /// Closes a chunk that is due: some times a chunk's length.
+  void tick(HostTime now);
+
+  /// From now on chunks go to `take`, those of the pre-roll first.
+  void start(HostTime now, Take take);
+  /// The chunk that is open goes there, too; then none any more.
+  void stop();
+  bool started() const { return take_ != nullptr; }
+
+  /// Recorded on a channel since it was added, in takes and before.
+  std::uint64_t messages(std::uint16_t channel) const { return channels_[channel].messages; }
+  std::uint64_t log_time(HostTime t) const;
+
+ private:
+  struct Channel {
+    McapChannel channel;
+    std::uint64_t messages = 0;
+    bool in_chunk = false;  // its definition
+  };
+  std::uint16_t schema_id(const McapSchema& schema);
+  void close();
+  void forget_before(HostTime now);
+
+  RecorderOptions options_;
+  std::vector<McapSchema> schemas_;           // [i] has the id i + 1
+  std::vector<Channel> channels_{Channel{}};  // [0]: none
+  McapChunkContent chunk_;
+  std::optional<HostTime> opened_;  // the chunk
+  struct Kept {
+    McapChunkContent chunk;
+    HostTime end{};
+  };
+  std::deque<Kept> pre_roll_;
+  std::size_t pre_roll_bytes_ = 0;
+  Take take_;
+};
+
+}  // namespace kinalign

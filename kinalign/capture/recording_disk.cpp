@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/recording_disk.h"
+
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::string_view suffix = ".mcap";
+constexpr int most_parts = 1000;
+
+std::string part_path(const std::string& path, int part) {
+  if (part == 1) return path;
+  return path.substr(0, path.size() - suffix.size()) + ".part" + std::to_string(part) +
+         std::string(suffix);
+}
+
+McapStore store_of(const std::shared_ptr<GrowingFile>& file) {
+  return {[file](std::string_view bytes) { return file->append(bytes); },
+          [file](std::uint64_t at, std::span<char> to) { return file->read_at(at, to); }};
+}
+
+}  // namespace
+
+Result<RecordingDisk> RecordingDisk::open(FileSystem& files, std::string path, MakeHead head) {
+  if (!path.ends_with(suffix)) return Failure(Error{path, 0, "a name that ends in .mcap", ""});
+  RecordingDisk disk(files, std::move(path), std::move(head));
+  KA_TRY(disk.open_part());
+  if (const auto synced = disk.file_->sync(); !synced) {
+    files.remove(disk.path_.c_str());
+    return Failure(synced.error());
+  }
+  disk.synced_ = disk.file_->size();
+  return disk;
+}
+
+/// The next file and what it begins with. What failed halfway is removed: it holds no sample.
+Result<void> RecordingDisk::open_part() {
+  const int part = static_cast<int>(paths_.size()) + 1;
+  const std::string path = part_path(path_, part);
+  auto file = std::make_shared<GrowingFile>(KA_TRY(GrowingFile::create(*files_, path)));
+  auto writer = std::make_unique<McapWriter>(store_of(file));
+  const RecordingHead head = head_(part);
+  Result<void> begun = writer->begin(head.header);
+  for (const McapMetadata& metadata : head.metadata) {
+    if (begun) begun = writer->write(metadata);
+  }
+  for (const McapAttachment& attachment : head.attachments) {
+    if (begun) begun = writer->write(attachment);
+  }
+  if (!begun) {
+    files_->remove(path.c_str());
+    return begun;
+  }
+  if (file_) bytes_before_ += file_->size();
+  file_ = std::move(file);
+  writer_ = std::move(writer);
+  open_ = true;
+  synced_ = 0;
+  paths_.push_back(path);
+  return {};
+}
+
+Result<void> RecordingDisk::write(McapStoredChunk chunk) {
+  kept_bytes_ += chunk.bytes.size();
+  kept_.push_back({std::move(chunk), 0});
+  Result<void> put = put_kept();
+  return put ? put : next_part(put.error());
+}
+
+/// Into the file what is not in it yet.
+Result<void> RecordingDisk::put_kept() {
+  if (!open_) KA_TRY(open_part());
+  for (Kept& kept : kept_) {
+    if (kept.end != 0) continue;
+    KA_TRY(writer_->write(kept.chunk));
+    kept.end = file_->size();
+  }
+  return {};
+}
+
+Result<void> RecordingDisk::next_part(const Error& why) {
+  (void)finish_part();  // for what it is worth
+  for (Kept& kept : kept_) kept.end = 0;
+  Result<void> result = put_kept();
+  failures_.push_back({why, result ? paths_.back() : ""});
+  return result;
+}
+
+std::optional<RecordingDisk::Sync> RecordingDisk::unsynced() const {
+  if (!open_ || file_->size() == synced_) return std::nullopt;
+  return Sync{file_, file_->size()};
+}
+
+Result<void> RecordingDisk::synced(const Sync& sync, const Result<void>& result) {
+  if (!open_ || sync.file != file_) return {};  // it was given up in the meantime
+  if (!result) return next_part(result.error());
+  forget_synced(sync.size);
+  return {};
+}
+
+void RecordingDisk::forget_synced(std::uint64_t size) {
+  synced_ = size;
+  while (!kept_.empty() && kept_.front().end != 0 && kept_.front().end <= size) {
+    kept_bytes_ -= kept_.front().chunk.bytes.size();
+    kept_.pop_front();
+  }
+}
+
+/// Once a file: what failed is cut off again, and can be read as it is; `recover` gives it an
+/// index.
+Result<void> RecordingDisk::finish_part() {
+  if (!std::exchange(open_, false)) return {};
+  const std::uint64_t size = file_->size();
+  Result<void> finished = writer_->finish();
+  if (!finished) (void)file_->cut(size);
+  return finished;
+}
+
+Result<void> RecordingDisk::finish_once() {
+  KA_TRY(put_kept());
+  KA_TRY(finish_part());
+  KA_TRY(file_->sync());
+  forget_synced(file_->size());
+  file_->close();
+  return {};
+}
+
+Result<void> RecordingDisk::finish() {
+  Result<void> result = finish_once();
+  if (result) return result;
+  KA_TRY(next_part(result.error()));
+  return finish_once();
+}
+
+}  // namespace kinalign

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one sender's bytes are while they are recorded: frames, what was lost, late or doubled by
+// the sender's own numbers, what could not be read. The bytes are recorded whatever this says.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/io/kinect_frames.h"
+#include "kinalign/io/kinect_stream.h"
+#include "kinalign/io/noitom_stream.h"
+#include "kinalign/io/recording_format.h"
+#include "kinalign/io/xsens_stream.h"
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace kinalign {
+
+class StreamWatch {
+ public:
+  /// `protocol` as in take/lab.h. Of one that is not decoded here nothing is counted.
+  explicit StreamWatch(const std::string& protocol = "");
+
+  /// The sender's bytes, cut anywhere.
+  void feed(std::string_view piece);
+  /// Of its frames: messages and bytes are the caller's.
+  SenderCounts counts() const;
+  /// What the user should know; `name` stands in the messages.
+  Findings findings(const std::string& name) const;
+
+ private:
+  struct Noitom {
+    NoitomDecoder decoder;
+    std::vector<NoitomArrival> frames{};
+  };
+  struct Xsens {
+    XsensDecoder decoder;
+    std::vector<XsensArrival> samples{};
+  };
+  struct Kinect {
+    KinectStreamDecoder decoder;
+    std::vector<KinectMessage> messages{};
+    std::map<std::uint32_t, KinectFrameJoiner> sensors{};  // as many as most_sensors
+    std::vector<JoinedKinectFrame> frames{};
+    std::uint64_t whole = 0, further_sensors = 0;  // frames; messages of one sensor too many
+  };
+  static void feed(Noitom& noitom, std::span<const std::uint8_t> bytes);
+  static void feed(Xsens& xsens, std::span<const std::uint8_t> bytes);
+  static void feed(Kinect& kinect, std::span<const std::uint8_t> bytes);
+  static SenderCounts counts(const Noitom& noitom);
+  static SenderCounts counts(const Xsens& xsens);
+  static SenderCounts counts(const Kinect& kinect);
+
+  std::variant<std::monostate, Noitom, Xsens, Kinect> decoder_;
+};
+
+}  // namespace kinalign

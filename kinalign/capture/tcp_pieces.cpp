@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/pieces.h"
+#include "kinalign/capture/socket_address.h"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <tuple>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t read_size = std::size_t{64} << 10;
+constexpr int reads_in_turn = 4;  // of a connection, before other ports have theirs
+constexpr std::size_t most_links = 8;
+constexpr Duration between_tries = std::chrono::seconds(1);
+constexpr int type = SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
+
+/// Of the other end.
+std::pair<HostAddress, std::uint16_t> peer_of(int fd) {
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  if (::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &size) != 0) return {};
+  if (peer.ss_family == AF_INET) {
+    sockaddr_in four{};
+    std::memcpy(&four, &peer, sizeof four);
+    std::array<std::uint8_t, 4> bytes{};
+    std::memcpy(bytes.data(), &four.sin_addr, 4);
+    return {mapped_ipv4(bytes), ntohs(four.sin_port)};
+  }
+  sockaddr_in6 six{};
+  std::memcpy(&six, &peer, sizeof six);
+  HostAddress host{};
+  std::memcpy(host.data(), &six.sin6_addr, host.size());
+  return {host, ntohs(six.sin6_port)};
+}
+
+/// Notices a device that vanished without a word within half a minute.
+void keep_alive(int fd) {
+  const auto set = [fd](int level, int name, int value) {
+    ::setsockopt(fd, level, name, &value, sizeof value);
+  };
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, 10);
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 5);
+  set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+}
+
+Failure no_address(const std::string& address) {
+  return Failure(Error{"", 0, "an IPv4 or IPv6 address", shown(address)});
+}
+
+}  // namespace
+
+TcpPieces::Handle::~Handle() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+TcpPieces::TcpPieces(std::string address, std::uint16_t port, Handle listener)
+    : address_(std::move(address)),
+      port_(port),
+      listener_(std::move(listener)),
+      buffer_(read_size) {}
+
+Result<TcpPieces> TcpPieces::connect(const std::string& address, std::uint16_t port) {
+  if (address.empty() || find_address(address, port, SOCK_STREAM) == nullptr)
+    return no_address(address);
+  return TcpPieces(address, port, Handle());
+}
+
+Result<TcpPieces> TcpPieces::listen(const std::string& address, std::uint16_t port) {
+  const std::string own = address.empty() ? "0.0.0.0" : address;
+  const FoundAddress found = find_address(own, port, SOCK_STREAM);
+  if (found == nullptr) return no_address(address);
+  Handle listener(::socket(found->ai_family, type, 0));
+  const int yes = 1;
+  ::setsockopt(listener.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (listener.fd() < 0 || ::bind(listener.fd(), found->ai_addr, found->ai_addrlen) != 0 ||
+      ::listen(listener.fd(), static_cast<int>(most_links)) != 0) {
+    return Failure(Error{endpoint_text(own, port), 0, "a TCP port to serve on",
+                         errno == EADDRINUSE ? std::string(port_taken) : std::strerror(errno)});
+  }
+  const std::uint16_t bound = bound_port(listener.fd());
+  return TcpPieces(address, bound, std::move(listener));
+}
+
+void TcpPieces::add_fds(std::vector<int>& fds) const {
+  if (listener_.fd() >= 0) fds.push_back(listener_.fd());
+  for (const Link& link : links_) fds.push_back(link.socket.fd());
+}
+
+void TcpPieces::accept() {
+  for (;;) {
+    Handle socket(::accept4(listener_.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (socket.fd() < 0) return;
+    if (links_.size() == most_links) {
+      ++counts_.refused;
+      continue;  // which closes it
+    }
+    keep_alive(socket.fd());
+    links_.push_back({std::move(socket)});
+  }
+}
+
+void TcpPieces::try_to_connect(HostTime now) {
+  if (now < next_try_) return;
+  next_try_ = now + between_tries;
+  const FoundAddress found = find_address(address_, port_, SOCK_STREAM);
+  if (found == nullptr) return;
+  Handle socket(::socket(found->ai_family, type, 0));
+  if (socket.fd() < 0) return;
+  keep_alive(socket.fd());
+  if (::connect(socket.fd(), found->ai_addr, found->ai_addrlen) != 0 && errno != EINPROGRESS) {
+    return;
+  }
+  links_.push_back({std::move(socket)});
+}
+
+void TcpPieces::drain(HostAxis& axis, const TakePiece& take) {
+  if (listener_.fd() >= 0) {
+    accept();
+  } else if (links_.empty()) {
+    try_to_connect(axis.now());
+  }
+  std::erase_if(links_, [&](Link& link) { return !drain_link(link, axis, take); });
+}
+
+/// Whether the connection is still there, made or in the making.
+bool TcpPieces::settle(Link& link) {
+  int fault = 0;
+  socklen_t size = sizeof fault;
+  ::getsockopt(link.socket.fd(), SOL_SOCKET, SO_ERROR, &fault, &size);
+  if (fault != 0) return false;
+  std::tie(link.host, link.port) = peer_of(link.socket.fd());
+  link.connected = link.port != 0;
+  if (link.connected) ++counts_.links;
+  return true;
+}
+
+bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
+  if (!link.connected && !settle(link)) return false;
+  for (int turn = 0; link.connected && turn < reads_in_turn; ++turn) {
+    const ssize_t got = ::read(link.socket.fd(), buffer_.data(), buffer_.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
+    if (got == 0) return false;
+    const HostTime arrival = axis.now();
+    const auto sender = senders_.number(link.host, link.port, arrival);
+    ++(sender ? counts_.pieces : counts_.refused);
+    if (!sender) continue;
+    const auto size = static_cast<std::size_t>(got);
+    counts_.bytes += size;
+    take({*sender, {buffer_.data(), size}, arrival});
+  }
+  return true;
+}
+
+}  // namespace kinalign

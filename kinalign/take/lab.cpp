@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/take/lab.h"
+
+#include "kinalign/core/nearest_name.h"
+#include "kinalign/take/manifest.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace kinalign {
+
+namespace {
+
+const std::vector<std::string> protocols{"nodes", "noitom", "xsens", "kinect", "slimevr"};
+const std::vector<std::string> transports{"udp", "tcp", "tcp-listen"};
+
+bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Result<std::int64_t> parse_port(const std::string& text) {
+  std::int64_t port = -1;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), port);
+  if (fault == std::errc() && end == text.data() + text.size() && port >= 0 && port <= 65535) {
+    return port;
+  }
+  return Failure(Error{"", 0, "a port from 0 to 65535", text.empty() ? "none" : shown(text)});
+}
+
+}  // namespace
+
+Result<DeviceOptions> parse_device(const std::string& text) {
+  const Failure unlike(Error{"", 0, "NAME=PROTOCOL:PORT, as in imu=nodes:5005", shown(text)});
+  const auto equals = text.find('=');
+  const auto last = text.rfind(':');
+  if (equals == std::string::npos || last == std::string::npos || last < equals) return unlike;
+  DeviceOptions device;
+  device.name = text.substr(0, equals);
+  device.port = KA_TRY(parse_port(text.substr(last + 1)));
+  std::string middle =
+      text.substr(equals + 1, last - equals - 1);  // PROTOCOL[:TRANSPORT[:ADDRESS]]
+  const auto first = std::min(middle.find(':'), middle.size());
+  device.protocol = middle.substr(0, first);
+  if (!is_one_of(protocols, device.protocol)) {
+    return Failure(unknown_name(device.protocol, "a known protocol", protocols));
+  }
+  if (first < middle.size()) {
+    middle = middle.substr(first + 1);
+    const auto second = std::min(middle.find(':'), middle.size());
+    device.transport = middle.substr(0, second);
+    if (!is_one_of(transports, device.transport)) {
+      return Failure(unknown_name(device.transport, "a known transport", transports));
+    }
+    if (second < middle.size()) device.address = middle.substr(second + 1);
+  }
+  return device;
+}
+
+Result<void> validate(const Lab& lab) {
+  for (std::size_t i = 0; i < lab.devices.size(); ++i) {
+    const DeviceOptions& device = lab.devices[i];
+    KA_TRY(check_stream_name(device.name));
+    const auto wrong = [&](std::string expected, std::string found) {
+      return Failure(Error{device.name, 0, std::move(expected), std::move(found)});
+    };
+    if (device.transport == "tcp" && (device.address.empty() || device.port == 0)) {
+      return wrong("an address and a port to connect to", "none");
+    }
+    const bool datagrams = device.protocol == "nodes" || device.protocol == "slimevr";
+    if (datagrams && device.transport != "udp") {
+      return wrong(device.protocol + " by udp", device.transport);
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      const DeviceOptions& other = lab.devices[k];
+      if (other.name == device.name) return wrong("each name once", device.name + " twice");
+      const bool same_port = device.port != 0 && other.port == device.port &&
+                             other.transport == device.transport && other.address == device.address;
+      if (same_port) {
+        return wrong("a port of its own", std::to_string(device.port) + ", as " + other.name);
+      }
+    }
+  }
+  return {};
+}
+
+Fields describe(DeviceOptions& o) {
+  return {
+      {"protocol", "what the device speaks", &o.protocol, -unlimited, unlimited, protocols},
+      {"transport", "udp; tcp: we connect to the device; tcp-listen: it connects to us",
+       &o.transport, -unlimited, unlimited, transports},
+      {"address", "of the device to connect to; else ours to listen on (all)", &o.address},
+      {"port", "its port to connect to; else ours", &o.port, 0.0, 65535.0},
+      {"skeleton", "of mocap: a BVH file with the header that the stream lacks", &o.skeleton},
+      {"rate_hz", "nominal rate; 0: as usual for the protocol", &o.rate_hz, 0.0, 10'000.0},
+      {"required", "whether a take needs it: red while it is missing", &o.required},
+      {"lab_key", "of nodes: the file of the lab's key", &o.lab_key},
+  };
+}
+
+Fields describe(RecordOptions& o) {
+  return {
+      {"pre_roll_s", "seconds before a take that it begins with", &o.pre_roll_s, 0.0, 600.0},
+      {"compression",
+       "of the file's chunks",
+       &o.compression,
+       -unlimited,
+       unlimited,
+       {"zstd", "none"}},
+  };
+}
+
+}  // namespace kinalign

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a kill and a power cut leave of a recording: never less than all but the last second. In
+// virtual time, on files in memory that remember every call.
+#include "tests/capture/memory_files.h"
+#include "tests/io/mcap_files.h"
+#include "tests/seeds.h"
+
+#include "kinalign/capture/recorder.h"
+#include "kinalign/capture/recording_disk.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+namespace {
+
+using std::chrono::milliseconds;
+using namespace std::chrono_literals;
+
+constexpr Duration promised = 1s;
+const std::string path = "/take.mcap";
+
+/// Ten seconds of three devices, and when each change of a file was made.
+struct Recorded {
+  MemoryFiles files;
+  std::vector<HostTime> changed;  // as files.changes
+  struct Cut {
+    HostTime at{};
+    std::size_t changes = 0, durable = 0;  // so many were made, so many are on the disk for sure
+  };
+  std::vector<Cut> moments;    // each 4 ms
+  std::vector<HostTime> sent;  // message k
+};
+
+HostTime at(Duration t) { return HostTime{t}; }
+
+std::string payload(std::uint64_t k) {
+  return "message " + std::to_string(k) + std::string(k % 97, 'x');
+}
+
+void record_ten_seconds(Recorded& run, std::uint64_t seed, McapCompression compression) {
+  std::mt19937_64 random(seed);
+  auto disk = RecordingDisk::open(run.files, path, [](int) {
+    return RecordingHead{{"kinalign", "test"}, {{"kinalign.recording", {{"subject", "03"}}}}, {}};
+  });
+  REQUIRE(disk);
+  Recorder recorder(RecorderOptions{});
+  std::vector<std::uint16_t> channels;
+  for (const std::string topic : {"/mocap/raw", "/kinect/raw", "/imu/raw"}) {
+    channels.push_back(recorder.add_channel(McapChannel{0, 0, topic, "test", {}}));
+  }
+  recorder.start(at(Duration{0}),
+                 [&](McapChunkContent chunk) { CHECK(disk->write(store(chunk, compression))); });
+  struct Syncing {
+    RecordingDisk::Sync sync;
+    std::size_t began = 0;
+    HostTime ends{};
+  };
+  std::optional<Syncing> syncing;
+  for (Duration t{0}; t < 10s; t += 4ms) {
+    if (syncing && syncing->ends <= at(t)) {
+      run.files.sync_began = syncing->began;
+      CHECK(disk->synced(syncing->sync, syncing->sync.file->sync()));
+      syncing.reset();
+    }
+    for (const std::uint16_t channel : channels) {
+      if (random() % 3 != 0) continue;
+      recorder.record(channel, at(t), payload(run.sent.size()));
+      run.sent.push_back(at(t));
+    }
+    recorder.tick(at(t));
+    if (!syncing) {
+      if (const auto sync = disk->unsynced()) {
+        syncing = {*sync, run.files.changes.size(), at(t) + milliseconds(3 + random() % 100)};
+      }
+    }
+    run.changed.resize(run.files.changes.size(), at(t));
+    run.moments.push_back({at(t), run.files.changes.size(), run.files.synced[path]});
+  }
+  recorder.stop();
+  CHECK(disk->finish());
+  run.changed.resize(run.files.changes.size(), at(10s));
+}
+
+/// Whether the file holds, unaltered, every message sent before `cut` less a second.
+void check_state(const Recorded& run, const std::string& content, HostTime cut) {
+  const ReadMcap read = read_mcap(content);
+  std::vector<bool> found(run.sent.size());
+  for (const OwnedMessage& m : read.messages) {
+    const std::uint64_t k = std::strtoull(m.data.c_str() + 8, nullptr, 10);
+    const bool is_whole =
+        k < run.sent.size() && m.data == payload(k) &&
+        m.message.log_time == static_cast<std::uint64_t>(run.sent[k].time_since_epoch().count());
+    if (is_whole) found[k] = true;
+    if (!is_whole && !read.unchecked) FAIL_CHECK("a message that nobody sent: ", m.data);
+  }
+  for (std::size_t k = 0; k < found.size() && run.sent[k] < cut - promised; ++k) {
+    if (!found[k]) {
+      FAIL_CHECK("message ", k, " is lost");
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a kill at any system call costs at most the last second") {
+  for (const auto compression : {McapCompression::none, McapCompression::zstd}) {
+    for (const auto seed : fresh_seeds(2)) {
+      CAPTURE(seed);
+      Recorded run;
+      record_ten_seconds(run, seed, compression);
+      std::mt19937_64 random(seed);
+      std::string content;
+      for (std::size_t k = 0; k < run.files.changes.size(); ++k) {
+        CAPTURE(k);
+        const auto& change = run.files.changes[k];
+        // between two calls, up to the moment of the next one …
+        check_state(run, content, run.changed[k]);
+        // … and within it
+        MemoryFiles::Change torn = change;
+        torn.bytes.resize(random() % (change.bytes.size() + 1));
+        std::string partly = content;
+        MemoryFiles::apply(partly, torn);
+        check_state(run, partly, run.changed[k]);
+        MemoryFiles::apply(content, change);
+      }
+      check_state(run, content, at(100s));
+      CHECK(read_mcap(content).closed);
+    }
+  }
+}
+
+TEST_CASE("a power cut costs at most the last second, whatever became of unsynced writes") {
+  constexpr std::size_t sector = 512;
+  std::size_t states = 0;
+  for (const auto seed : fresh_seeds(1)) {
+    CAPTURE(seed);
+    Recorded run;
+    record_ten_seconds(run, seed, seed % 2 == 0 ? McapCompression::none : McapCompression::zstd);
+    std::mt19937_64 random(seed);
+    for (const Recorded::Cut& cut : run.moments) {
+      std::string durable;
+      for (std::size_t k = 0; k < cut.durable; ++k) {
+        MemoryFiles::apply(durable, run.files.changes[k]);
+      }
+      for (int trial = 0; trial < 4; ++trial) {
+        CAPTURE(cut.at.time_since_epoch().count());
+        CAPTURE(trial);
+        // Each sector of each unsynced write reached the disk, or did not: then it reads as zeros
+        // if something behind it did.
+        std::string content = durable;
+        for (std::size_t k = cut.durable; k < cut.changes; ++k) {
+          const auto& change = run.files.changes[k];
+          for (std::size_t from = 0; from < change.bytes.size(); from += sector) {
+            if (random() % 2 == 0) continue;
+            MemoryFiles::apply(
+                content, {path, change.kind, change.at + from, change.bytes.substr(from, sector)});
+          }
+        }
+        check_state(run, content, cut.at);
+        ++states;
+      }
+    }
+  }
+  CHECK(states >= 10'000);
+}

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/disk_thread.h"
+
+#include "tests/folder.h"
+#include "tests/io/mcap_files.h"
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <future>
+
+using namespace kinalign;
+
+namespace {
+
+McapChunkContent chunk(std::uint32_t from, std::uint32_t to) {
+  McapChunkContent content;
+  for (std::uint32_t k = from; k < to; ++k) add(content, nth_message(k));
+  return content;
+}
+
+RecordingHead head(int) { return {{"kinalign", "test"}, {}, {}}; }
+
+template <class Holds>
+void wait_until(const Holds& holds) {
+  while (!holds()) std::this_thread::yield();  // CTest's own limit ends a test that hangs
+}
+
+/// Syncs that last until they are let go, or fail.
+struct SlowSync : PosixFiles {
+  std::atomic<bool> slow{false}, fails{false};
+  std::atomic<int> waiting{0};
+
+  int sync(int fd) override {
+    ++waiting;
+    while (slow) std::this_thread::yield();
+    --waiting;
+    if (!fails.exchange(false)) return PosixFiles::sync(fd);
+    errno = EIO;
+    return -1;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("all that was pushed stands in the file, in order") {
+  const FreshFolder folder;
+  PosixFiles files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  {
+    DiskThread thread(*std::move(disk), McapCompression::zstd);
+    for (std::uint32_t i = 0; i < 100; ++i) thread.push(chunk(10 * i, 10 * i + 10));
+    thread.finish();
+    wait_until([&] { return thread.status().finished; });
+    CHECK(thread.status().messages == 1000);
+    CHECK(thread.status().waiting_bytes == 0);
+    CHECK(!thread.status().refused);
+    CHECK(thread.status().bytes == folder.read("a.mcap").size());
+  }
+  const ReadMcap read = read_mcap(folder.read("a.mcap"));
+  CHECK(read.closed);
+  REQUIRE(read.messages.size() == 1000);
+  for (std::uint32_t k = 0; k < 1000; ++k) CHECK(read.messages[k].message.sequence == k);
+}
+
+TEST_CASE("while a sync lasts what comes is written all the same") {
+  const FreshFolder folder;
+  SlowSync files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  DiskThread thread(*std::move(disk), McapCompression::none);
+  files.slow = true;
+  thread.push(chunk(0, 10));
+  wait_until([&] { return files.waiting == 1; });
+  thread.push(chunk(10, 20));
+  wait_until([&] { return read_mcap(folder.read("a.mcap")).messages.size() == 20; });
+  CHECK(files.waiting == 1);
+  CHECK(thread.status().syncs == 0);
+  files.slow = false;
+  wait_until([&] { return thread.status().waiting_bytes == 0; });
+}
+
+TEST_CASE("a failed sync is told, and the recording goes on in a new file") {
+  const FreshFolder folder;
+  SlowSync files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  DiskThread thread(*std::move(disk), McapCompression::none);
+  files.fails = true;
+  thread.push(chunk(0, 10));
+  wait_until([&] { return thread.status().paths.size() == 2; });
+  thread.push(chunk(10, 20));
+  thread.finish();
+  wait_until([&] { return thread.status().finished; });
+  const auto failures = thread.take_failures();
+  REQUIRE(failures.size() == 1);
+  CHECK(failures[0].why.expected == "data that reach the disk");
+  CHECK(failures[0].next == folder / "a.part2.mcap");
+  CHECK(read_mcap(folder.read("a.part2.mcap")).messages.size() == 20);
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files in memory that remember every write and every sync: what a kill or a power cut would have
+// left at any moment can be put together from that.
+#pragma once
+
+#include "kinalign/core/files.h"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+class MemoryFiles final : public FileSystem {
+ public:
+  /// A change to a file; a write has bytes.
+  struct Change {
+    std::string path;
+    enum class Kind { create, write, truncate } kind{};
+    std::uint64_t at = 0;  // of a truncation the size
+    std::string bytes;
+  };
+  /// In the order in which they were made.
+  std::vector<Change> changes;
+  /// By path: so many of the changes are on the disk for sure.
+  std::map<std::string, std::size_t> synced;
+  /// A sync covers what was there when it began: how many changes that were. Reset by each.
+  std::size_t sync_began = SIZE_MAX;
+
+  int open(const char* path, int flags, mode_t) override {
+    const bool is_folder = (flags & O_DIRECTORY) != 0;
+    if ((flags & O_CREAT) != 0) {
+      if (contents_.contains(path)) return fail(EEXIST);
+      change({path, Change::Kind::create, 0, ""});
+    } else if (!is_folder && !contents_.contains(path)) {
+      return fail(ENOENT);
+    }
+    open_.push_back({is_folder ? "" : path, 0});
+    return static_cast<int>(open_.size()) - 1;
+  }
+  ssize_t read(int fd, void* data, std::size_t size) override {
+    const ssize_t got = read_at(fd, data, size, static_cast<off_t>(file(fd).at));
+    file(fd).at += static_cast<std::size_t>(got);
+    return got;
+  }
+  ssize_t write(int, const void*, std::size_t) override { return fail(EBADF); }
+  ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override {
+    const std::string& bytes = contents_.at(file(fd).path);
+    const auto begin = std::min(static_cast<std::size_t>(at), bytes.size());
+    const std::size_t some = std::min(size, bytes.size() - begin);
+    std::memcpy(data, bytes.data() + begin, some);
+    return static_cast<ssize_t>(some);
+  }
+  ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
+    change({file(fd).path, Change::Kind::write, static_cast<std::uint64_t>(at),
+            std::string(static_cast<const char*>(data), size)});
+    return static_cast<ssize_t>(size);
+  }
+  int allocate(int, off_t) override { return fail(EOPNOTSUPP); }
+  int truncate(int fd, off_t size) override {
+    change({file(fd).path, Change::Kind::truncate, static_cast<std::uint64_t>(size), ""});
+    return 0;
+  }
+  int sync(int fd) override {
+    const std::size_t covered = std::min(std::exchange(sync_began, SIZE_MAX), changes.size());
+    if (!file(fd).path.empty()) synced[file(fd).path] = covered;
+    return 0;
+  }
+  int link(const char*, const char*) override { return fail(EPERM); }
+  int rename(const char*, const char*) override { return fail(EPERM); }
+  int remove(const char* path) override { return contents_.erase(path) > 0 ? 0 : fail(ENOENT); }
+  int close(int) override { return 0; }
+
+  const std::string& content(const std::string& path) const { return contents_.at(path); }
+
+  static void apply(std::string& content, const Change& change) {
+    if (change.kind == Change::Kind::truncate) content.resize(change.at);
+    if (change.kind != Change::Kind::write) return;
+    content.resize(std::max<std::size_t>(content.size(), change.at + change.bytes.size()));
+    content.replace(change.at, change.bytes.size(), change.bytes);
+  }
+
+ private:
+  struct Open {
+    std::string path;
+    std::size_t at = 0;
+  };
+  Open& file(int fd) { return open_.at(static_cast<std::size_t>(fd)); }
+  static int fail(int code) {
+    errno = code;
+    return -1;
+  }
+  void change(Change change) {
+    apply(contents_[change.path], change);
+    changes.push_back(std::move(change));
+  }
+
+  std::vector<Open> open_;
+  std::map<std::string, std::string> contents_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole recordings over loopback: what devices send stands in the file.
+#include "kinalign/capture/recording_session.h"
+
+#include "tests/capture/loopback.h"
+#include "tests/folder.h"
+#include "tests/io/mcap_files.h"
+
+#include "kinalign/io/noitom_frame.h"
+
+#include <doctest/doctest.h>
+
+#include <thread>
+
+using namespace kinalign;
+using namespace std::chrono_literals;
+
+namespace {
+
+struct Machine {
+  PosixFiles files;
+  SystemClocks ports_clock, nodes_clock;
+
+  RecordingSession::Machine parts() { return {files, ports_clock, nodes_clock}; }
+};
+
+DeviceOptions device(const std::string& text) { return *parse_device(text); }
+
+template <class Holds>
+void serve_until(RecordingSession& session, const Holds& holds) {
+  while (!holds()) session.turn(10ms);  // CTest's own limit ends a test that hangs
+}
+
+void finish(RecordingSession& session) {
+  session.stop();
+  while (!session.disk()->finished) std::this_thread::yield();
+}
+
+/// Payloads by topic, in their order.
+std::map<std::string, std::vector<std::string>> payloads_in(const std::string& bytes) {
+  const ReadMcap read = read_mcap(bytes);
+  CHECK(read.closed);
+  CHECK(read.findings.empty());
+  std::map<std::uint16_t, std::string> topics;
+  for (const McapRecord& record : read.records) {
+    if (const auto* channel = std::get_if<McapChannel>(&record))
+      topics[channel->id] = channel->topic;
+  }
+  std::map<std::string, std::vector<std::string>> payloads;
+  for (const OwnedMessage& m : read.messages) payloads[topics[m.message.channel]].push_back(m.data);
+  return payloads;
+}
+
+std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+}  // namespace
+
+TEST_CASE("datagrams of several senders stand in the file, each sender's on a channel") {
+  const FreshFolder folder;
+  Machine machine;
+  RecordingSession::Options options;
+  options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
+  auto session = RecordingSession::open(options, machine.parts());
+  REQUIRE(session);
+  const std::uint16_t port = (*session)->ports().front().second;
+  const Client one, two;
+  REQUIRE((*session)->start(folder / "a.mcap", "03", "S1A02"));
+  for (int i = 0; i < 50; ++i) {
+    one.send("127.0.0.1", port, bytes_of("one " + std::to_string(i)));
+    serve_until(**session, [&] {
+      return (*session)->port_counts().front().second.pieces == std::uint64_t(i) * 2 + 1;
+    });
+    two.send("127.0.0.1", port, bytes_of("two " + std::to_string(i)));
+    serve_until(**session, [&] {
+      return (*session)->port_counts().front().second.pieces == std::uint64_t(i) * 2 + 2;
+    });
+  }
+  const auto streams = (*session)->streams();
+  REQUIRE(streams.size() == 2);
+  CHECK(streams[0].counts.messages == 50);
+  CHECK(streams[0].stream == "mocap");
+  finish(**session);
+  const auto payloads = payloads_in(folder.read("a.mcap"));
+  REQUIRE(payloads.at("/mocap/raw").size() == 50);
+  REQUIRE(payloads.at("/mocap/raw/2").size() == 50);
+  CHECK(payloads.at("/mocap/raw")[49] == "one 49");
+  CHECK(payloads.at("/mocap/raw/2")[0] == "two 0");
+  CHECK(!payloads.at("/clock/host").empty());
+}
+
+TEST_CASE("what a device says over TCP stands in the file byte for byte, also after it returned") {
+  const FreshFolder folder;
+  Machine machine;
+  RecordingSession::Options options;
+  options.lab.devices = {device("kinect=kinect:tcp-listen:127.0.0.1:0")};
+  auto session = RecordingSession::open(options, machine.parts());
+  REQUIRE(session);
+  const std::uint16_t port = (*session)->ports().front().second;
+  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  std::string sent;
+  for (int life = 0; life < 2; ++life) {
+    const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(port);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    REQUIRE(::connect(fd, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0);
+    const std::string text(100'000, static_cast<char>('a' + life));
+    std::thread sender([&] { CHECK(::write(fd, text.data(), text.size()) == 100'000); });
+    sent += text;
+    serve_until(**session,
+                [&] { return (*session)->port_counts().front().second.bytes == sent.size(); });
+    sender.join();
+    ::close(fd);
+  }
+  finish(**session);
+  std::string found;
+  for (const auto& [topic, payloads] : payloads_in(folder.read("a.mcap"))) {
+    if (!topic.starts_with("/kinect")) continue;
+    for (const std::string& payload : payloads) found += payload;
+  }
+  CHECK(found == sent);
+}
+
+TEST_CASE("a second take needs a name of its own, and has its own file") {
+  const FreshFolder folder;
+  Machine machine;
+  RecordingSession::Options options;
+  options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
+  auto session = RecordingSession::open(options, machine.parts());
+  REQUIRE(session);
+  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  finish(**session);
+  CHECK(!(*session)->start(folder / "a.mcap", "", ""));
+  REQUIRE((*session)->start(folder / "b.mcap", "", ""));
+  finish(**session);
+  CHECK(read_mcap(folder.read("a.mcap")).closed);
+  CHECK(read_mcap(folder.read("b.mcap")).closed);
+}
+
+TEST_CASE("what a sender's own numbers miss is counted while recording, and in the file") {
+  const FreshFolder folder;
+  Machine machine;
+  RecordingSession::Options options;
+  options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
+  auto session = RecordingSession::open(options, machine.parts());
+  REQUIRE(session);
+  const std::uint16_t port = (*session)->ports().front().second;
+  const Client one;
+  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  std::uint64_t sent = 0;
+  for (const std::uint32_t index : {10U, 11U, 14U, 13U, 14U, 15U}) {  // 12 lost, 13 late, 14 twice
+    NoitomFrame frame;
+    frame.name = "Char00";
+    frame.frame_index = index;
+    frame.displacement = true;
+    frame.values.assign(354, 1.0F);
+    std::vector<std::uint8_t> bytes;
+    REQUIRE(append_noitom(frame, bytes));
+    one.send("127.0.0.1", port, bytes);
+    ++sent;
+    serve_until(**session, [&] { return (*session)->port_counts().front().second.pieces == sent; });
+  }
+  finish(**session);
+  const SenderCounts counts = (*session)->streams().at(0).counts;
+  CHECK(counts.frames == 6);
+  CHECK(counts.order.lost == 1);
+  CHECK(counts.order.late == 1);
+  CHECK(counts.order.duplicates == 1);
+  const auto payloads = payloads_in(folder.read("a.mcap"));
+  REQUIRE(!payloads.at("/counts").empty());
+  CHECK(payloads.at("/counts").back().find(R"("lost":1,"late":1,"duplicates":1)") !=
+        std::string::npos);
+  CHECK(payloads.at("/mocap/raw").size() == 6);  // all that came, whatever was thought of it
+}
