@@ -26,7 +26,8 @@ struct Check {
 
 Usage describe_check(Check& o) {
   Usage usage;
-  usage.positionals = {{"FILE", "takes, recording.toml or streams' files", &o.files, 1, SIZE_MAX}};
+  usage.positionals = {
+      {"FILE", "takes, recordings, recording.toml or streams' files", &o.files, 1, SIZE_MAX}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     KA_TRY(o.stream.stream({}));
@@ -96,8 +97,31 @@ void name_as_typed(const std::string& path, const RecordedStream& stream, Findin
   }
 }
 
+Result<Checked> check_recording(const Check& o, const std::string& path, Call& call) {
+  KA_TRY(check_flags(o, path, nullptr, call));
+  const RecordingSurvey survey =
+      KA_TRY(survey_recording(call.surroundings.files, path, call.console.progress()));
+  return Checked{judge_survey(path, survey)};
+}
+
+/// What is wrong with one stream's samples.
+Result<Findings> check_stream(const Check& o, const Input& input, const RecordedStream& stream,
+                              const std::string& reference, Call& call) {
+  call.console.detail(harmless(read_as(stream)));
+  const StreamOptions& options =
+      input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
+  const Role role = input.manifest && stream.name == reference ? Role::reference : Role::resampled;
+  const Arrivals arrivals = KA_TRY(arrivals_of(stream, options, role, call.console.progress()));
+  Findings found = stream.findings;
+  append(found, judge_stamps(stream, options));
+  append(found, judge_arrivals(stream, arrivals, role));
+  append(found, judge_start(stream, options, arrivals));
+  return said_of(stream, input.recording, std::move(found));
+}
+
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
+  if (KA_TRY(is_recording(files, path))) return check_recording(o, path, call);
   if (KA_TRY(is_take(files, path))) return check_take(o, path, call);
   if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
   const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
@@ -107,17 +131,7 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
   const std::string reference =
       input.manifest ? reference_name(input.recording, *input.manifest) : "";
   for (const RecordedStream& stream : input.recording.streams) {
-    call.console.detail(harmless(read_as(stream)));
-    const StreamOptions& options =
-        input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
-    const Role role =
-        input.manifest && stream.name == reference ? Role::reference : Role::resampled;
-    const Arrivals arrivals = KA_TRY(arrivals_of(stream, options, role, call.console.progress()));
-    Findings found = stream.findings;
-    append(found, judge_stamps(stream, options));
-    append(found, judge_arrivals(stream, arrivals, role));
-    append(found, judge_start(stream, options, arrivals));
-    append(out.findings, said_of(stream, input.recording, std::move(found)));
+    append(out.findings, KA_TRY(check_stream(o, input, stream, reference, call)));
   }
   if (input.manifest) {
     append(out.findings, check_plan(path, input));

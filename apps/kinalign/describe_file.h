@@ -4,6 +4,7 @@
 
 #include "apps/kinalign/verb.h"
 
+#include "kinalign/io/recording_survey.h"
 #include "kinalign/take/recording.h"
 
 #include <string>
@@ -19,6 +20,11 @@ struct Description {
 enum class Names { no, yes };
 
 Description describe_recording(const std::string& path, const Recording& recording, Names names);
+
+/// Of a recorder's file.
+Description describe_survey(const std::string& path, const RecordingSurvey& survey);
+/// What is wrong with it: damage, a missing end, messages that its own numbers miss.
+Findings judge_survey(const std::string& path, const RecordingSurvey& survey);
 
 /// "points, 25 joints"
 std::string contents_line(const RecordedStream& stream);

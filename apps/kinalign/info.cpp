@@ -15,7 +15,8 @@ struct Info {
 
 Usage describe_info(Info& o) {
   Usage usage;
-  usage.positionals = {{"FILE", "a take, a recording.toml or a stream's file", &o.file}};
+  usage.positionals = {
+      {"FILE", "a take, a recording, a recording.toml or a stream's file", &o.file}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     KA_TRY(o.stream.stream({}));
@@ -24,7 +25,7 @@ Usage describe_info(Info& o) {
   return usage;
 }
 
-Result<int> run(Info& o, Call& call) {
+Result<Description> describe(const Info& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.file.front();
   const Names names = call.common.verbose ? Names::yes : Names::no;
@@ -32,16 +33,22 @@ Result<int> run(Info& o, Call& call) {
     auto used = o.stream.check_use(path, stream, call.sources);
     return used ? Result<void>{} : call.console.refuse(std::move(used).error());
   };
-  Description found;
+  if (KA_TRY(is_recording(files, path))) {
+    KA_TRY(check_use(nullptr));
+    return describe_survey(path, KA_TRY(survey_recording(files, path, call.console.progress())));
+  }
   if (KA_TRY(is_take(files, path))) {
     KA_TRY(check_use(nullptr));
-    found = KA_TRY(describe_take(files, path, names));
-  } else {
-    if (path.ends_with(".toml")) KA_TRY(check_use(nullptr));
-    const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
-    if (!input.manifest) KA_TRY(check_use(&input.recording.streams.front()));
-    found = describe_recording(path, input.recording, names);
+    return describe_take(files, path, names);
   }
+  if (path.ends_with(".toml")) KA_TRY(check_use(nullptr));
+  const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
+  if (!input.manifest) KA_TRY(check_use(&input.recording.streams.front()));
+  return describe_recording(path, input.recording, names);
+}
+
+Result<int> run(Info& o, Call& call) {
+  const Description found = KA_TRY(describe(o, call));
   call.console.print(harmless(found.text));
   call.console.print_json(found.json);
   return 0;

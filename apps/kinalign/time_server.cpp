@@ -274,13 +274,11 @@ Verb time_server_verb() {
            "Serves the system's clock by NTP (RFC 5905) until Ctrl-C. Strangers get 8 answers at "
            "once, then one in 2 s; --exempt is for clients that ask more often. With --json each "
            "line is an object, by its member event: started and stopped; with --node-port pair "
-           "and, "
-           "for each node, node (node_id, certainty, time_ns, earliest_ns, latest_ns, drift_ppm "
-           "and "
-           "more), once a second; counts and node_counts, every 10 s; clock, node_event, "
-           "clock_event, host_event, key_replaced, key_unreadable and missed when it happens. "
-           "Members in _ns "
-           "are on CLOCK_MONOTONIC_RAW, but utc_ns and the node's own counter_ns: "
+           "and, for each node, node (node_id, certainty, time_ns, earliest_ns, latest_ns, "
+           "drift_ppm and more), once a second; counts and node_counts, every 10 s; clock, "
+           "node_event, clock_event, host_event, key_replaced, key_unreadable and missed when it "
+           "happens. Members in _ns are on CLOCK_MONOTONIC_RAW, but utc_ns and the node's own "
+           "counter_ns: "
            R"({"schema": "kinalign.time-server/1", "event": "pair", "raw_ns": 4521080113, )"
            R"("utc_ns": 1790000000000000000}. docs/time_server.md has every member.)",
        .examples = {{"kinalign time-server --local-stratum 10",

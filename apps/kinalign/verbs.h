@@ -13,6 +13,8 @@ Verb info_verb();
 Verb check_verb();
 Verb convert_verb();
 Verb rebuild_verb();
+Verb record_verb();
+Verb recover_verb();
 Verb time_server_verb();
 Verb node_key_verb();
 Verb config_verb();

@@ -143,6 +143,12 @@ def a_narrow_counter_is_unwrapped_as_the_log_has_it(_):
     assert server.said("node")[-1]["counter_ns"] > 1000 * TURN_US
 
 
+def own_samples(rows, *words):
+    done = subprocess.run([sys.executable, ROOT / "examples/own_samples.py", *words], text=True, input=rows,
+                          capture_output=True, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
 @case
 def the_example_prints_a_stamp_or_that_there_is_none(folder):
     certified = {"event": "node", "stream": 0, "boot_id": 5, "lives": 1, "counter_ns": 2_000_000_000,
@@ -151,17 +157,9 @@ def the_example_prints_a_stamp_or_that_there_is_none(folder):
     begun = {"event": "clock_event", "kind": "new_boot", "stream": 0, "begin_ns": 7_000_000_000, "end_ns": 0}
     (folder / "log").write_text("".join(json.dumps(line) + "\n" for line in (
         {"event": "started"}, {"event": "pair"}, begun, certified, {"event": "stopped"})))
-    done = subprocess.run([sys.executable, ROOT / "examples/own_samples.py", folder / "log"], text=True,
-                          input="0 5 1 3500000000\n0 5 1 2500000000\n0 5 2 2500000000\n1 5 1 2500000000\n0 5 1 -100000000\n",
-                          capture_output=True, check=True)
+    rows = "0 5 1 3500000000\n0 5 1 2500000000\n0 5 2 2500000000\n1 5 1 2500000000\n0 5 1 -100000000\n"
     none = "not certified\n"
-    assert done.stdout == none + "9500010000 9498950000 9501050000\n" + 3 * none, done.stdout
-
-
-def own_samples(log, rows, *more):
-    done = subprocess.run([sys.executable, ROOT / "examples/own_samples.py", *log, *more], text=True, input=rows,
-                          capture_output=True, check=False)
-    return done.returncode, done.stdout, done.stderr
+    assert own_samples(rows, folder / "log") == (0, none + "9500010000 9498950000 9501050000\n" + 3 * none, "")
 
 
 @case
@@ -172,21 +170,21 @@ def the_example_says_what_is_wrong_with_a_log_and_certifies_nothing_by_one_with_
     line = json.dumps(certified) + "\n"
     stopped = '{"event": "stopped"}\n'
     path.write_text(line + stopped)  # begun in the middle
-    assert own_samples([path], "0 5 1 0\n") == (0, "9 8 10\n", "")
+    assert own_samples("0 5 1 0\n", path) == (0, "9 8 10\n", "")
     late = json.dumps({**certified, "counter_ns": 140 * 10**9, "time_ns": 140 * 10**9 + 9}) + "\n"
     path.write_text(line + late + late[:30])  # cut short: a withdrawal may be missing
-    assert own_samples([path], "0 5 1 0\n0 5 1 20000000000\n") == (0, "9 8 10\nnot certified\n", "")
+    assert own_samples("0 5 1 0\n0 5 1 20000000000\n", path) == (0, "9 8 10\nnot certified\n", "")
     for text, says in ((line + '{"event": "missed", "lines": 1}\n', "lines are missing"),
                        (line + '{"event": "node_counts", "missed_events": 1}\n', "lines are missing"),
                        (line + '{"event": "started"}\n', "several runs"),
                        ("null\n" + line, "line 1: expected a line of kinalign time-server --json"),
                        ("2026-11-23 node 7: joined\n" + line, "line 1: expected a line of kinalign time-server --json")):
         path.write_text(text)
-        code, out, err = own_samples([path], "0 5 1 0\n")
+        code, out, err = own_samples("0 5 1 0\n", path)
         assert (code, out) == (1, "") and says in err and str(path) in err, err
     path.write_text(line + stopped)
-    assert "row 2: expected stream" in own_samples([path], "0 5 1 0\n1 2 3\n")[2]
-    assert "usage" in own_samples([], "")[2] and "No such file" in own_samples([folder / "nope"], "")[2]
+    assert "row 2: expected stream" in own_samples("0 5 1 0\n1 2 3\n", path)[2]
+    assert "usage" in own_samples("")[2] and "No such file" in own_samples("", folder / "nope")[2]
 
 
 if __name__ == "__main__":

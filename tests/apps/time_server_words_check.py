@@ -172,7 +172,8 @@ def the_help_and_the_page_name_every_kind_of_line(_):
     assert len(listed) >= 12, listed
     told = re.split(r"[^\w]+", kinalign("time-server", "--help").stdout.decode())
     assert not listed - set(told), listed - set(told)
-    source = "".join(path.read_text() for path in pathlib.Path(__file__).parents[2].glob("apps/kinalign/*.cpp"))
+    sources = pathlib.Path(__file__).parents[2].glob("apps/kinalign/*.cpp")
+    source = "".join(path.read_text() for path in sources if path.name != "record.cpp")
     made = set(re.findall(r'"event"[,:] "(\w+)"', source))
     assert {"node", "pair", "key_replaced", "missed"} <= made and not made - listed, made - listed
 

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What devices send stands in the recording, however it ends.
+record_check.py BUILD_FOLDER [CASE...]"""
+import json
+import pathlib
+import random
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import cases
+from cases import LONG, case, kinalign, main
+from mcap_walk import Walk
+
+KILLS = 200 if LONG else 20
+
+
+class Recording:
+    """The real program with a mocap port, until it is told to end."""
+
+    def __init__(self, folder, *words, device="mocap=noitom:udp:127.0.0.1:0"):
+        self.program = subprocess.Popen(
+            [str(cases.PROGRAM), "record", "-o", str(folder), "--device", device, "--compression", "none", "--json",
+             *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        line = self.program.stdout.readline()
+        assert line, self.program.communicate()[1]
+        self.started = json.loads(line)
+        assert self.started["event"] == "started", line
+        self.port = self.started["ports"]["mocap"]
+        self.path = pathlib.Path(self.started["file"])
+
+    def end(self, sign=signal.SIGINT):
+        self.program.send_signal(sign)
+        out, err = self.program.communicate(timeout=60)
+        return self.program.returncode, [json.loads(line) for line in out.splitlines()], err
+
+
+class Sender(threading.Thread):
+    """Numbered datagrams, 200 a second, as long as those of 354 floats; when each was sent."""
+
+    def __init__(self, port):
+        super().__init__()
+        self.to, self.sent, self.going = ("127.0.0.1", port), [], True
+
+    def run(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+            while self.going:
+                one.sendto(f"{len(self.sent):010}".encode() + bytes(1470), self.to)
+                self.sent.append(time.monotonic())
+                time.sleep(0.005)
+
+    def __enter__(self):
+        self.start()
+        return self
+
+    def __exit__(self, *_):
+        self.going = False
+        self.join()
+
+
+def numbers(walk):
+    return [int(payload[:10]) for topic, *_, payload in walk.messages if topic == "/mocap/raw"]
+
+
+@case
+def what_is_sent_stands_in_the_file_and_ctrl_c_closes_it(folder):
+    recording = Recording(folder / "takes", "--subject", "03", "--action", "S1A02")
+    with Sender(recording.port) as sender:
+        time.sleep(1.5)
+    time.sleep(0.2)
+    code, events, err = recording.end()
+    assert code == 0, err
+    assert recording.path == folder / "takes/03_S1A02_01.mcap", recording.path
+    assert events[-1]["event"] == "stopped" and events[-1]["dropped"] == 0, events[-1]
+    assert any(event["event"] == "status" for event in events), events
+    walk = Walk(recording.path)
+    assert walk.closed
+    assert walk.metadata["kinalign.recording"]["subject"] == "03", walk.metadata
+    assert numbers(walk) == list(range(len(sender.sent))), "a message is missing"
+    logs = [log for topic, _, log, *_ in walk.messages if topic == "/mocap/raw"]
+    assert all(abs(log / 1e9 - time.time()) < 600 for log in logs), "log times are UTC"
+    assert logs == sorted(logs)
+    assert any(topic == "/clock/host" for topic, *_ in walk.messages)
+
+
+@case
+def a_take_is_never_overwritten(folder):
+    paths = []
+    for _ in range(3):
+        recording = Recording(folder / "takes", "--seconds", "0")
+        assert recording.program.wait(60) == 0
+        recording.program.communicate()
+        paths.append(recording.path.name)
+    assert paths == ["take_01.mcap", "take_02.mcap", "take_03.mcap"], paths
+
+
+@case
+def a_kill_at_any_moment_costs_at_most_the_last_second_and_recover_closes_what_is_left(folder):
+    draw = random.Random(11)
+    for k in range(KILLS):
+        recording = Recording(folder / f"takes{k}")
+        with Sender(recording.port) as sender:
+            time.sleep(draw.uniform(0.1, 10 if LONG else 3))
+            recording.program.send_signal(signal.SIGKILL)
+            killed = time.monotonic()
+            recording.program.communicate()
+        torn = recording.path.read_bytes()
+        found = set(numbers(Walk(recording.path)))
+        owed = [n for n, sent in enumerate(sender.sent) if sent < killed - 1]
+        lost = [n for n in owed if n not in found]
+        assert not lost, f"kill {k}: {len(lost)} of {len(owed)} messages lost, the first {lost[0]}"
+        whole = folder / f"whole{k}.mcap"
+        done = kinalign("recover", recording.path, "-o", whole, "--json")
+        assert done.returncode in (0, 1), done.stderr
+        assert json.loads(done.stdout)["messages"] >= len(found), done.stdout
+        assert recording.path.read_bytes() == torn, "the torn file was touched"
+        assert kinalign("recover", whole, "-o", folder / f"again{k}.mcap").returncode == 0, "not whole"
+
+
+@case
+def the_page_names_every_kind_of_line(_):
+    root = pathlib.Path(__file__).parents[2]
+    table = (root / "docs/recording.md").read_text().split("| event | |\n| --- | --- |\n")[1].split("\n\n")[0]
+    listed = {name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.split("|")[1])}
+    made = set(re.findall(r'"event"[,:] "(\w+)"', (root / "apps/kinalign/record.cpp").read_text()))
+    assert made and made == listed, (made, listed)
+
+
+@case
+def wrong_use_is_said_before_anything_is_opened(folder):
+    for words, says in (((), "--device: expected at least one device, found none"),
+                        (("--device", "imu=nodes"), "expected NAME=PROTOCOL:PORT, as in imu=nodes:5005, found imu=nodes"),
+                        (("--device", "imu=node:5005"), 'expected a known protocol (nearest: nodes), found "node"'),
+                        (("--device", "a=noitom:tcp:7001"), "expected an address and a port to connect to, found none"),
+                        (("--device", "a=nodes:70000"), "expected a port from 0 to 65535, found 70000")):
+        done = kinalign("record", "-o", folder / "takes", *words)
+        assert done.returncode == 2 and says in done.stderr.decode(), done.stderr
+    assert not (folder / "takes").exists()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
