@@ -57,10 +57,10 @@ class DatagramBatch {
  private:
   static constexpr std::size_t control_room = 128;
   struct Slot {
-    sockaddr_in6 from;  // holds a sockaddr_in too
-    iovec in, out;
-    alignas(cmsghdr) std::array<std::uint8_t, control_room> control, answer_control;
-    std::array<std::uint8_t, answer_room> answer;
+    sockaddr_in6 from{};  // holds a sockaddr_in too
+    iovec in{}, out{};
+    alignas(cmsghdr) std::array<std::uint8_t, control_room> control{}, answer_control{};
+    std::array<std::uint8_t, answer_room> answer{};
     std::vector<std::uint8_t> bytes;
   };
 
