@@ -10,6 +10,8 @@
 
 #include "kinalign/align/plan.h"
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_reader.h"
+#include "kinalign/io/recording_survey.h"
 #include "kinalign/io/report_json.h"
 
 #include <fmt/format.h>
@@ -53,7 +55,9 @@ Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& 
 
 Usage describe_verb_options(AlignVerb& o) {
   Usage usage;
-  usage.positionals = {{"RECORDING", "recording.toml: streams, files, clocks", &o.manifest, 0, 1}};
+  usage.positionals = {{"RECORDING",
+                        "what `record` wrote, or a recording.toml: streams, files, clocks",
+                        &o.manifest, 0, 1}};
   usage.flags = o.quick.fields();
   usage.flags.push_back({"slerp", "the same as --rotations slerp", &o.slerp});
   usage.settings = describe(o.options);
@@ -73,9 +77,18 @@ Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
   const std::string& path = o.manifest.front();
   KA_TRY(
       InputFile::open(call.surroundings.files, path));  // what it is comes before what it is named
+  if (KA_TRY(is_recording(call.surroundings.files, path))) {
+    const RecordingSurvey survey =
+        KA_TRY(survey_recording(call.surroundings.files, path, call.console.progress()));
+    Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(path))));
+    manifest.align = o.options;
+    if (o.slerp) manifest.align.rotations = "slerp";
+    return manifest;
+  }
   if (!path.ends_with(".toml")) {
     return Failure(Error{path, 0,
-                         "a recording.toml (a single file goes behind --mocap, --kinect, ...)",
+                         "a recording or a recording.toml (a single file goes behind --mocap, "
+                         "--kinect, ...)",
                          "another ending"});
   }
   Manifest manifest = KA_TRY(load_manifest(call.surroundings.files, path, o.options));
@@ -132,7 +145,7 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
 /// `path`: of the manifest, if any.
 std::vector<std::string> advice(const std::string& path, const Error& error) {
   std::vector<std::string> lines{"nothing was written"};
-  const bool manifest = !path.empty() && error.file == path;
+  const bool manifest = path.ends_with(".toml") && error.file == path;
   if (error.file.empty() || manifest) {
     lines.push_back(manifest ? "docs/formats/recording_toml.md shows the keys"
                              : "kinalign align --help shows the flags");
@@ -204,7 +217,8 @@ Verb align_verb() {
            "open, with the report and every parameter inside. Exit code 1 where it was done with "
            "warnings.",
        .examples =
-           {{"kinalign align demo/recording.toml -o demo/mine.h5", "what the manifest says"},
+           {{"kinalign align lab/take.mcap -o take.h5", "what was recorded, also if it is torn"},
+            {"kinalign align demo/recording.toml -o demo/mine.h5", "what the manifest says"},
             {"kinalign align --mocap demo/mocap.bvh --start-ns 1790000000000000000 --kinect "
              "demo/kinect.csv -o demo/quick.h5",
              "two files without a manifest; a BVH knows no time of day"},

@@ -25,26 +25,30 @@ Usage describe_info(Info& o) {
   return usage;
 }
 
+Result<Description> describe_input(const Info& o, Call& call, const std::string& path,
+                                   Names names) {
+  const Input input =
+      KA_TRY(open_input(call.surroundings.files, path, o.stream, call.console.progress()));
+  if (!input.manifest) {
+    auto used = o.stream.check_use(path, &input.recording.streams.front(), call.sources);
+    if (!used) return call.console.refuse(std::move(used).error());
+  }
+  return describe_recording(path, input.recording, names);
+}
+
 Result<Description> describe(const Info& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.file.front();
   const Names names = call.common.verbose ? Names::yes : Names::no;
-  const auto check_use = [&](const RecordedStream* stream) -> Result<void> {
-    auto used = o.stream.check_use(path, stream, call.sources);
-    return used ? Result<void>{} : call.console.refuse(std::move(used).error());
-  };
-  if (KA_TRY(is_recording(files, path))) {
-    KA_TRY(check_use(nullptr));
-    return describe_survey(path, KA_TRY(survey_recording(files, path, call.console.progress())));
+  const bool recording = KA_TRY(is_recording(files, path));
+  const bool take = !recording && KA_TRY(is_take(files, path));
+  if (recording || take || path.ends_with(".toml")) {
+    auto used = o.stream.check_use(path, nullptr, call.sources);
+    if (!used) return call.console.refuse(std::move(used).error());
   }
-  if (KA_TRY(is_take(files, path))) {
-    KA_TRY(check_use(nullptr));
-    return describe_take(files, path, names);
-  }
-  if (path.ends_with(".toml")) KA_TRY(check_use(nullptr));
-  const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
-  if (!input.manifest) KA_TRY(check_use(&input.recording.streams.front()));
-  return describe_recording(path, input.recording, names);
+  if (take) return describe_take(files, path, names);
+  if (!recording) return describe_input(o, call, path, names);
+  return describe_survey(path, KA_TRY(survey_recording(files, path, call.console.progress())));
 }
 
 Result<int> run(Info& o, Call& call) {

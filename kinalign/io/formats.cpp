@@ -6,6 +6,7 @@
 #include "kinalign/io/layout.h"
 #include "kinalign/io/ntu_skeleton.h"
 #include "kinalign/io/opensim_sto.h"
+#include "kinalign/io/recording_reader.h"
 #include "kinalign/io/table_reader.h"
 #include "kinalign/io/trc.h"
 #include "kinalign/io/ui_prmd_files.h"
@@ -107,7 +108,13 @@ FoundFormat table_format(TableLayout layout, const Source& source) {
   return {std::move(name),
           [layout = std::move(layout), source] { return make_table_reader(layout, source); },
           {},
+          {},
           {}};
+}
+
+Result<FoundFormat> recording_format(const Source& source, const Progress& progress) {
+  RecordedDevice device = KA_TRY(listen(*source.files, source.options, source.file, progress));
+  return FoundFormat{"recording", std::move(device.make), {}, {}, device.heard->clock.time};
 }
 
 /// A choice that a format does not know would be ignored in silence.
@@ -139,7 +146,7 @@ FoundFormat watched(FoundFormat found) {
 Result<FoundFormat> program_format(const Format& format, const Source& source) {
   KA_TRY(check_selection(format, source));
   FoundFormat out{
-      std::string(format.name), [&format, source] { return format.make(source); }, {}, {}};
+      std::string(format.name), [&format, source] { return format.make(source); }, {}, {}, {}};
   if (format.survey != nullptr) {
     out.survey = [&format, source](const Progress& progress) {
       return format.survey(source, progress);
@@ -192,9 +199,11 @@ std::vector<std::string_view> format_names() {
 }
 
 Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
-                                const StreamFile& file, std::string_view head) {
+                                const StreamFile& file, std::string_view head,
+                                const Progress& progress) {
   const Source source{&files, options, file};
   if (!options.layout.empty()) return named_format(source);
+  if (looks_like_recording(head)) return recording_format(source, progress);
   for (const Format& format : formats) {
     if (format.looks(head, file.path)) return program_format(format, source);
   }

@@ -9,6 +9,7 @@
 #include "kinalign/take/manifest.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,16 +22,19 @@ using MakeReader = std::function<Result<AnyReader>()>;
 using SurveyClip = std::function<Result<ClipSurvey>(const Progress& progress)>;
 
 struct FoundFormat {
-  std::string name;  // "bvh", "trc", or a layout's
+  std::string name;  // "bvh", "trc", "recording", or a layout's
   MakeReader make;
   std::vector<std::string> further_files;  // that the reader opens itself
   SurveyClip survey;                       // empty: rows are read
+  std::optional<TimeModel> clock;          // of the device's stamps; absent: as the options say
 };
 
 /// Decides by `options.layout` (a format's name, a built-in layout's, or the path of a layout) or,
-/// where that is empty, by `head`, the file's first bytes. Fails with the formats known.
+/// where that is empty, by `head`, the file's first bytes. Fails with the formats known. A
+/// recording is read once already, to learn the device's clock.
 Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
-                                const StreamFile& file, std::string_view head);
+                                const StreamFile& file, std::string_view head,
+                                const Progress& progress = {});
 
 /// The names that `layout` may have besides paths.
 std::vector<std::string_view> format_names();

@@ -27,6 +27,13 @@ TimeModel clock_of(const StreamOptions& options, const StampSurvey& survey) {
   return model;
 }
 
+/// What a recording says of a clock, with a delay that its user knows.
+TimeModel moved_by(TimeModel model, const StreamOptions& options) {
+  const Duration by{std::llround(options.offset_ms * 1e6)};
+  for (TimeModelPiece& piece : model.pieces) piece.offset += by;
+  return model;
+}
+
 /// Files read side by side, told as one job.
 class SharedProgress {
  public:
@@ -76,7 +83,8 @@ Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, con
     out.stream.files[i].name =
         remembered_path(folder, layout ? named.options->layout : named.file->path, out.paths[i]);
   }
-  out.stream.clock = clock_of(options, out.stream.survey);
+  out.stream.clock =
+      out.clock ? moved_by(*out.clock, options) : clock_of(options, out.stream.survey);
   return out;
 }
 

@@ -36,6 +36,13 @@ Stamp take_stamp(LittleEndianReader& from) {
   return Stamp{Duration{static_cast<std::int64_t>(from.take<std::uint64_t>())}};
 }
 
+/// Clocks that have run for 31 years at most, so that no difference of a few overflows.
+template <class Stamp>
+bool is_near(Stamp stamp) {
+  constexpr Duration furthest{1'000'000'000'000'000'000};
+  return -furthest <= stamp.time_since_epoch() && stamp.time_since_epoch() <= furthest;
+}
+
 }  // namespace
 
 McapMetadata to_metadata(const RecordingFacts& facts) {
@@ -56,10 +63,11 @@ std::optional<RecordingFacts> to_facts(const McapMetadata& metadata) {
              utc = number_of(texts, "utc_ns");
   const bool is_ours = metadata.name == recording_metadata && text_of(texts, "format") == format;
   if (!is_ours || !part || !raw || !utc || *part < 1 || *part > 1'000'000) return std::nullopt;
-  return RecordingFacts{
-      text_of(texts, "subject"), text_of(texts, "action"),
-      text_of(texts, "host"),    text_of(texts, "first"),
-      static_cast<int>(*part),   {HostTime{Duration{*raw}}, Time{Duration{*utc}}}};
+  const HostTime host{Duration{*raw}};
+  if (!is_near(host) || *utc < 0 || *utc > latest_log_time) return std::nullopt;
+  return RecordingFacts{text_of(texts, "subject"), text_of(texts, "action"),
+                        text_of(texts, "host"),    text_of(texts, "first"),
+                        static_cast<int>(*part),   {host, Time{Duration{*utc}}}};
 }
 
 McapChannel to_channel(std::string topic, const RawChannel& raw) {
@@ -154,7 +162,9 @@ std::optional<RecordedExchange> to_exchange(std::string_view bytes) {
   const Exchange::Echo echo{take_stamp<NodeTime>(from), take_stamp<HostTime>(from)};
   if (flags == 1) recorded.exchange.echo = echo;
   if (!from.complete() || from.left() > 0 || flags > 1) return std::nullopt;
-  return recorded;
+  const Exchange& e = recorded.exchange;
+  const bool near = is_near(e.n_tx) && is_near(e.h_rx) && is_near(echo.n_rx) && is_near(echo.h_tx);
+  return near ? std::optional(recorded) : std::nullopt;
 }
 
 }  // namespace kinalign

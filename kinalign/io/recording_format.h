@@ -17,6 +17,7 @@ namespace kinalign {
 
 inline constexpr std::string_view recording_profile = "kinalign";
 inline constexpr std::string_view recording_metadata = "kinalign.recording";
+inline constexpr std::int64_t latest_log_time = 4'000'000'000'000'000'000;  // ns, the year 2096
 
 /// The metadata record of that name, which each file of a recording begins with.
 struct RecordingFacts {
@@ -27,7 +28,8 @@ struct RecordingFacts {
   ClockPair anchor;   // log times are UTC = host time + (utc - raw), in all of the recording
 };
 McapMetadata to_metadata(const RecordingFacts& facts);
-/// Absent where a field is missing or no number.
+/// Absent where a field is missing or no number, or where a clock is further than its limit: the
+/// raw one 31 years from its start, UTC as log times.
 std::optional<RecordingFacts> to_facts(const McapMetadata& metadata);
 
 /// What a channel of raw payloads is, as its metadata.
@@ -37,6 +39,8 @@ struct RawChannel {
   std::string transport;  // "udp"
   std::string sender;     // "192.168.7.20:51234"
   std::string node;       // of inertial nodes: the id, decimal
+
+  bool operator==(const RawChannel&) const = default;
 };
 McapChannel to_channel(std::string topic, const RawChannel& raw);
 std::optional<RawChannel> to_raw(const McapChannel& channel);
@@ -65,6 +69,7 @@ struct RecordedExchange {
   Exchange exchange;
 };
 std::string to_bytes(const RecordedExchange& recorded);
+/// Absent where the bytes are no exchange, or a clock of it has run for more than 31 years.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes);
 
 }  // namespace kinalign

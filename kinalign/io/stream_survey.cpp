@@ -159,9 +159,11 @@ Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path
 Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) {
   InputFile file = KA_TRY(InputFile::open(*job.files, named.path));
   const std::string head(KA_TRY(file.next()));
-  const FoundFormat format = KA_TRY(find_format(*job.files, *job.options, named, head));
+  const FoundFormat format =
+      KA_TRY(find_format(*job.files, *job.options, named, head, *job.progress));
   SurveyedFile out;
   out.paths = {named.path};
+  out.clock = format.clock;
   if (format.survey) {
     out.stream = KA_TRY(survey_clip(job, named.path, format));
   } else {

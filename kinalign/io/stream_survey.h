@@ -24,6 +24,7 @@ struct SurveyJob {
 struct SurveyedFile {
   RecordedStream stream;           // its files by their names only
   std::vector<std::string> paths;  // where these files lie; the stream's own first
+  std::optional<TimeModel> clock;  // where the file itself says what its stamps are
 };
 
 /// `named.path` as it can be opened. Each later pass over the stream fails where the file changed.

@@ -34,6 +34,7 @@ bool same(const Mac& mac, std::span<const std::uint8_t> claimed) {
 }
 
 NodeRefusal check_mac(const Envelope& envelope, const MacKey* key) {
+  if (envelope.mac_was_checked) return NodeRefusal::none;
   if (!envelope.has_mac) return key == nullptr ? NodeRefusal::none : NodeRefusal::no_mac;
   if (key == nullptr) return NodeRefusal::no_key;
   const auto before_crc = envelope.datagram.first(envelope.datagram.size() - node_crc_size);
@@ -69,7 +70,7 @@ NodeRefusal open_envelope(std::span<const std::uint8_t> datagram, Envelope& enve
                               head.take<std::uint32_t>()};
   const bool has_mac = (head.take<std::uint8_t>() & mac_flag) != 0;
   if (datagram.size() < node_datagram_size(0, has_mac)) return NodeRefusal::wrong_fields;
-  envelope = {node_protocol_version, type, origin, has_mac, datagram};
+  envelope = {node_protocol_version, type, origin, has_mac, datagram, false};
   return NodeRefusal::none;
 }
 

@@ -60,6 +60,8 @@ struct Envelope {
   DatagramOrigin origin;
   bool has_mac = false;
   std::span<const std::uint8_t> datagram;  // the caller's bytes, which have to stay
+  /// Set by who reads what a recorder accepted: it held the MAC against the key when that came.
+  bool mac_was_checked = false;
 };
 
 /// Everything but type and MAC; of what is refused `envelope` says the version alone.

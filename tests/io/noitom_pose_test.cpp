@@ -2,6 +2,7 @@
 #include "kinalign/io/noitom_pose.h"
 
 #include "tests/io/noitom_cases.h"
+#include "tests/io/recorded_lab.h"
 
 #include <doctest/doctest.h>
 
@@ -10,19 +11,6 @@
 using namespace kinalign;
 
 namespace {
-
-/// 59 joints in a chain, with 180 or 354 channels, in Noitom's order of rotations.
-std::string chain(const std::string& tenth, bool displacement) {
-  const std::string rotations = "Yrotation Xrotation Zrotation\n";
-  const std::string six = "CHANNELS 6 Xposition Yposition Zposition " + rotations;
-  std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 93 0\n" + six;
-  for (int k = 1; k < 59; ++k) {
-    text += "JOINT " + (k == 10 ? tenth : "j" + std::to_string(k)) + "\n{\nOFFSET 0 1 0\n" +
-            (displacement ? six : "CHANNELS 3 " + rotations);
-  }
-  text += "End Site\n{\nOFFSET 0 1 0\n}\n" + std::string(58, '}') + "}\n";
-  return text + "MOTION\nFrames: 0\nFrame Time: 0.008\n";
-}
 
 BvhHierarchy hierarchy_of(const std::string& text) {
   Findings findings;
@@ -38,13 +26,13 @@ TEST_CASE("noitom: a frame is the pose that its row in a BVH is") {
   for (const bool displacement : {false, true}) {
     for (const bool reference : {false, true}) {
       const auto frame = noitom_frame(NoitomForm::new_header, displacement, reference);
-      std::string text = chain("Spine3", displacement);
+      std::string text = noitom_chain("Spine3", displacement);
       text.replace(text.find("Frames: 0"), 9, "Frames: 1");
       for (const float value : frame.row()) text += std::to_string(value) + " ";
       const auto file = read_bvh(text + "\n", "walk.bvh", {});
       REQUIRE(file);
 
-      NoitomPoser poser(hierarchy_of(chain("Spine3", displacement)), {}, "walk.bvh");
+      NoitomPoser poser(hierarchy_of(noitom_chain("Spine3", displacement)), {}, "walk.bvh");
       ClipFrames frames;
       REQUIRE(poser.append(frame, utc_time(77), frames));
       CHECK(frames.stamps == std::vector{utc_time(77)});
@@ -59,7 +47,7 @@ TEST_CASE("noitom: the root's place is in metres and its turn by the header's or
   std::fill(frame.values.begin(), frame.values.end(), 0.0F);
   frame.values[1] = 93.25F;
   frame.values[3] = 90.0F;  // about y
-  NoitomPoser poser(hierarchy_of(chain("Spine3", false)), {}, "walk.bvh");
+  NoitomPoser poser(hierarchy_of(noitom_chain("Spine3", false)), {}, "walk.bvh");
   ClipFrames frames;
   REQUIRE(poser.append(frame, utc_time(0), frames));
   CHECK(frames.local_positions[1] == doctest::Approx(0.9325));
@@ -67,7 +55,7 @@ TEST_CASE("noitom: the root's place is in metres and its turn by the header's or
 }
 
 TEST_CASE("noitom: frames that the header does not fit are refused with both hierarchies named") {
-  NoitomPoser poser(hierarchy_of(chain("Neck", false)), {}, "walk.bvh");
+  NoitomPoser poser(hierarchy_of(noitom_chain("Neck", false)), {}, "walk.bvh");
   ClipFrames frames;
   const auto refused =
       poser.append(noitom_frame(NoitomForm::new_header, true, false), utc_time(0), frames);
@@ -81,7 +69,7 @@ TEST_CASE("noitom: frames that the header does not fit are refused with both hie
 }
 
 TEST_CASE("noitom: a frame with a value that is no number is refused and leaves nothing") {
-  NoitomPoser poser(hierarchy_of(chain("Neck", false)), {}, "walk.bvh");
+  NoitomPoser poser(hierarchy_of(noitom_chain("Neck", false)), {}, "walk.bvh");
   ClipFrames frames;
   auto frame = noitom_frame(NoitomForm::new_header, false, false);
   for (const float odd : {std::nanf(""), INFINITY, 1e16F}) {
@@ -92,9 +80,9 @@ TEST_CASE("noitom: a frame with a value that is no number is refused and leaves 
 }
 
 TEST_CASE("noitom: a header of another skeleton is read with a warning") {
-  CHECK(NoitomPoser(hierarchy_of(chain("Spine3", false)), {}, "w").findings().empty());
-  CHECK(NoitomPoser(hierarchy_of(chain("Neck", false)), {}, "w").findings().empty());
-  const NoitomPoser other(hierarchy_of(chain("j10", false)), {}, "w");
+  CHECK(NoitomPoser(hierarchy_of(noitom_chain("Spine3", false)), {}, "w").findings().empty());
+  CHECK(NoitomPoser(hierarchy_of(noitom_chain("Neck", false)), {}, "w").findings().empty());
+  const NoitomPoser other(hierarchy_of(noitom_chain("j10", false)), {}, "w");
   REQUIRE(other.findings().size() == 1);
   CHECK(to_string(other.findings()[0].what) ==
         "w: expected the header of Axis Neuron or Axis Studio, found 59 joints in another order");

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the messages of a recorded device to rows, in two passes: one listens and learns the
+// device's clock, the other stamps its rows by that.
+#pragma once
+
+#include "kinalign/clock/device_clock.h"
+#include "kinalign/io/reader.h"
+#include "kinalign/io/recorded_messages.h"
+#include "kinalign/take/manifest.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace kinalign {
+
+/// What is asked for.
+struct DeviceWish {
+  StreamOptions options;
+  StreamFile file;
+  DeviceChoice choice;
+  std::optional<std::uint64_t> body;  // of a Kinect; avatar or character of mocap
+};
+
+/// What listening has found.
+struct HeardDevice {
+  RawChannel channel;
+  std::string skeleton;  // a BVH's header, where the recording has one
+  Duration utc_minus_host{};
+  DeviceClock clock;
+  double step_ns = 0.0;     // of devices whose frames are counted
+  bool by_arrival = false;  // of devices that say no time and no number: stamps are UTC of arrival
+  std::multimap<std::uint32_t, BootKey> lives;  // of a node: boot id -> lives
+  ImuContent content;                           // of a node
+  Findings findings;
+};
+
+/// The first pass.
+class DeviceListener {
+ public:
+  virtual ~DeviceListener() = default;
+  virtual void take(const RecordedMessage& message) = 0;
+  /// `heard` has channel, skeleton and utc_minus_host. Fails where no rows could be made.
+  virtual Result<void> finish(HeardDevice& heard) = 0;
+};
+
+/// The second one. After a failure it may not be used again.
+template <class Frames>
+class DeviceRows {
+ public:
+  using Header = std::conditional_t<
+      std::is_same_v<Frames, ClipFrames>, Skeleton,
+      std::conditional_t<std::is_same_v<Frames, PointFrames>, PointHeader, ImuHeader>>;
+  virtual ~DeviceRows() = default;
+  virtual Result<void> take(const RecordedMessage& message, Frames& out) = 0;
+  virtual Result<void> finish(Frames& out) = 0;
+  /// nullptr where the first row has to say it.
+  virtual const Header* header() const = 0;
+  Findings findings;  // complete after finish()
+};
+
+using AnyDeviceRows =
+    std::variant<std::unique_ptr<DeviceRows<ClipFrames>>, std::unique_ptr<DeviceRows<PointFrames>>,
+                 std::unique_ptr<DeviceRows<ImuSamples>>>;
+
+/// A protocol that rows can be made of.
+struct DeviceProtocol {
+  std::string_view name;
+  std::unique_ptr<DeviceListener> (*listen)(const DeviceWish& wish);
+  AnyDeviceRows (*rows)(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard);
+};
+DeviceProtocol node_protocol();    // node_rows.cpp: inertial nodes of ours
+DeviceProtocol kinect_protocol();  // kinect_rows.cpp
+DeviceProtocol noitom_protocol();  // noitom_rows.cpp
+DeviceProtocol xsens_protocol();   // xsens_rows.cpp: poses
+
+}  // namespace kinalign

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Kinect's frames: the sensor's ticks, put on UTC in two steps, since nothing answers on its
+// clock: the sender had the frame in its hands at `taken`, and pings put the sender's clock on the
+// host's. Stamps are late by the least time from the sensor to the sender.
+#include "kinalign/io/device_rows.h"
+#include "kinalign/io/kinect_frames.h"
+#include "kinalign/io/kinect_stream.h"
+#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/motion/arrays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_ids = 1000;
+
+/// Frames with their bodies together, in the order of arrival.
+class KinectFrames {
+ public:
+  /// Appends what the message completes. Parts as they came go to `heard`.
+  void take(const RecordedMessage& message, std::vector<JoinedKinectFrame>& out,
+            std::vector<KinectFrame>* heard) {
+    if (channel_ != message.channel_id) {  // another connection, or another sender's life
+      decoder_ = {};
+      channel_ = message.channel_id;
+    }
+    messages_.clear();
+    decoder_.feed(octets(message.payload), messages_);
+    for (KinectMessage& one : messages_) {
+      auto* frame = std::get_if<KinectFrame>(&one);
+      if (frame == nullptr) continue;
+      if (!sensor_) sensor_ = frame->origin.sensor;
+      if (frame->origin.sensor != *sensor_) {
+        ++of_other_sensors;
+        continue;
+      }
+      if (heard != nullptr) heard->push_back(*frame);
+      joiner_.take(std::move(*frame), out);
+    }
+  }
+  void finish(std::vector<JoinedKinectFrame>& out) { joiner_.finish(out); }
+  KinectFrameCounts counts() const { return joiner_.counts(); }
+
+  std::uint64_t of_other_sensors = 0;
+
+ private:
+  std::optional<std::uint16_t> channel_;
+  KinectStreamDecoder decoder_;
+  std::vector<KinectMessage> messages_;
+  std::optional<std::uint32_t> sensor_;
+  KinectFrameJoiner joiner_;
+};
+
+/// When the sender had a frame, and what the sensor's clock showed.
+struct Taken {
+  BootKey session = 0;
+  NodeTime device{}, sender{};
+  HostTime arrival{};
+};
+
+class KinectListener final : public DeviceListener {
+ public:
+  explicit KinectListener(const DeviceWish& wish) : file_(wish.file.path) {}
+
+  void take(const RecordedMessage& message) override {
+    if (message.is_exchange()) {
+      if (const auto recorded = to_exchange(message.payload)) {
+        exchanges_.push_back(recorded->exchange);
+      }
+      return;
+    }
+    parts_.clear();
+    joined_.clear();
+    frames_.take(message, joined_, &parts_);
+    for (const KinectFrame& part : parts_) {
+      exchanges_.push_back(exchange_of(part, message.arrival));
+      taken_.push_back({part.origin.session, kinect_sender_time(part.device_ticks),
+                        kinect_sender_time(part.taken_ticks), message.arrival});
+    }
+  }
+
+  Result<void> finish(HeardDevice& heard) override {
+    if (taken_.empty()) return Failure(Error{file_, 0, "frames of a Kinect", "none"});
+    const DeviceClock sender = device_clock(exchanges_, {});
+    std::vector<Exchange> from_sensor;
+    from_sensor.reserve(taken_.size());
+    for (const Taken& one : taken_) {
+      const auto at = host_from_node(sender.model, one.session, one.sender, one.arrival);
+      if (at) from_sensor.push_back({one.session, one.device, at->time, std::nullopt});
+    }
+    heard.clock = device_clock(from_sensor, heard.utc_minus_host);
+    return {};
+  }
+
+ private:
+  std::string file_;
+  KinectFrames frames_;
+  std::vector<KinectFrame> parts_;
+  std::vector<JoinedKinectFrame> joined_;
+  std::vector<Exchange> exchanges_;
+  std::vector<Taken> taken_;
+};
+
+/// Which of the bodies in a frame the recorded person is: the one of before; when that has got
+/// another id, the only one or the nearest.
+class BodyChoice {
+ public:
+  explicit BodyChoice(std::optional<std::uint64_t> wanted) : wanted_(wanted) {}
+
+  /// The id to take from the frame, if any body is the person's.
+  std::uint64_t operator()(const KinectFrame& frame) {
+    several_ += frame.bodies.size() > 1 ? 1 : 0;
+    for (const KinectBody& body : frame.bodies) {
+      if (ids_.size() < most_ids) ids_.insert(body.id);
+    }
+    if (wanted_) return *wanted_;
+    const auto same = std::find_if(frame.bodies.begin(), frame.bodies.end(),
+                                   [this](const KinectBody& b) { return b.id == last_; });
+    const auto body = same != frame.bodies.end() ? same : nearest(frame);
+    if (body == frame.bodies.end()) return 0;
+    followed_ += body->id != last_ ? 1 : 0;
+    last_ = body->id;
+    place_ = place_of(*body);
+    return last_;
+  }
+
+  void report(const std::string& file, Findings& findings) const {
+    if (wanted_ && ids_.count(*wanted_) == 0) {
+      findings.push_back({Severity::warning,
+                          Error{file, 0, fmt::format("body {}", *wanted_),
+                                fmt::format("others: {} of them", ids_.size())},
+                          "no row has a joint", "select.body names one"});
+    }
+    if (followed_ > 1) {
+      findings.push_back({Severity::note,
+                          Error{file, 0, "one body", fmt::format("{} ids in turn", followed_)},
+                          "the person was lost and found again, and is followed",
+                          "select.body takes a single id"});
+    }
+    if (several_ > 0 && !wanted_) {
+      findings.push_back({Severity::warning,
+                          Error{file, 0, "one body", fmt::format("several in {} frames", several_)},
+                          "the first one was followed", "select.body names another"});
+    }
+  }
+
+ private:
+  static Vec3 place_of(const KinectBody& body) {
+    return {body.positions[0], body.positions[1], body.positions[2]};
+  }
+  std::vector<KinectBody>::const_iterator nearest(const KinectFrame& frame) const {
+    return std::min_element(
+        frame.bodies.begin(), frame.bodies.end(), [this](const KinectBody& a, const KinectBody& b) {
+          return (place_of(a) - place_).squaredNorm() < (place_of(b) - place_).squaredNorm();
+        });
+  }
+
+  std::optional<std::uint64_t> wanted_;
+  std::uint64_t last_ = 0, several_ = 0, followed_ = 0;
+  Vec3 place_ = Vec3::Zero();
+  std::set<std::uint64_t> ids_;
+};
+
+class KinectRows final : public DeviceRows<PointFrames> {
+ public:
+  KinectRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
+      : heard_(std::move(heard)), file_(wish.file.path), body_(wish.body) {
+    header_.joint_names.assign(kinect_joints.begin(), kinect_joints.end());
+  }
+
+  Result<void> take(const RecordedMessage& message, PointFrames& out) override {
+    if (message.is_exchange()) return {};
+    joined_.clear();
+    frames_.take(message, joined_, nullptr);
+    arrival_ = message.arrival;
+    append_all(out);
+    return {};
+  }
+
+  Result<void> finish(PointFrames& out) override {
+    joined_.clear();
+    frames_.finish(joined_);
+    append_all(out);
+    body_.report(file_, findings);
+    const KinectFrameCounts counts = frames_.counts();
+    tell(counts.frames.lost, "each frame's number", "that never came");
+    tell(counts.parts_lost, "all parts of a frame", "frames without some");
+    tell(frames_.of_other_sensors, "one sensor", "frames of others, left out");
+    tell(unknown_, "frames of a clock that is known", "others, left out");
+    tell(wild_, "joints whose place is a number", "others: missing");
+    return {};
+  }
+
+  const PointHeader* header() const override { return &header_; }
+
+ private:
+  void tell(std::uint64_t count, std::string_view expected, std::string_view found) {
+    if (count == 0) return;
+    findings.push_back({Severity::note,
+                        Error{file_, 0, std::string(expected), fmt::format("{} {}", count, found)},
+                        "", ""});
+  }
+
+  void append_all(PointFrames& out) {
+    for (const JoinedKinectFrame& joined : joined_) {
+      const KinectFrame& frame = joined.frame;
+      const auto stamp = stamp_of(heard_->clock, frame.origin.session,
+                                  kinect_sender_time(frame.device_ticks), arrival_);
+      if (!stamp) {
+        ++unknown_;
+        continue;
+      }
+      wild_ += append_kinect_row(frame, body_(frame), out);
+      out.stamps.back() = *stamp;
+    }
+  }
+
+  std::shared_ptr<const HeardDevice> heard_;
+  std::string file_;
+  BodyChoice body_;
+  PointHeader header_;
+  KinectFrames frames_;
+  std::vector<JoinedKinectFrame> joined_;
+  HostTime arrival_{};
+  std::uint64_t unknown_ = 0, wild_ = 0;
+};
+
+}  // namespace
+
+DeviceProtocol kinect_protocol() {
+  return {"kinect",
+          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
+            return std::make_unique<KinectListener>(wish);
+          },
+          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
+            return std::make_unique<KinectRows>(wish, std::move(heard));
+          }};
+}
+
+}  // namespace kinalign

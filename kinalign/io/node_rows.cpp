@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames of an inertial node of ours: the counter's reading of each sample, put on UTC by the
+// exchanges that the recorder made out of frames and replies.
+#include "kinalign/io/device_rows.h"
+#include "kinalign/io/imu_converter.h"
+#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/wire/node_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint64_t most_counter_us = 1'000'000'000'000'000;  // 31 years
+
+/// What was accepted when it came; absent: no frame, or damaged.
+std::optional<NodeFrame> frame_in(const RecordedMessage& message) {
+  Envelope envelope;
+  if (open_envelope(octets(message.payload), envelope) != NodeRefusal::none) return std::nullopt;
+  envelope.mac_was_checked = true;
+  NodeFrame frame;
+  if (decode(envelope, nullptr, frame) != NodeRefusal::none) return std::nullopt;
+  if (frame.n_tx_us > most_counter_us) return std::nullopt;
+  return frame;
+}
+
+NodeTime counter_at(std::uint64_t us) {
+  return NodeTime{std::chrono::microseconds(static_cast<std::int64_t>(us))};
+}
+
+/// The host's axis begins anew where it slept: another life for the clock.
+BootKey life_of(const RecordedExchange& recorded) {
+  return recorded.exchange.boot ^ (BootKey{recorded.epoch} << 40U);
+}
+
+/// Pairs a frame with its exchange, whichever stands first: both have its counter and arrival.
+class Lives {
+ public:
+  void add_frame(std::uint32_t boot_id, NodeTime n, HostTime at) {
+    match({n, at, boot_id, std::nullopt});
+  }
+  void add_exchange(BootKey life, NodeTime n, HostTime at) { match({n, at, std::nullopt, life}); }
+  std::multimap<std::uint32_t, BootKey> result() { return std::move(lives_); }
+
+ private:
+  static constexpr std::size_t most_waiting = 256;
+  struct Half {
+    NodeTime n;
+    HostTime at;
+    std::optional<std::uint32_t> boot_id;
+    std::optional<BootKey> life;
+  };
+  void match(const Half& half) {
+    const auto other = std::find_if(waiting_.begin(), waiting_.end(), [&](const Half& h) {
+      return h.n == half.n && h.at == half.at && h.life.has_value() != half.life.has_value();
+    });
+    if (other == waiting_.end()) {
+      if (waiting_.size() == most_waiting) waiting_.pop_front();
+      waiting_.push_back(half);
+      return;
+    }
+    const std::uint32_t boot_id = half.boot_id ? *half.boot_id : *other->boot_id;
+    const BootKey life = half.life ? *half.life : *other->life;
+    waiting_.erase(other);
+    const auto [begin, end] = lives_.equal_range(boot_id);
+    const bool known =
+        std::any_of(begin, end, [life](const auto& entry) { return entry.second == life; });
+    if (!known) lives_.emplace(boot_id, life);
+  }
+
+  std::deque<Half> waiting_;
+  std::multimap<std::uint32_t, BootKey> lives_;
+};
+
+class NodeListener final : public DeviceListener {
+ public:
+  explicit NodeListener(const DeviceWish& wish) : file_(wish.file.path) {}
+
+  void take(const RecordedMessage& message) override {
+    if (message.is_exchange()) {
+      if (const auto recorded = to_exchange(message.payload)) {
+        Exchange exchange = recorded->exchange;
+        lives_.add_exchange(life_of(*recorded), exchange.n_tx, message.arrival);
+        exchange.boot = life_of(*recorded);
+        exchanges_.push_back(exchange);
+      }
+      return;
+    }
+    const auto frame = frame_in(message);
+    if (!frame) return;
+    lives_.add_frame(frame->origin.boot_id, counter_at(frame->n_tx_us), message.arrival);
+    for (std::size_t i = 0; i < frame->sample_count; ++i) {
+      const NodeSample& sample = frame->samples[i];
+      content_.orientation |= sample.has_orientation;
+      content_.acceleration |= sample.has_acceleration;
+      content_.angular_velocity |= sample.has_angular_velocity;
+      if (sample.has_acceleration) content_.gravity &= sample.gravity_included;
+    }
+  }
+
+  Result<void> finish(HeardDevice& heard) override {
+    if (exchanges_.empty()) {
+      return Failure(Error{file_, 0, "exchanges with node " + heard.channel.node,
+                           "none: of a node without a counter no time is known but arrivals"});
+    }
+    heard.clock = device_clock(exchanges_, heard.utc_minus_host);
+    heard.lives = lives_.result();
+    heard.content = content_;
+    return {};
+  }
+
+ private:
+  std::string file_;
+  std::vector<Exchange> exchanges_;
+  Lives lives_;
+  ImuContent content_;
+};
+
+class NodeRows final : public DeviceRows<ImuSamples> {
+ public:
+  NodeRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
+      : heard_(std::move(heard)),
+        file_(wish.file.path),
+        converter_(ImuUnits{axes_of(y_up, wish.options), 1.0, 1.0}) {
+    header_.node_names = {wish.file.node.empty() ? heard_->channel.node : wish.file.node};
+    header_.content = heard_->content;
+  }
+
+  Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
+    if (message.is_exchange()) return {};
+    const auto frame = frame_in(message);
+    if (!frame) {
+      ++no_frames_;
+      return {};
+    }
+    for (std::size_t i = 0; i < frame->sample_count; ++i) {
+      const NodeSample& sample = frame->samples[i];
+      const NodeTime n = counter_at(frame->n_tx_us) - std::chrono::microseconds(sample.age_us);
+      const auto stamp = stamp_at(frame->origin.boot_id, n, message.arrival);
+      if (!stamp) {
+        ++unknown_;
+        continue;
+      }
+      out.stamps.push_back(*stamp);
+      append(sample, out);
+    }
+    return {};
+  }
+
+  Result<void> finish(ImuSamples&) override {
+    converter_.report(file_, findings);
+    tell(no_frames_, "frames of a node", "payloads that are none", "they were passed over");
+    tell(unknown_, "samples of a life of the node whose clock is known", "samples of others",
+         "they were left out");
+    tell(partial_, "samples with all that the node sends at times",
+         "samples without, or with numbers that are none", "these samples are invalid");
+    return {};
+  }
+
+  const ImuHeader* header() const override { return &header_; }
+
+ private:
+  void tell(std::uint64_t count, std::string expected, std::string_view found,
+            std::string_view meaning) {
+    if (count == 0) return;
+    findings.push_back({Severity::note,
+                        Error{file_, 0, std::move(expected), fmt::format("{} {}", count, found)},
+                        std::string(meaning), ""});
+  }
+
+  std::optional<Time> stamp_at(std::uint32_t boot_id, NodeTime n, HostTime arrival) const {
+    const auto [begin, end] = heard_->lives.equal_range(boot_id);
+    for (auto life = begin; life != end; ++life) {
+      if (const auto stamp = stamp_of(heard_->clock, life->second, n, arrival)) return stamp;
+    }
+    return std::nullopt;
+  }
+
+  void append(const NodeSample& sample, ImuSamples& out) {
+    const std::array<double, 4> q{sample.orientation[0], sample.orientation[1],
+                                  sample.orientation[2], sample.orientation[3]};
+    const std::array<double, 3> a{sample.acceleration[0], sample.acceleration[1],
+                                  sample.acceleration[2]};
+    const std::array<double, 3> w{sample.angular_velocity[0], sample.angular_velocity[1],
+                                  sample.angular_velocity[2]};
+    const ImuContent& content = header_.content;
+    RawImuSample raw;
+    if (content.orientation) raw.orientation = q.data();
+    if (content.acceleration) raw.acceleration = a.data();
+    if (content.angular_velocity) raw.angular_velocity = w.data();
+    const bool mixed = sample.has_acceleration && sample.gravity_included != content.gravity;
+    raw.valid = sample.has_orientation >= content.orientation &&
+                sample.has_acceleration >= content.acceleration &&
+                sample.has_angular_velocity >= content.angular_velocity && !mixed &&
+                !faults(sample).not_finite;
+    partial_ += raw.valid ? 0U : 1U;
+    converter_.append(raw, out);
+  }
+
+  std::shared_ptr<const HeardDevice> heard_;
+  std::string file_;
+  ImuConverter converter_;
+  ImuHeader header_;
+  std::uint64_t no_frames_ = 0, unknown_ = 0, partial_ = 0;
+};
+
+}  // namespace
+
+DeviceProtocol node_protocol() {
+  return {"kinalign-node",
+          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
+            return std::make_unique<NodeListener>(wish);
+          },
+          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
+            return std::make_unique<NodeRows>(wish, std::move(heard));
+          }};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/recorded_messages.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_names = 32;  // of streams, nodes, senders in messages
+
+void remember(std::set<std::string>& names, const std::string& name) {
+  if (names.size() < most_names) names.insert(shown(name));
+}
+
+}  // namespace
+
+std::string host_of(std::string_view sender) {
+  return std::string(sender.substr(0, sender.rfind(':')));
+}
+
+RecordedMessages::RecordedMessages(DeviceChoice choice, std::string file)
+    : choice_(std::move(choice)), any_node_(choice_.node.empty()), file_(std::move(file)) {}
+
+Duration RecordedMessages::utc_minus_host() const {
+  if (!facts_) return {};
+  return facts_->anchor.utc.time_since_epoch() - facts_->anchor.raw.time_since_epoch();
+}
+
+Result<void> RecordedMessages::feed(std::string_view piece, const TakeMessage& take) {
+  reader_.feed(piece);
+  return take_records(take);
+}
+
+Result<void> RecordedMessages::finish(const TakeMessage& take) {
+  reader_.end();
+  KA_TRY(take_records(take));
+  if (!facts_) {
+    return Failure(Error{file_, 0, "a recording of kinalign's",
+                         reader_.is_mcap() ? "an MCAP file of another program" : "no MCAP file"});
+  }
+  judge_end();
+  if (any_node_ && nodes_.size() > 1) {
+    return Failure(Error{file_, 0,
+                         fmt::format("one node of stream {}: select.node", choice_.stream),
+                         fmt::format("{}", fmt::join(nodes_, ", "))});
+  }
+  if (chosen_) return {};
+  if (streams_.count(choice_.stream) == 0) {
+    return Failure(
+        Error{file_, 0,
+              fmt::format("select.stream, or a stream's name, of {}",
+                          streams_.empty() ? "those recorded"
+                                           : fmt::format("{}", fmt::join(streams_, ", "))),
+              streams_.empty() ? "a recording in which nothing was heard"
+                               : "'" + shown(choice_.stream) + "'"});
+  }
+  const bool node = !choice_.node.empty() && nodes_.count(choice_.node) == 0;
+  return Failure(
+      Error{file_, 0,
+            fmt::format("of stream {} {}", choice_.stream,
+                        node ? fmt::format("node {}", fmt::join(nodes_, ", "))
+                             : fmt::format("select.sender {}", fmt::join(senders_, ", "))),
+            "'" + shown(node ? choice_.node : choice_.sender) + "'"});
+}
+
+Result<void> RecordedMessages::take_records(const TakeMessage& take) {
+  while (const auto record = reader_.next()) KA_TRY(take_one(*record, take));
+  return {};
+}
+
+Result<void> RecordedMessages::take_one(const McapRecord& record, const TakeMessage& take) {
+  if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
+    if (!facts_) facts_ = to_facts(*metadata);
+  } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
+    if (attachment->name == choice_.stream + ".bvh") skeleton_ = attachment->data;
+  } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
+    add(*channel);
+  } else if (const auto* message = std::get_if<McapMessage>(&record)) {
+    const auto found = channels_.find(message->channel);
+    if (found == channels_.end() || !facts_) return {};
+    Channel& from = found->second;
+    if (!from.wanted || message->log_time > latest_log_time) return {};
+    const std::uint32_t step = message->sequence - from.last_number.value_or(message->sequence - 1);
+    from.last_number = message->sequence;
+    if (step > 1 && step < 1U << 31U) missing_ += step - 1;
+    const auto log = Duration{static_cast<std::int64_t>(message->log_time)};
+    return take({&from.raw, message->channel, HostTime{log - utc_minus_host()}, message->data});
+  }
+  return {};
+}
+
+/// Each chunk names its channels again.
+void RecordedMessages::add(const McapChannel& channel) {
+  auto raw = to_raw(channel);
+  if (!raw) return;
+  const auto [at, fresh] = channels_.try_emplace(channel.id);
+  if (!fresh && at->second.raw == *raw) return;
+  at->second = {*raw, is_wanted(*raw), {}};
+  if (at->second.wanted && !chosen_ && raw->protocol != exchange_encoding) chosen_ = *raw;
+}
+
+bool RecordedMessages::is_wanted(const RawChannel& raw) {
+  remember(streams_, raw.stream);
+  if (raw.stream != choice_.stream) return false;
+  const std::string host = host_of(raw.sender);
+  remember(senders_, host);
+  if (!raw.node.empty()) {  // a node may come from another address after a while
+    remember(nodes_, raw.node);
+    if (choice_.node.empty()) choice_.node = raw.node;
+    return raw.node == choice_.node;
+  }
+  if (choice_.sender.empty()) choice_.sender = host;
+  return host == choice_.sender;
+}
+
+void RecordedMessages::judge_end() {
+  append(findings_, reader_.findings());
+  for (Finding& finding : findings_) finding.what.file = file_;
+  if (!reader_.closed()) {
+    findings_.push_back(
+        {Severity::warning, Error{file_, 0, "a file that was closed", "one that breaks off"},
+         "everything up to the break was read", "kinalign recover makes a whole file of it"});
+  }
+  if (missing_ > 0) {
+    findings_.push_back(
+        {Severity::warning,
+         Error{file_, 0, "every message that reached the recorder",
+               fmt::format("{} of {} missing between others", missing_, choice_.stream)},
+         "damage in the file, or a recording that went on in another part", ""});
+  }
+  if (senders_.size() > 1 && nodes_.empty()) {
+    findings_.push_back({Severity::warning,
+                         Error{file_, 0, fmt::format("one sender of {}", choice_.stream),
+                               fmt::format("{}", fmt::join(senders_, ", "))},
+                         fmt::format("only {} was read", choice_.sender),
+                         "select.sender names another"});
+  }
+}
+
+}  // namespace kinalign

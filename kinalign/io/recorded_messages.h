@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one device said, out of a recording's file: docs/formats/recording.md. Fed the file in
+// pieces, whole or torn.
+#pragma once
+
+#include "kinalign/io/mcap_reader.h"
+#include "kinalign/io/recording_format.h"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+/// Which device. An empty sender: the first that is heard; an empty node: the only one.
+struct DeviceChoice {
+  std::string stream;
+  std::string node;    // an id, of inertial nodes
+  std::string sender;  // the address without its port
+};
+
+struct RecordedMessage {
+  const RawChannel* channel = nullptr;
+  std::uint16_t channel_id = 0;
+  HostTime arrival{};
+  std::string_view payload;  // good until the next message
+  bool is_exchange() const { return channel->protocol == exchange_encoding; }
+};
+using TakeMessage = std::function<Result<void>(const RecordedMessage&)>;
+
+class RecordedMessages {
+ public:
+  /// `file`: its name, for messages.
+  RecordedMessages(DeviceChoice choice, std::string file);
+
+  /// Hands on the device's messages that the piece completes, in the order of arrival.
+  Result<void> feed(std::string_view piece, const TakeMessage& take);
+  /// The file has ended. Fails where it is no recording of ours or the device is not in it.
+  Result<void> finish(const TakeMessage& take);
+
+  /// Absent until its record has been read, which stands in front of all messages.
+  const std::optional<RecordingFacts>& facts() const { return facts_; }
+  /// What log times are more than arrivals on the host's axis.
+  Duration utc_minus_host() const;
+  /// The header of the stream's skeleton, where the recording has one; in front of all messages.
+  const std::string& skeleton() const { return skeleton_; }
+  /// The device's first channel, once it was heard.
+  const std::optional<RawChannel>& chosen() const { return chosen_; }
+  /// That the file is torn or damaged, or that there are other nodes or senders in the stream;
+  /// complete after finish().
+  const Findings& findings() const { return findings_; }
+
+ private:
+  struct Channel {
+    RawChannel raw;
+    bool wanted = false;
+    std::optional<std::uint32_t> last_number;
+  };
+  Result<void> take_records(const TakeMessage& take);
+  Result<void> take_one(const McapRecord& record, const TakeMessage& take);
+  void add(const McapChannel& channel);
+  bool is_wanted(const RawChannel& raw);
+  void judge_end();
+
+  DeviceChoice choice_;
+  bool any_node_;  // was asked for
+  std::string file_;
+  McapReader reader_;
+  std::optional<RecordingFacts> facts_;
+  std::string skeleton_;
+  std::optional<RawChannel> chosen_;
+  std::map<std::uint16_t, Channel> channels_;
+  std::set<std::string> streams_, nodes_, senders_;  // that are there
+  std::uint64_t missing_ = 0;
+  Findings findings_;
+};
+
+/// "192.168.7.20" of "192.168.7.20:51234".
+std::string host_of(std::string_view sender);
+
+}  // namespace kinalign

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device of a recording as a stream of rows: docs/recording.md.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/io/device_rows.h"
+#include "kinalign/io/recording_survey.h"
+#include "kinalign/take/manifest.h"
+
+#include <memory>
+#include <string_view>
+
+namespace kinalign {
+
+bool looks_like_recording(std::string_view head);
+
+/// A device that was listened to, and readers of its rows.
+struct RecordedDevice {
+  std::shared_ptr<const HeardDevice> heard;
+  std::function<Result<AnyReader>()> make;
+};
+
+/// Reads the file once. The stream is select["stream"], by default the one of the options' name;
+/// select["node"], by default the file's node, says which inertial node, select["sender"] and
+/// select["body"] (of mocap: avatar) which of several.
+Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
+                              const StreamFile& file, const Progress& progress);
+
+/// All devices of a recording as streams of a manifest: mocap first, whose stamps are then the
+/// grid; nodes that are one stream share it. `path` as the manifest shall name the file.
+Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& path);
+
+}  // namespace kinalign

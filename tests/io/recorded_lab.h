@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording of three devices in memory, for tests. Each sample carries the true time at which it
+// was taken, seconds since the recording began, so that whatever reads it can be held against it.
+#pragma once
+
+#include "tests/io/mcap_files.h"
+
+#include "kinalign/io/kinect_binary.h"
+#include "kinalign/io/kinect_frames.h"
+#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/io/noitom_stream.h"
+#include "kinalign/io/recording_format.h"
+#include "kinalign/wire/node_frame.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// 59 joints in a chain, with 180 or 354 channels, in Noitom's order of rotations.
+inline std::string noitom_chain(const std::string& tenth, bool displacement) {
+  const std::string rotations = "Yrotation Xrotation Zrotation\n";
+  const std::string six = "CHANNELS 6 Xposition Yposition Zposition " + rotations;
+  std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 93 0\n" + six;
+  for (int k = 1; k < 59; ++k) {
+    text += "JOINT " + (k == 10 ? tenth : "j" + std::to_string(k)) + "\n{\nOFFSET 0 1 0\n" +
+            (displacement ? six : "CHANNELS 3 " + rotations);
+  }
+  text += "End Site\n{\nOFFSET 0 1 0\n}\n" + std::string(58, '}') + "}\n";
+  return text + "MOTION\nFrames: 0\nFrame Time: 0.008\n";
+}
+
+class RecordedLab {
+ public:
+  static constexpr std::int64_t utc_begin = 1'790'000'000'000'000'000;
+  static constexpr std::int64_t host_begin = 5'000'000'000'000;  // up for 5000 s
+
+  explicit RecordedLab(std::uint64_t seed) : random_(seed) {}
+
+  /// A counter that reads `at_begin_s` when the recording begins and runs `ppm` fast.
+  struct Counter {
+    double at_begin_s = 0.0, ppm = 0.0;
+    double at(double t) const { return at_begin_s + t * (1.0 + 1e-6 * ppm); }
+  };
+
+  /// Fifteen frames a second from `from` to `to`, two samples in each, answered if so.
+  void add_node(std::uint32_t id, std::uint32_t boot_id, Counter counter, double from, double to,
+                bool answered = true) {
+    const auto us = [&](double t) { return static_cast<std::uint64_t>(1e6 * counter.at(t)); };
+    const RawChannel raw{"imu", "kinalign-node", "udp", "10.0.0.7:5005", std::to_string(id)};
+    const std::string topic = "/imu/" + std::to_string(id);
+    const auto frames = channel(to_channel(topic + "/raw", raw));
+    McapChannel described = to_channel(topic + "/exchange", raw);
+    described.message_encoding = exchange_encoding;
+    const auto exchanges = channel(described);
+    std::optional<Exchange::Echo> echo;
+    std::uint32_t sequence = 0;
+    for (double t = from; t < to; t += 1.0 / 15.0) {
+      NodeFrame frame;
+      frame.origin = {id, boot_id, sequence++};
+      frame.n_tx_us = us(t);
+      frame.sample_count = 2;
+      for (std::size_t i = 0; i < 2; ++i) {
+        NodeSample& sample = frame.samples[i];
+        sample.age_us = i == 0 ? 40'000 : 7'000;
+        sample.has_acceleration = sample.has_angular_velocity = sample.gravity_included = true;
+        sample.acceleration = {static_cast<float>(t - 1e-6 * sample.age_us), 9.8F, 0.0F};
+      }
+      std::array<std::uint8_t, max_node_datagram> room{};
+      const auto bytes = encode(frame, nullptr, room);
+      const double arrival = t + way();
+      const NodeTime n{std::chrono::microseconds(frame.n_tx_us)};
+      add(exchanges, arrival, to_bytes({0, {boot_id, n, host(arrival), echo}}));
+      add(frames, arrival, std::string(text_of(bytes)));
+      if (!answered) continue;
+      const double sent = arrival + 0.0003;
+      echo = {NodeTime{std::chrono::microseconds(us(sent + way()))}, host(sent)};
+    }
+  }
+
+  /// Thirty frames a second of one body, `least_s` and more from the sensor to the sender, whose
+  /// clock is another one; four pings a second.
+  void add_kinect(Counter sensor, Counter sender, double least_s, double to) {
+    const auto ticks = [](const Counter& c, double t) {
+      return static_cast<std::int64_t>(1e7 * c.at(t));
+    };
+    const RawChannel raw{"kinect", "kinect", "udp", "10.0.0.9:6007", ""};
+    const auto frames = channel(to_channel("/kinect/raw", raw));
+    McapChannel described = to_channel("/kinect/exchange", raw);
+    described.message_encoding = exchange_encoding;
+    const auto exchanges = channel(described);
+    for (std::uint32_t k = 0; k < 30.0 * to; ++k) {
+      const double t = k / 30.0, taken = t + least_s + way() / 4.0, sent = taken + 0.0001;
+      KinectFrame frame;
+      frame.origin = {2, 77, k};
+      frame.device_ticks = ticks(sensor, t);
+      frame.taken_ticks = ticks(sender, taken);
+      frame.sent_ticks = ticks(sender, sent);
+      KinectBody body;
+      body.id = 72057594037927936;
+      body.states.fill(2);
+      body.positions[0] = static_cast<float>(t);
+      frame.bodies = {body};
+      const auto bytes = encode_kinect_binary(frame);
+      add(frames, sent + way(), {bytes.begin(), bytes.end()});
+    }
+    std::optional<Exchange::Echo> echo;
+    for (double t = 0.01; t < to; t += 0.25) {
+      const double arrival = t + way(), answered = arrival + 0.0002;
+      const NodeTime n = kinect_sender_time(ticks(sender, t));
+      add(exchanges, arrival, to_bytes({0, {77, n, host(arrival), echo}}));
+      echo = {kinect_sender_time(ticks(sender, answered + way())), host(answered)};
+    }
+  }
+
+  /// 125 frames a second whose root's x is the time, in metres; each `lost`th is lost.
+  void add_mocap(NoitomForm form, const std::string& transport, double to, std::uint32_t lost = 0) {
+    skeleton_ = noitom_chain("Spine3", false);
+    const auto frames =
+        channel(to_channel("/mocap/raw", {"mocap", "noitom", transport, "10.0.0.3:7012", ""}));
+    double last = 0.0;
+    for (std::uint32_t k = 0; k < 125.0 * to; ++k) {
+      if (lost > 0 && k % lost == lost - 1) continue;
+      const double t = k * 0.008;
+      NoitomFrame frame;
+      frame.form = form;
+      frame.name = "Char01";
+      if (form == NoitomForm::new_header) frame.frame_index = 4'294'967'000U + k;  // wraps
+      frame.values.assign(noitom_values(false, false), 0.0F);
+      frame.values[0] = static_cast<float>(100.0 * t);
+      std::vector<std::uint8_t> bytes;
+      REQUIRE(append_noitom(frame, bytes));
+      last = std::max(last, t + way() / 4.0);  // no overtaking
+      add(frames, last, {bytes.begin(), bytes.end()});
+    }
+  }
+
+  /// The file, its messages in the order of arrival, half a second in a chunk.
+  std::string file(bool closed = true) {
+    std::stable_sort(messages_.begin(), messages_.end(),
+                     [](const Message& a, const Message& b) { return a.arrival < b.arrival; });
+    MemoryFile file;
+    McapWriter writer(file.store());
+    REQUIRE(writer.begin({"kinalign", "test"}));
+    REQUIRE(writer.write(
+        to_metadata({"03", "S1A02", "lab", "take.mcap", 1, {host(0.0), utc_time(utc_begin)}})));
+    if (!skeleton_.empty()) REQUIRE(writer.write(McapAttachment{0, 0, "mocap.bvh", "", skeleton_}));
+    std::map<std::uint16_t, std::uint32_t> numbers;
+    for (auto message = messages_.begin(); message != messages_.end();) {
+      const double begin = message->arrival;
+      McapChunkContent content;
+      for (; message != messages_.end() && message->arrival < begin + 0.5; ++message) {
+        const std::uint16_t id = message->channel;
+        if (!content.messages().contains(id)) content.add(channels_[id - 1U]);
+        const auto log =
+            static_cast<std::uint64_t>(utc_begin + std::llround(1e9 * message->arrival));
+        content.add(McapMessage{id, numbers[id]++, log, log, message->data});
+      }
+      REQUIRE(writer.write(store(content, McapCompression::zstd)));
+    }
+    if (closed) REQUIRE(writer.finish());
+    return file.bytes;
+  }
+
+  static HostTime host(double t) { return HostTime{Duration{host_begin + std::llround(1e9 * t)}}; }
+  /// When a moment of the recording was.
+  static Time utc(double t) { return utc_time(utc_begin + std::llround(1e9 * t)); }
+
+ private:
+  struct Message {
+    std::uint16_t channel = 0;
+    double arrival = 0.0;
+    std::string data;
+  };
+  std::uint16_t channel(McapChannel described) {
+    described.id = static_cast<std::uint16_t>(channels_.size() + 1);
+    channels_.push_back(std::move(described));
+    return channels_.back().id;
+  }
+  void add(std::uint16_t channel, double arrival, std::string data) {
+    messages_.push_back({channel, arrival, std::move(data)});
+  }
+  /// Of a packet: 1.5 ms and more, seldom much more.
+  double way() { return 0.0015 + std::exponential_distribution<double>(250.0)(random_); }
+
+  std::mt19937_64 random_;
+  std::vector<McapChannel> channels_;
+  std::vector<Message> messages_;
+  std::string skeleton_;
+};
+
+}  // namespace kinalign

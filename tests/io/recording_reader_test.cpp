@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/recording_reader.h"
+
+#include "tests/folder.h"
+#include "tests/io/recorded_lab.h"
+
+#include "kinalign/io/open_recording.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+using namespace std::chrono_literals;
+
+namespace {
+
+StreamOptions stream_named(const std::string& name, const std::string& path,
+                           const std::string& node = "") {
+  StreamOptions options;
+  options.name = name;
+  options.files = {{path, node}};
+  return options;
+}
+
+RecordedStream opened(FileSystem& files, const StreamOptions& options) {
+  auto streams = open_streams(files, {options});
+  INFO(options.name);
+  if (!streams) FAIL(streams.error().expected, ", found ", streams.error().found);
+  REQUIRE(streams->size() == 1);
+  return std::move(streams->front());
+}
+
+/// How far a stream's stamps are behind the truth that its samples carry, ms.
+struct Errors {
+  double least = 1e9, most = -1e9, widest = 0.0;  // and the widest half-width
+  std::size_t samples = 0, certified = 0, outside = 0;
+
+  void add(const RecordedStream& stream, Time stamp, double truth) {
+    const auto error = take_time(stream.clock, stamp) - RecordedLab::utc(truth);
+    const double ms = 1e-6 * static_cast<double>(error.count());
+    least = std::min(least, ms);
+    most = std::max(most, ms);
+    ++samples;
+    const auto half = half_width(stream.clock, stamp);
+    if (!half) return;
+    ++certified;
+    widest = std::max(widest, 1e-6 * static_cast<double>(half->count()));
+    // What single precision leaves of the truth is not the clock's fault.
+    outside += std::abs(error.count()) > half->count() + 4000 ? 1 : 0;
+  }
+};
+
+template <class Input, class Truth>
+Errors errors_of(const RecordedStream& stream, Truth truth) {
+  auto pass = std::get<Input>(stream.data).passes();
+  REQUIRE(pass);
+  Errors errors;
+  using Frames = std::conditional_t<
+      std::is_same_v<Input, ClipInput>, ClipFrames,
+      std::conditional_t<std::is_same_v<Input, PointInput>, PointFrames, ImuSamples>>;
+  Frames block;
+  for (;;) {
+    const auto more = (*pass)(block);
+    REQUIRE(more);
+    if (!*more) return errors;
+    for (std::size_t t = 0; t < block.size(); ++t) {
+      errors.add(stream, block.stamps[t], truth(block, t));
+    }
+  }
+}
+
+Errors node_errors(const RecordedStream& stream) {
+  return errors_of<ImuInput>(
+      stream, [](const ImuSamples& s, std::size_t t) { return s.acceleration[3 * t]; });
+}
+Errors kinect_errors(const RecordedStream& stream) {
+  return errors_of<PointInput>(
+      stream, [](const PointFrames& f, std::size_t t) { return f.positions[25 * 3 * t]; });
+}
+Errors mocap_errors(const RecordedStream& stream) {
+  return errors_of<ClipInput>(
+      stream, [](const ClipFrames& f, std::size_t t) { return f.local_positions[59 * 3 * t]; });
+}
+
+}  // namespace
+
+TEST_CASE("a recorded node's samples are stamped by its counter, each within its interval") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 0xb0071, {3.0, -35.0}, 0.0, 40.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const RecordedStream stream = opened(files, stream_named("imu", path, "12"));
+  CHECK(stream.format == "recording");
+  CHECK(stream.findings.empty());
+  const auto& input = std::get<ImuInput>(stream.data);
+  CHECK(input.node_names == std::vector<std::string>{"12"});
+  CHECK(input.content == ImuContent{false, true, true, true});
+  const Errors errors = node_errors(stream);
+  CHECK(errors.samples == 2 * 600);
+  CHECK(errors.certified == errors.samples);
+  CHECK(errors.outside == 0);
+  CHECK(errors.widest < 2.5);
+  CHECK(errors.least > -0.3);
+  CHECK(errors.most < 0.3);
+}
+
+TEST_CASE("a node that restarts goes on in the same stream, its second life as exact") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 0xb0071, {3000.0, -35.0}, 0.0, 20.0);
+  lab.add_node(12, 0xb0072, {-21.0, -35.0}, 24.0, 44.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const RecordedStream stream = opened(files, stream_named("imu", path));
+  CHECK(stream.survey.backward == 0);
+  const Errors errors = node_errors(stream);
+  CHECK(errors.samples == 2 * (300 + 301));
+  CHECK(errors.outside == 0);
+  CHECK(errors.least > -0.5);
+  CHECK(errors.most < 0.5);
+}
+
+TEST_CASE("a Kinect's stamps are its sensor's ticks, late by the least time to the sender") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 40.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const RecordedStream stream = opened(files, stream_named("kinect", path));
+  const Errors errors = kinect_errors(stream);
+  CHECK(errors.samples == 1200);
+  CHECK(errors.certified == 0);
+  CHECK(errors.least > 29.5);
+  CHECK(errors.most < 31.5);
+  // A delay that is known is taken off.
+  StreamOptions options = stream_named("kinect", path);
+  options.offset_ms = -30.0;
+  const Errors moved = kinect_errors(opened(files, options));
+  CHECK(moved.least == doctest::Approx(errors.least - 30.0));
+}
+
+TEST_CASE("mocap's frames are stamped by their number, over lost ones and its wrap") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_mocap(NoitomForm::new_header, "udp", 40.0, 9);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const RecordedStream stream = opened(files, stream_named("mocap", path));
+  CHECK(std::get<ClipInput>(stream.data).skeleton.joints() == 59);
+  CHECK(stream.survey.median_step_ns == 8'000'000);
+  const Errors errors = mocap_errors(stream);
+  CHECK(errors.samples == 5000 - 5000 / 9);
+  CHECK(errors.least > 0.2);
+  CHECK(errors.most < 1.0);
+}
+
+TEST_CASE("frames without a number are counted over a connection, and stamped as they come else") {
+  const FreshFolder folder;
+  PosixFiles files;
+  for (const std::string transport : {"tcp", "udp"}) {
+    RecordedLab lab(20261123);
+    lab.add_mocap(NoitomForm::old_header, transport, 40.0);
+    const std::string path = folder.write(transport + ".mcap", lab.file());
+    const Errors errors = mocap_errors(opened(files, stream_named("mocap", path)));
+    CHECK(errors.samples == 5000);
+    CHECK(errors.certified == 0);
+    CHECK(errors.least > 0.2);
+    if (transport == "tcp") CHECK(errors.most < 1.0);
+    if (transport == "udp") CHECK(errors.most > 4.0);
+  }
+}
+
+TEST_CASE("a file that breaks off anywhere is read up to there, and that is said") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 0xb0071, {3.0, -35.0}, 0.0, 10.0);
+  const std::string whole = lab.file(false);
+  PosixFiles files;
+  for (const double share : {0.3, 0.6, 0.9, 1.0}) {
+    const auto size = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
+    const std::string path = folder.write("torn.mcap", whole.substr(0, size));
+    const RecordedStream stream = opened(files, stream_named("imu", path));
+    const auto torn = std::count_if(
+        stream.findings.begin(), stream.findings.end(),
+        [](const Finding& f) { return f.repair == "kinalign recover makes a whole file of it"; });
+    CHECK(torn == 1);
+    const Errors errors = node_errors(stream);
+    CHECK(errors.outside == 0);
+    CHECK(static_cast<double>(errors.samples) > 300.0 * (share - 0.1));
+  }
+}
+
+TEST_CASE("what is not in a recording is refused by the names of what is") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 2.0);
+  lab.add_node(13, 1, {4.0, 10.0}, 0.0, 2.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto refusal = [&](const StreamOptions& options) {
+    const auto streams = open_streams(files, {options});
+    REQUIRE(!streams);
+    return streams.error().expected + "; " + streams.error().found;
+  };
+  CHECK(refusal(stream_named("mocap", path)) ==
+        "select.stream, or a stream's name, of imu; 'mocap'");
+  CHECK(refusal(stream_named("imu", path)) == "one node of stream imu: select.node; 12, 13");
+  CHECK(refusal(stream_named("imu", path, "14")) == "of stream imu node 12, 13; '14'");
+  StreamOptions options = stream_named("imu", path, "12");
+  options.select["colour"] = "red";
+  CHECK(refusal(options) == "select by stream, node, sender or body; colour = red");
+}
+
+TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as one stream") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 2.0);
+  lab.add_node(13, 1, {4.0, 10.0}, 0.0, 2.0);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 2.0);
+  lab.add_mocap(NoitomForm::new_header, "udp", 2.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto survey = survey_recording(files, path);
+  REQUIRE(survey);
+  const auto manifest = manifest_of(*survey, "take.mcap");
+  REQUIRE(manifest);
+  CHECK(manifest->subject == "03");
+  CHECK(manifest->action == "S1A02");
+  REQUIRE(manifest->streams.size() == 3);
+  CHECK(manifest->streams[0].name == "mocap");
+  CHECK(manifest->streams[1].name == "kinect");
+  CHECK(manifest->streams[2].name == "imu");
+  REQUIRE(manifest->streams[2].files.size() == 2);
+  CHECK(manifest->streams[2].files[1].node == "13");
+  const auto recording = open_recording(files, *manifest, folder.path() + "/");
+  REQUIRE(recording);
+  CHECK(recording->streams.size() == 4);
+}
