@@ -108,6 +108,7 @@ std::string marks_text(const Json& s) {
   };
   share("inferred", " inferred");
   share("bridged", " interpolated over loss");
+  share("unsure", " of unknown time");
   return text;
 }
 

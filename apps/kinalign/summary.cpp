@@ -30,6 +30,7 @@ void add(Group& group, const StreamReport& s) {
   sum.invalid += s.invalid;
   sum.inferred += s.inferred;
   sum.bridged += s.bridged;
+  sum.unsure += s.unsure;
   if (!s.worst_interval_ns) {
     sum.worst_interval_ns.reset();
   } else if (sum.worst_interval_ns) {
@@ -76,7 +77,10 @@ std::string worst_node(const Group& group, Measure measure) {
 std::string time_text(const Group& group, const Console& console) {
   const auto& known = group.sum.worst_interval_ns;
   std::string sure = clock_text(known, group.sum.counted);
-  if (!known) sure = console.paint(Colour::warning, sure);
+  if (group.sum.unsure > 0) {
+    sure += ", " + share_text(group.sum.unsure, group.sum.samples) + " unknown";
+  }
+  if (!known || group.sum.unsure > 0) sure = console.paint(Colour::warning, sure);
   return harmless(name_of(group)) + " " + sure + worst_node(group, doubt);
 }
 

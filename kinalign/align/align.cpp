@@ -167,6 +167,7 @@ StreamReport report_stream(const Job& job, const SlabMaker& slabs, const Counts&
   out.empty_rows = marks.empty_rows;
   out.inferred = marks.inferred;
   out.bridged = marks.bridged;
+  out.unsure = marks.unsure;
   out.worst_nearest_ns = marks.worst_nearest_ns;
   for (const TimeModelPiece& piece : s.clock.pieces) {
     if (!piece.half_width) continue;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/marks.h"
 
+#include "kinalign/clock/time_model.h"
+
 #include <algorithm>
 
 namespace kinalign {
@@ -10,6 +12,9 @@ namespace {
 /// Of one sample: of a row of `distance`, and where it lies among what was marked over_loss.
 void add_valid(const SampleDistance& distance, std::size_t row, std::size_t cell, Marks& marks) {
   if (!distance.over_loss.empty()) marks.bridged += distance.over_loss[cell];
+  if (!distance.time_interval_ns.empty()) {
+    marks.unsure += distance.time_interval_ns[row] == no_interval ? 1 : 0;
+  }
   if (distance.nearest_raw_ns.empty()) return;
   marks.worst_nearest_ns = std::max(marks.worst_nearest_ns, distance.nearest_raw_ns[row]);
 }

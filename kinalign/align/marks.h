@@ -14,6 +14,7 @@ struct Marks {
   std::uint64_t samples = 0;  // rows x joints (or nodes); of a skeleton rows
   std::uint64_t invalid = 0, inferred = 0, bridged = 0;
   std::uint64_t empty_rows = 0;       // nothing in them is valid
+  std::uint64_t unsure = 0;           // valid, without an interval that others of the stream have
   std::int64_t worst_nearest_ns = 0;  // over valid samples
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/nodes.h"
 
+#include "kinalign/clock/time_model.h"
+
 #include <algorithm>
 
 namespace kinalign {
@@ -10,11 +12,11 @@ namespace {
 /// Values of `width` a node: columns of the stream's rows into the group's.
 template <class T>
 void put_columns(const std::vector<T>& from, std::size_t width, std::size_t rows,
-                 const NodeColumns& columns, std::vector<T>& to) {
+                 const NodeColumns& columns, std::vector<T>& to, T absent = {}) {
   if (from.empty() || rows == 0) return;
   const std::size_t take = from.size() / rows;
   const std::size_t stride = columns.all * width, first = columns.first * width;
-  to.resize(rows * stride);
+  to.resize(rows * stride, absent);
   for (std::size_t r = 0; r < rows; ++r) {
     std::copy_n(&from[r * take], take, &to[r * stride + first]);
   }
@@ -28,7 +30,8 @@ void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns
   put_columns(from.angular_velocity, 3, rows, columns, to.angular_velocity);
   put_columns(from.valid, 1, rows, columns, to.valid);
   put_columns(from.distance.nearest_raw_ns, 1, rows, columns, to.distance.nearest_raw_ns);
-  put_columns(from.distance.time_interval_ns, 1, rows, columns, to.distance.time_interval_ns);
+  put_columns(from.distance.time_interval_ns, 1, rows, columns, to.distance.time_interval_ns,
+              no_interval);
   put_columns(from.distance.over_loss, 1, rows, columns, to.distance.over_loss);
 }
 

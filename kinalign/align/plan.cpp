@@ -120,11 +120,6 @@ ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
   return rule;
 }
 
-bool all_known(const TimeModel& clock) {
-  return std::all_of(clock.pieces.begin(), clock.pieces.end(),
-                     [](const TimeModelPiece& piece) { return piece.half_width.has_value(); });
-}
-
 std::variant<ClipGroup, PointGroup, ImuGroup> kind_of(const RecordedStream& s,
                                                       const StreamOptions& options) {
   if (const auto* clip = std::get_if<ClipInput>(&s.data)) return ClipGroup{clip->skeleton};
@@ -169,8 +164,9 @@ Result<void> join(TakeGroup& group, const RecordedStream& s) {
     }
     nodes->node_names.push_back(node);
   }
-  group.interval_known = group.interval_known && all_known(s.clock);
-  group.files.insert(group.files.end(), s.files.begin(), s.files.end());
+  group.interval_known = group.interval_known || any_known(s.clock);
+  const bool one_recording = s.format == "recording" && group.files == s.files;
+  if (!one_recording) group.files.insert(group.files.end(), s.files.begin(), s.files.end());
   return {};
 }
 
@@ -195,7 +191,7 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
     if (same == groups.end()) {
       const bool resampled = i != plan.reference;
       groups.push_back({s.name, kind_of(s, options_of(manifest, s.name)), resampled,
-                        resampled && all_known(s.clock), s.files,
+                        resampled && any_known(s.clock), s.files,
                         space_of(s.name, reference.name, manifest)});
     } else {
       if (const auto* nodes = std::get_if<ImuGroup>(&same->kind)) {

@@ -63,11 +63,10 @@ Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& o
     resample(s, window_, grid, rule_.curve, out);
   }
   Neighbours near = find_neighbours(stamps, grid);
-  for (std::size_t r = 0; r < grid.size(); ++r) {
+  const bool known = any_known(*clock_);
+  for (std::size_t r = 0; known && r < grid.size(); ++r) {
     const std::size_t at = std::min(near.left[r], stamps.size() - 1);
-    if (const auto known = half_width(*clock_, window_.rows.stamps[at])) {
-      out.distance.time_interval_ns.push_back(known->count());
-    }
+    out.distance.time_interval_ns.push_back(interval_ns(*clock_, window_.rows.stamps[at]));
   }
   out.distance.nearest_raw_ns = std::move(near.nearest_raw_ns);
   return {};

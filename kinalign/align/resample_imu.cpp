@@ -148,12 +148,11 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
     put_distances(samples, grid, rule_, column, out);
   }
   const Neighbours near = find_neighbours(stamps, grid);
-  for (std::size_t r = 0; r < grid.size(); ++r) {
-    const std::size_t known_at = std::min(near.left[r], stamps.size() - 1);
-    const auto known = half_width(*clock_, window_.rows.stamps[known_at]);
-    if (!known) continue;
+  const bool known = any_known(*clock_);
+  for (std::size_t r = 0; known && r < grid.size(); ++r) {
+    const std::size_t at = std::min(near.left[r], stamps.size() - 1);
     auto& intervals = out.distance.time_interval_ns;
-    intervals.insert(intervals.end(), nodes, known->count());
+    intervals.insert(intervals.end(), nodes, interval_ns(*clock_, window_.rows.stamps[at]));
   }
   return {};
 }

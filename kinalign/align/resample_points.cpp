@@ -122,10 +122,13 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
   }
   const Neighbours near = find_neighbours(stamps, grid);
   out.distance.nearest_raw_ns = find_neighbours(stamps_seen(window_), grid).nearest_raw_ns;
+  const bool known = any_known(*clock_);
   for (std::size_t r = 0; r < grid.size(); ++r) {
     const std::size_t left = near.left[r];
-    const auto known = half_width(*clock_, window_.rows.stamps[std::min(left, stamps.size() - 1)]);
-    if (known) out.distance.time_interval_ns.push_back(known->count());
+    if (known) {
+      const Time stamp = window_.rows.stamps[std::min(left, stamps.size() - 1)];
+      out.distance.time_interval_ns.push_back(interval_ns(*clock_, stamp));
+    }
     if (left == stamps.size()) continue;
     const std::size_t right = stamps[left] == grid[r] ? left : left + 1;
     const bool lost = stamps[right] - stamps[left] > rule_.step_ns * 3 / 2;

@@ -44,4 +44,14 @@ std::optional<Duration> half_width(const TimeModel& model, Time stamp) {
   return piece_at(model, stamp).half_width;
 }
 
+bool any_known(const TimeModel& model) {
+  return std::any_of(model.pieces.begin(), model.pieces.end(),
+                     [](const TimeModelPiece& piece) { return piece.half_width.has_value(); });
+}
+
+std::int64_t interval_ns(const TimeModel& model, Time stamp) {
+  const auto known = half_width(model, stamp);
+  return known ? known->count() : no_interval;
+}
+
 }  // namespace kinalign

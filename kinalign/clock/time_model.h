@@ -5,6 +5,7 @@
 
 #include "kinalign/wire/time.h"
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -33,5 +34,12 @@ Time take_time(const TimeModel& model, Time stamp);
 
 /// The half-width that belongs to a stamp.
 std::optional<Duration> half_width(const TimeModel& model, Time stamp);
+
+/// Of any stamp one is known.
+bool any_known(const TimeModel& model);
+
+/// Half-widths as a take holds them, ns; this one where a stamp has none beside others that do.
+inline constexpr std::int64_t no_interval = -1;
+std::int64_t interval_ns(const TimeModel& model, Time stamp);
 
 }  // namespace kinalign

@@ -191,6 +191,7 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
     if (device == devices.end()) {
       device = devices.insert(device, {rank_of(raw->protocol), {}});
       device->options.name = raw->stream;
+      device->options.select = {{"stream", raw->stream}};
     }
     std::vector<StreamFile>& streams = device->options.files;
     const auto same = [&](const StreamFile& file) { return file.node == raw->node; };

@@ -42,6 +42,7 @@ Json stream_json(const StreamReport& stream) {
   out["bridged"] = stream.bridged;
   out["worst_nearest_ns"] = stream.worst_nearest_ns;
   if (stream.worst_interval_ns) out["worst_interval_ns"] = *stream.worst_interval_ns;
+  if (stream.unsure > 0) out["unsure"] = stream.unsure;
   return out;
 }
 

@@ -48,6 +48,8 @@ struct InputFacts {
   std::string name;    // as the manifest gives it; outside its folder the file's name only
   std::string sha256;  // 64 hexadecimal digits
   std::uint64_t bytes = 0;
+
+  bool operator==(const InputFacts&) const = default;
 };
 
 struct RecordedStream {

@@ -51,6 +51,7 @@ struct StreamReport {
                                  // or more than 1.5 of the stream's steps apart
   std::int64_t worst_nearest_ns = 0;  // over valid rows: distance to the nearest raw sample
   std::optional<std::int64_t> worst_interval_ns;  // half-width; absent: nothing is known
+  std::uint64_t unsure = 0;  // valid, of unknown time beside others whose interval is known
 };
 
 struct AlignmentReport {

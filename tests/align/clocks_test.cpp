@@ -96,6 +96,27 @@ TEST_CASE(
   CHECK(take->header.groups[1].interval_known);
 }
 
+TEST_CASE("samples of a stretch without an interval are told from those that have one") {
+  Recording recording =
+      two(points(joints, every(10 * ms, 400), wander), points(joints, every(30 * ms, 134), wander));
+  TimeModelPiece certified, doubtful;
+  certified.half_width = Duration{1 * ms};
+  doubtful.begin = utc_time(1500 * ms);
+  recording.streams[1].clock.pieces = {certified, doubtful};
+  const auto take = align(recording, own_space());
+  REQUIRE(take);
+  const auto& widths = rows(*take, 1).distance.time_interval_ns;
+  REQUIRE(widths.size() == take->all.stamps.size());
+  std::uint64_t unsure = 0;
+  for (std::size_t r = 0; r < widths.size(); ++r) {
+    const bool known = to_ns(take->all.stamps[r]) < 1500 * ms;
+    CHECK(widths[r] == (known ? 1 * ms : no_interval));
+    unsure += known ? 0 : 1;
+  }
+  CHECK(take->report.streams[1].worst_interval_ns == 1 * ms);
+  CHECK(take->report.streams[1].unsure == unsure * joints.size());
+}
+
 TEST_CASE("pieces of a clock serve the stamps from their beginning on") {
   Recording recording =
       two(points(joints, every(10 * ms, 400), wander), points(joints, every(30 * ms, 134), wander));
