@@ -136,7 +136,7 @@ Controls walked(const std::vector<Act>& acts, std::uint64_t seed, double scale) 
   Walker walker(seed, scale);
   std::optional<std::uint64_t> current;
   const auto count = static_cast<std::size_t>(acts.back().end_s / control_s) + 2;
-  constexpr auto ticks = static_cast<std::size_t>(control_s / tick_s + 0.5);
+  const auto ticks = static_cast<std::size_t>(std::lround(control_s / tick_s));
   for (std::size_t k = 0; k < count; ++k) {
     controls.x.push_back(walker.place().x);
     controls.z.push_back(walker.place().z);

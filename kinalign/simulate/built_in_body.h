@@ -46,7 +46,7 @@ class BuiltInBody {
   struct Pelvis {
     Vec3 position;
     Quat rotation;
-    double yaw;
+    double yaw = 0.0;
   };
   Doing doing_at(double t) const;
   Pelvis pelvis_at(double t, const Doing& doing, const FootState& left,
