@@ -7,9 +7,15 @@
 
 #include "kinalign/align/own_rows.h"
 #include "kinalign/io/bvh_copy.h"
+#include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_reader.h"
+#include "kinalign/io/recording_survey.h"
 #include "kinalign/io/report_json.h"
+#include "kinalign/io/show_recording.h"
+#include "kinalign/io/show_xdf.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_npz.h"
+#include "kinalign/io/xdf.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -26,16 +32,16 @@ struct Convert {
 
 Usage describe_convert(Convert& o) {
   Usage usage;
-  usage.positionals = {{"IN", "a take, or a stream's file", &o.from},
-                       {"OUT", "a new file; its ending, .npz or .bvh, decides", &o.to}};
+  usage.positionals = {{"IN", "a take, a recording, or a stream's file", &o.from},
+                       {"OUT", "a new file; its ending, .npz, .bvh or .mcap, decides", &o.to}};
   usage.flags = o.stream.fields();
   usage.flags.push_back({"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double});
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     const std::string& to = o.to.front();
-    if (!to.ends_with(".npz") && !to.ends_with(".bvh")) {
-      return Failure(Error{to, 0, "a name that ends in .npz or .bvh", "another ending"});
+    if (!to.ends_with(".npz") && !to.ends_with(".bvh") && !to.ends_with(".mcap")) {
+      return Failure(Error{to, 0, "a name that ends in .npz, .bvh or .mcap", "another ending"});
     }
-    if (o.store_double && to.ends_with(".bvh")) {
+    if (o.store_double && !to.ends_with(".npz")) {
       return Failure(Error{"--double", 0, "a new file that ends in .npz", shown(to)});
     }
     KA_TRY(o.stream.stream({}));
@@ -143,6 +149,43 @@ Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& c
   return used ? Result<void>{} : call.console.refuse(std::move(used).error());
 }
 
+Findings findings_of(const Recording& recording) {
+  Findings all;
+  for (const RecordedStream& stream : recording.streams) append(all, stream.findings);
+  return all;
+}
+
+/// All devices of a recording, or, where the user names one, that stream.
+Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call) {
+  const Progress progress = call.console.progress();
+  if (!job.to.ends_with(".mcap")) {
+    return call.console.refuse(Error{job.to, 0, "of a recording a file that ends in .mcap",
+                                     "another ending (kinalign align makes a take of it)"});
+  }
+  KA_TRY(check_flags(o, nullptr, call));
+  const RecordingSurvey survey = KA_TRY(survey_recording(job.files, job.from, progress));
+  const Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(job.from))));
+  const Recording recording = KA_TRY(
+      open_recording(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));
+  KA_TRY(show_recording(job.files, recording, job.from, job.to, job.overwrite, progress));
+  return findings_of(recording);
+}
+
+Result<bool> is_xdf(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  return looks_like_xdf(KA_TRY(file.next()));
+}
+
+Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {
+  if (!job.to.ends_with(".mcap")) {
+    return call.console.refuse(
+        Error{job.to, 0, "of an XDF file one that ends in .mcap", "another ending"});
+  }
+  KA_TRY(check_flags(o, nullptr, call));
+  return KA_TRY(show_xdf(job.files, job.from, job.to, job.overwrite, call.console.progress()))
+      .findings;
+}
+
 Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   if (job.from.ends_with(".toml")) {
     return call.console.refuse(Error{job.from, 0, "a take, or one stream's file", "a manifest"});
@@ -156,7 +199,12 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
       return copy_bvh(job.files, job.from, sink, call.console.progress());
     });
   }
-  KA_TRY(stream_to_npz(job, stream, call.console.progress()));
+  if (job.to.ends_with(".mcap")) {
+    KA_TRY(show_recording(job.files, input.recording, "", job.to, job.overwrite,
+                          call.console.progress()));
+  } else {
+    KA_TRY(stream_to_npz(job, stream, call.console.progress()));
+  }
   return stream.findings;
 }
 
@@ -167,8 +215,16 @@ Result<int> run(Convert& o, Call& call) {
                 o.store_double};
   KA_TRY(keep_inputs(job.to, {job.from}));
   Findings findings;
-  if (KA_TRY(is_take(job.files, job.from))) {
+  if (KA_TRY(is_recording(job.files, job.from))) {
+    findings = KA_TRY(convert_recording(job, o, call));
+  } else if (KA_TRY(is_xdf(job.files, job.from))) {
+    findings = KA_TRY(convert_xdf(job, o, call));
+  } else if (KA_TRY(is_take(job.files, job.from))) {
     KA_TRY(check_flags(o, nullptr, call));
+    if (job.to.ends_with(".mcap")) {
+      return call.console.refuse(
+          Error{job.to, 0, "of a take a file that ends in .npz or .bvh", "another ending"});
+    }
     findings = KA_TRY(convert_take(job));
   } else {
     findings = KA_TRY(convert_stream(job, o, call));
@@ -189,13 +245,17 @@ Verb convert_verb() {
       {.name = "convert",
        .summary = "one format into another",
        .text =
-           "From a take to .npz or .bvh, from any stream's file to .npz, from .bvh to .bvh. Exit "
-           "code 1 where it was done with warnings.",
+           "From a take to .npz or .bvh, from any stream's file to .npz, from .bvh to .bvh; from a "
+           "recording, an XDF or a stream's file to an .mcap of JSON, which Foxglove and "
+           "Lichtblick show. "
+           "Exit code 1 where it was done with warnings.",
        .examples = {{"kinalign convert demo/mocap.bvh demo/mocap.npz",
                      "positions, local_positions, local_rotations, joint_names, ... for NumPy"},
                     {"kinalign convert demo/take.h5 demo/take.npz", "all streams of a take"},
                     {"kinalign convert demo/take.h5 demo/aligned.bvh",
-                     "the take's skeleton stream"}},
+                     "the take's skeleton stream"},
+                    {"kinalign convert lab/take.mcap shown.mcap",
+                     "skeletons, samples, marks, to look at in Lichtblick"}},
        .common = {"force", "json"}},
       describe_convert, run);
 }

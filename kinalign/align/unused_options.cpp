@@ -122,6 +122,21 @@ std::span<const std::string_view> useless_options(const RecordedStream& stream) 
                                                           "mounting"};
   static constexpr std::array<std::string_view, 3> nodes{"end_ns", "click_latency_ms",
                                                          "metres_per_unit"};
+  // What a recording says of a device's clock is known better than by any option.
+  static constexpr std::array<std::string_view, 8> recorded_clip{
+      "start_ns",  "end_ns",      "click_latency_ms", "clock",
+      "drift_ppm", "interval_ms", "root_node",        "mounting"};
+  static constexpr std::array<std::string_view, 10> recorded_points{
+      "start_ns",    "end_ns",    "click_latency_ms", "clock",           "drift_ppm",
+      "interval_ms", "root_node", "mounting",         "metres_per_unit", "up"};
+  static constexpr std::array<std::string_view, 7> recorded_nodes{
+      "start_ns",  "end_ns",      "click_latency_ms", "clock",
+      "drift_ppm", "interval_ms", "metres_per_unit"};
+  if (stream.format == "recording") {
+    if (std::holds_alternative<ClipInput>(stream.data)) return recorded_clip;
+    if (std::holds_alternative<PointInput>(stream.data)) return recorded_points;
+    return recorded_nodes;
+  }
   if (std::holds_alternative<ClipInput>(stream.data)) return clip;
   if (std::holds_alternative<PointInput>(stream.data)) return points;
   return nodes;

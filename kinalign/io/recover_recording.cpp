@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recover_recording.h"
 
-#include "kinalign/io/mcap_writer.h"
+#include "kinalign/io/mcap_store.h"
 
 #include <map>
 #include <set>
@@ -26,13 +26,7 @@ PieceSource pieces_of(const OutputFile& file, std::uint64_t size, std::string& b
 /// Takes the records of all files one after the other and writes them anew.
 class Copier {
  public:
-  explicit Copier(OutputFile& out)
-      : writer_({[&out](std::string_view bytes) { return out.write(bytes); },
-                 [&out](std::uint64_t at, std::span<char> to) -> Result<void> {
-                   const std::size_t got = KA_TRY(out.read_at(at, to));
-                   if (got == to.size()) return {};
-                   return Failure(Error{out.path(), 0, "the bytes that were written", "fewer"});
-                 }}) {}
+  explicit Copier(OutputFile& out) : writer_(mcap_store(out)) {}
 
   /// The numbers of the files before tell what stands twice.
   void begin_file() { before_ = last_; }

@@ -3,13 +3,15 @@
 // capsules that hide joints from a camera.
 #pragma once
 
+#include "kinalign/motion/kinect_joints.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
 namespace kinalign {
 
-/// JointType's numbers; kinalign/io/kinect_joints.h has their names.
+/// JointType's numbers; kinalign/motion/kinect_joints.h has their names.
 enum KinectJoint : std::uint8_t {
   spine_base,
   spine_mid,
@@ -69,6 +71,13 @@ inline constexpr std::array<KinectLimb, kinect_joint_count> kinect_limbs = [] {
       {hand_right, arm, right, thumb_left},
   }};
 }();
+
+static_assert([] {
+  for (std::size_t j = 0; j < kinect_joint_count; ++j) {
+    if (static_cast<std::size_t>(kinect_limbs[j].parent) != kinect_parents[j]) return false;
+  }
+  return true;
+}());
 
 /// All 25, each behind its parent.
 inline constexpr std::array<KinectJoint, kinect_joint_count> kinect_tree_order{

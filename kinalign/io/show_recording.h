@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording's streams, or a file's, as an MCAP file of JSON that Foxglove and Lichtblick show:
+// every sample at its time on UTC, skeletons as frame transforms too. docs/formats/shown.md.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/io/shown_file.h"
+#include "kinalign/take/recording.h"
+
+#include <string>
+
+namespace kinalign {
+
+/// `from`: a recording whose JSON channels (marks, counts, the host's clocks) are copied; may be
+/// empty. Messages stand in the order of their times, but for those copied, which come last.
+Result<Shown> show_recording(FileSystem& files, const Recording& recording, const std::string& from,
+                             const std::string& out, Overwrite overwrite,
+                             const Progress& progress = {});
+
+}  // namespace kinalign

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/show_xdf.h"
+
+#include "kinalign/io/xdf.h"
+#include "kinalign/io/xdf_clock.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using TakeItem = std::function<Result<void>(const XdfItem&)>;
+
+/// All items of a file, in its order.
+Result<Findings> read_xdf(FileSystem& files, const std::string& path, const Progress& progress,
+                          const TakeItem& take) {
+  InputFile input = KA_TRY(InputFile::open(files, path));
+  XdfReader reader(path);
+  std::vector<XdfItem> items;
+  std::uint64_t done = 0;
+  for (bool ended = false; !ended;) {
+    const std::string_view piece = KA_TRY(input.next());
+    ended = piece.empty();
+    items.clear();
+    KA_TRY(ended ? reader.finish(items) : reader.feed(piece, items));
+    for (const XdfItem& item : items) KA_TRY(take(item));
+    done += piece.size();
+    if (!go_on(progress, "converting", done, input.size())) return Failure(interruption(path));
+  }
+  return reader.findings();
+}
+
+McapSchema sample_schema() {
+  return {0, "kinalign.XdfSample", "jsonschema",
+          R"({"type": "object", "properties": {"stamp": {"type": "number", "description": )"
+          R"("s, the sender's clock, not corrected"}, "deduced": {"type": "boolean", )"
+          R"("description": "not written: the one before and the nominal rate"}, )"
+          R"("values": {"type": "array"}}})"};
+}
+
+/// What the first pass has found.
+struct Heads {
+  std::map<std::uint32_t, XdfStream> streams;
+  std::map<std::uint32_t, std::vector<XdfClockOffset>> offsets;
+};
+
+Result<Heads> heads_of(FileSystem& files, const std::string& path) {
+  Heads heads;
+  KA_TRY(read_xdf(files, path, {}, [&](const XdfItem& item) -> Result<void> {
+    if (const auto* stream = std::get_if<XdfStream>(&item)) heads.streams[stream->id] = *stream;
+    if (const auto* offset = std::get_if<XdfClockOffset>(&item)) {
+      heads.offsets[offset->stream].push_back(*offset);
+    }
+    return {};
+  }));
+  return heads;
+}
+
+/// Absent of what is no time of a recorder.
+std::optional<Time> time_of(double s) {
+  constexpr double latest_s = 4e9;
+  if (!(s >= 0.0) || s > latest_s) return std::nullopt;
+  return utc_time(std::llround(s * 1e9));
+}
+
+Json value_json(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);  // JSON has no NaN
+}
+Json value_json(std::int64_t value) { return value; }
+Json value_json(const std::string& value) { return value; }
+
+std::string sample_json(const XdfSamples& samples, std::size_t t) {
+  Json values = Json::array();
+  std::visit(
+      [&](const auto& all) {
+        const std::size_t width = all.size() / samples.size();
+        for (std::size_t c = 0; c < width; ++c) values.push_back(value_json(all[t * width + c]));
+      },
+      samples.values);
+  const Json json = {{"stamp", value_json(samples.stamps[t])},
+                     {"deduced", samples.deduced[t] != 0},
+                     {"values", std::move(values)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A channel's name: the stream's, with its id where two have one, and no slash or blank in it.
+std::string topic_of(const Heads& heads, const XdfStream& stream) {
+  std::string name = stream.name.empty() ? "stream" : stream.name;
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) <= ' ' || c == '/') c = '_';
+  }
+  for (const auto& [id, other] : heads.streams) {
+    if (id != stream.id && other.name == stream.name)
+      return "/" + name + "/" + std::to_string(stream.id);
+  }
+  return "/" + name;
+}
+
+struct Channel {
+  std::uint16_t id = 0;
+  std::vector<XdfClockLine> lines;
+};
+
+Result<void> add_samples(const XdfSamples& samples, const Channel& channel, ShownFile& out,
+                         std::uint64_t& timeless) {
+  for (std::size_t t = 0; t < samples.size(); ++t) {
+    const auto at = time_of(corrected_xdf_stamp(channel.lines, samples.stamps[t]));
+    if (!at) {
+      ++timeless;
+      continue;
+    }
+    const Time device = time_of(samples.stamps[t]).value_or(Time{});
+    KA_TRY(out.add(channel.id, *at, device, sample_json(samples, t)));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
+                          Overwrite overwrite, const Progress& progress) {
+  const Heads heads = KA_TRY(heads_of(files, from));
+  OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
+  ShownFile shown(file);
+  KA_TRY(shown.begin());
+  std::map<std::uint32_t, Channel> channels;
+  for (const auto& [id, stream] : heads.streams) {
+    const std::string topic = topic_of(heads, stream);
+    KA_TRY(shown.attach(topic.substr(1) + ".xml", stream.xml));
+    Channel& channel = channels[id];
+    channel.id = shown.add_channel(topic, sample_schema());
+    const auto offsets = heads.offsets.find(id);
+    if (offsets != heads.offsets.end()) channel.lines = fit_xdf_clock(offsets->second);
+  }
+  std::uint64_t timeless = 0;
+  ShownXdf done;
+  done.findings = KA_TRY(read_xdf(files, from, progress, [&](const XdfItem& item) -> Result<void> {
+    const auto* samples = std::get_if<XdfSamples>(&item);
+    if (samples == nullptr || samples->size() == 0) return {};
+    const auto channel = channels.find(samples->stream);
+    if (channel == channels.end()) return {};
+    return add_samples(*samples, channel->second, shown, timeless);
+  }));
+  if (timeless > 0) {
+    done.findings.push_back(
+        {Severity::warning,
+         Error{from, 0, "stamps from 0 to 4e9 s", std::to_string(timeless) + " samples of others"},
+         "these samples were left out", ""});
+  }
+  KA_TRY(shown.finish());
+  KA_TRY(file.commit());
+  done.shown = shown.counts();
+  return done;
+}
+
+}  // namespace kinalign

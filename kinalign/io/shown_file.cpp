@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/shown_file.h"
+
+#include "kinalign/io/mcap_store.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+ShownFile::ShownFile(OutputFile& out) : writer_(mcap_store(out)) {}
+
+Result<void> ShownFile::begin() { return writer_.begin({"", "kinalign " KINALIGN_VERSION}); }
+
+Result<void> ShownFile::attach(std::string name, std::string description) {
+  return writer_.write(McapAttachment{0, 0, std::move(name), "text/plain", std::move(description)});
+}
+
+std::uint16_t ShownFile::add_channel(std::string topic, McapSchema schema) {
+  const auto known = std::find_if(schemas_.begin(), schemas_.end(), [&](const McapSchema& other) {
+    return other.name == schema.name;
+  });
+  schema.id = static_cast<std::uint16_t>(known - schemas_.begin() + 1);
+  channels_.push_back(
+      {static_cast<std::uint16_t>(channels_.size() + 1), schema.id, std::move(topic), "json", {}});
+  if (known == schemas_.end()) schemas_.push_back(std::move(schema));
+  numbers_.push_back(0);
+  return channels_.back().id;
+}
+
+Result<void> ShownFile::add(std::uint16_t channel, Time at, Time device, std::string_view json) {
+  if (to_ns(at) < 0) {
+    ++counts_.out_of_range;
+    return {};
+  }
+  if (!chunk_.messages().contains(channel)) {
+    const McapChannel& described = channels_[channel - 1U];
+    chunk_.add(schemas_[described.schema_id - 1U]);
+    chunk_.add(described);
+  }
+  const auto log = static_cast<std::uint64_t>(to_ns(at));
+  const auto published = static_cast<std::uint64_t>(std::max<std::int64_t>(0, to_ns(device)));
+  chunk_.add(McapMessage{channel, numbers_[channel - 1U]++, log, published, json});
+  ++counts_.messages;
+  constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
+  return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
+}
+
+Result<void> ShownFile::finish() {
+  KA_TRY(close_chunk());
+  return writer_.finish();
+}
+
+Result<void> ShownFile::close_chunk() {
+  if (chunk_.empty()) return {};
+  return writer_.write(store(std::exchange(chunk_, {}), McapCompression::zstd));
+}
+
+}  // namespace kinalign
