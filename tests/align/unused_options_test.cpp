@@ -62,6 +62,27 @@ TEST_CASE(
         "expected of 'some' only options that a skeleton can use, found root_node");
 }
 
+TEST_CASE("of what a recording knows itself nothing can be said: start, clock, drift, interval") {
+  const auto recording = [](RecordedStream stream) {
+    stream.format = "recording";
+    return stream;
+  };
+  const SayOfStream start = [](StreamOptions& o) { o.start_ns = 5; };
+  const SayOfStream shared = [](StreamOptions& o) { o.clock = "shared"; };
+  const SayOfStream drift = [](StreamOptions& o) { o.drift_ppm = 1.0; };
+  const SayOfStream interval = [](StreamOptions& o) { o.interval_ms = 1.0; };
+  const SayOfStream delay = [](StreamOptions& o) { o.offset_ms = -30.0; };
+  for (const auto& stream : {recorded("", skeleton()), recorded("", PointStream{})}) {
+    for (const auto& say : {start, end, latency, shared, drift, interval, root}) {
+      CHECK(!fault(recording(stream), say).empty());
+    }
+    CHECK(fault(recording(stream), delay).empty());
+  }
+  CHECK(!fault(recording(recorded("", ImuStream{})), drift).empty());
+  CHECK(fault(recording(recorded("", ImuStream{})), root).empty());
+  CHECK(fault(recording(recorded("", skeleton())), rate).empty());  // of a stream that says none
+}
+
 TEST_CASE("an interval is of another clock than the reference's, and of one that leaves doubt") {
   Manifest manifest;
   manifest.streams.resize(2);
