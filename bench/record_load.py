@@ -6,6 +6,7 @@
   record_load.py BUILD --flood 50000                 while strangers flood the mocap's port"""
 import argparse
 import pathlib
+import statistics
 import sys
 import tempfile
 
@@ -41,7 +42,10 @@ def main():
     print(f"lost: {sum(gone.values())}" + (f" ({gone})" if any(gone.values()) else ""))
     print(f"processor: {100 * recorder.cpu_s / recorder.load_s:.2f} % of one core")
     if settled:
-        print(f"memory: {min(settled):.1f} to {max(settled):.1f} MB after the first minute's worth")
+        quarter = max(1, len(settled) // 4)
+        begin, end = (statistics.median(part) for part in (settled[:quarter], settled[-quarter:]))
+        print(f"memory after the first minute's worth: {begin:.1f} MB in its first quarter, {end:.1f} MB in its last "
+              f"(medians; {min(settled):.1f} to {max(settled):.1f})")
     print(f"open files: {min(files)} to {max(files)}")
     print("reply after (half, 99 %, all), ms: " + ", ".join(f"{ms:.2f}" for ms in sent["wait_ms"]))
     return 1 if any(gone.values()) else 0

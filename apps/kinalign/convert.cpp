@@ -208,27 +208,23 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
   return stream.findings;
 }
 
+Result<Findings> convert(const Job& job, const Convert& o, Call& call) {
+  if (KA_TRY(is_recording(job.files, job.from))) return convert_recording(job, o, call);
+  if (KA_TRY(is_xdf(job.files, job.from))) return convert_xdf(job, o, call);
+  if (!KA_TRY(is_take(job.files, job.from))) return convert_stream(job, o, call);
+  KA_TRY(check_flags(o, nullptr, call));
+  if (!job.to.ends_with(".mcap")) return convert_take(job);
+  return call.console.refuse(
+      Error{job.to, 0, "of a take a file that ends in .npz or .bvh", "another ending"});
+}
+
 Result<int> run(Convert& o, Call& call) {
   call.console.if_it_fails(
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
   const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite(),
                 o.store_double};
   KA_TRY(keep_inputs(job.to, {job.from}));
-  Findings findings;
-  if (KA_TRY(is_recording(job.files, job.from))) {
-    findings = KA_TRY(convert_recording(job, o, call));
-  } else if (KA_TRY(is_xdf(job.files, job.from))) {
-    findings = KA_TRY(convert_xdf(job, o, call));
-  } else if (KA_TRY(is_take(job.files, job.from))) {
-    KA_TRY(check_flags(o, nullptr, call));
-    if (job.to.ends_with(".mcap")) {
-      return call.console.refuse(
-          Error{job.to, 0, "of a take a file that ends in .npz or .bvh", "another ending"});
-    }
-    findings = KA_TRY(convert_take(job));
-  } else {
-    findings = KA_TRY(convert_stream(job, o, call));
-  }
+  const Findings findings = KA_TRY(convert(job, o, call));
   call.console.wrote(job.to);
   call.console.print(harmless(job.to) + "\n" + finding_lines(findings, call.console));
   call.console.print_json(json_text(nlohmann::ordered_json{

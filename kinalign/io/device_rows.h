@@ -21,7 +21,8 @@ struct DeviceWish {
   StreamOptions options;
   StreamFile file;
   DeviceChoice choice;
-  std::optional<std::uint64_t> body;  // of a Kinect; avatar or character of mocap
+  /// Of a Kinect; avatar or character of mocap; a SlimeVR tracker's sensor.
+  std::optional<std::uint64_t> body;
 };
 
 /// What listening has found.
@@ -71,9 +72,10 @@ struct DeviceProtocol {
   std::unique_ptr<DeviceListener> (*listen)(const DeviceWish& wish);
   AnyDeviceRows (*rows)(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard);
 };
-DeviceProtocol node_protocol();    // node_rows.cpp: inertial nodes of ours
-DeviceProtocol kinect_protocol();  // kinect_rows.cpp
-DeviceProtocol noitom_protocol();  // noitom_rows.cpp
-DeviceProtocol xsens_protocol();   // xsens_rows.cpp: poses
+DeviceProtocol node_protocol();     // node_rows.cpp: inertial nodes of ours
+DeviceProtocol kinect_protocol();   // kinect_rows.cpp
+DeviceProtocol noitom_protocol();   // noitom_rows.cpp
+DeviceProtocol xsens_protocol();    // xsens_rows.cpp: poses
+DeviceProtocol slimevr_protocol();  // slimevr_rows.cpp
 
 }  // namespace kinalign

@@ -23,7 +23,10 @@ std::string host_of(std::string_view sender) {
 }
 
 RecordedMessages::RecordedMessages(DeviceChoice choice, std::string file)
-    : choice_(std::move(choice)), any_node_(choice_.node.empty()), file_(std::move(file)) {}
+    : choice_(std::move(choice)),
+      any_node_(choice_.node.empty()),
+      any_sender_(choice_.sender.empty()),
+      file_(std::move(file)) {}
 
 Duration RecordedMessages::utc_minus_host() const {
   if (!facts_) return {};
@@ -132,7 +135,7 @@ void RecordedMessages::judge_end() {
                fmt::format("{} of {} missing between others", missing_, choice_.stream)},
          "damage in the file, or a recording that went on in another part", ""});
   }
-  if (senders_.size() > 1 && nodes_.empty()) {
+  if (any_sender_ && senders_.size() > 1 && nodes_.empty()) {
     findings_.push_back({Severity::warning,
                          Error{file_, 0, fmt::format("one sender of {}", choice_.stream),
                                fmt::format("{}", fmt::join(senders_, ", "))},

@@ -66,7 +66,7 @@ class RecordedMessages {
   void judge_end();
 
   DeviceChoice choice_;
-  bool any_node_;  // was asked for
+  bool any_node_, any_sender_;  // were asked for
   std::string file_;
   McapReader reader_;
   std::optional<RecordingFacts> facts_;

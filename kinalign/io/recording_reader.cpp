@@ -12,8 +12,9 @@ namespace kinalign {
 
 namespace {
 
-std::array<DeviceProtocol, 4> protocols() {
-  return {node_protocol(), kinect_protocol(), noitom_protocol(), xsens_protocol()};
+std::array<DeviceProtocol, 5> protocols() {
+  return {node_protocol(), kinect_protocol(), noitom_protocol(), xsens_protocol(),
+          slimevr_protocol()};
 }
 
 Result<DeviceProtocol> protocol_of(const RawChannel& channel, const std::string& file) {
@@ -42,6 +43,7 @@ Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file)
   DeviceWish wish{options, file, {}, {}};
   wish.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
                  selected(options, "sender", "")};
+  if (wish.choice.sender.empty()) wish.choice.sender = wish.choice.node;  // of a tracker
   const std::string body = selected(options, "body", "");
   if (body.empty()) return wish;
   std::uint64_t id = 0;
@@ -194,8 +196,11 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
       device->options.select = {{"stream", raw->stream}};
     }
     std::vector<StreamFile>& streams = device->options.files;
-    const auto same = [&](const StreamFile& file) { return file.node == raw->node; };
-    if (std::none_of(streams.begin(), streams.end(), same)) streams.push_back({path, raw->node});
+    // Trackers are told apart by their addresses; of mocap and Kinects the first is the one.
+    std::string node = raw->protocol == "slimevr" ? host_of(raw->sender) : raw->node;
+    const auto same = [&](const StreamFile& file) { return file.node == node; };
+    if (std::any_of(streams.begin(), streams.end(), same)) continue;
+    streams.push_back({path, std::move(node)});
   }
   if (devices.empty()) {
     return Failure(Error{path, 0, "a recording of devices", "one in which none was heard"});

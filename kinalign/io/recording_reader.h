@@ -23,7 +23,8 @@ struct RecordedDevice {
 
 /// Reads the file once. The stream is select["stream"], by default the one of the options' name;
 /// select["node"], by default the file's node, says which inertial node, select["sender"] and
-/// select["body"] (of mocap: avatar) which of several.
+/// select["body"] (of mocap the avatar, of a
+/// SlimeVR tracker the sensor) which of several. A tracker's node is its address.
 Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
                               const StreamFile& file, const Progress& progress);
 

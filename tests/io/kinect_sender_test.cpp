@@ -146,7 +146,8 @@ TEST_CASE("the sender's numbers are the layout's") {
   CHECK(kinect_frame_size(1, true) - kinect_frame_size(1, false) == 16 * 25);
 }
 
-TEST_CASE("the sender's C# writes the bytes that we write" * doctest::skip(!has_mono())) {
+TEST_CASE("the sender's C# writes the bytes that we write" * doctest::description("needs mono") *
+          doctest::skip(!has_mono())) {
   const FreshFolder folder;
   const KinectPong pong{{2, 0x5eedf00d, 42}, 43, 0xdeadbeef};
   std::string line = encode_kinect_line(pong);

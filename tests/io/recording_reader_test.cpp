@@ -236,3 +236,29 @@ TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as 
   REQUIRE(recording);
   CHECK(recording->streams.size() == 4);
 }
+
+TEST_CASE("a SlimeVR tracker's rotations are stamped as they come, with their accelerations") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_tracker("10.0.0.21", 20.0);
+  lab.add_tracker("10.0.0.22", 20.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto survey = survey_recording(files, path);
+  REQUIRE(survey);
+  const auto manifest = manifest_of(*survey, path);
+  REQUIRE(manifest);
+  const auto streams = open_streams(files, manifest->streams);
+  REQUIRE(streams);
+  REQUIRE(streams->size() == 2);
+  for (const RecordedStream& stream : *streams) {
+    CHECK(stream.findings.empty());
+    CHECK(std::get<ImuInput>(stream.data).content == ImuContent{true, true, false, false});
+    const Errors errors = node_errors(stream);
+    CHECK(errors.samples == 2000);
+    CHECK(errors.certified == 0);
+    CHECK(errors.least > 1.4);
+  }
+  CHECK(std::get<ImuInput>(streams->back().data).node_names ==
+        std::vector<std::string>{"10.0.0.22"});
+}

@@ -323,6 +323,7 @@ TEST_CASE("acceleration before protocol 22 is turned by -90 degrees about z") {
 }
 
 TEST_CASE("the project's own package reads what we send, and we what it sends" *
+          doctest::description("needs the npm package @slimevr/firmware-protocol in build/npm") *
           doctest::skip(node_modules().empty())) {
   // npm @slimevr/firmware-protocol 0.6.6
   const FreshFolder folder;

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rotations of one sensor of a SlimeVR tracker, each with the acceleration that came with it or
+// just before. Their packets carry no time: stamps are arrivals.
+#include "kinalign/io/device_rows.h"
+#include "kinalign/io/imu_converter.h"
+#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/io/slimevr_packet.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+/// An acceleration belongs to the rotation behind it for so long.
+constexpr Duration goes_with = std::chrono::milliseconds(50);
+
+struct SlimeSample {
+  std::array<double, 4> orientation{};
+  std::optional<std::array<double, 3>> acceleration;
+};
+
+/// One sensor's samples: of the datagram's, those that go on from the ones before.
+class SlimeSamples {
+ public:
+  explicit SlimeSamples(std::optional<std::uint64_t> sensor) : sensor_(sensor) {}
+
+  void take(const RecordedMessage& message, std::vector<SlimeSample>& out) {
+    SlimeDatagram datagram;
+    if (!decode_slime(octets(message.payload), datagram)) return;
+    for (const SlimePacket& packet : datagram.packets) {
+      if (const auto* handshake = std::get_if<SlimeHandshake>(&packet)) {
+        protocol_ = handshake->protocol.value_or(0);
+        newest_ = 0;
+      }
+    }
+    if (datagram.number != 0 && datagram.number <= newest_) {
+      ++overtaken;
+      return;
+    }
+    newest_ = std::max(newest_, datagram.number);
+    for (const SlimePacket& packet : datagram.packets) {
+      const auto* motion = std::get_if<SlimeMotion>(&packet);
+      if (motion == nullptr || motion->is_correction) continue;
+      if (sensors.size() < most_sensors) sensors.insert(motion->sensor);
+      if (!sensor_) sensor_ = motion->sensor;
+      if (motion->sensor == *sensor_) add(*motion, message.arrival, out);
+    }
+  }
+
+  std::uint64_t overtaken = 0;
+  std::set<unsigned> sensors;  // that were heard
+
+ private:
+  static constexpr std::size_t most_sensors = 32;
+
+  void add(const SlimeMotion& motion, HostTime arrival, std::vector<SlimeSample>& out) {
+    if (motion.acceleration) {
+      acceleration_ = slime_acceleration(*motion.acceleration, protocol_);
+      felt_ = arrival;
+    }
+    if (!motion.rotation) return;
+    const auto q = slime_orientation(*motion.rotation);
+    if (!q) return;
+    const bool fresh = acceleration_ && arrival - felt_ <= goes_with;
+    out.push_back({*q, fresh ? acceleration_ : std::nullopt});
+    acceleration_.reset();
+  }
+
+  std::optional<std::uint64_t> sensor_;
+  std::int32_t protocol_ = 0;
+  std::uint64_t newest_ = 0;
+  std::optional<std::array<double, 3>> acceleration_;
+  HostTime felt_{};
+};
+
+class SlimeListener final : public DeviceListener {
+ public:
+  explicit SlimeListener(const DeviceWish& wish) : file_(wish.file.path), samples_(wish.body) {}
+
+  void take(const RecordedMessage& message) override {
+    taken_.clear();
+    samples_.take(message, taken_);
+    rotations_ += taken_.size();
+    for (const SlimeSample& one : taken_) accelerations_ += one.acceleration ? 1U : 0U;
+  }
+
+  Result<void> finish(HeardDevice& heard) override {
+    if (rotations_ == 0) return Failure(Error{file_, 0, "rotations of a SlimeVR tracker", "none"});
+    heard.by_arrival = true;
+    // Few of many have one where the tracker sends them now and then: then they are no stream's.
+    heard.content = {true, 2 * accelerations_ > rotations_, false, false};
+    if (samples_.sensors.size() > 1) {
+      heard.findings.push_back(
+          {Severity::warning,
+           Error{file_, 0, "one sensor of tracker " + host_of(heard.channel.sender),
+                 fmt::format("{} of them", samples_.sensors.size())},
+           "the first that was heard was read", "select.body names another, by its number"});
+    }
+    return {};
+  }
+
+ private:
+  std::string file_;
+  SlimeSamples samples_;
+  std::vector<SlimeSample> taken_;
+  std::uint64_t rotations_ = 0, accelerations_ = 0;
+};
+
+class SlimeRows final : public DeviceRows<ImuSamples> {
+ public:
+  SlimeRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
+      : heard_(std::move(heard)), samples_(wish.body), converter_(ImuUnits{}) {
+    header_.node_names = {wish.file.node.empty() ? host_of(heard_->channel.sender)
+                                                 : wish.file.node};
+    header_.content = heard_->content;
+  }
+
+  Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
+    taken_.clear();
+    samples_.take(message, taken_);
+    for (const SlimeSample& one : taken_) {
+      RawImuSample raw;
+      raw.orientation = one.orientation.data();
+      const std::array<double, 3> none{};
+      if (header_.content.acceleration) {
+        raw.acceleration = one.acceleration ? one.acceleration->data() : none.data();
+        raw.valid = one.acceleration.has_value();
+      }
+      out.stamps.push_back(Time{message.arrival.time_since_epoch() + heard_->utc_minus_host});
+      converter_.append(raw, out);
+    }
+    return {};
+  }
+
+  Result<void> finish(ImuSamples&) override {
+    if (samples_.overtaken > 0) {
+      findings.push_back({Severity::note,
+                          Error{"", 0, "datagrams whose numbers rise",
+                                fmt::format("{} that came late or twice", samples_.overtaken)},
+                          "they were left out: nothing says when their samples were taken", ""});
+    }
+    return {};
+  }
+
+  const ImuHeader* header() const override { return &header_; }
+
+ private:
+  std::shared_ptr<const HeardDevice> heard_;
+  SlimeSamples samples_;
+  ImuConverter converter_;
+  ImuHeader header_;
+  std::vector<SlimeSample> taken_;
+};
+
+}  // namespace
+
+DeviceProtocol slimevr_protocol() {
+  return {"slimevr",
+          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
+            return std::make_unique<SlimeListener>(wish);
+          },
+          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
+            return std::make_unique<SlimeRows>(wish, std::move(heard));
+          }};
+}
+
+}  // namespace kinalign
