@@ -164,8 +164,13 @@ class Walk {
 }  // namespace
 
 Fields common_fields(Common& common, const Page& page) {
+  const Field out_file{"out", "file to write", &common.out};
+  const Field out_folder{.name = "out",
+                         .meaning = "folder to write into, made if need be",
+                         .value = &common.out,
+                         .stands_for = "FOLDER"};
   const Fields choosable{
-      {"out", "file to write", &common.out},
+      page.out_is_folder ? out_folder : out_file,
       {"force", "overwrite what is there", &common.force},
       {"json", "print JSON and nothing else on stdout", &common.json},
       {"dry_run", "say what would be done and write nothing", &common.dry_run},

@@ -129,6 +129,7 @@ bool is_switch(const Field& field) { return std::holds_alternative<bool*>(field.
 
 std::string placeholder(const Field& field) {
   if (is_switch(field)) return "";
+  if (!field.stands_for.empty()) return field.stands_for;
   std::string choices;
   for (const std::string& choice : field.choices) {
     if (!choice.empty()) choices += (choices.empty() ? "" : "|") + choice;

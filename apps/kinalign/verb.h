@@ -89,6 +89,7 @@ struct Page {
   std::string text;                 // what more there is to know; may be empty
   std::vector<Example> examples;    // the first one opens the help page
   std::vector<std::string> common;  // of out, force, json, dry_run, jobs: those it takes
+  bool out_is_folder = false;
 };
 
 struct Verb {

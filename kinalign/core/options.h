@@ -24,6 +24,7 @@ struct Field {
   double least = -unlimited;  // numbers only, which are finite all the same
   double most = unlimited;
   std::vector<std::string> choices{};  // strings only; empty: any text
+  std::string stands_for{};            // in --help, for the value: "FOLDER"; empty: by its name
 };
 
 using Fields = std::vector<Field>;
