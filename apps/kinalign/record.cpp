@@ -2,11 +2,14 @@
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/key_advice.h"
+#include "apps/kinalign/settings.h"
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/node_keys.h"
 #include "kinalign/capture/recording_session.h"
+#include "kinalign/io/bvh_head.h"
+#include "kinalign/io/lab_toml.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -34,17 +37,32 @@ struct Record {
   RecordOptions options;
 };
 
-Result<Lab> lab_of(const Record& o) {
-  Lab lab;
-  lab.record = o.options;
+/// What --device says, over the devices of a lab.toml.
+Result<Lab> lab_of(const Record& o, std::vector<DeviceOptions> in_file) {
+  Lab lab{std::move(in_file), o.options};
   for (const std::string& text : o.devices) {
-    auto device = parse_device(text);
+    const auto device = parse_device(text);
     if (!device) {
       return Failure(Error{"--device", 0, device.error().expected, device.error().found});
     }
-    lab.devices.push_back(*std::move(device));
+    come_from(lab, *device);
   }
   KA_TRY(validate(lab));
+  return lab;
+}
+
+/// A file of settings that says which devices there are; of others nothing.
+struct LabFile {
+  std::string text;
+  std::vector<DeviceOptions> devices;
+};
+Result<LabFile> read_lab_file(const Call& call) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 20;
+  const std::string path = project_settings(call.surroundings, call.common.config);
+  if (path.empty()) return LabFile{};
+  LabFile lab{KA_TRY(read_whole(call.surroundings.files, path, most_bytes)), {}};
+  lab.devices = KA_TRY(read_devices(lab.text, path));
+  if (lab.devices.empty()) lab.text.clear();
   return lab;
 }
 
@@ -59,9 +77,8 @@ Usage describe_record(Record& o) {
   usage.settings = {{"lab_key", "file of the key that the nodes' keys come from", &o.lab_key}};
   for (const Field& field : describe(o.options)) usage.settings.push_back(field);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
-    if (o.devices.empty()) return Failure(Error{"--device", 0, "at least one device", "none"});
     if (common.out.empty()) return Failure(Error{"--out", 0, "a folder for the files", "none"});
-    KA_TRY(lab_of(o));
+    KA_TRY(lab_of(o, {}));
     return {};
   };
   return usage;
@@ -205,15 +222,37 @@ class RecordHerald {
   HostTime next_look_ = HostTime::min(), next_status_ = HostTime::min();
 };
 
+/// The files that the devices need beside lab.toml.
+Result<void> read_files(const Record& o, Call& call, RecordingSession::Options& options) {
+  FileSystem& files = call.surroundings.files;
+  std::string lab_key = o.lab_key;
+  for (const DeviceOptions& device : options.lab.devices) {
+    if (lab_key.empty()) lab_key = device.lab_key;
+    if (device.skeleton.empty()) continue;
+    options.skeletons[device.name] = KA_TRY(read_bvh_head(files, device.skeleton));
+  }
+  if (lab_key.empty()) return {};
+  call.console.if_it_fails(key_advice);
+  options.desk.lab_key = KA_TRY(read_lab_key(files, lab_key));
+  call.console.if_it_fails({});
+  return {};
+}
+
 Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
+  auto file = read_lab_file(call);
+  if (!file) return call.console.refuse(std::move(file).error());
   RecordingSession::Options options;
-  options.lab = KA_TRY(lab_of(o));
+  auto lab = lab_of(o, std::move(file->devices));
+  if (!lab) return call.console.refuse(std::move(lab).error());
+  options.lab = *std::move(lab);
+  if (options.lab.devices.empty()) {
+    return call.console.refuse(
+        Error{"--device", 0, "at least one device, or a lab.toml for --config", "none"});
+  }
+  options.lab_toml = std::move(file->text);
   options.host = host_name();
   options.desk.secret = KA_TRY(new_secret());
-  if (o.lab_key.empty()) return options;
-  call.console.if_it_fails(key_advice);
-  options.desk.lab_key = KA_TRY(read_lab_key(call.surroundings.files, o.lab_key));
-  call.console.if_it_fails({});
+  KA_TRY(read_files(o, call, options));
   return options;
 }
 
@@ -261,8 +300,11 @@ Verb record_verb() {
              "inertial nodes, and Axis Studio sending to this machine"},
             {"kinalign record -o takes --subject 03 --action S1A02 --device "
              "mocap=noitom:tcp:192.168.7.5:7001",
-             "Axis Neuron serving; takes/03_S1A02_01.mcap"}},
-       .common = {"out", "json"}},
+             "Axis Neuron serving; takes/03_S1A02_01.mcap"},
+            {"kinalign record -o takes --config lab.toml",
+             "the devices of a lab: docs/recording.md"}},
+       .common = {"out", "json"},
+       .out_is_folder = true},
       describe_record, run);
 }
 

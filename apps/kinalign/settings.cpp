@@ -52,6 +52,7 @@ Result<Setting> setting_of(const std::string& path, const toml::key& key, const 
 
 Result<SettingsFile> settings_of(const toml::table& all, SettingsFile file) {
   for (const auto& [key, node] : all) {
+    if (key == "device" && node.is_table()) continue;  // a lab's: io/lab_toml.h reads them
     if (const toml::table* table = node.as_table()) {
       for (const auto& [inner_key, inner] : *table) {
         Setting setting = KA_TRY(setting_of(file.path, inner_key, inner));
@@ -141,6 +142,11 @@ Result<SettingsFile> read_settings(FileSystem& files, const std::string& path, S
   }
 }
 
+std::string project_settings(const Surroundings& surroundings, const std::string& config) {
+  const std::string named = config.empty() ? surroundings.variable("KINALIGN_CONFIG") : config;
+  return named.empty() ? projects_file(surroundings.folder) : named;
+}
+
 Result<std::vector<SettingsFile>> find_settings(const Surroundings& surroundings,
                                                 const std::string& config) {
   std::vector<SettingsFile> found;
@@ -148,8 +154,7 @@ Result<std::vector<SettingsFile>> find_settings(const Surroundings& surroundings
   if (!users.empty() && there(users)) {
     found.push_back(KA_TRY(read_settings(surroundings.files, users, Source::user)));
   }
-  std::string projects = config.empty() ? surroundings.variable("KINALIGN_CONFIG") : config;
-  if (projects.empty()) projects = projects_file(surroundings.folder);
+  const std::string projects = project_settings(surroundings, config);
   if (!projects.empty()) {
     found.push_back(KA_TRY(read_settings(surroundings.files, projects, Source::project)));
   }

@@ -28,6 +28,10 @@ struct SettingsFile {
 /// Reads one file: `jobs = 4` for every verb, `[align]` with `gap_ms = 50` for one.
 Result<SettingsFile> read_settings(FileSystem& files, const std::string& path, Source source);
 
+/// The path of the project's file: `config`, else what KINALIGN_CONFIG names, else kinalign.toml in
+/// the current folder or above it; empty: there is none.
+std::string project_settings(const Surroundings& surroundings, const std::string& config);
+
 /// The user's file and the project's (`config`, where not empty, in its place), where they exist.
 Result<std::vector<SettingsFile>> find_settings(const Surroundings& surroundings,
                                                 const std::string& config);

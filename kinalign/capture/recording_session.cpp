@@ -14,13 +14,16 @@ constexpr Duration between_looks = std::chrono::milliseconds(100);
 constexpr std::size_t most_node_sources = 256;
 constexpr std::uint64_t most_lives = 1000;  // of senders of a port: each takes a channel
 
-RecordingHead head_of(RecordingFacts facts, const std::string& lab_toml, int part) {
+RecordingHead head_of(RecordingFacts facts, const RecordingSession::Options& options, int part) {
   facts.part = part;
   RecordingHead head{
       {std::string(recording_profile), "kinalign " KINALIGN_VERSION}, {to_metadata(facts)}, {}};
   const auto utc = static_cast<std::uint64_t>(to_ns(facts.anchor.utc));
-  if (!lab_toml.empty()) {
-    head.attachments.push_back({utc, utc, "lab.toml", "application/toml", lab_toml});
+  if (!options.lab_toml.empty()) {
+    head.attachments.push_back({utc, utc, "lab.toml", "application/toml", options.lab_toml});
+  }
+  for (const auto& [stream, bvh] : options.skeletons) {
+    head.attachments.push_back({utc, utc, stream + ".bvh", "text/plain", bvh});
   }
   return head;
 }
@@ -116,6 +119,8 @@ RecordingSession::Source RecordingSession::new_source(const std::string& topic,
   Source source;
   source.status.stream = raw.stream;
   source.status.sender = raw.sender;
+  source.status.node = raw.node;
+  source.status.place = raw.place;
   source.watch = StreamWatch(raw.protocol);
   source.channel = recorder_->add_channel(to_channel(topic, raw));
   return source;
@@ -136,7 +141,7 @@ void RecordingSession::take_piece(Port& port, const Piece& piece) {
     const std::string number = sender.life == 1 ? "" : "/" + std::to_string(sender.life);
     source = new_source("/" + device.name + "/raw" + number,
                         {device.name, device.protocol, device.transport,
-                         endpoint_text(to_string(sender.host), sender.port), ""});
+                         endpoint_text(to_string(sender.host), sender.port), "", ""});
     source.life = sender.life;
   }
   recorder_->record(source.channel, piece.arrival, piece.bytes);
@@ -151,7 +156,10 @@ RecordingSession::NodeSource& RecordingSession::node_source(std::uint32_t node_i
   const DeviceOptions& device = options_.lab.devices[nodes_device_];
   const std::string number = std::to_string(node_id);
   const std::string topic = "/" + device.name + "/" + number;
-  const RawChannel raw{device.name, "kinalign-node", "udp", sender, number};
+  const auto place = device.nodes.find(number);
+  const RawChannel raw{device.name, "kinalign-node",
+                       "udp",       sender,
+                       number,      place == device.nodes.end() ? "" : place->second};
   NodeSource source;
   source.raw = new_source(topic + "/raw", raw);
   McapChannel exchanges = to_channel(topic + "/exchange", raw);
@@ -209,8 +217,8 @@ Result<void> RecordingSession::start(const std::string& path, const std::string&
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
   // Asked for on the disk's thread: it owns what it needs.
-  auto head = [facts = facts_, toml = options_.lab_toml](int part) {
-    return head_of(facts, toml, part);
+  auto head = [facts = facts_, options = options_](int part) {
+    return head_of(facts, options, part);
   };
   RecordingDisk disk = KA_TRY(RecordingDisk::open(machine_.files, path, std::move(head)));
   disk_ = std::make_unique<DiskThread>(std::move(disk), compression);

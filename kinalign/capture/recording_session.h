@@ -26,9 +26,10 @@ namespace kinalign {
 /// How a stream does: one sender's, or one node's.
 struct StreamStatus {
   std::string stream, sender;
-  SenderCounts counts;   // since it was first heard
-  double rate_hz = 0.0;  // messages, over the last second
-  HostTime heard{};      // last
+  std::string node, place;  // of nodes: the id, and where the lab says that it is worn
+  SenderCounts counts;      // since it was first heard
+  double rate_hz = 0.0;     // messages, over the last second
+  HostTime heard{};         // last
 };
 
 class RecordingSession {
@@ -36,8 +37,9 @@ class RecordingSession {
   struct Options {
     Lab lab;
     std::string lab_toml;  // its text, which goes into the file; may be empty
-    NodeDeskOptions desk;  // of the nodes' port
-    std::string host;      // the machine's name
+    std::map<std::string, std::string> skeletons;  // by stream: a BVH's head, which goes there too
+    NodeDeskOptions desk;                          // of the nodes' port
+    std::string host;                              // the machine's name
   };
   /// Opens all ports. `files` and the clocks have to stay; each clock reader is read by one part
   /// alone.

@@ -65,6 +65,27 @@ void BvhHead::forget_text() {
   rows_ = 0;
 }
 
+std::string BvhHead::alone() const {
+  const std::string head = text_.substr(0, rows_);
+  // Behind it are only the words Frames and Frame Time.
+  const std::size_t motion = lower(head).rfind("motion");
+  return head.substr(0, motion) + "MOTION\nFrames: 0\nFrame Time: " + hierarchy.frame_time + "\n";
+}
+
+Result<std::string> read_bvh_head(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  BvhHead head(path);
+  Findings findings;  // what is doubtful in it is told where it is used
+  for (;;) {
+    const std::string_view piece = KA_TRY(file.next());
+    if (piece.empty()) {
+      KA_TRY(head.finish(findings));
+      return head.alone();
+    }
+    if (KA_TRY(head.add(piece, findings))) return head.alone();
+  }
+}
+
 bool looks_like_bvh(std::string_view head) {
   if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
   return lower(stripped(head.substr(0, 64))).starts_with("hierarchy");

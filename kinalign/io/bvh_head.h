@@ -2,6 +2,7 @@
 // What stands above a BVH's rows, gathered from pieces until it is whole.
 #pragma once
 
+#include "kinalign/core/files.h"
 #include "kinalign/io/bvh.h"
 
 #include <cstdint>
@@ -24,6 +25,8 @@ class BvhHead {
   std::string_view rows() const { return std::string_view(text_).substr(rows_); }
   std::int64_t first_row_line() const;
   void forget_text();
+  /// The head as a BVH of its own, without rows.
+  std::string alone() const;
 
  private:
   Result<void> parse(Findings& findings);
@@ -32,5 +35,8 @@ class BvhHead {
   std::string text_;
   std::size_t rows_ = 0;  // where they begin
 };
+
+/// The head of a file as a BVH of its own, without rows.
+Result<std::string> read_bvh_head(FileSystem& files, const std::string& path);
 
 }  // namespace kinalign

@@ -74,14 +74,19 @@ McapChannel to_channel(std::string topic, const RawChannel& raw) {
   McapChannel channel{0, 0, std::move(topic), raw.protocol, {}};
   channel.metadata = {{"stream", raw.stream}, {"transport", raw.transport}, {"sender", raw.sender}};
   if (!raw.node.empty()) channel.metadata["node"] = raw.node;
+  if (!raw.place.empty()) channel.metadata["place"] = raw.place;
   return channel;
 }
 
 std::optional<RawChannel> to_raw(const McapChannel& channel) {
   const std::string stream = text_of(channel.metadata, "stream");
   if (stream.empty() || channel.metadata.count("transport") == 0) return std::nullopt;
-  return RawChannel{stream, channel.message_encoding, text_of(channel.metadata, "transport"),
-                    text_of(channel.metadata, "sender"), text_of(channel.metadata, "node")};
+  return RawChannel{stream,
+                    channel.message_encoding,
+                    text_of(channel.metadata, "transport"),
+                    text_of(channel.metadata, "sender"),
+                    text_of(channel.metadata, "node"),
+                    text_of(channel.metadata, "place")};
 }
 
 McapSchema clock_pair_schema() {

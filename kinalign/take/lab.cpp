@@ -27,6 +27,33 @@ Result<std::int64_t> parse_port(const std::string& text) {
   return Failure(Error{"", 0, "a port from 0 to 65535", text.empty() ? "none" : shown(text)});
 }
 
+/// Whether all that is said of a device is of use to its protocol.
+Result<void> check_use(const DeviceOptions& device) {
+  const auto wrong = [&](std::string expected, std::string found) {
+    return Failure(Error{device.name, 0, std::move(expected), std::move(found)});
+  };
+  if (!is_one_of(protocols, device.protocol)) {
+    return wrong("protocol, what the device speaks", "none");
+  }
+  const bool mocap = device.protocol == "noitom" || device.protocol == "xsens";
+  if (!device.skeleton.empty() && !mocap) {
+    return wrong("skeleton of noitom or xsens alone", "of " + device.protocol);
+  }
+  if (device.protocol != "nodes") {
+    if (!device.lab_key.empty()) return wrong("lab_key of nodes alone", "of " + device.protocol);
+    if (!device.nodes.empty()) return wrong("nodes of nodes alone", "of " + device.protocol);
+  }
+  for (const auto& [id, place] : device.nodes) {
+    std::uint32_t number = 0;
+    const auto [end, fault] = std::from_chars(id.data(), id.data() + id.size(), number);
+    if (fault != std::errc() || end != id.data() + id.size() || std::to_string(number) != id) {
+      return wrong("a node's id, a whole number, as the key in nodes", shown(id));
+    }
+    if (place.empty()) return wrong("where node " + id + " is worn", "nothing");
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<DeviceOptions> parse_device(const std::string& text) {
@@ -56,6 +83,20 @@ Result<DeviceOptions> parse_device(const std::string& text) {
   return device;
 }
 
+void come_from(Lab& lab, const DeviceOptions& said) {
+  const auto known =
+      std::find_if(lab.devices.begin(), lab.devices.end(),
+                   [&](const DeviceOptions& device) { return device.name == said.name; });
+  if (known == lab.devices.end()) {
+    lab.devices.push_back(said);
+    return;
+  }
+  known->protocol = said.protocol;
+  known->transport = said.transport;
+  known->address = said.address;
+  known->port = said.port;
+}
+
 Result<void> validate(const Lab& lab) {
   for (std::size_t i = 0; i < lab.devices.size(); ++i) {
     const DeviceOptions& device = lab.devices[i];
@@ -70,11 +111,15 @@ Result<void> validate(const Lab& lab) {
     if (datagrams && device.transport != "udp") {
       return wrong(device.protocol + " by udp", device.transport);
     }
+    KA_TRY(check_use(device));
     for (std::size_t k = 0; k < i; ++k) {
       const DeviceOptions& other = lab.devices[k];
       if (other.name == device.name) return wrong("each name once", device.name + " twice");
       const bool same_port = device.port != 0 && other.port == device.port &&
                              other.transport == device.transport && other.address == device.address;
+      if (device.protocol == "nodes" && other.protocol == "nodes") {
+        return wrong("one device for all nodes", other.name + " beside it");
+      }
       if (same_port) {
         return wrong("a port of its own", std::to_string(device.port) + ", as " + other.name);
       }

@@ -7,6 +7,7 @@
 #include "kinalign/core/options.h"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct DeviceOptions {
   double rate_hz = 0.0;           // nominal; 0: the protocol's usual one
   bool required = true;           // red while it is missing
   std::string lab_key;            // of nodes: the file of the key
+  std::map<std::string, std::string>
+      nodes;  // of nodes: where each is worn, by its id: "7": "waist"
 };
 
 struct RecordOptions {
@@ -39,7 +42,11 @@ struct Lab {
 /// flag says it.
 Result<DeviceOptions> parse_device(const std::string& text);
 
-/// Fails where a part is missing, or two devices want one name or one port.
+/// The lab's device of that name comes from where `said` says, and stays what it is else; a name
+/// that is new is a device more.
+void come_from(Lab& lab, const DeviceOptions& said);
+
+/// Fails where a part is missing or of no use, or two devices want one name or one port.
 Result<void> validate(const Lab& lab);
 
 /// Names, meanings and ranges of the scalar options, for flags, TOML and --help.

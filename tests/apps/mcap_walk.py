@@ -23,17 +23,24 @@ def records(data, at=0):
 
 
 class Walk:
-    """`messages`: (topic, sequence, log_time, publish_time, payload) of whole chunks whose checksum fits."""
+    """`messages`: (topic, sequence, log_time, publish_time, payload) of whole chunks whose checksum fits;
+    `attachments`: the bytes by name; `channels`: the metadata by topic."""
 
     def __init__(self, path):
         data = path.read_bytes()
         assert data[:8] == MAGIC, data[:8]
         self.closed = data[-8:] == MAGIC and len(data) > 16
         self.messages, self.metadata, self.topics, self.ops = [], {}, {}, []
+        self.attachments, self.channels = {}, {}
         for op, content in records(data[:-8] if self.closed else data, 8):
             self.ops.append(op)
             if op == 0x06:
                 self.chunk(content)
+            elif op == 0x09:
+                name, at = text(content, 16)
+                _, at = text(content, at)
+                size = struct.unpack_from("<Q", content, at)[0]
+                self.attachments[name] = content[at + 8:at + 8 + size]
             elif op == 0x0C:
                 name, at = text(content, 0)
                 self.metadata[name] = self.texts(content[at + 4:])
@@ -55,7 +62,9 @@ class Walk:
         for op, record in records(inner):
             if op == 0x04:
                 channel = struct.unpack_from("<H", record)[0]
-                self.topics[channel] = text(record, 4)[0]
+                self.topics[channel], at = text(record, 4)
+                _, at = text(record, at)
+                self.channels[self.topics[channel]] = self.texts(record[at + 4:])
             if op == 0x05:
                 channel, sequence, log, publish = struct.unpack_from("<HIQQ", record)
                 self.messages.append((self.topics[channel], sequence, log, publish, record[22:]))

@@ -24,14 +24,15 @@ class Recording:
     """The real program with a mocap port, until it is told to end."""
 
     def __init__(self, folder, *words, device="mocap=noitom:udp:127.0.0.1:0"):
+        device = ["--device", device] if device else []
         self.program = subprocess.Popen(
-            [str(cases.PROGRAM), "record", "-o", str(folder), "--device", device, "--compression", "none", "--json",
-             *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            [str(cases.PROGRAM), "record", "-o", str(folder), *device, "--compression", "none", "--json",
+             *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         line = self.program.stdout.readline()
         assert line, self.program.communicate()[1]
         self.started = json.loads(line)
         assert self.started["event"] == "started", line
-        self.port = self.started["ports"]["mocap"]
+        self.port = self.started["ports"].get("mocap")
         self.path = pathlib.Path(self.started["file"])
 
     def end(self, sign=signal.SIGINT):
@@ -133,13 +134,71 @@ def the_page_names_every_kind_of_line(_):
 
 @case
 def wrong_use_is_said_before_anything_is_opened(folder):
-    for words, says in (((), "--device: expected at least one device, found none"),
+    for words, says in (((), "--device: expected at least one device, or a lab.toml for --config, found none"),
                         (("--device", "imu=nodes"), "expected NAME=PROTOCOL:PORT, as in imu=nodes:5005, found imu=nodes"),
                         (("--device", "imu=node:5005"), 'expected a known protocol (nearest: nodes), found "node"'),
                         (("--device", "a=noitom:tcp:7001"), "expected an address and a port to connect to, found none"),
                         (("--device", "a=nodes:70000"), "expected a port from 0 to 65535, found 70000")):
         done = kinalign("record", "-o", folder / "takes", *words)
         assert done.returncode == 2 and says in done.stderr.decode(), done.stderr
+    assert not (folder / "takes").exists()
+
+
+BVH = """HIERARCHY
+ROOT Hips
+{
+OFFSET 0 0 0
+CHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation Zrotation
+End Site
+{
+OFFSET 0 10 0
+}
+}
+MOTION
+"""
+
+
+def example_of_the_page():
+    page = (pathlib.Path(__file__).parents[2] / "docs/recording.md").read_text()
+    return page.split("```toml\n")[1].split("```")[0]
+
+
+@case
+def the_pages_lab_records_and_stands_in_the_file_with_the_skeleton(folder):
+    (folder / "rigs").mkdir()
+    (folder / "rigs/lab59.bvh").write_text(BVH + "Frames: 1\nFrame Time: 0.008\n0 90 0 1 2 3\n")
+    assert kinalign("node-key", "--new-lab-key", folder / "lab.key").returncode == 0
+    lab = re.sub(r"port = (?!7001)\d+", "port = 0", example_of_the_page())  # the tests' machine has others
+    assert lab.count("port = 0") >= 2, lab
+    (folder / "lab.toml").write_text(lab)
+    recording = Recording(folder / "takes", "--config", folder / "lab.toml", "--device", "kinect=kinect:udp:127.0.0.1:0",
+                          device=None)
+    ports = recording.started["ports"]
+    assert list(ports) == ["mocap", "kinect", "imu"], ports
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.sendto(b"hello", ("127.0.0.1", ports["kinect"]))
+        time.sleep(0.3)
+    code, _, err = recording.end()
+    assert code == 0, err
+    walk = Walk(recording.path)
+    assert walk.attachments["lab.toml"].decode() == lab
+    assert walk.attachments["mocap.bvh"].decode() == BVH + "Frames: 0\nFrame Time: 0.008\n"
+    assert walk.channels["/kinect/raw"]["transport"] == "udp", "a flag wins over the file"
+
+
+@case
+def what_is_wrong_with_a_lab_is_told_with_its_line(folder):
+    lab = folder / "lab.toml"
+    for text, says in (('[device.mocap]\nprotocol = "noitm"\n', ':2: expected protocol as one of nodes, noitom'),
+                       ('[device.mocap]\nprotocol = "noitom"\nprt = 1\n', ":3: expected a key of [device.mocap] (nearest: port)"),
+                       ('[record]\npre_rol_s = 1\n', ":2: expected a setting of record (did you mean pre_roll_s?)"),
+                       ('[align]\ngap_ms = 1\n', "--device: expected at least one device, or a lab.toml")):
+        lab.write_text(text)
+        done = kinalign("record", "-o", folder / "takes", "--config", lab)
+        assert done.returncode == 2 and says in done.stderr.decode(), done.stderr
+    lab.write_text('[device.mocap]\nprotocol = "noitom"\nskeleton = "none.bvh"\n')
+    done = kinalign("record", "-o", folder / "takes", "--config", lab)
+    assert done.returncode == 3 and f"{folder}/none.bvh: expected" in done.stderr.decode(), done.stderr
     assert not (folder / "takes").exists()
 
 

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/lab_toml.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+using namespace kinalign;
+
+namespace {
+
+std::string error_of(const std::string& toml) {
+  const auto devices = read_devices(toml, "labs/lab.toml");
+  return devices ? "none" : to_string(devices.error());
+}
+
+const std::string mocap = "[device.mocap]\nprotocol = \"noitom\"\nport = 7012\n";
+
+}  // namespace
+
+TEST_CASE("a lab says of each device what it speaks, where it is heard and what is known of it") {
+  const auto devices = read_devices(R"([record]
+pre_roll_s = 3
+[device.mocap]
+protocol = "noitom"
+transport = "tcp"
+address = "192.168.7.5"
+port = 7001
+skeleton = "rig.bvh"
+rate_hz = 125
+[device.imu]
+protocol = "nodes"
+port = 5005
+lab_key = "/keys/lab.key"
+required = false
+nodes = { "12" = "RightForeArm", "7" = "Hips" }
+)",
+                                    "labs/lab.toml");
+  REQUIRE_MESSAGE(devices, (devices ? "" : to_string(devices.error())));
+  REQUIRE(devices->size() == 2);
+  const DeviceOptions& first = devices->front();
+  CHECK(first.name == "mocap");
+  CHECK(first.protocol == "noitom");
+  CHECK(first.transport == "tcp");
+  CHECK(first.address == "192.168.7.5");
+  CHECK(first.port == 7001);
+  CHECK(first.skeleton == "labs/rig.bvh");  // beside lab.toml
+  CHECK(first.rate_hz == 125);
+  CHECK(first.required);
+  const DeviceOptions& second = devices->back();
+  CHECK(second.transport == "udp");
+  CHECK(second.lab_key == "/keys/lab.key");
+  CHECK(!second.required);
+  CHECK(second.nodes == std::map<std::string, std::string>{{"12", "RightForeArm"}, {"7", "Hips"}});
+}
+
+TEST_CASE("a file without devices is a lab without any") {
+  CHECK(read_devices("[align]\ngap_ms = 3\n", "kinalign.toml")->empty());
+}
+
+TEST_CASE("what is wrong with a device is told with its line and the nearest known name") {
+  CHECK(error_of(mocap + "prot = 1\n") ==
+        "labs/lab.toml:4: expected a key of [device.mocap] (nearest: port), found \"prot\"");
+  CHECK(error_of("[device.a]\nprotocol = \"node\"\n") ==
+        "labs/lab.toml:2: expected protocol as one of nodes, noitom, xsens, kinect, slimevr, found "
+        "\"node\"");
+  CHECK(error_of("[device.a]\nport = 1\n") ==
+        "labs/lab.toml:1: expected protocol, what the device speaks, found none");
+  CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nport = 70000\n") ==
+        "labs/lab.toml:3: expected port as a whole number from 0 to 65535, found 70000");
+  CHECK(error_of(mocap + "[device.b]\nprotocol = \"xsens\"\nport = 7012\n") ==
+        "labs/lab.toml:4: expected a port of its own, found 7012, as mocap");
+  CHECK(error_of("[device.a]\nprotocol = \"nodes\"\n[device.b]\nprotocol = \"nodes\"\n") ==
+        "labs/lab.toml:3: expected one device for all nodes, found a beside it");
+  CHECK(error_of(mocap + "nodes = { \"1\" = \"Hips\" }\n") ==
+        "labs/lab.toml:1: expected nodes of nodes alone, found of noitom");
+  CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nnodes = { waist = \"Hips\" }\n") ==
+        "labs/lab.toml:1: expected a node's id, a whole number, as the key in nodes, found waist");
+  CHECK(error_of("[device.a]\nprotocol = \"kinect\"\nskeleton = \"a.bvh\"\n") ==
+        "labs/lab.toml:1: expected skeleton of noitom or xsens alone, found of kinect");
+  CHECK(error_of("device = 3\n") == "labs/lab.toml:1: expected device as a table, found a number");
+  CHECK(error_of("[device.a\n").starts_with("labs/lab.toml:1: expected TOML, found a fault in it"));
+}
+
+TEST_CASE("what a flag says of a device's port wins, and leaves what else is known of it") {
+  Lab lab{*read_devices(mocap + "skeleton = \"rig.bvh\"\n", "lab.toml"), {}};
+  come_from(lab, *parse_device("mocap=noitom:tcp:10.0.0.1:7001"));
+  come_from(lab, *parse_device("imu=nodes:5005"));
+  REQUIRE(lab.devices.size() == 2);
+  CHECK(lab.devices[0].transport == "tcp");
+  CHECK(lab.devices[0].port == 7001);
+  CHECK(lab.devices[0].skeleton == "rig.bvh");
+  CHECK(lab.devices[1].name == "imu");
+}
