@@ -12,12 +12,6 @@ namespace {
 using State = NodeLife::State;
 using Found = AnswerTable::Found;
 
-EchoVerdict verdict_of(Found found) {
-  if (found == Found::now) return EchoVerdict::taken;
-  if (found == Found::before) return EchoVerdict::repeated;
-  return found == Found::stale ? EchoVerdict::stale : EchoVerdict::unknown;
-}
-
 std::uint64_t host_ns(HostTime t) {
   return static_cast<std::uint64_t>(t.time_since_epoch().count());
 }
@@ -50,6 +44,7 @@ NodeNews NodeDesk::receive(const NodeArrival& arrival) {
 NodeVerdict NodeDesk::judge(const NodeArrival& arrival, NodeNews& news) {
   Envelope envelope;
   const NodeRefusal refusal = open_envelope(arrival.bytes, envelope);
+  news.node_id = envelope.origin.node_id;
   if (refusal != NodeRefusal::none) {
     refuse(refusal, envelope.version, arrival.h_rx);
     return NodeVerdict::refused;
@@ -232,10 +227,9 @@ std::optional<Exchange::Echo> NodeDesk::take_echo(NodeLife& life, std::int64_t n
   if (frame_.has_echo) {
     const bool future = frame_.echo.n_rx_us > most_counter_us;
     n_rx = future ? 0 : life.counter.widened_before(frame_.echo.n_rx_us, n_tx_us);
-    verdict =
-        future || n_rx > n_tx_us
-            ? EchoVerdict::future
-            : verdict_of(life.answers.find(frame_.echo.reply_sequence, frame_.echo.nonce, answer));
+    verdict = future || n_rx > n_tx_us ? EchoVerdict::future
+                                       : echo_verdict(life.answers.find(frame_.echo.reply_sequence,
+                                                                        frame_.echo.nonce, answer));
   }
   ++counts_.echoes[verdict];
   if (verdict != EchoVerdict::taken) return std::nullopt;

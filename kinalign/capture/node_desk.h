@@ -36,8 +36,9 @@ struct NodeReading {
 /// What an accepted datagram brought. A frame has an exchange, a confirm a clockless one.
 struct NodeNews {
   NodeVerdict verdict = NodeVerdict::refused;
-  std::size_t stream = 0;   // if accepted
-  std::uint64_t frame = 0;  // its number, widened; lost ones count
+  std::uint32_t node_id = 0;  // as it says: of what is not refused its key vouches for it, if any
+  std::size_t stream = 0;     // if accepted
+  std::uint64_t frame = 0;    // its number, widened; lost ones count
   std::optional<Exchange> exchange;
   std::optional<ClocklessExchange> clockless;
   std::span<const NodeReading> readings;  // oldest first; good until the next datagram

@@ -3,6 +3,7 @@
 // itself.
 #pragma once
 
+#include "kinalign/capture/answer_table.h"
 #include "kinalign/capture/counts_by.h"
 #include "kinalign/wire/node_datagram.h"
 
@@ -38,6 +39,9 @@ inline constexpr std::size_t echo_verdicts = 6;
 /// As in --json: "wrong_counter".
 const char* name_of(NodeVerdict verdict);
 const char* name_of(EchoVerdict verdict);
+
+/// Of an echo that names an answer.
+EchoVerdict echo_verdict(AnswerTable::Found found);
 
 struct NodeCounts {
   CountsBy<NodeVerdict, node_verdicts> verdicts;  // each datagram once
