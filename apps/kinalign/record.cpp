@@ -121,7 +121,7 @@ std::string host_name() {
 }
 
 Json json_of(const StreamStatus& stream, HostTime now) {
-  Json json = Json::parse(to_json(stream.stream, stream.sender, stream.counts));
+  Json json = Json::parse(to_json(stream.stream, stream.sender, stream.node, stream.counts));
   json["rate_hz"] = stream.rate_hz;
   json["silent_s"] = seconds(now - stream.heard);
   return json;

@@ -69,7 +69,42 @@ std::size_t put_source(const Datagram& asked, std::uint32_t scope,
   return CMSG_SPACE(size);
 }
 
+/// Where `asked` came from, as the system has it; its length is returned.
+socklen_t put_peer(const Datagram& asked, sockaddr_in6& peer) {
+  if (!is_ipv4(asked.from)) {
+    peer.sin6_family = AF_INET6;
+    peer.sin6_port = htons(asked.from_port);
+    peer.sin6_scope_id = asked.from_scope;
+    std::memcpy(&peer.sin6_addr, asked.from.data(), asked.from.size());
+    return sizeof peer;
+  }
+  sockaddr_in four{};
+  four.sin_family = AF_INET;
+  four.sin_port = htons(asked.from_port);
+  std::memcpy(&four.sin_addr, asked.from.data() + 12, 4);
+  std::memcpy(&peer, &four, sizeof four);
+  return sizeof four;
+}
+
 }  // namespace
+
+bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> bytes) {
+  if (asked.from_port == 0) return false;
+  sockaddr_in6 peer{};
+  alignas(cmsghdr) std::array<std::uint8_t, CMSG_SPACE(sizeof(in6_pktinfo))> control{};
+  // sendmsg(2) writes to nothing that it is pointed to.
+  iovec out{const_cast<std::uint8_t*>(bytes.data()), bytes.size()};
+  msghdr head{};
+  head.msg_name = &peer;
+  head.msg_namelen = put_peer(asked, peer);
+  head.msg_iov = &out;
+  head.msg_iovlen = 1;
+  if (asked.unicast) {
+    head.msg_control = control.data();
+    head.msg_controllen = put_source(asked, asked.from_scope, control);
+  }
+  return ::sendmsg(fd, &head, MSG_DONTWAIT) == static_cast<ssize_t>(bytes.size());
+}
 
 DatagramBatch::DatagramBatch(std::size_t bytes) : slots_(most), in_(most), out_(most) {
   unsent_.reserve(most);
@@ -103,6 +138,7 @@ Datagram DatagramBatch::at(std::size_t i) const {
   datagram.from_port = ntohs(slot.from.sin6_port);  // where sin_port stands too
   if (slot.from.sin6_family == AF_INET6) {
     datagram.from = bytes_of(slot.from.sin6_addr);
+    datagram.from_scope = slot.from.sin6_scope_id;
   } else {
     sockaddr_in four{};
     std::memcpy(&four, &slot.from, sizeof four);

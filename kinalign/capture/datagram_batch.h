@@ -24,10 +24,15 @@ struct Datagram {
   bool cut = false;  // it was longer than `bytes`
   HostAddress from{};
   std::uint16_t from_port = 0;
+  std::uint32_t from_scope = 0;  // of a link-local address: the interface
   HostAddress to{};
   bool unicast = true;           // `to` is an address of this host
   std::optional<Time> received;  // the kernel's stamp, CLOCK_REALTIME; none where it gave none
 };
+
+/// Sends to where `asked` came from, from the address that it was sent to; where that was not this
+/// host's alone, from one of its own. False: the system did not take it.
+bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> bytes);
 
 class DatagramBatch {
  public:

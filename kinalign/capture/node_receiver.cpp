@@ -4,6 +4,7 @@
 #include "kinalign/capture/node_filter.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace kinalign {
@@ -64,12 +65,15 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
     const NodeNews news = desk_->receive(arrival);
     const auto answer = desk_->answer(axis_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());
-    if (news.verdict != NodeVerdict::accepted) continue;
+    if (news.verdict == NodeVerdict::refused) continue;
     keep(arrival, news);
-    heard_[news.stream] = datagram.to;
+    if (news.verdict == NodeVerdict::accepted) heard_[news.stream] = datagram.to;
   }
   unsent_ += batch_->send(socket.fd()).size();
-  for (std::size_t i = 0; i < kept_length_; ++i) hear(kept_[i]);
+  for (Kept& kept : std::span(kept_).first(kept_length_)) {
+    LiveClock* clock = kept.news.verdict == NodeVerdict::accepted ? &hear(kept) : nullptr;
+    if (watcher_) watcher_(kept.arrival, kept.news, clock);
+  }
 }
 
 void NodeReceiver::keep(const NodeArrival& arrival, const NodeNews& news) {
@@ -108,7 +112,7 @@ bool NodeReceiver::is_current(const StreamClock& clock, std::size_t stream) cons
   return clock.number == desk_->stream(stream).number && clock.epoch == axis_.epoch();
 }
 
-void NodeReceiver::hear(Kept& kept) {
+LiveClock& NodeReceiver::hear(Kept& kept) {
   NodeNews& news = kept.news;
   StreamClock& clock = clock_of(news.stream);
   if (news.exchange) {
@@ -124,7 +128,7 @@ void NodeReceiver::hear(Kept& kept) {
     clock.ways += *d;
     ++clock.confirmed;
   }
-  if (watcher_) watcher_(kept.arrival, news, clock.clock);
+  return clock.clock;
 }
 
 void NodeReceiver::tick() {

@@ -52,9 +52,10 @@ class NodeReceiver {
   /// Four times a second or so: who left, how the host's clocks run.
   void tick();
 
-  /// Is told each accepted datagram with its node's clock, which has heard of it.
+  /// Is told each datagram that got past port and key, in the order of arrival; of one that is
+  /// accepted with its node's clock, which has heard of it, else with nullptr.
   using Watcher =
-      std::function<void(const NodeArrival& arrival, const NodeNews& news, LiveClock& clock)>;
+      std::function<void(const NodeArrival& arrival, const NodeNews& news, LiveClock* clock)>;
   void watch(Watcher watcher) { watcher_ = std::move(watcher); }
 
   const std::vector<UdpSocket>& sockets() const { return *sockets_; }
@@ -102,7 +103,7 @@ class NodeReceiver {
     Duration ways{0};
     std::int64_t confirmed = 0;
   };
-  /// An accepted frame that waits until its batch is answered.
+  /// A datagram that waits until its batch is answered.
   struct Kept {
     NodeArrival arrival;
     NodeNews news;
@@ -111,7 +112,7 @@ class NodeReceiver {
   bool may_answer(const Datagram& datagram);
   void take(const UdpSocket& socket, std::size_t datagrams);
   void keep(const NodeArrival& arrival, const NodeNews& news);
-  void hear(Kept& kept);
+  LiveClock& hear(Kept& kept);
   void follow();
   StreamClock& clock_of(std::size_t stream);
   static void add_clock(NodeStatus& status, const StreamClock& clock);

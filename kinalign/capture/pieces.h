@@ -29,17 +29,21 @@ using TakePiece = std::function<void(const Piece& piece)>;
 /// Who sends to a port, by number. The number of one who is silent may become another's.
 class Senders {
  public:
-  static constexpr std::size_t most = 16;
+  static constexpr std::size_t most = 64;
 
   struct Sender {
     HostAddress host{};
     std::uint16_t port = 0;
     HostTime heard{};
     std::uint64_t life = 0;  // which sender this is, of all that ever had a number
+    Datagram asked{};        // of UDP: its newest without its bytes, for answers
   };
   /// Absent: too many others sent within the last minute.
   std::optional<std::size_t> number(const HostAddress& host, std::uint16_t port, HostTime now);
   const Sender& at(std::size_t number) const { return senders_[number]; }
+  /// Absent: it has none.
+  std::optional<std::size_t> find(const HostAddress& host, std::uint16_t port) const;
+  void remember(std::size_t number, const Datagram& asked);
   std::size_t size() const { return senders_.size(); }
 
  private:
@@ -53,6 +57,7 @@ struct PortCounts {
   std::uint64_t cut = 0;      // datagrams longer than any can be
   std::uint64_t dropped = 0;  // by the kernel, for want of room
   std::uint64_t links = 0;    // connections that were made
+  std::uint64_t unsent = 0;   // answers that the system did not take
 };
 
 /// A UDP port.
@@ -63,6 +68,10 @@ class UdpPieces {
 
   void add_fds(std::vector<int>& fds) const;
   void drain(HostAxis& axis, const TakePiece& take);
+  /// At once, from the address that the sender's newest datagram was sent to.
+  void send(std::size_t sender, std::span<const std::uint8_t> bytes);
+  /// To a sender by its address; nobody else is sent anything.
+  void send_to(const HostAddress& host, std::uint16_t port, std::span<const std::uint8_t> bytes);
   std::uint16_t port() const { return sockets_.front().port(); }
   const Senders& senders() const { return senders_; }
   PortCounts counts() const;
@@ -88,6 +97,8 @@ class TcpPieces {
   void add_fds(std::vector<int>& fds) const;
   /// Also connects anew, now and then.
   void drain(HostAxis& axis, const TakePiece& take);
+  /// All of it at once or nothing; a connection that took a part is given up.
+  void send(std::size_t sender, std::span<const std::uint8_t> bytes);
   std::uint16_t port() const { return port_; }
   const Senders& senders() const { return senders_; }
   PortCounts counts() const { return counts_; }

@@ -4,10 +4,10 @@
 #pragma once
 
 #include "kinalign/capture/disk_thread.h"
-#include "kinalign/capture/node_receiver.h"
-#include "kinalign/capture/pieces.h"
+#include "kinalign/capture/mark_ports.h"
+#include "kinalign/capture/recorded_nodes.h"
+#include "kinalign/capture/recorded_port.h"
 #include "kinalign/capture/recorder.h"
-#include "kinalign/capture/stream_watch.h"
 #include "kinalign/io/recording_format.h"
 #include "kinalign/take/lab.h"
 
@@ -18,19 +18,13 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
 
-/// How a stream does: one sender's, or one node's.
-struct StreamStatus {
-  std::string stream, sender;
-  std::string node, place;  // of nodes: the id, and where the lab says that it is worn
-  SenderCounts counts;      // since it was first heard
-  double rate_hz = 0.0;     // messages, over the last second
-  HostTime heard{};         // last
-};
+/// A mark and when it came.
+using HeardMark = std::pair<RecordedMark, HostTime>;
 
 class RecordingSession {
  public:
@@ -38,8 +32,10 @@ class RecordingSession {
     Lab lab;
     std::string lab_toml;  // its text, which goes into the file; may be empty
     std::map<std::string, std::string> skeletons;  // by stream: a BVH's head, which goes there too
-    NodeDeskOptions desk;                          // of the nodes' port
+    NodeDeskOptions desk;                          // of the nodes' port; others' come from its
+                                                   // secret
     std::string host;                              // the machine's name
+    std::optional<std::uint16_t> marks_port, trigger_port;  // absent: none
   };
   /// Opens all ports. `files` and the clocks have to stay; each clock reader is read by one part
   /// alone.
@@ -50,8 +46,9 @@ class RecordingSession {
   };
   static Result<std::unique_ptr<RecordingSession>> open(Options options, Machine machine);
 
-  /// Waits for something to come, but no longer than that, and takes it all.
-  void turn(Duration patience);
+  /// Waits for something to come, but no longer than that, and takes it all. `also`: a descriptor
+  /// of the caller's to wake up for.
+  void turn(Duration patience, std::optional<int> also = std::nullopt);
 
   /// Begins a take with the pre-roll; `path` ends in .mcap and must be free.
   Result<void> start(const std::string& path, const std::string& subject,
@@ -60,58 +57,42 @@ class RecordingSession {
   void stop();
   bool recording() const { return recorder_->started(); }
 
+  /// Onto the channel of marks; before a take into its pre-roll.
+  void mark(const RecordedMark& mark, HostTime at);
+  /// All marks since this was asked last, at most some hundred.
+  std::vector<HeardMark> take_marks() { return std::exchange(marks_, {}); }
+
   /// Of the present or last take; absent before the first.
   std::optional<DiskStatus> disk() const;
   std::vector<PartFailure> take_disk_failures();
   std::vector<StreamStatus> streams() const;
-  /// By the device's name: the port that it is heard on.
+  /// By the device's name, or "marks" and "trigger": the port that it is heard on.
   std::vector<std::pair<std::string, std::uint16_t>> ports() const;
+  /// By the device's name.
   std::vector<std::pair<std::string, PortCounts>> port_counts() const;
-  NodeReceiver* nodes() { return nodes_ ? &*nodes_ : nullptr; }
+  const std::vector<MarkPort>& mark_ports() const { return mark_ports_; }
+  const NodeReceiver* nodes() const { return nodes_ ? &nodes_->receiver() : nullptr; }
   const Lab& lab() const { return options_.lab; }
   HostTime now() { return axis_.now(); }
 
  private:
-  /// One channel of raw payloads and what came on it.
-  struct Source {
-    StreamStatus status;
-    StreamWatch watch{};
-    std::uint16_t channel = 0;
-    std::uint64_t life = 0;          // of its sender
-    std::uint64_t second_began = 0;  // messages then
-  };
-  struct Port {
-    std::size_t device = 0;  // in the lab
-    std::variant<UdpPieces, TcpPieces> pieces;
-    std::vector<Source> sources{};           // by the sender's number
-    std::size_t fds_begin = 0, fds_end = 0;  // in fds_
-  };
-  struct NodeSource {
-    Source raw;
-    std::uint16_t exchanges = 0;  // channel
-  };
-
   RecordingSession(Options options, Machine machine);
   Result<void> open_ports();
-  void take_piece(Port& port, const Piece& piece);
-  void take_node(const NodeArrival& arrival, const NodeNews& news);
-  NodeSource& node_source(std::uint32_t node_id, const std::string& sender);
-  Source new_source(const std::string& topic, const RawChannel& raw);
   void tick(HostTime now);
-  void measure(Source& source, double elapsed_s, HostTime now);
 
   Options options_;
   Machine machine_;
   HostAxis axis_;
-  std::optional<NodeReceiver> nodes_;
-  std::size_t nodes_device_ = 0;
-  std::vector<Port> ports_;
-  std::map<std::uint32_t, NodeSource> node_sources_;
   std::unique_ptr<Recorder> recorder_;
-  std::uint16_t pairs_ = 0, counts_ = 0;  // channels
+  std::unique_ptr<RecordedNodes> nodes_;
+  std::vector<RecordedPort> ports_;
+  std::vector<MarkPort> mark_ports_;
+  std::vector<HeardMark> marks_;
+  std::uint16_t pairs_ = 0, counts_ = 0, mark_channel_ = 0;
   RecordingFacts facts_;
   HostTime next_second_ = HostTime::min(), next_look_ = HostTime::min();
-  std::vector<int> fds_;  // of this turn
+  std::vector<int> fds_;              // of this turn
+  std::vector<std::size_t> fds_end_;  // by port: where in fds_ those of the next begin
   std::vector<pollfd> waiting_;
   std::unique_ptr<DiskThread> disk_;
 };

@@ -23,4 +23,17 @@ std::optional<std::size_t> Senders::number(const HostAddress& host, std::uint16_
   return static_cast<std::size_t>(found - senders_.begin());
 }
 
+std::optional<std::size_t> Senders::find(const HostAddress& host, std::uint16_t port) const {
+  const auto found = std::find_if(senders_.begin(), senders_.end(), [&](const Sender& sender) {
+    return sender.host == host && sender.port == port;
+  });
+  if (found == senders_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - senders_.begin());
+}
+
+void Senders::remember(std::size_t number, const Datagram& asked) {
+  senders_[number].asked = asked;
+  senders_[number].asked.bytes = {};
+}
+
 }  // namespace kinalign

@@ -54,7 +54,7 @@ SlimeVerdict SlimeDesk::judge(const SlimeArrival& arrival, SlimeNews& news) {
     if (verdict == SlimeVerdict::accepted) news.device = index(*device_at(arrival.from));
     return verdict;
   }
-  SlimeDevice* device = device_at(arrival.from);
+  SlimeDevice* device = find_device(arrival.from);
   if (device == nullptr) return SlimeVerdict::stranger;
   news.device = index(*device);
   hear(*device, arrival);
@@ -82,7 +82,7 @@ SlimeVerdict SlimeDesk::shake_hands(const SlimeHandshake& handshake, const Slime
     }
   }
   // Another device that was there before has another address now, or it is gone.
-  SlimeDevice* other = device_at(arrival.from);
+  SlimeDevice* other = find_device(arrival.from);
   if (other != nullptr && other != device) *other = {};
   if (!known) device = new_device(arrival.h_rx);
   if (device == nullptr) {
@@ -111,11 +111,16 @@ SlimeVerdict SlimeDesk::shake_hands(const SlimeHandshake& handshake, const Slime
   return SlimeVerdict::accepted;
 }
 
-SlimeDevice* SlimeDesk::device_at(const NodeAddress& address) {
-  for (SlimeDevice& device : devices_) {
+const SlimeDevice* SlimeDesk::device_at(const NodeAddress& address) const {
+  for (const SlimeDevice& device : devices_) {
     if (device.used && device.address == address) return &device;
   }
   return nullptr;
+}
+
+SlimeDevice* SlimeDesk::find_device(const NodeAddress& address) {
+  const SlimeDevice* found = device_at(address);
+  return found == nullptr ? nullptr : &devices_[index(*found)];
 }
 
 SlimeDevice* SlimeDesk::device_named(const SlimeHandshake& handshake, const NodeAddress& address) {

@@ -139,6 +139,8 @@ class SlimeDesk {
   std::span<const SlimeSending> take_sendings();
 
   const SlimeDevice& device(std::size_t i) const { return devices_[i]; }
+  /// nullptr: none.
+  const SlimeDevice* device_at(const NodeAddress& address) const;
   const SlimeCounts& counts() const { return counts_; }
   std::vector<SlimeEvent> take_events() { return events_.take(); }
   std::uint64_t missed_events() const { return events_.missed(); }
@@ -146,7 +148,7 @@ class SlimeDesk {
  private:
   SlimeVerdict judge(const SlimeArrival& arrival, SlimeNews& news);
   SlimeVerdict shake_hands(const SlimeHandshake& handshake, const SlimeArrival& arrival);
-  SlimeDevice* device_at(const NodeAddress& address);
+  SlimeDevice* find_device(const NodeAddress& address);
   SlimeDevice* device_named(const SlimeHandshake& handshake, const NodeAddress& address);
   SlimeDevice* new_device(HostTime now);
   void hear(SlimeDevice& device, const SlimeArrival& arrival);

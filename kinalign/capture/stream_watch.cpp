@@ -18,10 +18,10 @@ std::uint64_t sum(const Refused& refused) {
 
 }  // namespace
 
-StreamWatch::StreamWatch(const std::string& protocol) {
+StreamWatch::StreamWatch(const std::string& protocol, bool datagrams) {
   if (protocol == "noitom") decoder_.emplace<Noitom>();
   if (protocol == "xsens") decoder_.emplace<Xsens>();
-  if (protocol == "kinect") decoder_.emplace<Kinect>();
+  if (protocol == "kinect") decoder_.emplace<Kinect>().datagrams = datagrams;
 }
 
 void StreamWatch::feed(Noitom& noitom, std::span<const std::uint8_t> bytes) {
@@ -36,8 +36,11 @@ void StreamWatch::feed(Xsens& xsens, std::span<const std::uint8_t> bytes) {
 
 void StreamWatch::feed(Kinect& kinect, std::span<const std::uint8_t> bytes) {
   kinect.messages.clear();
+  kinect.pings.clear();
   kinect.decoder.feed(bytes, kinect.messages);
+  if (kinect.datagrams) kinect.decoder.finish(kinect.messages);
   for (KinectMessage& message : kinect.messages) {
+    if (const auto* ping = std::get_if<KinectPing>(&message)) kinect.pings.push_back(*ping);
     auto* frame = std::get_if<KinectFrame>(&message);
     if (frame == nullptr) continue;
     const std::uint32_t sensor = frame->origin.sensor;
@@ -59,6 +62,16 @@ void StreamWatch::feed(std::string_view piece) {
         }
       },
       decoder_);
+}
+
+std::span<const KinectPing> StreamWatch::pings() const {
+  const auto* kinect = std::get_if<Kinect>(&decoder_);
+  return kinect == nullptr ? std::span<const KinectPing>() : kinect->pings;
+}
+
+bool StreamWatch::speaks_lines() const {
+  const auto* kinect = std::get_if<Kinect>(&decoder_);
+  return kinect != nullptr && kinect->decoder.speaks_lines();
 }
 
 SenderCounts StreamWatch::counts(const Noitom& noitom) {

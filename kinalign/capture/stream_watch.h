@@ -11,6 +11,7 @@
 #include "kinalign/io/xsens_stream.h"
 
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -21,10 +22,13 @@ namespace kinalign {
 class StreamWatch {
  public:
   /// `protocol` as in take/lab.h. Of one that is not decoded here nothing is counted.
-  explicit StreamWatch(const std::string& protocol = "");
+  /// `datagrams`: a piece is one, with whole messages in it; else bytes cut anywhere.
+  explicit StreamWatch(const std::string& protocol = "", bool datagrams = false);
 
-  /// The sender's bytes, cut anywhere.
   void feed(std::string_view piece);
+  /// Of a Kinect's sender: the pings that the last piece completed, and how pongs are to look.
+  std::span<const KinectPing> pings() const;
+  bool speaks_lines() const;
   /// Of its frames: messages and bytes are the caller's.
   SenderCounts counts() const;
   /// What the user should know; `name` stands in the messages.
@@ -45,6 +49,8 @@ class StreamWatch {
     std::map<std::uint32_t, KinectFrameJoiner> sensors{};  // as many as most_sensors
     std::vector<JoinedKinectFrame> frames{};
     std::uint64_t whole = 0, further_sensors = 0;  // frames; messages of one sensor too many
+    std::vector<KinectPing> pings{};
+    bool datagrams = false;
   };
   static void feed(Noitom& noitom, std::span<const std::uint8_t> bytes);
   static void feed(Xsens& xsens, std::span<const std::uint8_t> bytes);

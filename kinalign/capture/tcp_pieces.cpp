@@ -130,6 +130,20 @@ void TcpPieces::drain(HostAxis& axis, const TakePiece& take) {
   std::erase_if(links_, [&](Link& link) { return !drain_link(link, axis, take); });
 }
 
+void TcpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {
+  const Senders::Sender& to = senders_.at(sender);
+  for (const Link& link : links_) {
+    if (!link.connected || link.host != to.host || link.port != to.port) continue;
+    const ssize_t sent =
+        ::send(link.socket.fd(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent == static_cast<ssize_t>(bytes.size())) return;
+    ++counts_.unsent;
+    // The rest can't be kept back: what came next would begin within a message.
+    if (sent > 0) ::shutdown(link.socket.fd(), SHUT_RDWR);
+    return;
+  }
+}
+
 /// Whether the connection is still there, made or in the making.
 bool TcpPieces::settle(Link& link) {
   int fault = 0;

@@ -2,6 +2,8 @@
 #include "kinalign/capture/pieces.h"
 #include "kinalign/io/little_endian_reader.h"
 
+#include <algorithm>
+
 namespace kinalign {
 
 namespace {
@@ -44,7 +46,21 @@ void UdpPieces::take_datagram(const Datagram& datagram, const HostAxis& axis,
   if (datagram.cut) ++counts_.cut;
   if (!sender) return;
   counts_.bytes += datagram.bytes.size();
+  senders_.remember(*sender, datagram);
   take({*sender, text_of(datagram.bytes), arrival});
+}
+
+void UdpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {
+  const Datagram& asked = senders_.at(sender).asked;
+  const auto socket = std::find_if(sockets_.begin(), sockets_.end(), [&](const UdpSocket& one) {
+    return is_ipv6_text(one.address()) != is_ipv4(asked.from);
+  });
+  if (socket == sockets_.end() || !send_back(socket->fd(), asked, bytes)) ++counts_.unsent;
+}
+
+void UdpPieces::send_to(const HostAddress& host, std::uint16_t port,
+                        std::span<const std::uint8_t> bytes) {
+  if (const auto sender = senders_.find(host, port)) send(*sender, bytes);
 }
 
 PortCounts UdpPieces::counts() const {

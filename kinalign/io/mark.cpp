@@ -13,6 +13,14 @@ const char* name_of(Mark::Kind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
+std::optional<Mark::Kind> mark_kind_named(std::string_view name) {
+  for (std::size_t i = 0; i < mark_kinds; ++i) {
+    const auto kind = static_cast<Mark::Kind>(i);
+    if (name == name_of(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
 bool is_mark_text(std::string_view text) {
   const auto harmless = [](char c) {
     const auto byte = static_cast<unsigned char>(c);

@@ -27,6 +27,8 @@ inline constexpr std::size_t mark_kinds = 4;
 
 /// "t_pose", as in calls and --json.
 const char* name_of(Mark::Kind kind);
+/// Absent: no kind has that name.
+std::optional<Mark::Kind> mark_kind_named(std::string_view name);
 
 /// Whether a text holds no control characters but tabs and line ends, and is UTF-8.
 bool is_mark_text(std::string_view text);

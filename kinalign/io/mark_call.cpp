@@ -23,14 +23,6 @@ std::optional<std::string> text_at(const Json& call, const char* key) {
   return found->get<std::string>();
 }
 
-std::optional<Mark::Kind> kind_named(std::string_view name) {
-  for (std::size_t i = 0; i < mark_kinds; ++i) {
-    const auto kind = static_cast<Mark::Kind>(i);
-    if (name == name_of(kind)) return kind;
-  }
-  return std::nullopt;
-}
-
 bool is_id(std::string_view id) {
   return !id.empty() && id.size() <= 64 &&
          std::all_of(id.begin(), id.end(), [](char c) { return c >= ' ' && c <= '~'; });
@@ -61,7 +53,7 @@ Refusal take_text(const Json& call, Mark& mark) {
 Refusal take(const Json& call, Mark& mark) {
   if (!call.is_object()) return Refusal::bad_json;
   if (text_at(call, "schema") != schema) return Refusal::wrong_schema;
-  const auto kind = kind_named(text_at(call, "kind").value_or(""));
+  const auto kind = mark_kind_named(text_at(call, "kind").value_or(""));
   if (!kind) return Refusal::wrong_kind;
   mark.kind = *kind;
   mark.id = text_at(call, "id").value_or("");

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <charconv>
+#include <cmath>
 
 namespace kinalign {
 
@@ -123,23 +124,64 @@ McapSchema sender_counts_schema() {
   }
   return {0, "kinalign.SenderCounts", "jsonschema",
           R"({"type": "object", "properties": {"stream": {"type": "string"}, )"
-          R"("sender": {"type": "string"})" +
+          R"("sender": {"type": "string"}, "node": {"type": "string"})" +
               properties + R"(}, "required": ["stream", "sender", "messages"]})"};
 }
 
-std::string to_json(const std::string& stream, const std::string& sender,
+std::string to_json(const std::string& stream, const std::string& sender, const std::string& node,
                     const SenderCounts& counts) {
-  const nlohmann::ordered_json json{{"stream", stream},
-                                    {"sender", sender},
-                                    {"messages", counts.messages},
-                                    {"bytes", counts.bytes},
-                                    {"frames", counts.frames},
-                                    {"lost", counts.order.lost},
-                                    {"late", counts.order.late},
-                                    {"duplicates", counts.order.duplicates},
-                                    {"restarts", counts.order.restarts},
-                                    {"refused", counts.refused}};
+  nlohmann::ordered_json json{{"stream", stream},
+                              {"sender", sender},
+                              {"messages", counts.messages},
+                              {"bytes", counts.bytes},
+                              {"frames", counts.frames},
+                              {"lost", counts.order.lost},
+                              {"late", counts.order.late},
+                              {"duplicates", counts.order.duplicates},
+                              {"restarts", counts.order.restarts},
+                              {"refused", counts.refused}};
+  if (!node.empty()) json["node"] = node;
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+McapSchema mark_schema() {
+  return {0, "kinalign.Mark", "jsonschema",
+          R"({"type": "object", "properties": {)"
+          R"("kind": {"enum": ["start", "stop", "t_pose", "text"]}, "text": {"type": "string"}, )"
+          R"("latency_ms": {"type": "number", "description": "from the mark to its effect"}, )"
+          R"("id": {"type": "string"}, "source": {"enum": ["keyboard", "call", "trigger"]}, )"
+          R"("sender": {"type": "string"}}, "required": ["kind", "source"]})"};
+}
+
+std::string to_json(const RecordedMark& recorded) {
+  const Mark& mark = recorded.mark;
+  nlohmann::ordered_json json{{"kind", name_of(mark.kind)}, {"source", recorded.source}};
+  if (!mark.text.empty()) json["text"] = mark.text;
+  if (mark.latency) json["latency_ms"] = static_cast<double>(mark.latency->count()) / 1e6;
+  if (!mark.id.empty()) json["id"] = mark.id;
+  if (!recorded.sender.empty()) json["sender"] = recorded.sender;
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::optional<RecordedMark> to_mark(std::string_view json) {
+  const auto object = nlohmann::json::parse(json, nullptr, false);
+  if (!object.is_object()) return std::nullopt;
+  const auto text = [&](const char* key) {
+    const auto found = object.find(key);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  RecordedMark recorded{
+      {Mark::Kind::text, text("text"), std::nullopt, text("id")}, text("source"), text("sender")};
+  const auto kind = mark_kind_named(text("kind"));
+  if (!kind) return std::nullopt;
+  recorded.mark.kind = *kind;
+  const auto latency = object.find("latency_ms");
+  if (latency == object.end()) return recorded;
+  constexpr double most_ms = 60'000;  // of a call
+  const double ms = latency->is_number() ? latency->get<double>() : -1.0;
+  if (!(ms >= 0.0 && ms <= most_ms)) return std::nullopt;
+  recorded.mark.latency = Duration{std::llround(ms * 1e6)};
+  return recorded;
 }
 
 std::string to_bytes(const RecordedExchange& recorded) {

@@ -5,6 +5,7 @@
 
 #include "kinalign/clock/host_from_node.h"
 #include "kinalign/clock/utc_anchor.h"
+#include "kinalign/io/mark.h"
 #include "kinalign/io/mcap_records.h"
 #include "kinalign/io/sequence_count.h"
 
@@ -59,8 +60,18 @@ struct SenderCounts {
   std::uint64_t refused = 0;              // recognised and of no use
 };
 McapSchema sender_counts_schema();
-std::string to_json(const std::string& stream, const std::string& sender,
+/// `node`: of inertial nodes the id, else empty.
+std::string to_json(const std::string& stream, const std::string& sender, const std::string& node,
                     const SenderCounts& counts);
+
+/// A mark, and who made it: "keyboard", "call" or "trigger"; of the last two the address.
+struct RecordedMark {
+  Mark mark;
+  std::string source, sender;
+};
+McapSchema mark_schema();
+std::string to_json(const RecordedMark& recorded);
+std::optional<RecordedMark> to_mark(std::string_view json);
 
 /// An exchange as 48 bytes, little-endian. `epoch`: of the host's axis, which begins anew when the
 /// host has slept.

@@ -2,9 +2,7 @@
 // Whole recordings over loopback: what devices send stands in the file.
 #include "kinalign/capture/recording_session.h"
 
-#include "tests/capture/loopback.h"
-#include "tests/folder.h"
-#include "tests/io/mcap_files.h"
+#include "tests/capture/recorded.h"
 
 #include "kinalign/io/noitom_frame.h"
 
@@ -17,12 +15,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-struct Machine {
-  PosixFiles files;
-  SystemClocks ports_clock, nodes_clock;
-
-  RecordingSession::Machine parts() { return {files, ports_clock, nodes_clock}; }
-};
+using Machine = RecordingMachine;
 
 DeviceOptions device(const std::string& text) { return *parse_device(text); }
 
@@ -30,28 +23,6 @@ template <class Holds>
 void serve_until(RecordingSession& session, const Holds& holds) {
   while (!holds()) session.turn(10ms);  // CTest's own limit ends a test that hangs
 }
-
-void finish(RecordingSession& session) {
-  session.stop();
-  while (!session.disk()->finished) std::this_thread::yield();
-}
-
-/// Payloads by topic, in their order.
-std::map<std::string, std::vector<std::string>> payloads_in(const std::string& bytes) {
-  const ReadMcap read = read_mcap(bytes);
-  CHECK(read.closed);
-  CHECK(read.findings.empty());
-  std::map<std::uint16_t, std::string> topics;
-  for (const McapRecord& record : read.records) {
-    if (const auto* channel = std::get_if<McapChannel>(&record))
-      topics[channel->id] = channel->topic;
-  }
-  std::map<std::string, std::vector<std::string>> payloads;
-  for (const OwnedMessage& m : read.messages) payloads[topics[m.message.channel]].push_back(m.data);
-  return payloads;
-}
-
-std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
 }  // namespace
 
@@ -99,19 +70,13 @@ TEST_CASE("what a device says over TCP stands in the file byte for byte, also af
   REQUIRE((*session)->start(folder / "a.mcap", "", ""));
   std::string sent;
   for (int life = 0; life < 2; ++life) {
-    const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(port);
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    REQUIRE(::connect(fd, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0);
+    const Connection device_itself(port);
     const std::string text(100'000, static_cast<char>('a' + life));
-    std::thread sender([&] { CHECK(::write(fd, text.data(), text.size()) == 100'000); });
+    std::thread sender([&] { device_itself.send(text); });
     sent += text;
     serve_until(**session,
                 [&] { return (*session)->port_counts().front().second.bytes == sent.size(); });
     sender.join();
-    ::close(fd);
   }
   finish(**session);
   std::string found;

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ports for marks from outside: docs/formats/marks.md.
+#pragma once
+
+#include "kinalign/capture/pieces.h"
+#include "kinalign/io/mark.h"
+#include "kinalign/io/recording_format.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct MarkPortCounts {
+  std::uint64_t marks = 0, repeats = 0;
+  std::map<std::string, std::uint64_t> refused;  // by cause: "bad_json"
+};
+
+class MarkPort {
+ public:
+  enum class Form : std::uint8_t {
+    call,    // ours, answered
+    trigger  // Vicon's broadcasts
+  };
+  static Result<MarkPort> open(Form form, std::uint16_t port);
+
+  using TakeMark = std::function<void(const RecordedMark& mark, HostTime at)>;
+  void add_fds(std::vector<int>& fds) const { pieces_.add_fds(fds); }
+  /// Tells each mark once.
+  void drain(HostAxis& axis, const TakeMark& take);
+
+  Form form() const { return form_; }
+  std::uint16_t port() const { return pieces_.port(); }
+  const MarkPortCounts& counts() const { return counts_; }
+
+ private:
+  MarkPort(Form form, UdpPieces pieces);
+  bool decode(const Piece& piece, Mark& mark);
+  void take_piece(const Piece& piece, const TakeMark& take);
+
+  Form form_;
+  UdpPieces pieces_;
+  MarkRepeats repeats_;
+  MarkPortCounts counts_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/recorded_nodes.h"
+
+#include "kinalign/io/little_endian_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_nodes = 256;  // each takes two channels
+
+}  // namespace
+
+Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& device,
+                                                           const NodeDeskOptions& desk,
+                                                           ClockReader& clocks,
+                                                           Recorder& recorder) {
+  NodeReceiverOptions options;
+  if (!device.address.empty()) options.addresses = {device.address};
+  options.port = static_cast<std::uint16_t>(device.port);
+  options.desk = desk;
+  return std::unique_ptr<RecordedNodes>(
+      new RecordedNodes(device, KA_TRY(NodeReceiver::open(options, clocks)), recorder));
+}
+
+RecordedNodes::RecordedNodes(DeviceOptions device, NodeReceiver receiver, Recorder& recorder)
+    : device_(std::move(device)), receiver_(std::move(receiver)), recorder_(recorder) {
+  receiver_.watch([this](const NodeArrival& arrival, const NodeNews& news, LiveClock*) {
+    take(arrival, news);
+  });
+}
+
+void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {
+  if (nodes_.size() >= most_nodes && !nodes_.contains(news.node_id)) {
+    ++crowded_;
+    return;
+  }
+  Node& node = node_of(news.node_id, arrival.from);
+  std::optional<std::uint64_t> device_ns;
+  if (news.exchange) {
+    device_ns = static_cast<std::uint64_t>(news.exchange->n_tx.time_since_epoch().count());
+    recorder_.record(node.exchanges, arrival.h_rx, to_bytes({receiver_.epoch(), *news.exchange}),
+                     device_ns);
+  }
+  node.raw.record(recorder_, arrival.h_rx, text_of(arrival.bytes), device_ns);
+  bytes_ += arrival.bytes.size();
+  judge(node, news);
+}
+
+RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress& from) {
+  const auto found = nodes_.find(id);
+  if (found != nodes_.end()) return found->second;
+  const std::string number = std::to_string(id);
+  const auto place = device_.nodes.find(number);
+  const RawChannel raw{device_.name, "kinalign-node",
+                       "udp",        endpoint_text(to_string(from.host), from.port),
+                       number,       place == device_.nodes.end() ? "" : place->second};
+  const std::string topic = "/" + device_.name + "/" + number;
+  McapChannel exchanges = to_channel(topic + "/exchange", raw);
+  exchanges.message_encoding = exchange_encoding;
+  const std::uint16_t channel = recorder_.add_channel(std::move(exchanges));
+  return nodes_.emplace(id, Node{RecordedSource(recorder_, topic + "/raw", raw), channel})
+      .first->second;
+}
+
+/// Which count a datagram belongs to. What is held counts as a message alone: it may be one of the
+/// next, or a recording played back.
+void RecordedNodes::judge(Node& node, const NodeNews& news) {
+  SenderCounts& counts = node.raw.status.counts;
+  switch (news.verdict) {
+    case NodeVerdict::accepted:
+      break;
+    case NodeVerdict::held:
+      return;
+    case NodeVerdict::duplicate:
+      ++counts.order.duplicates;
+      return;
+    case NodeVerdict::replayed:
+    case NodeVerdict::earlier_life:
+      ++counts.order.late;
+      return;
+    default:
+      ++counts.refused;
+      return;
+  }
+  ++counts.frames;
+  if (!news.exchange) return;
+  const BootKey before = std::exchange(node.boot, news.exchange->boot);
+  const bool same_life = before == node.boot && counts.frames > 1;
+  if (!same_life && counts.frames > 1) ++counts.order.restarts;
+  if (same_life && news.frame < node.newest) ++counts.order.late;
+  node.newest = same_life ? std::max(node.newest, news.frame) : news.frame;
+}
+
+void RecordedNodes::tell(std::uint16_t counts, double elapsed_s, HostTime now) {
+  for (const NodeStatus& status : receiver_.status()) {
+    const auto found = nodes_.find(status.node_id);
+    if (found == nodes_.end()) continue;
+    Lost& lost = found->second.lost[status.stream];
+    if (std::exchange(lost.lives, status.lives) != status.lives) lost.before += lost.present;
+    lost.present = status.lost;
+    StreamStatus& stream = found->second.raw.status;
+    if (status.battery_mv) stream.battery_volts = 1e-3 * *status.battery_mv;
+  }
+  for (auto& [id, node] : nodes_) {
+    std::uint64_t& lost = node.raw.status.counts.order.lost;
+    lost = 0;
+    for (const auto& [stream, of_one] : node.lost) lost += of_one.before + of_one.present;
+    node.raw.tell(recorder_, counts, elapsed_s, now);
+  }
+}
+
+PortCounts RecordedNodes::counts() const {
+  const NodeCounts& counts = receiver_.counts();
+  PortCounts out;
+  out.pieces = counts.verdicts.total();
+  out.bytes = bytes_;
+  out.refused = counts.verdicts[NodeVerdict::refused] + receiver_.not_unicast() +
+                receiver_.from_port_0() + crowded_;
+  out.dropped = receiver_.dropped();
+  return out;
+}
+
+void RecordedNodes::add_streams(std::vector<StreamStatus>& all) const {
+  for (const auto& [id, node] : nodes_) all.push_back(node.raw.status);
+}
+
+}  // namespace kinalign

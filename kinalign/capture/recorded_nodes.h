@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The nodes' port while it is recorded: every datagram that got past port and key stands in the
+// file as it came, whatever becomes of it; what an accepted one says of its node's clock, too.
+#pragma once
+
+#include "kinalign/capture/node_receiver.h"
+#include "kinalign/capture/pieces.h"
+#include "kinalign/capture/recorded_source.h"
+#include "kinalign/take/lab.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace kinalign {
+
+class RecordedNodes {
+ public:
+  /// `clocks` and `recorder` have to stay.
+  static Result<std::unique_ptr<RecordedNodes>> open(const DeviceOptions& device,
+                                                     const NodeDeskOptions& desk,
+                                                     ClockReader& clocks, Recorder& recorder);
+  RecordedNodes(const RecordedNodes&) = delete;
+  RecordedNodes& operator=(const RecordedNodes&) = delete;
+  ~RecordedNodes() = default;
+
+  NodeReceiver& receiver() { return receiver_; }
+  const NodeReceiver& receiver() const { return receiver_; }
+  /// Once a second: rates, and counts onto the channel `counts`.
+  void tell(std::uint16_t counts, double elapsed_s, HostTime now);
+
+  const DeviceOptions& device() const { return device_; }
+  std::uint16_t port() const { return receiver_.sockets().front().port(); }
+  PortCounts counts() const;
+  void add_streams(std::vector<StreamStatus>& all) const;
+
+ private:
+  /// What one stream of the receiver's has lost in its present life, and before.
+  struct Lost {
+    std::uint64_t lives = 0, present = 0, before = 0;
+  };
+  struct Node {
+    RecordedSource raw;
+    std::uint16_t exchanges = 0;  // channel
+    BootKey boot = 0;             // of the newest frame, …
+    std::uint64_t newest = 0;     // … and its number
+    std::map<std::size_t, Lost> lost{};
+  };
+
+  RecordedNodes(DeviceOptions device, NodeReceiver receiver, Recorder& recorder);
+  void take(const NodeArrival& arrival, const NodeNews& news);
+  Node& node_of(std::uint32_t id, const NodeAddress& from);
+  static void judge(Node& node, const NodeNews& news);
+
+  DeviceOptions device_;
+  NodeReceiver receiver_;
+  Recorder& recorder_;
+  std::map<std::uint32_t, Node> nodes_;
+  std::uint64_t bytes_ = 0;
+  std::uint64_t crowded_ = 0;  // datagrams of one node too many
+};
+
+}  // namespace kinalign

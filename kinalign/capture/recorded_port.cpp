@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/recorded_port.h"
+
+#include "kinalign/io/kinect_binary.h"
+#include "kinalign/io/kinect_lines.h"
+#include "kinalign/io/little_endian_reader.h"
+
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint64_t most_lives = 1000;  // of senders of a port: each takes a channel
+
+std::string encoded(const KinectPong& pong, bool as_line) {
+  if (as_line) return encode_kinect_line(pong);
+  return std::string(text_of(encode_kinect_binary(pong)));
+}
+
+}  // namespace
+
+Result<RecordedPort> RecordedPort::open(const DeviceOptions& device, const SipHashKey& secret) {
+  return RecordedPort(device, KA_TRY(open_pieces(device)), secret);
+}
+
+Result<RecordedPort::Pieces> RecordedPort::open_pieces(const DeviceOptions& device) {
+  const auto port = static_cast<std::uint16_t>(device.port);
+  if (device.transport == "udp") return Pieces(KA_TRY(UdpPieces::open(device.address, port)));
+  if (device.transport == "tcp") return Pieces(KA_TRY(TcpPieces::connect(device.address, port)));
+  return Pieces(KA_TRY(TcpPieces::listen(device.address, port)));
+}
+
+RecordedPort::RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret)
+    : device_(std::move(device)), pieces_(std::move(pieces)) {
+  if (device_.protocol == "slimevr") slimes_ = std::make_unique<SlimeDesk>(secret);
+  if (device_.protocol == "kinect") kinects_ = std::make_unique<KinectDesk>(secret);
+}
+
+void RecordedPort::add_fds(std::vector<int>& fds) const {
+  std::visit([&](const auto& pieces) { pieces.add_fds(fds); }, pieces_);
+}
+
+void RecordedPort::drain(HostAxis& axis, Recorder& recorder) {
+  const TakePiece to = [&](const Piece& piece) { take(piece, axis, recorder); };
+  std::visit([&](auto& pieces) { pieces.drain(axis, to); }, pieces_);
+}
+
+/// Answers go out before anything is written: what is done in between delays one way alone.
+void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
+  Source* source = source_of(piece.sender, recorder);
+  if (source == nullptr) return;
+  source->watch.feed(piece.bytes);
+  if (kinects_) answer_pings(*source, piece, axis, recorder);
+  if (slimes_) answer_trackers(*source, piece);
+  source->recorded.record(recorder, piece.arrival, piece.bytes);
+}
+
+/// A new sender, or another in the place of one that fell silent, gets a channel of its own.
+RecordedPort::Source* RecordedPort::source_of(std::size_t number, Recorder& recorder) {
+  const Senders::Sender& sender = std::visit(
+      [&](const auto& pieces) -> const Senders::Sender& { return pieces.senders().at(number); },
+      pieces_);
+  if (sender.life > most_lives) return nullptr;
+  if (sources_.size() <= number) sources_.resize(number + 1);
+  std::optional<Source>& source = sources_[number];
+  if (source && source->life == sender.life) return &*source;
+  const std::string further = sender.life == 1 ? "" : "/" + std::to_string(sender.life);
+  const RawChannel raw{device_.name,
+                       device_.protocol,
+                       device_.transport,
+                       endpoint_text(to_string(sender.host), sender.port),
+                       "",
+                       ""};
+  source.emplace(Source{RecordedSource(recorder, "/" + device_.name + "/raw" + further, raw),
+                        StreamWatch(device_.protocol, device_.transport == "udp"),
+                        sender.life,
+                        {sender.host, sender.port}});
+  return &*source;
+}
+
+void RecordedPort::answer_pings(const Source& source, const Piece& piece, HostAxis& axis,
+                                Recorder& recorder) {
+  std::size_t may_send = piece.bytes.size();  // nobody who forges an address gains by it
+  for (const KinectPing& ping : source.watch.pings()) {
+    const auto exchange = kinects_->receive(ping, source.address.host, piece.arrival);
+    if (!exchange) continue;
+    if (const auto pong = kinects_->answer(axis.now())) {
+      const std::string bytes = encoded(*pong, source.watch.speaks_lines());
+      const bool forgeable = device_.transport == "udp";
+      if (!forgeable || bytes.size() <= may_send) {
+        may_send -= forgeable ? bytes.size() : 0;
+        std::visit([&](auto& pieces) { pieces.send(piece.sender, octets(bytes)); }, pieces_);
+      }
+    }
+    if (!exchanges_) {
+      const RawChannel raw{
+          device_.name, std::string(exchange_encoding), device_.transport, "", "", ""};
+      exchanges_ = recorder.add_channel(to_channel("/" + device_.name + "/exchange", raw));
+    }
+    const std::int64_t sent_ns = exchange->n_tx.time_since_epoch().count();
+    const auto device_ns =
+        sent_ns < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(sent_ns));
+    recorder.record(*exchanges_, piece.arrival, to_bytes({axis.epoch(), *exchange}), device_ns);
+  }
+}
+
+void RecordedPort::answer_trackers(const Source& source, const Piece& piece) {
+  slimes_->receive({octets(piece.bytes), source.address, piece.arrival});
+  send_answers();
+}
+
+void RecordedPort::send_answers() {
+  auto* udp = std::get_if<UdpPieces>(&pieces_);  // trackers have no other
+  if (udp == nullptr) return;
+  for (const SlimeSending& sending : slimes_->take_sendings()) {
+    udp->send_to(sending.to.host, sending.to.port, sending.answer.datagram());
+  }
+}
+
+void RecordedPort::tick(HostTime now) {
+  if (!slimes_) return;
+  slimes_->tick(now);
+  send_answers();
+}
+
+void RecordedPort::tell(Recorder& recorder, std::uint16_t counts, double elapsed_s, HostTime now) {
+  for (std::optional<Source>& source : sources_) {
+    if (!source) continue;
+    look_at(*source);
+    source->recorded.tell(recorder, counts, elapsed_s, now);
+  }
+}
+
+/// What is known of a sender beside its messages and bytes.
+void RecordedPort::look_at(Source& source) const {
+  SenderCounts& counts = source.recorded.status.counts;
+  const SenderCounts watched = source.watch.counts();
+  counts.frames = watched.frames;
+  counts.order = watched.order;
+  counts.refused = watched.refused;
+  const SlimeDevice* tracker = slimes_ ? slimes_->device_at(source.address) : nullptr;
+  if (tracker == nullptr) return;
+  counts.order = tracker->counts();
+  if (tracker->battery_volts) source.recorded.status.battery_volts = *tracker->battery_volts;
+}
+
+std::uint16_t RecordedPort::port() const {
+  return std::visit([](const auto& pieces) { return pieces.port(); }, pieces_);
+}
+
+PortCounts RecordedPort::counts() const {
+  return std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
+}
+
+void RecordedPort::add_streams(std::vector<StreamStatus>& all) const {
+  for (const std::optional<Source>& source : sources_) {
+    if (source) all.push_back(source->recorded.status);
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// A device's port while it is recorded: its pieces, a channel for each sender, what the senders'
+// own numbers miss, and the desk that answers them where the protocol wants answers.
+#pragma once
+
+#include "kinalign/capture/kinect_desk.h"
+#include "kinalign/capture/pieces.h"
+#include "kinalign/capture/recorded_source.h"
+#include "kinalign/capture/slimevr_desk.h"
+#include "kinalign/capture/stream_watch.h"
+#include "kinalign/take/lab.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace kinalign {
+
+class RecordedPort {
+ public:
+  /// `secret`: random in each run and for each port.
+  static Result<RecordedPort> open(const DeviceOptions& device, const SipHashKey& secret);
+
+  void add_fds(std::vector<int>& fds) const;
+  /// Takes, answers and records what has come.
+  void drain(HostAxis& axis, Recorder& recorder);
+  /// Ten times a second or so: what a desk says unasked.
+  void tick(HostTime now);
+  /// Once a second: rates, and counts onto the channel `counts`.
+  void tell(Recorder& recorder, std::uint16_t counts, double elapsed_s, HostTime now);
+
+  const DeviceOptions& device() const { return device_; }
+  std::uint16_t port() const;
+  PortCounts counts() const;
+  void add_streams(std::vector<StreamStatus>& all) const;
+  const KinectDesk* kinects() const { return kinects_.get(); }
+  const SlimeDesk* slimes() const { return slimes_.get(); }
+
+ private:
+  using Pieces = std::variant<UdpPieces, TcpPieces>;
+  struct Source {
+    RecordedSource recorded;
+    StreamWatch watch;
+    std::uint64_t life = 0;  // of its sender
+    NodeAddress address;
+  };
+
+  RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret);
+  static Result<Pieces> open_pieces(const DeviceOptions& device);
+  void take(const Piece& piece, HostAxis& axis, Recorder& recorder);
+  Source* source_of(std::size_t sender, Recorder& recorder);
+  void answer_pings(const Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
+  void answer_trackers(const Source& source, const Piece& piece);
+  void send_answers();
+  void look_at(Source& source) const;
+
+  DeviceOptions device_;
+  Pieces pieces_;
+  std::vector<std::optional<Source>> sources_;  // by the sender's number
+  std::unique_ptr<SlimeDesk> slimes_;
+  std::unique_ptr<KinectDesk> kinects_;
+  std::optional<std::uint16_t> exchanges_;  // channel
+};
+
+}  // namespace kinalign
