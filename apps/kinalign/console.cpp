@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
 
+#include "apps/kinalign/terminal.h"
+
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <array>
@@ -24,17 +25,11 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 constexpr std::array<std::string_view, 7> codes{"",         "\x1b[32m", "\x1b[33m", "\x1b[31m",
                                                 "\x1b[31m", "\x1b[32m", "\x1b[34m"};
 constexpr std::string_view plain = "\x1b[0m";
-constexpr std::string_view start_of_line = "\r\x1b[K";
 
 std::string painted(bool wanted, Colour colour, std::string_view text) {
   const std::string_view code = codes[static_cast<std::size_t>(colour)];
   if (!wanted || code.empty()) return std::string(text);
   return fmt::format("{}{}{}", code, text, plain);
-}
-
-std::size_t width_of(int fd) {
-  winsize size{};
-  return ::ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 bool colour_wanted(const Surroundings& surroundings, const Common& common, bool terminal) {
@@ -47,47 +42,6 @@ bool colour_wanted(const Surroundings& surroundings, const Common& common, bool 
 bool progress_wanted(const Surroundings& surroundings, const Common& common) {
   return surroundings.err_is_terminal && !common.quiet && surroundings.variable("TERM") != "dumb" &&
          !(common.json && surroundings.out_is_terminal);
-}
-
-/// Places on a terminal: a character each, none for a colour.
-std::size_t places(std::string_view text) {
-  std::size_t count = 0;
-  bool colour = false;
-  for (const char c : text) {
-    if (c == '\x1b') colour = true;
-    const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // of a UTF-8 character
-    if (!colour && !goes_on) ++count;
-    if (c == 'm') colour = false;
-  }
-  return count;
-}
-
-/// Where a line's text begins: behind "  space  ", "warning  ".
-std::size_t text_column(std::string_view line) {
-  constexpr std::size_t most = 24;
-  const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
-  const std::size_t gap = line.find("  ", begin);
-  if (gap == std::string_view::npos) return begin + 2;
-  const std::size_t column = places(line.substr(0, line.find_first_not_of(' ', gap)));
-  return column < most ? column : begin + 2;
-}
-
-std::string broken_line(std::string_view line, std::size_t width) {
-  const std::size_t indent = text_column(line);
-  if (places(line) <= width || indent + 20 > width) return std::string(line);
-  std::string out(line.substr(0, line.find_first_not_of(' ')));
-  line.remove_prefix(out.size());
-  std::size_t at = out.size();
-  while (!line.empty()) {
-    const std::size_t blanks = std::min(line.find_first_not_of(' '), line.size());
-    const std::string_view word = line.substr(blanks, line.find(' ', blanks) - blanks);
-    const bool fits = at + blanks + places(word) <= width || at <= indent;
-    out += fits ? std::string(blanks, ' ') : "\n" + std::string(indent, ' ');
-    at = (fits ? at + blanks : indent) + places(word);
-    out += word;
-    line.remove_prefix(blanks + word.size());
-  }
-  return out;
 }
 
 /// Files are read by bytes, all else goes by frames.
@@ -118,16 +72,6 @@ std::string progress_line(std::string_view what, std::uint64_t done, std::uint64
     if (total > done) line += fmt::format("  {} left", time_text(elapsed_s * (all / doing - 1)));
   }
   return line.substr(0, width);
-}
-
-std::string broken(std::string_view lines, std::size_t width) {
-  std::string out;
-  while (!lines.empty()) {
-    const std::string_view line = lines.substr(0, lines.find('\n'));
-    lines.remove_prefix(std::min(lines.size(), line.size() + 1));
-    out += broken_line(line, width) + "\n";
-  }
-  return out;
 }
 
 void take_signals() {
@@ -168,7 +112,7 @@ void Console::never_wait() {
 
 void Console::print(std::string_view text) {
   if (common_.quiet || common_.json) return;
-  put(surroundings_.out_is_terminal ? broken(text, width_of(surroundings_.out)) : text);
+  put(surroundings_.out_is_terminal ? broken(text, size_of(surroundings_.out).columns) : text);
 }
 
 void Console::print_json(std::string_view object, int version) {
@@ -208,6 +152,28 @@ Progress Console::progress() {
     if (progress_) show_progress(what, done, total);
     return !interrupted();
   };
+}
+
+void Console::show(const std::vector<std::pair<std::string, Colour>>& lines) {
+  if (!progress_ || err_.holds()) return;
+  const auto [rows, columns] = size_of(surroundings_.err);
+  std::string all = shown_ ? start_of_lines(shown_lines_) : "";
+  const std::size_t count = std::min(lines.size(), rows - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [text, colour] = lines[i];
+    all += painted(colour_err_, colour, first_places(text, columns - 1));
+    if (i + 1 < count) all += '\n';
+  }
+  err_.put(all);
+  err_.flush();
+  shown_ = count > 0;
+  shown_lines_ = std::max<std::size_t>(count, 1);
+}
+
+void Console::ring() {
+  if (!progress_) return;
+  err_.put("\a");
+  err_.flush();
 }
 
 Failure Console::refuse(Error error) {
@@ -257,14 +223,15 @@ void Console::show_progress(std::string_view what, std::uint64_t done, std::uint
   drawn_ = now;
   shown_ = true;
   const double elapsed_s = std::chrono::duration<double>(now - began_).count();
-  const std::size_t width = width_of(surroundings_.err);
-  err_.put(
-      fmt::format("{}{}", start_of_line, progress_line(what, done, total, elapsed_s, width - 1)));
+  const std::size_t width = size_of(surroundings_.err).columns;
+  err_.put(fmt::format("{}{}", start_of_lines(1),
+                       progress_line(what, done, total, elapsed_s, width - 1)));
   err_.flush();
 }
 
 void Console::erase_progress() {
-  if (shown_) err_.put(start_of_line);
+  if (shown_) err_.put(start_of_lines(shown_lines_));
+  shown_lines_ = 1;
   err_.flush();
   shown_ = false;
 }
@@ -274,7 +241,7 @@ void Console::say(std::string_view line, Colour colour) {
   flush();
   std::string text(line);
   if (surroundings_.err_is_terminal && !line.empty()) {
-    text = broken(line, width_of(surroundings_.err));
+    text = broken(line, size_of(surroundings_.err).columns);
     text.pop_back();
   }
   err_.put(painted(colour_err_, colour, text) + "\n");

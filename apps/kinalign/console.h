@@ -13,6 +13,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -61,6 +62,14 @@ class Console {
   /// once).
   Progress progress();
 
+  /// Lines that stand on stderr until the next ones, on a terminal where progress would be, and are
+  /// gone when the job is done; no wider and no more than the terminal has room for.
+  void show(const std::vector<std::pair<std::string, Colour>>& lines);
+  /// Whether show() shows anything.
+  bool shows() const { return progress_; }
+  /// A sound, where show() shows anything.
+  void ring();
+
   /// To be said if the verb fails; the last call counts. Asked after the verb has returned: it
   /// holds what it needs, by value.
   void if_it_fails(Advice advice) { advice_ = std::move(advice); }
@@ -102,17 +111,14 @@ class Console {
   bool colour_out_ = false, colour_err_ = false, progress_ = false;
   Outlet out_, err_;
   std::string doing_;   // what the progress line says
-  bool shown_ = false;  // a progress line stands
+  bool shown_ = false;  // a progress line stands, or lines do
+  std::size_t shown_lines_ = 1;
   Clock::time_point began_{}, drawn_{};
 };
 
 /// "reading  43 %  1.2 MB/s  12 s left": of a job that has run for `elapsed_s`, cut to `width`.
 std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
                           double elapsed_s, std::size_t width);
-
-/// Whole lines, each broken at blanks where it is wider than `width`; what goes on stands below the
-/// line's second column or, where there is none, two blanks further in. Colours have no width.
-std::string broken(std::string_view lines, std::size_t width);
 
 /// From here on the first Ctrl-C, SIGTERM or SIGHUP is only noted, and a reader of stdout that goes
 /// away is no signal. Who started the program with SIGHUP ignored (nohup) wants it to go on.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
-#include "apps/kinalign/json_text.h"
 #include "apps/kinalign/key_advice.h"
+#include "apps/kinalign/mark_keys.h"
+#include "apps/kinalign/record_herald.h"
 #include "apps/kinalign/settings.h"
-#include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/node_keys.h"
@@ -12,7 +12,6 @@
 #include "kinalign/io/lab_toml.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,7 +25,6 @@ namespace kinalign {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
 
 struct Record {
@@ -34,6 +32,8 @@ struct Record {
   std::vector<std::string> devices;
   std::string lab_key;
   std::optional<double> seconds;
+  std::optional<std::int64_t> marks_port, trigger_port;
+  bool wait = false;
   RecordOptions options;
 };
 
@@ -73,8 +73,13 @@ Usage describe_record(Record& o) {
        &o.devices},
       {"subject", "who moves: part of the file's name", &o.subject},
       {"action", "what they do: part of the file's name", &o.action},
-      {"seconds", "end by itself after so long", &o.seconds, 0.0, 1e6}};
-  usage.settings = {{"lab_key", "file of the key that the nodes' keys come from", &o.lab_key}};
+      {"seconds", "end by itself after so long", &o.seconds, 0.0, 1e6},
+      {"wait", "wait for a mark that starts the take; one that stops ends it", &o.wait}};
+  usage.settings = {{"lab_key", "file of the key that the nodes' keys come from", &o.lab_key},
+                    {"marks_port", "UDP port for marks of other programs; 0: any free one",
+                     &o.marks_port, 0.0, 65535.0},
+                    {"trigger_port", "UDP port for Vicon's start and stop, usually 30",
+                     &o.trigger_port, 0.0, 65535.0}};
   for (const Field& field : describe(o.options)) usage.settings.push_back(field);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a folder for the files", "none"});
@@ -120,108 +125,6 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-Json json_of(const StreamStatus& stream, HostTime now) {
-  Json json = Json::parse(to_json(stream.stream, stream.sender, stream.node, stream.counts));
-  json["rate_hz"] = stream.rate_hz;
-  json["silent_s"] = seconds(now - stream.heard);
-  return json;
-}
-
-/// "mocap from 192.168.7.5:51234: 7,500 messages, 11.1 MB; 3 frames lost"
-std::string line_of(const StreamStatus& stream) {
-  const SenderCounts& counts = stream.counts;
-  std::string line =
-      fmt::format("  {} from {}: {} messages, {:.1f} MB", stream.stream, stream.sender,
-                  grouped(counts.messages), static_cast<double>(counts.bytes) / 1e6);
-  std::string_view between = "; ";
-  for (const auto& [count, what] :
-       {std::pair(counts.order.lost, "lost"), std::pair(counts.order.late, "late"),
-        std::pair(counts.order.duplicates, "twice"), std::pair(counts.refused, "refused")}) {
-    if (count == 0) continue;
-    line += fmt::format("{}{} {}", between, grouped(count), what);
-    between = ", ";
-  }
-  return line + "\n";
-}
-
-/// Says what happens while a take lasts.
-class RecordHerald {
- public:
-  RecordHerald(RecordingSession& session, Console& console)
-      : session_(session), console_(console), progress_(console.progress()) {}
-
-  void tell_start(const std::string& path) {
-    Json event{{"event", "started"}, {"file", path}};
-    std::string heard;
-    for (const auto& [name, port] : session_.ports()) {
-      event["ports"][name] = port;
-      heard += fmt::format("{}{} on port {}", heard.empty() ? "" : ", ", name, port);
-    }
-    console_.print(harmless(fmt::format("recording to {}\n  {}\n", path, heard)));
-    console_.print_json(json_text(event));
-    console_.flush();
-  }
-
-  /// Whether to go on. Asked after each datagram, it looks ten times a second.
-  bool operator()() {
-    const HostTime now = session_.now();
-    if (now < next_look_) return !interrupted();
-    next_look_ = now + 100ms;
-    for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
-    const DiskStatus disk = *session_.disk();
-    std::uint64_t messages = 0;
-    for (const StreamStatus& stream : session_.streams()) messages += stream.counts.messages;
-    if (now >= next_status_) {
-      next_status_ = now + 1s;
-      tell_status(now, disk);
-    }
-    return progress_(fmt::format("recording: {} messages, {:.1f} MB", grouped(messages),
-                                 static_cast<double>(disk.bytes) / 1e6),
-                     0, 0);
-  }
-
-  void tell_end() {
-    for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
-    const DiskStatus disk = *session_.disk();
-    Json event{{"event", "stopped"},
-               {"files", disk.paths},
-               {"bytes", disk.bytes},
-               {"dropped", disk.dropped}};
-    std::string lines;
-    for (const StreamStatus& stream : session_.streams()) {
-      event["streams"].push_back(json_of(stream, session_.now()));
-      lines += line_of(stream);
-    }
-    std::string files;
-    for (const std::string& path : disk.paths) files.append(path).append("\n");
-    console_.print(harmless(files.append(lines)));
-    console_.print_json(json_text(event));
-  }
-
- private:
-  void tell(const PartFailure& failure) {
-    console_.complain(harmless(fmt::format(
-        "kinalign record: {}: {}\n", to_string(failure.why),
-        failure.next.empty() ? "kept in memory and tried again" : "goes on in " + failure.next)));
-    console_.print_json(json_text(Json{
-        {"event", "disk_failed"}, {"what", to_string(failure.why)}, {"goes_on_in", failure.next}}));
-  }
-  void tell_status(HostTime now, const DiskStatus& disk) {
-    Json event{{"event", "status"}, {"bytes", disk.bytes}, {"waiting_bytes", disk.waiting_bytes}};
-    event["streams"] = Json::array();
-    for (const StreamStatus& stream : session_.streams()) {
-      event["streams"].push_back(json_of(stream, now));
-    }
-    console_.print_json(json_text(event));
-    console_.flush();
-  }
-
-  RecordingSession& session_;
-  Console& console_;
-  Progress progress_;
-  HostTime next_look_ = HostTime::min(), next_status_ = HostTime::min();
-};
-
 /// The files that the devices need beside lab.toml.
 Result<void> read_files(const Record& o, Call& call, RecordingSession::Options& options) {
   FileSystem& files = call.surroundings.files;
@@ -238,6 +141,10 @@ Result<void> read_files(const Record& o, Call& call, RecordingSession::Options& 
   return {};
 }
 
+std::optional<std::uint16_t> port_of(const std::optional<std::int64_t>& port) {
+  return port ? std::optional(static_cast<std::uint16_t>(*port)) : std::nullopt;
+}
+
 Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
   auto file = read_lab_file(call);
   if (!file) return call.console.refuse(std::move(file).error());
@@ -250,16 +157,63 @@ Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
         Error{"--device", 0, "at least one device, or a lab.toml for --config", "none"});
   }
   options.lab_toml = std::move(file->text);
+  options.marks_port = port_of(o.marks_port);
+  options.trigger_port = port_of(o.trigger_port);
   options.host = host_name();
   options.desk.secret = KA_TRY(new_secret());
   KA_TRY(read_files(o, call, options));
   return options;
 }
 
-/// Until somebody or --seconds ends it, and all is on the disk.
-void serve(RecordingSession& session, RecordHerald& herald, std::optional<double> most_s) {
+/// Devices, keyboard and marks while a take is awaited and recorded.
+class Stage {
+ public:
+  Stage(RecordingSession& session, RecordHerald& herald) : session_(session), herald_(herald) {}
+
+  /// What comes within a twentieth of a second. Whether to go on.
+  bool turn() {
+    session_.turn(50ms, keyboard_.fd());
+    for (const char key : keyboard_.read()) {
+      if (const auto pressed = keys_.take(key, session_.now())) {
+        session_.mark({pressed->first, "keyboard", ""}, pressed->second);
+      }
+    }
+    for (const HeardMark& heard : session_.take_marks()) {
+      last_click_ = is_click(heard.first.mark) ? heard.first.mark.kind : last_click_;
+      herald_.tell(heard);
+    }
+    herald_.look(keys_.typed());
+    return !interrupted() && !herald_.disk_full();
+  }
+  /// Since it was asked last.
+  std::optional<Mark::Kind> take_click() { return std::exchange(last_click_, std::nullopt); }
+
+ private:
+  static bool is_click(const Mark& mark) {
+    return mark.kind == Mark::Kind::start || mark.kind == Mark::Kind::stop;
+  }
+
+  RecordingSession& session_;
+  RecordHerald& herald_;
+  Keyboard keyboard_;
+  MarkKeys keys_;
+  std::optional<Mark::Kind> last_click_;
+};
+
+/// False: somebody ended it first.
+bool wait_for_start(Stage& stage) {
+  while (stage.turn()) {
+    if (stage.take_click() == Mark::Kind::start) return true;
+  }
+  return false;
+}
+
+/// Until somebody, --seconds, with --wait a stop, or a full disk ends it, and all is written.
+void serve(RecordingSession& session, Stage& stage, const Record& o) {
   const HostTime begun = session.now();
-  while (herald() && !(most_s && seconds(session.now() - begun) >= *most_s)) session.turn(50ms);
+  while (!(o.seconds && seconds(session.now() - begun) >= *o.seconds) && stage.turn()) {
+    if (stage.take_click() == Mark::Kind::stop && o.wait) break;
+  }
   session.stop();
   while (!session.disk()->finished) std::this_thread::sleep_for(5ms);
 }
@@ -273,15 +227,23 @@ Result<int> run(Record& o, Call& call) {
   SystemClocks ports_clock, nodes_clock;
   const auto session = KA_TRY(RecordingSession::open(
       std::move(options), {call.surroundings.files, ports_clock, nodes_clock}));
+  RecordHerald herald(*session, console);
+  Stage stage(*session, herald);
+  if (o.wait) {
+    herald.tell_waiting();
+    if (!wait_for_start(stage)) {
+      console.note("kinalign record: stopped before a start came; nothing was recorded");
+      return 1;
+    }
+  }
   const std::string path = free_path(call.common.out, o);
   KA_TRY(session->start(path, o.subject, o.action));
-  RecordHerald herald(*session, console);
   herald.tell_start(path);
-  serve(*session, herald, o.seconds);
+  serve(*session, stage, o);
   herald.tell_end();
   const DiskStatus disk = *session->disk();
   if (disk.refused) return Failure(*disk.refused);
-  return disk.dropped > 0 || disk.paths.size() > 1 ? 1 : 0;
+  return disk.dropped > 0 || disk.paths.size() > 1 || herald.disk_full() ? 1 : 0;
 }
 
 }  // namespace
@@ -290,11 +252,14 @@ Verb record_verb() {
   return make_verb<Record>(
       {.name = "record",
        .summary = "devices into a recording, nothing lost",
-       .text = "Receives, stamps and stores until Ctrl-C what devices send. The file (MCAP) is "
-               "whole up to the last quarter of a second at any time, whatever becomes of the "
-               "program; no file is ever overwritten. Protocols: nodes, noitom, xsens, kinect, "
-               "slimevr; transports: udp, tcp (to the device's address), tcp-listen. Exit code 1 "
-               "where the disk failed and the recording went on in another file.",
+       .text =
+           "Receives, stamps and stores until Ctrl-C what devices send. The file (MCAP) is "
+           "whole up to the last quarter of a second at any time, whatever becomes of the "
+           "program; no file is ever overwritten. Protocols: nodes, noitom, xsens, kinect, "
+           "slimevr; transports: udp, tcp (to the device's address), tcp-listen. On a terminal "
+           "keys make marks: s start, e stop, t T-pose, Enter begins and ends a text. Exit code "
+           "1 where the disk failed and the recording went on in another file, or was nearly "
+           "full and ended it.",
        .examples =
            {{"kinalign record -o takes --device imu=nodes:5005 --device mocap=noitom:udp:7012",
              "inertial nodes, and Axis Studio sending to this machine"},
@@ -302,7 +267,9 @@ Verb record_verb() {
              "mocap=noitom:tcp:192.168.7.5:7001",
              "Axis Neuron serving; takes/03_S1A02_01.mcap"},
             {"kinalign record -o takes --config lab.toml",
-             "the devices of a lab: docs/recording.md"}},
+             "the devices of a lab: docs/recording.md"},
+            {"kinalign record -o takes --config lab.toml --trigger-port 30 --wait",
+             "a take from Vicon's start to its stop, and the seconds before"}},
        .common = {"out", "json"},
        .out_is_folder = true},
       describe_record, run);

@@ -128,6 +128,12 @@ Result<void> validate(const Lab& lab) {
   return {};
 }
 
+double nominal_rate_hz(const DeviceOptions& device) {
+  constexpr double kinect_v2 = 30.0;
+  if (device.rate_hz > 0.0) return device.rate_hz;
+  return device.protocol == "kinect" ? kinect_v2 : 0.0;
+}
+
 Fields describe(DeviceOptions& o) {
   return {
       {"protocol", "what the device speaks", &o.protocol, -unlimited, unlimited, protocols},

@@ -49,6 +49,9 @@ void come_from(Lab& lab, const DeviceOptions& said);
 /// Fails where a part is missing or of no use, or two devices want one name or one port.
 Result<void> validate(const Lab& lab);
 
+/// What it should send, frames a second; 0: nobody knows.
+double nominal_rate_hz(const DeviceOptions& device);
+
 /// Names, meanings and ranges of the scalar options, for flags, TOML and --help.
 Fields describe(DeviceOptions& options);
 Fields describe(RecordOptions& options);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
 
+#include "apps/kinalign/terminal.h"
 #include "tests/apps/fake_verb.h"
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <filesystem>
@@ -99,6 +101,37 @@ TEST_CASE("a progress line never stands within JSON on the same terminal") {
   CHECK(terminal.run(job, {"mix", "a", "--json"}).err.empty());
   CHECK_FALSE(terminal.run(job, {"mix", "a"}).err.empty());
   CHECK_FALSE(Machine{.err_is_terminal = true}.run(job, {"mix", "a", "--json"}).err.empty());
+}
+
+TEST_CASE(
+    "lines that are shown stand on a terminal only, over those before, and are gone in the end") {
+  const auto job = [](Mix&, Call& call) -> Result<int> {
+    call.console.show({{"one", Colour::plain}, {"two", Colour::bad}, {"three", Colour::plain}});
+    call.console.show({{"four", Colour::plain}, {"five", Colour::plain}});
+    call.console.note("a note");
+    call.console.ring();
+    call.console.show({{std::string(100, 'x'), Colour::plain}});
+    return 0;
+  };
+  CHECK(Machine{}.run(job, {"mix", "a"}).err == "a note\n");
+  const Machine terminal{.err_is_terminal = true};
+  CHECK(terminal.run(job, {"mix", "a"}).err ==
+        "one\n\x1b[31mtwo\x1b[0m\nthree"
+        "\r\x1b[2A\x1b[Jfour\nfive"
+        "\r\x1b[1A\x1b[Ja note\n\a" +
+            std::string(79, 'x') + "\r\x1b[K");
+  CHECK(terminal.run(job, {"mix", "a", "-q"}).err.empty());
+}
+
+TEST_CASE("no more lines are shown than a terminal has room for, nor half a character") {
+  const auto job = [](Mix&, Call& call) -> Result<int> {
+    const std::vector<std::pair<std::string, Colour>> lines(100, {"x", Colour::plain});
+    call.console.show(lines);
+    return 0;
+  };
+  const std::string err = Machine{.err_is_terminal = true}.run(job, {"mix", "a"}).err;
+  CHECK(std::count(err.begin(), err.end(), 'x') == 23);  // of 24 rows
+  CHECK(first_places("a\u00b1b", 2) == "a\u00b1");
 }
 
 TEST_CASE("the progress line gives rate and time left, cut to the terminal") {

@@ -1,29 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
 """What devices send stands in the recording, however it ends.
 record_check.py BUILD_FOLDER [CASE...]"""
+import fcntl
 import json
+import os
 import pathlib
+import pty
 import random
 import re
+import select
 import signal
 import socket
+import struct
 import subprocess
 import sys
+import termios
 import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
-from cases import LONG, case, kinalign, main
+from cases import LONG, Skip, case, in_time, kinalign, main
 from mcap_walk import Walk
 
 KILLS = 200 if LONG else 20
 
 
 class Recording:
-    """The real program with a mocap port, until it is told to end."""
+    """The real program with a mocap port, until it is told to end. `first`: the event that it begins with."""
 
-    def __init__(self, folder, *words, device="mocap=noitom:udp:127.0.0.1:0"):
+    def __init__(self, folder, *words, device="mocap=noitom:udp:127.0.0.1:0", first="started"):
         device = ["--device", device] if device else []
         self.program = subprocess.Popen(
             [str(cases.PROGRAM), "record", "-o", str(folder), *device, "--compression", "none", "--json",
@@ -31,9 +37,18 @@ class Recording:
         line = self.program.stdout.readline()
         assert line, self.program.communicate()[1]
         self.started = json.loads(line)
-        assert self.started["event"] == "started", line
+        assert self.started["event"] == first, line
         self.port = self.started["ports"].get("mocap")
-        self.path = pathlib.Path(self.started["file"])
+        self.path = pathlib.Path(self.started.get("file", ""))
+
+    def until(self, event):
+        """What it says up to an event of that name, with it."""
+        said = []
+        while not said or said[-1]["event"] != event:
+            line = self.program.stdout.readline()
+            assert line, (event, said)
+            said.append(json.loads(line))
+        return said
 
     def end(self, sign=signal.SIGINT):
         self.program.send_signal(sign)
@@ -128,7 +143,8 @@ def the_page_names_every_kind_of_line(_):
     root = pathlib.Path(__file__).parents[2]
     table = (root / "docs/recording.md").read_text().split("| event | |\n| --- | --- |\n")[1].split("\n\n")[0]
     listed = {name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.split("|")[1])}
-    made = set(re.findall(r'"event"[,:] "(\w+)"', (root / "apps/kinalign/record.cpp").read_text()))
+    source = (root / "apps/kinalign/record_herald.cpp").read_text()
+    made = set(re.findall(r'"(\w+)"', " ".join(re.findall(r'"event", ([^}]+)}', source))))
     assert made and made == listed, (made, listed)
 
 
@@ -200,6 +216,163 @@ def what_is_wrong_with_a_lab_is_told_with_its_line(folder):
     done = kinalign("record", "-o", folder / "takes", "--config", lab)
     assert done.returncode == 3 and f"{folder}/none.bvh: expected" in done.stderr.decode(), done.stderr
     assert not (folder / "takes").exists()
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+def send(port, data):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.sendto(data if isinstance(data, bytes) else data.encode(), ("127.0.0.1", port))
+
+
+@case
+def with_wait_a_take_begins_with_a_start_and_what_came_before_and_ends_with_a_stop(folder):
+    recording = Recording(folder / "takes", "--wait", "--trigger-port", "0", "--marks-port", "0", first="waiting")
+    ports = recording.started["ports"]
+    mocap = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    mocap.sendto(b"0000000000 before", ("127.0.0.1", recording.port))
+    time.sleep(0.3)
+    assert not (folder / "takes").exists() or not list((folder / "takes").iterdir()), "nothing before the start"
+    send(ports["marks"], '{"schema":"kinalign.mark/1","kind":"text","id":"1","text":"a word"}')
+    send(ports["trigger"], '<CaptureStart><Name VALUE="dance"/><Delay VALUE="33"/><PacketID VALUE="1"/></CaptureStart>')
+    said = recording.until("started")
+    path = pathlib.Path(said[-1]["file"])
+    marks = [event for event in said if event["event"] == "mark"]
+    assert [mark["kind"] for mark in marks] == ["text", "start"], marks
+    mocap.sendto(b"0000000001 during", ("127.0.0.1", recording.port))
+    time.sleep(0.3)
+    send(ports["trigger"], '<CaptureStop RESULT="SUCCESS"><PacketID VALUE="2"/></CaptureStop>')
+    last = recording.until("stopped")[-1]
+    assert recording.program.wait(30) == 0
+    recording.program.communicate()
+    mocap.close()
+    assert last["ports"]["trigger"] == {"marks": 2, "repeats": 0, "refused": {}}, last
+    walk = Walk(path)
+    assert walk.closed and numbers(walk) == [0, 1], numbers(walk)
+    in_file = [json.loads(payload) for topic, *_, payload in walk.messages if topic == "/marks"]
+    assert [(m["kind"], m["source"], m.get("text")) for m in in_file] == [
+        ("text", "call", "a word"), ("start", "trigger", "dance"), ("stop", "trigger", None)], in_file
+    assert in_file[1]["latency_ms"] == 33
+
+
+@case
+def ctrl_c_before_the_start_records_nothing_and_says_so(folder):
+    recording = Recording(folder / "takes", "--wait", "--marks-port", "0", first="waiting")
+    code, _, err = recording.end()
+    assert code == 1 and "nothing was recorded" in err, (code, err)
+    assert not list((folder / "takes").iterdir())
+
+
+@case
+def who_falls_silent_and_comes_back_is_told_once(folder):
+    recording = Recording(folder / "takes", "--device", "kinect=kinect:udp:127.0.0.1:0")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.sendto(b"0000000000", ("127.0.0.1", recording.port))
+        said = recording.until("silent")
+        assert said[-1]["stream"] == "mocap", said[-1]
+        status = recording.until("status")[-1]
+        assert status["missing"] == ["mocap", "kinect"], status
+        one.sendto(b"0000000001", ("127.0.0.1", recording.port))
+        recording.until("returned")
+        status = recording.until("status")[-1]
+        in_time("mocap" not in status["missing"], status)
+        assert status["free_bytes"] > 0, status
+    code, events, err = recording.end()
+    assert code == 0, err
+    assert events[-1]["ports"]["mocap"]["pieces"] == 2, events[-1]
+
+
+class Terminal:
+    """The program on a terminal of its own: what it shows, and keys for it."""
+
+    def __init__(self, folder, *words):
+        self.pid, self.fd = pty.fork()
+        if self.pid == 0:
+            os.execv(str(cases.PROGRAM), ["kinalign", "record", "-o", str(folder), "--compression", "none", *words])
+        fcntl.ioctl(self.fd, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 160, 0, 0))
+        self.shown = b""
+
+    def until(self, text):
+        end = time.monotonic() + 60
+        while text not in self.shown:
+            assert time.monotonic() < end, self.shown[-2000:]
+            if not select.select([self.fd], [], [], 1)[0]:
+                continue
+            try:
+                self.shown += os.read(self.fd, 65536)
+            except OSError:  # closed: the program has ended
+                assert text in self.shown, self.shown[-2000:]
+
+    def press(self, keys):
+        os.write(self.fd, keys)
+
+    def end(self):
+        self.press(b"\x03")
+        self.until(b"messages" if b"from" in self.shown else b".mcap\r\n")
+        try:
+            while os.read(self.fd, 65536):
+                pass
+        except OSError:
+            pass
+        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+
+
+@case
+def on_a_terminal_a_table_stands_keys_make_marks_and_a_bell_rings_for_who_falls_silent(folder):
+    port = free_port()
+    screen = Terminal(folder / "takes", "--device", f"mocap=noitom:udp:127.0.0.1:{port}",
+                      "--device", "kinect=kinect:udp:127.0.0.1:0")
+    screen.until(b"recording to")
+    send(port, b"0000000000")
+    screen.until(b"127.0.0.1:")
+    screen.until(b"\x1b[31mkinect             nothing yet")
+    screen.until(b"Enter a text")
+    screen.press(b"st\r")
+    screen.until(b"text: ")
+    screen.press("grüß".encode() + b"\re")
+    screen.until(b"mark: stop, by keyboard")
+    screen.until(b"\a")
+    screen.until(b"fell silent")
+    screen.until(b"GB left")
+    assert screen.end() == 0
+    assert b"\x1b[A" in screen.shown or b"A\x1b[J" in screen.shown, "the table is drawn over itself"
+    walk = Walk(folder / "takes/take_01.mcap")
+    assert walk.closed
+    marks = [(json.loads(payload)["kind"], json.loads(payload).get("text"))
+             for topic, *_, payload in walk.messages if topic == "/marks"]
+    assert marks == [("start", None), ("t_pose", None), ("text", "grüß"), ("stop", None)], marks
+
+
+@case
+def a_disk_with_64_mib_left_ends_the_take_in_order(folder):
+    small = folder / "small"
+    small.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=80m", "tmpfs", str(small)], capture_output=True,
+                      check=False).returncode != 0:
+        raise Skip("no right to mount a small disk")
+    try:
+        recording = Recording(small / "takes")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+            sent, end = 0, time.monotonic() + 60
+            while recording.program.poll() is None and time.monotonic() < end:
+                one.sendto(f"{sent:010}".encode() + bytes(30000), ("127.0.0.1", recording.port))
+                sent += 1
+                time.sleep(0.01)
+        out, err = recording.program.communicate(timeout=60)
+        events = [json.loads(line) for line in out.splitlines()]
+        names = [event["event"] for event in events]
+        assert recording.program.returncode == 1 and "the take ends here, in order" in err, (names, err)
+        assert "disk_full" in names and "disk_low" in names and "disk_failed" not in names, names
+        assert events[-1]["event"] == "stopped" and events[-1]["dropped"] == 0, events[-1]
+        walk = Walk(recording.path)
+        found = numbers(walk)
+        assert walk.closed and found == list(range(len(found))) and len(found) > 100, len(found)
+    finally:
+        subprocess.run(["umount", str(small)], check=True)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/help.h"
 #include "apps/kinalign/summary.h"
+#include "apps/kinalign/terminal.h"
 #include "tests/apps/fake_verb.h"
 #include "tests/folder.h"
 #include "tests/seeds.h"

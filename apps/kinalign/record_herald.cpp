@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/record_herald.h"
+
+#include "apps/kinalign/json_text.h"
+#include "apps/kinalign/mark_keys.h"
+#include "apps/kinalign/summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/statvfs.h>
+
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using namespace std::chrono_literals;
+
+/// What its file system still takes; absent: it does not say.
+std::optional<std::uint64_t> free_bytes(const std::string& path) {
+  struct statvfs status {};
+  const std::string in = folder(path).empty() ? "." : std::string(folder(path));
+  if (::statvfs(in.c_str(), &status) != 0) return std::nullopt;
+  return std::uint64_t{status.f_bavail} * status.f_frsize;
+}
+
+Json ports_of(const RecordingSession& session) {
+  Json ports = Json::object();
+  for (const auto& [name, port] : session.ports()) ports[name] = port;
+  return ports;
+}
+
+std::string ports_text(const RecordingSession& session) {
+  std::string text;
+  for (const auto& [name, port] : session.ports()) {
+    text += fmt::format("{}{} on port {}", text.empty() ? "" : ", ", name, port);
+  }
+  return text;
+}
+
+/// "3 min", "2.5 h", "12 d": with as many digits as a forecast deserves.
+std::string minutes_text(double minutes) {
+  if (minutes < 120) return fmt::format("{:.0f} min", minutes);
+  if (minutes < 48 * 60) return fmt::format("{:.1f} h", minutes / 60);
+  return fmt::format("{:.0f} d", minutes / 60 / 24);
+}
+
+}  // namespace
+
+LabStatus RecordHerald::lab_status() const {
+  LabStatus status{session_.now(), begun_, session_.streams(), {}};
+  if (session_.nodes() != nullptr) status.nodes = session_.nodes()->status();
+  return status;
+}
+
+void RecordHerald::tell_waiting() {
+  console_.print(harmless(fmt::format("waiting for a start\n  {}\n", ports_text(session_))));
+  console_.print_json(json_text(Json{{"event", "waiting"}, {"ports", ports_of(session_)}}));
+  console_.flush();
+}
+
+void RecordHerald::tell_start(const std::string& path) {
+  path_ = path;
+  console_.print(harmless(fmt::format("recording to {}\n  {}\n", path, ports_text(session_))));
+  console_.print_json(
+      json_text(Json{{"event", "started"}, {"file", path}, {"ports", ports_of(session_)}}));
+  console_.flush();
+}
+
+void RecordHerald::tell(const HeardMark& heard) {
+  const auto& [recorded, at] = heard;
+  const Mark& mark = recorded.mark;
+  console_.note(harmless(fmt::format("mark: {}{}{}, by {}", kinalign::name_of(mark.kind),
+                                     mark.text.empty() ? "" : " ", mark.text, recorded.source)));
+  Json event{{"event", "mark"}};
+  event.update(Json::parse(to_json(recorded)));
+  event["raw_ns"] = at.time_since_epoch().count();
+  console_.print_json(json_text(event));
+  console_.flush();
+}
+
+void RecordHerald::look(const std::optional<std::string>& typed) {
+  const HostTime now = session_.now();
+  if (now < next_look_) return;
+  next_look_ = now + 100ms;
+  for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
+  const bool second = now >= next_second_;
+  if (!second && !(console_.shows() && typed)) return;
+  const LabStatus status = lab_status();
+  if (second) {
+    next_second_ = now + 1s;
+    if (session_.recording()) look_at_disk(now);
+    tell_who_is_silent(status);
+    tell_status(status);
+  }
+  show(status, typed);
+}
+
+void RecordHerald::look_at_disk(HostTime now) {
+  const DiskStatus disk = *session_.disk();
+  const auto free = free_bytes(disk.paths.empty() ? path_ : disk.paths.back());
+  if (!free) return;
+  const std::uint64_t still_to_write = std::min(disk.waiting_bytes, *free);
+  forecast_.look(now, disk.bytes + disk.waiting_bytes, *free - still_to_write);
+  if (forecast_.full() && !std::exchange(disk_full_, true)) {
+    console_.complain(
+        fmt::format("kinalign record: the disk has {} MiB left; the take ends here, in order",
+                    forecast_.free() >> 20U));
+    console_.print_json(json_text(Json{{"event", "disk_full"}, {"free_bytes", forecast_.free()}}));
+  } else if (forecast_.take_warning()) {
+    const double minutes = *forecast_.minutes_left();
+    console_.complain(fmt::format(
+        "kinalign record: warning: the disk is full in {:.0f} min at this rate", minutes));
+    console_.print_json(json_text(Json{{"event", "disk_low"}, {"minutes_left", minutes}}));
+    console_.ring();
+  }
+}
+
+/// Each that falls silent or comes back, once; a bell where one is required.
+void RecordHerald::tell_who_is_silent(const LabStatus& status) {
+  for (const StreamStatus& stream : status.streams) {
+    const std::string who = name_of(stream) + " from " + stream.sender;
+    const bool silent = status.now - stream.heard >= silent_after;
+    const bool told = silent_.contains(who);
+    if (silent == told) continue;
+    if (silent) {
+      silent_.insert(who);
+      console_.ring();
+    } else {
+      silent_.erase(who);
+    }
+    console_.note(harmless(fmt::format("{} {}", who, silent ? "fell silent" : "is back")));
+    Json event{{"event", silent ? "silent" : "returned"},
+               {"stream", stream.stream},
+               {"sender", stream.sender}};
+    if (!stream.node.empty()) event["node"] = stream.node;
+    console_.print_json(json_text(event));
+  }
+}
+
+void RecordHerald::tell(const PartFailure& failure) {
+  console_.complain(harmless(fmt::format(
+      "kinalign record: {}: {}\n", to_string(failure.why),
+      failure.next.empty() ? "kept in memory and tried again" : "goes on in " + failure.next)));
+  console_.print_json(json_text(Json{
+      {"event", "disk_failed"}, {"what", to_string(failure.why)}, {"goes_on_in", failure.next}}));
+}
+
+void RecordHerald::tell_status(const LabStatus& status) {
+  Json event{{"event", "status"}};
+  if (const auto disk = session_.disk()) {
+    event["bytes"] = disk->bytes;
+    event["waiting_bytes"] = disk->waiting_bytes;
+    event["free_bytes"] = forecast_.free();
+    if (const auto left = forecast_.minutes_left()) event["minutes_left"] = *left;
+  }
+  event["missing"] = missing(session_.lab(), status);
+  event["streams"] = Json::array();
+  for (const StreamStatus& stream : status.streams) {
+    event["streams"].push_back(Json::parse(json_of(stream, status)));
+  }
+  console_.print_json(json_text(event));
+  console_.flush();
+}
+
+/// "disk  34.2 MB in takes/03_S1A02_01.mcap, 120.5 GB left: 12 h at this rate"
+std::string RecordHerald::disk_line() const {
+  const auto disk = session_.disk();
+  if (!disk) return "waiting for a start";
+  const auto left = forecast_.minutes_left();
+  return fmt::format(
+      "disk  {:.1f} MB in {}, {:.1f} GB left{}", static_cast<double>(disk->bytes) / 1e6,
+      disk->paths.empty() ? path_ : disk->paths.back(), static_cast<double>(forecast_.free()) / 1e9,
+      left ? ": " + minutes_text(*left) + " at this rate" : "");
+}
+
+void RecordHerald::show(const LabStatus& status, const std::optional<std::string>& typed) {
+  if (!console_.shows()) return;
+  std::vector<std::pair<std::string, Colour>> lines;
+  for (const TableLine& line : lab_table(session_.lab(), status)) {
+    lines.emplace_back(harmless(line.text), line.bad ? Colour::bad : Colour::plain);
+  }
+  const auto left = forecast_.minutes_left();
+  lines.emplace_back(harmless(disk_line()), left && *left < 10 ? Colour::bad : Colour::plain);
+  lines.emplace_back(typed ? "text: " + harmless(*typed) : mark_keys_text, Colour::plain);
+  console_.show(lines);
+}
+
+void RecordHerald::tell_end() {
+  for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
+  const LabStatus status = lab_status();
+  const DiskStatus disk = *session_.disk();
+  Json event{{"event", "stopped"},
+             {"files", disk.paths},
+             {"bytes", disk.bytes},
+             {"dropped", disk.dropped},
+             {"streams", Json::array()}};
+  std::string lines;
+  for (const std::string& path : disk.paths) lines.append(path).append("\n");
+  for (const StreamStatus& stream : status.streams) {
+    event["streams"].push_back(Json::parse(json_of(stream, status)));
+    lines += end_line(stream);
+  }
+  for (const auto& [name, counts] : session_.port_counts()) {
+    event["ports"][name] = Json::parse(json_of(counts));
+    lines += port_line(name, counts);
+  }
+  for (const MarkPort& port : session_.mark_ports()) {
+    const char* name = port.form() == MarkPort::Form::call ? "marks" : "trigger";
+    event["ports"][name] = {{"marks", port.counts().marks},
+                            {"repeats", port.counts().repeats},
+                            {"refused", port.counts().refused}};
+  }
+  console_.print(harmless(lines));
+  console_.print_json(json_text(event));
+}
+
+}  // namespace kinalign

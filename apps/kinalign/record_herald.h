@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tells what happens while a lab is recorded: a table on a terminal, lines of JSON for programs.
+#pragma once
+
+#include "apps/kinalign/console.h"
+#include "apps/kinalign/disk_forecast.h"
+#include "apps/kinalign/record_text.h"
+
+#include "kinalign/capture/recording_session.h"
+
+#include <optional>
+#include <set>
+#include <string>
+
+namespace kinalign {
+
+class RecordHerald {
+ public:
+  RecordHerald(RecordingSession& session, Console& console)
+      : session_(session), console_(console), begun_(session.now()) {}
+
+  /// Ports are open, and a start is waited for.
+  void tell_waiting();
+  void tell_start(const std::string& path);
+  void tell(const HeardMark& mark);
+  /// Asked after each turn, it looks ten times a second. `typed`: a text that is being typed.
+  void look(const std::optional<std::string>& typed);
+  void tell_end();
+
+  /// The disk has nothing left but its reserve: the take has to end.
+  bool disk_full() const { return disk_full_; }
+
+ private:
+  void look_at_disk(HostTime now);
+  void tell(const PartFailure& failure);
+  void tell_who_is_silent(const LabStatus& status);
+  void tell_status(const LabStatus& status);
+  void show(const LabStatus& status, const std::optional<std::string>& typed);
+  std::string disk_line() const;
+  LabStatus lab_status() const;
+
+  RecordingSession& session_;
+  Console& console_;
+  std::string path_;  // of the take; empty: none has begun
+  DiskForecast forecast_;
+  std::set<std::string> silent_;  // who was told to be
+  bool disk_full_ = false;
+  HostTime begun_, next_look_ = HostTime::min(), next_second_ = HostTime::min();
+};
+
+}  // namespace kinalign

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/record_text.h"
+
+#include "apps/kinalign/json_text.h"
+#include "apps/kinalign/node_text.h"
+#include "apps/kinalign/summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
+
+bool is_silent(const StreamStatus& stream, HostTime now) {
+  return now - stream.heard >= silent_after;
+}
+
+/// The node's present stream: of two nodes of one id the one that was heard last.
+const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStatus>& nodes) {
+  const NodeStatus* found = nullptr;
+  for (const NodeStatus& node : nodes) {
+    if (std::to_string(node.node_id) != stream.node) continue;
+    if (found == nullptr || node.heard > found->heard) found = &node;
+  }
+  return found;
+}
+
+/// Host minus node, and half the certified interval: "-1000.0031 s ± 1.04 ms".
+std::string clock_cell(const NodeStatus* node) {
+  if (node == nullptr || !node->n || !node->stamp) return "";
+  const ClockStamp& stamp = *node->stamp;
+  if (stamp.certainty != Certainty::certified) return "not locked";
+  const Duration offset = stamp.time.time_since_epoch() - node->n->time_since_epoch();
+  return fmt::format("{:.4f} s ± {:.2f} ms", seconds(offset),
+                     1e3 * seconds(*stamp.latest - *stamp.earliest) / 2);
+}
+
+std::string rate_cell(const StreamStatus& stream, double nominal_hz) {
+  const std::string rate = fmt::format("{:.1f}", stream.rate_hz);
+  return nominal_hz > 0 ? fmt::format("{} of {:g}", rate, nominal_hz) : rate;
+}
+
+std::string row(const std::array<std::string, 10>& cells) {
+  std::string line = fmt::format("{:<18} {:>12} {:>7} {:>5} {:>5} {:>8} {:>22} {:>7} {:>7}  {}",
+                                 cells[0], cells[1], cells[2], cells[3], cells[4], cells[5],
+                                 cells[6], cells[7], cells[8], cells[9]);
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line;
+}
+
+std::string stream_row(const StreamStatus& stream, const DeviceOptions& device,
+                       const LabStatus& status) {
+  const NodeStatus* node = node_of(stream, status.nodes);
+  const SequenceCounts& order = stream.counts.order;
+  return row({name_of(stream), rate_cell(stream, nominal_rate_hz(device)), grouped(order.lost),
+              grouped(order.late), grouped(order.duplicates),
+              fmt::format("{:.1f} s", seconds(status.now - stream.heard)), clock_cell(node),
+              node != nullptr && node->n ? fmt::format("{:+.1f}", 1e6 * node->drift) : "",
+              stream.battery_volts ? fmt::format("{:.2f} V", *stream.battery_volts) : "",
+              fmt::format("{:.1f} MB  {} {}", megabytes(stream.counts.bytes), device.transport,
+                          stream.sender)});
+}
+
+/// Its nodes that have places and that were never heard.
+std::vector<std::string> unheard_nodes(const DeviceOptions& device, const LabStatus& status) {
+  std::vector<std::string> names;
+  for (const auto& [id, place] : device.nodes) {
+    const bool heard =
+        std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& stream) {
+          return stream.stream == device.name && stream.node == id;
+        });
+    if (!heard) names.push_back(device.name + " " + place);
+  }
+  return names;
+}
+
+bool is_heard(const DeviceOptions& device, const LabStatus& status) {
+  return std::any_of(status.streams.begin(), status.streams.end(),
+                     [&](const StreamStatus& stream) { return stream.stream == device.name; });
+}
+
+}  // namespace
+
+std::string name_of(const StreamStatus& stream) {
+  if (stream.node.empty()) return stream.stream;
+  return stream.stream + " " + (stream.place.empty() ? stream.node : stream.place);
+}
+
+std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status) {
+  std::vector<TableLine> lines{{row({"device", "rate/s", "lost", "late", "twice", "heard", "clock",
+                                     "ppm", "battery", "recorded"}),
+                                false}};
+  for (const DeviceOptions& device : lab.devices) {
+    for (const StreamStatus& stream : status.streams) {
+      if (stream.stream != device.name) continue;
+      lines.push_back(
+          {stream_row(stream, device, status), device.required && is_silent(stream, status.now)});
+    }
+    std::vector<std::string> unheard = unheard_nodes(device, status);
+    if (unheard.empty() && !is_heard(device, status)) unheard.push_back(device.name);
+    for (const std::string& name : unheard) {
+      lines.push_back(
+          {fmt::format("{:<18} nothing yet, {:.0f} s", name, seconds(status.now - status.begun)),
+           device.required});
+    }
+  }
+  return lines;
+}
+
+std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
+  std::vector<std::string> names;
+  for (const DeviceOptions& device : lab.devices) {
+    if (!device.required) continue;
+    bool alive = false;
+    for (const StreamStatus& stream : status.streams) {
+      if (stream.stream != device.name) continue;
+      const bool silent = is_silent(stream, status.now);
+      alive = alive || !silent;
+      if (silent && !stream.place.empty()) names.push_back(name_of(stream));
+    }
+    const auto unheard = unheard_nodes(device, status);
+    names.insert(names.end(), unheard.begin(), unheard.end());
+    if (!alive && device.nodes.empty()) names.push_back(device.name);
+  }
+  return names;
+}
+
+std::string end_line(const StreamStatus& stream) {
+  const SenderCounts& counts = stream.counts;
+  std::string line = fmt::format("  {} from {}: {} messages, {:.1f} MB", name_of(stream),
+                                 stream.sender, grouped(counts.messages), megabytes(counts.bytes));
+  std::string_view between = "; ";
+  for (const auto& [count, what] :
+       {std::pair(counts.order.lost, "lost"), std::pair(counts.order.late, "late"),
+        std::pair(counts.order.duplicates, "twice"), std::pair(counts.refused, "refused")}) {
+    if (count == 0) continue;
+    line += fmt::format("{}{} {}", between, grouped(count), what);
+    between = ", ";
+  }
+  return line + "\n";
+}
+
+std::string port_line(const std::string& name, const PortCounts& counts) {
+  std::string text;
+  for (const auto& [count, what] :
+       {std::pair(counts.dropped, "dropped by the kernel"),
+        std::pair(counts.refused, "refused, not recorded"), std::pair(counts.cut, "cut"),
+        std::pair(counts.unsent, "answers not sent")}) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
+  }
+  return text.empty() ? "" : fmt::format("  port of {}: {}\n", name, text);
+}
+
+std::string json_of(const StreamStatus& stream, const LabStatus& status) {
+  Json json = Json::parse(to_json(stream.stream, stream.sender, stream.node, stream.counts));
+  if (!stream.place.empty()) json["place"] = stream.place;
+  json["rate_hz"] = stream.rate_hz;
+  json["silent_s"] = seconds(status.now - stream.heard);
+  if (stream.battery_volts) json["battery_v"] = *stream.battery_volts;
+  const NodeStatus* node = node_of(stream, status.nodes);
+  if (node == nullptr) return json_text(json);
+  Json clock = Json::parse(status_json(*node));
+  for (const char* said_above :
+       {"event", "stream", "node_id", "address", "accepted", "lost", "rate_hz", "battery_mv"}) {
+    clock.erase(said_above);
+  }
+  json["clock"] = clock;
+  return json_text(json);
+}
+
+std::string json_of(const PortCounts& counts) {
+  return json_text(Json{{"pieces", counts.pieces},
+                        {"bytes", counts.bytes},
+                        {"refused", counts.refused},
+                        {"cut", counts.cut},
+                        {"dropped", counts.dropped},
+                        {"links", counts.links},
+                        {"unsent", counts.unsent}});
+}
+
+}  // namespace kinalign

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `record` says of a lab: a table for people, members of JSON objects for programs. Pure.
+#pragma once
+
+#include "kinalign/capture/recording_session.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// A sender of whom nothing came for so long is silent.
+inline constexpr Duration silent_after = std::chrono::seconds(2);
+
+/// A lab at one moment.
+struct LabStatus {
+  HostTime now{}, begun{};  // begun: when its ports were opened
+  std::vector<StreamStatus> streams;
+  std::vector<NodeStatus> nodes;
+};
+
+/// A line of the table; `bad` lines are of what is missing and required.
+struct TableLine {
+  std::string text;
+  bool bad = false;
+};
+
+/// Head and a line for each sender, and for each device of which nothing comes.
+std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status);
+
+/// The required devices, and nodes that have places, of which nothing comes: "mocap", "imu waist".
+std::vector<std::string> missing(const Lab& lab, const LabStatus& status);
+
+/// "mocap", "imu waist", "imu 7".
+std::string name_of(const StreamStatus& stream);
+
+/// "mocap from 192.168.7.5:51234: 7,500 messages, 11.1 MB; 3 frames lost"
+std::string end_line(const StreamStatus& stream);
+/// "mocap: 12 dropped by the kernel"; empty: nothing worth telling.
+std::string port_line(const std::string& name, const PortCounts& counts);
+
+/// The JSON of a stream, with its node's clock where it has one.
+std::string json_of(const StreamStatus& stream, const LabStatus& status);
+std::string json_of(const PortCounts& counts);
+
+}  // namespace kinalign

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Text on a terminal: how much room there is, and how much it takes.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+struct TerminalSize {
+  std::size_t rows = 24, columns = 80;
+};
+/// Of what a descriptor leads to; the usual one where that is no terminal.
+TerminalSize size_of(int fd);
+
+/// To the beginning of a line, or of the first of so many, of which the last is not ended; all are
+/// erased.
+std::string start_of_lines(std::size_t lines);
+
+/// As much of a text without colours as has room in so many places.
+std::string_view first_places(std::string_view text, std::size_t most);
+
+/// Whole lines, each broken at blanks where it is wider than `width`; what goes on stands below the
+/// line's second column or, where there is none, two blanks further in. Colours have no width.
+std::string broken(std::string_view lines, std::size_t width);
+
+}  // namespace kinalign
