@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A manifest that is accepted survives the way into a take's parameters and back.
+// A manifest that is accepted survives the way into a take's parameters and back; a lab that is
+// accepted can be recorded.
+#include "kinalign/io/lab_toml.h"
 #include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/parameters_json.h"
 
@@ -9,7 +11,11 @@
 using namespace kinalign;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto manifest = read_manifest({reinterpret_cast<const char*>(data), size}, "fuzz");
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  if (const auto devices = read_devices(text, "fuzz"); devices && !validate({*devices, {}})) {
+    std::abort();
+  }
+  const auto manifest = read_manifest(text, "fuzz");
   if (!manifest) return 0;
   const std::string json = parameters_json(*manifest);
   const auto again = parse_parameters_json(json);

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls and broadcasts for marks: what is accepted is written and read again to the same, and an
-// answer is never longer than what it answers.
+// answer is never longer than what it answers; so is a mark of a recording.
 #include "fuzz/pieces.h"
 
 #include "kinalign/io/mark_call.h"
+#include "kinalign/io/recording_format.h"
 #include "kinalign/io/vicon_trigger.h"
 
 using namespace kinalign;
 
 namespace {
+
+void check_recorded(std::string_view text) {
+  const auto recorded = to_mark(text);
+  if (!recorded) return;
+  const auto again = to_mark(to_json(*recorded));
+  if (!again || !(again->mark == recorded->mark)) std::abort();
+}
 
 void check_call(std::string_view text) {
   Mark mark, again;
@@ -43,6 +51,7 @@ void check_broadcast(std::string_view text) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  check_recorded(text_of(data, size));
   check_call(text_of(data, size));
   check_broadcast(text_of(data, size));
   return 0;

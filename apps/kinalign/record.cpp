@@ -83,6 +83,10 @@ Usage describe_record(Record& o) {
   for (const Field& field : describe(o.options)) usage.settings.push_back(field);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a folder for the files", "none"});
+    if (o.marks_port && o.marks_port == o.trigger_port && o.marks_port != 0) {
+      return Failure(Error{"--trigger-port", 0, "another port than --marks-port",
+                           std::to_string(*o.trigger_port)});
+    }
     KA_TRY(lab_of(o, {}));
     return {};
   };
@@ -155,6 +159,10 @@ Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
   if (options.lab.devices.empty()) {
     return call.console.refuse(
         Error{"--device", 0, "at least one device, or a lab.toml for --config", "none"});
+  }
+  if (o.wait && !o.marks_port && !o.trigger_port && ::isatty(STDIN_FILENO) == 0) {
+    return call.console.refuse(
+        Error{"--wait", 0, "--marks-port, --trigger-port or a keyboard for the start", "none"});
   }
   options.lab_toml = std::move(file->text);
   options.marks_port = port_of(o.marks_port);

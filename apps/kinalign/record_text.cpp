@@ -17,6 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// A sender in whose place another is heard is shown for so long.
+constexpr Duration forgotten_after = std::chrono::seconds(30);
+
 double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
 bool is_silent(const StreamStatus& stream, HostTime now) {
@@ -56,6 +59,15 @@ std::string row(const std::array<std::string, 10>& cells) {
   return line;
 }
 
+/// Whether another sender of the same device is heard: a program that was started again has
+/// another port. Nodes stand each for itself.
+bool is_replaced(const StreamStatus& stream, const LabStatus& status) {
+  return stream.node.empty() &&
+         std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& other) {
+           return other.stream == stream.stream && !is_silent(other, status.now);
+         });
+}
+
 std::string stream_row(const StreamStatus& stream, const DeviceOptions& device,
                        const LabStatus& status) {
   const NodeStatus* node = node_of(stream, status.nodes);
@@ -72,12 +84,12 @@ std::string stream_row(const StreamStatus& stream, const DeviceOptions& device,
 /// Its nodes that have places and that were never heard.
 std::vector<std::string> unheard_nodes(const DeviceOptions& device, const LabStatus& status) {
   std::vector<std::string> names;
-  for (const auto& [id, place] : device.nodes) {
+  for (const auto& node : device.nodes) {  // clang 14 can't hand a structured binding on
     const bool heard =
         std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& stream) {
-          return stream.stream == device.name && stream.node == id;
+          return stream.stream == device.name && stream.node == node.first;
         });
-    if (!heard) names.push_back(device.name + " " + place);
+    if (!heard) names.push_back(device.name + " " + node.second);
   }
   return names;
 }
@@ -101,8 +113,10 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status) {
   for (const DeviceOptions& device : lab.devices) {
     for (const StreamStatus& stream : status.streams) {
       if (stream.stream != device.name) continue;
-      lines.push_back(
-          {stream_row(stream, device, status), device.required && is_silent(stream, status.now)});
+      const bool silent = is_silent(stream, status.now);
+      const bool replaced = silent && is_replaced(stream, status);
+      if (replaced && status.now - stream.heard >= forgotten_after) continue;
+      lines.push_back({stream_row(stream, device, status), device.required && silent && !replaced});
     }
     std::vector<std::string> unheard = unheard_nodes(device, status);
     if (unheard.empty() && !is_heard(device, status)) unheard.push_back(device.name);

@@ -49,7 +49,10 @@ void RecordedPort::drain(HostAxis& axis, Recorder& recorder) {
 /// Answers go out before anything is written: what is done in between delays one way alone.
 void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
   Source* source = source_of(piece.sender, recorder);
-  if (source == nullptr) return;
+  if (source == nullptr) {
+    ++crowded_;
+    return;
+  }
   source->watch.feed(piece.bytes);
   if (kinects_) answer_pings(*source, piece, axis, recorder);
   if (slimes_) answer_trackers(*source, piece);
@@ -150,7 +153,9 @@ std::uint16_t RecordedPort::port() const {
 }
 
 PortCounts RecordedPort::counts() const {
-  return std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
+  PortCounts counts = std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
+  counts.refused += crowded_;
+  return counts;
 }
 
 void RecordedPort::add_streams(std::vector<StreamStatus>& all) const {

@@ -62,6 +62,7 @@ class RecordedPort {
   std::unique_ptr<SlimeDesk> slimes_;
   std::unique_ptr<KinectDesk> kinects_;
   std::optional<std::uint16_t> exchanges_;  // channel
+  std::uint64_t crowded_ = 0;               // pieces of one life too many
 };
 
 }  // namespace kinalign

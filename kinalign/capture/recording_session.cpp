@@ -2,6 +2,7 @@
 #include "kinalign/capture/recording_session.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace kinalign {
@@ -34,6 +35,10 @@ SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
     }
   }
   return key;
+}
+
+bool is_ready(std::span<const pollfd> fds) {
+  return std::any_of(fds.begin(), fds.end(), [](const pollfd& one) { return one.revents != 0; });
 }
 
 }  // namespace
@@ -83,6 +88,27 @@ Result<void> RecordingSession::open_ports() {
 
 /// Only ports where something has come cost a call; connections are looked after with the clock.
 void RecordingSession::turn(Duration patience, std::optional<int> also) {
+  const bool some = wait(patience, also);
+  const HostTime now = axis_.now();
+  const bool look_after = now >= next_look_;
+  if (look_after) next_look_ = now + between_looks;
+  if (look_after && nodes_) nodes_->receiver().tick();
+  if (nodes_ && some && waiting_.front().revents != 0) nodes_->receiver().drain();
+  std::size_t begin = nodes_ ? 1 : 0;
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    const auto of_port = std::span(waiting_).subspan(begin, fds_end_[i] - begin);
+    begin = fds_end_[i];
+    if (look_after) ports_[i].tick(now);
+    if (look_after || (some && is_ready(of_port))) ports_[i].drain(axis_, *recorder_);
+  }
+  for (MarkPort& port : mark_ports_) {
+    if (some) port.drain(axis_, [this](const RecordedMark& m, HostTime at) { mark(m, at); });
+  }
+  tick(now);
+}
+
+/// Whether something has come; waiting_ says where.
+bool RecordingSession::wait(Duration patience, std::optional<int> also) {
   fds_.clear();
   fds_end_.clear();
   if (nodes_) fds_.push_back(nodes_->receiver().fd());
@@ -95,26 +121,7 @@ void RecordingSession::turn(Duration patience, std::optional<int> also) {
   waiting_.clear();
   for (const int fd : fds_) waiting_.push_back({fd, POLLIN, 0});
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(patience).count();
-  const bool some = ::poll(waiting_.data(), waiting_.size(), static_cast<int>(ms)) > 0;
-  const HostTime now = axis_.now();
-  const bool look_after = now >= next_look_;
-  if (look_after) next_look_ = now + between_looks;
-  if (look_after && nodes_) nodes_->receiver().tick();
-  if (nodes_ && some && waiting_.front().revents != 0) nodes_->receiver().drain();
-  std::size_t begin = nodes_ ? 1 : 0;
-  for (std::size_t i = 0; i < ports_.size(); ++i) {
-    const auto ready = [](const pollfd& one) { return one.revents != 0; };
-    const auto of_port = std::span(waiting_).subspan(begin, fds_end_[i] - begin);
-    begin = fds_end_[i];
-    if (look_after) ports_[i].tick(now);
-    if (look_after || (some && std::any_of(of_port.begin(), of_port.end(), ready))) {
-      ports_[i].drain(axis_, *recorder_);
-    }
-  }
-  for (MarkPort& port : mark_ports_) {
-    if (some) port.drain(axis_, [this](const RecordedMark& m, HostTime at) { mark(m, at); });
-  }
-  tick(now);
+  return ::poll(waiting_.data(), waiting_.size(), static_cast<int>(ms)) > 0;
 }
 
 void RecordingSession::mark(const RecordedMark& mark, HostTime at) {

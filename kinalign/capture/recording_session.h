@@ -78,6 +78,7 @@ class RecordingSession {
  private:
   RecordingSession(Options options, Machine machine);
   Result<void> open_ports();
+  bool wait(Duration patience, std::optional<int> also);
   void tick(HostTime now);
 
   Options options_;

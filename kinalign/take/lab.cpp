@@ -27,29 +27,59 @@ Result<std::int64_t> parse_port(const std::string& text) {
   return Failure(Error{"", 0, "a port from 0 to 65535", text.empty() ? "none" : shown(text)});
 }
 
+/// `found` of a device where something else was expected.
+Failure wrong(const DeviceOptions& device, std::string expected, std::string found) {
+  return Failure(Error{device.name, 0, std::move(expected), std::move(found)});
+}
+
+/// Whether a device can be reached, or reach us.
+Result<void> check_place(const DeviceOptions& device) {
+  if (device.transport == "tcp" && (device.address.empty() || device.port == 0)) {
+    return wrong(device, "an address and a port to connect to", "none");
+  }
+  const bool datagrams = device.protocol == "nodes" || device.protocol == "slimevr";
+  if (datagrams && device.transport != "udp") {
+    return wrong(device, device.protocol + " by udp", device.transport);
+  }
+  return {};
+}
+
+/// Whether two devices leave each other room.
+Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other) {
+  if (other.name == device.name) {
+    return wrong(device, "each name once", device.name + " twice");
+  }
+  if (device.protocol == "nodes" && other.protocol == "nodes") {
+    return wrong(device, "one device for all nodes", other.name + " beside it");
+  }
+  const bool same_port = device.port != 0 && other.port == device.port &&
+                         other.transport == device.transport && other.address == device.address;
+  if (!same_port) return {};
+  return wrong(device, "a port of its own", std::to_string(device.port) + ", as " + other.name);
+}
+
 /// Whether all that is said of a device is of use to its protocol.
 Result<void> check_use(const DeviceOptions& device) {
-  const auto wrong = [&](std::string expected, std::string found) {
-    return Failure(Error{device.name, 0, std::move(expected), std::move(found)});
-  };
   if (!is_one_of(protocols, device.protocol)) {
-    return wrong("protocol, what the device speaks", "none");
+    return wrong(device, "protocol, what the device speaks", "none");
   }
   const bool mocap = device.protocol == "noitom" || device.protocol == "xsens";
   if (!device.skeleton.empty() && !mocap) {
-    return wrong("skeleton of noitom or xsens alone", "of " + device.protocol);
+    return wrong(device, "skeleton of noitom or xsens alone", "of " + device.protocol);
   }
   if (device.protocol != "nodes") {
-    if (!device.lab_key.empty()) return wrong("lab_key of nodes alone", "of " + device.protocol);
-    if (!device.nodes.empty()) return wrong("nodes of nodes alone", "of " + device.protocol);
+    if (!device.lab_key.empty())
+      return wrong(device, "lab_key of nodes alone", "of " + device.protocol);
+    if (!device.nodes.empty())
+      return wrong(device, "nodes of nodes alone", "of " + device.protocol);
   }
   for (const auto& [id, place] : device.nodes) {
     std::uint32_t number = 0;
     const auto [end, fault] = std::from_chars(id.data(), id.data() + id.size(), number);
     if (fault != std::errc() || end != id.data() + id.size() || std::to_string(number) != id) {
-      return wrong("a node's id, a whole number, as the key in nodes", shown(id));
+      return wrong(device, "a node's id, a whole number, as the key in nodes", shown(id));
     }
-    if (place.empty()) return wrong("where node " + id + " is worn", "nothing");
+    if (place.empty()) return wrong(device, "where node " + id + " is worn", "nothing");
   }
   return {};
 }
@@ -101,29 +131,9 @@ Result<void> validate(const Lab& lab) {
   for (std::size_t i = 0; i < lab.devices.size(); ++i) {
     const DeviceOptions& device = lab.devices[i];
     KA_TRY(check_stream_name(device.name));
-    const auto wrong = [&](std::string expected, std::string found) {
-      return Failure(Error{device.name, 0, std::move(expected), std::move(found)});
-    };
-    if (device.transport == "tcp" && (device.address.empty() || device.port == 0)) {
-      return wrong("an address and a port to connect to", "none");
-    }
-    const bool datagrams = device.protocol == "nodes" || device.protocol == "slimevr";
-    if (datagrams && device.transport != "udp") {
-      return wrong(device.protocol + " by udp", device.transport);
-    }
+    KA_TRY(check_place(device));
     KA_TRY(check_use(device));
-    for (std::size_t k = 0; k < i; ++k) {
-      const DeviceOptions& other = lab.devices[k];
-      if (other.name == device.name) return wrong("each name once", device.name + " twice");
-      const bool same_port = device.port != 0 && other.port == device.port &&
-                             other.transport == device.transport && other.address == device.address;
-      if (device.protocol == "nodes" && other.protocol == "nodes") {
-        return wrong("one device for all nodes", other.name + " beside it");
-      }
-      if (same_port) {
-        return wrong("a port of its own", std::to_string(device.port) + ", as " + other.name);
-      }
-    }
+    for (std::size_t k = 0; k < i; ++k) KA_TRY(check_pair(device, lab.devices[k]));
   }
   return {};
 }

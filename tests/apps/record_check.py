@@ -154,6 +154,9 @@ def wrong_use_is_said_before_anything_is_opened(folder):
                         (("--device", "imu=nodes"), "expected NAME=PROTOCOL:PORT, as in imu=nodes:5005, found imu=nodes"),
                         (("--device", "imu=node:5005"), 'expected a known protocol (nearest: nodes), found "node"'),
                         (("--device", "a=noitom:tcp:7001"), "expected an address and a port to connect to, found none"),
+                        (("--device", "a=nodes:5005", "--wait"), "--wait: expected --marks-port, --trigger-port or a keyboard"),
+                        (("--device", "a=nodes:5005", "--marks-port", "30", "--trigger-port", "30"),
+                         "--trigger-port: expected another port than --marks-port, found 30"),
                         (("--device", "a=nodes:70000"), "expected a port from 0 to 65535, found 70000")):
         done = kinalign("record", "-o", folder / "takes", *words)
         assert done.returncode == 2 and says in done.stderr.decode(), done.stderr

@@ -75,6 +75,21 @@ TEST_CASE("a lab's table has a line for each sender, and one for each device tha
   CHECK(lines[4].bad);
 }
 
+TEST_CASE("a sender that another has replaced is not missing, and soon not shown") {
+  Scene scene;
+  StreamStatus again = scene.status.streams[1];  // the silent Kinect
+  again.sender = "192.168.7.5:51300";
+  again.heard = scene.status.now;
+  scene.status.streams.push_back(again);
+  const auto lines = lab_table(scene.lab, scene.status);
+  REQUIRE(lines.size() == 6);
+  CHECK(!lines[2].bad);
+  CHECK(!lines[3].bad);
+  scene.status.now += 25s;
+  scene.status.streams.back().heard = scene.status.now;
+  CHECK(lab_table(scene.lab, scene.status).size() == 5);
+}
+
 TEST_CASE("what is not required is missing without red") {
   Scene scene;
   for (DeviceOptions& device : scene.lab.devices) device.required = false;

@@ -111,6 +111,18 @@ TEST_CASE("a SlimeVR tracker's handshake is answered, it is pinged, and all it s
   CHECK(counts.order.late == 1);
 }
 
+TEST_CASE("a tracker that calls to all is answered by a host that has the port open for all") {
+  LiveSession live({"imu=slimevr:udp:0.0.0.0:0"});
+  const Client tracker;
+  std::vector<std::uint8_t> handshake(64);
+  handshake[3] = 3;
+  tracker.send("127.255.255.255", live.port(), handshake);
+  live.serve_until([&] { return live.pieces() == 1; });
+  const auto answer = tracker.receive();
+  REQUIRE(answer);
+  CHECK(answer->from == "127.0.0.1");
+}
+
 TEST_CASE("a stranger gets no more from the trackers' port than the answer to a handshake") {
   LiveSession live({"imu=slimevr:udp:127.0.0.1:0"});
   const Client stranger;
