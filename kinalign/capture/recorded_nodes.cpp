@@ -12,6 +12,13 @@ namespace {
 
 constexpr std::size_t most_nodes = 256;  // each takes two channels
 
+/// Without keys anybody can send in the name of any number of nodes: those that were not let in
+/// get no channels, or there would be none left.
+bool is_limited(NodeVerdict verdict) {
+  return verdict == NodeVerdict::limited || verdict == NodeVerdict::no_room ||
+         verdict == NodeVerdict::wrong_counter || verdict == NodeVerdict::unknown_answer;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& device,
@@ -22,19 +29,24 @@ Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& 
   if (!device.address.empty()) options.addresses = {device.address};
   options.port = static_cast<std::uint16_t>(device.port);
   options.desk = desk;
-  return std::unique_ptr<RecordedNodes>(
-      new RecordedNodes(device, KA_TRY(NodeReceiver::open(options, clocks)), recorder));
+  return std::unique_ptr<RecordedNodes>(new RecordedNodes(
+      device, desk.lab_key.has_value(), KA_TRY(NodeReceiver::open(options, clocks)), recorder));
 }
 
-RecordedNodes::RecordedNodes(DeviceOptions device, NodeReceiver receiver, Recorder& recorder)
-    : device_(std::move(device)), receiver_(std::move(receiver)), recorder_(recorder) {
+RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver,
+                             Recorder& recorder)
+    : device_(std::move(device)),
+      keyed_(keyed),
+      receiver_(std::move(receiver)),
+      recorder_(recorder) {
   receiver_.watch([this](const NodeArrival& arrival, const NodeNews& news, LiveClock*) {
     take(arrival, news);
   });
 }
 
 void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {
-  if (nodes_.size() >= most_nodes && !nodes_.contains(news.node_id)) {
+  const bool has_room = nodes_.size() < most_nodes && (keyed_ || !is_limited(news.verdict));
+  if (!has_room && !nodes_.contains(news.node_id)) {
     ++crowded_;
     return;
   }

@@ -48,17 +48,18 @@ class RecordedNodes {
     std::map<std::size_t, Lost> lost{};
   };
 
-  RecordedNodes(DeviceOptions device, NodeReceiver receiver, Recorder& recorder);
+  RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver, Recorder& recorder);
   void take(const NodeArrival& arrival, const NodeNews& news);
   Node& node_of(std::uint32_t id, const NodeAddress& from);
   static void judge(Node& node, const NodeNews& news);
 
   DeviceOptions device_;
+  bool keyed_;
   NodeReceiver receiver_;
   Recorder& recorder_;
   std::map<std::uint32_t, Node> nodes_;
   std::uint64_t bytes_ = 0;
-  std::uint64_t crowded_ = 0;  // datagrams of one node too many
+  std::uint64_t crowded_ = 0;  // datagrams of nodes that got no channel
 };
 
 }  // namespace kinalign

@@ -249,3 +249,21 @@ TEST_CASE(
   CHECK(streams[0].counts.order.lost == 1);  // the forged one's number
   CHECK(payloads.at("/counts").back().find(R"("node":"7")") != std::string::npos);
 }
+
+TEST_CASE("without keys, nodes that are not let in get no channels, and are counted") {
+  LiveSession live({"imu=nodes:udp:127.0.0.1:0"});
+  SystemClocks clocks;
+  const Client radio;
+  for (std::uint32_t id = 1; id <= 70; ++id) {  // 64 have room
+    TestNode node(id, id);
+    node.drift = 0.0;
+    node.offset_s = 1000.0;
+    radio.send("127.0.0.1", live.port(), node.frame(clocks.raw()));
+    live.serve_until([&] { return live.pieces() == id; });
+  }
+  CHECK(live.session().streams().size() == 64);
+  CHECK(live.session().port_counts().front().second.refused == 6);
+  const auto payloads = live.finish();
+  CHECK(payloads.contains("/imu/64/raw"));
+  CHECK(!payloads.contains("/imu/65/raw"));
+}
