@@ -68,21 +68,27 @@ RecordedPort::Source* RecordedPort::source_of(std::size_t number, Recorder& reco
   if (sources_.size() <= number) sources_.resize(number + 1);
   std::optional<Source>& source = sources_[number];
   if (source && source->life == sender.life) return &*source;
-  const std::string further = sender.life == 1 ? "" : "/" + std::to_string(sender.life);
   const RawChannel raw{device_.name,
                        device_.protocol,
                        device_.transport,
                        endpoint_text(to_string(sender.host), sender.port),
                        "",
                        ""};
-  source.emplace(Source{RecordedSource(recorder, "/" + device_.name + "/raw" + further, raw),
+  source.emplace(Source{RecordedSource(recorder, topic("raw", sender.life), raw),
+                        raw,
                         StreamWatch(device_.protocol, device_.transport == "udp"),
                         sender.life,
                         {sender.host, sender.port}});
   return &*source;
 }
 
-void RecordedPort::answer_pings(const Source& source, const Piece& piece, HostAxis& axis,
+/// "/kinect/raw" of the first sender that was ever heard, "/kinect/raw/2" of the next one.
+std::string RecordedPort::topic(const char* content, std::uint64_t life) const {
+  const std::string first = "/" + device_.name + "/" + content;
+  return life == 1 ? first : first + "/" + std::to_string(life);
+}
+
+void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& axis,
                                 Recorder& recorder) {
   std::size_t may_send = piece.bytes.size();  // nobody who forges an address gains by it
   for (const KinectPing& ping : source.watch.pings()) {
@@ -96,15 +102,16 @@ void RecordedPort::answer_pings(const Source& source, const Piece& piece, HostAx
         std::visit([&](auto& pieces) { pieces.send(piece.sender, octets(bytes)); }, pieces_);
       }
     }
-    if (!exchanges_) {
-      const RawChannel raw{
-          device_.name, std::string(exchange_encoding), device_.transport, "", "", ""};
-      exchanges_ = recorder.add_channel(to_channel("/" + device_.name + "/exchange", raw));
+    if (!source.exchanges) {
+      McapChannel channel = to_channel(topic("exchange", source.life), source.raw);
+      channel.message_encoding = exchange_encoding;
+      source.exchanges = recorder.add_channel(std::move(channel));
     }
     const std::int64_t sent_ns = exchange->n_tx.time_since_epoch().count();
     const auto device_ns =
         sent_ns < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(sent_ns));
-    recorder.record(*exchanges_, piece.arrival, to_bytes({axis.epoch(), *exchange}), device_ns);
+    recorder.record(*source.exchanges, piece.arrival, to_bytes({axis.epoch(), *exchange}),
+                    device_ns);
   }
 }
 

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -42,16 +43,19 @@ class RecordedPort {
   using Pieces = std::variant<UdpPieces, TcpPieces>;
   struct Source {
     RecordedSource recorded;
+    RawChannel raw;
     StreamWatch watch;
     std::uint64_t life = 0;  // of its sender
     NodeAddress address;
+    std::optional<std::uint16_t> exchanges{};  // channel
   };
 
   RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret);
   static Result<Pieces> open_pieces(const DeviceOptions& device);
   void take(const Piece& piece, HostAxis& axis, Recorder& recorder);
   Source* source_of(std::size_t sender, Recorder& recorder);
-  void answer_pings(const Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
+  std::string topic(const char* content, std::uint64_t life) const;
+  void answer_pings(Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
   void answer_trackers(const Source& source, const Piece& piece);
   void send_answers();
   void look_at(Source& source) const;
@@ -61,8 +65,7 @@ class RecordedPort {
   std::vector<std::optional<Source>> sources_;  // by the sender's number
   std::unique_ptr<SlimeDesk> slimes_;
   std::unique_ptr<KinectDesk> kinects_;
-  std::optional<std::uint16_t> exchanges_;  // channel
-  std::uint64_t crowded_ = 0;               // pieces of one life too many
+  std::uint64_t crowded_ = 0;  // pieces of one life too many
 };
 
 }  // namespace kinalign

@@ -67,6 +67,19 @@ TEST_CASE("a Kinect's pings are answered over UDP, and each exchange stands in t
   }
 }
 
+TEST_CASE("exchanges of two Kinects stand beside what each of them sent") {
+  LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
+  const Client one, two;
+  one.send("127.0.0.1", live.port(), ping_bytes(0, std::nullopt, false));
+  live.serve_until([&] { return live.pieces() == 1; });
+  two.send("127.0.0.1", live.port(), ping_bytes(1, std::nullopt, false));
+  live.serve_until([&] { return live.pieces() == 2; });
+  const auto payloads = live.finish();
+  CHECK(payloads.at("/kinect/exchange").size() == 1);
+  CHECK(payloads.at("/kinect/exchange/2").size() == 1);
+  CHECK(payloads.at("/kinect/raw/2").size() == 1);
+}
+
 TEST_CASE("a Kinect's pings are answered over its connection, wherever that is cut") {
   LiveSession live({"kinect=kinect:tcp-listen:127.0.0.1:0"});
   const Connection sender(live.port());
