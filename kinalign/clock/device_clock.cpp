@@ -126,9 +126,12 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
 
 std::optional<Time> stamp_of(const DeviceClock& clock, BootKey boot, NodeTime n, HostTime h_rx) {
   const auto& pieces = clock.model.pieces;
-  std::optional<std::size_t> found;  // what came late belongs to the last piece of its life
+  std::optional<std::size_t> found;
   for (std::size_t p = 0; p < pieces.size(); ++p) {
-    if (pieces[p].boot != boot || pieces[p].knots.empty() || h_rx < pieces[p].first) continue;
+    if (pieces[p].boot != boot || pieces[p].knots.empty()) continue;
+    // What came late belongs to the last piece of its life, what was held at its start to the
+    // first.
+    if (found && h_rx < pieces[p].first) continue;
     found = p;
     if (h_rx <= pieces[p].last) break;
   }

@@ -24,8 +24,8 @@ struct DeviceClock {
 /// others the earliest arrivals speak (one_way_clock.h). `utc_minus_host` is the recording's.
 DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus_host);
 
-/// The stamp of the counter's reading n in what arrived at h_rx. Absent where no piece of that life
-/// had begun by then.
+/// The stamp of the counter's reading n in what arrived at h_rx, by the piece of that life that is
+/// nearest. Absent where nothing of that life was heard.
 std::optional<Time> stamp_of(const DeviceClock& clock, BootKey boot, NodeTime n, HostTime h_rx);
 
 }  // namespace kinalign

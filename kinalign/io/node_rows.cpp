@@ -126,7 +126,9 @@ class NodeRows final : public DeviceRows<ImuSamples> {
       : heard_(std::move(heard)),
         file_(wish.file.path),
         converter_(ImuUnits{axes_of(y_up, wish.options), 1.0, 1.0}) {
-    header_.node_names = {wish.file.node.empty() ? heard_->channel.node : wish.file.node};
+    const RawChannel& channel = heard_->channel;
+    const std::string& own = channel.place.empty() ? channel.node : channel.place;
+    header_.node_names = {wish.file.node.empty() ? own : wish.file.node};
     header_.content = heard_->content;
   }
 

@@ -61,7 +61,7 @@ Result<void> RecordedMessages::finish(const TakeMessage& take) {
               streams_.empty() ? "a recording in which nothing was heard"
                                : "'" + shown(choice_.stream) + "'"});
   }
-  const bool node = !choice_.node.empty() && nodes_.count(choice_.node) == 0;
+  const bool node = !nodes_.empty();
   return Failure(
       Error{file_, 0,
             fmt::format("of stream {} {}", choice_.stream,
@@ -114,7 +114,7 @@ bool RecordedMessages::is_wanted(const RawChannel& raw) {
   if (!raw.node.empty()) {  // a node may come from another address after a while
     remember(nodes_, raw.node);
     if (choice_.node.empty()) choice_.node = raw.node;
-    return raw.node == choice_.node;
+    return raw.node == choice_.node || (!raw.place.empty() && raw.place == choice_.node);
   }
   if (choice_.sender.empty()) choice_.sender = host;
   return host == choice_.sender;

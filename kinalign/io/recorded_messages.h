@@ -18,7 +18,7 @@ namespace kinalign {
 /// Which device. An empty sender: the first that is heard; an empty node: the only one.
 struct DeviceChoice {
   std::string stream;
-  std::string node;    // an id, of inertial nodes
+  std::string node;    // of inertial nodes: an id, or a place where the lab named it
   std::string sender;  // the address without its port
 };
 

@@ -153,6 +153,13 @@ int rank_of(std::string_view protocol) {
   return protocol == "kinect" ? 1 : 2;
 }
 
+/// What a manifest calls one of several that are a stream: trackers are told apart by their
+/// addresses; of mocap and Kinects the first is the one.
+std::string node_name(const RawChannel& raw) {
+  if (raw.protocol == "slimevr") return host_of(raw.sender);
+  return raw.place.empty() ? raw.node : raw.place;
+}
+
 }  // namespace
 
 bool looks_like_recording(std::string_view head) { return head.starts_with(mcap_magic); }
@@ -196,8 +203,7 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
       device->options.select = {{"stream", raw->stream}};
     }
     std::vector<StreamFile>& streams = device->options.files;
-    // Trackers are told apart by their addresses; of mocap and Kinects the first is the one.
-    std::string node = raw->protocol == "slimevr" ? host_of(raw->sender) : raw->node;
+    std::string node = node_name(*raw);
     const auto same = [&](const StreamFile& file) { return file.node == node; };
     if (std::any_of(streams.begin(), streams.end(), same)) continue;
     streams.push_back({path, std::move(node)});

@@ -48,11 +48,11 @@ class RecordedLab {
     double at(double t) const { return at_begin_s + t * (1.0 + 1e-6 * ppm); }
   };
 
-  /// Fifteen frames a second from `from` to `to`, two samples in each, answered if so.
+  /// Fifteen frames a second from `from` to `to`, two samples in each, answered.
   void add_node(std::uint32_t id, std::uint32_t boot_id, Counter counter, double from, double to,
-                bool answered = true) {
+                const std::string& place = "") {
     const auto us = [&](double t) { return static_cast<std::uint64_t>(1e6 * counter.at(t)); };
-    const RawChannel raw{"imu", "kinalign-node", "udp", "10.0.0.7:5005", std::to_string(id)};
+    const RawChannel raw{"imu", "kinalign-node", "udp", "10.0.0.7:5005", std::to_string(id), place};
     const std::string topic = "/imu/" + std::to_string(id);
     const auto frames = channel(to_channel(topic + "/raw", raw));
     McapChannel described = to_channel(topic + "/exchange", raw);
@@ -77,7 +77,6 @@ class RecordedLab {
       const NodeTime n{std::chrono::microseconds(frame.n_tx_us)};
       add(exchanges, arrival, to_bytes({0, {boot_id, n, host(arrival), echo}}));
       add(frames, arrival, std::string(text_of(bytes)));
-      if (!answered) continue;
       const double sent = arrival + 0.0003;
       echo = {NodeTime{std::chrono::microseconds(us(sent + way()))}, host(sent)};
     }
@@ -89,7 +88,7 @@ class RecordedLab {
     const auto ticks = [](const Counter& c, double t) {
       return static_cast<std::int64_t>(1e7 * c.at(t));
     };
-    const RawChannel raw{"kinect", "kinect", "udp", "10.0.0.9:6007", ""};
+    const RawChannel raw{"kinect", "kinect", "udp", "10.0.0.9:6007", "", ""};
     const auto frames = channel(to_channel("/kinect/raw", raw));
     McapChannel described = to_channel("/kinect/exchange", raw);
     described.message_encoding = exchange_encoding;
@@ -122,7 +121,7 @@ class RecordedLab {
   void add_mocap(NoitomForm form, const std::string& transport, double to, std::uint32_t lost = 0) {
     skeleton_ = noitom_chain("Spine3", false);
     const auto frames =
-        channel(to_channel("/mocap/raw", {"mocap", "noitom", transport, "10.0.0.3:7012", ""}));
+        channel(to_channel("/mocap/raw", {"mocap", "noitom", transport, "10.0.0.3:7012", "", ""}));
     double last = 0.0;
     for (std::uint32_t k = 0; k < 125.0 * to; ++k) {
       if (lost > 0 && k % lost == lost - 1) continue;
@@ -143,8 +142,8 @@ class RecordedLab {
   /// A SlimeVR tracker's packets of type 23, a hundred a second: an acceleration whose x, in steps
   /// of 1/128 m/s2, is as near to the time as that goes.
   void add_tracker(const std::string& host, double to) {
-    const auto channel_id =
-        channel(to_channel("/slime/raw/" + host, {"slime", "slimevr", "udp", host + ":6969", ""}));
+    const auto channel_id = channel(
+        to_channel("/slime/raw/" + host, {"slime", "slimevr", "udp", host + ":6969", "", ""}));
     double last = 0.0;
     for (std::uint32_t k = 0; k < 100.0 * to; ++k) {
       const double t = 0.01 * k;

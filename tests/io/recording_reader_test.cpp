@@ -214,7 +214,7 @@ TEST_CASE("what is not in a recording is refused by the names of what is") {
 TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as one stream") {
   const FreshFolder folder;
   RecordedLab lab(20261123);
-  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 2.0);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 2.0, "waist");
   lab.add_node(13, 1, {4.0, 10.0}, 0.0, 2.0);
   lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 2.0);
   lab.add_mocap(NoitomForm::new_header, "udp", 2.0);
@@ -231,6 +231,7 @@ TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as 
   CHECK(manifest->streams[1].name == "kinect");
   CHECK(manifest->streams[2].name == "imu");
   REQUIRE(manifest->streams[2].files.size() == 2);
+  CHECK(manifest->streams[2].files[0].node == "waist");  // where the lab says that
   CHECK(manifest->streams[2].files[1].node == "13");
   const auto recording = open_recording(files, *manifest, folder.path() + "/");
   REQUIRE(recording);
