@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 namespace kinalign {
 
@@ -97,6 +98,12 @@ Result<std::string_view> InputFile::next() {
 
 Result<std::size_t> InputFile::read_at(std::uint64_t at, std::span<char> to) const {
   return fill(*files_, path_, fd_, at, to);
+}
+
+Result<void> make_new_folder(const std::string& path) {
+  if (::mkdir(path.c_str(), 0777) == 0) return {};
+  if (errno == EEXIST) return Failure(Error{path, 0, "no file or folder of that name", "one"});
+  return Failure(Error{path, 0, "a folder that can be made", std::strerror(errno)});
 }
 
 Result<std::string> read_whole(FileSystem& files, const std::string& path, std::size_t most) {

@@ -90,6 +90,9 @@ class InputFile {
 /// All of a file at once: for small ones (manifests, layouts). Fails above `most` bytes.
 Result<std::string> read_whole(FileSystem& files, const std::string& path, std::size_t most);
 
+/// A folder that was not there; the one above it is. Fails where anything has that name.
+Result<void> make_new_folder(const std::string& path);
+
 enum class Overwrite { no, yes };
 
 /// A file that comes to be only when it is whole. Written without a name in the target's folder

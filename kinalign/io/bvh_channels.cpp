@@ -44,8 +44,10 @@ std::vector<std::size_t> nested_order(const std::vector<int>& parents) {
 
 }  // namespace
 
-BvhChannels::BvhChannels(const Skeleton& skeleton)
-    : skeleton_(skeleton), order_(nested_order(skeleton.parents)), moves_(skeleton.joints()) {}
+BvhChannels::BvhChannels(const Skeleton& skeleton, Positions positions)
+    : skeleton_(skeleton),
+      order_(nested_order(skeleton.parents)),
+      moves_(skeleton.joints(), positions == Positions::of_all) {}
 
 void BvhChannels::see(std::span<const double> local_positions) {
   const std::size_t joints = skeleton_.joints();

@@ -29,11 +29,12 @@ class BvhWriter {
 };
 
 /// Channels for a clip made elsewhere: centimetres, y up, rotations Z X Y, six decimals; position
-/// channels for roots and for joints that leave their offset by more than a micrometre. Joints come
-/// in the order in which a BVH nests them.
+/// channels for roots and for joints that leave their offset by more than a micrometre, or for all
+/// joints, as suits write them. Joints come in the order in which a BVH nests them.
 class BvhChannels {
  public:
-  explicit BvhChannels(const Skeleton& skeleton);
+  enum class Positions { of_what_moves, of_all };
+  explicit BvhChannels(const Skeleton& skeleton, Positions positions = Positions::of_what_moves);
 
   /// All frames' local positions [n,J,3], in blocks: which joints move.
   void see(std::span<const double> local_positions);

@@ -5,6 +5,7 @@
 #include "kinalign/core/error.h"
 #include "kinalign/take/manifest.h"
 
+#include <string>
 #include <string_view>
 
 namespace kinalign {
@@ -14,5 +15,8 @@ namespace kinalign {
 /// values of what [align] does not state.
 Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
                                const AlignOptions& unsaid = {});
+
+/// The text that reads back as `manifest`: what differs from the defaults.
+std::string manifest_toml(const Manifest& manifest);
 
 }  // namespace kinalign

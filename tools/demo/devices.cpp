@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/demo/devices.h"
 
-#include "tools/demo/text_out.h"
+#include "kinalign/core/text_out.h"
 
 #include <algorithm>
 #include <cmath>
@@ -168,8 +168,8 @@ ImuReading reading_at(const DemoMotion& motion, const DemoNode& node, double t) 
 }
 
 Result<void> write_imu(const DemoTake& take, const DemoMotion& motion, std::size_t n) {
-  TextOut out = KA_TRY(
-      TextOut::create(take.files, take.folder + "imu_" + std::string(nodes[n].name) + ".csv"));
+  TextOut out = KA_TRY(TextOut::create(
+      take.files, take.folder + "imu_" + std::string(nodes[n].name) + ".csv", Overwrite::yes));
   DemoRandom random(take.seed * 4 + 2 + 1000 * (n + 1));
   out.text("time_ns,qw,qx,qy,qz,ax,ay,az,gx,gy,gz\n");
   const double phase = random.uniform(-0.3, -0.2);
@@ -191,7 +191,7 @@ Result<void> write_imu(const DemoTake& take, const DemoMotion& motion, std::size
 }  // namespace
 
 Result<void> write_demo_mocap(const DemoTake& take, const DemoMotion& motion) {
-  TextOut out = KA_TRY(TextOut::create(take.files, take.folder + "mocap.bvh"));
+  TextOut out = KA_TRY(TextOut::create(take.files, take.folder + "mocap.bvh", Overwrite::yes));
   const std::int64_t frames = frames_of(take);
   out.text("HIERARCHY\n");
   write_joint(motion.body(), 0, 0, out);
@@ -213,7 +213,7 @@ Result<void> write_demo_mocap(const DemoTake& take, const DemoMotion& motion) {
 }
 
 Result<void> write_demo_kinect(const DemoTake& take, const DemoMotion& motion) {
-  TextOut out = KA_TRY(TextOut::create(take.files, take.folder + "kinect.csv"));
+  TextOut out = KA_TRY(TextOut::create(take.files, take.folder + "kinect.csv", Overwrite::yes));
   out.text("time_ns");
   for (const KinectJoint& joint : kinect_joints) {
     for (const char* part : {"_x", "_y", "_z", "_state"}) {
@@ -240,7 +240,7 @@ Result<void> write_demo_imus(const DemoTake& take, const DemoMotion& motion) {
 }
 
 Result<void> write_demo_manifest(const DemoTake& take) {
-  TextOut out = KA_TRY(TextOut::create(take.files, take.folder + "recording.toml"));
+  TextOut out = KA_TRY(TextOut::create(take.files, take.folder + "recording.toml", Overwrite::yes));
   const auto span = std::llround(static_cast<double>(frames_of(take)) * mocap_step * 1e9);
   out.text("# Made by kinalign_demo_recording --seed " + std::to_string(take.seed) + "\n");
   out.text("subject = \"" + take.subject + "\"\naction = \"" + take.action + "\"\n");

@@ -4,7 +4,7 @@
 // LINK is A to G. Prints its port, then a line for each sender: the port under which the host knows
 // it, and the least delays that it gets up and down, s.
 // Ends with its standard input. A late wake-up makes delays longer, never shorter.
-#include "tools/relay/delays.h"
+#include "kinalign/simulate/packet_fates.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -52,7 +52,7 @@ std::uint16_t port_of(int fd) {
 struct Sender {
   sockaddr_in address{};
   int to_host = -1;
-  Delays up, down;
+  PacketFates up, down;
 };
 
 struct Packet {
@@ -123,15 +123,15 @@ class Relay {
     if (senders_.size() == most_senders) return nullptr;
     const std::uint64_t seed = seed_ + senders_.size();
     senders_.push_back(
-        std::make_unique<Sender>(Sender{from, open_socket(), Delays(link_, seed, Way::up, rate_hz_),
-                                        Delays(link_, seed, Way::down, rate_hz_)}));
+        std::make_unique<Sender>(Sender{from, open_socket(), PacketFates(link_, seed, Way::up, rate_hz_),
+                                        PacketFates(link_, seed, Way::down, rate_hz_)}));
     const Floors least = floors(link_.link, seed);
     std::printf("%d %.9f %.9f\n", port_of(senders_.back()->to_host), least.up, least.down);
     std::fflush(stdout);
     return senders_.back().get();
   }
 
-  void put(const Delays::Fate& fate, std::size_t size, int fd, const sockaddr_in& to) {
+  void put(const PacketFates::Fate& fate, std::size_t size, int fd, const sockaddr_in& to) {
     const auto now = Clock::now();
     for (const auto& delay : {fate.first, fate.duplicate}) {
       if (!delay || packets_.size() == most_waiting) continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a simulated link does to the packets of one way, one after the other.
+// What a simulated link does to the packets of one way, one after the other, where it is not known
+// beforehand when they will be sent: for real sockets.
 #pragma once
 
 #include "kinalign/simulate/link.h"
@@ -12,15 +13,15 @@
 
 namespace kinalign {
 
-/// Drawn beforehand for packets at a steady rate; the relay's come nearly so.
-class Delays {
+/// Drawn beforehand for packets at a steady rate, which real ones have nearly.
+class PacketFates {
  public:
   using Delay = std::chrono::nanoseconds;
   struct Fate {
     std::optional<Delay> first, duplicate;  // absent: lost
   };
 
-  Delays(const LinkOptions& options, std::uint64_t seed, Way way, double rate_hz) {
+  PacketFates(const LinkOptions& options, std::uint64_t seed, Way way, double rate_hz) {
     constexpr std::size_t packets = 1 << 16;  // then from the front again
     std::vector<double> sent(packets);
     for (std::size_t k = 0; k < packets; ++k) sent[k] = static_cast<double>(k) / rate_hz;

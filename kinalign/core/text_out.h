@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers into a file, by the megabyte.
+// Text of many numbers into a file, by the megabyte.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -16,8 +16,8 @@ namespace kinalign {
 
 class TextOut {
  public:
-  static Result<TextOut> create(FileSystem& files, std::string path) {
-    return TextOut(KA_TRY(OutputFile::create(files, std::move(path), Overwrite::yes)));
+  static Result<TextOut> create(FileSystem& files, std::string path, Overwrite overwrite) {
+    return TextOut(KA_TRY(OutputFile::create(files, std::move(path), overwrite)));
   }
 
   void text(std::string_view piece) { held_ += piece; }

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Written by hand, value by value: toml++ sorts tables by name, and the order of streams counts.
+#include "kinalign/io/manifest_toml.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace kinalign {
+
+namespace {
+
+std::string toml_text(bool value) { return value ? "true" : "false"; }
+std::string toml_text(std::int64_t value) { return std::to_string(value); }
+std::string toml_text(double value) {  // the shortest that reads back the same
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+std::string toml_text(const std::string& value) {
+  std::ostringstream text;
+  text << toml::toml_formatter(toml::value<std::string>(value), toml::format_flags::none);
+  return text.str();
+}
+
+std::string key_text(const std::string& key) {
+  const auto bare = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  return !key.empty() && std::all_of(key.begin(), key.end(), bare) ? key : toml_text(key);
+}
+
+std::string list_text(const std::vector<double>& numbers) {
+  std::string text;
+  for (const double x : numbers) text += (text.empty() ? "" : ", ") + toml_text(x);
+  return "[" + text + "]";
+}
+
+/// { a = "b", c = "d" }
+class InlineTable {
+ public:
+  void add(const std::string& key, const std::string& value) {
+    text_ += (text_.empty() ? "" : ", ") + key_text(key) + " = " + value;
+  }
+  std::string text() const { return "{ " + text_ + " }"; }
+
+ private:
+  std::string text_;
+};
+
+std::string table_text(const std::map<std::string, std::string>& texts) {
+  InlineTable table;
+  for (const auto& [key, value] : texts) table.add(key, toml_text(value));
+  return table.text();
+}
+
+struct ToToml {
+  template <class Value>
+  std::string operator()(const Value* value) const {
+    return toml_text(*value);
+  }
+  template <class Value>
+  std::string operator()(const std::optional<Value>* value) const {
+    return *value ? toml_text(**value) : "";
+  }
+  std::string operator()(const std::vector<std::string>* values) const {
+    std::string text;
+    for (const std::string& one : *values) text += (text.empty() ? "" : ", ") + toml_text(one);
+    return "[" + text + "]";
+  }
+};
+
+/// The options whose values are not the standard ones.
+template <class Options>
+std::string fields_text(Options options) {
+  Options standard;
+  const Fields fields = describe(options), defaults = describe(standard);
+  std::string text;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string value = std::visit(ToToml{}, fields[i].value);
+    if (value == std::visit(ToToml{}, defaults[i].value)) continue;
+    text += fmt::format("{} = {}\n", fields[i].name, value);
+  }
+  return text;
+}
+
+/// `file` or `files`, as the reader has them.
+std::string files_text(const std::vector<StreamFile>& files) {
+  if (files.empty()) return "";
+  if (files.size() == 1 && files.front().node.empty()) {
+    return "file = " + toml_text(files.front().path) + "\n";
+  }
+  if (files.front().node.empty()) {
+    std::string list;
+    for (const StreamFile& file : files) list += (list.empty() ? "" : ", ") + toml_text(file.path);
+    return "files = [" + list + "]\n";
+  }
+  InlineTable table;
+  for (const StreamFile& file : files) table.add(file.node, toml_text(file.path));
+  return "files = " + table.text() + "\n";
+}
+
+std::string stream_text(const StreamOptions& stream) {
+  std::string text = fmt::format("\n[stream.{}]\n", key_text(stream.name));
+  text += files_text(stream.files) + fields_text(stream);
+  if (!stream.select.empty()) text += "select = " + table_text(stream.select) + "\n";
+  if (stream.mounting.empty()) return text;
+  text += fmt::format("\n[stream.{}.mounting]\n", key_text(stream.name));
+  for (const auto& [node, rotation] : stream.mounting) {
+    text += key_text(node) + " = " + list_text(rotation) + "\n";
+  }
+  return text;
+}
+
+std::string space_text(const std::string& stream, const SpaceOptions& space) {
+  std::string text = fmt::format("\n[space.{}]\n", key_text(stream)) + fields_text(space);
+  if (!space.joints.empty()) text += "joints = " + table_text(space.joints) + "\n";
+  if (!space.rotation.empty()) text += "rotation = " + list_text(space.rotation) + "\n";
+  if (!space.translation.empty()) text += "translation = " + list_text(space.translation) + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string manifest_toml(const Manifest& manifest) {
+  std::string text;
+  if (!manifest.subject.empty()) text += "subject = " + toml_text(manifest.subject) + "\n";
+  if (!manifest.action.empty()) text += "action = " + toml_text(manifest.action) + "\n";
+  if (const std::string align = fields_text(manifest.align); !align.empty()) {
+    text += "\n[align]\n" + align;
+  }
+  for (const StreamOptions& stream : manifest.streams) text += stream_text(stream);
+  for (const auto& [stream, space] : manifest.spaces) text += space_text(stream, space);
+  return text;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/truth_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include <functional>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* schema = "kinalign.truth/1";
+
+// ---- to JSON
+
+Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Json json_of(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+Json json_of(const TrueClock& clock) {
+  return {{"stamps_ns", clock.stamps_ns}, {"times_ns", clock.times_ns}};
+}
+
+Json json_of(const TrueMocap& mocap) {
+  return {{"stream", mocap.stream},
+          {"rate_hz", mocap.rate_hz},
+          {"frames", mocap.frames},
+          {"start_click_ns", mocap.start_click_ns},
+          {"stop_click_ns", mocap.stop_click_ns},
+          {"first_frame_ns", mocap.first_frame_ns}};
+}
+
+Json json_of(const TrueKinect& kinect) {
+  return {{"stream", kinect.stream},
+          {"rotation", json_of(kinect.world_from_kinect.rotation)},
+          {"translation", json_of(kinect.world_from_kinect.translation)},
+          {"drift_ppm", kinect.drift_ppm},
+          {"clock", json_of(kinect.clock)}};
+}
+
+Json json_of(const TrueNode& node) {
+  return {{"stream", node.stream},
+          {"node", node.node},
+          {"id", node.id},
+          {"joint", node.joint},
+          {"offset", json_of(node.offset)},
+          {"bone_from_sensor", json_of(node.bone_from_sensor)},
+          {"sensor_delay_ms", node.sensor_delay_ms},
+          {"gyroscope_zero", json_of(node.gyroscope_zero)},
+          {"accelerometer_zero", json_of(node.accelerometer_zero)},
+          {"clock", json_of(node.clock)}};
+}
+
+// ---- from JSON: what is missing or of another type throws, and read_truth says where
+
+Vec3 vec3_from(const Json& json) {
+  const auto v = json.get<std::array<double, 3>>();
+  return {v[0], v[1], v[2]};
+}
+Quat quat_from(const Json& json) {
+  const auto q = json.get<std::array<double, 4>>();
+  return Quat(q[0], q[1], q[2], q[3]).normalized();
+}
+TrueClock clock_from(const Json& json) {
+  return {json.at("stamps_ns").get<std::vector<std::int64_t>>(),
+          json.at("times_ns").get<std::vector<std::int64_t>>()};
+}
+
+TrueMocap mocap_from(const Json& json) {
+  return {json.at("stream"),         json.at("rate_hz"),       json.at("frames"),
+          json.at("start_click_ns"), json.at("stop_click_ns"), json.at("first_frame_ns")};
+}
+
+TrueKinect kinect_from(const Json& json) {
+  return {json.at("stream"),
+          {quat_from(json.at("rotation")), vec3_from(json.at("translation"))},
+          json.at("drift_ppm"),
+          clock_from(json.at("clock"))};
+}
+
+TrueNode node_from(const Json& json) {
+  return {json.at("stream"),
+          json.at("node"),
+          json.at("joint"),
+          json.at("id"),
+          vec3_from(json.at("offset")),
+          quat_from(json.at("bone_from_sensor")),
+          json.at("sensor_delay_ms"),
+          vec3_from(json.at("gyroscope_zero")),
+          vec3_from(json.at("accelerometer_zero")),
+          clock_from(json.at("clock"))};
+}
+
+TrueRecording truth_from(const Json& json) {
+  TrueRecording truth;
+  truth.seed = json.at("seed");
+  truth.motion = json.at("motion");
+  truth.motion_file = json.at("motion_file");
+  truth.length_s = json.at("length_s");
+  truth.start_ns = json.at("start_ns");
+  truth.link = json.at("link");
+  if (json.contains("host")) {
+    truth.host = TrueHost{json.at("host").at("raw_ns"), json.at("host").at("utc_ns")};
+  }
+  truth.mocap = mocap_from(json.at("mocap"));
+  truth.kinect = kinect_from(json.at("kinect"));
+  for (const Json& node : json.at("nodes")) truth.nodes.push_back(node_from(node));
+  return truth;
+}
+
+/// "[json.exception.out_of_range.403] key 'seed' not found" without what is in brackets.
+std::string reason(const Json::exception& fault) {
+  const std::string_view what = fault.what();
+  const std::size_t end = what.find("] ");
+  return shown(end == std::string_view::npos ? what : what.substr(end + 2));
+}
+
+// ---- what types alone do not say
+
+bool rises(const std::vector<std::int64_t>& values) {
+  return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
+}
+
+Result<void> check(const std::string& name, const std::string& stream, const TrueClock& clock) {
+  if (clock.stamps_ns.size() == clock.times_ns.size() && rises(clock.stamps_ns)) return {};
+  return Failure(
+      Error{name, 0, "a clock of " + stream + " with a time for each of rising stamps", "another"});
+}
+
+}  // namespace
+
+std::string truth_json(const TrueRecording& truth) {
+  Json json{{"schema", schema},           {"seed", truth.seed},
+            {"motion", truth.motion},     {"motion_file", truth.motion_file},
+            {"length_s", truth.length_s}, {"start_ns", truth.start_ns},
+            {"link", truth.link}};
+  if (truth.host) {
+    json["host"] = Json{{"raw_ns", truth.host->raw_ns}, {"utc_ns", truth.host->utc_ns}};
+  }
+  json["mocap"] = json_of(truth.mocap);
+  json["kinect"] = json_of(truth.kinect);
+  json["nodes"] = Json::array();
+  for (const TrueNode& node : truth.nodes) json["nodes"].push_back(json_of(node));
+  return json.dump() + "\n";
+}
+
+Result<TrueRecording> read_truth(std::string_view text, const std::string& name) {
+  TrueRecording truth;
+  try {
+    const Json json = Json::parse(text);
+    const std::string found = json.at("schema");
+    if (found != schema) return Failure(Error{name, 0, schema, shown(found)});
+    truth = truth_from(json);
+  } catch (const Json::exception& fault) {
+    return Failure(Error{name, 0, std::string("JSON as ") + schema + " has it", reason(fault)});
+  }
+  KA_TRY(check(name, truth.kinect.stream, truth.kinect.clock));
+  for (const TrueNode& node : truth.nodes) KA_TRY(check(name, node.node, node.clock));
+  if (!(truth.mocap.rate_hz > 0.0)) {
+    return Failure(Error{name, 0, "a mocap's rate above 0 Hz", "another"});
+  }
+  return truth;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is true of a simulated recording, which no device knows. In a file: docs/formats/truth.md.
+#pragma once
+
+#include "kinalign/motion/rigid_fit.h"
+#include "kinalign/wire/time.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// A device's stamps and when they were true, both ns and rising; linear in between.
+struct TrueClock {
+  std::vector<std::int64_t> stamps_ns;  // as the device's file or packets have them
+  std::vector<std::int64_t> times_ns;   // UTC
+};
+
+/// The true time of a stamp; the nearest two go on before the first and behind the last. Absent
+/// where fewer than two are known.
+std::optional<Time> true_time(const TrueClock& clock, Time stamp);
+
+struct TrueMocap {
+  std::string stream;
+  double rate_hz = 0.0;
+  std::uint64_t frames = 0;
+  std::int64_t start_click_ns = 0, stop_click_ns = 0, first_frame_ns = 0;  // UTC
+
+  std::int64_t frame_ns(std::uint64_t frame) const;
+};
+
+struct TrueKinect {
+  std::string stream;
+  RigidTransform world_from_kinect;
+  double drift_ppm = 0.0;  // of its clock: 1 fast by 1e-6
+  TrueClock clock;
+};
+
+struct TrueNode {
+  std::string stream, node, joint;  // worn on the bone that begins there
+  std::uint32_t id = 0;
+  Vec3 offset = Vec3::Zero();  // m, from the joint, in the joint's space
+  Quat bone_from_sensor = Quat::Identity();
+  double sensor_delay_ms = 0.0;  // by which its filters see a movement late
+  Vec3 gyroscope_zero = Vec3::Zero(), accelerometer_zero = Vec3::Zero();  // rad/s, m/s2
+  TrueClock clock;
+};
+
+/// Both clocks of the host that sent, read at once.
+struct TrueHost {
+  std::int64_t raw_ns = 0, utc_ns = 0;
+};
+
+struct TrueRecording {
+  std::uint64_t seed = 0;
+  std::string motion;       // "built-in", or the file that it was made of
+  std::string motion_file;  // a BVH of it, relative to the truth's own
+  double length_s = 0.0;
+  std::int64_t start_ns = 0;  // UTC of its time 0
+  /// Of a recording that was sent live; `times_ns` are CLOCK_MONOTONIC_RAW + utc_ns - raw_ns of it.
+  std::optional<TrueHost> host;
+  std::string link;  // of the nodes, "A" to "G"; empty: none
+  TrueMocap mocap;
+  TrueKinect kinect;
+  std::vector<TrueNode> nodes;
+};
+
+}  // namespace kinalign
