@@ -15,6 +15,7 @@ Verb convert_verb();
 Verb rebuild_verb();
 Verb record_verb();
 Verb recover_verb();
+Verb simulate_verb();
 Verb time_server_verb();
 Verb node_key_verb();
 Verb config_verb();

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/live_rehearsal.h"
+
+#include <poll.h>
+#include <sys/prctl.h>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration lead = 500ms, behind = 500ms, longest_wait = 100ms;
+constexpr std::size_t noitom_joints = 59;
+
+/// Both clocks at once, and so much later on both.
+ClockPair begin_after(ClockReader& clock, Duration wait) {
+  const HostTime before = clock.raw();
+  const Time utc = clock.utc();
+  const HostTime after = clock.raw();
+  return {before + (after - before) / 2 + wait, utc + wait};
+}
+
+}  // namespace
+
+Result<LiveRehearsal> LiveRehearsal::open(const Motion& motion, const Rehearsal& rehearsal,
+                                          const LiveOptions& options, ClockReader& clock) {
+  if (motion.skeleton.joints() != noitom_joints) {
+    return Failure(Error{"--live", 0, "a suit's skeleton of 59 joints, as Noitom's stream has it",
+                         std::to_string(motion.skeleton.joints()) + " joints"});
+  }
+  LiveSocket mocap = KA_TRY(LiveSocket::connected_to(options.to, options.mocap_port));
+  LiveSocket kinect = KA_TRY(LiveSocket::connected_to(options.to, options.kinect_port));
+  std::vector<LiveSocket> sockets;
+  for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
+    sockets.push_back(KA_TRY(LiveSocket::connected_to(options.to, options.node_port)));
+  }
+  LiveRehearsal live(clock, begin_after(clock, lead), motion.length_s);
+  const HostTime start = live.start_.raw;
+  // New in each run, as a device draws them at each start.
+  const std::uint64_t run = mix64(static_cast<std::uint64_t>(start.time_since_epoch().count()));
+  live.suit_ =
+      std::make_unique<LiveSuit>(motion, rehearsal.mocap, options.seed, start, std::move(mocap));
+  live.camera_ = std::make_unique<LiveCamera>(
+      rehearsal,
+      LiveCameraOptions{options.seed, static_cast<std::uint32_t>(run), start, motion.length_s},
+      clock, std::move(kinect));
+  for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
+    LiveNodeOptions node{.id = static_cast<std::uint32_t>(n + 1),
+                         .boot_id = static_cast<std::uint32_t>(mix64(run + n)),
+                         .link = options.link,
+                         .start = start,
+                         .length_s = motion.length_s};
+    live.nodes_.push_back(
+        std::make_unique<LiveNode>(rehearsal.nodes[n], node, clock, std::move(sockets[n])));
+  }
+  return live;
+}
+
+void LiveRehearsal::run(const std::function<bool(double)>& go_on) {
+  ::prctl(PR_SET_TIMERSLACK, 1000UL);  // ns: the standard 50 us would make delays longer
+  const HostTime end = start_.raw + Duration{static_cast<std::int64_t>(length_s_ * 1e9)} + behind;
+  wait(start_.raw);  // a node's counter says nothing before
+  for (HostTime now = clock_->raw(); now < end; now = clock_->raw()) {
+    if (!go_on(seconds(now - start_.raw))) return;
+    suit_->work(now);
+    camera_->work();
+    for (const auto& node : nodes_) node->work();
+    HostTime next = std::min({end, now + longest_wait, suit_->next(), camera_->next()});
+    for (const auto& node : nodes_) next = std::min(next, node->next());
+    wait(next);
+  }
+}
+
+/// Or until a datagram arrives.
+void LiveRehearsal::wait(HostTime until) const {
+  std::vector<pollfd> heard{{camera_->fd(), POLLIN, 0}};
+  for (const auto& node : nodes_) heard.push_back({node->fd(), POLLIN, 0});
+  const Duration left = std::max(until - clock_->raw(), Duration::zero());
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(left);
+  const timespec timeout{whole.count(), (left - whole).count()};
+  ::ppoll(heard.data(), heard.size(), &timeout, nullptr);
+}
+
+LiveCounts LiveRehearsal::counts() const {
+  LiveCounts counts;
+  counts.mocap_frames = suit_->sent();
+  counts.kinect_frames = camera_->sent();
+  counts.refused = suit_->refused() + camera_->refused();
+  counts.worst_late = std::max(suit_->worst_late(), camera_->worst_late());
+  for (const auto& node : nodes_) {
+    const NodeTally tally = node->counts();
+    counts.node_frames += tally.frames.sent;
+    counts.node_samples += tally.frames.samples_sent;
+    counts.replies += tally.replies.accepted;
+    counts.refused += node->refused();
+  }
+  return counts;
+}
+
+TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start) {
+  TrueRecording truth = truth_of(rehearsal, motion, start.utc);
+  truth.host = TrueHost{start.raw.time_since_epoch().count(), to_ns(start.utc)};
+  // From the stamps of a file, which the host made, back to the device's own.
+  const std::int64_t first = rehearsal.ticks.empty() ? 0 : 100 * rehearsal.ticks.front().device;
+  if (!truth.kinect.clock.stamps_ns.empty()) {
+    const std::int64_t shift = first - truth.kinect.clock.stamps_ns.front();
+    for (std::int64_t& stamp : truth.kinect.clock.stamps_ns) stamp += shift;
+  }
+  for (std::size_t n = 0; n < truth.nodes.size(); ++n) {
+    std::vector<std::int64_t>& stamps = truth.nodes[n].clock.stamps_ns;
+    if (stamps.empty()) continue;
+    const auto first_us = static_cast<std::int64_t>(rehearsal.nodes[n].samples.front().counter_us);
+    const std::int64_t shift = 1000 * first_us - stamps.front();
+    for (std::int64_t& stamp : stamps) stamp += shift;
+  }
+  return truth;
+}
+
+}  // namespace kinalign

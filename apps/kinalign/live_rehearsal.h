@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rehearsal sent in real time over real sockets, as the devices would send it. In the app and in
+// no room: it joins sockets, simulated devices and the firmware's own logic, and no room may know
+// the last. One thread: some thousand events a second.
+#pragma once
+
+#include "apps/kinalign/live_camera.h"
+#include "apps/kinalign/live_node.h"
+#include "apps/kinalign/live_suit.h"
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace kinalign {
+
+struct LiveOptions {
+  std::string to = "127.0.0.1";
+  std::uint16_t mocap_port = 7012, kinect_port = 7020, node_port = 5005;
+  Link link = Link::paper;  // of the nodes
+  std::uint64_t seed = 1;
+};
+
+struct LiveCounts {
+  std::uint64_t mocap_frames = 0, kinect_frames = 0, node_frames = 0, node_samples = 0;
+  std::uint64_t replies = 0;  // of the host's to nodes that reached them
+  std::uint64_t refused = 0;  // datagrams that this machine did not take
+  Duration worst_late{};      // of a frame, by this machine
+};
+
+class LiveRehearsal {
+ public:
+  /// Begins in half a second. `motion` and `rehearsal` have to stay.
+  static Result<LiveRehearsal> open(const Motion& motion, const Rehearsal& rehearsal,
+                                    const LiveOptions& options, ClockReader& clock);
+
+  /// Time 0 of the motion, on both of the host's clocks.
+  const ClockPair& start() const { return start_; }
+  /// Until all is sent, and half a second more for what is on its way, or until `go_on` says no,
+  /// which is asked at least ten times a second with the time of the motion, s.
+  void run(const std::function<bool(double)>& go_on);
+  LiveCounts counts() const;
+
+ private:
+  LiveRehearsal(ClockReader& clock, ClockPair start, double length_s)
+      : clock_(&clock), start_(start), length_s_(length_s) {}
+  void wait(HostTime until) const;
+
+  ClockReader* clock_;
+  ClockPair start_;
+  double length_s_;
+  std::unique_ptr<LiveSuit> suit_;
+  std::unique_ptr<LiveCamera> camera_;
+  std::vector<std::unique_ptr<LiveNode>> nodes_;
+};
+
+/// Stamps of the devices as they send them; times on the host's raw clock, brought to UTC by
+/// `start`.
+TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start);
+
+}  // namespace kinalign

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rehearsal in a folder: the devices' files, the manifest for align, and the truth.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/simulate/rehearsal.h"
+#include "kinalign/take/manifest.h"
+
+#include <string>
+
+namespace kinalign {
+
+/// What nodes' samples are stamped by: each node's own clock, or their arrival over a link.
+enum class NodeStamps { own, arrival };
+
+struct RehearsalFolder {
+  FileSystem& files;
+  std::string path;  // is there, and has a folder truth/ in it
+};
+
+/// truth/motion.bvh, 120 Hz: enough that a spline through it is within micrometres.
+Result<void> write_motion(const RehearsalFolder& folder, const Motion& motion);
+
+/// suit.bvh, one frame: what the suit's program exports, since its stream has no skeleton.
+Result<void> write_suit_head(const RehearsalFolder& folder, const Motion& motion);
+
+/// truth/truth.json.
+Result<void> write_truth(const RehearsalFolder& folder, const TrueRecording& truth);
+
+/// mocap.bvh, kinect.csv, imu_<node>.csv and recording.toml. `truth` gets the clocks that the
+/// files' stamps have.
+Result<void> write_devices(const RehearsalFolder& folder, const Rehearsal& rehearsal,
+                           const Motion& motion, NodeStamps stamps, TrueRecording& truth);
+
+}  // namespace kinalign

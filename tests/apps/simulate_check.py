@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What simulate writes and sends is what devices would, and its truth is true.
+simulate_check.py BUILD_FOLDER [CASE...]"""
+import bisect
+import hashlib
+import json
+import math
+import pathlib
+import signal
+import struct
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import cases
+from cases import case, done_with, in_time, kinalign, law, main, refused, wrong
+from mcap_walk import Walk
+
+NODES = ["waist", "wrist_left", "wrist_right", "ankle_left", "ankle_right"]
+
+
+def simulate(folder, *words, motion="built-in", name="r"):
+    out, _ = done_with(0, "simulate", motion, "-o", folder / name, "--json", *words)
+    return folder / name, json.loads(out)
+
+
+def truth_of(folder):
+    return json.loads((folder / "truth/truth.json").read_text())
+
+
+def time_of(clock, stamp):
+    """A straight line between neighbours, in whole numbers."""
+    stamps, times = clock["stamps_ns"], clock["times_ns"]
+    i = min(max(bisect.bisect_right(stamps, stamp) - 1, 0), len(stamps) - 2)
+    return times[i] + (stamp - stamps[i]) * (times[i + 1] - times[i]) // (stamps[i + 1] - stamps[i])
+
+
+def digests(folder):
+    return {path.relative_to(folder): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def aligned(folder, code=0):
+    out, _ = done_with(code, "align", folder / "recording.toml", "-o", folder / "take.h5", "--json")
+    return json.loads(out)["report"]
+
+
+def angle_between(p, q):
+    return 2 * math.degrees(math.acos(min(1.0, abs(sum(a * b for a, b in zip(p, q))))))
+
+
+@case
+def what_is_simulated_aligns_at_once_and_the_camera_is_found(folder):
+    made, said = simulate(folder, "--seconds", "12")
+    report, truth = aligned(made), truth_of(made)
+    assert report["frames"] == said["mocap_frames"] == truth["mocap"]["frames"], report["frames"]
+    space, camera = report["spaces"][0], truth["kinect"]
+    assert space["stream"] == "kinect" and space["after_m"] < 0.12 < 1 < space["before_m"], space
+    off = angle_between(space["rotation"], camera["rotation"])
+    away = math.dist(space["translation_m"], camera["translation"])
+    assert off < 8 and away < 0.25, f"{off:.2f} degrees, {away:.3f} m: {space}"
+    assert [node["node"] for node in truth["nodes"]] == NODES, truth["nodes"]
+    for stream in report["streams"][1:]:
+        assert stream["invalid"] < 0.1 * stream["samples"], stream
+
+
+@case
+def stamps_lie_within_what_the_manifest_says_of_them(folder):
+    made, _ = simulate(folder, "--seconds", "20", "--seed", "4")
+    truth = truth_of(made)
+    interval_ns = 20 * 25e-6 * 1e9 + 1e4
+    for clock, file in [(truth["kinect"]["clock"], "kinect.csv"),
+                        *((node["clock"], f"imu_{node['node']}.csv") for node in truth["nodes"])]:
+        stamps = [int(line.split(",")[0]) for line in (made / file).read_text().splitlines()[1:]]
+        assert clock["stamps_ns"][0] == stamps[0] and clock["stamps_ns"][-1] == stamps[-1], file
+        worst = max(abs(stamp - time_of(clock, stamp)) for stamp in stamps)
+        assert 100 < worst <= interval_ns, f"{file}: {worst} ns"
+    manifest = (made / "recording.toml").read_text()
+    assert manifest.count("interval_ms = 0.51\n") == 2, manifest
+
+
+@case
+def the_same_seed_gives_the_same_bytes_another_one_others(folder):
+    one, _ = simulate(folder, "--seconds", "4", "--seed", "9", name="one")
+    again, _ = simulate(folder, "--seconds", "4", "--seed", "9", name="again")
+    other, _ = simulate(folder, "--seconds", "4", "--seed", "10", name="other")
+    first, third = digests(one), digests(other)
+    assert first == digests(again)
+    assert first.keys() == third.keys() and all(first[name] != third[name] for name in first), first.keys()
+
+
+@case
+def arrival_stamps_are_later_by_the_radio_and_align_takes_them(folder):
+    made, _ = simulate(folder, "--seconds", "8", "--node-rate", "15", "--node-stamps", "arrival")
+    for node in truth_of(made)["nodes"]:
+        stamps = [int(line.split(",")[0]) for line in (made / f"imu_{node['node']}.csv").read_text().splitlines()[1:]]
+        assert stamps == node["clock"]["stamps_ns"]
+        delays = [stamp - time for stamp, time in zip(stamps, node["clock"]["times_ns"])]
+        assert min(delays) > 3_300_000 and 20e6 < sum(delays) / len(delays) < 50e6, delays
+    assert "offset_ms = -33.2\n" in (made / "recording.toml").read_text()
+    done = kinalign("align", made / "recording.toml", "-o", made / "take.h5")
+    assert done.returncode in (0, 1), law(done, ["align"])
+
+
+@case
+def a_motion_of_ones_own_is_simulated_as_it_is(folder):
+    made, _ = simulate(folder, "--seconds", "5")
+    again, said = simulate(folder, "--seconds", "4", motion=made / "truth/motion.bvh", name="again")
+    assert said["length_s"] == 4 and truth_of(again)["motion"] == "motion.bvh", said
+    aligned(again)
+    refused("simulate", made / "kinect.csv", "-o", folder / "none", naming=made / "kinect.csv", out=folder / "none")
+
+
+@case
+def nothing_is_ever_written_over(folder):
+    made, _ = simulate(folder, "--seconds", "3")
+    before = digests(made)
+    refused("simulate", "built-in", "-o", made, naming=f"{made}: expected no file or folder of that name, found one")
+    assert digests(made) == before
+
+
+@case
+def wrong_use_is_told(folder):
+    wrong("simulate", "built-in", says="--out: expected a new folder's name, found none")
+    wrong("simulate", "built-in", "-o", folder / "x", "--to", "127.0.0.1",
+          says="--to: expected --live beside it, found none")
+    wrong("simulate", "built-in", "-o", folder / "x", "--live", "--node-stamps", "own",
+          says="--node-stamps: expected files, found --live, where nodes send their own")
+    assert not (folder / "x").exists()
+
+
+# ---- live
+
+class Recorder:
+    """kinalign record for a suit, a Kinect and nodes on ports of its own."""
+
+    def __init__(self, folder):
+        self.program = subprocess.Popen(
+            [str(cases.PROGRAM), "record", "-o", str(folder), "--compression", "none", "--json", "--device",
+             "mocap=noitom:udp:127.0.0.1:0", "--device", "kinect=kinect:udp:127.0.0.1:0", "--device",
+             "imu=nodes:udp:127.0.0.1:0"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.started = json.loads(self.program.stdout.readline())
+
+    def flags(self):
+        ports = self.started["ports"]
+        return ["--mocap-port", ports["mocap"], "--kinect-port", ports["kinect"], "--node-port", ports["imu"]]
+
+    def end(self):
+        self.program.send_signal(signal.SIGINT)
+        out, err = self.program.communicate(timeout=60)
+        assert self.program.returncode == 0, err
+        return [json.loads(line) for line in out.splitlines()][-1], Walk(pathlib.Path(self.started["file"]))
+
+
+def recorded(folder, *words, seconds=6):
+    recorder = Recorder(folder / "takes")
+    done = kinalign("simulate", "built-in", "-o", folder / "r", "--live", "--seconds", seconds, "--json", *words,
+                    *recorder.flags())
+    assert done.returncode == 0, done.stderr
+    begun, sent = (json.loads(line) for line in done.stdout.decode().splitlines())
+    time.sleep(0.2)
+    stopped, walk = recorder.end()
+    return begun, sent, stopped, walk, truth_of(folder / "r")
+
+
+@case
+def all_that_is_sent_live_stands_in_the_recording(folder):
+    begun, sent, stopped, walk, truth = recorded(folder)
+    streams = {stream["stream"]: stream for stream in stopped["streams"]}
+    assert streams["mocap"]["frames"] == sent["mocap_frames"] == truth["mocap"]["frames"], stopped
+    assert streams["mocap"]["lost"] == streams["kinect"]["refused"] == streams["mocap"]["refused"] == 0, stopped
+    assert streams["kinect"]["frames"] == sent["kinect_frames"] == begun["kinect_frames"], stopped
+    assert sent["refused"] == 0 and sent["node_samples"] == begun["node_samples"], sent
+    nodes = {topic.split("/")[2] for topic, *_ in walk.messages if topic.startswith("/imu/")}
+    assert nodes == {"1", "2", "3", "4", "5"}, nodes
+    frames = sum(topic.endswith("/raw") and topic.startswith("/imu/") for topic, *_ in walk.messages)
+    assert 0.9 * sent["node_frames"] < frames < sent["node_frames"], f"{frames} of {sent}"  # link C loses 2 %
+    assert sent["replies"] > 0.85 * frames, sent
+
+
+def raw_offset(walk, truth):
+    """log_time of a recording -> CLOCK_MONOTONIC_RAW -> the truth's times."""
+    own = walk.metadata["kinalign.recording"]
+    return int(own["raw_ns"]) - int(own["utc_ns"]) + truth["host"]["utc_ns"] - truth["host"]["raw_ns"]
+
+
+@case
+def no_exchange_contradicts_the_truth_and_samples_were_taken_before_they_came(folder):
+    _, _, _, walk, truth = recorded(folder, seconds=8)
+    shift, closest = raw_offset(walk, truth), 10**9
+    clocks = {str(node["id"]): node["clock"] for node in truth["nodes"]}
+    exchanges = samples = 0
+    for topic, _, log, _, payload in walk.messages:
+        if topic.startswith("/imu/") and topic.endswith("/exchange"):
+            _, _, echo, t1, t2, t4, t3 = struct.unpack("<QIIqqqq", payload)
+            clock, to_truth = clocks[topic.split("/")[2]], truth["host"]["utc_ns"] - truth["host"]["raw_ns"]
+            assert time_of(clock, t1) < t2 + to_truth, "a frame arrived before it was sent"
+            closest = min(closest, t2 + to_truth - time_of(clock, t1))
+            if echo & 1:
+                assert t3 + to_truth < time_of(clock, t4) + 1000, "a reply was heard before it was sent"
+            exchanges += 1
+        elif topic.startswith("/imu/"):
+            clock, count = clocks[topic.split("/")[2]], payload[21]
+            n_tx = struct.unpack_from(">Q", payload, 24)[0]
+            at = 48
+            for _ in range(count):
+                age, what = struct.unpack_from(">IB", payload, at)
+                taken = time_of(clock, 1000 * (n_tx - age))
+                assert -1e6 < taken - truth["start_ns"] < 8.01e9 and taken < log + shift, (taken, log)
+                at += 5 + 12 * (what & 1) + 12 * (what >> 1 & 1) + 16 * (what >> 2 & 1)
+                samples += 1
+    assert exchanges > 200 and samples > 2500, (exchanges, samples)
+    assert 3.3e6 < closest < 9e6, f"{closest / 1e6} ms: the least delay of link C is 3.5"
+
+
+@case
+def frames_of_suit_and_camera_come_some_milliseconds_after_they_were_true(folder):
+    _, _, _, walk, truth = recorded(folder)
+    shift, late = raw_offset(walk, truth), {"mocap": [], "kinect": []}
+    for topic, _, log, _, payload in walk.messages:
+        if topic == "/mocap/raw":
+            frame = struct.unpack_from("<I", payload, 46)[0]
+            true_ns = truth["mocap"]["first_frame_ns"] + round(frame * 1e9 / truth["mocap"]["rate_hz"])
+            late["mocap"].append(log + shift - true_ns)
+        if topic == "/kinect/raw" and payload[5] == 2:
+            device = struct.unpack_from("<q", payload, 24)[0]
+            late["kinect"].append(log + shift - time_of(truth["kinect"]["clock"], 100 * device))
+    for name, ns in late.items():
+        assert len(ns) > 100 and min(ns) > 2e6, f"{name}: {min(ns)}"
+        in_time(sorted(ns)[len(ns) // 2] < 4e6, f"{name}: {sorted(ns)[len(ns) // 2]}")
+
+
+@case
+def ctrl_c_ends_a_live_one_in_order_and_nobody_listening_is_told(folder):
+    with subprocess.Popen(
+            [str(cases.PROGRAM), "simulate", "built-in", "-o", str(folder / "r"), "--live", "--mocap-port", "9", "--json",
+             "--kinect-port", "9", "--node-port", "9"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as one:
+        assert json.loads(one.stdout.readline())["event"] == "sending"
+        time.sleep(2)
+        one.send_signal(signal.SIGINT)
+        out, err = one.communicate(timeout=30)
+    assert one.returncode in (0, 130), f"{one.returncode} {err}"
+    sent = json.loads(out)
+    assert sent["event"] == "sent" and sent["refused"] > 10, sent
+    assert truth_of(folder / "r")["length_s"] == 60
+
+
+sys.exit(main())
