@@ -12,7 +12,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration lead = 500ms, behind = 500ms, longest_wait = 100ms;
+constexpr Duration behind = 500ms, longest_wait = 100ms;
+
+Duration duration(double s) { return Duration{static_cast<std::int64_t>(s * 1e9)}; }
 constexpr std::size_t noitom_joints = 59;
 
 /// Both clocks at once, and so much later on both.
@@ -37,7 +39,7 @@ Result<LiveRehearsal> LiveRehearsal::open(const Motion& motion, const Rehearsal&
   for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
     sockets.push_back(KA_TRY(LiveSocket::connected_to(options.to, options.node_port)));
   }
-  LiveRehearsal live(clock, begin_after(clock, lead), motion.length_s);
+  LiveRehearsal live(clock, begin_after(clock, duration(options.begin_in_s)), motion.length_s);
   const HostTime start = live.start_.raw;
   // New in each run, as a device draws them at each start.
   const std::uint64_t run = mix64(static_cast<std::uint64_t>(start.time_since_epoch().count()));
@@ -61,8 +63,11 @@ Result<LiveRehearsal> LiveRehearsal::open(const Motion& motion, const Rehearsal&
 
 void LiveRehearsal::run(const std::function<bool(double)>& go_on) {
   ::prctl(PR_SET_TIMERSLACK, 1000UL);  // ns: the standard 50 us would make delays longer
-  const HostTime end = start_.raw + Duration{static_cast<std::int64_t>(length_s_ * 1e9)} + behind;
-  wait(start_.raw);  // a node's counter says nothing before
+  const HostTime end = start_.raw + duration(length_s_) + behind;
+  while (clock_->raw() < start_.raw) {  // a node's counter says nothing before
+    if (!go_on(0.0)) return;
+    wait(std::min(start_.raw, clock_->raw() + longest_wait));
+  }
   for (HostTime now = clock_->raw(); now < end; now = clock_->raw()) {
     if (!go_on(seconds(now - start_.raw))) return;
     suit_->work(now);

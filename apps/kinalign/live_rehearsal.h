@@ -19,6 +19,7 @@ struct LiveOptions {
   std::uint16_t mocap_port = 7012, kinect_port = 7020, node_port = 5005;
   Link link = Link::paper;  // of the nodes
   std::uint64_t seed = 1;
+  double begin_in_s = 0.5;
 };
 
 struct LiveCounts {
@@ -30,7 +31,7 @@ struct LiveCounts {
 
 class LiveRehearsal {
  public:
-  /// Begins in half a second. `motion` and `rehearsal` have to stay.
+  /// Begins options.begin_in_s from now. `motion` and `rehearsal` have to stay.
   static Result<LiveRehearsal> open(const Motion& motion, const Rehearsal& rehearsal,
                                     const LiveOptions& options, ClockReader& clock);
 

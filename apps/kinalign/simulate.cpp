@@ -37,6 +37,7 @@ struct Simulate {
   std::string to = "127.0.0.1";
   std::int64_t mocap_port = 7012, kinect_port = 7020, node_port = 5005;
   std::string link = "C";
+  double begin_in = 0.5;
 };
 
 Usage describe_simulate(Simulate& o) {
@@ -60,7 +61,8 @@ Usage describe_simulate(Simulate& o) {
        .meaning =
            "live: the nodes' radio (docs/clock.md: A wired, B quiet Wi-Fi, C the paper's ...)",
        .value = &o.link,
-       .choices = {"A", "B", "C", "D", "E", "F", "G"}}};
+       .choices = {"A", "B", "C", "D", "E", "F", "G"}},
+      {"begin_in", "live: time to start the recorder in, s", &o.begin_in, 0.1, 3600.0}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a new folder's name", "none"});
     const auto refuse = [&](const char* name, const char* flag, const char* wanted,
@@ -72,7 +74,7 @@ Usage describe_simulate(Simulate& o) {
       return refuse("node_stamps", "--node-stamps", "files", "--live, where nodes send their own");
     }
     for (const auto& [name, flag] :
-         {std::pair("to", "--to"), std::pair("link", "--link"),
+         {std::pair("to", "--to"), std::pair("link", "--link"), std::pair("begin_in", "--begin-in"),
           std::pair("mocap_port", "--mocap-port"), std::pair("kinect_port", "--kinect-port"),
           std::pair("node_port", "--node-port")}) {
       KA_TRY(refuse(name, flag, "--live beside it", "none"));
@@ -194,7 +196,9 @@ Result<int> send_live(const Simulate& o, const RehearsalFolder& folder, const Mo
                             .kinect_port = static_cast<std::uint16_t>(o.kinect_port),
                             .node_port = static_cast<std::uint16_t>(o.node_port),
                             .link = static_cast<Link>(o.link.front() - 'A'),
-                            .seed = static_cast<std::uint64_t>(o.seed)};
+                            .seed = static_cast<std::uint64_t>(o.seed),
+                            .begin_in_s = o.begin_in};
+  KA_TRY(write_lab(folder, options, rehearsal));
   take_signals();
   LiveRehearsal live = KA_TRY(LiveRehearsal::open(motion, rehearsal, options, clock));
   TrueRecording truth = named(live_truth(rehearsal, motion, live.start()), o);

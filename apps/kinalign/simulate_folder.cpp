@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace kinalign {
@@ -19,19 +20,25 @@ constexpr int bvh_decimals = 6;
 constexpr Link arrival_link = Link::paper;
 constexpr double arrival_delay_ms = 33.2;  // of that link in the mean, time-sync.md 3.4
 
+/// In blocks: an hour of a body is a gigabyte of numbers.
 Result<void> write_clip(const RehearsalFolder& folder, const std::string& name,
-                        const Skeleton& skeleton, const ClipFrames& frames, double rate_hz) {
+                        const Motion& motion, const MocapRun& run) {
+  constexpr std::size_t block = 1024;
   OutputFile out =
       KA_TRY(OutputFile::create(folder.files, folder.path + "/" + name, Overwrite::no));
-  const BvhChannels channels(skeleton, BvhChannels::Positions::of_all);
-  BvhHierarchy hierarchy = channels.hierarchy(frames.size(), 1.0 / rate_hz);
-  hierarchy.frame_time =
-      fmt::format("{:.9f}", 1.0 / rate_hz);  // an hour's last frame within 0.1 ms
-  BvhWriter writer(hierarchy, frames.size(), bvh_decimals,
+  const BvhChannels channels(motion.skeleton, BvhChannels::Positions::of_all);
+  BvhHierarchy hierarchy = channels.hierarchy(run.frames, 1.0 / run.rate_hz);
+  // An hour's last frame within 0.1 ms.
+  hierarchy.frame_time = fmt::format("{:.9f}", 1.0 / run.rate_hz);
+  BvhWriter writer(hierarchy, run.frames, bvh_decimals,
                    [&](std::string_view text) { return out.write(text); });
-  std::vector<double> rows;
-  channels.append(frames.local_positions, frames.local_rotations, rows);
-  KA_TRY(writer.append(rows));
+  for (std::size_t begin = 0; begin < run.frames; begin += block) {
+    const ClipFrames frames =
+        mocap_frames(motion, run, begin, std::min(begin + block, run.frames), Time{});
+    std::vector<double> rows;
+    channels.append(frames.local_positions, frames.local_rotations, rows);
+    KA_TRY(writer.append(rows));
+  }
   KA_TRY(writer.finish());
   return out.commit();
 }
@@ -112,14 +119,40 @@ Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehears
 }  // namespace
 
 Result<void> write_motion(const RehearsalFolder& folder, const Motion& motion) {
-  return write_clip(folder, "truth/motion.bvh", motion.skeleton,
-                    sample_frames(motion, motion_rate_hz, Time{}), motion_rate_hz);
+  MocapRun all{.rate_hz = motion_rate_hz};
+  all.frames = static_cast<std::size_t>(motion.length_s * motion_rate_hz + 1e-6) + 1;
+  return write_clip(folder, "truth/motion.bvh", motion, all);
 }
 
 Result<void> write_suit_head(const RehearsalFolder& folder, const Motion& motion) {
-  const MocapRun one{.frames = 1};
-  return write_clip(folder, "suit.bvh", motion.skeleton, mocap_frames(motion, one, Time{}),
-                    one.rate_hz);
+  return write_clip(folder, "suit.bvh", motion, {.frames = 1});
+}
+
+Result<void> write_lab(const RehearsalFolder& folder, const LiveOptions& options,
+                       const Rehearsal& rehearsal) {
+  std::string nodes;
+  for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
+    nodes += fmt::format("{}\"{}\" = \"{}\"", n == 0 ? "" : ", ", n + 1,
+                         rehearsal.nodes[n].mounting.node_name);
+  }
+  return write_text(folder, "lab.toml",
+                    fmt::format(R"([device.mocap]
+protocol = "noitom"
+port = {}
+skeleton = "suit.bvh"
+rate_hz = {}
+
+[device.kinect]
+protocol = "kinect"
+port = {}
+
+[device.imu]
+protocol = "nodes"
+port = {}
+nodes = {{ {} }}
+)",
+                                options.mocap_port, rehearsal.mocap.rate_hz, options.kinect_port,
+                                options.node_port, nodes));
 }
 
 Result<void> write_truth(const RehearsalFolder& folder, const TrueRecording& truth) {
@@ -129,9 +162,7 @@ Result<void> write_truth(const RehearsalFolder& folder, const TrueRecording& tru
 Result<void> write_devices(const RehearsalFolder& folder, const Rehearsal& rehearsal,
                            const Motion& motion, NodeStamps stamps, TrueRecording& truth) {
   const Time zero = utc_time(truth.start_ns);
-  const MocapRun& run = rehearsal.mocap;
-  KA_TRY(write_clip(folder, "mocap.bvh", motion.skeleton, mocap_frames(motion, run, zero),
-                    run.rate_hz));
+  KA_TRY(write_clip(folder, "mocap.bvh", motion, rehearsal.mocap));
   TextOut kinect = KA_TRY(table(folder, "kinect.csv"));
   KA_TRY(write_points(kinect_file(rehearsal, zero), kinect));
   KA_TRY(kinect.commit());

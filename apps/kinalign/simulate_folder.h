@@ -2,6 +2,8 @@
 // A rehearsal in a folder: the devices' files, the manifest for align, and the truth.
 #pragma once
 
+#include "apps/kinalign/live_rehearsal.h"
+
 #include "kinalign/core/files.h"
 #include "kinalign/simulate/rehearsal.h"
 #include "kinalign/take/manifest.h"
@@ -23,6 +25,10 @@ Result<void> write_motion(const RehearsalFolder& folder, const Motion& motion);
 
 /// suit.bvh, one frame: what the suit's program exports, since its stream has no skeleton.
 Result<void> write_suit_head(const RehearsalFolder& folder, const Motion& motion);
+
+/// lab.toml for `record`: the devices, where they send to, what they are called.
+Result<void> write_lab(const RehearsalFolder& folder, const LiveOptions& options,
+                       const Rehearsal& rehearsal);
 
 /// truth/truth.json.
 Result<void> write_truth(const RehearsalFolder& folder, const TrueRecording& truth);

@@ -155,18 +155,19 @@ Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options
   return done;
 }
 
-ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, Time zero) {
+ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, std::size_t begin,
+                        std::size_t end, Time zero) {
   const std::size_t joints = motion.skeleton.joints();
   ClipFrames frames;
-  frames.local_positions.resize(3 * joints * run.frames);
-  frames.local_rotations.resize(4 * joints * run.frames);
+  frames.local_positions.resize(3 * joints * (end - begin));
+  frames.local_rotations.resize(4 * joints * (end - begin));
   Pose pose;
-  for (std::size_t k = 0; k < run.frames; ++k) {
+  for (std::size_t k = begin; k < end; ++k) {
     motion.pose_at(run.frame_s(k), pose);
     frames.stamps.push_back(time_at(zero, run.frame_s(k)));
     for (std::size_t j = 0; j < joints; ++j) {
-      vec3(frames.local_positions, k * joints + j) = pose.local_positions[j];
-      put_quat(frames.local_rotations, k * joints + j, pose.local_rotations[j]);
+      vec3(frames.local_positions, (k - begin) * joints + j) = pose.local_positions[j];
+      put_quat(frames.local_rotations, (k - begin) * joints + j, pose.local_rotations[j]);
     }
   }
   return frames;

@@ -47,8 +47,9 @@ struct Rehearsal {
 /// camera (kinect_map.h) and nodes (five_nodes) are known for.
 Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options);
 
-/// The suit's frames; `zero` is the stamp of time 0.
-ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, Time zero);
+/// The suit's frames from `begin` until `end`; `zero` is the stamp of time 0.
+ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, std::size_t begin,
+                        std::size_t end, Time zero);
 
 /// A camera on a tripod, 0.9 to 1.2 m above the floor and 2.7 to 3.0 m before the middle of where
 /// the person goes, up to 15 degrees beside where they face at first, not quite level.

@@ -14,7 +14,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
-from cases import case, done_with, in_time, kinalign, law, main, refused, wrong
+from cases import BUILD, case, done_with, in_time, kinalign, law, main, refused, wrong
 from mcap_walk import Walk
 
 NODES = ["waist", "wrist_left", "wrist_right", "ankle_left", "ankle_right"]
@@ -78,6 +78,32 @@ def stamps_lie_within_what_the_manifest_says_of_them(folder):
         assert 100 < worst <= interval_ns, f"{file}: {worst} ns"
     manifest = (made / "recording.toml").read_text()
     assert manifest.count("interval_ms = 0.51\n") == 2, manifest
+
+
+def table_rows(text):
+    """Lines of both tables as lists of cells, without their heads."""
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line]
+    return [row for row in rows if not row[0].startswith(("---", "device", "values"))]
+
+
+@case
+def the_truth_table_finds_all_within_its_interval_and_alignment_adding_little(folder):
+    made, _ = simulate(folder, "--seconds", "30", "--seed", "6")
+    aligned(made)
+    done = subprocess.run([BUILD / "tools/kinalign_truth_table", made / "recording.toml", made / "take.h5",
+                           made / "truth/truth.json"], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = table_rows(done.stdout)
+    assert [row[0] for row in rows] == 2 * (["mocap", "kinect"] + [f"imu {node}" for node in NODES]), done.stdout
+    assert all(" 0 of " in row[5] for row in rows[1:7]), done.stdout
+    kinect = rows[8]
+    assert float(kinect[4].removesuffix("%")) < 5, kinect  # the bar: noise alone and 5 % more
+    truth = json.loads((made / "truth/truth.json").read_text())
+    truth["nodes"][2]["clock"]["times_ns"] = [time + 2_000_000 for time in truth["nodes"][2]["clock"]["times_ns"]]
+    (made / "truth/truth.json").write_text(json.dumps(truth))
+    done = subprocess.run([BUILD / "tools/kinalign_truth_table", made / "recording.toml", made / "take.h5",
+                           made / "truth/truth.json"], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 1 and float(table_rows(done.stdout)[4][2]) > 1.2, done.stdout
 
 
 @case

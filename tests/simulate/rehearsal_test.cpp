@@ -59,7 +59,7 @@ TEST_CASE("a suit's frames begin some 53 ms behind the click, and end behind the
 TEST_CASE("frames of the suit are the motion, at the times that the truth has") {
   const Motion motion = person(3, 4.0);
   const Rehearsal done = rehearsed(motion, 3);
-  const ClipFrames frames = mocap_frames(motion, done.mocap, zero);
+  const ClipFrames frames = mocap_frames(motion, done.mocap, 0, done.mocap.frames, zero);
   const TrueRecording truth = truth_of(done, motion, zero);
   REQUIRE(frames.size() == truth.mocap.frames);
   Pose pose;

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// What became of a simulated recording:  kinalign_truth_table RECORDING TAKE TRUTH
+// RECORDING is what was aligned (recording.toml or .mcap), TAKE what came out of it, TRUTH
+// simulate's truth.json. Prints errors of time and of values; ends with 1 where a certified stamp
+// lies outside its interval.
+#include "apps/kinalign/inputs.h"
+
+#include "kinalign/io/bvh.h"
+#include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_reader.h"
+#include "kinalign/io/take_hdf5.h"
+#include "kinalign/io/truth_json.h"
+#include "kinalign/motion/clip_motion.h"
+#include "kinalign/simulate/judge_recording.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_text = std::size_t{1} << 30;
+
+struct Names {
+  std::string recording, take, truth;
+};
+
+struct Opened {
+  Recording recording;
+  std::optional<RecordingFacts> facts;  // of one that was received
+};
+
+Result<Opened> open(FileSystem& files, const std::string& path) {
+  Opened opened;
+  Manifest manifest;
+  if (KA_TRY(is_recording(files, path))) {
+    const RecordingSurvey survey = KA_TRY(survey_recording(files, path));
+    opened.facts = survey.facts;
+    manifest = KA_TRY(manifest_of(survey, std::string(file_name(path))));
+  } else {
+    manifest = KA_TRY(load_manifest(files, path));
+  }
+  opened.recording = KA_TRY(open_recording(files, manifest, std::string(folder(path))));
+  return opened;
+}
+
+/// Both have UTC by one reading of the host's clocks, which a slewed clock made differ since.
+Duration shift_of(const Opened& opened, const TrueRecording& truth) {
+  if (!opened.facts || !truth.host) return {};
+  const ClockPair& anchor = opened.facts->anchor;
+  const std::int64_t recorded = to_ns(anchor.utc) - anchor.raw.time_since_epoch().count();
+  return Duration{recorded - (truth.host->utc_ns - truth.host->raw_ns)};
+}
+
+std::string name_of(const std::string& stream, const std::string& node) {
+  return node.empty() ? stream : stream + " " + node;
+}
+
+void print(const TimeJudgement& one) {
+  std::string interval = "none";
+  if (one.half_width_s) {
+    interval = fmt::format("± {:.3f}, {} of {} outside", 1e3 * *one.half_width_s, one.outside,
+                           one.certified);
+  }
+  std::printf("%s\n", fmt::format("| {} | {} | {:.3f} | {:.3f} | {:.3f} | {} |",
+                                  name_of(one.stream, one.node), one.samples, 1e3 * one.median_s,
+                                  1e3 * one.most_s, 1e3 * one.worst_s, interval)
+                          .c_str());
+}
+
+void print(const ValueJudgement& one) {
+  const auto text = [&](double value) {
+    return one.node.empty() ? fmt::format("{:.2f} cm", 100.0 * value)
+                            : fmt::format("{:.4f} rad/s", value);
+  };
+  const auto or_none = [&](const std::optional<double>& value) {
+    return value ? text(*value) : std::string("–");
+  };
+  std::string more = "–";
+  if (one.alone) more = fmt::format("{:+.1f} %", 100.0 * (one.after / *one.alone - 1.0));
+  std::printf("%s\n", fmt::format("| {} | {} | {} | {} | {} |", name_of(one.stream, one.node),
+                                  or_none(one.before), text(one.after), or_none(one.alone), more)
+                          .c_str());
+}
+
+Result<Motion> true_motion(FileSystem& files, const Names& names, const TrueRecording& truth) {
+  const std::string path = std::string(folder(names.truth)) + truth.motion_file;
+  const BvhFile bvh = KA_TRY(read_bvh(KA_TRY(read_whole(files, path, most_text)), path, {}));
+  return motion_of(bvh.clip, {.smooth_s = 0.0});
+}
+
+Result<int> run(const Names& names) {
+  PosixFiles files;
+  const TrueRecording truth =
+      KA_TRY(read_truth(KA_TRY(read_whole(files, names.truth, most_text)), names.truth));
+  const Motion motion = KA_TRY(true_motion(files, names, truth));
+  const Opened opened = KA_TRY(open(files, names.recording));
+  const Take take = KA_TRY(read_take(files, names.take));
+  const Duration shift = shift_of(opened, truth);
+  std::uint64_t outside = 0;
+  std::puts("| device | samples | time error: median, ms | 95 % | worst | certified |");
+  std::puts("| --- | --- | --- | --- | --- | --- |");
+  for (const RecordedStream& stream : opened.recording.streams) {
+    const TimeJudgement judged = KA_TRY(judge_time(stream, truth, shift));
+    outside += judged.outside;
+    print(judged);
+  }
+  std::puts("\n| values, rms | before | in the take | noise alone | more than that |");
+  std::puts("| --- | --- | --- | --- | --- |");
+  const auto values = KA_TRY(judge_values({take, opened.recording, truth, motion, shift}));
+  for (const ValueJudgement& one : values) print(one);
+  return outside == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+}  // namespace kinalign
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    std::fputs("usage: kinalign_truth_table RECORDING TAKE TRUTH\n", stderr);
+    return 2;
+  }
+  const auto done = kinalign::run({argv[1], argv[2], argv[3]});
+  if (done) return *done;
+  std::fprintf(stderr, "%s\n", kinalign::to_string(done.error()).c_str());
+  return 3;
+}
