@@ -7,6 +7,7 @@ import json
 import math
 import pathlib
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -255,6 +256,31 @@ def frames_of_suit_and_camera_come_some_milliseconds_after_they_were_true(folder
     for name, ns in late.items():
         assert len(ns) > 100 and min(ns) > 2e6, f"{name}: {min(ns)}"
         in_time(sorted(ns)[len(ns) // 2] < 4e6, f"{name}: {sorted(ns)[len(ns) // 2]}")
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+@case
+def the_whole_chain_loses_no_truth_from_the_socket_to_the_take(folder):
+    ports = [word for name in ("mocap", "kinect", "node") for word in (f"--{name}-port", str(free_port()))]
+    done = subprocess.run([pathlib.Path(__file__).parents[2] / "tools/rehearse.sh", BUILD, folder / "r", "12", *ports], capture_output=True,
+                          text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = table_rows(done.stdout[done.stdout.index("| device"):])
+    times, values = rows[:7], rows[7:]
+    assert [row[0] for row in times] == ["mocap", "kinect"] + [f"imu {n}" for n in range(1, 6)], done.stdout
+    for row in times[2:]:
+        median, worst = float(row[2]), float(row[4])
+        assert int(row[1]) > 1000 and " 0 of " in row[5], row
+        in_time(median < 0.5 and worst < 2, row)  # the link's floors differ by 0.2 ms at the most
+    for row in times[:2]:
+        in_time(1.9 < float(row[2]) < 3 and float(row[4]) < 4, row)  # 2 ms in the devices' own programs
+    kinect = next(row for row in values if row[0] == "kinect")
+    in_time(float(kinect[4].removesuffix("%")) < 5, kinect)
 
 
 @case
