@@ -27,9 +27,12 @@ LiveNode::LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, Cl
       counter_(node.seed, options.length_s),
       socket_(std::move(socket)),
       up_({.link = options.link}, node.seed, Way::up, frame_rate_hz),
-      down_({.link = options.link}, node.seed, Way::down, frame_rate_hz),
-      node_(*this, settings_of(options)) {
-  node_.set_link(true);
+      down_({.link = options.link}, node.seed, Way::down, frame_rate_hz) {
+  if (options.clockless) {
+    node_.emplace<ClocklessNode>(*this, settings_of(options)).set_link(true);
+  } else {
+    node_.emplace<Node>(*this, settings_of(options)).set_link(true);
+  }
 }
 
 void LiveNode::work() {
@@ -37,13 +40,17 @@ void LiveNode::work() {
   while (const std::size_t size = socket_.receive(room)) {
     down_.put(clock_.raw(), std::span(room).first(size));
   }
+  auto* counting = std::get_if<Node>(&node_);
+  auto* clockless = std::get_if<ClocklessNode>(&node_);
   sampling_ = true;
   while (sample_due(counter_at(clock_.raw()))) {
-    node_.tick(1);
+    if (counting != nullptr) counting->tick(1);
+    if (clockless != nullptr) clockless->tick(1);
     ++next_sample_;
   }
   sampling_ = false;
-  node_.poll();
+  if (counting != nullptr) counting->poll();
+  if (clockless != nullptr) clockless->poll();
   while (const auto datagram = up_.take(clock_.raw())) {
     if (!socket_.send(*datagram)) ++refused_;
   }
@@ -52,11 +59,28 @@ void LiveNode::work() {
 HostTime LiveNode::next() const {
   const std::uint64_t now_us = counter_at(clock_.raw());
   HostTime next = std::min(up_.next(), down_.next());
-  next = std::min(next, host_at(now_us + node_.idle_us(now_us)));
+  if (const auto* counting = std::get_if<Node>(&node_)) {
+    next = std::min(next, host_at(now_us + counting->idle_us(now_us)));
+  }
   if (next_sample_ < samples_.samples.size()) {
     next = std::min(next, host_at(samples_.samples[next_sample_].counter_us));
   }
   return next;
+}
+
+LiveNodeCounts LiveNode::counts() {
+  LiveNodeCounts counts{.refused = refused_};
+  if (auto* counting = std::get_if<Node>(&node_)) {
+    const NodeTally tally = counting->counts();
+    counts.sent = tally.frames.sent;
+    counts.samples = tally.frames.samples_sent;
+    counts.answered = tally.replies.accepted;
+  }
+  if (const auto* clockless = std::get_if<ClocklessNode>(&node_)) {
+    counts.sent = counts.samples = clockless->counts().requests;
+    counts.answered = clockless->counts().answers.accepted;
+  }
+  return counts;
 }
 
 std::uint64_t LiveNode::counter_at(HostTime t) const {

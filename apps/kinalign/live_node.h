@@ -7,18 +7,29 @@
 
 #include "apps/kinalign/live_link.h"
 #include "apps/kinalign/live_socket.h"
+#include "firmware/node/clockless_node.h"
 #include "firmware/node/node.h"
 
 #include "kinalign/capture/host_clock.h"
 #include "kinalign/simulate/inertial_nodes.h"
+
+#include <variant>
 
 namespace kinalign {
 
 struct LiveNodeOptions {
   std::uint32_t id = 1, boot_id = 1;
   Link link = Link::paper;
-  HostTime start{};       // of time 0 of the motion
-  double length_s = 0.0;  // of the motion
+  bool clockless = false;  // no counter: each sample in a request of its own (wire/clockless.h)
+  HostTime start{};        // of time 0 of the motion
+  double length_s = 0.0;   // of the motion
+};
+
+/// Of either kind of node.
+struct LiveNodeCounts {
+  std::uint64_t sent = 0, samples = 0;  // frames or requests, and what was in them
+  std::uint64_t answered = 0;           // by the host, as far as it reached the node
+  std::uint64_t refused = 0;  // datagrams that this machine did not take: nobody listens there
 };
 
 class LiveNode final : public Board {
@@ -34,9 +45,7 @@ class LiveNode final : public Board {
   /// When something is due, should no datagram arrive.
   HostTime next() const;
   int fd() const { return socket_.fd(); }
-  NodeTally counts() { return node_.counts(); }
-  /// Datagrams that this machine did not take, as where nobody listens.
-  std::uint64_t refused() const { return refused_; }
+  LiveNodeCounts counts();
 
   std::uint64_t counter_us() override;
   bool read_imu(NodeSample& sample) override;
@@ -61,7 +70,7 @@ class LiveNode final : public Board {
   SimulatedClock counter_;
   LiveSocket socket_;
   LiveLink up_, down_;
-  Node node_;
+  std::variant<std::monostate, Node, ClocklessNode> node_;
   std::size_t next_sample_ = 0;
   bool sampling_ = false;
   std::uint64_t refused_ = 0;

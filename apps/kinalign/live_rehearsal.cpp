@@ -53,6 +53,7 @@ Result<LiveRehearsal> LiveRehearsal::open(const Motion& motion, const Rehearsal&
     LiveNodeOptions node{.id = static_cast<std::uint32_t>(n + 1),
                          .boot_id = static_cast<std::uint32_t>(mix64(run + n)),
                          .link = options.link,
+                         .clockless = options.clockless,
                          .start = start,
                          .length_s = motion.length_s};
     live.nodes_.push_back(
@@ -96,30 +97,38 @@ LiveCounts LiveRehearsal::counts() const {
   counts.refused = suit_->refused() + camera_->refused();
   counts.worst_late = std::max(suit_->worst_late(), camera_->worst_late());
   for (const auto& node : nodes_) {
-    const NodeTally tally = node->counts();
-    counts.node_frames += tally.frames.sent;
-    counts.node_samples += tally.frames.samples_sent;
-    counts.replies += tally.replies.accepted;
-    counts.refused += node->refused();
+    const LiveNodeCounts one = node->counts();
+    counts.node_frames += one.sent;
+    counts.node_samples += one.samples;
+    counts.replies += one.answered;
+    counts.refused += one.refused;
   }
   return counts;
 }
 
-TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start) {
+TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start,
+                         bool clockless) {
   TrueRecording truth = truth_of(rehearsal, motion, start.utc);
   truth.host = TrueHost{start.raw.time_since_epoch().count(), to_ns(start.utc)};
   // From the stamps of a file, which the host made, back to the device's own.
-  const std::int64_t first = rehearsal.ticks.empty() ? 0 : 100 * rehearsal.ticks.front().device;
-  if (!truth.kinect.clock.stamps_ns.empty()) {
-    const std::int64_t shift = first - truth.kinect.clock.stamps_ns.front();
-    for (std::int64_t& stamp : truth.kinect.clock.stamps_ns) stamp += shift;
-  }
+  const auto begin_at = [](TrueClock& clock, std::int64_t first) {
+    if (clock.stamps_ns.empty()) return;
+    const std::int64_t shift = first - clock.stamps_ns.front();
+    for (std::int64_t& stamp : clock.stamps_ns) stamp += shift;
+  };
+  if (!rehearsal.ticks.empty()) begin_at(truth.kinect.clock, 100 * rehearsal.ticks.front().device);
   for (std::size_t n = 0; n < truth.nodes.size(); ++n) {
-    std::vector<std::int64_t>& stamps = truth.nodes[n].clock.stamps_ns;
-    if (stamps.empty()) continue;
-    const auto first_us = static_cast<std::int64_t>(rehearsal.nodes[n].samples.front().counter_us);
-    const std::int64_t shift = 1000 * first_us - stamps.front();
-    for (std::int64_t& stamp : stamps) stamp += shift;
+    const SimulatedNode& node = rehearsal.nodes[n];
+    if (clockless) {
+      truth.nodes[n].clock = {};
+      for (std::size_t i = 0; i < node.truth.times.size(); ++i) {
+        truth.nodes[n].clock.stamps_ns.push_back(static_cast<std::int64_t>(i));
+        truth.nodes[n].clock.times_ns.push_back(to_ns(time_at(start.utc, node.truth.times[i])));
+      }
+    } else if (!node.samples.empty()) {
+      begin_at(truth.nodes[n].clock,
+               1000 * static_cast<std::int64_t>(node.samples.front().counter_us));
+    }
   }
   return truth;
 }

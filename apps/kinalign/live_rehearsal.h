@@ -20,6 +20,7 @@ struct LiveOptions {
   Link link = Link::paper;  // of the nodes
   std::uint64_t seed = 1;
   double begin_in_s = 0.5;
+  bool clockless = false;  // nodes have no counter
 };
 
 struct LiveCounts {
@@ -56,7 +57,8 @@ class LiveRehearsal {
 };
 
 /// Stamps of the devices as they send them; times on the host's raw clock, brought to UTC by
-/// `start`.
-TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start);
+/// `start`. Of a node without a counter a stamp is the number of its request.
+TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start,
+                         bool clockless);
 
 }  // namespace kinalign

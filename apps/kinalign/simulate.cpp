@@ -38,6 +38,7 @@ struct Simulate {
   std::int64_t mocap_port = 7012, kinect_port = 7020, node_port = 5005;
   std::string link = "C";
   double begin_in = 0.5;
+  bool clockless = false;
 };
 
 Usage describe_simulate(Simulate& o) {
@@ -62,7 +63,9 @@ Usage describe_simulate(Simulate& o) {
            "live: the nodes' radio (docs/clock.md: A wired, B quiet Wi-Fi, C the paper's ...)",
        .value = &o.link,
        .choices = {"A", "B", "C", "D", "E", "F", "G"}},
-      {"begin_in", "live: time to start the recorder in, s", &o.begin_in, 0.1, 3600.0}};
+      {"begin_in", "live: time to start the recorder in, s", &o.begin_in, 0.1, 3600.0},
+      {"clockless", "live: nodes without a counter, as the paper's; --node-rate 15 is theirs",
+       &o.clockless}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a new folder's name", "none"});
     const auto refuse = [&](const char* name, const char* flag, const char* wanted,
@@ -75,8 +78,8 @@ Usage describe_simulate(Simulate& o) {
     }
     for (const auto& [name, flag] :
          {std::pair("to", "--to"), std::pair("link", "--link"), std::pair("begin_in", "--begin-in"),
-          std::pair("mocap_port", "--mocap-port"), std::pair("kinect_port", "--kinect-port"),
-          std::pair("node_port", "--node-port")}) {
+          std::pair("clockless", "--clockless"), std::pair("mocap_port", "--mocap-port"),
+          std::pair("kinect_port", "--kinect-port"), std::pair("node_port", "--node-port")}) {
       KA_TRY(refuse(name, flag, "--live beside it", "none"));
     }
     return {};
@@ -197,11 +200,12 @@ Result<int> send_live(const Simulate& o, const RehearsalFolder& folder, const Mo
                             .node_port = static_cast<std::uint16_t>(o.node_port),
                             .link = static_cast<Link>(o.link.front() - 'A'),
                             .seed = static_cast<std::uint64_t>(o.seed),
-                            .begin_in_s = o.begin_in};
+                            .begin_in_s = o.begin_in,
+                            .clockless = o.clockless};
   KA_TRY(write_lab(folder, options, rehearsal));
   take_signals();
   LiveRehearsal live = KA_TRY(LiveRehearsal::open(motion, rehearsal, options, clock));
-  TrueRecording truth = named(live_truth(rehearsal, motion, live.start()), o);
+  TrueRecording truth = named(live_truth(rehearsal, motion, live.start(), o.clockless), o);
   truth.link = o.link;
   KA_TRY(write_truth(folder, truth));
   call.console.if_it_fails({});

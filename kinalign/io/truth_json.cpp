@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <functional>
 
 namespace kinalign {
@@ -121,7 +122,16 @@ bool rises(const std::vector<std::int64_t>& values) {
   return std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
 }
 
+bool within_limits(const std::vector<std::int64_t>& values) {
+  return std::all_of(values.begin(), values.end(), [](std::int64_t value) {
+    return -most_true_ns <= value && value <= most_true_ns;
+  });
+}
+
 Result<void> check(const std::string& name, const std::string& stream, const TrueClock& clock) {
+  if (!within_limits(clock.stamps_ns) || !within_limits(clock.times_ns)) {
+    return Failure(Error{name, 0, "stamps and times of " + stream + " within 2e18 ns", "others"});
+  }
   if (clock.stamps_ns.size() == clock.times_ns.size() && rises(clock.stamps_ns)) return {};
   return Failure(
       Error{name, 0, "a clock of " + stream + " with a time for each of rising stamps", "another"});
@@ -156,8 +166,10 @@ Result<TrueRecording> read_truth(std::string_view text, const std::string& name)
   }
   KA_TRY(check(name, truth.kinect.stream, truth.kinect.clock));
   for (const TrueNode& node : truth.nodes) KA_TRY(check(name, node.node, node.clock));
-  if (!(truth.mocap.rate_hz > 0.0)) {
-    return Failure(Error{name, 0, "a mocap's rate above 0 Hz", "another"});
+  const TrueMocap& mocap = truth.mocap;
+  if (!(mocap.rate_hz >= 1.0 && mocap.rate_hz <= 1e6) || mocap.frames > 1'000'000'000 ||
+      !within_limits({mocap.first_frame_ns, truth.start_ns})) {
+    return Failure(Error{name, 0, "a mocap of 1 Hz to 1 MHz, 1e9 frames at the most", "another"});
   }
   return truth;
 }

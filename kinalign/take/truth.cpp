@@ -17,7 +17,8 @@ std::optional<Time> true_time(const TrueClock& clock, Time stamp) {
   const std::int64_t within = to_ns(stamp) - stamps[i];
   const double extra =
       static_cast<double>(within) * (static_cast<double>(run - step) / static_cast<double>(step));
-  return utc_time(clock.times_ns[i] + within + std::llround(extra));
+  const double most = static_cast<double>(most_true_ns);
+  return utc_time(clock.times_ns[i] + within + std::llround(std::clamp(extra, -most, most)));
 }
 
 std::int64_t TrueMocap::frame_ns(std::uint64_t frame) const {

@@ -12,7 +12,10 @@
 
 namespace kinalign {
 
-/// A device's stamps and when they were true, both ns and rising; linear in between.
+/// Of stamps and times, either sign: until 2033, and sums of a few fit into 64 bits.
+inline constexpr std::int64_t most_true_ns = 2'000'000'000'000'000'000;
+
+/// A device's stamps, rising, and when they were true; linear in between.
 struct TrueClock {
   std::vector<std::int64_t> stamps_ns;  // as the device's file or packets have them
   std::vector<std::int64_t> times_ns;   // UTC

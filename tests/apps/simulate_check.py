@@ -242,6 +242,28 @@ def no_exchange_contradicts_the_truth_and_samples_were_taken_before_they_came(fo
 
 
 @case
+def nodes_without_a_counter_make_the_papers_exchange(folder):
+    _, sent, _, walk, truth = recorded(folder, "--clockless", "--node-rate", "15")
+    shift, clocks = raw_offset(walk, truth), {str(node["id"]): node["clock"] for node in truth["nodes"]}
+    requests, confirms, halves = 0, 0, []
+    for topic, _, log, _, payload in walk.messages:
+        if not (topic.startswith("/imu/") and topic.endswith("/raw")):
+            continue
+        if payload[5] == 3:
+            number = struct.unpack_from(">I", payload, 16)[0]
+            times = clocks[topic.split("/")[2]]["times_ns"]
+            assert log + shift > times[number] + 3.3e6, "a request arrived sooner than its radio lets it"
+            requests += 1
+        if payload[5] == 5:
+            halves.append((log + shift - truth["host"]["utc_ns"] + truth["host"]["raw_ns"]
+                           - struct.unpack_from(">Q", payload, 36)[0]) / 2e6)
+            confirms += 1
+    assert sent["node_samples"] == sent["node_frames"] == 5 * len(clocks["1"]["times_ns"]), sent
+    assert requests > 0.9 * sent["node_frames"] and confirms > 0.8 * requests, (requests, confirms)
+    in_time(25 < sum(halves) / len(halves) < 45, f"d is {sum(halves) / len(halves)} ms, the paper's 33")
+
+
+@case
 def frames_of_suit_and_camera_come_some_milliseconds_after_they_were_true(folder):
     _, _, _, walk, truth = recorded(folder)
     shift, late = raw_offset(walk, truth), {"mocap": [], "kinect": []}

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/truth_json.h"
 
+#include "tests/seeds.h"
+
 #include <doctest/doctest.h>
+
+#include <algorithm>
+#include <random>
 
 using namespace kinalign;
 
@@ -68,6 +73,33 @@ TEST_CASE("a truth that lacks a key, or has one of another kind, is refused by n
       error_of(without("[-5,10]", "[10,10]")) ==
       "truth.json: expected a clock of waist with a time for each of rising stamps, found another");
   CHECK(error_of(without("[-5,10]", "[-5,1,10]")) != "none");
+  CHECK(error_of(without("[-5,10]", "[-5,2000000000000000001]")) ==
+        "truth.json: expected stamps and times of waist within 2e18 ns, found others");
   CHECK(error_of(without("\"rate_hz\":60.0", "\"rate_hz\":0")) ==
-        "truth.json: expected a mocap's rate above 0 Hz, found another");
+        "truth.json: expected a mocap of 1 Hz to 1 MHz, 1e9 frames at the most, found "
+        "another");
+}
+
+TEST_CASE("a truth that was damaged is read or refused, and no clock of it steps back") {
+  for (const auto seed : fresh_seeds(1)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const std::string whole = truth_json(some_truth());
+    for (int i = 0; i < 3000; ++i) {
+      std::string text =
+          whole.substr(0, random() % 4 == 0 ? random() % whole.size() : whole.size());
+      for (std::uint64_t n = random() % 4; n > 0 && !text.empty(); --n) {
+        text[random() % text.size()] = "0123456789-.eE[]{},:\"x\xc3"[random() % 22];
+      }
+      const auto read = read_truth(text, "truth.json");
+      if (!read) continue;
+      for (const TrueNode& node : read->nodes) {
+        const auto& stamps = node.clock.stamps_ns;
+        CHECK(std::is_sorted(stamps.begin(), stamps.end()));
+        CHECK(stamps.size() == node.clock.times_ns.size());
+        (void)true_time(node.clock, utc_time(17));
+      }
+      CHECK(truth_json(*read).size() > 100);
+    }
+  }
 }
