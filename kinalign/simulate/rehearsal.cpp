@@ -39,6 +39,17 @@ class JointsOf {
   GlobalPose global_;
 };
 
+/// The height of the lowest joint or end: on what a person stands, m.
+double lowest_of(const Skeleton& skeleton, const GlobalPose& pose) {
+  double lowest = pose.positions.front().y();
+  for (const Vec3& p : pose.positions) lowest = std::min(lowest, p.y());
+  for (const EndSite& end : skeleton.end_sites) {
+    const auto j = static_cast<std::size_t>(end.parent);
+    lowest = std::min(lowest, (pose.positions[j] + pose.rotations[j] * end.offset).y());
+  }
+  return lowest;
+}
+
 MocapRun mocap_run(double length_s, std::uint64_t seed) {
   const RandomStream random = draws(seed);
   MocapRun run;
@@ -111,8 +122,7 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
     sum += vec3(joints, spine_base);
   }
   joints_of(0.0, joints);
-  double floor = joints[1];
-  for (const Vec3& p : joints_of.global().positions) floor = std::min(floor, p.y());
+  const double floor = lowest_of(motion.skeleton, joints_of.global());
   const Vec3 middle = sum / count;
   Vec3 facing = (vec3(joints, hip_left) - vec3(joints, hip_right)).cross(Vec3::UnitY());
   if (facing.norm() < 1e-3) facing = Vec3::UnitZ();  // hips above each other: no side is the front

@@ -218,6 +218,7 @@ def no_exchange_contradicts_the_truth_and_samples_were_taken_before_they_came(fo
     shift, closest = raw_offset(walk, truth), 10**9
     clocks = {str(node["id"]): node["clock"] for node in truth["nodes"]}
     exchanges = samples = 0
+    counters = {node: set() for node in clocks}
     for topic, _, log, _, payload in walk.messages:
         if topic.startswith("/imu/") and topic.endswith("/exchange"):
             _, _, echo, t1, t2, t4, t3 = struct.unpack("<QIIqqqq", payload)
@@ -234,10 +235,13 @@ def no_exchange_contradicts_the_truth_and_samples_were_taken_before_they_came(fo
             for _ in range(count):
                 age, what = struct.unpack_from(">IB", payload, at)
                 taken = time_of(clock, 1000 * (n_tx - age))
+                counters[topic.split("/")[2]].add(1000 * (n_tx - age))
                 assert -1e6 < taken - truth["start_ns"] < 8.01e9 and taken < log + shift, (taken, log)
                 at += 5 + 12 * (what & 1) + 12 * (what >> 1 & 1) + 16 * (what >> 2 & 1)
                 samples += 1
     assert exchanges > 200 and samples > 2500, (exchanges, samples)
+    exact = [stamp in counters[node] for node, clock in clocks.items() for stamp in clock["stamps_ns"]]
+    assert sum(exact) > 0.8 * len(exact), f"{sum(exact)} of {len(exact)} samples were taken when they were made for"
     assert 3.3e6 < closest < 9e6, f"{closest / 1e6} ms: the least delay of link C is 3.5"
 
 
