@@ -40,7 +40,7 @@ struct RawChannel {
   std::string transport;  // "udp"
   std::string sender;     // "192.168.7.20:51234"
   std::string node;       // of inertial nodes: the id, decimal
-  std::string place;      // of these, where the lab says it: where it is worn
+  std::string place{};    // of these, where the lab says it: where it is worn
 
   bool operator==(const RawChannel&) const = default;
 };
