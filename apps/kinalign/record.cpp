@@ -15,6 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -187,31 +188,32 @@ class Stage {
       }
     }
     for (const HeardMark& heard : session_.take_marks()) {
-      last_click_ = is_click(heard.first.mark) ? heard.first.mark.kind : last_click_;
+      marks_.push_back(heard.first.mark.kind);
       herald_.tell(heard);
     }
     herald_.look(keys_.typed());
     return !interrupted() && !herald_.disk_full();
   }
-  /// Since it was asked last.
-  std::optional<Mark::Kind> take_click() { return std::exchange(last_click_, std::nullopt); }
-
- private:
-  static bool is_click(const Mark& mark) {
-    return mark.kind == Mark::Kind::start || mark.kind == Mark::Kind::stop;
+  /// Whether a mark of that kind came since one was found last; those before it are forgotten.
+  bool take_mark(Mark::Kind kind) {
+    const auto found = std::find(marks_.begin(), marks_.end(), kind);
+    const bool came = found != marks_.end();
+    marks_.erase(marks_.begin(), came ? found + 1 : found);
+    return came;
   }
 
+ private:
   RecordingSession& session_;
   RecordHerald& herald_;
   Keyboard keyboard_;
   MarkKeys keys_;
-  std::optional<Mark::Kind> last_click_;
+  std::vector<Mark::Kind> marks_;
 };
 
 /// False: somebody ended it first.
 bool wait_for_start(Stage& stage) {
   while (stage.turn()) {
-    if (stage.take_click() == Mark::Kind::start) return true;
+    if (stage.take_mark(Mark::Kind::start)) return true;
   }
   return false;
 }
@@ -219,9 +221,11 @@ bool wait_for_start(Stage& stage) {
 /// Until somebody, --seconds, with --wait a stop, or a full disk ends it, and all is written.
 void serve(RecordingSession& session, Stage& stage, const Record& o) {
   const HostTime begun = session.now();
-  while (!(o.seconds && seconds(session.now() - begun) >= *o.seconds) && stage.turn()) {
-    if (stage.take_click() == Mark::Kind::stop && o.wait) break;
-  }
+  const auto goes_on = [&] {
+    const bool stopped = stage.take_mark(Mark::Kind::stop) && o.wait;
+    return !stopped && !(o.seconds && seconds(session.now() - begun) >= *o.seconds);
+  };
+  for (bool going = true; going && goes_on();) going = stage.turn();
   session.stop();
   while (!session.disk()->finished) std::this_thread::sleep_for(5ms);
 }

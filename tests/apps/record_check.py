@@ -263,6 +263,20 @@ def with_wait_a_take_begins_with_a_start_and_what_came_before_and_ends_with_a_st
 
 
 @case
+def a_start_and_a_stop_that_come_together_are_a_take(folder):
+    recording = Recording(folder / "takes", "--wait", "--marks-port", "0", first="waiting")
+    for kind in ("stop", "start", "stop", "start"):
+        send(recording.started["ports"]["marks"],
+             json.dumps({"schema": "kinalign.mark/1", "kind": kind, "id": str(random.random())}))
+    said = recording.until("stopped")
+    assert recording.program.wait(30) == 0
+    recording.program.communicate()
+    walk = Walk(pathlib.Path(said[-1]["files"][0]))
+    marks = [json.loads(payload)["kind"] for topic, *_, payload in walk.messages if topic == "/marks"]
+    assert marks[:3] == ["stop", "start", "stop"], marks
+
+
+@case
 def ctrl_c_before_the_start_records_nothing_and_says_so(folder):
     recording = Recording(folder / "takes", "--wait", "--marks-port", "0", first="waiting")
     code, _, err = recording.end()
