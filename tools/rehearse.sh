@@ -27,8 +27,14 @@ file = "take_01.mcap"
 file = "take_01.mcap"
 
 [stream.imu]
-files = { 1 = "take_01.mcap", 2 = "take_01.mcap", 3 = "take_01.mcap", 4 = "take_01.mcap", 5 = "take_01.mcap" }
-root_node = "1"
+root_node = "waist"
+
+[stream.imu.files]
+waist = "take_01.mcap"
+wrist_left = "take_01.mcap"
+wrist_right = "take_01.mcap"
+ankle_left = "take_01.mcap"
+ankle_right = "take_01.mcap"
 
 [space.kinect]
 method = "fit"

@@ -298,7 +298,7 @@ def the_whole_chain_loses_no_truth_from_the_socket_to_the_take(folder):
     assert done.returncode == 0, done.stdout + done.stderr
     rows = table_rows(done.stdout[done.stdout.index("| device"):])
     times, values = rows[:7], rows[7:]
-    assert [row[0] for row in times] == ["mocap", "kinect"] + [f"imu {n}" for n in range(1, 6)], done.stdout
+    assert [row[0] for row in times] == ["mocap", "kinect"] + [f"imu {node}" for node in NODES], done.stdout
     for row in times[2:]:
         median, worst = float(row[2]), float(row[4])
         assert int(row[1]) > 1000 and " 0 of " in row[5], row
