@@ -217,7 +217,8 @@ Verb align_verb() {
            "open, with the report and every parameter inside. Exit code 1 where it was done with "
            "warnings.",
        .examples =
-           {{"kinalign align lab/take.mcap -o take.h5", "what was recorded, also if it is torn"},
+           {{"kinalign align takes/03_S1A02_01.mcap -o take.h5",
+             "what was recorded, also if it is torn"},
             {"kinalign align demo/recording.toml -o demo/mine.h5", "what the manifest says"},
             {"kinalign align --mocap demo/mocap.bvh --start-ns 1790000000000000000 --kinect "
              "demo/kinect.csv -o demo/quick.h5",

@@ -250,7 +250,7 @@ Verb convert_verb() {
                     {"kinalign convert demo/take.h5 demo/take.npz", "all streams of a take"},
                     {"kinalign convert demo/take.h5 demo/aligned.bvh",
                      "the take's skeleton stream"},
-                    {"kinalign convert lab/take.mcap shown.mcap",
+                    {"kinalign convert takes/03_S1A02_01.mcap shown.mcap",
                      "skeletons, samples, marks, to look at in Lichtblick"}},
        .common = {"force", "json"}},
       describe_convert, run);

@@ -9,7 +9,6 @@
 #include "kinalign/take/manifest.h"
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,8 +32,7 @@ struct HeardDevice {
   DeviceClock clock;
   double step_ns = 0.0;     // of devices whose frames are counted
   bool by_arrival = false;  // of devices that say no time and no number: stamps are UTC of arrival
-  std::multimap<std::uint32_t, BootKey> lives;  // of a node: boot id -> lives
-  ImuContent content;                           // of a node
+  ImuContent content;       // of a node
   Findings findings;
 };
 

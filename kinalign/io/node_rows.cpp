@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <deque>
+#include <map>
+#include <utility>
 
 namespace kinalign {
 
@@ -37,43 +37,40 @@ BootKey life_of(const RecordedExchange& recorded) {
   return recorded.exchange.boot ^ (BootKey{recorded.epoch} << 40U);
 }
 
-/// Pairs a frame with its exchange, whichever stands first: both have its counter and arrival.
-class Lives {
+/// An accepted frame, and the life of its counter.
+struct AcceptedFrame {
+  NodeFrame frame;
+  BootKey life = 0;
+};
+
+/// What was held, came twice or came late is in the recording, too; of an accepted frame the
+/// exchange stands before it, with the same counter and arrival.
+class AcceptedFrames {
  public:
-  void add_frame(std::uint32_t boot_id, NodeTime n, HostTime at) {
-    match({n, at, boot_id, std::nullopt});
+  void take(const RecordedExchange& recorded, HostTime arrival) {
+    exchange_ = {life_of(recorded), recorded.exchange.n_tx, arrival};
   }
-  void add_exchange(BootKey life, NodeTime n, HostTime at) { match({n, at, std::nullopt, life}); }
-  std::multimap<std::uint32_t, BootKey> result() { return std::move(lives_); }
+  std::optional<AcceptedFrame> take(const RecordedMessage& message) {
+    const auto accepted = std::exchange(exchange_, std::nullopt);
+    auto frame = frame_in(message);
+    const bool is_accepted = frame && accepted && accepted->at == message.arrival &&
+                             accepted->n == counter_at(frame->n_tx_us);
+    if (!is_accepted) {
+      ++others;
+      return std::nullopt;
+    }
+    return AcceptedFrame{*frame, accepted->life};
+  }
+
+  std::uint64_t others = 0;
 
  private:
-  static constexpr std::size_t most_waiting = 256;
-  struct Half {
+  struct Accepted {
+    BootKey life = 0;
     NodeTime n;
     HostTime at;
-    std::optional<std::uint32_t> boot_id;
-    std::optional<BootKey> life;
   };
-  void match(const Half& half) {
-    const auto other = std::find_if(waiting_.begin(), waiting_.end(), [&](const Half& h) {
-      return h.n == half.n && h.at == half.at && h.life.has_value() != half.life.has_value();
-    });
-    if (other == waiting_.end()) {
-      if (waiting_.size() == most_waiting) waiting_.pop_front();
-      waiting_.push_back(half);
-      return;
-    }
-    const std::uint32_t boot_id = half.boot_id ? *half.boot_id : *other->boot_id;
-    const BootKey life = half.life ? *half.life : *other->life;
-    waiting_.erase(other);
-    const auto [begin, end] = lives_.equal_range(boot_id);
-    const bool known =
-        std::any_of(begin, end, [life](const auto& entry) { return entry.second == life; });
-    if (!known) lives_.emplace(boot_id, life);
-  }
-
-  std::deque<Half> waiting_;
-  std::multimap<std::uint32_t, BootKey> lives_;
+  std::optional<Accepted> exchange_;
 };
 
 class NodeListener final : public DeviceListener {
@@ -83,18 +80,17 @@ class NodeListener final : public DeviceListener {
   void take(const RecordedMessage& message) override {
     if (message.is_exchange()) {
       if (const auto recorded = to_exchange(message.payload)) {
-        Exchange exchange = recorded->exchange;
-        lives_.add_exchange(life_of(*recorded), exchange.n_tx, message.arrival);
-        exchange.boot = life_of(*recorded);
-        exchanges_.push_back(exchange);
+        frames_.take(*recorded, message.arrival);
+        exchanges_.push_back(recorded->exchange);
+        exchanges_.back().boot = life_of(*recorded);
       }
       return;
     }
-    const auto frame = frame_in(message);
-    if (!frame) return;
-    lives_.add_frame(frame->origin.boot_id, counter_at(frame->n_tx_us), message.arrival);
-    for (std::size_t i = 0; i < frame->sample_count; ++i) {
-      const NodeSample& sample = frame->samples[i];
+    const auto accepted = frames_.take(message);
+    if (!accepted) return;
+    const NodeFrame& frame = accepted->frame;
+    for (std::size_t i = 0; i < frame.sample_count; ++i) {
+      const NodeSample& sample = frame.samples[i];
       content_.orientation |= sample.has_orientation;
       content_.acceleration |= sample.has_acceleration;
       content_.angular_velocity |= sample.has_angular_velocity;
@@ -108,7 +104,6 @@ class NodeListener final : public DeviceListener {
                            "none: of a node without a counter no time is known but arrivals"});
     }
     heard.clock = device_clock(exchanges_, heard.utc_minus_host);
-    heard.lives = lives_.result();
     heard.content = content_;
     return {};
   }
@@ -116,7 +111,7 @@ class NodeListener final : public DeviceListener {
  private:
   std::string file_;
   std::vector<Exchange> exchanges_;
-  Lives lives_;
+  AcceptedFrames frames_;
   ImuContent content_;
 };
 
@@ -133,29 +128,34 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   }
 
   Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
-    if (message.is_exchange()) return {};
-    const auto frame = frame_in(message);
-    if (!frame) {
-      ++no_frames_;
+    if (message.is_exchange()) {
+      if (const auto recorded = to_exchange(message.payload)) {
+        frames_.take(*recorded, message.arrival);
+      }
       return {};
     }
-    for (std::size_t i = 0; i < frame->sample_count; ++i) {
-      const NodeSample& sample = frame->samples[i];
-      const NodeTime n = counter_at(frame->n_tx_us) - std::chrono::microseconds(sample.age_us);
-      const auto stamp = stamp_at(frame->origin.boot_id, n, message.arrival);
+    const auto accepted = frames_.take(message);
+    if (!accepted) return {};
+    const NodeFrame& frame = accepted->frame;
+    for (std::size_t i = 0; i < frame.sample_count; ++i) {
+      const NodeSample& sample = frame.samples[i];
+      const NodeTime n = counter_at(frame.n_tx_us) - std::chrono::microseconds(sample.age_us);
+      const auto stamp = stamp_of(heard_->clock, accepted->life, n, message.arrival);
       if (!stamp) {
         ++unknown_;
         continue;
       }
-      out.stamps.push_back(*stamp);
-      append(sample, out);
+      waiting_.emplace(*stamp, sample);
     }
+    while (waiting_.size() > most_waiting) release(out);
     return {};
   }
 
-  Result<void> finish(ImuSamples&) override {
+  Result<void> finish(ImuSamples& out) override {
+    while (!waiting_.empty()) release(out);
     converter_.report(file_, findings);
-    tell(no_frames_, "frames of a node", "payloads that are none", "they were passed over");
+    tell(frames_.others, "datagrams that were accepted", "others: held, late, twice or damaged",
+         "they were passed over");
     tell(unknown_, "samples of a life of the node whose clock is known", "samples of others",
          "they were left out");
     tell(partial_, "samples with all that the node sends at times",
@@ -174,12 +174,10 @@ class NodeRows final : public DeviceRows<ImuSamples> {
                         std::string(meaning), ""});
   }
 
-  std::optional<Time> stamp_at(std::uint32_t boot_id, NodeTime n, HostTime arrival) const {
-    const auto [begin, end] = heard_->lives.equal_range(boot_id);
-    for (auto life = begin; life != end; ++life) {
-      if (const auto stamp = stamp_of(heard_->clock, life->second, n, arrival)) return stamp;
-    }
-    return std::nullopt;
+  void release(ImuSamples& out) {
+    out.stamps.push_back(waiting_.begin()->first);
+    append(waiting_.begin()->second, out);
+    waiting_.erase(waiting_.begin());
   }
 
   void append(const NodeSample& sample, ImuSamples& out) {
@@ -207,7 +205,11 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   std::string file_;
   ImuConverter converter_;
   ImuHeader header_;
-  std::uint64_t no_frames_ = 0, unknown_ = 0, partial_ = 0;
+  AcceptedFrames frames_;
+  // A radio lets frames overtake each other: samples wait for those that were taken before them.
+  static constexpr std::size_t most_waiting = 64;
+  std::multimap<Time, NodeSample> waiting_;
+  std::uint64_t unknown_ = 0, partial_ = 0;
 };
 
 }  // namespace

