@@ -10,4 +10,4 @@ add_custom_command(OUTPUT ${builtin_layouts}
   DEPENDS ${layout_files} ${CMAKE_SOURCE_DIR}/cmake/embed_layouts.cmake VERBATIM)
 install(FILES ${layout_files} DESTINATION ${CMAKE_INSTALL_DATADIR}/kinalign/layouts)
 install(FILES ${CMAKE_SOURCE_DIR}/layouts/viewers/lichtblick.json
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/kinalign/layouts/viewers)
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/kinalign/viewers)

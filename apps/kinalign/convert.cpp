@@ -167,7 +167,7 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
   const Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(job.from))));
   const Recording recording = KA_TRY(
       open_recording(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));
-  KA_TRY(show_recording(job.files, recording, job.from, job.to, job.overwrite, progress));
+  KA_TRY(show_recording(job.files, recording, {job.from, job.to, job.overwrite}, progress));
   return findings_of(recording);
 }
 
@@ -200,7 +200,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
     });
   }
   if (job.to.ends_with(".mcap")) {
-    KA_TRY(show_recording(job.files, input.recording, "", job.to, job.overwrite,
+    KA_TRY(show_recording(job.files, input.recording, {"", job.to, job.overwrite},
                           call.console.progress()));
   } else {
     KA_TRY(stream_to_npz(job, stream, call.console.progress()));

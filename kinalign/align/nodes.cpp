@@ -12,11 +12,11 @@ namespace {
 /// Values of `width` a node: columns of the stream's rows into the group's.
 template <class T>
 void put_columns(const std::vector<T>& from, std::size_t width, std::size_t rows,
-                 const NodeColumns& columns, std::vector<T>& to, T absent = {}) {
+                 const NodeColumns& columns, std::vector<T>& to) {
   if (from.empty() || rows == 0) return;
   const std::size_t take = from.size() / rows;
   const std::size_t stride = columns.all * width, first = columns.first * width;
-  to.resize(rows * stride, absent);
+  to.resize(rows * stride);
   for (std::size_t r = 0; r < rows; ++r) {
     std::copy_n(&from[r * take], take, &to[r * stride + first]);
   }
@@ -30,8 +30,9 @@ void put_nodes(const ImuRows& from, std::size_t rows, const NodeColumns& columns
   put_columns(from.angular_velocity, 3, rows, columns, to.angular_velocity);
   put_columns(from.valid, 1, rows, columns, to.valid);
   put_columns(from.distance.nearest_raw_ns, 1, rows, columns, to.distance.nearest_raw_ns);
-  put_columns(from.distance.time_interval_ns, 1, rows, columns, to.distance.time_interval_ns,
-              no_interval);
+  auto& intervals = to.distance.time_interval_ns;  // of nodes that have none beside those that do
+  if (!from.distance.time_interval_ns.empty()) intervals.resize(rows * columns.all, no_interval);
+  put_columns(from.distance.time_interval_ns, 1, rows, columns, intervals);
   put_columns(from.distance.over_loss, 1, rows, columns, to.distance.over_loss);
 }
 

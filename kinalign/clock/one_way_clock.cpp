@@ -132,9 +132,11 @@ ClockPieceModel fit(std::span<const Exchange> exchanges, Stretch stretch, double
   const double rate = std::isfinite(middle) ? middle : 0.0;
   const double change = rate_known + curvature * (end - begin) / 2.0;
   const Duration base = origin.host.time_since_epoch() - origin.node.time_since_epoch();
-  const double count = std::min(std::ceil((end - begin) / knot_s) + 1.0, most_knots);
-  for (double k = 0.0; k < count; ++k) {
-    const Duration since = nanoseconds(std::round((begin + knot_s * k) * 1e9));
+  const auto count =
+      static_cast<std::size_t>(std::min(std::ceil((end - begin) / knot_s) + 1.0, most_knots));
+  for (std::size_t k = 0; k < count; ++k) {
+    const double s = begin + knot_s * static_cast<double>(k);
+    const Duration since = nanoseconds(std::round(s * 1e9));
     const double t = seconds(since);
     const double slope = std::clamp(hull.peak(t).slope, rate - change, rate + change);
     const Duration offset = base + nanoseconds(std::round(hull.at(t, slope).bound * 1e9));

@@ -88,7 +88,7 @@ class ShowImu {
                           ShownFile& out) const {
     for (std::size_t s = 0; s < nodes_.size(); ++s) {
       KA_TRY(out.add(nodes_[s], time.at, samples.stamps[t],
-                     imu_json(input_->content, samples, t, s, nodes_.size(), time)));
+                     imu_json(input_->content, samples, t * nodes_.size() + s, time)));
     }
     return {};
   }
@@ -186,17 +186,12 @@ class JsonChannels {
   std::map<std::uint16_t, std::uint16_t> copied_;  // its id -> ours
 };
 
-}  // namespace
-
-Result<Shown> show_recording(FileSystem& files, const Recording& recording, const std::string& from,
-                             const std::string& out, Overwrite overwrite,
-                             const Progress& progress) {
-  OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
-  ShownFile shown(file);
-  KA_TRY(shown.begin());
+/// All streams by turns, in the order of their samples' times.
+Result<void> show_streams(const std::vector<RecordedStream>& recorded, ShownFile& shown,
+                          const Progress& progress) {
   std::vector<std::unique_ptr<Showing>> streams;
   std::uint64_t rows = 0, done = 0;
-  for (const RecordedStream& stream : recording.streams) {
+  for (const RecordedStream& stream : recorded) {
     streams.push_back(KA_TRY(begin_stream(stream, shown)));
     rows += stream.survey.samples;
   }
@@ -205,16 +200,26 @@ Result<Shown> show_recording(FileSystem& files, const Recording& recording, cons
         std::min_element(streams.begin(), streams.end(), [](const auto& a, const auto& b) {
           return a->next().value_or(Time::max()) < b->next().value_or(Time::max());
         });
-    if (first == streams.end() || !(*first)->next()) break;
+    if (first == streams.end() || !(*first)->next()) return {};
     KA_TRY((*first)->show(shown));
     if (++done % 1024 == 0 && !go_on(progress, "converting", done, rows)) {
       return Failure(interruption());
     }
   }
-  if (!from.empty()) {
+}
+
+}  // namespace
+
+Result<Shown> show_recording(FileSystem& files, const Recording& recording, const ShowFiles& paths,
+                             const Progress& progress) {
+  OutputFile file = KA_TRY(OutputFile::create(files, paths.out, paths.overwrite));
+  ShownFile shown(file);
+  KA_TRY(shown.begin());
+  KA_TRY(show_streams(recording.streams, shown, progress));
+  if (!paths.from.empty()) {
     McapReader reader;
     JsonChannels channels(shown);
-    KA_TRY(read_recording(files, from, reader,
+    KA_TRY(read_recording(files, paths.from, reader,
                           [&](const McapRecord& record) { return channels.take(record); }));
   }
   KA_TRY(shown.finish());

@@ -12,10 +12,14 @@
 
 namespace kinalign {
 
-/// `from`: a recording whose JSON channels (marks, counts, the host's clocks) are copied; may be
-/// empty. Messages stand in the order of their times, but for those copied, which come last.
-Result<Shown> show_recording(FileSystem& files, const Recording& recording, const std::string& from,
-                             const std::string& out, Overwrite overwrite,
+struct ShowFiles {
+  std::string from;  // a recording whose JSON channels (marks, counts, clocks) are copied; or empty
+  std::string out;
+  Overwrite overwrite = Overwrite::no;
+};
+
+/// Messages stand in the order of their times, but for those copied, which come last.
+Result<Shown> show_recording(FileSystem& files, const Recording& recording, const ShowFiles& paths,
                              const Progress& progress = {});
 
 }  // namespace kinalign

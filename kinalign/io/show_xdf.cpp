@@ -108,19 +108,47 @@ struct Channel {
   std::vector<XdfClockLine> lines;
 };
 
-Result<void> add_samples(const XdfSamples& samples, const Channel& channel, ShownFile& out,
-                         std::uint64_t& timeless) {
-  for (std::size_t t = 0; t < samples.size(); ++t) {
-    const auto at = time_of(corrected_xdf_stamp(channel.lines, samples.stamps[t]));
-    if (!at) {
-      ++timeless;
-      continue;
+/// What samples go to: a channel for each stream.
+class Channels {
+ public:
+  Channels(const Heads& heads, ShownFile& out) : heads_(heads), out_(out) {}
+
+  Result<void> begin() {
+    for (const auto& [id, stream] : heads_.streams) {
+      const std::string topic = topic_of(heads_, stream);
+      KA_TRY(out_.attach(topic.substr(1) + ".xml", stream.xml));
+      Channel& channel = channels_[id];
+      channel.id = out_.add_channel(topic, sample_schema());
+      const auto offsets = heads_.offsets.find(id);
+      if (offsets != heads_.offsets.end()) channel.lines = fit_xdf_clock(offsets->second);
     }
-    const Time device = time_of(samples.stamps[t]).value_or(Time{});
-    KA_TRY(out.add(channel.id, *at, device, sample_json(samples, t)));
+    return {};
   }
-  return {};
-}
+
+  Result<void> take(const XdfItem& item) {
+    const auto* samples = std::get_if<XdfSamples>(&item);
+    if (samples == nullptr) return {};
+    const auto channel = channels_.find(samples->stream);
+    if (channel == channels_.end()) return {};
+    for (std::size_t t = 0; t < samples->size(); ++t) {
+      const auto at = time_of(corrected_xdf_stamp(channel->second.lines, samples->stamps[t]));
+      if (!at) {
+        ++timeless;
+        continue;
+      }
+      const Time device = time_of(samples->stamps[t]).value_or(Time{});
+      KA_TRY(out_.add(channel->second.id, *at, device, sample_json(*samples, t)));
+    }
+    return {};
+  }
+
+  std::uint64_t timeless = 0;
+
+ private:
+  const Heads& heads_;
+  ShownFile& out_;
+  std::map<std::uint32_t, Channel> channels_;
+};
 
 }  // namespace
 
@@ -130,29 +158,16 @@ Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std:
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   ShownFile shown(file);
   KA_TRY(shown.begin());
-  std::map<std::uint32_t, Channel> channels;
-  for (const auto& [id, stream] : heads.streams) {
-    const std::string topic = topic_of(heads, stream);
-    KA_TRY(shown.attach(topic.substr(1) + ".xml", stream.xml));
-    Channel& channel = channels[id];
-    channel.id = shown.add_channel(topic, sample_schema());
-    const auto offsets = heads.offsets.find(id);
-    if (offsets != heads.offsets.end()) channel.lines = fit_xdf_clock(offsets->second);
-  }
-  std::uint64_t timeless = 0;
+  Channels channels(heads, shown);
+  KA_TRY(channels.begin());
   ShownXdf done;
-  done.findings = KA_TRY(read_xdf(files, from, progress, [&](const XdfItem& item) -> Result<void> {
-    const auto* samples = std::get_if<XdfSamples>(&item);
-    if (samples == nullptr || samples->size() == 0) return {};
-    const auto channel = channels.find(samples->stream);
-    if (channel == channels.end()) return {};
-    return add_samples(*samples, channel->second, shown, timeless);
-  }));
-  if (timeless > 0) {
-    done.findings.push_back(
-        {Severity::warning,
-         Error{from, 0, "stamps from 0 to 4e9 s", std::to_string(timeless) + " samples of others"},
-         "these samples were left out", ""});
+  done.findings = KA_TRY(
+      read_xdf(files, from, progress, [&](const XdfItem& item) { return channels.take(item); }));
+  if (channels.timeless > 0) {
+    done.findings.push_back({Severity::warning,
+                             Error{from, 0, "stamps from 0 to 4e9 s",
+                                   std::to_string(channels.timeless) + " samples of others"},
+                             "these samples were left out", ""});
   }
   KA_TRY(shown.finish());
   KA_TRY(file.commit());

@@ -178,17 +178,16 @@ std::string points_json(const std::vector<std::string>& joints, const PointFrame
   return text_of(json);
 }
 
-std::string imu_json(const ImuContent& content, const ImuSamples& samples, std::size_t t,
-                     std::size_t s, std::size_t nodes, const ShownTime& time) {
-  const std::size_t at = t * nodes + s;
+std::string imu_json(const ImuContent& content, const ImuSamples& samples, std::size_t cell,
+                     const ShownTime& time) {
   Json json;
   add_time(time, json);
-  json["valid"] = samples.valid[at] != 0;
-  if (samples.valid[at] == 0) return text_of(json);
-  if (content.orientation) json["orientation"] = rotation_json(quat_at(samples.orientation, at));
-  if (content.acceleration) json["acceleration"] = vector_json(vec_at(samples.acceleration, at));
+  json["valid"] = samples.valid[cell] != 0;
+  if (samples.valid[cell] == 0) return text_of(json);
+  if (content.orientation) json["orientation"] = rotation_json(quat_at(samples.orientation, cell));
+  if (content.acceleration) json["acceleration"] = vector_json(vec_at(samples.acceleration, cell));
   if (content.angular_velocity) {
-    json["angular_velocity"] = vector_json(vec_at(samples.angular_velocity, at));
+    json["angular_velocity"] = vector_json(vec_at(samples.angular_velocity, cell));
   }
   return text_of(json);
 }

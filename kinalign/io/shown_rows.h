@@ -39,8 +39,8 @@ std::string pose_json(const Skeleton& skeleton, const ClipFrames& frames, std::s
                       const ShownTime& time);
 std::string points_json(const std::vector<std::string>& joints, const PointFrames& frames,
                         std::size_t t, const ShownTime& time);
-/// Node `s` of `nodes`.
-std::string imu_json(const ImuContent& content, const ImuSamples& samples, std::size_t t,
-                     std::size_t s, std::size_t nodes, const ShownTime& time);
+/// `cell`: of row t and node s of S, t * S + s.
+std::string imu_json(const ImuContent& content, const ImuSamples& samples, std::size_t cell,
+                     const ShownTime& time);
 
 }  // namespace kinalign

@@ -106,7 +106,8 @@ TEST_CASE("no text of a file, whole or cut, moves a terminal's cursor") {
     CHECK(harmless(said) == said);
     CHECK(std::count(said.begin(), said.end(), '\n') == std::count(text.begin(), text.end(), '\n'));
     std::string without_lines = said;
-    std::erase(without_lines, '\n');
+    // Two halves of a character on two lines are none.
+    std::replace(without_lines.begin(), without_lines.end(), '\n', ' ');
     CHECK_FALSE(moves_a_cursor(without_lines));
   }
 }

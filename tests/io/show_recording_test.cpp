@@ -62,7 +62,7 @@ std::map<std::string, std::vector<ShownMessage>> shown_lab(const FreshFolder& fo
   const auto recording = open_recording(files, *manifest, folder.path() + "/");
   REQUIRE(recording);
   const std::string out = folder / "shown.mcap";
-  const auto shown = show_recording(files, *recording, path, out, Overwrite::no);
+  const auto shown = show_recording(files, *recording, {path, out, Overwrite::no});
   REQUIRE(shown);
   CHECK(shown->out_of_range == 0);
   return messages_in(out);
