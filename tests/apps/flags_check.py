@@ -147,7 +147,7 @@ def convert_names_what_is_missing_and_refuses_what_it_has_no_use_for(folder):
     done_with(0, "align", folder / "recording.toml", "-o", take)
     wrong("convert", bvh, says="expected OUT (a new file; its ending, .npz, .bvh or .mcap, decides), found nothing in its "
           "place")
-    wrong("convert", says="expected IN (a take, or a stream's file), found nothing in its place")
+    wrong("convert", says="expected IN (a take, a recording, or a stream's file), found nothing in its place")
     wrong("convert", bvh, folder / "o.csv", says=f"{folder}/o.csv: expected a name that ends in .npz or .bvh, "
           "found another ending")
     _, err = done_with(2, "convert", take, folder / "o.bvh", "--double")
