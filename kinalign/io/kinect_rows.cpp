@@ -188,22 +188,25 @@ class KinectRows final : public DeviceRows<PointFrames> {
     append_all(out);
     body_.report(file_, findings);
     const KinectFrameCounts counts = frames_.counts();
-    tell(counts.frames.lost, "each frame's number", "that never came");
-    tell(counts.parts_lost, "all parts of a frame", "frames without some");
-    tell(frames_.of_other_sensors, "one sensor", "frames of others, left out");
-    tell(unknown_, "frames of a clock that is known", "others, left out");
-    tell(wild_, "joints whose place is a number", "others: missing");
+    tell(counts.frames.lost, "each frame's number", "that never came",
+         "they were lost on their way");
+    tell(counts.parts_lost, "all parts of a frame", "frames without some",
+         "bodies may be missing in them");
+    tell(frames_.of_other_sensors, "one sensor", "frames of others", "they were left out");
+    tell(unknown_, "frames of a clock that is known", "others", "they were left out");
+    tell(wild_, "joints whose place is a number", "others", "they are missing");
     return {};
   }
 
   const PointHeader* header() const override { return &header_; }
 
  private:
-  void tell(std::uint64_t count, std::string_view expected, std::string_view found) {
+  void tell(std::uint64_t count, std::string_view expected, std::string_view found,
+            std::string_view meaning) {
     if (count == 0) return;
     findings.push_back({Severity::note,
                         Error{file_, 0, std::string(expected), fmt::format("{} {}", count, found)},
-                        "", ""});
+                        std::string(meaning), ""});
   }
 
   void append_all(PointFrames& out) {

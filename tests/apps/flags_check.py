@@ -148,7 +148,7 @@ def convert_names_what_is_missing_and_refuses_what_it_has_no_use_for(folder):
     wrong("convert", bvh, says="expected OUT (a new file; its ending, .npz, .bvh or .mcap, decides), found nothing in its "
           "place")
     wrong("convert", says="expected IN (a take, a recording, or a stream's file), found nothing in its place")
-    wrong("convert", bvh, folder / "o.csv", says=f"{folder}/o.csv: expected a name that ends in .npz or .bvh, "
+    wrong("convert", bvh, folder / "o.csv", says=f"{folder}/o.csv: expected a name that ends in .npz, .bvh or .mcap, "
           "found another ending")
     _, err = done_with(2, "convert", take, folder / "o.bvh", "--double")
     assert "--double: expected a new file that ends in .npz, found " in err, err
