@@ -17,6 +17,9 @@ namespace {
 /// A sample is so much older than its frame at most; else it is told by the piece before.
 constexpr Duration oldest_sample = std::chrono::seconds(2);
 
+/// Chosen: twice what a stated rate may be off (io/counted_clock.h). A wild counter has any.
+constexpr double most_drift_ppm = 20'000.0;
+
 /// Pieces of which nothing answered, told by their arrivals.
 HostFromNode with_one_way(HostFromNode model, std::span<const Exchange> exchanges) {
   HostFromNode out;
@@ -75,6 +78,7 @@ void append_lines(const HostFromNode& model, const ClockPieceModel& piece, Durat
     } else if (k > 0) {
       line.drift_ppm = time.pieces.back().drift_ppm;  // behind the last knot as before it
     }
+    if (std::abs(line.drift_ppm) > most_drift_ppm) line.drift_ppm = 0.0;
     if (piece.certified && !is_doubtful(model, piece, a, b)) line.half_width = half_width_of(a, b);
     time.pieces.push_back(line);
   }
