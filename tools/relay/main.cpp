@@ -122,9 +122,9 @@ class Relay {
     }
     if (senders_.size() == most_senders) return nullptr;
     const std::uint64_t seed = seed_ + senders_.size();
-    senders_.push_back(
-        std::make_unique<Sender>(Sender{from, open_socket(), PacketFates(link_, seed, Way::up, rate_hz_),
-                                        PacketFates(link_, seed, Way::down, rate_hz_)}));
+    senders_.push_back(std::make_unique<Sender>(
+        Sender{from, open_socket(), PacketFates(link_, seed, Way::up, rate_hz_),
+               PacketFates(link_, seed, Way::down, rate_hz_)}));
     const Floors least = floors(link_.link, seed);
     std::printf("%d %.9f %.9f\n", port_of(senders_.back()->to_host), least.up, least.down);
     std::fflush(stdout);
