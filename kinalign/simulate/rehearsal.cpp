@@ -116,9 +116,9 @@ Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
   JointsOf joints_of(motion, map);
   std::vector<double> joints(3 * kinect_joint_count);
   Vec3 sum = Vec3::Zero();
-  double count = 0.0;
-  for (double t = 0.0; t <= motion.length_s; t += 1.0, count += 1.0) {
-    joints_of(t, joints);
+  int count = 0;
+  for (; count <= motion.length_s; ++count) {  // once a second
+    joints_of(count, joints);
     sum += vec3(joints, spine_base);
   }
   joints_of(0.0, joints);
