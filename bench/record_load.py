@@ -46,6 +46,8 @@ def main():
         begin, end = (statistics.median(part) for part in (settled[:quarter], settled[-quarter:]))
         print(f"memory after the first minute's worth: {begin:.1f} MB in its first quarter, {end:.1f} MB in its last "
               f"(medians; {min(settled):.1f} to {max(settled):.1f})")
+    else:
+        print(f"memory: at most {max(mb for _, mb, _ in recorder.samples):.1f} MB")
     print(f"open files: {min(files)} to {max(files)}")
     print("reply after (half, 99 %, all), ms: " + ", ".join(f"{ms:.2f}" for ms in sent["wait_ms"]))
     return 1 if any(gone.values()) else 0
