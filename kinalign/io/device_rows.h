@@ -12,6 +12,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 namespace kinalign {
 
@@ -70,6 +74,18 @@ struct DeviceProtocol {
   std::unique_ptr<DeviceListener> (*listen)(const DeviceWish& wish);
   AnyDeviceRows (*rows)(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard);
 };
+/// Both are made of a wish; the rows of what was heard, too.
+template <class Listener, class Rows>
+DeviceProtocol device_protocol(std::string_view name) {
+  return {name,
+          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
+            return std::make_unique<Listener>(wish);
+          },
+          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
+            return std::make_unique<Rows>(wish, std::move(heard));
+          }};
+}
+
 DeviceProtocol node_protocol();     // node_rows.cpp: inertial nodes of ours
 DeviceProtocol kinect_protocol();   // kinect_rows.cpp
 DeviceProtocol noitom_protocol();   // noitom_rows.cpp

@@ -235,14 +235,6 @@ class KinectRows final : public DeviceRows<PointFrames> {
 
 }  // namespace
 
-DeviceProtocol kinect_protocol() {
-  return {"kinect",
-          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
-            return std::make_unique<KinectListener>(wish);
-          },
-          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
-            return std::make_unique<KinectRows>(wish, std::move(heard));
-          }};
-}
+DeviceProtocol kinect_protocol() { return device_protocol<KinectListener, KinectRows>("kinect"); }
 
 }  // namespace kinalign

@@ -214,14 +214,6 @@ class NodeRows final : public DeviceRows<ImuSamples> {
 
 }  // namespace
 
-DeviceProtocol node_protocol() {
-  return {"kinalign-node",
-          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
-            return std::make_unique<NodeListener>(wish);
-          },
-          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
-            return std::make_unique<NodeRows>(wish, std::move(heard));
-          }};
-}
+DeviceProtocol node_protocol() { return device_protocol<NodeListener, NodeRows>("kinalign-node"); }
 
 }  // namespace kinalign

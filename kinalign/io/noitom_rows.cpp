@@ -184,14 +184,6 @@ class NoitomRows final : public DeviceRows<ClipFrames> {
 
 }  // namespace
 
-DeviceProtocol noitom_protocol() {
-  return {"noitom",
-          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
-            return std::make_unique<NoitomListener>(wish);
-          },
-          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
-            return std::make_unique<NoitomRows>(wish, std::move(heard));
-          }};
-}
+DeviceProtocol noitom_protocol() { return device_protocol<NoitomListener, NoitomRows>("noitom"); }
 
 }  // namespace kinalign

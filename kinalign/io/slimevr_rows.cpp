@@ -157,14 +157,6 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
 
 }  // namespace
 
-DeviceProtocol slimevr_protocol() {
-  return {"slimevr",
-          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
-            return std::make_unique<SlimeListener>(wish);
-          },
-          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
-            return std::make_unique<SlimeRows>(wish, std::move(heard));
-          }};
-}
+DeviceProtocol slimevr_protocol() { return device_protocol<SlimeListener, SlimeRows>("slimevr"); }
 
 }  // namespace kinalign

@@ -130,14 +130,6 @@ class XsensRows final : public DeviceRows<ClipFrames> {
 
 }  // namespace
 
-DeviceProtocol xsens_protocol() {
-  return {"xsens",
-          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
-            return std::make_unique<XsensListener>(wish);
-          },
-          [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
-            return std::make_unique<XsensRows>(wish, std::move(heard));
-          }};
-}
+DeviceProtocol xsens_protocol() { return device_protocol<XsensListener, XsensRows>("xsens"); }
 
 }  // namespace kinalign
