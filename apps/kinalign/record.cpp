@@ -4,6 +4,7 @@
 #include "apps/kinalign/mark_keys.h"
 #include "apps/kinalign/record_herald.h"
 #include "apps/kinalign/settings.h"
+#include "apps/kinalign/steady_memory.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/node_keys.h"
@@ -27,6 +28,9 @@ namespace kinalign {
 namespace {
 
 using namespace std::chrono_literals;
+
+// What waits for a slow disk, before the program grows.
+constexpr std::size_t waiting_room = std::size_t{16} << 20;
 
 struct Record {
   std::string subject, action;
@@ -234,6 +238,7 @@ Result<int> run(Record& o, Call& call) {
   Console& console = call.console;
   console.never_wait();
   take_signals();
+  keep_memory(waiting_room);
   RecordingSession::Options options = KA_TRY(session_options(o, call));
   KA_TRY(make_folder(call.common.out));
   SystemClocks ports_clock, nodes_clock;

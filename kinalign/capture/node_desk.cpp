@@ -149,7 +149,7 @@ NodeVerdict NodeDesk::judge_request(const NodeArrival& arrival, const Envelope& 
   if (const auto taken = take_life(*life, sign, std::nullopt); taken != NodeVerdict::accepted) {
     return taken;
   }
-  news.clockless = ClocklessExchange{news.frame, sign.at, {}, std::nullopt};
+  news.clockless = ClocklessExchange{news.frame, sign.at, {}, std::nullopt, life->key};
   keep(std::span(&request.sample, request.has_sample ? 1 : 0), std::nullopt, news);
   accept(*life, sign, news.frame == life->sequences.newest(), news);
   if (request.has_battery) table_.stream(life->stream).battery_mv = request.battery_mv;
@@ -175,7 +175,7 @@ NodeVerdict NodeDesk::judge_confirm(const NodeArrival& arrival, const Envelope& 
   }
   news.frame = answer.frame;
   news.stream = life->stream;
-  news.clockless = ClocklessExchange{answer.frame, answer.t2, answer.t3, sign.at};
+  news.clockless = ClocklessExchange{answer.frame, answer.t2, answer.t3, sign.at, life->key};
   return NodeVerdict::accepted;
 }
 

@@ -57,6 +57,9 @@ void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {
     recorder_.record(node.exchanges, arrival.h_rx, to_bytes({receiver_.epoch(), *news.exchange}),
                      device_ns);
   }
+  if (news.clockless) {
+    recorder_.record(node.exchanges, arrival.h_rx, to_bytes({receiver_.epoch(), *news.clockless}));
+  }
   node.raw.record(recorder_, arrival.h_rx, text_of(arrival.bytes), device_ns);
   bytes_ += arrival.bytes.size();
   judge(node, news);

@@ -6,7 +6,7 @@
 // costs.
 #pragma once
 
-#include "kinalign/wire/time.h"
+#include "kinalign/clock/host_from_node.h"
 
 #include <cstdint>
 #include <optional>
@@ -19,6 +19,7 @@ struct ClocklessExchange {
   std::uint64_t frame = 0;  // since the node's start; lost ones count
   HostTime t2{}, t3{};
   std::optional<HostTime> t6;  // absent: the answer or its confirmation was lost
+  BootKey boot = 0;            // the node's life
 };
 
 /// Absent where t6 is.

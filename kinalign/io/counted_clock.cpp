@@ -14,6 +14,7 @@ namespace {
 constexpr std::int64_t furthest_back = 1000, furthest_ahead = 360'000;
 constexpr double believed = 0.01;            // of a step: Noitom's programs state three decimals
 constexpr std::int64_t enough_frames = 100;  // to contradict what is stated
+constexpr double slowest_step_ns = 2e9;      // so that no number of 32 bits overflows its counter
 
 /// Of the longest life; 0 where nothing was sent twice.
 double measured_step_ns(const std::vector<CountedFrame>& frames) {
@@ -32,7 +33,7 @@ double measured_step_ns(const std::vector<CountedFrame>& frames) {
     }
     begin = end;
   }
-  return step;
+  return std::clamp(step, 0.0, slowest_step_ns);
 }
 
 std::string rate_text(double step_ns) { return fmt::format("{:.6g} Hz", 1e9 / step_ns); }

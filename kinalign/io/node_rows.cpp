@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of an inertial node of ours: the counter's reading of each sample, put on UTC by the
-// exchanges that the recorder made out of frames and replies.
+// exchanges that the recorder made out of frames and replies. Of a node without a counter the
+// number of its request is the counter.
+#include "kinalign/io/counted_clock.h"
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/imu_converter.h"
 #include "kinalign/io/little_endian_reader.h"
+#include "kinalign/wire/clockless.h"
 #include "kinalign/wire/node_frame.h"
 
 #include <fmt/format.h>
@@ -17,80 +20,131 @@ namespace {
 
 constexpr std::uint64_t most_counter_us = 1'000'000'000'000'000;  // 31 years
 
-/// What was accepted when it came; absent: no frame, or damaged.
-std::optional<NodeFrame> frame_in(const RecordedMessage& message) {
-  Envelope envelope;
-  if (open_envelope(octets(message.payload), envelope) != NodeRefusal::none) return std::nullopt;
-  envelope.mac_was_checked = true;
-  NodeFrame frame;
-  if (decode(envelope, nullptr, frame) != NodeRefusal::none) return std::nullopt;
-  if (frame.n_tx_us > most_counter_us) return std::nullopt;
-  return frame;
-}
-
 NodeTime counter_at(std::uint64_t us) {
   return NodeTime{std::chrono::microseconds(static_cast<std::int64_t>(us))};
 }
 
 /// The host's axis begins anew where it slept: another life for the clock.
-BootKey life_of(const RecordedExchange& recorded) {
-  return recorded.exchange.boot ^ (BootKey{recorded.epoch} << 40U);
-}
+BootKey life_of(BootKey boot, std::uint32_t epoch) { return boot ^ (BootKey{epoch} << 40U); }
 
-/// An accepted frame, and the life of its counter.
+/// What brought samples and was accepted when it came.
 struct AcceptedFrame {
-  NodeFrame frame;
   BootKey life = 0;
+  std::optional<NodeTime> n_tx;  // absent: the node has no counter, its requests have numbers
+  std::int64_t number = 0;
+  std::array<NodeSample, max_node_samples> samples{};
+  std::size_t sample_count = 0;
 };
 
-/// What was held, came twice or came late is in the recording, too; of an accepted frame the
-/// exchange stands before it, with the same counter and arrival.
+/// A node's frame, or its request; absent: neither, or damaged.
+std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
+  Envelope envelope;
+  if (open_envelope(octets(message.payload), envelope) != NodeRefusal::none) return std::nullopt;
+  envelope.mac_was_checked = true;
+  AcceptedFrame out;
+  out.number = envelope.origin.sequence;
+  if (envelope.type == DatagramType::request) {
+    ClocklessRequest request;
+    if (decode(envelope, nullptr, request) != NodeRefusal::none) return std::nullopt;
+    out.samples.front() = request.sample;
+    out.sample_count = request.has_sample ? 1 : 0;
+    return out;
+  }
+  NodeFrame frame;
+  if (decode(envelope, nullptr, frame) != NodeRefusal::none) return std::nullopt;
+  if (frame.n_tx_us > most_counter_us) return std::nullopt;
+  out.n_tx = counter_at(frame.n_tx_us);
+  out.samples = frame.samples;
+  out.sample_count = frame.sample_count;
+  return out;
+}
+
+/// What was held, came twice or came late is in the recording, too; of an accepted datagram the
+/// exchange stands before it, with the same counter or number, and arrival.
 class AcceptedFrames {
  public:
-  void take(const RecordedExchange& recorded, HostTime arrival) {
-    exchange_ = {life_of(recorded), recorded.exchange.n_tx, arrival};
+  void take_exchange(const RecordedMessage& message) {
+    if (const auto recorded = to_exchange(message.payload)) {
+      const Exchange& e = recorded->exchange;
+      accepted_ = {life_of(e.boot, recorded->epoch), e.n_tx, 0, false, message.arrival};
+      exchanges.push_back(e);
+      exchanges.back().boot = accepted_->life;
+    } else if (const auto numbered = to_clockless(message.payload)) {
+      const ClocklessExchange& e = numbered->exchange;
+      accepted_ = {life_of(e.boot, numbered->epoch), std::nullopt,
+                   static_cast<std::int64_t>(e.frame), e.t6.has_value(), message.arrival};
+      clockless.push_back(e);
+      clockless.back().boot = accepted_->life;
+    }
   }
   std::optional<AcceptedFrame> take(const RecordedMessage& message) {
-    const auto accepted = std::exchange(exchange_, std::nullopt);
+    const auto accepted = std::exchange(accepted_, std::nullopt);
+    const bool in_time = accepted && accepted->at == message.arrival;
+    if (in_time && accepted->confirms) return std::nullopt;  // brings no sample
     auto frame = frame_in(message);
-    const bool is_accepted = frame && accepted && accepted->at == message.arrival &&
-                             accepted->n == counter_at(frame->n_tx_us);
-    if (!is_accepted) {
+    const auto low = [](std::int64_t number) { return static_cast<std::uint32_t>(number); };
+    const bool same = in_time && frame && accepted->n_tx == frame->n_tx &&
+                      (accepted->n_tx || low(accepted->number) == low(frame->number));
+    if (!same) {
       ++others;
       return std::nullopt;
     }
-    return AcceptedFrame{*frame, accepted->life};
+    frame->life = accepted->life;
+    frame->number = accepted->number;
+    return frame;
   }
 
+  std::vector<Exchange> exchanges{};
+  std::vector<ClocklessExchange> clockless{};
   std::uint64_t others = 0;
 
  private:
   struct Accepted {
     BootKey life = 0;
-    NodeTime n;
+    std::optional<NodeTime> n_tx;
+    std::int64_t number = 0;
+    bool confirms = false;
     HostTime at;
   };
-  std::optional<Accepted> exchange_;
+  std::optional<Accepted> accepted_;
 };
+
+/// Where requests leave on a steady timer their number plays the part of a counter: the earliest
+/// arrivals tell it, less the least half of a round trip (clock/clockless.h).
+CountedClock clockless_clock(std::span<const ClocklessExchange> exchanges, const DeviceWish& wish,
+                             Duration utc_minus_host) {
+  std::optional<Duration> least;
+  for (const ClocklessExchange& e : exchanges) {
+    if (const auto d = one_way_delay(e)) least = std::min(least.value_or(*d), *d);
+  }
+  std::vector<CountedFrame> requests;
+  for (const ClocklessExchange& e : exchanges) {
+    if (e.t6) continue;
+    requests.push_back(
+        {e.boot, static_cast<std::int64_t>(e.frame), e.t2 - least.value_or(Duration{0})});
+  }
+  const double rate = wish.options.rate_hz;
+  CountedClock clock =
+      counted_clock(requests, rate > 0.0 ? 1e9 / rate : 0.0, utc_minus_host, wish.file.path);
+  if (!least) {
+    clock.findings.push_back(
+        {Severity::warning,
+         Error{wish.file.path, 0, "confirms of a node without a counter", "none"},
+         "its stamps are late by the way of its fastest request", ""});
+  }
+  return clock;
+}
 
 class NodeListener final : public DeviceListener {
  public:
-  explicit NodeListener(const DeviceWish& wish) : file_(wish.file.path) {}
+  explicit NodeListener(const DeviceWish& wish) : wish_(wish) {}
 
   void take(const RecordedMessage& message) override {
-    if (message.is_exchange()) {
-      if (const auto recorded = to_exchange(message.payload)) {
-        frames_.take(*recorded, message.arrival);
-        exchanges_.push_back(recorded->exchange);
-        exchanges_.back().boot = life_of(*recorded);
-      }
-      return;
-    }
-    const auto accepted = frames_.take(message);
-    if (!accepted) return;
-    const NodeFrame& frame = accepted->frame;
-    for (std::size_t i = 0; i < frame.sample_count; ++i) {
-      const NodeSample& sample = frame.samples[i];
+    if (message.is_exchange()) return frames_.take_exchange(message);
+    const auto frame = frames_.take(message);
+    if (!frame) return;
+    for (std::size_t i = 0; i < frame->sample_count; ++i) {
+      const NodeSample& sample = frame->samples[i];
       content_.orientation |= sample.has_orientation;
       content_.acceleration |= sample.has_acceleration;
       content_.angular_velocity |= sample.has_angular_velocity;
@@ -99,18 +153,24 @@ class NodeListener final : public DeviceListener {
   }
 
   Result<void> finish(HeardDevice& heard) override {
-    if (exchanges_.empty()) {
-      return Failure(Error{file_, 0, "exchanges with node " + heard.channel.node,
-                           "none: of a node without a counter no time is known but arrivals"});
+    if (frames_.exchanges.empty() && frames_.clockless.empty()) {
+      return Failure(Error{wish_.file.path, 0, "frames of node " + heard.channel.node,
+                           "none that was accepted"});
     }
-    heard.clock = device_clock(exchanges_, heard.utc_minus_host);
     heard.content = content_;
+    if (!frames_.exchanges.empty()) {
+      heard.clock = device_clock(frames_.exchanges, heard.utc_minus_host);
+      return {};
+    }
+    CountedClock counted = clockless_clock(frames_.clockless, wish_, heard.utc_minus_host);
+    append(heard.findings, counted.findings);
+    heard.step_ns = counted.step_ns;
+    heard.clock = std::move(counted.clock);
     return {};
   }
 
  private:
-  std::string file_;
-  std::vector<Exchange> exchanges_;
+  DeviceWish wish_;
   AcceptedFrames frames_;
   ImuContent content_;
 };
@@ -129,18 +189,14 @@ class NodeRows final : public DeviceRows<ImuSamples> {
 
   Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
     if (message.is_exchange()) {
-      if (const auto recorded = to_exchange(message.payload)) {
-        frames_.take(*recorded, message.arrival);
-      }
+      frames_.take_exchange(message);
       return {};
     }
-    const auto accepted = frames_.take(message);
-    if (!accepted) return {};
-    const NodeFrame& frame = accepted->frame;
-    for (std::size_t i = 0; i < frame.sample_count; ++i) {
-      const NodeSample& sample = frame.samples[i];
-      const NodeTime n = counter_at(frame.n_tx_us) - std::chrono::microseconds(sample.age_us);
-      const auto stamp = stamp_of(heard_->clock, accepted->life, n, message.arrival);
+    const auto frame = frames_.take(message);
+    if (!frame) return {};
+    for (std::size_t i = 0; i < frame->sample_count; ++i) {
+      const NodeSample& sample = frame->samples[i];
+      const auto stamp = stamp_at(*frame, sample, message.arrival);
       if (!stamp) {
         ++unknown_;
         continue;
@@ -172,6 +228,16 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     findings.push_back({Severity::note,
                         Error{file_, 0, std::move(expected), fmt::format("{} {}", count, found)},
                         std::string(meaning), ""});
+  }
+
+  std::optional<Time> stamp_at(const AcceptedFrame& frame, const NodeSample& sample,
+                               HostTime arrival) const {
+    const bool counted = heard_->step_ns > 0.0;  // this node's requests
+    if (counted == frame.n_tx.has_value()) return std::nullopt;
+    const NodeTime sent =
+        counted ? counter_of({frame.life, frame.number, {}}, heard_->step_ns) : *frame.n_tx;
+    return stamp_of(heard_->clock, frame.life, sent - std::chrono::microseconds(sample.age_us),
+                    arrival);
   }
 
   void release(ImuSamples& out) {

@@ -44,6 +44,18 @@ bool is_near(Stamp stamp) {
   return -furthest <= stamp.time_since_epoch() && stamp.time_since_epoch() <= furthest;
 }
 
+// What an exchange's flags say.
+constexpr std::uint32_t echoed = 1, clockless = 2;
+constexpr std::uint64_t most_frames = std::uint64_t{1} << 32U;  // of a node: nine years at 15 Hz
+
+std::string exchange_head(BootKey boot, std::uint32_t epoch, std::uint32_t flags) {
+  std::string out;
+  append_little(boot, out);
+  append_little(epoch, out);
+  append_little(flags, out);
+  return out;
+}
+
 }  // namespace
 
 McapMetadata to_metadata(const RecordingFacts& facts) {
@@ -187,10 +199,7 @@ std::optional<RecordedMark> to_mark(std::string_view json) {
 std::string to_bytes(const RecordedExchange& recorded) {
   const Exchange& exchange = recorded.exchange;
   const Exchange::Echo echo = exchange.echo.value_or(Exchange::Echo{});
-  std::string out;
-  append_little(exchange.boot, out);
-  append_little(recorded.epoch, out);
-  append_little(std::uint32_t{exchange.echo ? 1U : 0U}, out);
+  std::string out = exchange_head(exchange.boot, recorded.epoch, exchange.echo ? echoed : 0U);
   append_ns(out, exchange.n_tx.time_since_epoch());
   append_ns(out, exchange.h_rx.time_since_epoch());
   append_ns(out, echo.n_rx.time_since_epoch());
@@ -207,11 +216,39 @@ std::optional<RecordedExchange> to_exchange(std::string_view bytes) {
   recorded.exchange.n_tx = take_stamp<NodeTime>(from);
   recorded.exchange.h_rx = take_stamp<HostTime>(from);
   const Exchange::Echo echo{take_stamp<NodeTime>(from), take_stamp<HostTime>(from)};
-  if (flags == 1) recorded.exchange.echo = echo;
-  if (!from.complete() || from.left() > 0 || flags > 1) return std::nullopt;
+  if (flags == echoed) recorded.exchange.echo = echo;
+  if (!from.complete() || from.left() > 0 || (flags & ~echoed) != 0) return std::nullopt;
   const Exchange& e = recorded.exchange;
   const bool near = is_near(e.n_tx) && is_near(e.h_rx) && is_near(echo.n_rx) && is_near(echo.h_tx);
   return near ? std::optional(recorded) : std::nullopt;
+}
+
+std::string to_bytes(const RecordedClockless& recorded) {
+  const ClocklessExchange& exchange = recorded.exchange;
+  std::string out =
+      exchange_head(exchange.boot, recorded.epoch, clockless | (exchange.t6 ? echoed : 0U));
+  append_little(exchange.frame, out);
+  append_ns(out, exchange.t2.time_since_epoch());
+  append_ns(out, exchange.t6.value_or(HostTime{}).time_since_epoch());
+  append_ns(out, exchange.t3.time_since_epoch());
+  return out;
+}
+
+std::optional<RecordedClockless> to_clockless(std::string_view bytes) {
+  LittleEndianReader from(octets(bytes));
+  RecordedClockless recorded;
+  ClocklessExchange& e = recorded.exchange;
+  e.boot = from.take<std::uint64_t>();
+  recorded.epoch = from.take<std::uint32_t>();
+  const auto flags = from.take<std::uint32_t>();
+  e.frame = from.take<std::uint64_t>();
+  e.t2 = take_stamp<HostTime>(from);
+  const auto t6 = take_stamp<HostTime>(from);
+  e.t3 = take_stamp<HostTime>(from);
+  if (flags == (clockless | echoed)) e.t6 = t6;
+  const bool whole = from.complete() && from.left() == 0 && (flags & ~echoed) == clockless;
+  const bool near = e.frame <= most_frames && is_near(e.t2) && is_near(e.t3) && is_near(t6);
+  return whole && near ? std::optional(recorded) : std::nullopt;
 }
 
 }  // namespace kinalign

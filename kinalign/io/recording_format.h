@@ -3,6 +3,7 @@
 // written first.
 #pragma once
 
+#include "kinalign/clock/clockless.h"
 #include "kinalign/clock/host_from_node.h"
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/io/mark.h"
@@ -83,5 +84,13 @@ struct RecordedExchange {
 std::string to_bytes(const RecordedExchange& recorded);
 /// Absent where the bytes are no exchange, or a clock of it has run for more than 31 years.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes);
+
+/// The same 48 bytes of a node without a counter: of a request the times behind T2 are absent.
+struct RecordedClockless {
+  std::uint32_t epoch = 0;
+  ClocklessExchange exchange;
+};
+std::string to_bytes(const RecordedClockless& recorded);
+std::optional<RecordedClockless> to_clockless(std::string_view bytes);
 
 }  // namespace kinalign

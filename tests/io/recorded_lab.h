@@ -10,6 +10,7 @@
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/noitom_stream.h"
 #include "kinalign/io/recording_format.h"
+#include "kinalign/wire/clockless.h"
 #include "kinalign/wire/node_frame.h"
 
 #include <doctest/doctest.h>
@@ -79,6 +80,33 @@ class RecordedLab {
       add(frames, arrival, std::string(text_of(bytes)));
       const double sent = arrival + 0.0003;
       echo = {NodeTime{std::chrono::microseconds(us(sent + way()))}, host(sent)};
+    }
+  }
+
+  /// Fifteen requests a second with a sample each, answered and confirmed; each `lost`th is lost.
+  void add_clockless_node(std::uint32_t id, double to, std::uint32_t lost) {
+    const RawChannel raw{"imu", "kinalign-node", "udp", "10.0.0.8:5005", std::to_string(id), ""};
+    const std::string topic = "/imu/" + std::to_string(id);
+    const auto datagrams = channel(to_channel(topic + "/raw", raw));
+    McapChannel described = to_channel(topic + "/exchange", raw);
+    described.message_encoding = exchange_encoding;
+    const auto exchanges = channel(described);
+    for (std::uint32_t k = 0; k < 15.0 * to; ++k) {
+      if (k % lost == lost - 1) continue;
+      const double t = k / 15.0, arrival = t + way(), answered = arrival + 0.0003;
+      const double confirmed = answered + way() + way();
+      std::array<std::uint8_t, max_node_datagram> room{};
+      ClocklessRequest request;
+      request.origin = {id, 1, k};
+      request.has_sample = true;
+      request.sample.has_acceleration = true;
+      request.sample.acceleration = {static_cast<float>(t), 9.8F, 0.0F};
+      add(exchanges, arrival, to_bytes(RecordedClockless{0, {k, host(arrival), {}, {}, 1}}));
+      add(datagrams, arrival, std::string(text_of(encode(request, nullptr, room))));
+      const ClocklessConfirm confirm{request.origin, {}};
+      const ClocklessExchange exchange{k, host(arrival), host(answered), host(confirmed), 1};
+      add(exchanges, confirmed, to_bytes(RecordedClockless{0, exchange}));
+      add(datagrams, confirmed, std::string(text_of(encode(confirm, nullptr, room))));
     }
   }
 

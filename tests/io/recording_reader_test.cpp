@@ -263,3 +263,18 @@ TEST_CASE("a SlimeVR tracker's rotations are stamped as they come, with their ac
   CHECK(std::get<ImuInput>(streams->back().data).node_names ==
         std::vector<std::string>{"10.0.0.22"});
 }
+
+TEST_CASE("a node without a counter is stamped by its requests' numbers, over lost ones") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_clockless_node(9, 40.0, 7);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const RecordedStream stream = opened(files, stream_named("imu", path));
+  CHECK(stream.findings.empty());
+  const Errors errors = node_errors(stream);
+  CHECK(errors.samples == 600 - 600 / 7);
+  CHECK(errors.certified == 0);
+  CHECK(errors.least > -1.0);
+  CHECK(errors.most < 1.0);
+}
