@@ -177,13 +177,28 @@ Quat turn_about_y(double degrees) {
 }
 
 std::vector<std::pair<std::string_view, std::string_view>> usual_pairs() {
-  // Joints that mean the same place on both skeletons (formats: Kinect v2; Perception Neuron).
-  return {
-      {"SpineBase", "Hips"},       {"ShoulderLeft", "LeftArm"},   {"ElbowLeft", "LeftForeArm"},
-      {"WristLeft", "LeftHand"},   {"ShoulderRight", "RightArm"}, {"ElbowRight", "RightForeArm"},
-      {"WristRight", "RightHand"}, {"HipLeft", "LeftUpLeg"},      {"KneeLeft", "LeftLeg"},
-      {"AnkleLeft", "LeftFoot"},   {"HipRight", "RightUpLeg"},    {"KneeRight", "RightLeg"},
-      {"AnkleRight", "RightFoot"}};
+  // Joints that mean the same place on both skeletons (formats: Kinect v2; Perception Neuron; last
+  // the segments of Xsens MVN by other names, whose places are those of the joint they begin at).
+  return {{"SpineBase", "Hips"},
+          {"ShoulderLeft", "LeftArm"},
+          {"ElbowLeft", "LeftForeArm"},
+          {"WristLeft", "LeftHand"},
+          {"ShoulderRight", "RightArm"},
+          {"ElbowRight", "RightForeArm"},
+          {"WristRight", "RightHand"},
+          {"HipLeft", "LeftUpLeg"},
+          {"KneeLeft", "LeftLeg"},
+          {"AnkleLeft", "LeftFoot"},
+          {"HipRight", "RightUpLeg"},
+          {"KneeRight", "RightLeg"},
+          {"AnkleRight", "RightFoot"},
+          {"SpineBase", "Pelvis"},
+          {"ShoulderLeft", "LeftUpperArm"},
+          {"ShoulderRight", "RightUpperArm"},
+          {"HipLeft", "LeftUpperLeg"},
+          {"HipRight", "RightUpperLeg"},
+          {"KneeLeft", "LeftLowerLeg"},
+          {"KneeRight", "RightLowerLeg"}};
 }
 
 Result<std::vector<SpacePlan>> plan_spaces(const TakeHeader& header, const Manifest& manifest,

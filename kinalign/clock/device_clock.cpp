@@ -24,16 +24,17 @@ constexpr double most_drift_ppm = 20'000.0;
 HostFromNode with_one_way(HostFromNode model, std::span<const Exchange> exchanges) {
   HostFromNode out;
   out.doubtful = std::move(model.doubtful);
+  std::unordered_map<BootKey, std::vector<Exchange>> lives;
+  for (const Exchange& e : exchanges) lives[e.boot].push_back(e);
   for (ClockPieceModel& piece : model.pieces) {
     if (!piece.knots.empty()) {
       out.pieces.push_back(std::move(piece));
       continue;
     }
     std::vector<Exchange> heard;
-    std::copy_if(exchanges.begin(), exchanges.end(), std::back_inserter(heard),
-                 [&](const Exchange& e) {
-                   return e.boot == piece.boot && piece.first <= e.h_rx && e.h_rx <= piece.last;
-                 });
+    const std::vector<Exchange>& life = lives[piece.boot];
+    std::copy_if(life.begin(), life.end(), std::back_inserter(heard),
+                 [&](const Exchange& e) { return piece.first <= e.h_rx && e.h_rx <= piece.last; });
     HostFromNode told = fit_one_way_clock(heard);
     std::move(told.pieces.begin(), told.pieces.end(), std::back_inserter(out.pieces));
   }
@@ -125,14 +126,19 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
     out.moved.push_back(moved);
   }
   if (out.time.pieces.empty()) out.time = TimeModel{};
+  for (std::size_t p = 0; p < out.model.pieces.size(); ++p) {
+    const ClockPieceModel& piece = out.model.pieces[p];
+    if (!piece.knots.empty()) out.pieces_of[piece.boot].push_back(p);
+  }
   return out;
 }
 
 std::optional<Time> stamp_of(const DeviceClock& clock, BootKey boot, NodeTime n, HostTime h_rx) {
+  const auto life = clock.pieces_of.find(boot);
+  if (life == clock.pieces_of.end()) return std::nullopt;
   const auto& pieces = clock.model.pieces;
   std::optional<std::size_t> found;
-  for (std::size_t p = 0; p < pieces.size(); ++p) {
-    if (pieces[p].boot != boot || pieces[p].knots.empty()) continue;
+  for (const std::size_t p : life->second) {
     // What came late belongs to the last piece of its life, what was held at its start to the
     // first.
     if (found && h_rx < pieces[p].first) continue;

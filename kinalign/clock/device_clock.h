@@ -6,8 +6,10 @@
 #include "kinalign/clock/host_from_node.h"
 #include "kinalign/clock/time_model.h"
 
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace kinalign {
@@ -17,6 +19,7 @@ struct DeviceClock {
   /// Of each piece: what is added to its counter. 0 up to the first restart or step back: stamps
   /// are the counter's readings. Behind one they go on as long after as the host counted.
   std::vector<Duration> moved;
+  std::unordered_map<BootKey, std::vector<std::size_t>> pieces_of;  // of a life, with knots
   TimeModel time;  // from stamps to UTC; half-widths where a piece is certified
 };
 

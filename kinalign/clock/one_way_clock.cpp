@@ -15,7 +15,6 @@ namespace {
 
 constexpr double knot_s = 1.0;
 constexpr double rate_known = 5e-6;  // chosen: so well the middle's edge tells it in half a minute
-constexpr double most_knots = 1e6;   // eleven days
 // Chosen: delays of a busy radio vary by more, but not the least one of a second, for three.
 constexpr double leap_s = 0.05;
 constexpr std::size_t leap_seconds = 3, rate_seconds = 30;
@@ -108,6 +107,24 @@ std::vector<Stretch> even_stretches(std::span<const Exchange> exchanges, Stretch
   return out;
 }
 
+/// Every second, in which something came or beside one in which it did: over a silence, of which
+/// no sample is, there is a straight line.
+std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOrigin& origin,
+                             double begin) {
+  std::vector<std::int64_t> seconds;
+  for (const Exchange& e : exchanges) {
+    const double s = bound_by(origin, Side::above, e.n_tx, e.h_rx).s;
+    const auto second = static_cast<std::int64_t>(std::floor((s - begin) / knot_s));
+    if (!seconds.empty() && seconds.back() == second + 1) continue;
+    for (const std::int64_t near : {second, second + 1}) seconds.push_back(near);
+  }
+  std::sort(seconds.begin(), seconds.end());
+  seconds.erase(std::unique(seconds.begin(), seconds.end()), seconds.end());
+  std::vector<double> knots;
+  for (const std::int64_t k : seconds) knots.push_back(begin + knot_s * static_cast<double>(k));
+  return knots;
+}
+
 ClockPieceModel fit(std::span<const Exchange> exchanges, Stretch stretch, double curvature) {
   const Exchange& front = exchanges[stretch.begin];
   const ClockOrigin origin{front.n_tx, front.h_rx};
@@ -132,10 +149,8 @@ ClockPieceModel fit(std::span<const Exchange> exchanges, Stretch stretch, double
   const double rate = std::isfinite(middle) ? middle : 0.0;
   const double change = rate_known + curvature * (end - begin) / 2.0;
   const Duration base = origin.host.time_since_epoch() - origin.node.time_since_epoch();
-  const auto count =
-      static_cast<std::size_t>(std::min(std::ceil((end - begin) / knot_s) + 1.0, most_knots));
-  for (std::size_t k = 0; k < count; ++k) {
-    const double s = begin + knot_s * static_cast<double>(k);
+  for (const double s :
+       knots_of(exchanges.subspan(stretch.begin, stretch.end - stretch.begin), origin, begin)) {
     const Duration since = nanoseconds(std::round(s * 1e9));
     const double t = seconds(since);
     const double slope = std::clamp(hull.peak(t).slope, rate - change, rate + change);

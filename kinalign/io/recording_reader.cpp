@@ -148,9 +148,10 @@ class Listening {
 };
 
 /// Mocap is the most exact and has the highest rate: its stamps become the grid.
+constexpr int kinect_rank = 1;
 int rank_of(std::string_view protocol) {
   if (protocol == "noitom" || protocol == "xsens") return 0;
-  return protocol == "kinect" ? 1 : 2;
+  return protocol == "kinect" ? kinect_rank : 2;
 }
 
 /// What a manifest calls one of several that are a stream: trackers are told apart by their
@@ -216,7 +217,11 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
   Manifest manifest;
   manifest.subject = survey.facts->subject;
   manifest.action = survey.facts->action;
-  for (Device& device : devices) manifest.streams.push_back(std::move(device.options));
+  for (Device& device : devices) {
+    const bool follows = !manifest.streams.empty() && devices.front().rank <= kinect_rank;
+    if (follows && device.rank == kinect_rank) manifest.spaces[device.options.name].method = "fit";
+    manifest.streams.push_back(std::move(device.options));
+  }
   return manifest;
 }
 

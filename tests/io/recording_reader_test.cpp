@@ -233,6 +233,8 @@ TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as 
   REQUIRE(manifest->streams[2].files.size() == 2);
   CHECK(manifest->streams[2].files[0].node == "waist");  // where the lab says that
   CHECK(manifest->streams[2].files[1].node == "13");
+  REQUIRE(manifest->spaces.size() == 1);
+  CHECK(manifest->spaces.at("kinect").method == "fit");
   const auto recording = open_recording(files, *manifest, folder.path() + "/");
   REQUIRE(recording);
   CHECK(recording->streams.size() == 4);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/counted_clock.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace kinalign;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A source of 125 frames a second, each a millisecond and more on its way, that sends nothing, and
+/// counts nothing, for a while.
+struct Source {
+  std::vector<CountedFrame> frames;
+  std::vector<HostTime> sent;
+
+  explicit Source(Duration pause) {
+    std::mt19937_64 random(20261123);
+    std::exponential_distribution<double> more(1.0 / 0.002);
+    HostTime newest{};
+    for (std::int64_t k = 0; k < 7500; ++k) {
+      const HostTime at{k * 8ms + (k >= 3000 ? pause : 0s)};
+      newest = std::max(newest, at + 1ms + Duration{std::llround(1e9 * more(random))});
+      frames.push_back({1, k, newest});
+      sent.push_back(at);
+    }
+  }
+
+  /// The worst stamp, by the clock that is told of it.
+  Duration worst(const CountedClock& counted) const {
+    Duration worst{0};
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const NodeTime n = counter_of(frames[i], counted.step_ns);
+      const auto stamp = stamp_of(counted.clock, frames[i].life, n, frames[i].arrival);
+      REQUIRE(stamp);
+      const Duration at = take_time(counted.clock.time, *stamp).time_since_epoch();
+      worst = std::max(worst, std::chrono::abs(at - sent[i].time_since_epoch()));
+    }
+    return worst;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a pause in which a source did not count bends no rate, whatever is stated") {
+  for (const Duration pause : {Duration{0}, Duration{70ms}, Duration{700ms}, Duration{1300ms},
+                               Duration{5s}, Duration{10s}, Duration{600s}}) {
+    CAPTURE(pause.count());
+    const Source source(pause);
+    for (const double stated_ns : {0.0, 8e6}) {
+      const CountedClock counted = counted_clock(source.frames, stated_ns, {}, "take.mcap");
+      CHECK(counted.findings.empty());
+      CHECK(counted.step_ns == doctest::Approx(8e6).epsilon(0.002));
+      CHECK(source.worst(counted) < 2500us);
+    }
+  }
+}
+
+TEST_CASE("a rate that is stated wrongly is said, and not believed") {
+  const Source source(0s);
+  const CountedClock counted = counted_clock(source.frames, 1e9 / 60.0, {}, "take.mcap");
+  REQUIRE(counted.findings.size() == 1);
+  CHECK(counted.findings[0].what.expected == "60 Hz, as stated");
+  CHECK(source.worst(counted) < 2500us);
+}
