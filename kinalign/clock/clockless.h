@@ -16,7 +16,8 @@
 namespace kinalign {
 
 struct ClocklessExchange {
-  std::uint64_t frame = 0;  // since the node's start; lost ones count
+  std::uint64_t frame =
+      0;  // a turn (2^32) above its number since the node's start; lost ones count
   HostTime t2{}, t3{};
   std::optional<HostTime> t6;  // absent: the answer or its confirmation was lost
   BootKey boot = 0;            // the node's life

@@ -27,6 +27,11 @@ NodeTime counter_at(std::uint64_t us) {
 /// The host's axis begins anew where it slept: another life for the clock.
 BootKey life_of(BootKey boot, std::uint32_t epoch) { return boot ^ (BootKey{epoch} << 40U); }
 
+/// Of a request, since its node started.
+std::int64_t number_of(const ClocklessExchange& e) {
+  return static_cast<std::int64_t>(e.frame) - (std::int64_t{1} << 32);
+}
+
 /// What brought samples and was accepted when it came.
 struct AcceptedFrame {
   BootKey life = 0;
@@ -71,8 +76,8 @@ class AcceptedFrames {
       exchanges.back().boot = accepted_->life;
     } else if (const auto numbered = to_clockless(message.payload)) {
       const ClocklessExchange& e = numbered->exchange;
-      accepted_ = {life_of(e.boot, numbered->epoch), std::nullopt,
-                   static_cast<std::int64_t>(e.frame), e.t6.has_value(), message.arrival};
+      accepted_ = {life_of(e.boot, numbered->epoch), std::nullopt, number_of(e), e.t6.has_value(),
+                   message.arrival};
       clockless.push_back(e);
       clockless.back().boot = accepted_->life;
     }
@@ -120,8 +125,7 @@ CountedClock clockless_clock(std::span<const ClocklessExchange> exchanges, const
   std::vector<CountedFrame> requests;
   for (const ClocklessExchange& e : exchanges) {
     if (e.t6) continue;
-    requests.push_back(
-        {e.boot, static_cast<std::int64_t>(e.frame), e.t2 - least.value_or(Duration{0})});
+    requests.push_back({e.boot, number_of(e), e.t2 - least.value_or(Duration{0})});
   }
   const double rate = wish.options.rate_hz;
   CountedClock clock =

@@ -46,7 +46,7 @@ bool is_near(Stamp stamp) {
 
 // What an exchange's flags say.
 constexpr std::uint32_t echoed = 1, clockless = 2;
-constexpr std::uint64_t most_frames = std::uint64_t{1} << 32U;  // of a node: nine years at 15 Hz
+constexpr std::uint64_t most_frames = std::uint64_t{1} << 33U;  // nine years at 15 Hz
 
 std::string exchange_head(BootKey boot, std::uint32_t epoch, std::uint32_t flags) {
   std::string out;

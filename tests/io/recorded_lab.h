@@ -101,10 +101,11 @@ class RecordedLab {
       request.has_sample = true;
       request.sample.has_acceleration = true;
       request.sample.acceleration = {static_cast<float>(t), 9.8F, 0.0F};
-      add(exchanges, arrival, to_bytes(RecordedClockless{0, {k, host(arrival), {}, {}, 1}}));
+      const std::uint64_t number = (std::uint64_t{1} << 32U) + k;
+      add(exchanges, arrival, to_bytes(RecordedClockless{0, {number, host(arrival), {}, {}, 1}}));
       add(datagrams, arrival, std::string(text_of(encode(request, nullptr, room))));
       const ClocklessConfirm confirm{request.origin, {}};
-      const ClocklessExchange exchange{k, host(arrival), host(answered), host(confirmed), 1};
+      const ClocklessExchange exchange{number, host(arrival), host(answered), host(confirmed), 1};
       add(exchanges, confirmed, to_bytes(RecordedClockless{0, exchange}));
       add(datagrams, confirmed, std::string(text_of(encode(confirm, nullptr, room))));
     }
