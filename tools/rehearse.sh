@@ -18,26 +18,5 @@ echo "rehearsing live for $seconds s: a suit, a Kinect and five nodes over loopb
 "$kinalign" record -o "$folder" --config "$folder/lab.toml" --seconds $((seconds + 3)) --quiet
 wait "$simulation"
 
-# What a lab says of its recording: into whose space the Kinect and the nodes are brought.
-cat >"$folder/recording.toml" <<'TOML'
-[stream.mocap]
-file = "take_01.mcap"
-
-[stream.kinect]
-file = "take_01.mcap"
-
-[stream.imu]
-root_node = "waist"
-
-[stream.imu.files]
-waist = "take_01.mcap"
-wrist_left = "take_01.mcap"
-wrist_right = "take_01.mcap"
-ankle_left = "take_01.mcap"
-ankle_right = "take_01.mcap"
-
-[space.kinect]
-method = "fit"
-TOML
 "$kinalign" align "$folder/recording.toml" -o "$folder/take.h5" || (($? == 1)) # 1: with warnings
 "$build/tools/kinalign_truth_table" "$folder/recording.toml" "$folder/take.h5" "$folder/truth/truth.json"

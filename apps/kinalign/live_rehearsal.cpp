@@ -107,7 +107,7 @@ LiveCounts LiveRehearsal::counts() const {
 }
 
 TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start,
-                         bool clockless) {
+                         std::optional<double> clockless_hz) {
   TrueRecording truth = truth_of(rehearsal, motion, start.utc);
   truth.host = TrueHost{start.raw.time_since_epoch().count(), to_ns(start.utc)};
   // From the stamps of a file, which the host made, back to the device's own.
@@ -119,10 +119,11 @@ TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const
   if (!rehearsal.ticks.empty()) begin_at(truth.kinect.clock, 100 * rehearsal.ticks.front().device);
   for (std::size_t n = 0; n < truth.nodes.size(); ++n) {
     const SimulatedNode& node = rehearsal.nodes[n];
-    if (clockless) {
+    if (clockless_hz) {
       truth.nodes[n].clock = {};
       for (std::size_t i = 0; i < node.truth.times.size(); ++i) {
-        truth.nodes[n].clock.stamps_ns.push_back(static_cast<std::int64_t>(i));
+        truth.nodes[n].clock.stamps_ns.push_back(
+            std::llround(1e9 / *clockless_hz * static_cast<double>(i)));
         truth.nodes[n].clock.times_ns.push_back(to_ns(time_at(start.utc, node.truth.times[i])));
       }
     } else if (!node.samples.empty()) {

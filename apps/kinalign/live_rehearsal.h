@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace kinalign {
@@ -57,8 +58,9 @@ class LiveRehearsal {
 };
 
 /// Stamps of the devices as they send them; times on the host's raw clock, brought to UTC by
-/// `start`. Of a node without a counter a stamp is the number of its request.
+/// `start`. Of nodes without a counter, of which there is a rate, a stamp is the number of the
+/// request times the step.
 TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start,
-                         bool clockless);
+                         std::optional<double> clockless_hz);
 
 }  // namespace kinalign

@@ -137,9 +137,11 @@ void tell_files(const TrueRecording& truth, const Rehearsal& rehearsal, Call& ca
 void tell_start(const TrueRecording& truth, const Rehearsal& rehearsal, const Simulate& o,
                 Call& call) {
   const std::string& folder = call.common.out;
-  call.console.print(harmless(head_line(truth, folder) +
-                              fmt::format("  sending to {}: mocap on port {}, kinect {}, imu {}\n",
-                                          o.to, o.mocap_port, o.kinect_port, o.node_port)));
+  call.console.print(
+      harmless(head_line(truth, folder) +
+               fmt::format("  sending to {}: mocap on port {}, kinect {}, imu {}\n", o.to,
+                           o.mocap_port, o.kinect_port, o.node_port) +
+               fmt::format("  record  kinalign record -o {0} --config {0}/lab.toml\n", folder)));
   Json json{{"event", "sending"}};
   json.update(json_of(truth, rehearsal, folder));
   json["start_raw_ns"] = truth.host->raw_ns;
@@ -148,7 +150,7 @@ void tell_start(const TrueRecording& truth, const Rehearsal& rehearsal, const Si
   call.console.flush();
 }
 
-void tell_end(const LiveCounts& counts, Call& call) {
+void tell_end(const LiveCounts& counts, const std::string& folder, Call& call) {
   const double late_ms = 1e3 * seconds(counts.worst_late);
   std::string text =
       fmt::format("  sent {} frames of mocap, {} of kinect, {} of nodes with {} samples\n",
@@ -160,7 +162,8 @@ void tell_end(const LiveCounts& counts, Call& call) {
     text += fmt::format("  {} datagrams were not taken: nobody listens there\n",
                         grouped(counts.refused));
   }
-  call.console.print(text);
+  text += fmt::format("  next    kinalign align {0}/recording.toml -o {0}/take.h5\n", folder);
+  call.console.print(harmless(text));
   call.console.print_json(json_text(Json{{"event", "sent"},
                                          {"mocap_frames", counts.mocap_frames},
                                          {"kinect_frames", counts.kinect_frames},
@@ -203,15 +206,18 @@ Result<int> send_live(const Simulate& o, const RehearsalFolder& folder, const Mo
                             .begin_in_s = o.begin_in,
                             .clockless = o.clockless};
   KA_TRY(write_lab(folder, options, rehearsal));
+  std::optional<double> clockless_hz;
+  if (o.clockless) clockless_hz = static_cast<double>(o.node_rate);
+  KA_TRY(write_live_manifest(folder, rehearsal, clockless_hz));
   take_signals();
   LiveRehearsal live = KA_TRY(LiveRehearsal::open(motion, rehearsal, options, clock));
-  TrueRecording truth = named(live_truth(rehearsal, motion, live.start(), o.clockless), o);
+  TrueRecording truth = named(live_truth(rehearsal, motion, live.start(), clockless_hz), o);
   truth.link = o.link;
   KA_TRY(write_truth(folder, truth));
   call.console.if_it_fails({});
   tell_start(truth, rehearsal, o, call);
   live.run([&](double) { return !interrupted(); });
-  tell_end(live.counts(), call);
+  tell_end(live.counts(), folder.path, call);
   return 0;
 }
 

@@ -155,6 +155,22 @@ nodes = {{ {} }}
                                 options.node_port, nodes));
 }
 
+Result<void> write_live_manifest(const RehearsalFolder& folder, const Rehearsal& rehearsal,
+                                 std::optional<double> clockless_hz) {
+  const std::string take = "take_01.mcap";
+  Manifest manifest;
+  manifest.streams = {stream_of("mocap", {{take, ""}}), stream_of("kinect", {{take, ""}}),
+                      stream_of("imu", {})};
+  StreamOptions& imu = manifest.streams.back();
+  for (const SimulatedNode& node : rehearsal.nodes) {
+    imu.files.push_back({take, node.mounting.node_name});
+  }
+  imu.root_node = "waist";
+  imu.rate_hz = clockless_hz.value_or(0.0);
+  manifest.spaces["kinect"].method = "fit";
+  return write_text(folder, "recording.toml", manifest_toml(manifest));
+}
+
 Result<void> write_truth(const RehearsalFolder& folder, const TrueRecording& truth) {
   return write_text(folder, "truth/truth.json", truth_json(truth));
 }

@@ -30,6 +30,11 @@ Result<void> write_suit_head(const RehearsalFolder& folder, const Motion& motion
 Result<void> write_lab(const RehearsalFolder& folder, const LiveOptions& options,
                        const Rehearsal& rehearsal);
 
+/// recording.toml for `align`, of the first take that `record` makes in the folder. `clockless_hz`:
+/// the rate of nodes without a counter.
+Result<void> write_live_manifest(const RehearsalFolder& folder, const Rehearsal& rehearsal,
+                                 std::optional<double> clockless_hz);
+
 /// truth/truth.json.
 Result<void> write_truth(const RehearsalFolder& folder, const TrueRecording& truth);
 

@@ -14,37 +14,58 @@ namespace {
 constexpr std::int64_t furthest_back = 1000, furthest_ahead = 360'000;
 constexpr double believed = 0.01;            // of a step: Noitom's programs state three decimals
 constexpr std::int64_t enough_frames = 100;  // to contradict what is stated
-// Chosen: an arrival late by 20 ms is 0.4 % of it, and a recording of a minute has eleven.
-constexpr Duration window = std::chrono::seconds(5);
+// Chosen: so many that one with a pause does not count, so long that a few milliseconds on the way
+// are a thousandth.
+constexpr int windows = 8;
+constexpr Duration shortest_window = std::chrono::milliseconds(500);
+constexpr Duration longest_window = std::chrono::seconds(5);
 constexpr double slowest_step_ns = 2e9;  // so that no number of 32 bits overflows its counter
 
-/// The median over windows of some seconds within a life: a pause in which the device did not
-/// count is in one of them. 0 where nothing was sent twice.
-double measured_step_ns(const std::vector<CountedFrame>& frames) {
-  std::vector<double> steps, short_ones;
-  for (std::size_t begin = 0, end = 1; end < frames.size(); ++end) {
-    const CountedFrame &first = frames[begin], &last = frames[end];
-    if (last.life != first.life) {
-      begin = end;
-      continue;
-    }
-    const auto count = last.number - first.number;
-    if (count <= 0) continue;
-    const double step =
-        static_cast<double>((last.arrival - first.arrival).count()) / static_cast<double>(count);
-    const bool last_of_life = end + 1 == frames.size() || frames[end + 1].life != last.life;
-    if (last.arrival - first.arrival >= window) {
-      steps.push_back(step);
-      begin = end;
-    } else if (last_of_life) {
-      short_ones.push_back(step);
+/// The frame of each window of a life that was the least on its way, if frames are `step` ns apart.
+std::vector<CountedFrame> earliest_of_windows(const std::vector<CountedFrame>& frames,
+                                              Duration window, double step) {
+  std::vector<CountedFrame> out;
+  HostTime begin;
+  const auto way = [&](const CountedFrame& frame) {
+    return static_cast<double>((frame.arrival - begin).count()) -
+           step * static_cast<double>(frame.number - out.back().number);
+  };
+  for (const CountedFrame& frame : frames) {
+    if (out.empty() || frame.life != out.back().life || frame.arrival - begin >= window) {
+      begin = frame.arrival;
+      out.push_back(frame);
+    } else if (way(frame) < way(out.back())) {
+      out.back() = frame;
     }
   }
-  std::vector<double>& all = steps.empty() ? short_ones : steps;
-  if (all.empty()) return 0.0;
-  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end());
+  return out;
+}
+
+/// From each to the next of its life, the median: a pause in which the device did not count is one
+/// of them. 0 where there are no two.
+double median_step_ns(const std::vector<CountedFrame>& earliest) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < earliest.size(); ++i) {
+    const CountedFrame &a = earliest[i - 1], &b = earliest[i];
+    if (a.life != b.life || b.number <= a.number) continue;
+    steps.push_back(static_cast<double>((b.arrival - a.arrival).count()) /
+                    static_cast<double>(b.number - a.number));
+  }
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
   return std::clamp(*middle, 0.0, slowest_step_ns);
+}
+
+double measured_step_ns(const std::vector<CountedFrame>& frames) {
+  if (frames.empty()) return 0.0;
+  const Duration length = frames.back().arrival - frames.front().arrival;
+  const Duration window = std::clamp(length / windows, shortest_window, longest_window);
+  double step = 0.0;  // the first frame of each window
+  for (int round = 0; round < 3; ++round) {
+    step = median_step_ns(earliest_of_windows(frames, window, step));
+  }
+  return step;
 }
 
 std::string rate_text(double step_ns) { return fmt::format("{:.6g} Hz", 1e9 / step_ns); }

@@ -66,3 +66,20 @@ TEST_CASE("a rate that is stated wrongly is said, and not believed") {
   CHECK(counted.findings[0].what.expected == "60 Hz, as stated");
   CHECK(source.worst(counted) < 2500us);
 }
+
+TEST_CASE("a busy radio's delays do not shake a rate that is stated rightly") {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    std::exponential_distribution<double> more(1.0 / 0.030);  // link C: 33 ms in the mean
+    std::vector<CountedFrame> frames;
+    for (std::int64_t k = 0; k < 225; ++k) {  // 15 s of the paper's nodes
+      const Duration way = 3500us + Duration{std::llround(1e9 * more(random))};
+      frames.push_back({1, k, HostTime{Duration{k * 66'666'667} + way}});
+    }
+    const CountedClock counted = counted_clock(frames, 1e9 / 15.0, {}, "take.mcap");
+    CHECK(counted.findings.empty());
+    CHECK(counted_clock(frames, 0.0, {}, "take.mcap").step_ns ==
+          doctest::Approx(1e9 / 15.0).epsilon(0.01));
+  }
+}
