@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <chrono>
+
 namespace kinalign {
 
 namespace {
@@ -78,6 +81,18 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
                         {path, 0, "an index at the recording's end", "none"},
                         "it was not closed: the program or the machine stopped, or the disk did",
                         "kinalign recover " + path + " -o whole.mcap gives it one"});
+  }
+  if (!survey.steps.empty()) {
+    const WallClockStep& worst = *std::max_element(
+        survey.steps.begin(), survey.steps.end(), [](const auto& a, const auto& b) {
+          return std::chrono::abs(a.by) < std::chrono::abs(b.by);
+        });
+    findings.push_back({Severity::warning,
+                        {path, 0, "a wall clock that nobody sets while it records",
+                         fmt::format("set {} times, by {:+.3f} s at the most", survey.steps.size(),
+                                     seconds(worst.by))},
+                        "UTC in it is the clock's of the beginning; time differences are right",
+                        "let the machine's clock be set before recording: docs/time_server.md"});
   }
   for (const ChannelSurvey& channel : survey.channels) {
     if (!survey.facts || channel.missing == 0) continue;

@@ -48,6 +48,8 @@ struct RawChannel {
 McapChannel to_channel(std::string topic, const RawChannel& raw);
 std::optional<RawChannel> to_raw(const McapChannel& channel);
 
+/// Both clocks of the host, once a second.
+inline constexpr std::string_view host_clock_topic = "/clock/host";
 /// What is said to be a channel's content: schema and the text of its JSON.
 McapSchema clock_pair_schema();
 std::string to_json(const ClockPair& pair);

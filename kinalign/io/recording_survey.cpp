@@ -23,13 +23,16 @@ class Surveyor {
     std::stable_sort(
         survey_.channels.begin(), survey_.channels.end(),
         [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
+    if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
     return std::move(survey_);
   }
 
  private:
   void add(const McapChannel& channel) { channels_[channel.id].channel = channel; }
   void add(const McapMetadata& metadata) {
-    if (!survey_.facts) survey_.facts = to_facts(metadata);
+    if (survey_.facts) return;
+    survey_.facts = to_facts(metadata);
+    if (survey_.facts) clock_.push_back(survey_.facts->anchor);
   }
   void add(const McapAttachment& attachment) { survey_.attachments.push_back(attachment.name); }
   void add(const McapMessage& message) {
@@ -48,12 +51,15 @@ class Surveyor {
     channel.last = std::max(channel.last, message.log_time);
     ++channel.messages;
     channel.bytes += message.data.size();
+    if (channel.channel.topic != host_clock_topic) return;
+    if (const auto pair = to_clock_pair(message.data)) clock_.push_back(*pair);
   }
   template <class Other>
   void add(const Other&) {}
 
   const McapReader& reader_;
   std::map<std::uint16_t, ChannelSurvey> channels_;
+  std::vector<ClockPair> clock_;
   RecordingSurvey survey_;
 };
 

@@ -3,6 +3,7 @@
 // checked. Works on torn files and on MCAP files of others, too.
 #pragma once
 
+#include "kinalign/clock/utc_anchor.h"
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
 #include "kinalign/io/mcap_reader.h"
@@ -32,6 +33,7 @@ struct RecordingSurvey {
   std::uint64_t unchecked = 0;           // of these at a torn end
   bool closed = false;                   // index and end are there
   std::vector<std::string> attachments;  // names
+  std::vector<WallClockStep> steps;      // of the recording machine's wall clock
   std::uint64_t bytes = 0;               // of the file
   Findings findings;
 };

@@ -191,6 +191,18 @@ class RecordedLab {
     }
   }
 
+  /// Both clocks of the machine once a second, the wall clock set by `step_s` at `at`.
+  void add_clock(double to, double at, double step_s) {
+    McapChannel described;
+    described.topic = host_clock_topic;
+    described.message_encoding = "json";
+    const auto pairs = channel(described);
+    for (double t = 0.0; t < to; t += 1.0) {
+      const Duration moved{std::llround(1e9 * (t >= at ? step_s : 0.0))};
+      add(pairs, t, to_json(ClockPair{host(t), utc(t) + moved}));
+    }
+  }
+
   /// The file, its messages in the order of arrival, half a second in a chunk.
   std::string file(bool closed = true) {
     std::stable_sort(messages_.begin(), messages_.end(),

@@ -240,6 +240,21 @@ TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as 
   CHECK(recording->streams.size() == 4);
 }
 
+TEST_CASE("a wall clock that is set while recording is told by the recording's survey") {
+  const FreshFolder folder;
+  PosixFiles files;
+  for (const double step_s : {0.0, -0.25, 3.0}) {
+    RecordedLab lab(20261123);
+    lab.add_clock(20.0, 12.0, step_s);
+    const auto survey = survey_recording(files, folder.write("take.mcap", lab.file()));
+    REQUIRE(survey);
+    REQUIRE(survey->steps.size() == (step_s == 0.0 ? 0 : 1));
+    if (survey->steps.empty()) continue;
+    CHECK(survey->steps[0].at == RecordedLab::host(12.0));
+    CHECK(seconds(survey->steps[0].by) == doctest::Approx(step_s));
+  }
+}
+
 TEST_CASE("a SlimeVR tracker's rotations are stamped as they come, with their accelerations") {
   const FreshFolder folder;
   RecordedLab lab(20261123);
