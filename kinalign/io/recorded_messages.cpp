@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_names = 32;  // of streams, nodes, senders in messages
+constexpr std::size_t most_names = 32;  // of streams and nodes in messages
 
 void remember(std::set<std::string>& names, const std::string& name) {
   if (names.size() < most_names) names.insert(shown(name));
@@ -18,15 +18,8 @@ void remember(std::set<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-std::string host_of(std::string_view sender) {
-  return std::string(sender.substr(0, sender.rfind(':')));
-}
-
 RecordedMessages::RecordedMessages(DeviceChoice choice, std::string file)
-    : choice_(std::move(choice)),
-      any_node_(choice_.node.empty()),
-      any_sender_(choice_.sender.empty()),
-      file_(std::move(file)) {}
+    : choice_(std::move(choice)), any_node_(choice_.node.empty()), file_(std::move(file)) {}
 
 Duration RecordedMessages::utc_minus_host() const {
   if (!facts_) return {};
@@ -66,7 +59,7 @@ Result<void> RecordedMessages::finish(const TakeMessage& take) {
       Error{file_, 0,
             fmt::format("of stream {} {}", choice_.stream,
                         node ? fmt::format("node {}", fmt::join(nodes_, ", "))
-                             : fmt::format("select.sender {}", fmt::join(senders_, ", "))),
+                             : fmt::format("select.sender {}", fmt::join(roll_.hosts(), ", "))),
             "'" + shown(node ? choice_.node : choice_.sender) + "'"});
 }
 
@@ -86,12 +79,15 @@ Result<void> RecordedMessages::take_one(const McapRecord& record, const TakeMess
     const auto found = channels_.find(message->channel);
     if (found == channels_.end() || !facts_) return {};
     Channel& from = found->second;
-    if (!from.wanted || message->log_time > latest_log_time) return {};
+    if (message->log_time > latest_log_time) return {};
+    const auto log = Duration{static_cast<std::int64_t>(message->log_time)};
+    const HostTime arrival{log - utc_minus_host()};
+    if (from.sender) roll_.hear(*from.sender, arrival);
+    if (!from.wanted) return {};
     const std::uint32_t step = message->sequence - from.last_number.value_or(message->sequence - 1);
     from.last_number = message->sequence;
     if (step > 1 && step < 1U << 31U) missing_ += step - 1;
-    const auto log = Duration{static_cast<std::int64_t>(message->log_time)};
-    return take({&from.raw, message->channel, HostTime{log - utc_minus_host()}, message->data});
+    return take({&from.raw, message->channel, arrival, message->data});
   }
   return {};
 }
@@ -102,22 +98,27 @@ void RecordedMessages::add(const McapChannel& channel) {
   if (!raw) return;
   const auto [at, fresh] = channels_.try_emplace(channel.id);
   if (!fresh && at->second.raw == *raw) return;
-  at->second = {*raw, is_wanted(*raw), {}};
+  at->second = {*raw, is_wanted(*raw), place_on_roll(*raw), {}};
   if (at->second.wanted && !chosen_ && raw->protocol != exchange_encoding) chosen_ = *raw;
 }
 
 bool RecordedMessages::is_wanted(const RawChannel& raw) {
   remember(streams_, raw.stream);
   if (raw.stream != choice_.stream) return false;
-  const std::string host = host_of(raw.sender);
-  remember(senders_, host);
   if (!raw.node.empty()) {  // a node may come from another address after a while
     remember(nodes_, raw.node);
     if (choice_.node.empty()) choice_.node = raw.node;
     return raw.node == choice_.node || (!raw.place.empty() && raw.place == choice_.node);
   }
+  const std::string host = host_of(raw.sender);
   if (choice_.sender.empty()) choice_.sender = host;
-  return host == choice_.sender;
+  if (choice_.passed_over.contains(raw.sender)) return false;
+  return host == choice_.sender || raw.sender == choice_.sender;
+}
+
+std::optional<std::size_t> RecordedMessages::place_on_roll(const RawChannel& raw) {
+  const bool device = raw.stream == choice_.stream && raw.protocol != exchange_encoding;
+  return device && raw.node.empty() ? std::optional(roll_.add(raw.sender)) : std::nullopt;
 }
 
 void RecordedMessages::judge_end() {
@@ -134,13 +135,6 @@ void RecordedMessages::judge_end() {
          Error{file_, 0, "every message that reached the recorder",
                fmt::format("{} of {} missing between others", missing_, choice_.stream)},
          "damage in the file, or a recording that went on in another part", ""});
-  }
-  if (any_sender_ && senders_.size() > 1 && nodes_.empty()) {
-    findings_.push_back({Severity::warning,
-                         Error{file_, 0, fmt::format("one sender of {}", choice_.stream),
-                               fmt::format("{}", fmt::join(senders_, ", "))},
-                         fmt::format("only {} was read", choice_.sender),
-                         "select.sender names another"});
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "kinalign/io/mcap_reader.h"
 #include "kinalign/io/recording_format.h"
+#include "kinalign/io/sender_roll.h"
 
 #include <functional>
 #include <map>
@@ -19,7 +20,10 @@ namespace kinalign {
 struct DeviceChoice {
   std::string stream;
   std::string node;    // of inertial nodes: an id, or a place where the lab named it
-  std::string sender;  // the address without its port
+  std::string sender;  // the address, with its port or without
+  std::set<std::string> passed_over{};  // of this address: whom not to take, with their ports
+
+  bool operator==(const DeviceChoice&) const = default;
 };
 
 struct RecordedMessage {
@@ -49,36 +53,37 @@ class RecordedMessages {
   const std::string& skeleton() const { return skeleton_; }
   /// The device's first channel, once it was heard.
   const std::optional<RawChannel>& chosen() const { return chosen_; }
-  /// That the file is torn or damaged, or that there are other nodes or senders in the stream;
-  /// complete after finish().
+  /// Who else spoke in the stream; empty where it is one of nodes. Complete after finish().
+  const SenderRoll& senders() const { return roll_; }
+  /// That the file is torn or damaged; complete after finish().
   const Findings& findings() const { return findings_; }
 
  private:
   struct Channel {
     RawChannel raw;
     bool wanted = false;
-    std::optional<std::uint32_t> last_number;
+    std::optional<std::size_t> sender{};  // on the roll
+    std::optional<std::uint32_t> last_number{};
   };
   Result<void> take_records(const TakeMessage& take);
   Result<void> take_one(const McapRecord& record, const TakeMessage& take);
   void add(const McapChannel& channel);
   bool is_wanted(const RawChannel& raw);
+  std::optional<std::size_t> place_on_roll(const RawChannel& raw);
   void judge_end();
 
   DeviceChoice choice_;
-  bool any_node_, any_sender_;  // were asked for
+  bool any_node_;  // was asked for
   std::string file_;
   McapReader reader_;
   std::optional<RecordingFacts> facts_;
   std::string skeleton_;
   std::optional<RawChannel> chosen_;
   std::map<std::uint16_t, Channel> channels_;
-  std::set<std::string> streams_, nodes_, senders_;  // that are there
+  std::set<std::string> streams_, nodes_;  // that are there
+  SenderRoll roll_;
   std::uint64_t missing_ = 0;
   Findings findings_;
 };
-
-/// "192.168.7.20" of "192.168.7.20:51234".
-std::string host_of(std::string_view sender);
 
 }  // namespace kinalign

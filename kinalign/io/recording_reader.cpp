@@ -2,6 +2,7 @@
 #include "kinalign/io/recording_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -92,7 +93,7 @@ AnyReader reader_of(const DeviceWish& wish, const std::shared_ptr<const HeardDev
       rows);
 }
 
-/// The first pass.
+/// The first pass, of one choice of a sender.
 class Listening {
  public:
   explicit Listening(const DeviceWish& wish)
@@ -101,8 +102,12 @@ class Listening {
   Result<void> feed(std::string_view piece) {
     return messages_.feed(piece, [this](const RecordedMessage& m) { return take(m); });
   }
-  Result<HeardDevice> finish() {
-    KA_TRY(messages_.finish([this](const RecordedMessage& m) { return take(m); }));
+  /// Fails where the file has no such device.
+  Result<void> end() {
+    return messages_.finish([this](const RecordedMessage& m) { return take(m); });
+  }
+  /// Fails where no rows could be made of it.
+  Result<HeardDevice> heard() {
     HeardDevice heard;
     heard.channel = *messages_.chosen();
     heard.skeleton = messages_.skeleton();
@@ -112,6 +117,8 @@ class Listening {
     return heard;
   }
   const DeviceProtocol& protocol() const { return *protocol_; }
+  const SenderRoll& senders() const { return messages_.senders(); }
+  const RawChannel& channel() const { return *messages_.chosen(); }
 
  private:
   Result<void> begin(const RawChannel& channel) {
@@ -147,18 +154,75 @@ class Listening {
   std::unique_ptr<DeviceListener> listener_;
 };
 
-/// Mocap is the most exact and has the highest rate: its stamps become the grid.
-constexpr int kinect_rank = 1;
-int rank_of(std::string_view protocol) {
-  if (protocol == "noitom" || protocol == "xsens") return 0;
-  return protocol == "kinect" ? kinect_rank : 2;
+Result<std::unique_ptr<Listening>> listen_once(FileSystem& files, const DeviceWish& wish,
+                                               const Progress& progress) {
+  const std::string& path = wish.file.path;
+  InputFile input = KA_TRY(InputFile::open(files, path));
+  auto listening = std::make_unique<Listening>(wish);
+  std::uint64_t done = 0;
+  for (;;) {
+    const std::string_view piece = KA_TRY(input.next());
+    if (piece.empty()) break;
+    KA_TRY(listening->feed(piece));
+    done += piece.size();
+    if (!go_on(progress, "listening", done, input.size())) return Failure(interruption(path));
+  }
+  KA_TRY(listening->end());
+  return listening;
 }
 
-/// What a manifest calls one of several that are a stream: trackers are told apart by their
-/// addresses; of mocap and Kinects the first is the one.
-std::string node_name(const RawChannel& raw) {
-  if (raw.protocol == "slimevr") return host_of(raw.sender);
-  return raw.place.empty() ? raw.node : raw.place;
+/// Whom to listen to, in this order until rows can be made of one: those with most messages come
+/// first, of an address without those that speak beside a busier one.
+std::vector<DeviceChoice> choices(const DeviceChoice& wished, const SenderRoll& senders) {
+  constexpr std::size_t most_choices = 8;  // each takes a pass over the file
+  std::vector<std::string> hosts{wished.sender};
+  if (wished.sender.empty()) hosts = senders.hosts();
+  if (hosts.empty()) return {wished};  // nodes
+  hosts.resize(std::min(hosts.size(), most_choices));
+  std::vector<DeviceChoice> all;
+  for (const std::string& host : hosts) {
+    all.push_back(wished);
+    all.back().sender = host;
+    all.back().passed_over = senders.beside(host);
+  }
+  return all;
+}
+
+constexpr std::size_t most_named = 8;
+
+std::string some_of(std::vector<std::string> names) {
+  const std::size_t all = names.size();
+  names.resize(std::min(all, most_named));
+  const auto more = all > most_named ? fmt::format(" and {} more", all - most_named) : "";
+  return fmt::format("{}{}", fmt::join(names, ", "), more);
+}
+
+Error with_senders(Error error, const std::string& chosen, const SenderRoll& senders) {
+  if (senders.hosts().size() < 2) return error;
+  error.found +=
+      fmt::format(" from {}; heard were {}: select.sender", chosen, some_of(senders.hosts()));
+  return error;
+}
+
+/// That there are others than the ones that are read.
+Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderRoll& senders) {
+  const DeviceChoice& choice = wish.choice;
+  Findings findings;
+  const auto tell = [&](const std::string& one, const std::vector<std::string>& heard,
+                        const std::string& meaning, const char* repair) {
+    findings.push_back(
+        {Severity::warning, Error{wish.file.path, 0, one, some_of(heard)}, meaning, repair});
+  };
+  if (any_sender && senders.hosts().size() > 1) {
+    tell("one sender of " + choice.stream, senders.hosts(), "only " + choice.sender + " was read",
+         "select.sender names another");
+  }
+  if (!choice.passed_over.empty()) {
+    tell("one sender of " + choice.stream + " at " + choice.sender, senders.senders(choice.sender),
+         "of those that speak in turn only the one that said most was read",
+         "select.sender names another, with its port");
+  }
+  return findings;
 }
 
 }  // namespace
@@ -167,62 +231,32 @@ bool looks_like_recording(std::string_view head) { return head.starts_with(mcap_
 
 Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
                               const StreamFile& file, const Progress& progress) {
-  const DeviceWish wish = KA_TRY(wish_of(options, file));
-  InputFile input = KA_TRY(InputFile::open(files, file.path));
-  Listening listening(wish);
-  std::uint64_t done = 0;
-  for (;;) {
-    const std::string_view piece = KA_TRY(input.next());
-    if (piece.empty()) break;
-    KA_TRY(listening.feed(piece));
-    done += piece.size();
-    if (!go_on(progress, "listening", done, input.size())) return Failure(interruption(file.path));
+  DeviceWish wish = KA_TRY(wish_of(options, file));
+  const bool any_sender = wish.choice.sender.empty();
+  auto listening = KA_TRY(listen_once(files, wish, progress));
+  const SenderRoll senders = listening->senders();
+  DeviceChoice taken = wish.choice;  // of that pass
+  if (any_sender && listening->channel().node.empty()) {
+    taken.sender = host_of(listening->channel().sender);
   }
-  auto heard = std::make_shared<const HeardDevice>(KA_TRY(listening.finish()));
-  return RecordedDevice{heard,
-                        [wish, heard, protocol = listening.protocol()]() -> Result<AnyReader> {
-                          return reader_of(wish, heard, protocol.rows(wish, heard));
-                        }};
-}
-
-Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& path) {
-  if (!survey.facts)
-    return Failure(Error{path, 0, "a recording of kinalign's", "another MCAP file"});
-  struct Device {
-    int rank = 0;
-    StreamOptions options;
-  };
-  std::vector<Device> devices;
-  for (const ChannelSurvey& one : survey.channels) {
-    const auto raw = to_raw(one.channel);
-    if (!raw || raw->protocol == exchange_encoding || one.messages == 0) continue;
-    auto device = std::find_if(devices.begin(), devices.end(),
-                               [&](const Device& d) { return d.options.name == raw->stream; });
-    if (device == devices.end()) {
-      device = devices.insert(device, {rank_of(raw->protocol), {}});
-      device->options.name = raw->stream;
-      device->options.select = {{"stream", raw->stream}};
+  std::optional<Error> why;  // nothing came of the busiest one
+  for (const DeviceChoice& choice : choices(wish.choice, senders)) {
+    wish.choice = choice;
+    if (taken != choice) listening = KA_TRY(listen_once(files, wish, progress));
+    taken = choice;
+    auto heard = listening->heard();
+    if (!heard) {
+      if (!why) why = with_senders(heard.error(), choice.sender, senders);
+      continue;
     }
-    std::vector<StreamFile>& streams = device->options.files;
-    std::string node = node_name(*raw);
-    const auto same = [&](const StreamFile& file) { return file.node == node; };
-    if (std::any_of(streams.begin(), streams.end(), same)) continue;
-    streams.push_back({path, std::move(node)});
+    append(heard->findings, judge_senders(wish, any_sender, senders));
+    const auto shared = std::make_shared<const HeardDevice>(std::move(*heard));
+    return RecordedDevice{shared,
+                          [wish, shared, protocol = listening->protocol()]() -> Result<AnyReader> {
+                            return reader_of(wish, shared, protocol.rows(wish, shared));
+                          }};
   }
-  if (devices.empty()) {
-    return Failure(Error{path, 0, "a recording of devices", "one in which none was heard"});
-  }
-  std::stable_sort(devices.begin(), devices.end(),
-                   [](const Device& a, const Device& b) { return a.rank < b.rank; });
-  Manifest manifest;
-  manifest.subject = survey.facts->subject;
-  manifest.action = survey.facts->action;
-  for (Device& device : devices) {
-    const bool follows = !manifest.streams.empty() && devices.front().rank <= kinect_rank;
-    if (follows && device.rank == kinect_rank) manifest.spaces[device.options.name].method = "fit";
-    manifest.streams.push_back(std::move(device.options));
-  }
-  return manifest;
+  return Failure(*why);
 }
 
 }  // namespace kinalign

@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recording_survey.h"
 
+#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/io/slimevr_packet.h"
+
 #include <algorithm>
 #include <array>
 
 namespace kinalign {
 
 namespace {
+
+/// A stranger's datagram has none.
+bool has_rotation(std::string_view payload) {
+  SlimeDatagram datagram;
+  if (!decode_slime(octets(payload), datagram)) return false;
+  return std::any_of(datagram.packets.begin(), datagram.packets.end(),
+                     [](const SlimePacket& packet) {
+                       const auto* motion = std::get_if<SlimeMotion>(&packet);
+                       return motion != nullptr && motion->rotation && !motion->is_correction;
+                     });
+}
 
 /// Collects what the records of one file say.
 class Surveyor {
@@ -51,6 +65,8 @@ class Surveyor {
     channel.last = std::max(channel.last, message.log_time);
     ++channel.messages;
     channel.bytes += message.data.size();
+    const bool tracker = channel.channel.message_encoding == "slimevr";
+    if (tracker && !channel.rotates) channel.rotates = has_rotation(message.data);
     if (channel.channel.topic != host_clock_topic) return;
     if (const auto pair = to_clock_pair(message.data)) clock_.push_back(*pair);
   }

@@ -24,6 +24,7 @@ struct ChannelSurvey {
   std::uint64_t first = 0, last = 0;      // log time, the least and the greatest, ns
   std::uint64_t missing = 0;              // numbers left out between the first and the last
   std::uint32_t last_number = 0;
+  bool rotates = false;  // of a SlimeVR tracker: a rotation came
 };
 
 struct RecordingSurvey {

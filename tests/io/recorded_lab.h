@@ -146,11 +146,17 @@ class RecordedLab {
     }
   }
 
+  /// Whatever somebody sends to a device's port.
+  void add_datagram(const RawChannel& raw, double at, std::string bytes) {
+    add(channel(to_channel("/" + raw.stream + "/raw/" + raw.sender, raw)), at, std::move(bytes));
+  }
+
   /// 125 frames a second whose root's x is the time, in metres; each `lost`th is lost.
-  void add_mocap(NoitomForm form, const std::string& transport, double to, std::uint32_t lost = 0) {
+  void add_mocap(NoitomForm form, const std::string& transport, double to, std::uint32_t lost = 0,
+                 const std::string& sender = "10.0.0.3:7012") {
     skeleton_ = noitom_chain("Spine3", false);
     const auto frames =
-        channel(to_channel("/mocap/raw", {"mocap", "noitom", transport, "10.0.0.3:7012", "", ""}));
+        channel(to_channel("/mocap/raw/" + sender, {"mocap", "noitom", transport, sender, "", ""}));
     double last = 0.0;
     for (std::uint32_t k = 0; k < 125.0 * to; ++k) {
       if (lost > 0 && k % lost == lost - 1) continue;

@@ -29,6 +29,16 @@ RecordedStream opened(FileSystem& files, const StreamOptions& options) {
   return std::move(streams->front());
 }
 
+/// What it warns of, and what that means.
+std::vector<std::string> warnings(const RecordedStream& stream) {
+  std::vector<std::string> texts;
+  for (const Finding& finding : stream.findings) {
+    if (finding.severity != Severity::warning) continue;
+    texts.push_back(to_string(finding.what) + "; " + finding.meaning);
+  }
+  return texts;
+}
+
 /// How far a stream's stamps are behind the truth that its samples carry, ms.
 struct Errors {
   double least = 1e9, most = -1e9, widest = 0.0;  // and the widest half-width
@@ -294,4 +304,87 @@ TEST_CASE("a node without a counter is stamped by its requests' numbers, over lo
   CHECK(errors.certified == 0);
   CHECK(errors.least > -1.0);
   CHECK(errors.most < 1.0);
+}
+
+TEST_CASE("a stranger's datagram before the device is not taken for it") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 40.0);
+  lab.add_datagram({"kinect", "kinect", "udp", "10.0.0.66:40000", "", ""}, 0.0, "GET / HTTP/1.0");
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const RecordedStream stream = opened(files, stream_named("kinect", path));
+  CHECK(kinect_errors(stream).samples == 1200);
+  const auto told = warnings(stream);
+  REQUIRE(!told.empty());
+  CHECK(told.front() == path +
+                            ": expected one sender of kinect, found 10.0.0.9, 10.0.0.66; only "
+                            "10.0.0.9 was read");
+}
+
+TEST_CASE("a stranger who says more than the device is found to be none") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 2.0);
+  const RawChannel stranger{"kinect", "kinect", "udp", "10.0.0.66:40000", "", ""};
+  for (int k = 0; k < 200; ++k) lab.add_datagram(stranger, 0.01 * k, "GET / HTTP/1.0");
+  PosixFiles files;
+  const std::string path = folder.write("take.mcap", lab.file());
+  CHECK(kinect_errors(opened(files, stream_named("kinect", path))).samples == 60);
+}
+
+TEST_CASE("where nobody is the device, its senders are named") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  for (const std::string host : {"10.0.0.66", "10.0.0.67"}) {
+    lab.add_datagram({"kinect", "kinect", "udp", host + ":40000", "", ""}, 0.0, "GET /");
+  }
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto streams = open_streams(files, {stream_named("kinect", path)});
+  REQUIRE(!streams);
+  CHECK(to_string(streams.error()) ==
+        path +
+            ": expected frames of a Kinect, found none from 10.0.0.66; heard were 10.0.0.66, "
+            "10.0.0.67: select.sender");
+}
+
+TEST_CASE("a stranger at the trackers' port is no node of the manifest") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_datagram({"slime", "slimevr", "udp", "10.0.0.66:40000", "", ""}, 0.0, "GET / HTTP/1.0");
+  lab.add_tracker("10.0.0.21", 2.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto manifest = manifest_of(*survey_recording(files, path), path);
+  REQUIRE(manifest);
+  REQUIRE(manifest->streams.size() == 1);
+  REQUIRE(manifest->streams.front().files.size() == 1);
+  CHECK(manifest->streams.front().files.front().node == "10.0.0.21");
+}
+
+TEST_CASE("of two sources on one host that speak in turn one is read, and either by its port") {
+  const FreshFolder folder;
+  PosixFiles files;
+  for (const std::string transport : {"tcp", "udp"}) {
+    CAPTURE(transport);
+    RecordedLab lab(20261123);
+    lab.add_mocap(NoitomForm::new_header, transport, 40.0, 9, "10.0.0.3:7012");
+    lab.add_mocap(NoitomForm::new_header, transport, 40.0, 10, "10.0.0.3:7013");
+    const std::string path = folder.write(transport + ".mcap", lab.file());
+    const RecordedStream stream = opened(files, stream_named("mocap", path));
+    const Errors errors = mocap_errors(stream);
+    CHECK(errors.samples == 5000 - 5000 / 10);
+    CHECK(errors.least > 0.2);
+    CHECK(errors.most < 1.0);
+    const auto told = warnings(stream);
+    REQUIRE(!told.empty());
+    CHECK(told.front() ==
+          path +
+              ": expected one sender of mocap at 10.0.0.3, found 10.0.0.3:7013, 10.0.0.3:7012; of "
+              "those that speak in turn only the one that said most was read");
+    StreamOptions other = stream_named("mocap", path);
+    other.select["sender"] = "10.0.0.3:7012";
+    CHECK(mocap_errors(opened(files, other)).samples == 5000 - 5000 / 9);
+  }
 }
