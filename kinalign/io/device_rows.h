@@ -56,12 +56,29 @@ class DeviceRows {
   using Header = std::conditional_t<
       std::is_same_v<Frames, ClipFrames>, Skeleton,
       std::conditional_t<std::is_same_v<Frames, PointFrames>, PointHeader, ImuHeader>>;
+  /// `file`: its name, for messages.
+  explicit DeviceRows(std::string file) : file_(std::move(file)) {}
   virtual ~DeviceRows() = default;
   virtual Result<void> take(const RecordedMessage& message, Frames& out) = 0;
   virtual Result<void> finish(Frames& out) = 0;
   /// nullptr where the first row has to say it.
   virtual const Header* header() const = 0;
   Findings findings;  // complete after finish()
+
+ protected:
+  const std::string& file() const { return file_; }
+  /// A note, unless the count is 0.
+  void tell(std::uint64_t count, std::string_view expected, std::string_view found,
+            std::string_view meaning) {
+    if (count == 0) return;
+    findings.push_back(
+        {Severity::note,
+         Error{file_, 0, std::string(expected), std::to_string(count) + " " + std::string(found)},
+         std::string(meaning), ""});
+  }
+
+ private:
+  std::string file_;
 };
 
 using AnyDeviceRows =

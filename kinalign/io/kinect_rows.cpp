@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace kinalign {
@@ -25,12 +26,8 @@ class KinectFrames {
   /// Appends what the message completes. Parts as they came go to `heard`.
   void take(const RecordedMessage& message, std::vector<JoinedKinectFrame>& out,
             std::vector<KinectFrame>* heard) {
-    if (channel_ != message.channel_id) {  // another connection, or another sender's life
-      decoder_ = {};
-      channel_ = message.channel_id;
-    }
     messages_.clear();
-    decoder_.feed(octets(message.payload), messages_);
+    decoders_[message.channel_id].feed(octets(message.payload), messages_);
     for (KinectMessage& one : messages_) {
       auto* frame = std::get_if<KinectFrame>(&one);
       if (frame == nullptr) continue;
@@ -49,8 +46,7 @@ class KinectFrames {
   std::uint64_t of_other_sensors = 0;
 
  private:
-  std::optional<std::uint16_t> channel_;
-  KinectStreamDecoder decoder_;
+  std::map<std::uint16_t, KinectStreamDecoder> decoders_;  // by channel: a sender or a connection
   std::vector<KinectMessage> messages_;
   std::optional<std::uint32_t> sensor_;
   KinectFrameJoiner joiner_;
@@ -169,7 +165,7 @@ class BodyChoice {
 class KinectRows final : public DeviceRows<PointFrames> {
  public:
   KinectRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : heard_(std::move(heard)), file_(wish.file.path), body_(wish.body) {
+      : DeviceRows(wish.file.path), heard_(std::move(heard)), body_(wish.body) {
     header_.joint_names.assign(kinect_joints.begin(), kinect_joints.end());
   }
 
@@ -186,7 +182,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
     joined_.clear();
     frames_.finish(joined_);
     append_all(out);
-    body_.report(file_, findings);
+    body_.report(file(), findings);
     const KinectFrameCounts counts = frames_.counts();
     tell(counts.frames.lost, "each frame's number", "that never came",
          "they were lost on their way");
@@ -201,14 +197,6 @@ class KinectRows final : public DeviceRows<PointFrames> {
   const PointHeader* header() const override { return &header_; }
 
  private:
-  void tell(std::uint64_t count, std::string_view expected, std::string_view found,
-            std::string_view meaning) {
-    if (count == 0) return;
-    findings.push_back({Severity::note,
-                        Error{file_, 0, std::string(expected), fmt::format("{} {}", count, found)},
-                        std::string(meaning), ""});
-  }
-
   void append_all(PointFrames& out) {
     for (const JoinedKinectFrame& joined : joined_) {
       const KinectFrame& frame = joined.frame;
@@ -224,7 +212,6 @@ class KinectRows final : public DeviceRows<PointFrames> {
   }
 
   std::shared_ptr<const HeardDevice> heard_;
-  std::string file_;
   BodyChoice body_;
   PointHeader header_;
   KinectFrames frames_;

@@ -182,8 +182,8 @@ class NodeListener final : public DeviceListener {
 class NodeRows final : public DeviceRows<ImuSamples> {
  public:
   NodeRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : heard_(std::move(heard)),
-        file_(wish.file.path),
+      : DeviceRows(wish.file.path),
+        heard_(std::move(heard)),
         converter_(ImuUnits{axes_of(y_up, wish.options), 1.0, 1.0}) {
     const RawChannel& channel = heard_->channel;
     const std::string& own = channel.place.empty() ? channel.node : channel.place;
@@ -213,7 +213,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
 
   Result<void> finish(ImuSamples& out) override {
     while (!waiting_.empty()) release(out);
-    converter_.report(file_, findings);
+    converter_.report(file(), findings);
     tell(frames_.others, "datagrams that were accepted", "others: held, late, twice or damaged",
          "they were passed over");
     tell(unknown_, "samples of a life of the node whose clock is known", "samples of others",
@@ -226,14 +226,6 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   const ImuHeader* header() const override { return &header_; }
 
  private:
-  void tell(std::uint64_t count, std::string expected, std::string_view found,
-            std::string_view meaning) {
-    if (count == 0) return;
-    findings.push_back({Severity::note,
-                        Error{file_, 0, std::move(expected), fmt::format("{} {}", count, found)},
-                        std::string(meaning), ""});
-  }
-
   std::optional<Time> stamp_at(const AcceptedFrame& frame, const NodeSample& sample,
                                HostTime arrival) const {
     const bool counted = heard_->step_ns > 0.0;  // this node's requests
@@ -272,7 +264,6 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   }
 
   std::shared_ptr<const HeardDevice> heard_;
-  std::string file_;
   ImuConverter converter_;
   ImuHeader header_;
   AcceptedFrames frames_;

@@ -112,7 +112,10 @@ class SlimeListener final : public DeviceListener {
 class SlimeRows final : public DeviceRows<ImuSamples> {
  public:
   SlimeRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : heard_(std::move(heard)), samples_(wish.body), converter_(ImuUnits{}) {
+      : DeviceRows(wish.file.path),
+        heard_(std::move(heard)),
+        samples_(wish.body),
+        converter_(ImuUnits{}) {
     header_.node_names = {wish.file.node.empty() ? host_of(heard_->channel.sender)
                                                  : wish.file.node};
     header_.content = heard_->content;
@@ -136,12 +139,8 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
   }
 
   Result<void> finish(ImuSamples&) override {
-    if (samples_.overtaken > 0) {
-      findings.push_back({Severity::note,
-                          Error{"", 0, "datagrams whose numbers rise",
-                                fmt::format("{} that came late or twice", samples_.overtaken)},
-                          "they were left out: nothing says when their samples were taken", ""});
-    }
+    tell(samples_.overtaken, "datagrams whose numbers rise", "that came late or twice",
+         "they were left out: nothing says when their samples were taken");
     return {};
   }
 

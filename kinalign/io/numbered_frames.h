@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames of a source that numbers them, out of a recording: noitom_rows.cpp and xsens_rows.cpp.
+#pragma once
+
+#include "kinalign/io/counted_clock.h"
+#include "kinalign/io/device_rows.h"
+#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/io/recorded_messages.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+template <class Frame>
+struct PlacedFrame {
+  Frame frame;
+  std::optional<CountedFrame> place;  // absent: nobody numbers it
+  HostTime arrival{};
+};
+
+/// One body's frames, without those that came twice. `Source` has a Decoder, an Arrival and a Frame
+/// and says of an arrival its frame, if it is one, its body and its number. Each connection, and
+/// each sender, has a decoder and a count of its own.
+template <class Source>
+class NumberedFrames {
+ public:
+  using Placed = PlacedFrame<typename Source::Frame>;
+
+  /// Without a body the first that is heard.
+  explicit NumberedFrames(std::optional<std::uint64_t> body) : body_(body) {}
+
+  void take(const RecordedMessage& message, std::vector<Placed>& out) {
+    Channel& from = channels_[message.channel_id];
+    const bool lossless = message.channel->transport != "udp";
+    arrivals_.clear();
+    from.decoder.feed(octets(message.payload), arrivals_);
+    for (typename Source::Arrival& one : arrivals_) {
+      auto* frame = Source::frame(one);
+      if (frame == nullptr) continue;
+      if (!body_) body_ = Source::body(one);
+      if (Source::body(one) != *body_ || one.order == Order::duplicate) continue;
+      auto number = Source::number(one);
+      if (!number && lossless) number = from.counted++;
+      Placed placed{std::move(*frame), {}, message.arrival};
+      if (number) {
+        placed.place = from.numbers.place(*number, message.arrival);
+        placed.place->life |= BootKey{message.channel_id} << 32U;
+      }
+      out.push_back(std::move(placed));
+    }
+  }
+
+  /// What the user should know of the bytes; what several connections have alike, once.
+  Findings findings(const std::string& file) const {
+    Findings all;
+    for (const auto& [id, channel] : channels_) {
+      for (Finding& one : channel.decoder.findings(file)) {
+        const auto same = [&one](const Finding& f) { return f.what.found == one.what.found; };
+        if (std::none_of(all.begin(), all.end(), same)) all.push_back(std::move(one));
+      }
+    }
+    return all;
+  }
+
+ private:
+  struct Channel {
+    typename Source::Decoder decoder;
+    FrameNumbers numbers;
+    std::uint32_t counted = 0;
+  };
+  std::optional<std::uint64_t> body_;
+  std::map<std::uint16_t, Channel> channels_;
+  std::vector<typename Source::Arrival> arrivals_;
+};
+
+/// A frame's stamp; absent where its clock is not known.
+template <class Frame>
+std::optional<Time> stamp_of(const HeardDevice& heard, const PlacedFrame<Frame>& one) {
+  if (heard.by_arrival) return Time{one.arrival.time_since_epoch() + heard.utc_minus_host};
+  if (!one.place) return std::nullopt;
+  return stamp_of(heard.clock, one.place->life, counter_of(*one.place, heard.step_ns), one.arrival);
+}
+
+/// The clock of frames that are numbered. A rate that the options state wins over `step_ns`.
+inline void count_clock(const std::vector<CountedFrame>& frames, double step_ns,
+                        const DeviceWish& wish, HeardDevice& heard) {
+  const double rate = wish.options.rate_hz;
+  CountedClock clock = counted_clock(frames, rate > 0.0 ? 1e9 / rate : step_ns,
+                                     heard.utc_minus_host, wish.file.path);
+  append(heard.findings, clock.findings);
+  heard.step_ns = clock.step_ns;
+  heard.clock = std::move(clock.clock);
+}
+
+}  // namespace kinalign
