@@ -27,7 +27,9 @@ class KinectFrames {
   void take(const RecordedMessage& message, std::vector<JoinedKinectFrame>& out,
             std::vector<KinectFrame>* heard) {
     messages_.clear();
-    decoders_[message.channel_id].feed(octets(message.payload), messages_);
+    KinectStreamDecoder& decoder = decoders_[message.channel_id];
+    decoder.feed(octets(message.payload), messages_);
+    if (message.channel->transport == "udp") decoder.finish(messages_);  // it has one message
     for (KinectMessage& one : messages_) {
       auto* frame = std::get_if<KinectFrame>(&one);
       if (frame == nullptr) continue;

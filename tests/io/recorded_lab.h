@@ -7,6 +7,7 @@
 
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_frames.h"
+#include "kinalign/io/kinect_lines.h"
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/noitom_stream.h"
 #include "kinalign/io/recording_format.h"
@@ -111,9 +112,12 @@ class RecordedLab {
     }
   }
 
+  /// Lines as datagrams may have them: without an end.
+  enum class KinectForm { binary, bare_lines };
   /// Thirty frames a second of one body, `least_s` and more from the sensor to the sender, whose
   /// clock is another one; four pings a second.
-  void add_kinect(Counter sensor, Counter sender, double least_s, double to) {
+  void add_kinect(Counter sensor, Counter sender, double least_s, double to,
+                  KinectForm form = KinectForm::binary) {
     const auto ticks = [](const Counter& c, double t) {
       return static_cast<std::int64_t>(1e7 * c.at(t));
     };
@@ -135,7 +139,12 @@ class RecordedLab {
       body.positions[0] = static_cast<float>(t);
       frame.bodies = {body};
       const auto bytes = encode_kinect_binary(frame);
-      add(frames, sent + way(), {bytes.begin(), bytes.end()});
+      std::string text(bytes.begin(), bytes.end());
+      if (form == KinectForm::bare_lines) {
+        text = encode_kinect_line(frame);
+        while (text.ends_with('\n')) text.pop_back();
+      }
+      add(frames, sent + way(), std::move(text));
     }
     std::optional<Exchange::Echo> echo;
     for (double t = 0.01; t < to; t += 0.25) {
@@ -175,25 +184,17 @@ class RecordedLab {
   }
 
   /// A SlimeVR tracker's packets of type 23, a hundred a second: an acceleration whose x, in steps
-  /// of 1/128 m/s2, is as near to the time as that goes.
-  void add_tracker(const std::string& host, double to) {
+  /// of 1/128 m/s2, is as near to the time as that goes. `forged`: the number of one in the middle
+  /// that isn't the tracker's.
+  void add_tracker(const std::string& host, double to, std::uint64_t forged = 0) {
     const auto channel_id = channel(
         to_channel("/slime/raw/" + host, {"slime", "slimevr", "udp", host + ":6969", "", ""}));
+    if (forged > 0) add(channel_id, to / 2.0, tracker_packet(forged, to / 2.0));
     double last = 0.0;
     for (std::uint32_t k = 0; k < 100.0 * to; ++k) {
       const double t = 0.01 * k;
-      std::string bytes;
-      const auto put = [&bytes](std::uint64_t value, int size) {
-        for (int i = size - 1; i >= 0; --i) bytes += static_cast<char>(value >> 8 * i);
-      };
-      put(23, 4);
-      put(std::uint64_t{k} + 1, 8);
-      put(0, 1);
-      for (const int part : {0, 0, 0, 32767}) put(static_cast<std::uint64_t>(part), 2);
-      for (const auto a : {std::llround(128.0 * t), 0LL, 0LL})
-        put(static_cast<std::uint64_t>(a), 2);
       last = std::max(last, t + way());  // no overtaking
-      add(channel_id, last, bytes);
+      add(channel_id, last, tracker_packet(std::uint64_t{k} + 1, t));
     }
   }
 
@@ -207,6 +208,19 @@ class RecordedLab {
       const Duration moved{std::llround(1e9 * (t >= at ? step_s : 0.0))};
       add(pairs, t, to_json(ClockPair{host(t), utc(t) + moved}));
     }
+  }
+
+  static std::string tracker_packet(std::uint64_t number, double t) {
+    std::string bytes;
+    const auto put = [&bytes](std::uint64_t value, int size) {
+      for (int i = size - 1; i >= 0; --i) bytes += static_cast<char>(value >> 8 * i);
+    };
+    put(23, 4);
+    put(number, 8);
+    put(0, 1);
+    for (const int part : {0, 0, 0, 32767}) put(static_cast<std::uint64_t>(part), 2);
+    for (const auto a : {std::llround(128.0 * t), 0LL, 0LL}) put(static_cast<std::uint64_t>(a), 2);
+    return bytes;
   }
 
   /// The file, its messages in the order of arrival, half a second in a chunk.

@@ -388,3 +388,12 @@ TEST_CASE("of two sources on one host that speak in turn one is read, and either
     CHECK(mocap_errors(opened(files, other)).samples == 5000 - 5000 / 9);
   }
 }
+
+TEST_CASE("a Kinect's lines over UDP are read without their ends") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 10.0, RecordedLab::KinectForm::bare_lines);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  CHECK(kinect_errors(opened(files, stream_named("kinect", path))).samples == 300);
+}
