@@ -4,10 +4,12 @@
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/imu_converter.h"
 #include "kinalign/io/little_endian_reader.h"
+#include "kinalign/io/sequence_count.h"
 #include "kinalign/io/slimevr_packet.h"
 
 #include <fmt/format.h>
 
+#include <map>
 #include <set>
 
 namespace kinalign {
@@ -22,7 +24,7 @@ struct SlimeSample {
   std::optional<std::array<double, 3>> acceleration;
 };
 
-/// One sensor's samples: of the datagram's, those that go on from the ones before.
+/// One sensor's samples: of each sender's datagrams those that go on from the ones before.
 class SlimeSamples {
  public:
   explicit SlimeSamples(std::optional<std::uint64_t> sensor) : sensor_(sensor) {}
@@ -30,23 +32,23 @@ class SlimeSamples {
   void take(const RecordedMessage& message, std::vector<SlimeSample>& out) {
     SlimeDatagram datagram;
     if (!decode_slime(octets(message.payload), datagram)) return;
+    Tracker& tracker = trackers_[message.channel_id];
     for (const SlimePacket& packet : datagram.packets) {
       if (const auto* handshake = std::get_if<SlimeHandshake>(&packet)) {
-        protocol_ = handshake->protocol.value_or(0);
-        newest_ = 0;
+        tracker = {};
+        tracker.protocol = handshake->protocol.value_or(0);
       }
     }
-    if (datagram.number != 0 && datagram.number <= newest_) {
+    if (datagram.number != 0 && is_old(tracker.numbers.push(datagram.number))) {
       ++overtaken;
       return;
     }
-    newest_ = std::max(newest_, datagram.number);
     for (const SlimePacket& packet : datagram.packets) {
       const auto* motion = std::get_if<SlimeMotion>(&packet);
       if (motion == nullptr || motion->is_correction) continue;
       if (sensors.size() < most_sensors) sensors.insert(motion->sensor);
       if (!sensor_) sensor_ = motion->sensor;
-      if (motion->sensor == *sensor_) add(*motion, message.arrival, out);
+      if (motion->sensor == *sensor_) tracker.add(*motion, message.arrival, out);
     }
   }
 
@@ -56,24 +58,29 @@ class SlimeSamples {
  private:
   static constexpr std::size_t most_sensors = 32;
 
-  void add(const SlimeMotion& motion, HostTime arrival, std::vector<SlimeSample>& out) {
-    if (motion.acceleration) {
-      acceleration_ = slime_acceleration(*motion.acceleration, protocol_);
-      felt_ = arrival;
+  struct Tracker {
+    SequenceCount numbers{64};
+    std::int32_t protocol = 0;
+    std::optional<std::array<double, 3>> acceleration{};
+    HostTime felt{};
+
+    void add(const SlimeMotion& motion, HostTime arrival, std::vector<SlimeSample>& out) {
+      if (motion.acceleration) {
+        acceleration = slime_acceleration(*motion.acceleration, protocol);
+        felt = arrival;
+      }
+      if (!motion.rotation) return;
+      const auto q = slime_orientation(*motion.rotation);
+      if (!q) return;
+      const bool fresh = acceleration && arrival - felt <= goes_with;
+      out.push_back({*q, fresh ? acceleration : std::nullopt});
+      acceleration.reset();
     }
-    if (!motion.rotation) return;
-    const auto q = slime_orientation(*motion.rotation);
-    if (!q) return;
-    const bool fresh = acceleration_ && arrival - felt_ <= goes_with;
-    out.push_back({*q, fresh ? acceleration_ : std::nullopt});
-    acceleration_.reset();
-  }
+  };
+  static bool is_old(Order order) { return order == Order::late || order == Order::duplicate; }
 
   std::optional<std::uint64_t> sensor_;
-  std::int32_t protocol_ = 0;
-  std::uint64_t newest_ = 0;
-  std::optional<std::array<double, 3>> acceleration_;
-  HostTime felt_{};
+  std::map<std::uint16_t, Tracker> trackers_;  // by channel
 };
 
 class SlimeListener final : public DeviceListener {

@@ -397,3 +397,14 @@ TEST_CASE("a Kinect's lines over UDP are read without their ends") {
   PosixFiles files;
   CHECK(kinect_errors(opened(files, stream_named("kinect", path))).samples == 300);
 }
+
+TEST_CASE("a tracker goes on behind a datagram with a number that isn't its own") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_tracker("10.0.0.21", 20.0, std::uint64_t{1} << 63U);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const RecordedStream stream = opened(files, stream_named("slime", path));
+  CHECK(node_errors(stream).samples == 2001);  // nothing tells the forged one's own sample
+  CHECK(stream.findings.empty());
+}
