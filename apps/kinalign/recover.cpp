@@ -23,7 +23,7 @@ struct Recover {
 Usage describe_recover(Recover& o) {
   Usage usage;
   usage.positionals = {
-      {"FILE", "a recording's file, or all of them in their order", &o.files, 1, SIZE_MAX}};
+      {"FILE", "a recording's file, or all of them in any order", &o.files, 1, SIZE_MAX}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a new file's name", "none"});
     return {};
@@ -68,11 +68,12 @@ Verb recover_verb() {
       {.name = "recover",
        .summary = "a torn recording, or several parts of one, into a whole file",
        .text = "Copies every message that can be read, once, gives the new file its index, and "
-               "reads it again before it gets its name. The old files stay as they are. Exit code "
+               "reads it again before it gets its name: what stands there must be what was copied. "
+               "The old files stay as they are. Exit code "
                "1 where something was torn or damaged.",
        .examples = {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
                     {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
-                     "after a disk that failed: what stands in both is taken once"}},
+                     "after a disk that failed: of what stands in both the later is taken"}},
        .common = {"out", "force", "json"}},
       describe_recover, run);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recording_survey.h"
 
+#include "kinalign/io/crc.h"
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/slimevr_packet.h"
 
@@ -51,6 +52,7 @@ class Surveyor {
   void add(const McapAttachment& attachment) { survey_.attachments.push_back(attachment.name); }
   void add(const McapMessage& message) {
     ++survey_.messages;
+    survey_.contents = add_to(survey_.contents, message);
     if (reader_.unchecked()) ++survey_.unchecked;
     ChannelSurvey& channel = channels_[message.channel];
     if (channel.messages == 0) {
@@ -80,6 +82,16 @@ class Surveyor {
 };
 
 }  // namespace
+
+std::uint32_t add_to(std::uint32_t contents, const McapMessage& message) {
+  std::string head;
+  append_little(message.channel, head);
+  append_little(message.sequence, head);
+  append_little(message.log_time, head);
+  append_little(message.publish_time, head);
+  append_little(static_cast<std::uint64_t>(message.data.size()), head);
+  return crc_of(message.data, crc_of(head, contents));
+}
 
 Result<void> read_recording(const PieceSource& source, McapReader& reader, const TakeRecord& take,
                             const Progress& progress) {

@@ -32,12 +32,16 @@ struct RecordingSurvey {
   std::vector<ChannelSurvey> channels;  // by topic
   std::uint64_t messages = 0;
   std::uint64_t unchecked = 0;           // of these at a torn end
+  std::uint32_t contents = 0;            // CRC-32 of all messages, see add_to()
   bool closed = false;                   // index and end are there
   std::vector<std::string> attachments;  // names
   std::vector<WallClockStep> steps;      // of the recording machine's wall clock
   std::uint64_t bytes = 0;               // of the file
   Findings findings;
 };
+
+/// The CRC-32 of messages: channel, number, both times and payload of each, in their order.
+std::uint32_t add_to(std::uint32_t contents, const McapMessage& message);
 
 /// Fails where the file can't be read or is no MCAP file.
 Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,

@@ -2,7 +2,9 @@
 #include "kinalign/io/recover_recording.h"
 
 #include "kinalign/io/mcap_store.h"
+#include "kinalign/io/recording_parts.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -28,8 +30,11 @@ class Copier {
  public:
   explicit Copier(OutputFile& out) : writer_(mcap_store(out)) {}
 
-  /// The numbers of the files before tell what stands twice.
-  void begin_file() { before_ = last_; }
+  /// Of what may stand in a later file, too, that one's is taken.
+  void begin_part(const RecordingParts& parts, std::size_t part) {
+    parts_ = &parts;
+    part_ = part;
+  }
 
   Result<void> take(const McapRecord& record, bool unchecked) {
     unchecked_ = unchecked;
@@ -43,6 +48,16 @@ class Copier {
     return writer_.finish();
   }
   std::uint64_t size() const { return writer_.size(); }
+  /// Whether a survey of the new file found in it what was written.
+  bool proved_by(const RecordingSurvey& proof) const {
+    const auto known = [this](const ChannelSurvey& one) {
+      const auto channel = channels_.find(one.channel.id);
+      return channel != channels_.end() && one.channel == channel->second;
+    };
+    return proof.closed && proof.findings.empty() && proof.messages == recovered.messages &&
+           proof.contents == contents_ &&
+           std::all_of(proof.channels.begin(), proof.channels.end(), known);
+  }
 
   Recovered recovered;
 
@@ -76,18 +91,17 @@ class Copier {
       ++recovered.nameless;
       return {};
     }
-    const auto before = before_.find(id);
-    if (before != before_.end() && message.sequence - before->second - 1 >= 1U << 31U) {
+    if (parts_ != nullptr && stands_later(*parts_, part_, message)) {
       ++recovered.twice;
       return {};
     }
-    last_[id] = message.sequence;
     if (!chunk_.messages().contains(id)) {
       const auto schema = schemas_.find(known->second.schema_id);
       if (schema != schemas_.end()) chunk_.add(schema->second);
       chunk_.add(known->second);
     }
     chunk_.add(message);
+    contents_ = add_to(contents_, message);
     ++recovered.messages;
     if (unchecked_) ++recovered.unchecked;
     return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
@@ -106,7 +120,9 @@ class Copier {
   bool unchecked_ = false;
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
-  std::map<std::uint16_t, std::uint32_t> last_, before_;  // numbers by channel
+  const RecordingParts* parts_ = nullptr;
+  std::size_t part_ = 0;
+  std::uint32_t contents_ = 0;
   std::set<std::string> written_;
   McapChunkContent chunk_;
 };
@@ -116,12 +132,15 @@ class Copier {
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress) {
+  RecordingParts parts{{paths.front(), {}}};
+  if (paths.size() > 1) parts = KA_TRY(read_parts(files, paths, progress));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   Copier copier(file);
   Recovered& recovered = copier.recovered;
-  for (const std::string& path : paths) {
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const std::string& path = parts[part].path;
     McapReader reader;
-    copier.begin_file();
+    copier.begin_part(parts, part);
     KA_TRY(read_recording(
         files, path, reader,
         [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); },
@@ -136,9 +155,10 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   std::string buffer;
   recovered.proof = KA_TRY(survey_recording(pieces_of(file, copier.size(), buffer), progress));
   const RecordingSurvey& proof = recovered.proof;
-  if (!proof.closed || !proof.findings.empty() || proof.messages != recovered.messages) {
+  if (!copier.proved_by(proof)) {
     return Failure(Error{out, 0, std::to_string(recovered.messages) + " messages, read again",
-                         std::to_string(proof.messages) + (proof.closed ? "" : " and no end")});
+                         std::to_string(proof.messages) +
+                             (proof.closed ? ", not all as they were written" : " and no end")});
   }
   KA_TRY(file.commit());
   return std::move(recovered);

@@ -223,15 +223,22 @@ class RecordedLab {
     return bytes;
   }
 
+  /// Which of a recording's files: its messages from `from` to `to`.
+  struct Part {
+    int number = 1;
+    double from = -1e9, to = 1e9;
+    std::string first = "take.mcap";
+  };
+  std::string file(bool closed = true) { return file(Part{}, closed); }
   /// The file, its messages in the order of arrival, half a second in a chunk.
-  std::string file(bool closed = true) {
+  std::string file(const Part& part, bool closed = true) {
     std::stable_sort(messages_.begin(), messages_.end(),
                      [](const Message& a, const Message& b) { return a.arrival < b.arrival; });
     MemoryFile file;
     McapWriter writer(file.store());
     REQUIRE(writer.begin({"kinalign", "test"}));
-    REQUIRE(writer.write(
-        to_metadata({"03", "S1A02", "lab", "take.mcap", 1, {host(0.0), utc_time(utc_begin)}})));
+    REQUIRE(writer.write(to_metadata(
+        {"03", "S1A02", "lab", part.first, part.number, {host(0.0), utc_time(utc_begin)}})));
     if (!skeleton_.empty()) REQUIRE(writer.write(McapAttachment{0, 0, "mocap.bvh", "", skeleton_}));
     std::map<std::uint16_t, std::uint32_t> numbers;
     for (auto message = messages_.begin(); message != messages_.end();) {
@@ -239,12 +246,14 @@ class RecordedLab {
       McapChunkContent content;
       for (; message != messages_.end() && message->arrival < begin + 0.5; ++message) {
         const std::uint16_t id = message->channel;
+        const std::uint32_t number = numbers[id]++;
+        if (message->arrival < part.from || message->arrival >= part.to) continue;
         if (!content.messages().contains(id)) content.add(channels_[id - 1U]);
         const auto log =
             static_cast<std::uint64_t>(utc_begin + std::llround(1e9 * message->arrival));
-        content.add(McapMessage{id, numbers[id]++, log, log, message->data});
+        content.add(McapMessage{id, number, log, log, message->data});
       }
-      REQUIRE(writer.write(store(content, McapCompression::zstd)));
+      if (!content.empty()) REQUIRE(writer.write(store(content, McapCompression::zstd)));
     }
     if (closed) REQUIRE(writer.finish());
     return file.bytes;

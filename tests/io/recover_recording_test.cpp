@@ -42,7 +42,7 @@ TEST_CASE("of two files of a recording recover takes what stands in both once") 
   for (const auto& [file, from, to] : {std::tuple(&first, 0, 30), std::tuple(&second, 20, 60)}) {
     McapWriter writer(file->store());
     CHECK(writer.begin({"kinalign", "test"}));
-    CHECK(writer.write(McapMetadata{"kinalign.recording", {{"part", from == 0 ? "1" : "2"}}}));
+    CHECK(writer.write(to_metadata({"", "", "lab", "a.mcap", from == 0 ? 1 : 2, {}})));
     McapChunkContent content;
     for (int k = from; k < to; ++k) add(content, nth_message(static_cast<std::uint32_t>(k)));
     CHECK(writer.write(store(content, McapCompression::zstd)));

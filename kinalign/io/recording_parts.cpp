@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/recording_parts.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string_view>
+#include <system_error>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::string_view suffix = ".mcap";
+
+/// "take" of "take.mcap" and of "take.part2.mcap".
+std::string_view stem_of(std::string_view name) {
+  if (name.ends_with(suffix)) name.remove_suffix(suffix.size());
+  const auto digits = name.find_last_not_of("0123456789");
+  constexpr std::string_view part = ".part";
+  const bool is_part = digits != std::string_view::npos && digits + 1 < name.size() &&
+                       name.substr(0, digits + 1).ends_with(part);
+  return is_part ? name.substr(0, digits + 1 - part.size()) : name;
+}
+
+void sort(RecordingParts& parts) {
+  std::stable_sort(parts.begin(), parts.end(), [](const RecordingPart& a, const RecordingPart& b) {
+    return a.facts.part < b.facts.part;
+  });
+}
+
+/// The recording's later files in the same folder.
+std::vector<std::string> files_behind(FileSystem& files, const std::string& path,
+                                      const RecordingFacts& facts) {
+  const std::string place(folder(path));
+  const std::set<std::string_view> stems{stem_of(file_name(path)), stem_of(facts.first)};
+  std::vector<std::string> found;
+  std::error_code failed;  // a folder that can't be listed has nothing beside
+  for (std::filesystem::directory_iterator at(place.empty() ? "." : place, failed), end;
+       !failed && at != end; at.increment(failed)) {
+    const std::string name = at->path().filename().string();
+    if (!name.ends_with(suffix) || !stems.contains(stem_of(name))) continue;
+    const auto read = read_facts(files, place + name);
+    if (!read || !*read || !is_same_recording(**read, facts)) continue;
+    if ((*read)->part > facts.part) found.push_back(place + name);
+  }
+  return found;
+}
+
+}  // namespace
+
+void MessageNumbers::add(const McapMessage& message) {
+  Stretches& stretches = channels_[message.channel];
+  const std::uint32_t number = message.sequence;
+  auto next = stretches.upper_bound(number);
+  if (next != stretches.begin()) {
+    const auto before = std::prev(next);
+    if (number < before->second) return;
+    if (number == before->second) {
+      ++before->second;
+      if (next == stretches.end() || next->first != before->second) return;
+      before->second = next->second;
+      stretches.erase(next);
+      return;
+    }
+  }
+  stretches[number] = std::uint64_t{number} + 1;
+}
+
+bool MessageNumbers::has(const McapMessage& message) const {
+  const auto channel = channels_.find(message.channel);
+  if (channel == channels_.end()) return false;
+  const auto next = channel->second.upper_bound(message.sequence);
+  return next != channel->second.begin() && message.sequence < std::prev(next)->second;
+}
+
+bool MessageNumbers::has_all(const MessageNumbers& others) const {
+  for (const auto& [id, stretches] : others.channels_) {
+    const auto channel = channels_.find(id);
+    if (channel == channels_.end()) return false;
+    for (const auto& [begin, end] : stretches) {
+      const auto next = channel->second.upper_bound(begin);
+      if (next == channel->second.begin() || std::prev(next)->second < end) return false;
+    }
+  }
+  return true;
+}
+
+bool stands_later(const RecordingParts& parts, std::size_t part, const McapMessage& message) {
+  for (std::size_t later = part + 1; later < parts.size(); ++later) {
+    if (parts[later].numbers.has(message)) return true;
+  }
+  return false;
+}
+
+bool is_same_recording(const RecordingFacts& a, const RecordingFacts& b) {
+  return a.first == b.first && a.host == b.host && a.anchor.raw == b.anchor.raw &&
+         a.anchor.utc == b.anchor.utc;
+}
+
+Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  McapReader reader;
+  for (bool ended = false; !ended;) {
+    const std::string_view piece = KA_TRY(file.next());
+    ended = piece.empty();
+    if (ended) {
+      reader.end();
+    } else {
+      reader.feed(piece);
+    }
+    while (const auto record = reader.next()) {
+      if (std::holds_alternative<McapMessage>(*record)) return std::nullopt;
+      const auto* metadata = std::get_if<McapMetadata>(&*record);
+      if (metadata == nullptr) continue;
+      if (auto facts = to_facts(*metadata)) return facts;
+    }
+    if (!reader.is_mcap()) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::string>& paths,
+                                  const Progress& progress) {
+  RecordingParts parts;
+  for (const std::string& path : paths) {
+    const auto facts = KA_TRY(read_facts(files, path));
+    const bool same = facts && (parts.empty() || is_same_recording(parts.front().facts, *facts));
+    if (!same) {
+      return Failure(
+          Error{path, 0,
+                parts.empty() ? "a part of a recording of kinalign's"
+                              : fmt::format("a part of {}, as {} is", parts.front().facts.first,
+                                            parts.front().path),
+                !facts ? "a file that does not say of which recording it is"
+                       : fmt::format("part {} of another run, {}", facts->part, facts->first)});
+    }
+    parts.push_back({path, *facts});
+    MessageNumbers& numbers = parts.back().numbers;
+    McapReader reader;
+    const auto take = [&numbers](const McapRecord& record) -> Result<void> {
+      if (const auto* message = std::get_if<McapMessage>(&record)) numbers.add(*message);
+      return {};
+    };
+    KA_TRY(read_recording(files, path, reader, take, progress));
+  }
+  sort(parts);
+  return parts;
+}
+
+Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
+                                  const Progress& progress) {
+  const auto facts = KA_TRY(read_facts(files, path));
+  if (!facts) return RecordingParts{{path, {}}};  // what it is instead shows when it is read
+  const std::vector<std::string> behind = files_behind(files, path, *facts);
+  if (behind.empty()) return RecordingParts{{path, *facts}};
+  std::vector<std::string> paths{path};
+  paths.insert(paths.end(), behind.begin(), behind.end());
+  RecordingParts parts = KA_TRY(read_parts(files, paths, progress));
+  const MessageNumbers own = parts.front().numbers;
+  parts.erase(std::remove_if(parts.begin() + 1, parts.end(),
+                             [&own](const RecordingPart& p) { return own.has_all(p.numbers); }),
+              parts.end());
+  return parts;
+}
+
+Findings judge_parts(const RecordingParts& parts, PartsBehind behind) {
+  Findings findings;
+  const RecordingPart& one = parts.front();
+  const char* join = "kinalign recover makes one file of all parts";
+  if (one.facts.part > 1) {
+    findings.push_back({Severity::warning,
+                        Error{one.path, 0, "the recording's first file, " + shown(one.facts.first),
+                              fmt::format("part {}", one.facts.part)},
+                        "what stands in the files before is not in this one", join});
+  }
+  if (parts.size() == 1) return findings;
+  std::vector<std::string> names;
+  for (const RecordingPart& part : parts) names.emplace_back(file_name(part.path));
+  names.erase(names.begin());
+  const bool read = behind == PartsBehind::read;
+  findings.push_back(
+      {read ? Severity::note : Severity::warning,
+       Error{one.path, 0, "a recording in one file", fmt::format("{}", fmt::join(names, ", "))},
+       read ? "what it went on in was read behind it" : "it went on there when the disk had failed",
+       read ? "" : join});
+  return findings;
+}
+
+Result<RecordingSurvey> survey_parts(FileSystem& files, const std::string& path,
+                                     const Progress& progress) {
+  RecordingSurvey survey = KA_TRY(survey_recording(files, path, progress));
+  RecordingParts behind = KA_TRY(parts_from(files, path, progress));
+  behind.erase(behind.begin());
+  for (const RecordingPart& part : behind) {
+    const RecordingSurvey more = KA_TRY(survey_recording(files, part.path, progress));
+    for (const ChannelSurvey& one : more.channels) {
+      const auto same = [&](const ChannelSurvey& c) { return c.channel == one.channel; };
+      const auto found = std::find_if(survey.channels.begin(), survey.channels.end(), same);
+      if (found == survey.channels.end()) {
+        survey.channels.push_back(one);
+      } else {
+        found->messages += one.messages;
+        found->rotates |= one.rotates;
+      }
+    }
+  }
+  return survey;
+}
+
+}  // namespace kinalign

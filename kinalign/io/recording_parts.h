@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files of one recording: it goes on in NAME.part2.mcap where its disk had failed, and that one
+// begins with all that the disk had not confirmed. docs/formats/recording.md.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/io/recording_format.h"
+#include "kinalign/io/recording_survey.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// The numbers of the messages in a file, by channel.
+class MessageNumbers {
+ public:
+  void add(const McapMessage& message);
+  bool has(const McapMessage& message) const;
+  bool has_all(const MessageNumbers& others) const;
+
+ private:
+  using Stretches = std::map<std::uint32_t, std::uint64_t>;  // first number: behind the last one
+  std::map<std::uint16_t, Stretches> channels_;
+};
+
+struct RecordingPart {
+  std::string path;
+  RecordingFacts facts;
+  MessageNumbers numbers{};
+};
+
+/// In their order.
+using RecordingParts = std::vector<RecordingPart>;
+
+/// What stands twice is taken from the later file: of the earlier one the disk had not said that it
+/// is there.
+bool stands_later(const RecordingParts& parts, std::size_t part, const McapMessage& message);
+
+/// Of the same run: parts of one recording.
+bool is_same_recording(const RecordingFacts& a, const RecordingFacts& b);
+
+/// What a file says of itself before its messages; absent where it is no recording of ours.
+Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path);
+
+/// Reads these files once. Fails where they are not all of one recording.
+Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::string>& paths,
+                                  const Progress& progress);
+
+/// The file and, as they lie in the same folder, those that its recording went on in. A file that
+/// brings nothing new is left out: of one that `recover` has made all parts are.
+Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
+                                  const Progress& progress);
+
+/// That the first of these is not all of its recording; the others were read with it or not.
+enum class PartsBehind { left, read };
+Findings judge_parts(const RecordingParts& parts, PartsBehind behind);
+
+/// A survey with the channels of the files that go on behind, for a manifest.
+Result<RecordingSurvey> survey_parts(FileSystem& files, const std::string& path,
+                                     const Progress& progress);
+
+}  // namespace kinalign
