@@ -10,8 +10,8 @@
 
 #include "kinalign/align/plan.h"
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
-#include "kinalign/io/recording_survey.h"
 #include "kinalign/io/report_json.h"
 
 #include <fmt/format.h>
@@ -79,7 +79,7 @@ Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
       InputFile::open(call.surroundings.files, path));  // what it is comes before what it is named
   if (KA_TRY(is_recording(call.surroundings.files, path))) {
     const RecordingSurvey survey =
-        KA_TRY(survey_recording(call.surroundings.files, path, call.console.progress()));
+        KA_TRY(survey_parts(call.surroundings.files, path, call.console.progress()));
     Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(path))));
     manifest.align = o.options;
     if (o.slerp) manifest.align.rotations = "slerp";

@@ -101,7 +101,11 @@ Result<Checked> check_recording(const Check& o, const std::string& path, Call& c
   KA_TRY(check_flags(o, path, nullptr, call));
   const RecordingSurvey survey =
       KA_TRY(survey_recording(call.surroundings.files, path, call.console.progress()));
-  return Checked{judge_survey(path, survey)};
+  const RecordingParts parts =
+      KA_TRY(parts_from(call.surroundings.files, path, call.console.progress()));
+  Checked out{judge_survey(path, survey)};
+  append(out.findings, judge_parts(parts, PartsBehind::left));
+  return out;
 }
 
 /// What is wrong with one stream's samples.

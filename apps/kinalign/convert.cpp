@@ -8,8 +8,8 @@
 #include "kinalign/align/own_rows.h"
 #include "kinalign/io/bvh_copy.h"
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
-#include "kinalign/io/recording_survey.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/show_recording.h"
 #include "kinalign/io/show_xdf.h"
@@ -163,7 +163,7 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
                                      "another ending (kinalign align makes a take of it)"});
   }
   KA_TRY(check_flags(o, nullptr, call));
-  const RecordingSurvey survey = KA_TRY(survey_recording(job.files, job.from, progress));
+  const RecordingSurvey survey = KA_TRY(survey_parts(job.files, job.from, progress));
   const Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(job.from))));
   const Recording recording = KA_TRY(
       open_recording(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));

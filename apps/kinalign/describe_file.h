@@ -4,7 +4,7 @@
 
 #include "apps/kinalign/verb.h"
 
-#include "kinalign/io/recording_survey.h"
+#include "kinalign/io/recording_parts.h"
 #include "kinalign/take/recording.h"
 
 #include <string>
@@ -22,7 +22,8 @@ enum class Names { no, yes };
 Description describe_recording(const std::string& path, const Recording& recording, Names names);
 
 /// Of a recorder's file.
-Description describe_survey(const std::string& path, const RecordingSurvey& survey);
+Description describe_survey(const std::string& path, const RecordingSurvey& survey,
+                            const RecordingParts& parts);
 /// What is wrong with it: damage, a missing end, messages that its own numbers miss.
 Findings judge_survey(const std::string& path, const RecordingSurvey& survey);
 

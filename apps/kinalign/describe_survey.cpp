@@ -38,7 +38,8 @@ Json json_of(const ChannelSurvey& channel) {
 
 }  // namespace
 
-Description describe_survey(const std::string& path, const RecordingSurvey& survey) {
+Description describe_survey(const std::string& path, const RecordingSurvey& survey,
+                            const RecordingParts& parts) {
   std::string text = fmt::format("{}\n", path);
   const auto line = [&text](std::string_view name, const std::string& value) {
     text += fmt::format("  {:<12}{}\n", name, value);
@@ -49,6 +50,7 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
   if (survey.facts && survey.facts->part > 1) {
     line("part", fmt::format("{} of {}", survey.facts->part, survey.facts->first));
   }
+  for (std::size_t k = 1; k < parts.size(); ++k) line("goes on in", parts[k].path);
   line("state", survey.closed ? "whole" : "torn: no index at its end");
   line("messages", grouped(survey.messages));
   line("size", fmt::format("{:.1f} MB", static_cast<double>(survey.bytes) / 1e6));
@@ -70,6 +72,7 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
     json["action"] = survey.facts->action;
     json["part"] = survey.facts->part;
   }
+  for (std::size_t k = 1; k < parts.size(); ++k) json["goes_on_in"].push_back(parts[k].path);
   for (const ChannelSurvey& channel : survey.channels) json["channels"].push_back(json_of(channel));
   return {text, json_text(json)};
 }

@@ -48,7 +48,9 @@ Result<Description> describe(const Info& o, Call& call) {
   }
   if (take) return describe_take(files, path, names);
   if (!recording) return describe_input(o, call, path, names);
-  return describe_survey(path, KA_TRY(survey_recording(files, path, call.console.progress())));
+  const Progress progress = call.console.progress();
+  return describe_survey(path, KA_TRY(survey_recording(files, path, progress)),
+                         KA_TRY(parts_from(files, path, progress)));
 }
 
 Result<int> run(Info& o, Call& call) {

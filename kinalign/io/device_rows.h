@@ -24,6 +24,7 @@ struct DeviceWish {
   StreamOptions options;
   StreamFile file;
   DeviceChoice choice;
+  std::shared_ptr<const RecordingParts> parts;  // the file and those that go on behind it
   /// Of a Kinect; avatar or character of mocap; a SlimeVR tracker's sensor.
   std::optional<std::uint64_t> body;
 };

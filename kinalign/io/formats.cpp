@@ -112,11 +112,6 @@ FoundFormat table_format(TableLayout layout, const Source& source) {
           {}};
 }
 
-Result<FoundFormat> recording_format(const Source& source, const Progress& progress) {
-  RecordedDevice device = KA_TRY(listen(*source.files, source.options, source.file, progress));
-  return FoundFormat{"recording", std::move(device.make), {}, {}, device.heard->clock.time};
-}
-
 /// A choice that a format does not know would be ignored in silence.
 Result<void> check_selection(const Format& format, const Source& source) {
   for (const auto& [name, value] : source.options.select) {
@@ -141,6 +136,15 @@ FoundFormat watched(FoundFormat found) {
     return make();
   };
   return found;
+}
+
+Result<FoundFormat> recording_format(const Source& source, const Progress& progress) {
+  RecordedDevice device = KA_TRY(listen(*source.files, source.options, source.file, progress));
+  return watched({"recording",
+                  std::move(device.make),
+                  std::move(device.further_files),
+                  {},
+                  device.heard->clock.time});
 }
 
 Result<FoundFormat> program_format(const Format& format, const Source& source) {

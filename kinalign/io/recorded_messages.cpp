@@ -18,8 +18,8 @@ void remember(std::set<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-RecordedMessages::RecordedMessages(DeviceChoice choice, std::string file)
-    : choice_(std::move(choice)), any_node_(choice_.node.empty()), file_(std::move(file)) {}
+RecordedMessages::RecordedMessages(DeviceChoice choice, std::shared_ptr<const RecordingParts> parts)
+    : choice_(std::move(choice)), any_node_(choice_.node.empty()), parts_(std::move(parts)) {}
 
 Duration RecordedMessages::utc_minus_host() const {
   if (!facts_) return {};
@@ -31,23 +31,32 @@ Result<void> RecordedMessages::feed(std::string_view piece, const TakeMessage& t
   return take_records(take);
 }
 
+Result<void> RecordedMessages::next_part(const TakeMessage& take) {
+  reader_.end();
+  KA_TRY(take_records(take));
+  judge_file();
+  reader_ = {};
+  ++part_;
+  return {};
+}
+
 Result<void> RecordedMessages::finish(const TakeMessage& take) {
   reader_.end();
   KA_TRY(take_records(take));
   if (!facts_) {
-    return Failure(Error{file_, 0, "a recording of kinalign's",
+    return Failure(Error{file(), 0, "a recording of kinalign's",
                          reader_.is_mcap() ? "an MCAP file of another program" : "no MCAP file"});
   }
   judge_end();
   if (any_node_ && nodes_.size() > 1) {
-    return Failure(Error{file_, 0,
+    return Failure(Error{file(), 0,
                          fmt::format("one node of stream {}: select.node", choice_.stream),
                          fmt::format("{}", fmt::join(nodes_, ", "))});
   }
   if (chosen_) return {};
   if (streams_.count(choice_.stream) == 0) {
     return Failure(
-        Error{file_, 0,
+        Error{file(), 0,
               fmt::format("select.stream, or a stream's name, of {}",
                           streams_.empty() ? "those recorded"
                                            : fmt::format("{}", fmt::join(streams_, ", "))),
@@ -56,7 +65,7 @@ Result<void> RecordedMessages::finish(const TakeMessage& take) {
   }
   const bool node = !nodes_.empty();
   return Failure(
-      Error{file_, 0,
+      Error{file(), 0,
             fmt::format("of stream {} {}", choice_.stream,
                         node ? fmt::format("node {}", fmt::join(nodes_, ", "))
                              : fmt::format("select.sender {}", fmt::join(roll_.hosts(), ", "))),
@@ -79,7 +88,7 @@ Result<void> RecordedMessages::take_one(const McapRecord& record, const TakeMess
     const auto found = channels_.find(message->channel);
     if (found == channels_.end() || !facts_) return {};
     Channel& from = found->second;
-    if (message->log_time > latest_log_time) return {};
+    if (message->log_time > latest_log_time || stands_later(*parts_, part_, *message)) return {};
     const auto log = Duration{static_cast<std::int64_t>(message->log_time)};
     const HostTime arrival{log - utc_minus_host()};
     if (from.sender) roll_.hear(*from.sender, arrival);
@@ -121,18 +130,24 @@ std::optional<std::size_t> RecordedMessages::place_on_roll(const RawChannel& raw
   return device && raw.node.empty() ? std::optional(roll_.add(raw.sender)) : std::nullopt;
 }
 
-void RecordedMessages::judge_end() {
-  append(findings_, reader_.findings());
-  for (Finding& finding : findings_) finding.what.file = file_;
+void RecordedMessages::judge_file() {
+  for (Finding finding : reader_.findings()) {
+    finding.what.file = file();
+    findings_.push_back(std::move(finding));
+  }
   if (!reader_.closed()) {
     findings_.push_back(
-        {Severity::warning, Error{file_, 0, "a file that was closed", "one that breaks off"},
+        {Severity::warning, Error{file(), 0, "a file that was closed", "one that breaks off"},
          "everything up to the break was read", "kinalign recover makes a whole file of it"});
   }
+}
+
+void RecordedMessages::judge_end() {
+  judge_file();
   if (missing_ > 0) {
     findings_.push_back(
         {Severity::warning,
-         Error{file_, 0, "every message that reached the recorder",
+         Error{file(), 0, "every message that reached the recorder",
                fmt::format("{} of {} missing between others", missing_, choice_.stream)},
          "damage in the file, or a recording that went on in another part", ""});
   }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one device said, out of a recording's file: docs/formats/recording.md. Fed the file in
-// pieces, whole or torn.
+// What one device said, out of a recording's files: docs/formats/recording.md. Fed them in pieces,
+// whole or torn.
 #pragma once
 
 #include "kinalign/io/mcap_reader.h"
-#include "kinalign/io/recording_format.h"
+#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/sender_roll.h"
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -37,12 +38,14 @@ using TakeMessage = std::function<Result<void>(const RecordedMessage&)>;
 
 class RecordedMessages {
  public:
-  /// `file`: its name, for messages.
-  RecordedMessages(DeviceChoice choice, std::string file);
+  /// `parts`: the recording's files from this one on.
+  RecordedMessages(DeviceChoice choice, std::shared_ptr<const RecordingParts> parts);
 
   /// Hands on the device's messages that the piece completes, in the order of arrival.
   Result<void> feed(std::string_view piece, const TakeMessage& take);
-  /// The file has ended. Fails where it is no recording of ours or the device is not in it.
+  /// The file has ended; the next pieces are of the next part.
+  Result<void> next_part(const TakeMessage& take);
+  /// The last file has ended. Fails where it is no recording of ours or the device is not in it.
   Result<void> finish(const TakeMessage& take);
 
   /// Absent until its record has been read, which stands in front of all messages.
@@ -70,11 +73,14 @@ class RecordedMessages {
   void add(const McapChannel& channel);
   bool is_wanted(const RawChannel& raw);
   std::optional<std::size_t> place_on_roll(const RawChannel& raw);
+  void judge_file();
   void judge_end();
+  const std::string& file() const { return parts_->at(part_).path; }
 
   DeviceChoice choice_;
   bool any_node_;  // was asked for
-  std::string file_;
+  std::shared_ptr<const RecordingParts> parts_;
+  std::size_t part_ = 0;
   McapReader reader_;
   std::optional<RecordingFacts> facts_;
   std::string skeleton_;

@@ -41,7 +41,7 @@ Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file)
     return Failure(Error{file.path, 0, "select by stream, node, sender or body",
                          shown(name) + " = " + shown(value)});
   }
-  DeviceWish wish{options, file, {}, {}};
+  DeviceWish wish{options, file, {}, {}, {}};
   wish.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
                  selected(options, "sender", "")};
   if (wish.choice.sender.empty()) wish.choice.sender = wish.choice.node;  // of a tracker
@@ -56,16 +56,54 @@ Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file)
   return Failure(Error{file.path, 0, "select.body: a whole number", "'" + shown(body) + "'"});
 }
 
-/// The second pass over the file.
+/// Pieces of the files that a recording went on in.
+class FurtherPieces {
+ public:
+  FurtherPieces(FileSystem& files, std::shared_ptr<const RecordingParts> parts)
+      : files_(&files), parts_(std::move(parts)) {}
+
+  /// Absent behind the last one.
+  Result<std::optional<std::string_view>> next(RecordedMessages& messages,
+                                               const TakeMessage& take) {
+    for (;;) {
+      if (!file_) {
+        if (part_ == parts_->size()) return std::nullopt;
+        KA_TRY(messages.next_part(take));
+        file_.emplace(KA_TRY(InputFile::open(*files_, parts_->at(part_++).path)));
+      }
+      const std::string_view piece = KA_TRY(file_->next());
+      if (!piece.empty()) return piece;
+      file_.reset();
+    }
+  }
+
+ private:
+  FileSystem* files_;
+  std::shared_ptr<const RecordingParts> parts_;
+  std::size_t part_ = 1;
+  std::optional<InputFile> file_;
+};
+
+/// The second pass over the files.
 template <class Frames, class ReaderType>
 class RecordingReader final : public ReaderType {
  public:
-  RecordingReader(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard,
+  RecordingReader(FileSystem& files, const DeviceWish& wish,
+                  std::shared_ptr<const HeardDevice> heard,
                   std::unique_ptr<DeviceRows<Frames>> rows)
-      : messages_(wish.choice, wish.file.path), heard_(std::move(heard)), rows_(std::move(rows)) {}
+      : messages_(wish.choice, wish.parts),
+        further_(files, wish.parts),
+        heard_(std::move(heard)),
+        rows_(std::move(rows)) {}
 
   Result<void> feed(std::string_view piece, Frames& out) override {
     return messages_.feed(piece, [&](const RecordedMessage& m) { return rows_->take(m, out); });
+  }
+  Result<bool> read_further(Frames& out) override {
+    const TakeMessage take = [&](const RecordedMessage& m) { return rows_->take(m, out); };
+    const auto piece = KA_TRY(further_.next(messages_, take));
+    if (piece) KA_TRY(messages_.feed(*piece, take));
+    return piece.has_value();
   }
   Result<void> finish(Frames& out) override {
     KA_TRY(messages_.finish([&](const RecordedMessage& m) { return rows_->take(m, out); }));
@@ -79,16 +117,17 @@ class RecordingReader final : public ReaderType {
 
  private:
   RecordedMessages messages_;
+  FurtherPieces further_;
   std::shared_ptr<const HeardDevice> heard_;
   std::unique_ptr<DeviceRows<Frames>> rows_;
 };
 
-AnyReader reader_of(const DeviceWish& wish, const std::shared_ptr<const HeardDevice>& heard,
-                    AnyDeviceRows rows) {
+AnyReader reader_of(FileSystem& files, const DeviceWish& wish,
+                    const std::shared_ptr<const HeardDevice>& heard, AnyDeviceRows rows) {
   return std::visit(
       [&]<class Frames>(std::unique_ptr<DeviceRows<Frames>>& one) -> AnyReader {
         using Made = Reader<typename DeviceRows<Frames>::Header, Frames>;
-        return std::make_unique<RecordingReader<Frames, Made>>(wish, heard, std::move(one));
+        return std::make_unique<RecordingReader<Frames, Made>>(files, wish, heard, std::move(one));
       },
       rows);
 }
@@ -96,11 +135,13 @@ AnyReader reader_of(const DeviceWish& wish, const std::shared_ptr<const HeardDev
 /// The first pass, of one choice of a sender.
 class Listening {
  public:
-  explicit Listening(const DeviceWish& wish)
-      : wish_(wish), messages_(wish.choice, wish.file.path) {}
+  explicit Listening(const DeviceWish& wish) : wish_(wish), messages_(wish.choice, wish.parts) {}
 
   Result<void> feed(std::string_view piece) {
     return messages_.feed(piece, [this](const RecordedMessage& m) { return take(m); });
+  }
+  Result<void> next_part() {
+    return messages_.next_part([this](const RecordedMessage& m) { return take(m); });
   }
   /// Fails where the file has no such device.
   Result<void> end() {
@@ -156,19 +197,30 @@ class Listening {
 
 Result<std::unique_ptr<Listening>> listen_once(FileSystem& files, const DeviceWish& wish,
                                                const Progress& progress) {
-  const std::string& path = wish.file.path;
-  InputFile input = KA_TRY(InputFile::open(files, path));
   auto listening = std::make_unique<Listening>(wish);
-  std::uint64_t done = 0;
-  for (;;) {
-    const std::string_view piece = KA_TRY(input.next());
-    if (piece.empty()) break;
-    KA_TRY(listening->feed(piece));
-    done += piece.size();
-    if (!go_on(progress, "listening", done, input.size())) return Failure(interruption(path));
+  for (const RecordingPart& part : *wish.parts) {
+    if (&part != &wish.parts->front()) KA_TRY(listening->next_part());
+    InputFile input = KA_TRY(InputFile::open(files, part.path));
+    std::uint64_t done = 0;
+    for (;;) {
+      const std::string_view piece = KA_TRY(input.next());
+      if (piece.empty()) break;
+      KA_TRY(listening->feed(piece));
+      done += piece.size();
+      if (!go_on(progress, "listening", done, input.size())) {
+        return Failure(interruption(part.path));
+      }
+    }
   }
   KA_TRY(listening->end());
   return listening;
+}
+
+std::vector<std::string> paths_behind(const RecordingParts& parts) {
+  std::vector<std::string> paths;
+  for (const RecordingPart& part : parts) paths.push_back(part.path);
+  paths.erase(paths.begin());
+  return paths;
 }
 
 /// Whom to listen to, in this order until rows can be made of one: those with most messages come
@@ -232,6 +284,8 @@ bool looks_like_recording(std::string_view head) { return head.starts_with(mcap_
 Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
                               const StreamFile& file, const Progress& progress) {
   DeviceWish wish = KA_TRY(wish_of(options, file));
+  wish.parts =
+      std::make_shared<const RecordingParts>(KA_TRY(parts_from(files, file.path, progress)));
   const bool any_sender = wish.choice.sender.empty();
   auto listening = KA_TRY(listen_once(files, wish, progress));
   const SenderRoll senders = listening->senders();
@@ -250,11 +304,14 @@ Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
       continue;
     }
     append(heard->findings, judge_senders(wish, any_sender, senders));
+    append(heard->findings, judge_parts(*wish.parts, PartsBehind::read));
     const auto shared = std::make_shared<const HeardDevice>(std::move(*heard));
-    return RecordedDevice{shared,
-                          [wish, shared, protocol = listening->protocol()]() -> Result<AnyReader> {
-                            return reader_of(wish, shared, protocol.rows(wish, shared));
-                          }};
+    return RecordedDevice{
+        shared,
+        [&files, wish, shared, protocol = listening->protocol()]() -> Result<AnyReader> {
+          return reader_of(files, wish, shared, protocol.rows(wish, shared));
+        },
+        paths_behind(*wish.parts)};
   }
   return Failure(*why);
 }

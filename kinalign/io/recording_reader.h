@@ -19,9 +19,11 @@ bool looks_like_recording(std::string_view head);
 struct RecordedDevice {
   std::shared_ptr<const HeardDevice> heard;
   std::function<Result<AnyReader>()> make;
+  std::vector<std::string> further_files;  // the recording went on in them, and they are read
 };
 
-/// Reads the file once. The stream is select["stream"], by default the one of the options' name;
+/// Reads the file once, and those that the recording went on in: by itself it looks for them in the
+/// same folder. The stream is select["stream"], by default the one of the options' name;
 /// select["node"], by default the file's node, says which inertial node, select["sender"] and
 /// select["body"] (of mocap the avatar, of a
 /// SlimeVR tracker the sensor) which of several. A tracker's node is its address.

@@ -47,11 +47,11 @@ struct Reading {
     while (block.size() == 0 && !ended) {
       const std::string_view piece = KA_TRY(file.next());
       KA_TRY(unchanged(file.path(), version));
-      if (piece.empty()) {
+      if (!piece.empty()) {
+        KA_TRY(reader->feed(piece, block));
+      } else if (!KA_TRY(reader->read_further(block))) {
         ended = true;
         KA_TRY(reader->finish(block));
-      } else {
-        KA_TRY(reader->feed(piece, block));
       }
     }
     return block.size() > 0;
@@ -80,23 +80,31 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   StampSurveyor surveyor;
   typename R::Frames block;
   auto sizes = sizes_of(block);
+  const auto take_block = [&] {
+    surveyor.add(block.stamps);
+    sizes.add(block);
+    block = {};
+  };
   std::uint64_t bytes = 0;
   std::string_view piece = head;
   while (!piece.empty()) {
     bytes += piece.size();
     hash.update(piece);
     KA_TRY(reader->feed(piece, block));
-    surveyor.add(block.stamps);
-    sizes.add(block);
-    block = {};
+    take_block();
     if (!go_on(*job.progress, "reading", bytes, file.size())) {
       return Failure(interruption(file.path()));
     }
     piece = KA_TRY(file.next());
   }
+  while (KA_TRY(reader->read_further(block))) {
+    take_block();
+    if (!go_on(*job.progress, "reading", bytes, file.size())) {
+      return Failure(interruption(file.path()));
+    }
+  }
   KA_TRY(reader->finish(block));
-  surveyor.add(block.stamps);
-  sizes.add(block);
+  take_block();
   RecordedStream out;
   out.name = job.options->name;
   out.format = format.name;

@@ -4,9 +4,13 @@
 #include "tests/folder.h"
 #include "tests/io/recorded_lab.h"
 
+#include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_reader.h"
 #include "kinalign/io/recover_recording.h"
 
 #include <doctest/doctest.h>
+
+#include <numeric>
 
 using namespace kinalign;
 
@@ -34,7 +38,75 @@ class TornLab {
   RecordedLab lab_{20261123};
 };
 
+std::uint64_t samples(FileSystem& files, const std::string& path, const std::string& node) {
+  StreamOptions options;
+  options.name = "imu";
+  options.files = {{path, node}};
+  const auto streams = open_streams(files, {options});
+  if (!streams) FAIL(to_string(streams.error()));
+  auto pass = std::get<ImuInput>(streams->front().data).passes();
+  REQUIRE(pass);
+  std::uint64_t count = 0;
+  ImuSamples block;
+  Time last = Time::min();
+  while (*(*pass)(block)) {
+    count += block.size();
+    CHECK(block.stamps.front() > last);
+    last = block.stamps.back();
+  }
+  CHECK(count == streams->front().survey.samples);
+  return count;
+}
+
+std::string told(const Findings& findings) {
+  return std::accumulate(findings.begin(), findings.end(), std::string(),
+                         [](const std::string& text, const Finding& finding) {
+                           return text + finding.what.expected + ", " + finding.what.found + "\n";
+                         });
+}
+
 }  // namespace
+
+TEST_CASE("a recording is read on in the files that it went on in") {
+  const FreshFolder folder;
+  TornLab lab(folder);
+  PosixFiles files;
+  const std::string path = lab.first(), whole = lab.whole();
+  const std::uint64_t all = samples(files, whole, "12");
+  CHECK(all == 2 * 451);
+  CHECK(samples(files, path, "12") < all);
+  lab.second();
+  lab.third();
+  CHECK(samples(files, path, "12") == all);
+  CHECK(samples(files, path, "13") == samples(files, whole, "13"));
+  // The nodes of all files are in the manifest, and those files in the take.
+  const auto manifest = manifest_of(*survey_parts(files, path, {}), "take.mcap");
+  REQUIRE(manifest);
+  CHECK(manifest->streams.front().files.size() == 2);
+  const auto recording = open_recording(files, *manifest, folder.path() + "/");
+  REQUIRE(recording);
+  REQUIRE(recording->streams.front().files.size() == 3);
+  CHECK(recording->streams.front().files.back().name == "take.part10.mcap");
+}
+
+TEST_CASE("of a recording's files it is said which are not there or were not read") {
+  const FreshFolder folder;
+  TornLab lab(folder);
+  PosixFiles files;
+  const std::string path = lab.first();
+  const auto judged = [&](const std::string& which) {
+    return told(judge_parts(*parts_from(files, which, {}), PartsBehind::left));
+  };
+  CHECK(judged(path).empty());
+  const std::string second = lab.second();
+  CHECK(judged(path) == "a recording in one file, take.part2.mcap\n");
+  CHECK(judged(second) == "the recording's first file, take.mcap, part 2\n");
+  lab.third();
+  CHECK(judged(path) == "a recording in one file, take.part2.mcap, take.part10.mcap\n");
+  // Of a file that has all of it the others are no parts, and neither are files of another run.
+  folder.write("other.part2.mcap", lab.lab().file({2, 24.5, 35.0, "take_02.mcap"}));
+  CHECK(judged(lab.write("other.mcap", {})).empty());
+}
 
 TEST_CASE("recover takes parts in any order, and none of another run") {
   const FreshFolder folder;
@@ -81,4 +153,5 @@ TEST_CASE("what the disk spoilt in one file is taken from the next, which repeat
   const auto recovered = recover_recording(files, {path, second}, folder / "b.mcap", Overwrite::no);
   REQUIRE(recovered);
   CHECK(recovered->messages == whole);
+  CHECK(samples(files, path, "12") == samples(files, lab.whole(), "12"));
 }

@@ -7,6 +7,7 @@
 
 #include "kinalign/io/bvh.h"
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/truth_json.h"
@@ -36,7 +37,7 @@ Result<Opened> open(FileSystem& files, const std::string& path) {
   Opened opened;
   Manifest manifest;
   if (KA_TRY(is_recording(files, path))) {
-    const RecordingSurvey survey = KA_TRY(survey_recording(files, path));
+    const RecordingSurvey survey = KA_TRY(survey_parts(files, path, {}));
     opened.facts = survey.facts;
     manifest = KA_TRY(manifest_of(survey, std::string(file_name(path))));
   } else {
