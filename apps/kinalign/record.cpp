@@ -5,6 +5,7 @@
 #include "apps/kinalign/record_herald.h"
 #include "apps/kinalign/settings.h"
 #include "apps/kinalign/steady_memory.h"
+#include "apps/kinalign/take_path.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/node_keys.h"
@@ -12,7 +13,6 @@
 #include "kinalign/io/bvh_head.h"
 #include "kinalign/io/lab_toml.h"
 
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -96,30 +96,6 @@ Usage describe_record(Record& o) {
     return {};
   };
   return usage;
-}
-
-/// What of a text may stand in a file's name.
-std::string in_name(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-    out += plain || c == '-' ? c : '-';
-  }
-  return out;
-}
-
-/// FOLDER/SUBJECT_ACTION_01.mcap, with the next number that is free.
-std::string free_path(const std::string& folder, const Record& o) {
-  std::string name;
-  for (const std::string& part : {o.subject, o.action}) {
-    if (!part.empty()) name += in_name(part) + "_";
-  }
-  if (name.empty()) name = "take_";
-  for (int run = 1;; ++run) {
-    std::string path = fmt::format("{}/{}{:02}.mcap", folder, name, run);
-    struct stat status {};
-    if (::lstat(path.c_str(), &status) != 0) return path;
-  }
 }
 
 Result<void> make_folder(const std::string& folder) {
@@ -253,7 +229,7 @@ Result<int> run(Record& o, Call& call) {
       return 1;
     }
   }
-  const std::string path = free_path(call.common.out, o);
+  const std::string path = free_take_path(call.common.out, o.subject, o.action);
   KA_TRY(session->start(path, o.subject, o.action));
   herald.tell_start(path);
   serve(*session, stage, o);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/recording_disk.h"
 
+#include <sys/stat.h>
+
 #include <utility>
 
 namespace kinalign {
@@ -8,12 +10,23 @@ namespace kinalign {
 namespace {
 
 constexpr std::string_view suffix = ".mcap";
-constexpr int most_parts = 1000;
+constexpr int most_parts = 1000;  // names that are tried
 
 std::string part_path(const std::string& path, int part) {
   if (part == 1) return path;
   return path.substr(0, path.size() - suffix.size()) + ".part" + std::to_string(part) +
          std::string(suffix);
+}
+
+/// Where the next file may stand. A file that an earlier recording has left takes no more than its
+/// own number.
+Result<std::string> free_path(const std::string& path, int part) {
+  for (; part <= most_parts; ++part) {
+    std::string free = part_path(path, part);
+    struct stat status {};
+    if (part == 1 || ::lstat(free.c_str(), &status) != 0) return free;
+  }
+  return Failure(Error{path, 0, "at most 1000 files of one recording", "more"});
 }
 
 McapStore store_of(const std::shared_ptr<GrowingFile>& file) {
@@ -38,7 +51,7 @@ Result<RecordingDisk> RecordingDisk::open(FileSystem& files, std::string path, M
 /// The next file and what it begins with. What failed halfway is removed: it holds no sample.
 Result<void> RecordingDisk::open_part() {
   const int part = static_cast<int>(paths_.size()) + 1;
-  const std::string path = part_path(path_, part);
+  const std::string path = KA_TRY(free_path(path_, part));
   auto file = std::make_shared<GrowingFile>(KA_TRY(GrowingFile::create(*files_, path)));
   auto writer = std::make_unique<McapWriter>(store_of(file));
   const RecordingHead head = head_(part);

@@ -112,6 +112,23 @@ TEST_CASE("a recording never takes another's place") {
   CHECK(folder.read("a.mcap") == "kept");
 }
 
+TEST_CASE("a part that an earlier recording left takes its number, and nothing more") {
+  const FreshFolder folder;
+  PosixFiles files;
+  folder.write("a.part2.mcap", "kept");
+  folder.write("a.part3.mcap", "kept, too");
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  CHECK(disk->write(chunk(0, 10)));
+  const auto sync = disk->unsynced();
+  REQUIRE(sync);
+  CHECK(disk->synced(*sync, Failure(Error{})));
+  CHECK(disk->finish());
+  CHECK(disk->paths() == std::vector<std::string>{folder / "a.mcap", folder / "a.part4.mcap"});
+  CHECK(found_in({folder / "a.part4.mcap"}).sequences.size() == 10);
+  CHECK(folder.read("a.part2.mcap") == "kept");
+}
+
 TEST_CASE("whichever call fails, nothing is lost and every file is in order") {
   for (const int code : {ENOSPC, EIO, EINTR}) {
     for (int fail_at = 1;; ++fail_at) {
