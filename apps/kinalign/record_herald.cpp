@@ -50,7 +50,7 @@ std::string minutes_text(double minutes) {
 }  // namespace
 
 LabStatus RecordHerald::lab_status() const {
-  LabStatus status{session_.now(), begun_, session_.streams(), {}};
+  LabStatus status{session_.now(), begun_, session_.streams(), {}, session_.port_counts()};
   if (session_.nodes() != nullptr) status.nodes = session_.nodes()->status();
   return status;
 }
@@ -161,6 +161,9 @@ void RecordHerald::tell_status(const LabStatus& status) {
   for (const StreamStatus& stream : status.streams) {
     event["streams"].push_back(Json::parse(json_of(stream, status)));
   }
+  for (const auto& [name, counts] : status.ports) {
+    event["ports"][name] = Json::parse(to_json(name, counts));
+  }
   console_.print_json(json_text(event));
   console_.flush();
 }
@@ -203,8 +206,8 @@ void RecordHerald::tell_end() {
     event["streams"].push_back(Json::parse(json_of(stream, status)));
     lines += end_line(stream);
   }
-  for (const auto& [name, counts] : session_.port_counts()) {
-    event["ports"][name] = Json::parse(json_of(counts));
+  for (const auto& [name, counts] : status.ports) {
+    event["ports"][name] = Json::parse(to_json(name, counts));
     lines += port_line(name, counts);
   }
   for (const MarkPort& port : session_.mark_ports()) {

@@ -99,6 +99,24 @@ bool is_heard(const DeviceOptions& device, const LabStatus& status) {
                      [&](const StreamStatus& stream) { return stream.stream == device.name; });
 }
 
+/// "1,234 dropped by the kernel"; empty: nothing.
+std::string loss_of(const PortCounts& counts) {
+  std::string text;
+  for (const auto& [count, what] :
+       {std::pair(counts.dropped, "dropped by the kernel"),
+        std::pair(counts.refused, "refused, not recorded"), std::pair(counts.cut, "cut"),
+        std::pair(counts.unsent, "answers not sent")}) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
+  }
+  return text;
+}
+
+std::string port_loss(const std::string& device, const LabStatus& status) {
+  const auto port = std::find_if(status.ports.begin(), status.ports.end(),
+                                 [&](const auto& one) { return one.first == device; });
+  return port == status.ports.end() ? "" : loss_of(port->second);
+}
+
 }  // namespace
 
 std::string name_of(const StreamStatus& stream) {
@@ -124,6 +142,9 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status) {
       lines.push_back(
           {fmt::format("{:<18} nothing yet, {:.0f} s", name, seconds(status.now - status.begun)),
            device.required});
+    }
+    if (const std::string lost = port_loss(device.name, status); !lost.empty()) {
+      lines.push_back({fmt::format("{:<18} {}", device.name, lost), true});
     }
   }
   return lines;
@@ -163,13 +184,7 @@ std::string end_line(const StreamStatus& stream) {
 }
 
 std::string port_line(const std::string& name, const PortCounts& counts) {
-  std::string text;
-  for (const auto& [count, what] :
-       {std::pair(counts.dropped, "dropped by the kernel"),
-        std::pair(counts.refused, "refused, not recorded"), std::pair(counts.cut, "cut"),
-        std::pair(counts.unsent, "answers not sent")}) {
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
-  }
+  const std::string text = loss_of(counts);
   return text.empty() ? "" : fmt::format("  port of {}: {}\n", name, text);
 }
 
@@ -188,16 +203,6 @@ std::string json_of(const StreamStatus& stream, const LabStatus& status) {
   }
   json["clock"] = clock;
   return json_text(json);
-}
-
-std::string json_of(const PortCounts& counts) {
-  return json_text(Json{{"pieces", counts.pieces},
-                        {"bytes", counts.bytes},
-                        {"refused", counts.refused},
-                        {"cut", counts.cut},
-                        {"dropped", counts.dropped},
-                        {"links", counts.links},
-                        {"unsent", counts.unsent}});
 }
 
 }  // namespace kinalign

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -18,15 +19,17 @@ struct LabStatus {
   HostTime now{}, begun{};  // begun: when its ports were opened
   std::vector<StreamStatus> streams;
   std::vector<NodeStatus> nodes;
+  std::vector<std::pair<std::string, PortCounts>> ports{};  // by the device's name
 };
 
-/// A line of the table; `bad` lines are of what is missing and required.
+/// A line of the table; `bad` lines are of what is missing and required, and of what is lost.
 struct TableLine {
   std::string text;
   bool bad = false;
 };
 
-/// Head and a line for each sender, and for each device of which nothing comes.
+/// Head and a line for each sender, each device of which nothing comes, and each port where
+/// something was lost before it could be recorded.
 std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status);
 
 /// The required devices, and nodes that have places, of which nothing comes: "mocap", "imu waist".
@@ -37,11 +40,10 @@ std::string name_of(const StreamStatus& stream);
 
 /// "mocap from 192.168.7.5:51234: 7,500 messages, 11.1 MB; 3 frames lost"
 std::string end_line(const StreamStatus& stream);
-/// "mocap: 12 dropped by the kernel"; empty: nothing worth telling.
+/// "  port of mocap: 12 dropped by the kernel\n"; empty: nothing worth telling.
 std::string port_line(const std::string& name, const PortCounts& counts);
 
 /// The JSON of a stream, with its node's clock where it has one.
 std::string json_of(const StreamStatus& stream, const LabStatus& status);
-std::string json_of(const PortCounts& counts);
 
 }  // namespace kinalign

@@ -7,6 +7,7 @@
 #include "kinalign/capture/datagram_batch.h"
 #include "kinalign/capture/host_clock.h"
 #include "kinalign/capture/udp_socket.h"
+#include "kinalign/io/recording_format.h"
 
 #include <cstdint>
 #include <functional>
@@ -26,19 +27,24 @@ struct Piece {
 };
 using TakePiece = std::function<void(const Piece& piece)>;
 
-/// Who sends to a port, by number. The number of one who is silent may become another's.
+/// Who sends to a port, by number. There is room for `most` at once: the number of one who is
+/// silent becomes another's, sooner where he has said little or is the newcomer's own past. So
+/// neither strangers nor a device's own returns keep a device out.
 class Senders {
  public:
   static constexpr std::size_t most = 64;
+  static constexpr std::uint64_t most_lives = 1000;  // each takes a channel
 
   struct Sender {
     HostAddress host{};
     std::uint16_t port = 0;
     HostTime heard{};
-    std::uint64_t life = 0;  // which sender this is, of all that ever had a number
-    Datagram asked{};        // of UDP: its newest without its bytes, for answers
+    std::uint64_t life = 0;   // which sender this is, of all that ever had a number
+    std::uint64_t times = 0;  // it was heard
+    Datagram asked{};         // of UDP: its newest without its bytes, for answers
   };
-  /// Absent: too many others sent within the last minute.
+  /// Absent: too many others are heard just now. After most_lives a newcomer goes on with the life
+  /// of its host that was silent longest; strangers then share the life most_lives + 1.
   std::optional<std::size_t> number(const HostAddress& host, std::uint16_t port, HostTime now);
   const Sender& at(std::size_t number) const { return senders_[number]; }
   /// Absent: it has none.
@@ -47,17 +53,12 @@ class Senders {
   std::size_t size() const { return senders_.size(); }
 
  private:
+  std::optional<std::size_t> add(const HostAddress& host, std::uint16_t port, HostTime now);
+  std::optional<std::size_t> place_for(const HostAddress& host, HostTime now);
+  std::optional<std::size_t> own_past(const HostAddress& host) const;
+
   std::vector<Sender> senders_;
   std::uint64_t lives_ = 0;
-};
-
-struct PortCounts {
-  std::uint64_t pieces = 0, bytes = 0;
-  std::uint64_t refused = 0;  // of one sender too many
-  std::uint64_t cut = 0;      // datagrams longer than any can be
-  std::uint64_t dropped = 0;  // by the kernel, for want of room
-  std::uint64_t links = 0;    // connections that were made
-  std::uint64_t unsent = 0;   // answers that the system did not take
 };
 
 /// A UDP port.

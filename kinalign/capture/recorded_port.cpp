@@ -11,8 +11,6 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t most_lives = 1000;  // of senders of a port: each takes a channel
-
 std::string encoded(const KinectPong& pong, bool as_line) {
   if (as_line) return encode_kinect_line(pong);
   return std::string(text_of(encode_kinect_binary(pong)));
@@ -48,43 +46,43 @@ void RecordedPort::drain(HostAxis& axis, Recorder& recorder) {
 
 /// Answers go out before anything is written: what is done in between delays one way alone.
 void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
-  Source* source = source_of(piece.sender, recorder);
-  if (source == nullptr) {
-    ++crowded_;
-    return;
-  }
-  source->watch.feed(piece.bytes);
-  if (kinects_) answer_pings(*source, piece, axis, recorder);
-  if (slimes_) answer_trackers(*source, piece);
-  source->recorded.record(recorder, piece.arrival, piece.bytes);
+  Source& source = source_of(piece.sender, recorder);
+  source.watch.feed(piece.bytes);
+  if (kinects_) answer_pings(source, piece, axis, recorder);
+  if (slimes_) answer_trackers(source, piece);
+  source.recorded.record(recorder, piece.arrival, piece.bytes);
 }
 
 /// A new sender, or another in the place of one that fell silent, gets a channel of its own.
-RecordedPort::Source* RecordedPort::source_of(std::size_t number, Recorder& recorder) {
+RecordedPort::Source& RecordedPort::source_of(std::size_t number, Recorder& recorder) {
   const Senders::Sender& sender = std::visit(
       [&](const auto& pieces) -> const Senders::Sender& { return pieces.senders().at(number); },
       pieces_);
-  if (sender.life > most_lives) return nullptr;
+  const bool is_shared = sender.life > Senders::most_lives;
   if (sources_.size() <= number) sources_.resize(number + 1);
-  std::optional<Source>& source = sources_[number];
-  if (source && source->life == sender.life) return &*source;
+  if (is_shared) sources_[number].reset();
+  std::optional<Source>& source = is_shared ? others_ : sources_[number];
+  const NodeAddress address{sender.host, sender.port};
+  if (source && source->life == sender.life) {
+    source->address = address;
+    return *source;
+  }
   const RawChannel raw{device_.name,
                        device_.protocol,
                        device_.transport,
-                       endpoint_text(to_string(sender.host), sender.port),
+                       is_shared ? "" : endpoint_text(to_string(sender.host), sender.port),
                        "",
                        ""};
-  source.emplace(Source{RecordedSource(recorder, topic("raw", sender.life), raw),
-                        raw,
-                        StreamWatch(device_.protocol, device_.transport == "udp"),
-                        sender.life,
-                        {sender.host, sender.port}});
-  return &*source;
+  source.emplace(Source{RecordedSource(recorder, topic("raw", sender.life), raw), raw,
+                        StreamWatch(device_.protocol, device_.transport == "udp"), sender.life,
+                        address});
+  return *source;
 }
 
 /// "/kinect/raw" of the first sender that was ever heard, "/kinect/raw/2" of the next one.
 std::string RecordedPort::topic(const char* content, std::uint64_t life) const {
   const std::string first = "/" + device_.name + "/" + content;
+  if (life > Senders::most_lives) return first + "/others";
   return life == 1 ? first : first + "/" + std::to_string(life);
 }
 
@@ -135,11 +133,13 @@ void RecordedPort::tick(HostTime now) {
 }
 
 void RecordedPort::tell(Recorder& recorder, std::uint16_t counts, double elapsed_s, HostTime now) {
-  for (std::optional<Source>& source : sources_) {
-    if (!source) continue;
+  const auto tell_one = [&](std::optional<Source>& source) {
+    if (!source) return;
     look_at(*source);
     source->recorded.tell(recorder, counts, elapsed_s, now);
-  }
+  };
+  for (std::optional<Source>& source : sources_) tell_one(source);
+  tell_one(others_);
 }
 
 /// What is known of a sender beside its messages and bytes.
@@ -160,15 +160,14 @@ std::uint16_t RecordedPort::port() const {
 }
 
 PortCounts RecordedPort::counts() const {
-  PortCounts counts = std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
-  counts.refused += crowded_;
-  return counts;
+  return std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
 }
 
 void RecordedPort::add_streams(std::vector<StreamStatus>& all) const {
   for (const std::optional<Source>& source : sources_) {
     if (source) all.push_back(source->recorded.status);
   }
+  if (others_) all.push_back(others_->recorded.status);
 }
 
 }  // namespace kinalign

@@ -45,15 +45,15 @@ class RecordedPort {
     RecordedSource recorded;
     RawChannel raw;
     StreamWatch watch;
-    std::uint64_t life = 0;  // of its sender
-    NodeAddress address;
+    std::uint64_t life = 0;                    // of its sender
+    NodeAddress address;                       // whose newest piece it was
     std::optional<std::uint16_t> exchanges{};  // channel
   };
 
   RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret);
   static Result<Pieces> open_pieces(const DeviceOptions& device);
   void take(const Piece& piece, HostAxis& axis, Recorder& recorder);
-  Source* source_of(std::size_t sender, Recorder& recorder);
+  Source& source_of(std::size_t sender, Recorder& recorder);
   std::string topic(const char* content, std::uint64_t life) const;
   void answer_pings(Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
   void answer_trackers(const Source& source, const Piece& piece);
@@ -63,9 +63,9 @@ class RecordedPort {
   DeviceOptions device_;
   Pieces pieces_;
   std::vector<std::optional<Source>> sources_;  // by the sender's number
+  std::optional<Source> others_;                // strangers after too many lives share it
   std::unique_ptr<SlimeDesk> slimes_;
   std::unique_ptr<KinectDesk> kinects_;
-  std::uint64_t crowded_ = 0;  // pieces of one life too many
 };
 
 }  // namespace kinalign

@@ -64,6 +64,7 @@ RecordingSession::RecordingSession(Options options, Machine machine)
   };
   pairs_ = add_json("/clock/host", clock_pair_schema());
   counts_ = add_json("/counts", sender_counts_schema());
+  port_counts_ = add_json("/counts/ports", port_counts_schema());
   mark_channel_ = add_json("/marks", mark_schema());
 }
 
@@ -139,6 +140,9 @@ void RecordingSession::tick(HostTime now) {
   recorder_->record(pairs_, now, to_json(axis_.watch()));
   for (RecordedPort& port : ports_) port.tell(*recorder_, counts_, elapsed, now);
   if (nodes_) nodes_->tell(counts_, elapsed, now);
+  for (const auto& [name, counts] : port_counts()) {
+    recorder_->record(port_counts_, now, to_json(name, counts));
+  }
 }
 
 Result<void> RecordingSession::start(const std::string& path, const std::string& subject,

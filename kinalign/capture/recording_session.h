@@ -89,7 +89,7 @@ class RecordingSession {
   std::vector<RecordedPort> ports_;
   std::vector<MarkPort> mark_ports_;
   std::vector<HeardMark> marks_;
-  std::uint16_t pairs_ = 0, counts_ = 0, mark_channel_ = 0;
+  std::uint16_t pairs_ = 0, counts_ = 0, port_counts_ = 0, mark_channel_ = 0;
   RecordingFacts facts_;
   HostTime next_second_ = HostTime::min(), next_look_ = HostTime::min();
   std::vector<int> fds_;              // of this turn

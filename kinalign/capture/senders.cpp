@@ -7,20 +7,55 @@ namespace kinalign {
 
 std::optional<std::size_t> Senders::number(const HostAddress& host, std::uint16_t port,
                                            HostTime now) {
-  constexpr Duration silence = std::chrono::minutes(1);
-  auto found = std::find_if(senders_.begin(), senders_.end(), [&](const Sender& sender) {
-    return sender.host == host && sender.port == port;
-  });
-  if (found == senders_.end() && senders_.size() < most) {
-    found = senders_.insert(found, {host, port, now, ++lives_});
-  } else if (found == senders_.end()) {
-    found = std::min_element(senders_.begin(), senders_.end(),
-                             [](const Sender& a, const Sender& b) { return a.heard < b.heard; });
-    if (now - found->heard < silence) return std::nullopt;
-    *found = {host, port, now, ++lives_};
+  auto number = find(host, port);
+  if (!number) number = add(host, port, now);
+  if (!number) return std::nullopt;
+  senders_[*number].heard = now;
+  ++senders_[*number].times;
+  return number;
+}
+
+std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t port, HostTime now) {
+  if (lives_ >= most_lives) {
+    if (const auto past = own_past(host)) {
+      senders_[*past].port = port;
+      return past;
+    }
   }
-  found->heard = now;
-  return static_cast<std::size_t>(found - senders_.begin());
+  const auto number = place_for(host, now);
+  if (!number) return std::nullopt;
+  lives_ = std::min(lives_ + 1, most_lives + 1);
+  senders_[*number] = {host, port, now, lives_};
+  return number;
+}
+
+/// A new place, or that of the one who has been silent longest. Who said little was a stranger, who
+/// comes from the newcomer's host likely the newcomer itself: two seconds are enough of them.
+std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime now) {
+  constexpr std::uint64_t little = 10;
+  if (senders_.size() < most) {
+    senders_.emplace_back();
+    return senders_.size() - 1;
+  }
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < senders_.size(); ++i) {
+    const Sender& sender = senders_[i];
+    const bool soon = sender.times < little || sender.host == host;
+    const Duration patience = soon ? std::chrono::seconds(2) : std::chrono::minutes(1);
+    if (now - sender.heard < patience) continue;
+    if (!found || sender.heard < senders_[*found].heard) found = i;
+  }
+  return found;
+}
+
+/// The one of that host that has been silent longest.
+std::optional<std::size_t> Senders::own_past(const HostAddress& host) const {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < senders_.size(); ++i) {
+    if (senders_[i].host != host) continue;
+    if (!found || senders_[i].heard < senders_[*found].heard) found = i;
+  }
+  return found;
 }
 
 std::optional<std::size_t> Senders::find(const HostAddress& host, std::uint16_t port) const {

@@ -8,6 +8,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 
 namespace kinalign {
 
@@ -42,6 +43,15 @@ template <class Stamp>
 bool is_near(Stamp stamp) {
   constexpr Duration furthest{1'000'000'000'000'000'000};
   return -furthest <= stamp.time_since_epoch() && stamp.time_since_epoch() <= furthest;
+}
+
+/// Properties of a schema, behind others.
+std::string integers(std::initializer_list<std::string_view> names) {
+  std::string properties;
+  for (const std::string_view name : names) {
+    properties += fmt::format(R"(, "{}": {{"type": "integer"}})", name);
+  }
+  return properties;
 }
 
 // What an exchange's flags say.
@@ -129,15 +139,12 @@ std::optional<ClockPair> to_clock_pair(std::string_view json) {
 }
 
 McapSchema sender_counts_schema() {
-  std::string properties;
-  for (const std::string_view name :
-       {"messages", "bytes", "frames", "lost", "late", "duplicates", "restarts", "refused"}) {
-    properties += fmt::format(R"(, "{}": {{"type": "integer"}})", name);
-  }
   return {0, "kinalign.SenderCounts", "jsonschema",
           R"({"type": "object", "properties": {"stream": {"type": "string"}, )"
           R"("sender": {"type": "string"}, "node": {"type": "string"})" +
-              properties + R"(}, "required": ["stream", "sender", "messages"]})"};
+              integers({"messages", "bytes", "frames", "lost", "late", "duplicates", "restarts",
+                        "refused"}) +
+              R"(}, "required": ["stream", "sender", "messages"]})"};
 }
 
 std::string to_json(const std::string& stream, const std::string& sender, const std::string& node,
@@ -153,6 +160,21 @@ std::string to_json(const std::string& stream, const std::string& sender, const 
                               {"restarts", counts.order.restarts},
                               {"refused", counts.refused}};
   if (!node.empty()) json["node"] = node;
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+McapSchema port_counts_schema() {
+  return {0, "kinalign.PortCounts", "jsonschema",
+          R"({"type": "object", "properties": {"stream": {"type": "string"})" +
+              integers({"pieces", "bytes", "refused", "cut", "dropped", "links", "unsent"}) +
+              R"(}, "required": ["stream", "pieces"]})"};
+}
+
+std::string to_json(const std::string& stream, const PortCounts& counts) {
+  const nlohmann::ordered_json json{{"stream", stream},      {"pieces", counts.pieces},
+                                    {"bytes", counts.bytes}, {"refused", counts.refused},
+                                    {"cut", counts.cut},     {"dropped", counts.dropped},
+                                    {"links", counts.links}, {"unsent", counts.unsent}};
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -67,6 +67,18 @@ McapSchema sender_counts_schema();
 std::string to_json(const std::string& stream, const std::string& sender, const std::string& node,
                     const SenderCounts& counts);
 
+/// What has come to a port so far, and what was lost before it could be recorded.
+struct PortCounts {
+  std::uint64_t pieces = 0, bytes = 0;
+  std::uint64_t refused = 0;  // of one sender too many
+  std::uint64_t cut = 0;      // datagrams longer than any can be
+  std::uint64_t dropped = 0;  // by the kernel, for want of room
+  std::uint64_t links = 0;    // connections that were made
+  std::uint64_t unsent = 0;   // answers that the system did not take
+};
+McapSchema port_counts_schema();
+std::string to_json(const std::string& stream, const PortCounts& counts);
+
 /// A mark, and who made it: "keyboard", "call" or "trigger"; of the last two the address.
 struct RecordedMark {
   Mark mark;

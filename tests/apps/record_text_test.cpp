@@ -75,6 +75,21 @@ TEST_CASE("a lab's table has a line for each sender, and one for each device tha
   CHECK(lines[4].bad);
 }
 
+TEST_CASE("what a port lost stands red below its device, required or not") {
+  Scene scene;
+  scene.lab.devices[0].required = false;
+  PortCounts counts;
+  counts.pieces = 7500;
+  scene.status.ports = {{"mocap", counts}, {"kinect", counts}};
+  CHECK(lab_table(scene.lab, scene.status).size() == 5);
+  scene.status.ports[0].second.dropped = 1234;
+  const auto lines = lab_table(scene.lab, scene.status);
+  REQUIRE(lines.size() == 6);
+  CHECK(lines[2].text == "mocap              1,234 dropped by the kernel");
+  CHECK(lines[2].bad);
+  CHECK(!lines[1].bad);
+}
+
 TEST_CASE("a sender that another has replaced is not missing, and soon not shown") {
   Scene scene;
   StreamStatus again = scene.status.streams[1];  // the silent Kinect

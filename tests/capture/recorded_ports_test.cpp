@@ -145,6 +145,19 @@ TEST_CASE("a stranger gets no more from the trackers' port than the answer to a 
   CHECK(live.finish().at("/imu/raw").size() == 1);
 }
 
+TEST_CASE("what has come to each port, and what it lost, stands in the file") {
+  LiveSession live({"mocap=noitom:udp:127.0.0.1:0", "kinect=kinect:udp:127.0.0.1:0"});
+  const Client one;
+  one.send("127.0.0.1", live.port(), bytes_of("one"));
+  live.serve_until([&] { return live.pieces() == 1; });
+  const auto payloads = live.finish().at("/counts/ports");
+  REQUIRE(payloads.size() >= 2);
+  CHECK(
+      payloads[payloads.size() - 2] ==
+      R"({"stream":"mocap","pieces":1,"bytes":3,"refused":0,"cut":0,"dropped":0,"links":0,"unsent":0})");
+  CHECK(payloads.back().starts_with(R"({"stream":"kinect","pieces":0,)"));
+}
+
 TEST_CASE("marks from calls and broadcasts stand in the file once, and calls are answered") {
   RecordingSession::Options options;
   options.marks_port = 0;
