@@ -120,7 +120,7 @@ void RecordHerald::look_at_disk(HostTime now) {
 
 /// Each that falls silent or comes back, once; a bell where one is required.
 void RecordHerald::tell_who_is_silent(const LabStatus& status) {
-  for (const StreamStatus& stream : status.streams) {
+  for (const StreamStatus& stream : newest_of_each(status.streams)) {
     const std::string who = name_of(stream) + " from " + stream.sender;
     const bool silent = status.now - stream.heard >= silent_after;
     const bool told = silent_.contains(who);

@@ -168,6 +168,22 @@ std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
   return names;
 }
 
+std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& streams) {
+  std::vector<StreamStatus> newest;
+  for (const StreamStatus& stream : streams) {
+    const auto same = std::find_if(newest.begin(), newest.end(), [&](const StreamStatus& other) {
+      return other.stream == stream.stream && other.sender == stream.sender &&
+             other.node == stream.node;
+    });
+    if (same == newest.end()) {
+      newest.push_back(stream);
+    } else if (same->heard < stream.heard) {
+      *same = stream;
+    }
+  }
+  return newest;
+}
+
 std::string end_line(const StreamStatus& stream) {
   const SenderCounts& counts = stream.counts;
   std::string line = fmt::format("  {} from {}: {} messages, {:.1f} MB", name_of(stream),

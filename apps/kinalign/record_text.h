@@ -35,6 +35,9 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status);
 /// The required devices, and nodes that have places, of which nothing comes: "mocap", "imu waist".
 std::vector<std::string> missing(const Lab& lab, const LabStatus& status);
 
+/// Of connections that one device made one after another, from one port, the newest alone.
+std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& streams);
+
 /// "mocap", "imu waist", "imu 7".
 std::string name_of(const StreamStatus& stream);
 

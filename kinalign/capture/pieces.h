@@ -46,6 +46,14 @@ class Senders {
   /// Absent: too many others are heard just now. After most_lives a newcomer goes on with the life
   /// of its host that was silent longest; strangers then share the life most_lives + 1.
   std::optional<std::size_t> number(const HostAddress& host, std::uint16_t port, HostTime now);
+  /// Of a connection: one that was made anew is another sender, also from the same port. `known`:
+  /// the connection's own number and life, set with its first piece.
+  struct Known {
+    std::size_t number = 0;
+    std::uint64_t life = 0;
+  };
+  std::optional<std::size_t> number(std::optional<Known>& known, const HostAddress& host,
+                                    std::uint16_t port, HostTime now);
   const Sender& at(std::size_t number) const { return senders_[number]; }
   /// Absent: it has none.
   std::optional<std::size_t> find(const HostAddress& host, std::uint16_t port) const;
@@ -53,6 +61,7 @@ class Senders {
   std::size_t size() const { return senders_.size(); }
 
  private:
+  void hear(std::size_t number, HostTime now);
   std::optional<std::size_t> add(const HostAddress& host, std::uint16_t port, HostTime now);
   std::optional<std::size_t> place_for(const HostAddress& host, HostTime now);
   std::optional<std::size_t> own_past(const HostAddress& host) const;
@@ -128,6 +137,7 @@ class TcpPieces {
     bool connected = false;
     HostAddress host{};  // of the other end
     std::uint16_t port = 0;
+    std::optional<Senders::Known> sender{};  // since it said something
   };
   TcpPieces(std::string address, std::uint16_t port, Handle listener);
   void accept();

@@ -9,10 +9,26 @@ std::optional<std::size_t> Senders::number(const HostAddress& host, std::uint16_
                                            HostTime now) {
   auto number = find(host, port);
   if (!number) number = add(host, port, now);
-  if (!number) return std::nullopt;
-  senders_[*number].heard = now;
-  ++senders_[*number].times;
+  if (number) hear(*number, now);
   return number;
+}
+
+/// Another may have got its number while it was silent; then it begins anew.
+std::optional<std::size_t> Senders::number(std::optional<Known>& known, const HostAddress& host,
+                                           std::uint16_t port, HostTime now) {
+  if (known && senders_[known->number].life != known->life) known.reset();
+  if (!known) {
+    const auto number = add(host, port, now);
+    if (!number) return std::nullopt;
+    known = {*number, senders_[*number].life};
+  }
+  hear(known->number, now);
+  return known->number;
+}
+
+void Senders::hear(std::size_t number, HostTime now) {
+  senders_[number].heard = now;
+  ++senders_[number].times;
 }
 
 std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t port, HostTime now) {

@@ -131,9 +131,9 @@ void TcpPieces::drain(HostAxis& axis, const TakePiece& take) {
 }
 
 void TcpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {
-  const Senders::Sender& to = senders_.at(sender);
   for (const Link& link : links_) {
-    if (!link.connected || link.host != to.host || link.port != to.port) continue;
+    if (!link.sender || link.sender->number != sender) continue;
+    if (link.sender->life != senders_.at(sender).life) continue;
     const ssize_t sent =
         ::send(link.socket.fd(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent == static_cast<ssize_t>(bytes.size())) return;
@@ -164,7 +164,7 @@ bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
     if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (got == 0) return false;
     const HostTime arrival = axis.now();
-    const auto sender = senders_.number(link.host, link.port, arrival);
+    const auto sender = senders_.number(link.sender, link.host, link.port, arrival);
     ++(sender ? counts_.pieces : counts_.refused);
     if (!sender) continue;
     const auto size = static_cast<std::size_t>(got);

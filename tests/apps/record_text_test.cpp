@@ -105,6 +105,17 @@ TEST_CASE("a sender that another has replaced is not missing, and soon not shown
   CHECK(lab_table(scene.lab, scene.status).size() == 5);
 }
 
+TEST_CASE("of connections made anew from one port the newest says whether the device is silent") {
+  Scene scene;
+  StreamStatus again = scene.status.streams[1];  // the Kinect, silent for ten seconds
+  again.heard = scene.status.now;
+  scene.status.streams.push_back(again);
+  const auto newest = newest_of_each(scene.status.streams);
+  REQUIRE(newest.size() == 3);
+  CHECK(newest[1].stream == "kinect");
+  CHECK(newest[1].heard == scene.status.now);
+}
+
 TEST_CASE("what is not required is missing without red") {
   Scene scene;
   for (DeviceOptions& device : scene.lab.devices) device.required = false;

@@ -7,6 +7,7 @@
 #include "kinalign/io/noitom_frame.h"
 
 #include <doctest/doctest.h>
+#include <poll.h>
 
 #include <thread>
 
@@ -85,6 +86,35 @@ TEST_CASE("what a device says over TCP stands in the file byte for byte, also af
     for (const std::string& payload : payloads) found += payload;
   }
   CHECK(found == sent);
+}
+
+TEST_CASE("each connection to a device that serves has a channel of its own") {
+  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in own{};
+  own.sin_family = AF_INET;
+  own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof own;
+  REQUIRE(::bind(listener, reinterpret_cast<const sockaddr*>(&own), sizeof own) == 0);
+  REQUIRE(::listen(listener, 1) == 0);
+  REQUIRE(::getsockname(listener, reinterpret_cast<sockaddr*>(&own), &size) == 0);
+  LiveSession live({"kinect=kinect:tcp:127.0.0.1:" + std::to_string(ntohs(own.sin_port))});
+  std::uint64_t pieces = 0;
+  for (const std::string text : {"{\"half a mess", "whole"}) {
+    pollfd waiting{listener, POLLIN, 0};
+    live.serve_until([&] { return ::poll(&waiting, 1, 0) == 1; });
+    const int device_itself = ::accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
+    REQUIRE(::write(device_itself, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
+    ++pieces;
+    live.serve_until([&] { return live.pieces() == pieces; });
+    ::close(device_itself);
+  }
+  ::close(listener);
+  const auto streams = live.session().streams();
+  REQUIRE(streams.size() == 2);
+  CHECK(streams[0].sender == streams[1].sender);
+  const auto payloads = live.finish();
+  CHECK(payloads.at("/kinect/raw").size() == 1);
+  CHECK(payloads.at("/kinect/raw/2") == std::vector<std::string>{"whole"});
 }
 
 TEST_CASE("a second take needs a name of its own, and has its own file") {
