@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/pieces.h"
+
+#include <doctest/doctest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+
+using namespace kinalign;
+
+namespace {
+
+/// A device whose queue is full: whoever connects to it gets no answer.
+class FullDevice {
+ public:
+  FullDevice() : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    address_.sin_family = AF_INET;
+    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address_;
+    auto* at = reinterpret_cast<sockaddr*>(&address_);
+    REQUIRE(::bind(listener_, at, sizeof address_) == 0);
+    REQUIRE(::listen(listener_, 0) == 0);
+    REQUIRE(::getsockname(listener_, at, &size) == 0);
+    for (int& guest : guests_) {
+      guest = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+      (void)::connect(guest, at, sizeof address_);
+    }
+  }
+  FullDevice(const FullDevice&) = delete;
+  FullDevice& operator=(const FullDevice&) = delete;
+  ~FullDevice() {
+    for (const int guest : guests_) ::close(guest);
+    ::close(listener_);
+  }
+  std::uint16_t port() const { return ntohs(address_.sin_port); }
+
+ private:
+  int listener_;
+  sockaddr_in address_{};
+  std::array<int, 4> guests_{};
+};
+
+}  // namespace
+
+TEST_CASE("a connection that nobody answers is given up within seconds, and tried anew") {
+  const FullDevice device;
+  SystemClocks clocks;
+  HostAxis axis(clocks);
+  auto pieces = TcpPieces::connect("127.0.0.1", device.port());
+  REQUIRE(pieces);
+  const auto drain = [&] { pieces->drain(axis, [](const Piece&) {}); };
+  const auto fds = [&] {
+    std::vector<int> all;
+    pieces->add_fds(all);
+    return all;
+  };
+  drain();
+  REQUIRE(fds().size() == 1);
+  const HostTime begun = axis.now();
+  pollfd waiting{fds().front(), POLLIN, 0};
+  CHECK(::poll(&waiting, 1, 20'000) == 1);  // the system has given it up
+  CHECK(axis.now() - begun < std::chrono::seconds(10));
+  drain();
+  drain();
+  CHECK(fds().size() == 1);  // another
+  CHECK(pieces->counts().links == 0);
+}
