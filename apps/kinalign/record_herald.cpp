@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record_herald.h"
 
+#include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/mark_keys.h"
 #include "apps/kinalign/summary.h"
@@ -85,7 +86,7 @@ void RecordHerald::look(const std::optional<std::string>& typed) {
   const HostTime now = session_.now();
   if (now < next_look_) return;
   next_look_ = now + 100ms;
-  for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
+  tell_news();
   const bool second = now >= next_second_;
   if (!second && !(console_.shows() && typed)) return;
   const LabStatus status = lab_status();
@@ -96,6 +97,12 @@ void RecordHerald::look(const std::optional<std::string>& typed) {
     tell_status(status);
   }
   show(status, typed);
+}
+
+/// Each as soon as it is there, once.
+void RecordHerald::tell_news() {
+  for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
+  for (const Finding& finding : session_.take_findings()) tell(finding);
 }
 
 void RecordHerald::look_at_disk(HostTime now) {
@@ -138,6 +145,17 @@ void RecordHerald::tell_who_is_silent(const LabStatus& status) {
     if (!stream.node.empty()) event["node"] = stream.node;
     console_.print_json(json_text(event));
   }
+}
+
+void RecordHerald::tell(const Finding& finding) {
+  std::string lines = finding_lines({finding}, console_);
+  lines.pop_back();  // the line end, which complain() has
+  console_.complain(lines);
+  console_.print_json(json_text(Json{{"event", "finding"},
+                                     {"severity", std::string(to_string(finding.severity))},
+                                     {"what", to_string(finding.what)},
+                                     {"meaning", finding.meaning},
+                                     {"repair", finding.repair}}));
 }
 
 void RecordHerald::tell(const PartFailure& failure) {
@@ -192,7 +210,7 @@ void RecordHerald::show(const LabStatus& status, const std::optional<std::string
 }
 
 void RecordHerald::tell_end() {
-  for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
+  tell_news();
   const LabStatus status = lab_status();
   const DiskStatus disk = *session_.disk();
   Json event{{"event", "stopped"},

@@ -32,7 +32,9 @@ class RecordHerald {
 
  private:
   void look_at_disk(HostTime now);
+  void tell_news();
   void tell(const PartFailure& failure);
+  void tell(const Finding& finding);
   void tell_who_is_silent(const LabStatus& status);
   void tell_status(const LabStatus& status);
   void show(const LabStatus& status, const std::optional<std::string>& typed);

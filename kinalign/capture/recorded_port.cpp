@@ -136,6 +136,7 @@ void RecordedPort::tell(Recorder& recorder, std::uint16_t counts, double elapsed
   const auto tell_one = [&](std::optional<Source>& source) {
     if (!source) return;
     look_at(*source);
+    find_faults(*source);
     source->recorded.tell(recorder, counts, elapsed_s, now);
   };
   for (std::optional<Source>& source : sources_) tell_one(source);
@@ -153,6 +154,20 @@ void RecordedPort::look_at(Source& source) const {
   if (tracker == nullptr) return;
   counts.order = tracker->counts();
   if (tracker->battery_volts) source.recorded.status.battery_volts = *tracker->battery_volts;
+}
+
+/// Axis Studio's compressed port, say: who learns of it behind the take has no take. A host that
+/// comes back is not told of again.
+void RecordedPort::find_faults(const Source& source) {
+  constexpr std::size_t most_told = 256;
+  if (source.recorded.status.counts.refused == 0) return;
+  const std::string host = to_string(source.address.host);
+  const std::string name = device_.name + " from " + endpoint_text(host, source.address.port);
+  for (Finding& finding : source.watch.findings(name)) {
+    if (told_.size() >= most_told) return;
+    const bool fresh = told_.insert(host + finding.what.expected + finding.meaning).second;
+    if (fresh) findings_.push_back(std::move(finding));
+  }
 }
 
 std::uint16_t RecordedPort::port() const {

@@ -13,7 +13,9 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -36,6 +38,9 @@ class RecordedPort {
   std::uint16_t port() const;
   PortCounts counts() const;
   void add_streams(std::vector<StreamStatus>& all) const;
+  /// What the user should know of what is sent, since this was asked last: each fault of a host
+  /// once.
+  Findings take_findings() { return std::exchange(findings_, {}); }
   const KinectDesk* kinects() const { return kinects_.get(); }
   const SlimeDesk* slimes() const { return slimes_.get(); }
 
@@ -59,11 +64,14 @@ class RecordedPort {
   void answer_trackers(const Source& source, const Piece& piece);
   void send_answers();
   void look_at(Source& source) const;
+  void find_faults(const Source& source);
 
   DeviceOptions device_;
   Pieces pieces_;
   std::vector<std::optional<Source>> sources_;  // by the sender's number
   std::optional<Source> others_;                // strangers after too many lives share it
+  std::set<std::string> told_;                  // faults, of whom
+  Findings findings_;
   std::unique_ptr<SlimeDesk> slimes_;
   std::unique_ptr<KinectDesk> kinects_;
 };

@@ -189,6 +189,12 @@ std::vector<StreamStatus> RecordingSession::streams() const {
   return all;
 }
 
+Findings RecordingSession::take_findings() {
+  Findings all;
+  for (RecordedPort& port : ports_) append(all, port.take_findings());
+  return all;
+}
+
 std::vector<std::pair<std::string, std::uint16_t>> RecordingSession::ports() const {
   std::vector<std::pair<std::string, std::uint16_t>> all;
   for (const RecordedPort& port : ports_) all.emplace_back(port.device().name, port.port());

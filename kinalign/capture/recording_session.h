@@ -66,6 +66,8 @@ class RecordingSession {
   std::optional<DiskStatus> disk() const;
   std::vector<PartFailure> take_disk_failures();
   std::vector<StreamStatus> streams() const;
+  /// What the user should know of what devices send, each once; looked for once a second.
+  Findings take_findings();
   /// By the device's name, or "marks" and "trigger": the port that it is heard on.
   std::vector<std::pair<std::string, std::uint16_t>> ports() const;
   /// By the device's name.

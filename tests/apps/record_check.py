@@ -116,6 +116,22 @@ def a_take_is_never_overwritten(folder):
 
 
 @case
+def a_port_that_cannot_be_used_is_told_of_while_it_is_recorded(folder):
+    recording = Recording(folder / "takes")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        for _ in range(2):
+            one.sendto(b"CCCC\x28\0\0\0\x1f\x8b\x08\0" + b"Z" * 36, ("127.0.0.1", recording.port))
+    said = recording.until("finding")[-1]
+    assert "found compressed" in said["what"] and "switch the capture program" in said["repair"], said
+    status = recording.until("status")[-1]
+    assert status["ports"]["mocap"]["pieces"] == 2 and status["ports"]["mocap"]["dropped"] == 0, status
+    code, events, err = recording.end()
+    assert code == 0, err
+    assert not any(event["event"] == "finding" for event in events), "told again"
+    assert err.count("switch the capture program") == 1 and "\n\n" not in err, err
+
+
+@case
 def a_kill_at_any_moment_costs_at_most_the_last_second_and_recover_closes_what_is_left(folder):
     draw = random.Random(11)
     for k in range(KILLS):

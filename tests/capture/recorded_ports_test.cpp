@@ -158,6 +158,29 @@ TEST_CASE("what has come to each port, and what it lost, stands in the file") {
   CHECK(payloads.back().starts_with(R"({"stream":"kinect","pieces":0,)"));
 }
 
+TEST_CASE(
+    "Axis Studio's compressed port is told of while recording, once a host, with what to do") {
+  LiveSession live({"mocap=noitom:udp:127.0.0.1:0"});
+  const std::string compressed =
+      std::string("CCCC\x28\0\0\0\x1f\x8b\x08\0", 12) + std::string(36, 'Z');
+  const Client one, two;
+  one.send("127.0.0.1", live.port(), bytes_of(compressed));
+  live.serve_until([&] { return live.pieces() == 1; });
+  Findings findings;
+  live.serve_until([&] {
+    append(findings, live.session().take_findings());
+    return !findings.empty();
+  });
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].what.file.starts_with("mocap from 127.0.0.1:"));
+  CHECK(findings[0].what.expected == "plain BVH frames");
+  CHECK(findings[0].repair.starts_with("switch the capture program to plain BVH broadcast"));
+  two.send("127.0.0.1", live.port(), bytes_of(compressed));
+  live.serve_until([&] { return live.pieces() == 2; });
+  live.finish();
+  CHECK(live.session().take_findings().empty());
+}
+
 TEST_CASE("marks from calls and broadcasts stand in the file once, and calls are answered") {
   RecordingSession::Options options;
   options.marks_port = 0;
