@@ -4,6 +4,7 @@
 #include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/mark_keys.h"
+#include "apps/kinalign/node_event_text.h"
 #include "apps/kinalign/summary.h"
 
 #include <fmt/format.h>
@@ -103,6 +104,7 @@ void RecordHerald::look(const std::optional<std::string>& typed) {
 void RecordHerald::tell_news() {
   for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
   for (const Finding& finding : session_.take_findings()) tell(finding);
+  for (const HostClockEvent& event : session_.take_clock_events()) tell(event);
 }
 
 void RecordHerald::look_at_disk(HostTime now) {
@@ -156,6 +158,11 @@ void RecordHerald::tell(const Finding& finding) {
                                      {"what", to_string(finding.what)},
                                      {"meaning", finding.meaning},
                                      {"repair", finding.repair}}));
+}
+
+void RecordHerald::tell(const HostClockEvent& event) {
+  console_.complain("kinalign record: " + event_text(event));
+  console_.print_json(event_json(event));
 }
 
 void RecordHerald::tell(const PartFailure& failure) {

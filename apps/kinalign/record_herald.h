@@ -35,6 +35,7 @@ class RecordHerald {
   void tell_news();
   void tell(const PartFailure& failure);
   void tell(const Finding& finding);
+  void tell(const HostClockEvent& event);
   void tell_who_is_silent(const LabStatus& status);
   void tell_status(const LabStatus& status);
   void show(const LabStatus& status, const std::optional<std::string>& typed);

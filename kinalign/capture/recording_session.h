@@ -68,6 +68,8 @@ class RecordingSession {
   std::vector<StreamStatus> streams() const;
   /// What the user should know of what devices send, each once; looked for once a second.
   Findings take_findings();
+  /// What became of the host's clocks since this was asked last.
+  std::vector<HostClockEvent> take_clock_events() { return axis_.take_events(); }
   /// By the device's name, or "marks" and "trigger": the port that it is heard on.
   std::vector<std::pair<std::string, std::uint16_t>> ports() const;
   /// By the device's name.

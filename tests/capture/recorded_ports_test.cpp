@@ -181,6 +181,29 @@ TEST_CASE(
   CHECK(live.session().take_findings().empty());
 }
 
+TEST_CASE("that the host's wall clock was set is told while recording") {
+  struct SetClocks : SystemClocks {
+    bool was_set = false;
+    bool wall_was_set() override { return std::exchange(was_set, false); }
+  };
+  const FreshFolder folder;
+  PosixFiles files;
+  SetClocks clocks;
+  SystemClocks nodes_clock;
+  RecordingSession::Options options;
+  options.lab.devices = {*parse_device("mocap=noitom:udp:127.0.0.1:0")};
+  auto session = RecordingSession::open(options, {files, clocks, nodes_clock});
+  REQUIRE(session);
+  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  (*session)->turn(0ms);
+  CHECK((*session)->take_clock_events().empty());
+  clocks.was_set = true;
+  finish(**session);
+  const auto events = (*session)->take_clock_events();
+  REQUIRE(events.size() == 1);
+  CHECK(events[0].kind == HostClockEvent::Kind::wall_stepped);
+}
+
 TEST_CASE("marks from calls and broadcasts stand in the file once, and calls are answered") {
   RecordingSession::Options options;
   options.marks_port = 0;
