@@ -167,7 +167,7 @@ void RecordHerald::tell(const HostClockEvent& event) {
 
 void RecordHerald::tell(const PartFailure& failure) {
   console_.complain(harmless(fmt::format(
-      "kinalign record: {}: {}\n", to_string(failure.why),
+      "kinalign record: {}: {}", to_string(failure.why),
       failure.next.empty() ? "kept in memory and tried again" : "goes on in " + failure.next)));
   console_.print_json(json_text(Json{
       {"event", "disk_failed"}, {"what", to_string(failure.why)}, {"goes_on_in", failure.next}}));

@@ -55,7 +55,6 @@ std::vector<PartFailure> DiskThread::take_failures() {
 void DiskThread::publish(const Result<void>& result) {
   status_.paths = disk_.paths();
   status_.bytes = disk_.bytes();
-  status_.messages = disk_.messages();
   status_.waiting_bytes = disk_.kept_bytes();
   status_.refused = result ? std::nullopt : std::optional(result.error());
   for (PartFailure& failure : disk_.take_failures()) failures_.push_back(std::move(failure));
@@ -81,7 +80,6 @@ void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
     const Result<void> answer = *std::exchange(synced_, std::nullopt);
     const RecordingDisk::Sync sync = *std::exchange(due_, std::nullopt);
     syncing_ = false;
-    if (answer) ++status_.syncs;
     lock.unlock();
     result = disk_.synced(sync, answer);
   } else if (!queue_.empty()) {

@@ -19,8 +19,6 @@ namespace kinalign {
 struct DiskStatus {
   std::vector<std::string> paths;   // the recording's files
   std::uint64_t bytes = 0;          // in them
-  std::uint64_t messages = 0;       // in the present one
-  std::uint64_t syncs = 0;          // that reached the disk
   std::uint64_t waiting_bytes = 0;  // that only memory has
   std::uint64_t dropped = 0;        // messages: the disk was refused too long, memory was full
   std::optional<Error> refused;     // by the disk just now; tried again with what comes next

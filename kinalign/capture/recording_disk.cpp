@@ -66,7 +66,6 @@ Result<void> RecordingDisk::open_part() {
     files_->remove(path.c_str());
     return begun;
   }
-  if (file_) bytes_before_ += file_->size();
   file_ = std::move(file);
   writer_ = std::move(writer);
   open_ = true;
@@ -75,29 +74,43 @@ Result<void> RecordingDisk::open_part() {
   return {};
 }
 
+/// With no file open the next write tries again, and nothing is told: that was.
 Result<void> RecordingDisk::write(McapStoredChunk chunk) {
   kept_bytes_ += chunk.bytes.size();
   kept_.push_back({std::move(chunk), 0});
   Result<void> put = put_kept();
-  return put ? put : next_part(put.error());
+  return put || !open_ ? put : next_part(put.error());
 }
 
-/// Into the file what is not in it yet.
+/// Into the file what is not in it yet. A new one that takes none of it is removed again, or a full
+/// disk that takes names alone would fill with them.
 Result<void> RecordingDisk::put_kept() {
-  if (!open_) KA_TRY(open_part());
+  const bool fresh = !open_;
+  if (fresh) KA_TRY(open_part());
   for (Kept& kept : kept_) {
     if (kept.end != 0) continue;
-    KA_TRY(writer_->write(kept.chunk));
+    const Result<void> written = writer_->write(kept.chunk);
+    if (!written && fresh && &kept == &kept_.front()) remove_part();
+    if (!written) return written;
     kept.end = file_->size();
   }
+  if (given_up_) failures_.push_back({*std::exchange(given_up_, std::nullopt), paths_.back()});
   return {};
 }
 
+void RecordingDisk::remove_part() {
+  files_->remove(paths_.back().c_str());
+  paths_.pop_back();
+  open_ = false;
+}
+
+/// Told once, and once more where it goes on later.
 Result<void> RecordingDisk::next_part(const Error& why) {
+  const bool told = std::exchange(given_up_, given_up_.value_or(why)).has_value();
   (void)finish_part();  // for what it is worth
   for (Kept& kept : kept_) kept.end = 0;
   Result<void> result = put_kept();
-  failures_.push_back({why, result ? paths_.back() : ""});
+  if (!result && !told) failures_.push_back({why, ""});
   return result;
 }
 
@@ -128,6 +141,7 @@ Result<void> RecordingDisk::finish_part() {
   const std::uint64_t size = file_->size();
   Result<void> finished = writer_->finish();
   if (!finished) (void)file_->cut(size);
+  bytes_before_ += file_->size();
   return finished;
 }
 

@@ -25,7 +25,8 @@ struct RecordingHead {
   std::vector<McapAttachment> attachments;
 };
 
-/// A file was given up, and why; `next`: where the recording goes on, empty where nowhere.
+/// A file was given up, and why; `next`: where the recording goes on, empty where nowhere yet: then
+/// a second one says where, once it does.
 struct PartFailure {
   Error why;
   std::string next;
@@ -57,8 +58,7 @@ class RecordingDisk {
   /// Since this was asked last.
   std::vector<PartFailure> take_failures() { return std::exchange(failures_, {}); }
   const std::vector<std::string>& paths() const { return paths_; }  // all files, in order
-  std::uint64_t bytes() const { return bytes_before_ + file_->size(); }
-  std::uint64_t messages() const { return writer_->messages(); }
+  std::uint64_t bytes() const { return bytes_before_ + (open_ ? file_->size() : 0); }
   /// Bytes that only memory has for sure.
   std::uint64_t kept_bytes() const { return kept_bytes_; }
 
@@ -68,6 +68,7 @@ class RecordingDisk {
   Result<void> open_part();
   Result<void> put_kept();
   Result<void> next_part(const Error& why);
+  void remove_part();
   Result<void> finish_part();
   Result<void> finish_once();
   void forget_synced(std::uint64_t size);
@@ -86,6 +87,7 @@ class RecordingDisk {
   };
   std::deque<Kept> kept_;
   std::uint64_t kept_bytes_ = 0, bytes_before_ = 0;
+  std::optional<Error> given_up_;  // a file was, and the recording has not gone on yet
   std::vector<PartFailure> failures_;
 };
 

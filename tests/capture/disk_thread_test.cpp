@@ -53,7 +53,6 @@ TEST_CASE("all that was pushed stands in the file, in order") {
     for (std::uint32_t i = 0; i < 100; ++i) thread.push(chunk(10 * i, 10 * i + 10));
     thread.finish();
     wait_until([&] { return thread.status().finished; });
-    CHECK(thread.status().messages == 1000);
     CHECK(thread.status().waiting_bytes == 0);
     CHECK(!thread.status().refused);
     CHECK(thread.status().bytes == folder.read("a.mcap").size());
@@ -76,7 +75,7 @@ TEST_CASE("while a sync lasts what comes is written all the same") {
   thread.push(chunk(10, 20));
   wait_until([&] { return read_mcap(folder.read("a.mcap")).messages.size() == 20; });
   CHECK(files.waiting == 1);
-  CHECK(thread.status().syncs == 0);
+  CHECK(thread.status().waiting_bytes > 0);
   files.slow = false;
   wait_until([&] { return thread.status().waiting_bytes == 0; });
 }

@@ -177,10 +177,45 @@ TEST_CASE("a disk that refuses everything for a while loses nothing") {
   files.refuses = true;
   CHECK(!disk->write(chunk(10, 20)));
   CHECK(!disk->write(chunk(20, 30)));
+  CHECK(!disk->write(chunk(30, 35)));
+  const auto told = disk->take_failures();  // once, however often it is tried
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].next.empty());
   files.refuses = false;
-  CHECK(disk->write(chunk(30, 40)));
+  CHECK(disk->write(chunk(35, 40)));
+  const auto then = disk->take_failures();
+  REQUIRE(then.size() == 1);
+  CHECK(then[0].next == folder / "a.part2.mcap");
   CHECK(disk->finish());
+  CHECK(disk->take_failures().empty());
   CHECK(found_in(disk->paths()).sequences.size() == 40);
+}
+
+TEST_CASE("a disk that takes names and no data does not fill with files") {
+  struct Full : PosixFiles {
+    bool full = false;
+    ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
+      if (!full || size < 1000) return PosixFiles::write_at(fd, data, size, at);
+      errno = ENOSPC;
+      return -1;
+    }
+  };
+  const FreshFolder folder;
+  Full files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  CHECK(disk->write(chunk(0, 100)));
+  files.full = true;
+  for (std::uint32_t i = 1; i < 10; ++i) CHECK(!disk->write(chunk(100 * i, 100 * i + 100)));
+  CHECK(disk->paths().size() == 1);
+  CHECK(folder.names().size() == 1);
+  CHECK(disk->take_failures().size() == 1);
+  files.full = false;
+  CHECK(disk->write(chunk(1000, 1100)));
+  CHECK(disk->finish());
+  CHECK(disk->paths().size() == 2);
+  CHECK(disk->bytes() == folder.read("a.mcap").size() + folder.read("a.part2.mcap").size());
+  CHECK(found_in(disk->paths()).sequences.size() == 1100);
 }
 
 TEST_CASE("a sync that succeeds after one that failed proves nothing") {
