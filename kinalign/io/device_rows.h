@@ -27,6 +27,7 @@ struct DeviceWish {
   std::shared_ptr<const RecordingParts> parts;  // the file and those that go on behind it
   /// Of a Kinect; avatar or character of mocap; a SlimeVR tracker's sensor.
   std::optional<std::uint64_t> body;
+  bool trackers = false;  // of Xsens: inertial samples, not poses
 };
 
 /// What listening has found.
@@ -104,10 +105,11 @@ DeviceProtocol device_protocol(std::string_view name) {
           }};
 }
 
-DeviceProtocol node_protocol();     // node_rows.cpp: inertial nodes of ours
-DeviceProtocol kinect_protocol();   // kinect_rows.cpp
-DeviceProtocol noitom_protocol();   // noitom_rows.cpp
-DeviceProtocol xsens_protocol();    // xsens_rows.cpp: poses
-DeviceProtocol slimevr_protocol();  // slimevr_rows.cpp
+DeviceProtocol node_protocol();           // node_rows.cpp: inertial nodes of ours
+DeviceProtocol kinect_protocol();         // kinect_rows.cpp
+DeviceProtocol noitom_protocol();         // noitom_rows.cpp
+DeviceProtocol xsens_protocol();          // xsens_rows.cpp: poses
+DeviceProtocol xsens_tracker_protocol();  // inertial samples out of the same stream
+DeviceProtocol slimevr_protocol();        // slimevr_rows.cpp
 
 }  // namespace kinalign

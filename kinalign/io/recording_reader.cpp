@@ -18,7 +18,13 @@ std::array<DeviceProtocol, 5> protocols() {
           slimevr_protocol()};
 }
 
-Result<DeviceProtocol> protocol_of(const RawChannel& channel, const std::string& file) {
+Result<DeviceProtocol> protocol_of(const RawChannel& channel, const DeviceWish& wish) {
+  const std::string& file = wish.file.path;
+  if (wish.trackers && channel.protocol == "xsens") return xsens_tracker_protocol();
+  if (wish.trackers) {
+    return Failure(Error{file, 0, "trackers of an xsens stream",
+                         shown(channel.stream) + ", of " + shown(channel.protocol)});
+  }
   for (const DeviceProtocol& one : protocols()) {
     if (one.name == channel.protocol) return one;
   }
@@ -38,10 +44,13 @@ std::string selected(const StreamOptions& options, const char* key, const std::s
 Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file) {
   for (const auto& [name, value] : options.select) {
     if (name == "stream" || name == "node" || name == "sender" || name == "body") continue;
-    return Failure(Error{file.path, 0, "select by stream, node, sender or body",
+    if (name == "kind" && (value == "poses" || value == "trackers")) continue;
+    return Failure(Error{file.path, 0,
+                         "select by stream, node, sender, body or kind (poses, trackers)",
                          shown(name) + " = " + shown(value)});
   }
   DeviceWish wish{options, file, {}, {}, {}};
+  wish.trackers = selected(options, "kind", "poses") == "trackers";
   wish.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
                  selected(options, "sender", "")};
   if (wish.choice.sender.empty()) wish.choice.sender = wish.choice.node;  // of a tracker
@@ -164,7 +173,7 @@ class Listening {
  private:
   Result<void> begin(const RawChannel& channel) {
     if (listener_) return {};
-    protocol_ = KA_TRY(protocol_of(channel, wish_.file.path));
+    protocol_ = KA_TRY(protocol_of(channel, wish_));
     listener_ = protocol_->listen(wish_);
     return {};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of Xsens MVN's stream, stamped by its sample counter.
+// Poses of Xsens MVN's stream, or its trackers' inertial samples, stamped by its sample counter.
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/numbered_frames.h"
 #include "kinalign/io/xsens_pose.h"
@@ -11,30 +11,38 @@ namespace kinalign {
 
 namespace {
 
+template <class Items>
 struct XsensSource {
   using Decoder = XsensDecoder;
   using Arrival = XsensArrival;
-  using Frame = XsensPose;
-  static Frame* frame(Arrival& arrival) { return std::get_if<XsensPose>(&arrival.sample.body); }
+  using Frame = Items;
+  static Frame* frame(Arrival& arrival) { return std::get_if<Items>(&arrival.sample.body); }
   static std::uint64_t body(const Arrival& arrival) { return arrival.sample.character; }
   static std::optional<std::uint32_t> number(const Arrival& a) { return a.sample.counter; }
 };
-using XsensPoses = NumberedFrames<XsensSource>;
+template <class Items>
+using XsensFrames = NumberedFrames<XsensSource<Items>>;
 
+template <class Items>
+constexpr std::string_view meaning = "poses (type 02) of Xsens MVN";
+template <>
+constexpr std::string_view meaning<XsensTrackers> = "trackers (type 23) of Xsens MVN";
+
+template <class Items>
 class XsensListener final : public DeviceListener {
  public:
-  explicit XsensListener(const DeviceWish& wish) : wish_(wish), poses_(wish.body) {}
+  explicit XsensListener(const DeviceWish& wish) : wish_(wish), frames_(wish.body) {}
 
   void take(const RecordedMessage& message) override {
     placed_.clear();
-    poses_.take(message, placed_);
+    frames_.take(message, placed_);
     for (const auto& one : placed_) counted_.push_back(*one.place);
   }
 
   Result<void> finish(HeardDevice& heard) override {
-    append(heard.findings, poses_.findings(wish_.file.path));
+    append(heard.findings, frames_.findings(wish_.file.path));
     if (counted_.empty()) {
-      return Failure(Error{wish_.file.path, 0, "poses (type 02) of Xsens MVN", "none"});
+      return Failure(Error{wish_.file.path, 0, std::string(meaning<Items>), "none"});
     }
     count_clock(counted_, 0.0, wish_, heard);
     return {};
@@ -42,62 +50,99 @@ class XsensListener final : public DeviceListener {
 
  private:
   DeviceWish wish_;
-  XsensPoses poses_;
-  std::vector<XsensPoses::Placed> placed_;
+  XsensFrames<Items> frames_;
+  std::vector<PlacedFrame<Items>> placed_;
   std::vector<CountedFrame> counted_;
 };
 
-class XsensRows final : public DeviceRows<ClipFrames> {
+/// The second pass: what both kinds have alike. `append` is a poser's or nodes'.
+template <class Items, class Frames>
+class XsensStamped : public DeviceRows<Frames> {
  public:
-  XsensRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : DeviceRows(wish.file.path),
-        heard_(std::move(heard)),
-        poses_(wish.body),
-        poser_(wish.file.path) {}
+  XsensStamped(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
+      : DeviceRows<Frames>(wish.file.path), heard_(std::move(heard)), frames_(wish.body) {}
 
-  Result<void> take(const RecordedMessage& message, ClipFrames& out) override {
+  Result<void> take(const RecordedMessage& message, Frames& out) final {
     placed_.clear();
-    poses_.take(message, placed_);
+    frames_.take(message, placed_);
     for (const auto& one : placed_) {
       const auto stamp = stamp_of(*heard_, one);
       if (!stamp) {
         ++unknown_;
         continue;
       }
-      auto posed = poser_.append(one.frame, *stamp, out);
-      if (posed) continue;
-      if (!misfit_) misfit_ = std::move(posed).error();
+      auto appended = append(one.frame, *stamp, out);
+      if (appended) continue;
+      if (!misfit_) misfit_ = std::move(appended).error();
       ++misfits_;
     }
     return {};
   }
 
-  Result<void> finish(ClipFrames&) override {
-    if (poser_.skeleton() == nullptr) {
-      return Failure(misfit_.value_or(Error{file(), 0, "a pose of 23 segments", "none"}));
+  Result<void> finish(Frames&) final {
+    if (this->header() == nullptr) {
+      return Failure(misfit_.value_or(Error{this->file(), 0, std::string(meaning<Items>), "none"}));
     }
-    append(findings, poser_.findings);
+    kinalign::append(this->findings, further_findings());
     if (misfit_) {
-      findings.push_back({Severity::warning, *misfit_,
-                          fmt::format("{} poses of that kind were left out", misfits_), ""});
+      this->findings.push_back({Severity::warning, *misfit_,
+                                fmt::format("{} of that kind were left out", misfits_), ""});
     }
-    tell(unknown_, "poses whose clock is known", "others", "they were left out");
+    this->tell(unknown_, "samples whose clock is known", "others", "they were left out");
     return {};
   }
 
-  const Skeleton* header() const override { return poser_.skeleton(); }
-
  private:
+  virtual Result<void> append(const Items& items, Time stamp, Frames& out) = 0;
+  virtual Findings further_findings() const { return {}; }
+
   std::shared_ptr<const HeardDevice> heard_;
-  XsensPoses poses_;
-  XsensPoser poser_;
-  std::vector<XsensPoses::Placed> placed_;
+  XsensFrames<Items> frames_;
+  std::vector<PlacedFrame<Items>> placed_;
   std::optional<Error> misfit_;
   std::uint64_t misfits_ = 0, unknown_ = 0;
 };
 
+class XsensPoseRows final : public XsensStamped<XsensPose, ClipFrames> {
+ public:
+  XsensPoseRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
+      : XsensStamped(wish, std::move(heard)), poser_(wish.file.path) {}
+  const Skeleton* header() const override { return poser_.skeleton(); }
+
+ private:
+  Result<void> append(const XsensPose& pose, Time stamp, ClipFrames& out) override {
+    return poser_.append(pose, stamp, out);
+  }
+  Findings further_findings() const override { return poser_.findings; }
+
+  XsensPoser poser_;
+};
+
+class XsensTrackerRows final : public XsensStamped<XsensTrackers, ImuSamples> {
+ public:
+  XsensTrackerRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
+      : XsensStamped(wish, std::move(heard)), nodes_(wish.file.path) {}
+  const ImuHeader* header() const override { return header_ ? &*header_ : nullptr; }
+
+ private:
+  Result<void> append(const XsensTrackers& trackers, Time stamp, ImuSamples& out) override {
+    KA_TRY(nodes_.append(trackers, stamp, out));
+    if (!header_) header_ = ImuHeader{nodes_.node_names(), nodes_.content()};
+    return {};
+  }
+
+  XsensNodes nodes_;
+  std::optional<ImuHeader> header_;
+};
+
 }  // namespace
 
-DeviceProtocol xsens_protocol() { return device_protocol<XsensListener, XsensRows>("xsens"); }
+DeviceProtocol xsens_protocol() {
+  return device_protocol<XsensListener<XsensPose>, XsensPoseRows>("xsens");
+}
+
+DeviceProtocol xsens_tracker_protocol() {
+  return device_protocol<XsensListener<XsensTrackers>, XsensTrackerRows>("xsens");
+}
 
 }  // namespace kinalign

@@ -2,6 +2,8 @@
 // Frames and bytes of the Noitom stream, for tests.
 #pragma once
 
+#include "tests/io/joined_bytes.h"
+
 #include "kinalign/io/noitom_stream.h"
 
 #include <doctest/doctest.h>
@@ -10,8 +12,6 @@
 #include <string_view>
 
 namespace kinalign {
-
-using Bytes = std::vector<std::uint8_t>;
 
 inline NoitomFrame noitom_frame(NoitomForm form, bool displacement, bool reference,
                                 std::uint32_t index = 1000) {
@@ -32,11 +32,6 @@ inline Bytes bytes_of(const NoitomFrame& frame) {
   Bytes bytes;
   const auto result = append_noitom(frame, bytes);
   REQUIRE(result);
-  return bytes;
-}
-
-inline Bytes& operator+=(Bytes& bytes, const Bytes& more) {
-  bytes.insert(bytes.end(), more.begin(), more.end());
   return bytes;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "tests/io/mcap_files.h"
+#include "tests/io/xsens_cases.h"
 
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_frames.h"
@@ -257,6 +258,25 @@ class RecordedLab {
     }
     if (closed) REQUIRE(writer.finish());
     return file.bytes;
+  }
+
+  /// Sixty samples a second of Xsens MVN's: poses and, by turns, trackers whose first
+  /// acceleration's x is the time.
+  void add_xsens(double to) {
+    const auto datagrams =
+        channel(to_channel("/xsens/raw", {"xsens", "xsens", "udp", "10.0.0.4:9763", "", ""}));
+    double last = 0.0;
+    for (std::uint32_t k = 0; k < 60.0 * to; ++k) {
+      const double t = k / 60.0;
+      XsensSample trackers = xsens_trackers(true, k);
+      std::get<XsensTrackers>(trackers.body).trackers[0].raw->acceleration[0] =
+          static_cast<float>(t);
+      last = std::max(last, t + way() / 4.0);
+      for (const XsensSample& sample : {xsens_pose(23, k), trackers}) {
+        const Bytes bytes = bytes_of(sample);
+        add(datagrams, last, {bytes.begin(), bytes.end()});
+      }
+    }
   }
 
   static HostTime host(double t) { return HostTime{Duration{host_begin + std::llround(1e9 * t)}}; }

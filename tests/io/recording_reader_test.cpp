@@ -218,7 +218,8 @@ TEST_CASE("what is not in a recording is refused by the names of what is") {
   CHECK(refusal(stream_named("imu", path, "14")) == "of stream imu node 12, 13; '14'");
   StreamOptions options = stream_named("imu", path, "12");
   options.select["colour"] = "red";
-  CHECK(refusal(options) == "select by stream, node, sender or body; colour = red");
+  CHECK(refusal(options) ==
+        "select by stream, node, sender, body or kind (poses, trackers); colour = red");
 }
 
 TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as one stream") {
@@ -407,4 +408,25 @@ TEST_CASE("a tracker goes on behind a datagram with a number that isn't its own"
   const RecordedStream stream = opened(files, stream_named("slime", path));
   CHECK(node_errors(stream).samples == 2001);  // nothing tells the forged one's own sample
   CHECK(stream.findings.empty());
+}
+
+TEST_CASE("of Xsens' stream the trackers are taken where they are asked for, else the poses") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_xsens(20.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  StreamOptions options = stream_named("xsens", path);
+  CHECK(std::get<ClipInput>(opened(files, options).data).skeleton.joints() == 23);
+  options.select = {{"kind", "trackers"}};
+  const RecordedStream stream = opened(files, options);
+  const auto& input = std::get<ImuInput>(stream.data);
+  CHECK(input.node_names == std::vector<std::string>{"Pelvis", "T8", "RightHand"});
+  CHECK(input.content == ImuContent{true, true, true, true});
+  const Errors errors = errors_of<ImuInput>(
+      stream, [](const ImuSamples& s, std::size_t t) { return s.acceleration[9 * t]; });
+  CHECK(errors.samples == 1200);
+  CHECK(errors.certified == 0);
+  CHECK(errors.least > 0.2);
+  CHECK(errors.most < 1.5);
 }

@@ -2,6 +2,8 @@
 // Samples and bytes of the Xsens MVN stream, for tests.
 #pragma once
 
+#include "tests/io/joined_bytes.h"
+
 #include "kinalign/io/xsens_pose.h"
 #include "kinalign/io/xsens_stream.h"
 
@@ -10,8 +12,6 @@
 #include <random>
 
 namespace kinalign {
-
-using Bytes = std::vector<std::uint8_t>;
 
 inline XsensSample xsens_sample(std::uint32_t counter = 1000) {
   XsensSample sample;
@@ -60,11 +60,6 @@ inline std::vector<Bytes> datagrams_of(const XsensSample& sample, const XsensSen
   const auto datagrams = xsens_datagrams(sample, how);
   REQUIRE(datagrams);
   return *datagrams;
-}
-
-inline Bytes& operator+=(Bytes& bytes, const Bytes& more) {
-  bytes.insert(bytes.end(), more.begin(), more.end());
-  return bytes;
 }
 
 inline Bytes bytes_of(const XsensSample& sample, const XsensSending& how = {}) {
