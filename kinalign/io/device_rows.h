@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/clock/device_clock.h"
+#include "kinalign/io/host_epochs.h"
 #include "kinalign/io/reader.h"
 #include "kinalign/io/recorded_messages.h"
 #include "kinalign/take/manifest.h"
@@ -39,6 +40,7 @@ struct HeardDevice {
   double step_ns = 0.0;     // of devices whose frames are counted
   bool by_arrival = false;  // of devices that say no time and no number: stamps are UTC of arrival
   ImuContent content;       // of a node
+  HostEpochs epochs;        // of a Kinect
   Findings findings;
 };
 

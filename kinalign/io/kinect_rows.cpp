@@ -54,10 +54,10 @@ class KinectFrames {
   KinectFrameJoiner joiner_;
 };
 
-/// When the sender had a frame, and what the sensor's clock showed.
+/// When the sensor took a frame, when the sender had it, and when he sent it.
 struct Taken {
-  BootKey session = 0;
-  NodeTime device{}, sender{};
+  BootKey life = 0;  // the session until the host's epochs are known
+  NodeTime device{}, sender{}, sent{};
   HostTime arrival{};
 };
 
@@ -68,7 +68,9 @@ class KinectListener final : public DeviceListener {
   void take(const RecordedMessage& message) override {
     if (message.is_exchange()) {
       if (const auto recorded = to_exchange(message.payload)) {
+        epochs_.add(*recorded);
         exchanges_.push_back(recorded->exchange);
+        exchanges_.back().boot = life_of(recorded->exchange.boot, recorded->epoch);
       }
       return;
     }
@@ -76,22 +78,29 @@ class KinectListener final : public DeviceListener {
     joined_.clear();
     frames_.take(message, joined_, &parts_);
     for (const KinectFrame& part : parts_) {
-      exchanges_.push_back(exchange_of(part, message.arrival));
       taken_.push_back({part.origin.session, kinect_sender_time(part.device_ticks),
-                        kinect_sender_time(part.taken_ticks), message.arrival});
+                        kinect_sender_time(part.taken_ticks), kinect_sender_time(part.sent_ticks),
+                        message.arrival});
     }
   }
 
   Result<void> finish(HeardDevice& heard) override {
     if (taken_.empty()) return Failure(Error{file_, 0, "frames of a Kinect", "none"});
+    for (Taken& one : taken_) {
+      one.life = epochs_.life_at(one.life, one.sent, one.arrival);
+      exchanges_.push_back({one.life, one.sent, one.arrival, std::nullopt});
+    }
+    std::stable_sort(exchanges_.begin(), exchanges_.end(),
+                     [](const Exchange& a, const Exchange& b) { return a.h_rx < b.h_rx; });
     const DeviceClock sender = device_clock(exchanges_, {});
     std::vector<Exchange> from_sensor;
     from_sensor.reserve(taken_.size());
     for (const Taken& one : taken_) {
-      const auto at = host_from_node(sender.model, one.session, one.sender, one.arrival);
-      if (at) from_sensor.push_back({one.session, one.device, at->time, std::nullopt});
+      const auto at = host_from_node(sender.model, one.life, one.sender, one.arrival);
+      if (at) from_sensor.push_back({one.life, one.device, at->time, std::nullopt});
     }
     heard.clock = device_clock(from_sensor, heard.utc_minus_host);
+    heard.epochs = std::move(epochs_);
     return {};
   }
 
@@ -100,7 +109,8 @@ class KinectListener final : public DeviceListener {
   KinectFrames frames_;
   std::vector<KinectFrame> parts_;
   std::vector<JoinedKinectFrame> joined_;
-  std::vector<Exchange> exchanges_;
+  std::vector<Exchange> exchanges_;  // of pings
+  HostEpochs epochs_;
   std::vector<Taken> taken_;
 };
 
@@ -202,8 +212,10 @@ class KinectRows final : public DeviceRows<PointFrames> {
   void append_all(PointFrames& out) {
     for (const JoinedKinectFrame& joined : joined_) {
       const KinectFrame& frame = joined.frame;
-      const auto stamp = stamp_of(heard_->clock, frame.origin.session,
-                                  kinect_sender_time(frame.device_ticks), arrival_);
+      const BootKey life = heard_->epochs.life_at(frame.origin.session,
+                                                  kinect_sender_time(frame.sent_ticks), arrival_);
+      const auto stamp =
+          stamp_of(heard_->clock, life, kinect_sender_time(frame.device_ticks), arrival_);
       if (!stamp) {
         ++unknown_;
         continue;

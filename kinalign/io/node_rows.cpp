@@ -24,9 +24,6 @@ NodeTime counter_at(std::uint64_t us) {
   return NodeTime{std::chrono::microseconds(static_cast<std::int64_t>(us))};
 }
 
-/// The host's axis begins anew where it slept: another life for the clock.
-BootKey life_of(BootKey boot, std::uint32_t epoch) { return boot ^ (BootKey{epoch} << 40U); }
-
 /// Of a request, since its node started.
 std::int64_t number_of(const ClocklessExchange& e) {
   return static_cast<std::int64_t>(e.frame) - (std::int64_t{1} << 32);

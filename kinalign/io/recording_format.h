@@ -95,6 +95,8 @@ struct RecordedExchange {
   std::uint32_t epoch = 0;
   Exchange exchange;
 };
+/// The host's axis begins anew where it slept: another life for the clock.
+inline BootKey life_of(BootKey boot, std::uint32_t epoch) { return boot ^ (BootKey{epoch} << 40U); }
 std::string to_bytes(const RecordedExchange& recorded);
 /// Absent where the bytes are no exchange, or a clock of it has run for more than 31 years.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes);

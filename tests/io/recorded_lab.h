@@ -45,10 +45,14 @@ class RecordedLab {
 
   explicit RecordedLab(std::uint64_t seed) : random_(seed) {}
 
-  /// A counter that reads `at_begin_s` when the recording begins and runs `ppm` fast.
+  /// A counter that reads `at_begin_s` when the recording begins and runs `ppm` fast. While the
+  /// host sleeps it runs on by `slept_s`, the host's clock does not; less than 0: that went back.
   struct Counter {
     double at_begin_s = 0.0, ppm = 0.0;
-    double at(double t) const { return at_begin_s + t * (1.0 + 1e-6 * ppm); }
+    double sleep_at_s = 1e9, slept_s = 0.0;
+    double at(double t) const {
+      return at_begin_s + t * (1.0 + 1e-6 * ppm) + (t >= sleep_at_s ? slept_s : 0.0);
+    }
   };
 
   /// Fifteen frames a second from `from` to `to`, two samples in each, answered.
@@ -151,7 +155,9 @@ class RecordedLab {
     for (double t = 0.01; t < to; t += 0.25) {
       const double arrival = t + way(), answered = arrival + 0.0002;
       const NodeTime n = kinect_sender_time(ticks(sender, t));
-      add(exchanges, arrival, to_bytes({0, {77, n, host(arrival), echo}}));
+      const std::uint32_t epoch = arrival >= sender.sleep_at_s ? 1 : 0;
+      if (t >= sender.sleep_at_s && t - 0.25 < sender.sleep_at_s) echo.reset();
+      add(exchanges, arrival, to_bytes({epoch, {77, n, host(arrival), echo}}));
       echo = {kinect_sender_time(ticks(sender, answered + way())), host(answered)};
     }
   }

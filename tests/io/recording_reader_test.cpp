@@ -430,3 +430,20 @@ TEST_CASE("of Xsens' stream the trackers are taken where they are asked for, els
   CHECK(errors.least > 0.2);
   CHECK(errors.most < 1.5);
 }
+
+TEST_CASE("a Kinect's stamps hold where the host slept or its raw clock went back") {
+  const FreshFolder folder;
+  PosixFiles files;
+  for (const double slept_s : {0.05, 2.0, 600.0, -0.1, -2.0}) {
+    CAPTURE(slept_s);
+    RecordedLab lab(20261123);
+    lab.add_kinect({100.0, 20.0, 20.1, slept_s}, {7.0, -15.0, 20.1, slept_s}, 0.030, 40.0);
+    const std::string path = folder.write("take.mcap", lab.file());
+    const RecordedStream stream = opened(files, stream_named("kinect", path));
+    const Errors errors = kinect_errors(stream);
+    CHECK(errors.samples == 1200);
+    CHECK(errors.least > 29.5);
+    CHECK(errors.most < 31.5);
+    CHECK(stream.survey.backward == 0);
+  }
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/host_epochs.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace kinalign {
+
+namespace {
+
+/// Host less device.
+Duration offset_of(NodeTime sent, HostTime arrival) {
+  return arrival.time_since_epoch() - sent.time_since_epoch();
+}
+Duration offset_of(const Exchange& e) { return offset_of(e.n_tx, e.h_rx); }
+
+}  // namespace
+
+void HostEpochs::add(const RecordedExchange& recorded) {
+  std::vector<Epoch>& epochs = boots_[recorded.exchange.boot];
+  if (epochs.empty() || epochs.back().number != recorded.epoch) {
+    epochs.push_back({recorded.epoch, recorded.exchange, recorded.exchange});
+  }
+  epochs.back().last = recorded.exchange;
+}
+
+BootKey HostEpochs::life_at(BootKey boot, NodeTime sent, HostTime arrival) const {
+  const auto found = boots_.find(boot);
+  if (found == boots_.end()) return boot;
+  const std::vector<Epoch>& epochs = found->second;
+  const auto behind = std::find_if(epochs.begin(), epochs.end(), [arrival](const Epoch& epoch) {
+    return arrival <= epoch.last.h_rx;
+  });
+  if (behind == epochs.end()) return life_of(boot, epochs.back().number);
+  if (behind == epochs.begin() || arrival >= behind->first.h_rx) {
+    return life_of(boot, behind->number);
+  }
+  const Epoch& before = *std::prev(behind);
+  const auto from = [at = offset_of(sent, arrival)](const Exchange& e) {
+    return std::chrono::abs(at - offset_of(e));
+  };
+  const bool is_before = from(before.last) < from(behind->first);
+  return life_of(boot, is_before ? before.number : behind->number);
+}
+
+}  // namespace kinalign
