@@ -4,21 +4,16 @@
 // host's. Stamps are late by the least time from the sensor to the sender.
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/kinect_frames.h"
+#include "kinalign/io/kinect_person.h"
 #include "kinalign/io/kinect_stream.h"
 #include "kinalign/io/little_endian_reader.h"
-#include "kinalign/motion/arrays.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace kinalign {
 
 namespace {
-
-constexpr std::size_t most_ids = 1000;
 
 /// Frames with their bodies together, in the order of arrival.
 class KinectFrames {
@@ -114,70 +109,10 @@ class KinectListener final : public DeviceListener {
   std::vector<Taken> taken_;
 };
 
-/// Which of the bodies in a frame the recorded person is: the one of before; when that has got
-/// another id, the only one or the nearest.
-class BodyChoice {
- public:
-  explicit BodyChoice(std::optional<std::uint64_t> wanted) : wanted_(wanted) {}
-
-  /// The id to take from the frame, if any body is the person's.
-  std::uint64_t operator()(const KinectFrame& frame) {
-    several_ += frame.bodies.size() > 1 ? 1 : 0;
-    for (const KinectBody& body : frame.bodies) {
-      if (ids_.size() < most_ids) ids_.insert(body.id);
-    }
-    if (wanted_) return *wanted_;
-    const auto same = std::find_if(frame.bodies.begin(), frame.bodies.end(),
-                                   [this](const KinectBody& b) { return b.id == last_; });
-    const auto body = same != frame.bodies.end() ? same : nearest(frame);
-    if (body == frame.bodies.end()) return 0;
-    followed_ += body->id != last_ ? 1 : 0;
-    last_ = body->id;
-    place_ = place_of(*body);
-    return last_;
-  }
-
-  void report(const std::string& file, Findings& findings) const {
-    if (wanted_ && ids_.count(*wanted_) == 0) {
-      findings.push_back({Severity::warning,
-                          Error{file, 0, fmt::format("body {}", *wanted_),
-                                fmt::format("others: {} of them", ids_.size())},
-                          "no row has a joint", "select.body names one"});
-    }
-    if (followed_ > 1) {
-      findings.push_back({Severity::note,
-                          Error{file, 0, "one body", fmt::format("{} ids in turn", followed_)},
-                          "the person was lost and found again, and is followed",
-                          "select.body takes a single id"});
-    }
-    if (several_ > 0 && !wanted_) {
-      findings.push_back({Severity::warning,
-                          Error{file, 0, "one body", fmt::format("several in {} frames", several_)},
-                          "the first one was followed", "select.body names another"});
-    }
-  }
-
- private:
-  static Vec3 place_of(const KinectBody& body) {
-    return {body.positions[0], body.positions[1], body.positions[2]};
-  }
-  std::vector<KinectBody>::const_iterator nearest(const KinectFrame& frame) const {
-    return std::min_element(
-        frame.bodies.begin(), frame.bodies.end(), [this](const KinectBody& a, const KinectBody& b) {
-          return (place_of(a) - place_).squaredNorm() < (place_of(b) - place_).squaredNorm();
-        });
-  }
-
-  std::optional<std::uint64_t> wanted_;
-  std::uint64_t last_ = 0, several_ = 0, followed_ = 0;
-  Vec3 place_ = Vec3::Zero();
-  std::set<std::uint64_t> ids_;
-};
-
 class KinectRows final : public DeviceRows<PointFrames> {
  public:
   KinectRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : DeviceRows(wish.file.path), heard_(std::move(heard)), body_(wish.body) {
+      : DeviceRows(wish.file.path), heard_(std::move(heard)), person_(wish.body) {
     header_.joint_names.assign(kinect_joints.begin(), kinect_joints.end());
   }
 
@@ -194,7 +129,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
     joined_.clear();
     frames_.finish(joined_);
     append_all(out);
-    body_.report(file(), findings);
+    person_.report(file(), findings);
     const KinectFrameCounts counts = frames_.counts();
     tell(counts.frames.lost, "each frame's number", "that never came",
          "they were lost on their way");
@@ -220,13 +155,13 @@ class KinectRows final : public DeviceRows<PointFrames> {
         ++unknown_;
         continue;
       }
-      wild_ += append_kinect_row(frame, body_(frame), out);
+      wild_ += append_kinect_row(frame, person_(frame).value_or(0), out);
       out.stamps.back() = *stamp;
     }
   }
 
   std::shared_ptr<const HeardDevice> heard_;
-  BodyChoice body_;
+  KinectPerson person_;
   PointHeader header_;
   KinectFrames frames_;
   std::vector<JoinedKinectFrame> joined_;

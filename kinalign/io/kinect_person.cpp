@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/kinect_person.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_ids = 1000;
+// Chosen: a person moves less while the SDK gives it another id, and walks no faster in a lab.
+constexpr double near_m = 1.0, walk_m_per_s = 1.0;
+constexpr double tick_s = 1e-7;
+
+/// The middle of the joints that are there, if any is.
+std::optional<Vec3> place_of(const KinectBody& body) {
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (std::size_t j = 0; j < body.states.size(); ++j) {
+    const Vec3 at(body.positions[3 * j], body.positions[3 * j + 1], body.positions[3 * j + 2]);
+    if (body.states[j] == 0 || !at.allFinite()) continue;
+    sum += at;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return Vec3(sum / count);
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> KinectPerson::operator()(const KinectFrame& frame) {
+  several_ += frame.bodies.size() > 1 ? 1 : 0;
+  for (const KinectBody& body : frame.bodies) {
+    if (ids_.size() < most_ids) ids_.insert(body.id);
+  }
+  if (wanted_) return wanted_;
+  if (session_ != frame.origin.session) {  // its ids and ticks are others
+    session_ = frame.origin.session;
+    last_.reset();
+    seen_.reset();
+    others_.clear();
+  }
+  const KinectBody* body = body_in(frame);
+  if (body == nullptr) {
+    without_ += frame.bodies.empty() ? 0 : 1;
+    return std::nullopt;
+  }
+  follow(frame, *body);
+  return body->id;
+}
+
+/// The same one, or the nearest of those that may be.
+const KinectBody* KinectPerson::body_in(const KinectFrame& frame) const {
+  const KinectBody* nearest = nullptr;
+  double least = 0.0;
+  for (const KinectBody& body : frame.bodies) {
+    if (body.id == last_) return &body;
+    const auto place = place_of(body);
+    if (!place || !may_be(body, *place, frame.device_ticks)) continue;
+    const double distance = (*place - place_).norm();
+    if (nearest != nullptr && distance >= least) continue;
+    nearest = &body;
+    least = distance;
+  }
+  return nearest;
+}
+
+bool KinectPerson::may_be(const KinectBody& body, const Vec3& place, std::int64_t ticks) const {
+  if (!seen_) return true;
+  const double lost_s = tick_s * static_cast<double>(std::max<std::int64_t>(0, ticks - *seen_));
+  return !others_.contains(body.id) && (place - place_).norm() < near_m + walk_m_per_s * lost_s;
+}
+
+void KinectPerson::follow(const KinectFrame& frame, const KinectBody& body) {
+  followed_ += body.id != last_ ? 1 : 0;
+  last_ = body.id;
+  seen_ = frame.device_ticks;
+  place_ = place_of(body).value_or(place_);
+  for (const KinectBody& other : frame.bodies) {
+    if (other.id == last_ || others_.size() >= most_ids) continue;
+    // The SDK sees one person twice now and then: these two stand in each other.
+    const auto place = place_of(other);
+    if (place && (*place - place_).norm() > near_m / 2.0) others_.insert(other.id);
+  }
+}
+
+void KinectPerson::report(const std::string& file, Findings& findings) const {
+  if (wanted_ && ids_.count(*wanted_) == 0) {
+    findings.push_back({Severity::warning,
+                        Error{file, 0, fmt::format("body {}", *wanted_),
+                              fmt::format("others: {} of them", ids_.size())},
+                        "no row has a joint", "select.body names one"});
+  }
+  if (followed_ > 1) {
+    findings.push_back({Severity::note,
+                        Error{file, 0, "one body", fmt::format("{} ids in turn", followed_)},
+                        "the person was lost and found again near by, and is followed",
+                        "select.body takes a single id"});
+  }
+  if (several_ > 0 && !wanted_) {
+    findings.push_back({Severity::warning,
+                        Error{file, 0, "one body", fmt::format("several in {} frames", several_)},
+                        "the one that was nearest to the sensor at first was followed",
+                        "select.body names another"});
+  }
+  if (without_ > 0) {
+    findings.push_back({Severity::note,
+                        Error{file, 0, "the followed person",
+                              fmt::format("{} frames with others alone", without_)},
+                        "all joints are missing there", "select.body takes a single id"});
+  }
+}
+
+}  // namespace kinalign
