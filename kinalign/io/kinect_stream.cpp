@@ -3,6 +3,7 @@
 
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_lines.h"
+#include "kinalign/io/little_endian_reader.h"
 
 #include <algorithm>
 
@@ -11,10 +12,6 @@ namespace kinalign {
 namespace {
 
 using Refusal = KinectRefusal;
-
-std::string_view text_of(std::span<const std::uint8_t> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 bool is_blank(std::uint8_t byte) {
   return byte == ' ' || byte == '\t' || byte == '\r' || byte == '\n';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/little_endian.h"
+#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/xdf_header.h"
 #include "kinalign/io/xdf_samples.h"
 
@@ -20,10 +20,6 @@ constexpr std::array<std::uint8_t, 16> boundary{0x43, 0xa5, 0x46, 0xdc, 0xcb, 0x
                                                 0xb3, 0x0e, 0xd5, 0x46, 0x73, 0x83, 0xcb, 0xe4};
 constexpr std::size_t tag_size = 2, id_size = 4;
 constexpr double largest = 1e15;  // s; nothing can be computed with more
-
-std::string_view text_of(std::span<const std::uint8_t> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 bool is_gzip(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
