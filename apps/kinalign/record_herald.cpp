@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sys/statvfs.h>
 
 #include <utility>
 
@@ -19,14 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
-
-/// What its file system still takes; absent: it does not say.
-std::optional<std::uint64_t> free_bytes(const std::string& path) {
-  struct statvfs status {};
-  const std::string in = folder(path).empty() ? "." : std::string(folder(path));
-  if (::statvfs(in.c_str(), &status) != 0) return std::nullopt;
-  return std::uint64_t{status.f_bavail} * status.f_frsize;
-}
 
 Json ports_of(const RecordingSession& session) {
   Json ports = Json::object();
@@ -109,10 +100,9 @@ void RecordHerald::tell_news() {
 
 void RecordHerald::look_at_disk(HostTime now) {
   const DiskStatus disk = *session_.disk();
-  const auto free = free_bytes(disk.paths.empty() ? path_ : disk.paths.back());
-  if (!free) return;
-  const std::uint64_t still_to_write = std::min(disk.waiting_bytes, *free);
-  forecast_.look(now, disk.bytes + disk.waiting_bytes, *free - still_to_write);
+  if (!disk.free_bytes) return;
+  const std::uint64_t still_to_write = std::min(disk.waiting_bytes, *disk.free_bytes);
+  forecast_.look(now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - still_to_write);
   if (forecast_.full() && !std::exchange(disk_full_, true)) {
     console_.complain(
         fmt::format("kinalign record: the disk has {} MiB left; the take ends here, in order",

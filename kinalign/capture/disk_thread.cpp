@@ -1,13 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/disk_thread.h"
 
+#include <sys/statvfs.h>
+
+#include <chrono>
 #include <utility>
 
 namespace kinalign {
 
+namespace {
+
+std::optional<std::uint64_t> free_bytes(const std::string& path) {
+  struct statvfs status {};
+  const std::string in = folder(path).empty() ? "." : std::string(folder(path));
+  if (::statvfs(in.c_str(), &status) != 0) return std::nullopt;
+  return std::uint64_t{status.f_bavail} * status.f_frsize;
+}
+
+}  // namespace
+
 DiskThread::DiskThread(RecordingDisk disk, McapCompression compression)
     : disk_(std::move(disk)), compression_(compression) {
   publish({});
+  due_ = disk_.unsynced();  // the file's name and its head
   writer_ = std::thread([this] { write(); });
   syncer_ = std::thread([this] { sync(); });
 }
@@ -104,11 +119,21 @@ void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
   done_ = status_.finished = finished;  // together with how it went
 }
 
+/// Here and not where it is shown: of a network disk that is gone the question hangs.
+void DiskThread::look_at_room(std::unique_lock<std::mutex>& lock) {
+  const std::string path = status_.paths.back();
+  lock.unlock();
+  const auto free = free_bytes(path);
+  lock.lock();
+  status_.free_bytes = free;
+}
+
 void DiskThread::sync() {
   std::unique_lock lock(mutex_);
   while (!done_) {
-    asked_.wait(lock, [this] { return (due_ && !syncing_) || done_; });
-    if (done_) return;
+    look_at_room(lock);
+    asked_.wait_for(lock, std::chrono::seconds(1), [this] { return (due_ && !syncing_) || done_; });
+    if (done_ || !due_ || syncing_) continue;
     syncing_ = true;
     const RecordingDisk::Sync sync = *due_;
     lock.unlock();

@@ -17,12 +17,13 @@
 namespace kinalign {
 
 struct DiskStatus {
-  std::vector<std::string> paths;   // the recording's files
-  std::uint64_t bytes = 0;          // in them
-  std::uint64_t waiting_bytes = 0;  // that only memory has
-  std::uint64_t dropped = 0;        // messages: the disk was refused too long, memory was full
-  std::optional<Error> refused;     // by the disk just now; tried again with what comes next
-  bool finished = false;            // nothing more is written; `refused`: not all could be
+  std::vector<std::string> paths;           // the recording's files
+  std::uint64_t bytes = 0;                  // in them
+  std::uint64_t waiting_bytes = 0;          // that only memory has
+  std::optional<std::uint64_t> free_bytes;  // that the disk still takes; absent: it does not say
+  std::uint64_t dropped = 0;     // messages: the disk was refused too long, memory was full
+  std::optional<Error> refused;  // by the disk just now; tried again with what comes next
+  bool finished = false;         // nothing more is written; `refused`: not all could be
 };
 
 class DiskThread {
@@ -48,6 +49,7 @@ class DiskThread {
  private:
   void write();
   void sync();
+  void look_at_room(std::unique_lock<std::mutex>& lock);
   void work_on(std::unique_lock<std::mutex>& lock);
   void publish(const Result<void>& result);
 

@@ -40,11 +40,6 @@ Result<RecordingDisk> RecordingDisk::open(FileSystem& files, std::string path, M
   if (!path.ends_with(suffix)) return Failure(Error{path, 0, "a name that ends in .mcap", ""});
   RecordingDisk disk(files, std::move(path), std::move(head));
   KA_TRY(disk.open_part());
-  if (const auto synced = disk.file_->sync(); !synced) {
-    files.remove(disk.path_.c_str());
-    return Failure(synced.error());
-  }
-  disk.synced_ = disk.file_->size();
   return disk;
 }
 

@@ -17,9 +17,7 @@ Result<GrowingFile> GrowingFile::create(FileSystem& files, std::string path) {
     if (errno == EEXIST) return Failure(Error{path, 0, "no file of that name", "one"});
     return failed(path, "a folder that can be written", errno);
   }
-  GrowingFile file(files, std::move(path), fd);
-  sync_folder(files, file.path_);  // some file systems can't; the file's own sync is what counts
-  return file;
+  return GrowingFile(files, std::move(path), fd);
 }
 
 GrowingFile::GrowingFile(GrowingFile&& other) noexcept
@@ -27,6 +25,7 @@ GrowingFile::GrowingFile(GrowingFile&& other) noexcept
       path_(std::move(other.path_)),
       fd_(std::exchange(other.fd_, -1)),
       size_(other.size_),
+      named_(other.named_),
       ragged_(other.ragged_) {}
 
 GrowingFile& GrowingFile::operator=(GrowingFile&& other) noexcept {
@@ -34,6 +33,7 @@ GrowingFile& GrowingFile::operator=(GrowingFile&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(fd_, other.fd_);
   std::swap(size_, other.size_);
+  std::swap(named_, other.named_);
   std::swap(ragged_, other.ragged_);
   return *this;
 }
@@ -73,6 +73,8 @@ Result<void> GrowingFile::sync() const {
   while (files_->sync(fd_) != 0) {
     if (errno != EINTR) return failed(path_, "data that reach the disk", errno);
   }
+  // Some file systems can't; the file's own sync is what counts.
+  if (!std::exchange(named_, true)) sync_folder(*files_, path_);
   return {};
 }
 

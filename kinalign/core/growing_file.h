@@ -14,8 +14,8 @@ namespace kinalign {
 
 class GrowingFile {
  public:
-  /// An empty file of that name, which reaches the disk with its folder. Fails where anything
-  /// stands there: nothing is ever overwritten.
+  /// An empty file of that name; it waits for no disk. Fails where anything stands there: nothing
+  /// is ever overwritten.
   static Result<GrowingFile> create(FileSystem& files, std::string path);
   GrowingFile(GrowingFile&& other) noexcept;
   GrowingFile& operator=(GrowingFile&& other) noexcept;
@@ -29,7 +29,8 @@ class GrowingFile {
   Result<void> cut(std::uint64_t size);
   /// Fills `to` with what was appended at `at`.
   Result<void> read_at(std::uint64_t at, std::span<char> to) const;
-  /// What was appended before reaches the disk. Another thread may call it meanwhile.
+  /// What was appended before reaches the disk, and with the first sync the name. Another thread
+  /// may call it meanwhile, one at a time.
   Result<void> sync() const;
   /// What was synced before can't be lost by it.
   void close();
@@ -45,7 +46,8 @@ class GrowingFile {
   std::string path_;
   int fd_;
   std::uint64_t size_ = 0;
-  bool ragged_ = false;  // bytes of a failed append may stand behind it
+  mutable bool named_ = false;  // on the disk
+  bool ragged_ = false;         // bytes of a failed append may stand behind it
 };
 
 }  // namespace kinalign

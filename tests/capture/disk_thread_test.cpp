@@ -80,6 +80,26 @@ TEST_CASE("while a sync lasts what comes is written all the same") {
   wait_until([&] { return thread.status().waiting_bytes == 0; });
 }
 
+TEST_CASE("who begins a recording waits for no sync, and its name is synced all the same") {
+  struct Watched : PosixFiles {
+    std::thread::id receiver = std::this_thread::get_id();
+    std::atomic<int> by_receiver{0}, by_others{0};
+    int sync(int fd) override {
+      ++(std::this_thread::get_id() == receiver ? by_receiver : by_others);
+      return PosixFiles::sync(fd);
+    }
+  };
+  const FreshFolder folder;
+  Watched files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  DiskThread thread(*std::move(disk), McapCompression::none);
+  wait_until(
+      [&] { return files.by_others == 2; });  // the file's and the folder's, before any chunk
+  CHECK(files.by_receiver == 0);
+  wait_until([&] { return thread.status().free_bytes.has_value(); });
+}
+
 TEST_CASE("a failed sync is told, and the recording goes on in a new file") {
   const FreshFolder folder;
   SlowSync files;
