@@ -29,13 +29,15 @@ void wait_until(const Holds& holds) {
 /// Syncs that last until they are let go, or fail.
 struct SlowSync : PosixFiles {
   std::atomic<bool> slow{false}, fails{false};
-  std::atomic<int> waiting{0};
+  std::atomic<int> waiting{0}, over{0};
 
   int sync(int fd) override {
     ++waiting;
     while (slow) std::this_thread::yield();
     --waiting;
-    if (!fails.exchange(false)) return PosixFiles::sync(fd);
+    const bool failed = fails.exchange(false);
+    ++over;
+    if (!failed) return PosixFiles::sync(fd);
     errno = EIO;
     return -1;
   }
@@ -69,6 +71,7 @@ TEST_CASE("while a sync lasts what comes is written all the same") {
   auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
   REQUIRE(disk);
   DiskThread thread(*std::move(disk), McapCompression::none);
+  wait_until([&] { return files.over == 2; });  // its head's and its folder's
   files.slow = true;
   thread.push(chunk(0, 10));
   wait_until([&] { return files.waiting == 1; });
@@ -106,6 +109,7 @@ TEST_CASE("a failed sync is told, and the recording goes on in a new file") {
   auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
   REQUIRE(disk);
   DiskThread thread(*std::move(disk), McapCompression::none);
+  wait_until([&] { return files.over == 2; });
   files.fails = true;
   thread.push(chunk(0, 10));
   wait_until([&] { return thread.status().paths.size() == 2; });
