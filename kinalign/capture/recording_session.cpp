@@ -96,14 +96,19 @@ void RecordingSession::turn(Duration patience, std::optional<int> also) {
   if (look_after && nodes_) nodes_->receiver().tick();
   if (nodes_ && some && waiting_.front().revents != 0) nodes_->receiver().drain();
   std::size_t begin = nodes_ ? 1 : 0;
+  const auto next_is_ready = [&](std::size_t port) {
+    const auto of_port = std::span(waiting_).subspan(begin, fds_end_[port] - begin);
+    begin = fds_end_[port];
+    return some && is_ready(of_port);
+  };
   for (std::size_t i = 0; i < ports_.size(); ++i) {
-    const auto of_port = std::span(waiting_).subspan(begin, fds_end_[i] - begin);
-    begin = fds_end_[i];
+    const bool ready = next_is_ready(i);
     if (look_after) ports_[i].tick(now);
-    if (look_after || (some && is_ready(of_port))) ports_[i].drain(axis_, *recorder_);
+    if (look_after || ready) ports_[i].drain(axis_, *recorder_);
   }
-  for (MarkPort& port : mark_ports_) {
-    if (some) port.drain(axis_, [this](const RecordedMark& m, HostTime at) { mark(m, at); });
+  for (std::size_t i = 0; i < mark_ports_.size(); ++i) {
+    if (!next_is_ready(ports_.size() + i)) continue;
+    mark_ports_[i].drain(axis_, [this](const RecordedMark& m, HostTime at) { mark(m, at); });
   }
   tick(now);
 }
@@ -117,7 +122,10 @@ bool RecordingSession::wait(Duration patience, std::optional<int> also) {
     port.add_fds(fds_);
     fds_end_.push_back(fds_.size());
   }
-  for (const MarkPort& port : mark_ports_) port.add_fds(fds_);
+  for (const MarkPort& port : mark_ports_) {
+    port.add_fds(fds_);
+    fds_end_.push_back(fds_.size());
+  }
   if (also) fds_.push_back(*also);
   waiting_.clear();
   for (const int fd : fds_) waiting_.push_back({fd, POLLIN, 0});

@@ -97,7 +97,7 @@ class RecordingSession {
   RecordingFacts facts_;
   HostTime next_second_ = HostTime::min(), next_look_ = HostTime::min();
   std::vector<int> fds_;              // of this turn
-  std::vector<std::size_t> fds_end_;  // by port: where in fds_ those of the next begin
+  std::vector<std::size_t> fds_end_;  // by port, marks' last: where in fds_ those of the next begin
   std::vector<pollfd> waiting_;
   std::unique_ptr<DiskThread> disk_;
 };
