@@ -88,7 +88,7 @@ Result<void> RecordingSession::open_ports() {
 }
 
 /// Only ports where something has come cost a call; connections are looked after with the clock.
-void RecordingSession::turn(Duration patience, std::optional<int> also) {
+bool RecordingSession::turn(Duration patience, std::optional<int> also) {
   const bool some = wait(patience, also);
   const HostTime now = axis_.now();
   const bool look_after = now >= next_look_;
@@ -111,6 +111,7 @@ void RecordingSession::turn(Duration patience, std::optional<int> also) {
     mark_ports_[i].drain(axis_, [this](const RecordedMark& m, HostTime at) { mark(m, at); });
   }
   tick(now);
+  return some;
 }
 
 /// Whether something has come; waiting_ says where.
@@ -174,8 +175,17 @@ Result<void> RecordingSession::start(const std::string& path, const std::string&
   return {};
 }
 
+/// What lies in the kernel's buffers; no longer than a flood may hold up the end.
+void RecordingSession::drain_all() {
+  constexpr Duration longest = std::chrono::milliseconds(200);
+  const HostTime begun = axis_.now();
+  while (turn(Duration::zero()) && axis_.now() - begun < longest) {
+  }
+}
+
 void RecordingSession::stop() {
   if (!recording()) return;
+  drain_all();
   next_second_ = HostTime::min();  // the last counts, too
   tick(axis_.now());
   recorder_->stop();

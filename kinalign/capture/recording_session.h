@@ -47,13 +47,13 @@ class RecordingSession {
   static Result<std::unique_ptr<RecordingSession>> open(Options options, Machine machine);
 
   /// Waits for something to come, but no longer than that, and takes it all. `also`: a descriptor
-  /// of the caller's to wake up for.
-  void turn(Duration patience, std::optional<int> also = std::nullopt);
+  /// of the caller's to wake up for. Whether something came.
+  bool turn(Duration patience, std::optional<int> also = std::nullopt);
 
   /// Begins a take with the pre-roll; `path` ends in .mcap and must be free.
   Result<void> start(const std::string& path, const std::string& subject,
                      const std::string& action);
-  /// Ends it: what has come goes to the disk, see disk().finished.
+  /// Ends it: what has come to the machine goes to the disk, see disk().finished.
   void stop();
   bool recording() const { return recorder_->started(); }
 
@@ -83,6 +83,7 @@ class RecordingSession {
   RecordingSession(Options options, Machine machine);
   Result<void> open_ports();
   bool wait(Duration patience, std::optional<int> also);
+  void drain_all();
   void tick(HostTime now);
 
   Options options_;

@@ -4,6 +4,7 @@
 
 #include "tests/capture/recorded.h"
 
+#include "kinalign/io/mark_call.h"
 #include "kinalign/io/noitom_frame.h"
 
 #include <doctest/doctest.h>
@@ -115,6 +116,22 @@ TEST_CASE("each connection to a device that serves has a channel of its own") {
   const auto payloads = live.finish();
   CHECK(payloads.at("/kinect/raw").size() == 1);
   CHECK(payloads.at("/kinect/raw/2") == std::vector<std::string>{"whole"});
+}
+
+TEST_CASE("what had reached the machine when a take is ended stands in the file") {
+  RecordingSession::Options options;
+  options.marks_port = 0;
+  LiveSession live({"mocap=noitom:udp:127.0.0.1:0"}, options);
+  const Client one;
+  constexpr int sent = 1000;  // several turns' worth; what the kernel has no room for it counts
+  for (int i = 0; i < sent; ++i) one.send("127.0.0.1", live.port(), bytes_of(std::to_string(i)));
+  one.send("127.0.0.1", live.session().ports().back().second,
+           bytes_of(encode_mark_call({Mark::Kind::stop, "", std::nullopt, "1"})));
+  const auto payloads = live.finish();
+  const auto& raw = payloads.at("/mocap/raw");
+  CHECK(raw.size() + live.session().port_counts().front().second.dropped == sent);
+  CHECK(raw.size() > 100);
+  CHECK(payloads.at("/marks").size() == 1);
 }
 
 TEST_CASE("a second take needs a name of its own, and has its own file") {
