@@ -46,7 +46,7 @@ std::string free_take_path(const std::string& folder, const std::string& subject
   const std::set<std::string> taken = names_with_parts(folder);
   for (int run = 1;; ++run) {
     const std::string numbered = fmt::format("{}{:02}", name, run);
-    std::string path = folder + "/" + numbered + ".mcap";
+    std::string path = fmt::format("{}/{}.mcap", folder, numbered);
     struct stat status {};
     if (::lstat(path.c_str(), &status) != 0 && !taken.contains(numbered)) return path;
   }
