@@ -85,20 +85,24 @@ Result<void> RecordedMessages::take_one(const McapRecord& record, const TakeMess
   } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
     add(*channel);
   } else if (const auto* message = std::get_if<McapMessage>(&record)) {
-    const auto found = channels_.find(message->channel);
-    if (found == channels_.end() || !facts_) return {};
-    Channel& from = found->second;
-    if (message->log_time > latest_log_time || stands_later(*parts_, part_, *message)) return {};
-    const auto log = Duration{static_cast<std::int64_t>(message->log_time)};
-    const HostTime arrival{log - utc_minus_host()};
-    if (from.sender) roll_.hear(*from.sender, arrival);
-    if (!from.wanted) return {};
-    const std::uint32_t step = message->sequence - from.last_number.value_or(message->sequence - 1);
-    from.last_number = message->sequence;
-    if (step > 1 && step < 1U << 31U) missing_ += step - 1;
-    return take({&from.raw, message->channel, arrival, message->data});
+    return take_message(*message, take);
   }
   return {};
+}
+
+Result<void> RecordedMessages::take_message(const McapMessage& message, const TakeMessage& take) {
+  const auto found = channels_.find(message.channel);
+  if (found == channels_.end() || !facts_ || message.log_time > latest_log_time) return {};
+  if (stands_later(*parts_, part_, message)) return {};
+  Channel& from = found->second;
+  const auto log = Duration{static_cast<std::int64_t>(message.log_time)};
+  const HostTime arrival{log - utc_minus_host()};
+  if (from.sender) roll_.hear(*from.sender, arrival);
+  if (!from.wanted) return {};
+  const std::uint32_t step = message.sequence - from.last_number.value_or(message.sequence - 1);
+  from.last_number = message.sequence;
+  if (step > 1 && step < 1U << 31U) missing_ += step - 1;
+  return take({&from.raw, message.channel, arrival, message.data});
 }
 
 /// Each chunk names its channels again.

@@ -70,6 +70,7 @@ class RecordedMessages {
   };
   Result<void> take_records(const TakeMessage& take);
   Result<void> take_one(const McapRecord& record, const TakeMessage& take);
+  Result<void> take_message(const McapMessage& message, const TakeMessage& take);
   void add(const McapChannel& channel);
   bool is_wanted(const RawChannel& raw);
   std::optional<std::size_t> place_on_roll(const RawChannel& raw);
