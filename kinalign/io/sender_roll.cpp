@@ -40,6 +40,7 @@ std::vector<std::string> SenderRoll::hosts() const {
     if (sender.messages > 0) messages[sender.host] += sender.messages;
   }
   std::vector<std::string> hosts;
+  hosts.reserve(messages.size());
   for (const auto& [host, count] : messages) hosts.push_back(host);
   std::stable_sort(hosts.begin(), hosts.end(), [&](const std::string& a, const std::string& b) {
     return messages[a] > messages[b];
