@@ -84,7 +84,7 @@ Result<void> RecordingDisk::put_kept() {
   if (fresh) KA_TRY(open_part());
   for (Kept& kept : kept_) {
     if (kept.end != 0) continue;
-    const Result<void> written = writer_->write(kept.chunk);
+    Result<void> written = writer_->write(kept.chunk);
     if (!written && fresh && &kept == &kept_.front()) remove_part();
     if (!written) return written;
     kept.end = file_->size();
