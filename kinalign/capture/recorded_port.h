@@ -41,8 +41,6 @@ class RecordedPort {
   /// What the user should know of what is sent, since this was asked last: each fault of a host
   /// once.
   Findings take_findings() { return std::exchange(findings_, {}); }
-  const KinectDesk* kinects() const { return kinects_.get(); }
-  const SlimeDesk* slimes() const { return slimes_.get(); }
 
  private:
   using Pieces = std::variant<UdpPieces, TcpPieces>;

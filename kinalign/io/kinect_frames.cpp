@@ -122,17 +122,6 @@ std::size_t append_kinect_row(const KinectFrame& frame, std::uint64_t body, Poin
   return append_body(found != frame.bodies.end() ? *found : KinectBody{}, out);
 }
 
-std::size_t append_kinect_rows(const KinectFrame& frame,
-                               std::map<std::uint64_t, PointFrames>& out) {
-  std::size_t wild = 0;
-  for (const KinectBody& body : frame.bodies) {
-    PointFrames& rows = out[body.id];
-    rows.stamps.push_back(device_stamp(frame));
-    wild += append_body(body, rows);
-  }
-  return wild;
-}
-
 NodeTime kinect_sender_time(std::int64_t ticks) { return NodeTime{duration_of(ticks)}; }
 
 Exchange exchange_of(const KinectPing& ping, HostTime h_rx, std::optional<HostTime> h_tx) {

@@ -57,9 +57,6 @@ class KinectFrameJoiner {
 /// frame 25 missing joints. Joints that are not finite are missing and their number is returned.
 std::size_t append_kinect_row(const KinectFrame& frame, std::uint64_t body, PointFrames& out);
 
-/// The same for every body in the frame, in a stream of its own.
-std::size_t append_kinect_rows(const KinectFrame& frame, std::map<std::uint64_t, PointFrames>& out);
-
 /// Ticks on the sender's clock.
 NodeTime kinect_sender_time(std::int64_t ticks);
 

@@ -192,16 +192,6 @@ TEST_CASE("a row holds the body that was chosen, stamped by the device's ticks")
                     [](Tracking state) { return state == Tracking::missing; }));
 }
 
-TEST_CASE("all bodies have rows of their own") {
-  std::map<std::uint64_t, PointFrames> rows;
-  append_kinect_rows(frame_of(1, {7, 8}), rows);
-  append_kinect_rows(frame_of(2, {8}), rows);
-  CHECK(rows[7].size() == 1);
-  REQUIRE(rows[8].size() == 2);
-  CHECK(rows[8].positions.size() == 150);
-  CHECK(rows[8].positions[149] == 8.0);
-}
-
 TEST_CASE("a ping with its echo is an exchange of the sender's clock") {
   const KinectPing ping{{2, 77, 5}, 123, KinectEcho{4, 9, 100}};
   const HostTime h_rx{std::chrono::seconds(50)}, h_tx{std::chrono::seconds(49)};
