@@ -81,5 +81,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string again = to_bytes(*exchange);
     if (to_bytes(*to_exchange(again)) != again) std::abort();
   }
+  if (const auto exchange = to_clockless(bytes)) {
+    const std::string again = to_bytes(*exchange);
+    if (to_exchange(again) || to_bytes(*to_clockless(again)) != again) std::abort();
+  }
   return 0;
 }

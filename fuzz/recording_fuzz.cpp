@@ -6,6 +6,7 @@
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/mcap_writer.h"
 #include "kinalign/io/recording_reader.h"
+#include "kinalign/wire/clockless.h"
 #include "kinalign/wire/node_frame.h"
 
 #include <sys/mman.h>
@@ -63,8 +64,32 @@ struct Numbers {
 struct SaidByNode {
   std::string exchange, frame;
 };
+SaidByNode clockless_node_says(Numbers from, HostTime arrival) {
+  RecordedClockless recorded;
+  recorded.epoch = from.take<std::uint8_t>() % 2U;
+  ClocklessExchange& exchange = recorded.exchange;
+  exchange.boot = from.take<std::uint8_t>() % 3U;
+  ClocklessRequest request;
+  request.origin = {7, 1, from.take<std::uint32_t>() >> (from.take<std::uint8_t>() % 32U)};
+  exchange.frame = (std::uint64_t{1} << 32U) + request.origin.sequence;
+  exchange.t2 = arrival;
+  std::array<std::uint8_t, max_node_datagram> room{};
+  if ((from.take<std::uint8_t>() & 1U) != 0) {
+    exchange.t3 = arrival - Duration{from.take<std::uint32_t>()};
+    exchange.t2 = exchange.t3 - Duration{from.take<std::uint32_t>()};
+    exchange.t6 = arrival;
+    const auto bytes = encode(ClocklessConfirm{request.origin, {}}, nullptr, room);
+    return {to_bytes(recorded), std::string(text_of(bytes))};
+  }
+  request.has_sample = request.sample.has_acceleration = true;
+  request.sample.age_us = from.take<std::uint32_t>();
+  const auto bytes = encode(request, nullptr, room);
+  return {to_bytes(recorded), std::string(text_of(bytes))};
+}
+
 SaidByNode node_says(std::string_view payload, HostTime arrival) {
   Numbers from{payload};
+  if ((from.take<std::uint8_t>() & 3U) == 0) return clockless_node_says(from, arrival);
   NodeFrame frame;
   frame.origin = {7, 1, from.take<std::uint8_t>()};
   frame.n_tx_us = from.take<std::uint64_t>() >> (from.take<std::uint8_t>() % 64U);

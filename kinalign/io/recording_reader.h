@@ -31,7 +31,8 @@ Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
                               const StreamFile& file, const Progress& progress);
 
 /// All devices of a recording as streams of a manifest: mocap first, whose stamps are then the
-/// grid, and a Kinect is fitted into its space; nodes that are one stream share it. `path` as the manifest shall name the file.
+/// grid, and a Kinect is fitted into its space; nodes that are one stream share it. `path` as the
+/// manifest shall name the file.
 Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& path);
 
 }  // namespace kinalign
