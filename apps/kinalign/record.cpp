@@ -13,6 +13,7 @@
 #include "kinalign/io/bvh_head.h"
 #include "kinalign/io/lab_toml.h"
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -110,13 +111,23 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
+std::string without_skeleton(const std::string& device) {
+  return fmt::format(
+      "note: {0} has no skeleton: Noitom's stream does not say whose body it moves. Put skeleton = "
+      "\"a.bvh\" under [device.{0}] of a lab.toml now, or give it to align afterwards",
+      device);
+}
+
 /// The files that the devices need beside lab.toml.
 Result<void> read_files(const Record& o, Call& call, RecordingSession::Options& options) {
   FileSystem& files = call.surroundings.files;
   std::string lab_key = o.lab_key;
   for (const DeviceOptions& device : options.lab.devices) {
     if (lab_key.empty()) lab_key = device.lab_key;
-    if (device.skeleton.empty()) continue;
+    if (device.skeleton.empty()) {
+      if (device.protocol == "noitom") call.console.note(without_skeleton(device.name));
+      continue;
+    }
     options.skeletons[device.name] = KA_TRY(read_bvh_head(files, device.skeleton));
   }
   if (lab_key.empty()) return {};

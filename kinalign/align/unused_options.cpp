@@ -117,11 +117,12 @@ Result<void> check_intervals(const Recording& recording, const Manifest& manifes
 }  // namespace
 
 std::span<const std::string_view> useless_options(const RecordedStream& stream) {
-  static constexpr std::array<std::string_view, 3> clip{"rate_hz", "root_node", "mounting"};
-  static constexpr std::array<std::string_view, 4> points{"end_ns", "click_latency_ms", "root_node",
-                                                          "mounting"};
-  static constexpr std::array<std::string_view, 3> nodes{"end_ns", "click_latency_ms",
-                                                         "metres_per_unit"};
+  static constexpr std::array<std::string_view, 4> clip{"rate_hz", "root_node", "mounting",
+                                                        "skeleton"};
+  static constexpr std::array<std::string_view, 5> points{"end_ns", "click_latency_ms", "root_node",
+                                                          "mounting", "skeleton"};
+  static constexpr std::array<std::string_view, 4> nodes{"end_ns", "click_latency_ms",
+                                                         "metres_per_unit", "skeleton"};
   // What a recording says of a device's clock is known better than by any option.
   static constexpr std::array<std::string_view, 8> recorded_clip{
       "start_ns",  "end_ns",      "click_latency_ms", "clock",

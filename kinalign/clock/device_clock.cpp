@@ -97,6 +97,19 @@ void reach_back(TimeModel& time, std::size_t first, std::optional<Time> told) {
   line.begin = begin;
 }
 
+/// Where a line that is only guessed begins before the one in front of it ends, it begins there:
+/// later stamps are of later moments, whatever arrivals say.
+void keep_rising(TimeModel& time) {
+  for (std::size_t i = 1; i < time.pieces.size(); ++i) {
+    TimeModelPiece& line = time.pieces[i];
+    if (line.half_width) continue;
+    const TimeModelPiece& before = time.pieces[i - 1];
+    const double run = static_cast<double>((line.begin - before.begin).count());
+    const Duration end = before.offset + nanoseconds(std::round(before.drift_ppm * 1e-6 * run));
+    line.offset = std::max(line.offset, end);
+  }
+}
+
 /// The least move that keeps stamps rising: the last piece's, or on by what the host counted.
 Duration move_of(const ClockPieceModel& piece, const ClockPieceModel& before, Duration moved) {
   const ClockKnot &end = before.knots.back(), &begin = piece.knots.front();
@@ -126,6 +139,7 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
     out.moved.push_back(moved);
   }
   if (out.time.pieces.empty()) out.time = TimeModel{};
+  keep_rising(out.time);
   for (std::size_t p = 0; p < out.model.pieces.size(); ++p) {
     const ClockPieceModel& piece = out.model.pieces[p];
     if (!piece.knots.empty()) out.pieces_of[piece.boot].push_back(p);

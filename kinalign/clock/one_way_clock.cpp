@@ -110,8 +110,9 @@ std::vector<Stretch> even_stretches(std::span<const Exchange> exchanges, Stretch
 /// Every second, in which something came or beside one in which it did: over a silence, of which
 /// no sample is, there is a straight line.
 std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOrigin& origin,
-                             double begin) {
+                             double begin, double end) {
   std::vector<std::int64_t> seconds;
+  seconds.reserve(exchanges.size());
   for (const Exchange& e : exchanges) {
     const double s = bound_by(origin, Side::above, e.n_tx, e.h_rx).s;
     const auto second = static_cast<std::int64_t>(std::floor((s - begin) / knot_s));
@@ -121,7 +122,12 @@ std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOri
   std::sort(seconds.begin(), seconds.end());
   seconds.erase(std::unique(seconds.begin(), seconds.end()), seconds.end());
   std::vector<double> knots;
-  for (const std::int64_t k : seconds) knots.push_back(begin + knot_s * static_cast<double>(k));
+  knots.reserve(seconds.size());
+  for (const std::int64_t k : seconds) {
+    const double s = begin + knot_s * static_cast<double>(k);
+    if (s < end) knots.push_back(s);
+  }
+  if (knots.empty() || end > knots.back()) knots.push_back(end);  // another piece may begin there
   return knots;
 }
 
@@ -149,8 +155,8 @@ ClockPieceModel fit(std::span<const Exchange> exchanges, Stretch stretch, double
   const double rate = std::isfinite(middle) ? middle : 0.0;
   const double change = rate_known + curvature * (end - begin) / 2.0;
   const Duration base = origin.host.time_since_epoch() - origin.node.time_since_epoch();
-  for (const double s :
-       knots_of(exchanges.subspan(stretch.begin, stretch.end - stretch.begin), origin, begin)) {
+  for (const double s : knots_of(exchanges.subspan(stretch.begin, stretch.end - stretch.begin),
+                                 origin, begin, end)) {
     const Duration since = nanoseconds(std::round(s * 1e9));
     const double t = seconds(since);
     const double slope = std::clamp(hull.peak(t).slope, rate - change, rate + change);

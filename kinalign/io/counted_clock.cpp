@@ -41,31 +41,40 @@ std::vector<CountedFrame> earliest_of_windows(const std::vector<CountedFrame>& f
   return out;
 }
 
-/// From each to the next of its life, the median: a pause in which the device did not count is one
-/// of them. 0 where there are no two.
-double median_step_ns(const std::vector<CountedFrame>& earliest) {
+/// From each to the next of its life: the quarter points, 0 where there are no two.
+struct Steps {
+  double low = 0.0, middle = 0.0, high = 0.0;
+  bool agree() const { return high - low <= 2.0 * believed * middle; }
+};
+
+Steps steps_of(const std::vector<CountedFrame>& frames) {
   std::vector<double> steps;
-  for (std::size_t i = 1; i < earliest.size(); ++i) {
-    const CountedFrame &a = earliest[i - 1], &b = earliest[i];
+  steps.reserve(frames.size());
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const CountedFrame &a = frames[i - 1], &b = frames[i];
     if (a.life != b.life || b.number <= a.number) continue;
     steps.push_back(static_cast<double>((b.arrival - a.arrival).count()) /
                     static_cast<double>(b.number - a.number));
   }
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return std::clamp(*middle, 0.0, slowest_step_ns);
+  if (steps.empty()) return {};
+  std::sort(steps.begin(), steps.end());
+  const auto at = [&](std::size_t quarter) {
+    return std::clamp(steps[quarter * (steps.size() - 1) / 4], 0.0, slowest_step_ns);
+  };
+  return {at(1), at(2), at(3)};
 }
 
+/// The median of windows, of which a pause in which the device did not count spoils one or two;
+/// where there are pauses in many, that of neighbouring frames.
 double measured_step_ns(const std::vector<CountedFrame>& frames) {
   if (frames.empty()) return 0.0;
   const Duration length = frames.back().arrival - frames.front().arrival;
   const Duration window = std::clamp(length / windows, shortest_window, longest_window);
-  double step = 0.0;  // the first frame of each window
+  Steps steps;  // first of the first frame of each window
   for (int round = 0; round < 3; ++round) {
-    step = median_step_ns(earliest_of_windows(frames, window, step));
+    steps = steps_of(earliest_of_windows(frames, window, steps.middle));
   }
-  return step;
+  return steps.agree() ? steps.middle : steps_of(frames).middle;
 }
 
 std::string rate_text(double step_ns) { return fmt::format("{:.6g} Hz", 1e9 / step_ns); }

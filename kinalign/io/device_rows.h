@@ -25,6 +25,7 @@ struct DeviceWish {
   StreamOptions options;
   StreamFile file;
   DeviceChoice choice;
+  std::string skeleton{};                       // a BVH's header, where the options name one
   std::shared_ptr<const RecordingParts> parts;  // the file and those that go on behind it
   /// Of a Kinect; avatar or character of mocap; a SlimeVR tracker's sensor.
   std::optional<std::uint64_t> body;

@@ -26,8 +26,9 @@ using NoitomFrames = NumberedFrames<NoitomSource>;
 Result<BvhHierarchy> hierarchy_of(const HeardDevice& heard, const std::string& file) {
   if (heard.skeleton.empty()) {
     return Failure(Error{file, 0,
-                         "the header of the skeleton, which the stream lacks: an attachment " +
-                             heard.channel.stream + ".bvh (skeleton in lab.toml)",
+                         "of stream " + shown(heard.channel.stream) +
+                             " the skeleton, which Noitom's stream lacks: skeleton = \"a.bvh\" in "
+                             "lab.toml while recording, or now in the manifest",
                          "none"});
   }
   std::size_t rows = 0;

@@ -74,14 +74,16 @@ Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, con
                                const Progress& progress) {
   StreamOptions options = *named.options;
   if (options.own_layout()) options.layout = path_in(folder, options.layout);
+  if (!options.skeleton.empty()) options.skeleton = path_in(folder, options.skeleton);
   if (options.files.size() > 1) options.start_ns.reset();  // start_together
   const StreamFile file{path_in(folder, named.file->path), named.file->node};
   const SurveyJob job{&files, &options, &progress, version_of(file.path)};
   SurveyedFile out = KA_TRY(survey_file(job, file));
   for (std::size_t i = 0; i < out.paths.size(); ++i) {
-    const bool layout = i > 0 && out.paths[i] == options.layout;
-    out.stream.files[i].name =
-        remembered_path(folder, layout ? named.options->layout : named.file->path, out.paths[i]);
+    const std::string* as_named = &named.file->path;
+    if (i > 0 && out.paths[i] == options.layout) as_named = &named.options->layout;
+    if (i > 0 && out.paths[i] == options.skeleton) as_named = &named.options->skeleton;
+    out.stream.files[i].name = remembered_path(folder, *as_named, out.paths[i]);
   }
   out.stream.clock =
       out.clock ? moved_by(*out.clock, options) : clock_of(options, out.stream.survey);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recording_reader.h"
 
+#include "kinalign/io/bvh_head.h"
 #include "kinalign/io/sender_choice.h"
 
 #include <array>
@@ -18,6 +19,10 @@ std::array<DeviceProtocol, 5> protocols() {
 
 Result<DeviceProtocol> protocol_of(const RawChannel& channel, const DeviceWish& wish) {
   const std::string& file = wish.file.path;
+  if (!wish.skeleton.empty() && channel.protocol != "noitom") {
+    return Failure(Error{file, 0, "a skeleton of a noitom stream alone",
+                         "one of " + shown(channel.stream) + ", of " + shown(channel.protocol)});
+  }
   if (wish.trackers && channel.protocol == "xsens") return xsens_tracker_protocol();
   if (wish.trackers) {
     return Failure(Error{file, 0, "trackers of an xsens stream",
@@ -47,7 +52,7 @@ Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file)
                          "select by stream, node, sender, body or kind (poses, trackers)",
                          shown(name) + " = " + shown(value)});
   }
-  DeviceWish wish{options, file, {}, {}, {}};
+  DeviceWish wish{options, file, {}, {}, {}, {}};
   wish.trackers = selected(options, "kind", "poses") == "trackers";
   wish.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
                  selected(options, "sender", "")};
@@ -158,7 +163,7 @@ class Listening {
   Result<HeardDevice> heard() {
     HeardDevice heard;
     heard.channel = *messages_.chosen();
-    heard.skeleton = messages_.skeleton();
+    heard.skeleton = wish_.skeleton.empty() ? messages_.skeleton() : wish_.skeleton;
     heard.utc_minus_host = messages_.utc_minus_host();
     KA_TRY(begin(heard.channel));
     KA_TRY(listener_->finish(heard));
@@ -239,6 +244,7 @@ Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
   DeviceWish wish = KA_TRY(wish_of(options, file));
   wish.parts =
       std::make_shared<const RecordingParts>(KA_TRY(parts_from(files, file.path, progress)));
+  if (!options.skeleton.empty()) wish.skeleton = KA_TRY(read_bvh_head(files, options.skeleton));
   const bool any_sender = wish.choice.sender.empty();
   auto listening = KA_TRY(listen_once(files, wish, progress));
   const SenderRoll senders = listening->senders();
@@ -259,12 +265,14 @@ Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
     append(heard->findings, judge_senders(wish, any_sender, senders));
     append(heard->findings, judge_parts(*wish.parts, PartsBehind::read));
     const auto shared = std::make_shared<const HeardDevice>(std::move(*heard));
+    std::vector<std::string> further = paths_behind(*wish.parts);
+    if (!options.skeleton.empty()) further.push_back(options.skeleton);
     return RecordedDevice{
         shared,
         [&files, wish, shared, protocol = listening->protocol()]() -> Result<AnyReader> {
           return reader_of(files, wish, shared, protocol.rows(wish, shared));
         },
-        paths_behind(*wish.parts)};
+        std::move(further)};
   }
   return Failure(*why);
 }

@@ -44,6 +44,8 @@ Fields describe(AlignOptions& o) {
 Fields describe(StreamOptions& o) {
   return {
       {"layout", "name or path of a declared layout (default: by the file's content)", &o.layout},
+      {"skeleton", "of recorded mocap: a BVH with its hierarchy (default: the recording's own)",
+       &o.skeleton},
       {"metres_per_unit", "length of the file's unit, m; 0: the format's own (BVH: 0.01)",
        &o.metres_per_unit, 0.0, 1000.0},
       {.name = "up",

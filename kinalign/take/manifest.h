@@ -34,6 +34,7 @@ struct StreamOptions {
 
   std::string layout;  // name or path of a declared layout; empty: by the file's content
   bool own_layout() const { return layout.ends_with(".toml"); }  // a file of the user's
+  std::string skeleton;  // of a recording: path of a BVH whose hierarchy its poses have
   std::map<std::string, std::string> select;  // rows of a table to take: column -> value
 
   double metres_per_unit = 0.0;  // 0: the format's own (BVH: 0.01)

@@ -59,6 +59,34 @@ TEST_CASE("a pause in which a source did not count bends no rate, whatever is st
   }
 }
 
+TEST_CASE("a source that stalls again and again keeps its rate, and its stamps rise") {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    std::vector<CountedFrame> frames;
+    HostTime at{};
+    for (std::int64_t k = 0; k < 400; ++k) {  // 4 s, of which half a window is even
+      at += 10ms;
+      if (random() % 28 == 0) at += 20ms + Duration{random() % 110'000'000};
+      frames.push_back({1, k, at + Duration{random() % 400'000}});
+    }
+    for (const double stated_ns : {0.0, 1e7}) {
+      const CountedClock counted = counted_clock(frames, stated_ns, {}, "take.mcap");
+      CHECK(counted.findings.empty());
+      CHECK(counted.step_ns == doctest::Approx(1e7).epsilon(0.01));
+      std::optional<Time> last;
+      for (const CountedFrame& frame : frames) {
+        const NodeTime n = counter_of(frame, counted.step_ns);
+        const auto stamp = stamp_of(counted.clock, 1, n, frame.arrival);
+        REQUIRE(stamp);
+        const Time now = take_time(counted.clock.time, *stamp);
+        if (last) CHECK(now > *last);
+        last = now;
+      }
+    }
+  }
+}
+
 TEST_CASE("a rate that is stated wrongly is said, and not believed") {
   const Source source(0s);
   const CountedClock counted = counted_clock(source.frames, 1e9 / 60.0, {}, "take.mcap");

@@ -190,6 +190,9 @@ class RecordedLab {
     }
   }
 
+  /// Nobody said whose the mocap is.
+  void forget_skeleton() { skeleton_.clear(); }
+
   /// A SlimeVR tracker's packets of type 23, a hundred a second: an acceleration whose x, in steps
   /// of 1/128 m/s2, is as near to the time as that goes. `forged`: the number of one in the middle
   /// that isn't the tracker's.

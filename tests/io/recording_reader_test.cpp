@@ -447,3 +447,26 @@ TEST_CASE("a Kinect's stamps hold where the host slept or its raw clock went bac
     CHECK(stream.survey.backward == 0);
   }
 }
+
+TEST_CASE("mocap that was recorded without a skeleton gets the one that the manifest names") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_mocap(NoitomForm::new_header, "udp", 20.0);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 2.0);
+  lab.forget_skeleton();
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  StreamOptions options = stream_named("mocap", path);
+  const auto without = open_streams(files, {options});
+  REQUIRE(!without);
+  CHECK(without.error().expected.find("or now in the manifest") != std::string::npos);
+  options.skeleton = folder.write("suit.bvh", noitom_chain("Spine3", false));
+  const RecordedStream stream = opened(files, options);
+  CHECK(stream.files.size() == 2);  // hashed, too
+  CHECK(std::get<ClipInput>(stream.data).skeleton.joints() == 59);
+  CHECK(mocap_errors(stream).samples == 2500);
+  options.name = "kinect";
+  const auto of_kinect = open_streams(files, {options});
+  REQUIRE(!of_kinect);
+  CHECK(of_kinect.error().expected == "a skeleton of a noitom stream alone");
+}

@@ -77,12 +77,12 @@ TEST_CASE("no option without a description, but for those that are more than one
   auto& [reference, gap, rotations, store_double] = align;
   CHECK(described_of(described(align), reference, gap, rotations, store_double) == 4);
   StreamOptions stream;
-  auto& [name, files, layout, select, unit, up, rate, start, end, latency, clock, offset, drift,
-         interval, mounting, root_node, lines] = stream;
+  auto& [name, files, layout, skeleton, select, unit, up, rate, start, end, latency, clock, offset,
+         drift, interval, mounting, root_node, lines] = stream;
   const auto of_stream = described(stream);
   CHECK(described_of(of_stream, name, files, select, mounting, lines) == 0);
-  CHECK(described_of(of_stream, layout, unit, up, rate, start, end, latency, clock, offset, drift,
-                     interval, root_node) == 12);
+  CHECK(described_of(of_stream, layout, skeleton, unit, up, rate, start, end, latency, clock,
+                     offset, drift, interval, root_node) == 13);
   SpaceOptions space;
   auto& [method, onto, turn, magnification, rotation, translation, joints, root, onto_root, said] =
       space;
