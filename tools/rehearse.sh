@@ -7,6 +7,7 @@
 set -euo pipefail
 build=$1 folder=$2 seconds=$3
 kinalign=$build/apps/kinalign/kinalign
+[[ ! -e $folder ]] || { echo "rehearse.sh: $folder is there already: name a new folder" >&2; exit 3; }
 
 "$kinalign" simulate built-in -o "$folder" --live --begin-in 2 --seconds "$seconds" --quiet "${@:4}" &
 simulation=$!

@@ -21,6 +21,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -46,10 +47,15 @@ struct Record {
 /// What --device says, over the devices of a lab.toml.
 Result<Lab> lab_of(const Record& o, std::vector<DeviceOptions> in_file) {
   Lab lab{std::move(in_file), o.options};
+  std::set<std::string> named;
   for (const std::string& text : o.devices) {
     const auto device = parse_device(text);
     if (!device) {
       return Failure(Error{"--device", 0, device.error().expected, device.error().found});
+    }
+    if (!named.insert(device->name).second) {
+      return Failure(
+          Error{"--device", 0, "devices of different names", shown(device->name) + " twice"});
     }
     come_from(lab, *device);
   }
@@ -265,11 +271,11 @@ Verb record_verb() {
            "1 where the disk failed and the recording went on in another file, or was nearly "
            "full and ended it.",
        .examples =
-           {{"kinalign record -o takes --device imu=nodes:5005 --device mocap=noitom:udp:7012",
-             "inertial nodes, and Axis Studio sending to this machine"},
+           {{"kinalign record -o takes --device imu=nodes:5005 --device mocap=xsens:udp:9763",
+             "inertial nodes, and Xsens MVN sending to this machine"},
             {"kinalign record -o takes --subject 03 --action S1A02 --device "
              "mocap=noitom:tcp:192.168.7.5:7001",
-             "Axis Neuron serving; takes/03_S1A02_01.mcap"},
+             "Axis Neuron serving; takes/03_S1A02_01.mcap. Its skeleton: lab.toml, or align's manifest"},
             {"kinalign record -o takes --config lab.toml",
              "the devices of a lab: docs/recording.md"},
             {"kinalign record -o takes --config lab.toml --trigger-port 30 --wait",

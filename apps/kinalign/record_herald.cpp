@@ -65,8 +65,9 @@ void RecordHerald::tell_start(const std::string& path) {
 void RecordHerald::tell(const HeardMark& heard) {
   const auto& [recorded, at] = heard;
   const Mark& mark = recorded.mark;
-  console_.note(harmless(fmt::format("mark: {}{}{}, by {}", kinalign::name_of(mark.kind),
-                                     mark.text.empty() ? "" : " ", mark.text, recorded.source)));
+  console_.note(
+      harmless(fmt::format("mark: {}{}{}, by {}", kinalign::name_of(mark.kind),
+                           mark.text.empty() ? "" : " ", shown(mark.text), recorded.source)));
   Json event{{"event", "mark"}};
   event.update(Json::parse(to_json(recorded)));
   event["raw_ns"] = at.time_since_epoch().count();
@@ -220,6 +221,9 @@ void RecordHerald::tell_end() {
   for (const StreamStatus& stream : status.streams) {
     event["streams"].push_back(Json::parse(json_of(stream, status)));
     lines += end_line(stream);
+  }
+  for (const std::string& name : unheard(session_.lab(), status)) {
+    lines += "  " + name + ": nothing came\n";
   }
   for (const auto& [name, counts] : status.ports) {
     event["ports"][name] = Json::parse(to_json(name, counts));

@@ -124,6 +124,16 @@ std::string name_of(const StreamStatus& stream) {
   return stream.stream + " " + (stream.place.empty() ? stream.node : stream.place);
 }
 
+std::vector<std::string> unheard(const Lab& lab, const LabStatus& status) {
+  std::vector<std::string> all;
+  for (const DeviceOptions& device : lab.devices) {
+    std::vector<std::string> of_one = unheard_nodes(device, status);
+    if (of_one.empty() && !is_heard(device, status)) of_one.push_back(device.name);
+    all.insert(all.end(), of_one.begin(), of_one.end());
+  }
+  return all;
+}
+
 std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status) {
   std::vector<TableLine> lines{{row({"device", "rate/s", "lost", "late", "twice", "heard", "clock",
                                      "ppm", "battery", "recorded"}),

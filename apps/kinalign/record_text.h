@@ -30,6 +30,8 @@ struct TableLine {
 
 /// Head and a line for each sender, each device of which nothing comes, and each port where
 /// something was lost before it could be recorded.
+/// Devices, and nodes with places, of which nothing came.
+std::vector<std::string> unheard(const Lab& lab, const LabStatus& status);
 std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status);
 
 /// The required devices, and nodes that have places, of which nothing comes: "mocap", "imu waist".

@@ -70,7 +70,8 @@ Verb recover_verb() {
        .text = "Copies every message that can be read, once, gives the new file its index, and "
                "reads it again before it gets its name: what stands there must be what was copied. "
                "The old files stay as they are. Exit code "
-               "1 where something was torn or damaged.",
+               "1 where something was damaged or could not be read; a file that only lacks its "
+               "index and end is made whole with 0.",
        .examples = {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
                     {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
                      "after a disk that failed: of what stands in both the later is taken"}},

@@ -162,7 +162,10 @@ void tell_end(const LiveCounts& counts, const std::string& folder, Call& call) {
     text += fmt::format("  {} datagrams were not taken: nobody listens there\n",
                         grouped(counts.refused));
   }
-  text += fmt::format("  next    kinalign align {0}/recording.toml -o {0}/take.h5\n", folder);
+  const bool heard = counts.replies > 0 || counts.refused == 0;
+  text += heard
+              ? fmt::format("  next    kinalign align {0}/recording.toml -o {0}/take.h5\n", folder)
+              : "  nobody received this: start kinalign record first (--begin-in gives it time)\n";
   call.console.print(harmless(text));
   call.console.print_json(json_text(Json{{"event", "sent"},
                                          {"mocap_frames", counts.mocap_frames},
@@ -258,9 +261,9 @@ Verb simulate_verb() {
                     {"kinalign simulate walk.bvh -o rehearsal --seed 7 --node-rate 15",
                      "your own motion, with nodes as slow as the paper's"},
                     {"kinalign simulate built-in -o rehearsal --live --seconds 20",
-                     "to kinalign record -o takes --device mocap=noitom:7012 --device "
-                     "kinect=kinect:7020 --device imu=nodes:5005"}},
-       .common = {"out", "json"}},
+                     "to kinalign record -o rehearsal --config rehearsal/lab.toml"}},
+       .common = {"out", "json"},
+       .out_is_folder = true},
       describe_simulate, run);
 }
 

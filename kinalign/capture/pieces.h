@@ -134,13 +134,15 @@ class TcpPieces {
   };
   struct Link {
     Handle socket;
+    HostTime heard{};  // or made
     bool connected = false;
     HostAddress host{};  // of the other end
     std::uint16_t port = 0;
     std::optional<Senders::Known> sender{};  // since it said something
   };
   TcpPieces(std::string address, std::uint16_t port, Handle listener);
-  void accept();
+  void accept(HostTime now);
+  bool give_up_idle(HostTime now);
   void try_to_connect(HostTime now);
   bool drain_link(Link& link, HostAxis& axis, const TakePiece& take);
   bool settle(Link& link);

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <tuple>
@@ -19,6 +20,7 @@ constexpr std::size_t read_size = std::size_t{64} << 10;
 constexpr int reads_in_turn = 4;  // of a connection, before other ports have theirs
 constexpr std::size_t most_links = 8;
 constexpr Duration between_tries = std::chrono::seconds(1);
+constexpr Duration idle_after = std::chrono::seconds(3);  // chosen: each device sends many a second
 constexpr int type = SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
 
 /// Of the other end.
@@ -102,17 +104,27 @@ void TcpPieces::add_fds(std::vector<int>& fds) const {
   for (const Link& link : links_) fds.push_back(link.socket.fd());
 }
 
-void TcpPieces::accept() {
+void TcpPieces::accept(HostTime now) {
   for (;;) {
     Handle socket(::accept4(listener_.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (socket.fd() < 0) return;
-    if (links_.size() == most_links) {
+    if (links_.size() == most_links && !give_up_idle(now)) {
       ++counts_.refused;
       continue;  // which closes it
     }
     keep_alive(socket.fd());
-    links_.push_back({std::move(socket)});
+    links_.push_back({std::move(socket), now});
   }
+}
+
+/// A device that vanished without a word must not keep out the one that returns: of those that say
+/// nothing the one that has done so for longest goes. Whether there is one.
+bool TcpPieces::give_up_idle(HostTime now) {
+  const auto idlest = std::min_element(
+      links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.heard < b.heard; });
+  if (now - idlest->heard < idle_after) return false;
+  links_.erase(idlest);
+  return true;
 }
 
 void TcpPieces::try_to_connect(HostTime now) {
@@ -127,12 +139,12 @@ void TcpPieces::try_to_connect(HostTime now) {
   if (::connect(socket.fd(), found->ai_addr, found->ai_addrlen) != 0 && errno != EINPROGRESS) {
     return;
   }
-  links_.push_back({std::move(socket)});
+  links_.push_back({std::move(socket), now});
 }
 
 void TcpPieces::drain(HostAxis& axis, const TakePiece& take) {
   if (listener_.fd() >= 0) {
-    accept();
+    accept(axis.now());
   } else if (links_.empty()) {
     try_to_connect(axis.now());
   }
@@ -172,7 +184,7 @@ bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (got == 0) return false;
-    const HostTime arrival = axis.now();
+    const HostTime arrival = link.heard = axis.now();
     const auto sender = senders_.number(link.sender, link.host, link.port, arrival);
     ++(sender ? counts_.pieces : counts_.refused);
     if (!sender) continue;

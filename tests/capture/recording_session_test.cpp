@@ -89,6 +89,25 @@ TEST_CASE("what a device says over TCP stands in the file byte for byte, also af
   CHECK(found == sent);
 }
 
+TEST_CASE("a device is let in where as many connections as there may be stand idle") {
+  LiveSession live({"kinect=kinect:tcp-listen:127.0.0.1:0"});
+  std::vector<std::unique_ptr<Connection>> idle;
+  for (std::uint64_t k = 1; k <= 8; ++k) {
+    idle.push_back(std::make_unique<Connection>(live.port()));
+    idle.back()->send("vanished\n");
+    live.serve_until([&] { return live.pieces() == k; });
+  }
+  const auto counts = [&] { return live.session().port_counts().front().second; };
+  const Connection too_soon(live.port());
+  live.serve_until([&] { return counts().refused == 1; });
+  const auto begun = std::chrono::steady_clock::now();
+  live.serve_until([&] { return std::chrono::steady_clock::now() - begun > 3200ms; });
+  const Connection returned(live.port());
+  returned.send("back\n");
+  live.serve_until([&] { return live.pieces() == 9; });
+  CHECK(counts().refused == 1);
+}
+
 TEST_CASE("each connection to a device that serves has a channel of its own") {
   const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in own{};
