@@ -103,7 +103,8 @@ bool is_heard(const DeviceOptions& device, const LabStatus& status) {
 std::string loss_of(const PortCounts& counts) {
   std::string text;
   for (const auto& [count, what] :
-       {std::pair(counts.dropped, "dropped by the kernel"),
+       {std::pair(counts.dropped, counts.sifted ? "thrown away: no frames of nodes, or no room"
+                                                : "dropped by the kernel"),
         std::pair(counts.refused, "refused, not recorded"), std::pair(counts.cut, "cut"),
         std::pair(counts.unsent, "answers not sent")}) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);

@@ -136,6 +136,7 @@ PortCounts RecordedNodes::counts() const {
   out.refused = counts.verdicts[NodeVerdict::refused] + receiver_.not_unicast() +
                 receiver_.from_port_0() + crowded_;
   out.dropped = receiver_.dropped();
+  out.sifted = true;
   return out;
 }
 

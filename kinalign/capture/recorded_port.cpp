@@ -160,10 +160,22 @@ void RecordedPort::look_at(Source& source) const {
 /// comes back is not told of again.
 void RecordedPort::find_faults(const Source& source) {
   constexpr std::size_t most_told = 256;
-  if (source.recorded.status.counts.refused == 0) return;
+  constexpr std::uint64_t enough = 20;  // messages: a datagram or two may be anybody's
+  const SenderCounts& counts = source.recorded.status.counts;
+  const bool none = source.watch.decodes() && !source.exchanges && counts.frames == 0 &&
+                    counts.messages >= enough;
+  if (counts.refused == 0 && !none) return;
   const std::string host = to_string(source.address.host);
   const std::string name = device_.name + " from " + endpoint_text(host, source.address.port);
-  for (Finding& finding : source.watch.findings(name)) {
+  Findings findings = source.watch.findings(name);
+  if (none) {
+    findings.push_back({Severity::warning,
+                        Error{name, 0, "frames of " + device_.protocol,
+                              std::to_string(counts.messages) + " messages, none of them one"},
+                        "all is recorded, but nothing of it can be aligned as " + device_.protocol,
+                        "see which port and protocol the device sends to"});
+  }
+  for (Finding& finding : findings) {
     if (told_.size() >= most_told) return;
     const bool fresh = told_.insert(host + finding.what.expected + finding.meaning).second;
     if (fresh) findings_.push_back(std::move(finding));

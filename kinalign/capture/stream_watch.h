@@ -31,6 +31,8 @@ class StreamWatch {
   bool speaks_lines() const;
   /// Of its frames: messages and bytes are the caller's.
   SenderCounts counts() const;
+  /// Whether frames are looked into.
+  bool decodes() const { return !std::holds_alternative<std::monostate>(decoder_); }
   /// What the user should know; `name` stands in the messages.
   Findings findings(const std::string& name) const;
 

@@ -72,9 +72,10 @@ struct PortCounts {
   std::uint64_t pieces = 0, bytes = 0;
   std::uint64_t refused = 0;  // of one sender too many
   std::uint64_t cut = 0;      // datagrams longer than any can be
-  std::uint64_t dropped = 0;  // by the kernel, for want of room
+  std::uint64_t dropped = 0;  // by the kernel, for want of room; of nodes also what is no frame
   std::uint64_t links = 0;    // connections that were made
   std::uint64_t unsent = 0;   // answers that the system did not take
+  bool sifted = false;        // the kernel throws away what is no frame, and counts it so
 };
 McapSchema port_counts_schema();
 std::string to_json(const std::string& stream, const PortCounts& counts);

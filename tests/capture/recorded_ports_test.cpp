@@ -8,6 +8,7 @@
 #include "kinalign/io/kinect_lines.h"
 #include "kinalign/io/kinect_stream.h"
 #include "kinalign/io/mark_call.h"
+#include "kinalign/io/noitom_stream.h"
 #include "kinalign/io/vicon_trigger.h"
 
 #include <doctest/doctest.h>
@@ -179,6 +180,29 @@ TEST_CASE(
   live.serve_until([&] { return live.pieces() == 2; });
   live.finish();
   CHECK(live.session().take_findings().empty());
+}
+
+TEST_CASE("a device that sends to another one's port is told of while recording, once") {
+  LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
+  NoitomFrame frame;
+  frame.values.assign(noitom_values(false, false), 0.0F);
+  std::vector<std::uint8_t> bytes;
+  REQUIRE(append_noitom(frame, bytes));
+  const Client suit;
+  for (std::uint64_t k = 1; k <= 60; ++k) {
+    suit.send("127.0.0.1", live.port(), bytes);
+    live.serve_until([&] { return live.pieces() == k; });
+  }
+  Findings findings;
+  live.serve_until([&] {
+    append(findings, live.session().take_findings());
+    return !findings.empty();
+  });
+  const auto of_frames = std::count_if(findings.begin(), findings.end(), [](const Finding& f) {
+    return f.what.expected == "frames of kinect" &&
+           f.repair == "see which port and protocol the device sends to";
+  });
+  CHECK(of_frames == 1);
 }
 
 TEST_CASE("that the host's wall clock was set is told while recording") {
