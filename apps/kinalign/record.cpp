@@ -275,7 +275,8 @@ Verb record_verb() {
              "inertial nodes, and Xsens MVN sending to this machine"},
             {"kinalign record -o takes --subject 03 --action S1A02 --device "
              "mocap=noitom:tcp:192.168.7.5:7001",
-             "Axis Neuron serving; takes/03_S1A02_01.mcap. Its skeleton: lab.toml, or align's manifest"},
+             "Axis Neuron serving; takes/03_S1A02_01.mcap. Its skeleton: lab.toml, or align's "
+             "manifest"},
             {"kinalign record -o takes --config lab.toml",
              "the devices of a lab: docs/recording.md"},
             {"kinalign record -o takes --config lab.toml --trigger-port 30 --wait",
