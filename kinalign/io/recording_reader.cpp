@@ -228,11 +228,29 @@ Result<std::unique_ptr<Listening>> listen_once(FileSystem& files, const DeviceWi
   return listening;
 }
 
-std::vector<std::string> paths_behind(const RecordingParts& parts) {
-  std::vector<std::string> paths;
-  for (const RecordingPart& part : parts) paths.push_back(part.path);
-  paths.erase(paths.begin());
-  return paths;
+/// With what stands in other files.
+Result<DeviceWish> whole_wish(FileSystem& files, const StreamOptions& options,
+                              const StreamFile& file, const Progress& progress) {
+  DeviceWish wish = KA_TRY(wish_of(options, file));
+  wish.parts =
+      std::make_shared<const RecordingParts>(KA_TRY(parts_from(files, file.path, progress)));
+  if (!options.skeleton.empty()) wish.skeleton = KA_TRY(read_bvh_head(files, options.skeleton));
+  return wish;
+}
+
+RecordedDevice device_of(FileSystem& files, const DeviceWish& wish, const DeviceProtocol& protocol,
+                         HeardDevice heard) {
+  append(heard.findings, judge_parts(*wish.parts, PartsBehind::read));
+  const auto shared = std::make_shared<const HeardDevice>(std::move(heard));
+  std::vector<std::string> further;
+  for (const RecordingPart& part : *wish.parts) further.push_back(part.path);
+  further.erase(further.begin());
+  if (!wish.skeleton.empty()) further.push_back(wish.options.skeleton);
+  return {shared,
+          [&files, wish, shared, protocol]() -> Result<AnyReader> {
+            return reader_of(files, wish, shared, protocol.rows(wish, shared));
+          },
+          std::move(further)};
 }
 
 }  // namespace
@@ -241,10 +259,7 @@ bool looks_like_recording(std::string_view head) { return head.starts_with(mcap_
 
 Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
                               const StreamFile& file, const Progress& progress) {
-  DeviceWish wish = KA_TRY(wish_of(options, file));
-  wish.parts =
-      std::make_shared<const RecordingParts>(KA_TRY(parts_from(files, file.path, progress)));
-  if (!options.skeleton.empty()) wish.skeleton = KA_TRY(read_bvh_head(files, options.skeleton));
+  DeviceWish wish = KA_TRY(whole_wish(files, options, file, progress));
   const bool any_sender = wish.choice.sender.empty();
   auto listening = KA_TRY(listen_once(files, wish, progress));
   const SenderRoll senders = listening->senders();
@@ -263,16 +278,7 @@ Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
       continue;
     }
     append(heard->findings, judge_senders(wish, any_sender, senders));
-    append(heard->findings, judge_parts(*wish.parts, PartsBehind::read));
-    const auto shared = std::make_shared<const HeardDevice>(std::move(*heard));
-    std::vector<std::string> further = paths_behind(*wish.parts);
-    if (!options.skeleton.empty()) further.push_back(options.skeleton);
-    return RecordedDevice{
-        shared,
-        [&files, wish, shared, protocol = listening->protocol()]() -> Result<AnyReader> {
-          return reader_of(files, wish, shared, protocol.rows(wish, shared));
-        },
-        std::move(further)};
+    return device_of(files, wish, listening->protocol(), std::move(*heard));
   }
   return Failure(*why);
 }
