@@ -97,10 +97,11 @@ void reach_back(TimeModel& time, std::size_t first, std::optional<Time> told) {
   line.begin = begin;
 }
 
-/// Where a line that is only guessed begins before the one in front of it ends, it begins there:
-/// later stamps are of later moments, whatever arrivals say.
-void keep_rising(TimeModel& time) {
-  for (std::size_t i = 1; i < time.pieces.size(); ++i) {
+/// From line `first` on, that goes on in stamps where the one in front of it ends: a guessed line
+/// that begins before that one's end begins there, since later stamps are of later moments,
+/// whatever arrivals say.
+void keep_rising(TimeModel& time, std::size_t first) {
+  for (std::size_t i = std::max<std::size_t>(first, 1); i < time.pieces.size(); ++i) {
     TimeModelPiece& line = time.pieces[i];
     if (line.half_width) continue;
     const TimeModelPiece& before = time.pieces[i - 1];
@@ -126,6 +127,7 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
   out.time.pieces.clear();
   const ClockPieceModel* before = nullptr;
   std::optional<Time> told;  // the last stamp of the piece before
+  Duration last_moved{};     // and its move
   for (const ClockPieceModel& piece : out.model.pieces) {
     Duration moved = out.moved.empty() ? Duration{0} : out.moved.back();
     if (!piece.knots.empty()) {
@@ -133,13 +135,14 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
       const std::size_t first = out.time.pieces.size();
       append_lines(out.model, piece, moved, utc_minus_host, out.time);
       reach_back(out.time, first, told);
+      if (before != nullptr && moved == last_moved) keep_rising(out.time, first);
+      last_moved = moved;
       told = stamp_at(piece.knots.back().node, moved);
       before = &piece;
     }
     out.moved.push_back(moved);
   }
   if (out.time.pieces.empty()) out.time = TimeModel{};
-  keep_rising(out.time);
   for (std::size_t p = 0; p < out.model.pieces.size(); ++p) {
     const ClockPieceModel& piece = out.model.pieces[p];
     if (!piece.knots.empty()) out.pieces_of[piece.boot].push_back(p);
