@@ -136,7 +136,7 @@ std::string placeholder(const Field& field) {
   }
   if (!choices.empty()) return choices;
   if (field.name.ends_with("layout")) return "LAYOUT";
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 26> names{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 27> names{
       {{"out", "FILE"},         {"config", "FILE"},       {"mocap", "FILE"},
        {"kinect", "FILE"},      {"inputs", "FOLDER"},     {"imu", "NODE=FILE"},
        {"points", "NAME=FILE"}, {"joint", "JOINT=JOINT"}, {"select", "COLUMN=VALUE"},
@@ -145,7 +145,7 @@ std::string placeholder(const Field& field) {
        {"lab_key", "FILE"},     {"new_lab_key", "FILE"},  {"node", "ID"},
        {"subject", "NAME"},     {"action", "NAME"},       {"device", "NAME=PROTOCOL:PORT"},
        {"marks_port", "PORT"},  {"trigger_port", "PORT"}, {"to", "ADDRESS"},
-       {"mocap_port", "PORT"},  {"kinect_port", "PORT"}}};
+       {"mocap_port", "PORT"},  {"kinect_port", "PORT"},  {"skeleton", "FILE"}}};
   for (const auto& [name, shown_as] : names) {
     if (field.name == name) return std::string(shown_as);
   }
