@@ -13,6 +13,14 @@ std::optional<Duration> one_way_delay(const ClocklessExchange& exchange) {
   return (*exchange.t6 - exchange.t3) / 2;
 }
 
+std::optional<Duration> least_one_way_delay(std::span<const ClocklessExchange> exchanges) {
+  std::optional<Duration> least;
+  for (const ClocklessExchange& e : exchanges) {
+    if (const auto d = one_way_delay(e)) least = std::min(least.value_or(*d), *d);
+  }
+  return least;
+}
+
 std::vector<std::optional<HostTime>> stamps_by_each_delay(
     std::span<const ClocklessExchange> exchanges) {
   std::vector<std::optional<HostTime>> stamps;
@@ -41,10 +49,7 @@ std::optional<std::vector<HostTime>> stamps_by_mean_delay(
 
 std::optional<std::vector<HostTime>> stamps_by_frame_number(
     std::span<const ClocklessExchange> exchanges, double rate_hz, double curvature) {
-  std::optional<Duration> least;
-  for (const ClocklessExchange& e : exchanges) {
-    if (const auto d = one_way_delay(e)) least = std::min(least.value_or(*d), *d);
-  }
+  const auto least = least_one_way_delay(exchanges);
   if (!least) return std::nullopt;
   const ClocklessExchange& origin = exchanges.front();
   const auto planned = [&](const ClocklessExchange& e) {

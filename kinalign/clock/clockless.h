@@ -26,6 +26,9 @@ struct ClocklessExchange {
 /// Absent where t6 is.
 std::optional<Duration> one_way_delay(const ClocklessExchange& exchange);
 
+/// Of all; absent where no exchange was confirmed.
+std::optional<Duration> least_one_way_delay(std::span<const ClocklessExchange> exchanges);
+
 /// T2 - d with each frame's own d; absent where that is.
 std::vector<std::optional<HostTime>> stamps_by_each_delay(
     std::span<const ClocklessExchange> exchanges);

@@ -2,10 +2,10 @@
 // Frames of an inertial node of ours: the counter's reading of each sample, put on UTC by the
 // exchanges that the recorder made out of frames and replies. Of a node without a counter the
 // number of its request is the counter.
-#include "kinalign/io/counted_clock.h"
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/imu_converter.h"
 #include "kinalign/io/little_endian_reader.h"
+#include "kinalign/io/numbered_frames.h"
 #include "kinalign/wire/clockless.h"
 #include "kinalign/wire/node_frame.h"
 
@@ -61,23 +61,27 @@ std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
   return out;
 }
 
+using AnyExchange = std::variant<std::monostate, Exchange, ClocklessExchange>;
+
 /// What was held, came twice or came late is in the recording, too; of an accepted datagram the
 /// exchange stands before it, with the same counter or number, and arrival.
 class AcceptedFrames {
  public:
-  void take_exchange(const RecordedMessage& message) {
-    if (const auto recorded = to_exchange(message.payload)) {
-      const Exchange& e = recorded->exchange;
-      accepted_ = {life_of(e.boot, recorded->epoch), e.n_tx, 0, false, message.arrival};
-      exchanges.push_back(e);
-      exchanges.back().boot = accepted_->life;
-    } else if (const auto numbered = to_clockless(message.payload)) {
-      const ClocklessExchange& e = numbered->exchange;
-      accepted_ = {life_of(e.boot, numbered->epoch), std::nullopt, number_of(e), e.t6.has_value(),
-                   message.arrival};
-      clockless.push_back(e);
-      clockless.back().boot = accepted_->life;
+  /// The exchange, if it is one; its boot is the life's key.
+  AnyExchange take_exchange(const RecordedMessage& message) {
+    if (auto recorded = to_exchange(message.payload)) {
+      Exchange& e = recorded->exchange;
+      e.boot = life_of(e.boot, recorded->epoch);
+      accepted_ = {e.boot, e.n_tx, 0, false, message.arrival};
+      return e;
     }
+    if (auto numbered = to_clockless(message.payload)) {
+      ClocklessExchange& e = numbered->exchange;
+      e.boot = life_of(e.boot, numbered->epoch);
+      accepted_ = {e.boot, std::nullopt, number_of(e), e.t6.has_value(), message.arrival};
+      return e;
+    }
+    return {};
   }
   std::optional<AcceptedFrame> take(const RecordedMessage& message) {
     const auto accepted = std::exchange(accepted_, std::nullopt);
@@ -96,8 +100,6 @@ class AcceptedFrames {
     return frame;
   }
 
-  std::vector<Exchange> exchanges{};
-  std::vector<ClocklessExchange> clockless{};
   std::uint64_t others = 0;
 
  private:
@@ -113,27 +115,19 @@ class AcceptedFrames {
 
 /// Where requests leave on a steady timer their number plays the part of a counter: the earliest
 /// arrivals tell it, less the least half of a round trip (clock/clockless.h).
-CountedClock clockless_clock(std::span<const ClocklessExchange> exchanges, const DeviceWish& wish,
-                             Duration utc_minus_host) {
-  std::optional<Duration> least;
-  for (const ClocklessExchange& e : exchanges) {
-    if (const auto d = one_way_delay(e)) least = std::min(least.value_or(*d), *d);
-  }
+void clockless_clock(std::span<const ClocklessExchange> exchanges, const DeviceWish& wish,
+                     HeardDevice& heard) {
+  const auto least = least_one_way_delay(exchanges);
   std::vector<CountedFrame> requests;
   for (const ClocklessExchange& e : exchanges) {
     if (e.t6) continue;
     requests.push_back({e.boot, number_of(e), e.t2 - least.value_or(Duration{0})});
   }
-  const double rate = wish.options.rate_hz;
-  CountedClock clock =
-      counted_clock(requests, rate > 0.0 ? 1e9 / rate : 0.0, utc_minus_host, wish.file.path);
-  if (!least) {
-    clock.findings.push_back(
-        {Severity::warning,
-         Error{wish.file.path, 0, "confirms of a node without a counter", "none"},
-         "its stamps are late by the way of its fastest request", ""});
-  }
-  return clock;
+  count_clock(requests, 0.0, wish, heard);
+  if (least) return;
+  heard.findings.push_back(
+      {Severity::warning, Error{wish.file.path, 0, "confirms of a node without a counter", "none"},
+       "its stamps are late by the way of its fastest request", ""});
 }
 
 class NodeListener final : public DeviceListener {
@@ -141,7 +135,12 @@ class NodeListener final : public DeviceListener {
   explicit NodeListener(const DeviceWish& wish) : wish_(wish) {}
 
   void take(const RecordedMessage& message) override {
-    if (message.is_exchange()) return frames_.take_exchange(message);
+    if (message.is_exchange()) {
+      const AnyExchange any = frames_.take_exchange(message);
+      if (const auto* e = std::get_if<Exchange>(&any)) exchanges_.push_back(*e);
+      if (const auto* e = std::get_if<ClocklessExchange>(&any)) clockless_.push_back(*e);
+      return;
+    }
     const auto frame = frames_.take(message);
     if (!frame) return;
     for (std::size_t i = 0; i < frame->sample_count; ++i) {
@@ -154,25 +153,24 @@ class NodeListener final : public DeviceListener {
   }
 
   Result<void> finish(HeardDevice& heard) override {
-    if (frames_.exchanges.empty() && frames_.clockless.empty()) {
+    if (exchanges_.empty() && clockless_.empty()) {
       return Failure(Error{wish_.file.path, 0, "frames of node " + heard.channel.node,
                            "none that was accepted"});
     }
     heard.content = content_;
-    if (!frames_.exchanges.empty()) {
-      heard.clock = device_clock(frames_.exchanges, heard.utc_minus_host);
-      return {};
+    if (exchanges_.empty()) {
+      clockless_clock(clockless_, wish_, heard);
+    } else {
+      heard.clock = device_clock(exchanges_, heard.utc_minus_host);
     }
-    CountedClock counted = clockless_clock(frames_.clockless, wish_, heard.utc_minus_host);
-    append(heard.findings, counted.findings);
-    heard.step_ns = counted.step_ns;
-    heard.clock = std::move(counted.clock);
     return {};
   }
 
  private:
   DeviceWish wish_;
   AcceptedFrames frames_;
+  std::vector<Exchange> exchanges_;
+  std::vector<ClocklessExchange> clockless_;
   ImuContent content_;
 };
 
@@ -190,7 +188,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
 
   Result<void> take(const RecordedMessage& message, ImuSamples& out) override {
     if (message.is_exchange()) {
-      frames_.take_exchange(message);
+      (void)frames_.take_exchange(message);
       return {};
     }
     const auto frame = frames_.take(message);

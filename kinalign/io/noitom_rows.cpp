@@ -7,13 +7,13 @@
 #include "kinalign/io/noitom_stream.h"
 #include "kinalign/io/numbered_frames.h"
 
-#include <fmt/format.h>
-
 namespace kinalign {
 
 namespace {
 
 struct NoitomSource {
+  static constexpr std::string_view what = "frames of Noitom's stream";
+  static constexpr std::string_view frames = "frames";
   using Decoder = NoitomDecoder;
   using Arrival = NoitomArrival;
   using Frame = NoitomFrame;
@@ -66,60 +66,28 @@ class NoitomListener final : public DeviceListener {
   bool unnumbered_ = false;
 };
 
-class NoitomRows final : public DeviceRows<ClipFrames> {
+class NoitomRows final : public NumberedRows<NoitomSource, ClipFrames> {
  public:
-  NoitomRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : DeviceRows(wish.file.path), heard_(std::move(heard)), frames_(wish.body) {
-    const auto hierarchy = hierarchy_of(*heard_, wish.file.path);  // listening has read it before
+  NoitomRows(const DeviceWish& wish, const std::shared_ptr<const HeardDevice>& heard)
+      : NumberedRows(wish, heard) {
+    const auto hierarchy = hierarchy_of(*heard, wish.file.path);  // listening has read it before
     if (!hierarchy) return;
     const BvhOptions options = bvh_options(wish.options);
-    const std::string name = heard_->channel.stream + ".bvh";
+    const std::string name = heard->channel.stream + ".bvh";
     skeleton_ = skeleton_of(*hierarchy, options, name, findings);
     poser_.emplace(*hierarchy, options, name);
-    append(findings, poser_->findings());
-    append(findings, judge_size(*hierarchy, skeleton_, {}, options, name));
+    kinalign::append(findings, poser_->findings());
+    kinalign::append(findings, judge_size(*hierarchy, skeleton_, {}, options, name));
   }
-
-  Result<void> take(const RecordedMessage& message, ClipFrames& out) override {
-    placed_.clear();
-    frames_.take(message, placed_);
-    for (const auto& one : placed_) {
-      const auto stamp = stamp_of(*heard_, one);
-      if (!stamp) {
-        ++unknown_;
-        continue;
-      }
-      auto posed = poser_->append(one.frame, *stamp, out);
-      if (posed) {
-        ++posed_;
-        continue;
-      }
-      if (!misfit_) misfit_ = std::move(posed).error();
-      ++misfits_;
-    }
-    return {};
-  }
-
-  Result<void> finish(ClipFrames&) override {
-    if (misfit_ && posed_ == 0) return Failure(*misfit_);
-    if (misfit_) {
-      findings.push_back({Severity::warning, *misfit_,
-                          fmt::format("{} frames of that kind were left out", misfits_), ""});
-    }
-    tell(unknown_, "frames whose clock is known", "others", "they were left out");
-    return {};
-  }
-
   const Skeleton* header() const override { return &skeleton_; }
 
  private:
-  std::shared_ptr<const HeardDevice> heard_;
-  NoitomFrames frames_;
+  Result<void> append(const NoitomFrame& frame, Time stamp, ClipFrames& out) override {
+    return poser_->append(frame, stamp, out);
+  }
+
   Skeleton skeleton_;
   std::optional<NoitomPoser> poser_;
-  std::vector<NoitomFrames::Placed> placed_;
-  std::optional<Error> misfit_;
-  std::uint64_t posed_ = 0, misfits_ = 0, unknown_ = 0;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a source that numbers them, out of a recording: noitom_rows.cpp and xsens_rows.cpp.
+// Frames of a source that numbers them, out of a recording: noitom_rows.cpp, xsens_rows.cpp, and
+// of nodes without a counter the clock, node_rows.cpp.
 #pragma once
 
 #include "kinalign/io/counted_clock.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -83,6 +85,61 @@ std::optional<Time> stamp_of(const HeardDevice& heard, const PlacedFrame<Frame>&
   if (!one.place) return std::nullopt;
   return stamp_of(heard.clock, one.place->life, counter_of(*one.place, heard.step_ns), one.arrival);
 }
+
+/// Rows of such frames. `Source` also says what they are: `frames`, and as what they were expected
+/// where there is none.
+template <class Source, class Frames>
+class NumberedRows : public DeviceRows<Frames> {
+ public:
+  NumberedRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
+      : DeviceRows<Frames>(wish.file.path), heard_(std::move(heard)), frames_(wish.body) {}
+
+  Result<void> take(const RecordedMessage& message, Frames& out) final {
+    placed_.clear();
+    frames_.take(message, placed_);
+    for (const auto& one : placed_) {
+      const auto stamp = stamp_of(*heard_, one);
+      if (!stamp) {
+        ++unknown_;
+        continue;
+      }
+      auto appended = append(one.frame, *stamp, out);
+      if (appended) {
+        ++appended_;
+        continue;
+      }
+      if (!misfit_) misfit_ = std::move(appended).error();
+      ++misfits_;
+    }
+    return {};
+  }
+
+  Result<void> finish(Frames&) final {
+    if (appended_ == 0 && (misfit_ || this->header() == nullptr)) {
+      return Failure(misfit_.value_or(Error{this->file(), 0, std::string(Source::what), "none"}));
+    }
+    kinalign::append(this->findings, further_findings());
+    const std::string frames(Source::frames);
+    if (misfit_) {
+      this->findings.push_back(
+          {Severity::warning, *misfit_,
+           std::to_string(misfits_) + " " + frames + " of that kind were left out", ""});
+    }
+    this->tell(unknown_, frames + " whose clock is known", "others", "they were left out");
+    return {};
+  }
+
+ private:
+  /// Fails, and appends nothing, where the frame does not fit.
+  virtual Result<void> append(const typename Source::Frame& frame, Time stamp, Frames& out) = 0;
+  virtual Findings further_findings() const { return {}; }
+
+  std::shared_ptr<const HeardDevice> heard_;
+  NumberedFrames<Source> frames_;
+  std::vector<PlacedFrame<typename Source::Frame>> placed_;
+  std::optional<Error> misfit_;
+  std::uint64_t appended_ = 0, misfits_ = 0, unknown_ = 0;
+};
 
 /// The clock of frames that are numbered. A rate that the options state wins over `step_ns`.
 inline void count_clock(const std::vector<CountedFrame>& frames, double step_ns,

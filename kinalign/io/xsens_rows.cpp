@@ -5,14 +5,19 @@
 #include "kinalign/io/xsens_pose.h"
 #include "kinalign/io/xsens_stream.h"
 
-#include <fmt/format.h>
-
 namespace kinalign {
 
 namespace {
 
 template <class Items>
+constexpr std::string_view meaning = "poses (type 02) of Xsens MVN";
+template <>
+constexpr std::string_view meaning<XsensTrackers> = "trackers (type 23) of Xsens MVN";
+
+template <class Items>
 struct XsensSource {
+  static constexpr std::string_view what = meaning<Items>;
+  static constexpr std::string_view frames = "samples";
   using Decoder = XsensDecoder;
   using Arrival = XsensArrival;
   using Frame = Items;
@@ -22,11 +27,6 @@ struct XsensSource {
 };
 template <class Items>
 using XsensFrames = NumberedFrames<XsensSource<Items>>;
-
-template <class Items>
-constexpr std::string_view meaning = "poses (type 02) of Xsens MVN";
-template <>
-constexpr std::string_view meaning<XsensTrackers> = "trackers (type 23) of Xsens MVN";
 
 template <class Items>
 class XsensListener final : public DeviceListener {
@@ -55,58 +55,10 @@ class XsensListener final : public DeviceListener {
   std::vector<CountedFrame> counted_;
 };
 
-/// The second pass: what both kinds have alike. `append` is a poser's or nodes'.
-template <class Items, class Frames>
-class XsensStamped : public DeviceRows<Frames> {
- public:
-  XsensStamped(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : DeviceRows<Frames>(wish.file.path), heard_(std::move(heard)), frames_(wish.body) {}
-
-  Result<void> take(const RecordedMessage& message, Frames& out) final {
-    placed_.clear();
-    frames_.take(message, placed_);
-    for (const auto& one : placed_) {
-      const auto stamp = stamp_of(*heard_, one);
-      if (!stamp) {
-        ++unknown_;
-        continue;
-      }
-      auto appended = append(one.frame, *stamp, out);
-      if (appended) continue;
-      if (!misfit_) misfit_ = std::move(appended).error();
-      ++misfits_;
-    }
-    return {};
-  }
-
-  Result<void> finish(Frames&) final {
-    if (this->header() == nullptr) {
-      return Failure(misfit_.value_or(Error{this->file(), 0, std::string(meaning<Items>), "none"}));
-    }
-    kinalign::append(this->findings, further_findings());
-    if (misfit_) {
-      this->findings.push_back({Severity::warning, *misfit_,
-                                fmt::format("{} of that kind were left out", misfits_), ""});
-    }
-    this->tell(unknown_, "samples whose clock is known", "others", "they were left out");
-    return {};
-  }
-
- private:
-  virtual Result<void> append(const Items& items, Time stamp, Frames& out) = 0;
-  virtual Findings further_findings() const { return {}; }
-
-  std::shared_ptr<const HeardDevice> heard_;
-  XsensFrames<Items> frames_;
-  std::vector<PlacedFrame<Items>> placed_;
-  std::optional<Error> misfit_;
-  std::uint64_t misfits_ = 0, unknown_ = 0;
-};
-
-class XsensPoseRows final : public XsensStamped<XsensPose, ClipFrames> {
+class XsensPoseRows final : public NumberedRows<XsensSource<XsensPose>, ClipFrames> {
  public:
   XsensPoseRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : XsensStamped(wish, std::move(heard)), poser_(wish.file.path) {}
+      : NumberedRows(wish, std::move(heard)), poser_(wish.file.path) {}
   const Skeleton* header() const override { return poser_.skeleton(); }
 
  private:
@@ -118,10 +70,10 @@ class XsensPoseRows final : public XsensStamped<XsensPose, ClipFrames> {
   XsensPoser poser_;
 };
 
-class XsensTrackerRows final : public XsensStamped<XsensTrackers, ImuSamples> {
+class XsensTrackerRows final : public NumberedRows<XsensSource<XsensTrackers>, ImuSamples> {
  public:
   XsensTrackerRows(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard)
-      : XsensStamped(wish, std::move(heard)), nodes_(wish.file.path) {}
+      : NumberedRows(wish, std::move(heard)), nodes_(wish.file.path) {}
   const ImuHeader* header() const override { return header_ ? &*header_ : nullptr; }
 
  private:
