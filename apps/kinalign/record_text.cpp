@@ -99,6 +99,13 @@ bool is_heard(const DeviceOptions& device, const LabStatus& status) {
                      [&](const StreamStatus& stream) { return stream.stream == device.name; });
 }
 
+/// Its unheard nodes; or itself, where nothing at all came.
+std::vector<std::string> unheard_of(const DeviceOptions& device, const LabStatus& status) {
+  std::vector<std::string> names = unheard_nodes(device, status);
+  if (names.empty() && !is_heard(device, status)) names.push_back(device.name);
+  return names;
+}
+
 /// "1,234 dropped by the kernel"; empty: nothing.
 std::string loss_of(const PortCounts& counts) {
   std::string text;
@@ -128,8 +135,7 @@ std::string name_of(const StreamStatus& stream) {
 std::vector<std::string> unheard(const Lab& lab, const LabStatus& status) {
   std::vector<std::string> all;
   for (const DeviceOptions& device : lab.devices) {
-    std::vector<std::string> of_one = unheard_nodes(device, status);
-    if (of_one.empty() && !is_heard(device, status)) of_one.push_back(device.name);
+    const auto of_one = unheard_of(device, status);
     all.insert(all.end(), of_one.begin(), of_one.end());
   }
   return all;
@@ -147,9 +153,7 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status) {
       if (replaced && status.now - stream.heard >= forgotten_after) continue;
       lines.push_back({stream_row(stream, device, status), device.required && silent && !replaced});
     }
-    std::vector<std::string> unheard = unheard_nodes(device, status);
-    if (unheard.empty() && !is_heard(device, status)) unheard.push_back(device.name);
-    for (const std::string& name : unheard) {
+    for (const std::string& name : unheard_of(device, status)) {
       lines.push_back(
           {fmt::format("{:<18} nothing yet, {:.0f} s", name, seconds(status.now - status.begun)),
            device.required});

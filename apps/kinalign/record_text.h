@@ -30,9 +30,10 @@ struct TableLine {
 
 /// Head and a line for each sender, each device of which nothing comes, and each port where
 /// something was lost before it could be recorded.
+std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status);
+
 /// Devices, and nodes with places, of which nothing came.
 std::vector<std::string> unheard(const Lab& lab, const LabStatus& status);
-std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status);
 
 /// The required devices, and nodes that have places, of which nothing comes: "mocap", "imu waist".
 std::vector<std::string> missing(const Lab& lab, const LabStatus& status);

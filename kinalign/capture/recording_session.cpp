@@ -59,10 +59,10 @@ RecordingSession::RecordingSession(Options options, Machine machine)
   recorder.utc_minus_host =
       facts_.anchor.utc.time_since_epoch() - facts_.anchor.raw.time_since_epoch();
   recorder_ = std::make_unique<Recorder>(recorder);
-  const auto add_json = [&](const char* topic, const McapSchema& schema) {
-    return recorder_->add_channel({0, 0, topic, "json", {}}, &schema);
+  const auto add_json = [&](std::string_view topic, const McapSchema& schema) {
+    return recorder_->add_channel({0, 0, std::string(topic), "json", {}}, &schema);
   };
-  pairs_ = add_json("/clock/host", clock_pair_schema());
+  pairs_ = add_json(host_clock_topic, clock_pair_schema());
   counts_ = add_json("/counts", sender_counts_schema());
   port_counts_ = add_json("/counts/ports", port_counts_schema());
   mark_channel_ = add_json("/marks", mark_schema());
