@@ -127,16 +127,15 @@ DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus
   out.time.pieces.clear();
   const ClockPieceModel* before = nullptr;
   std::optional<Time> told;  // the last stamp of the piece before
-  Duration last_moved{};     // and its move
   for (const ClockPieceModel& piece : out.model.pieces) {
-    Duration moved = out.moved.empty() ? Duration{0} : out.moved.back();
+    const Duration last_moved = out.moved.empty() ? Duration{0} : out.moved.back();
+    Duration moved = last_moved;
     if (!piece.knots.empty()) {
       if (before != nullptr) moved = move_of(piece, *before, moved);
       const std::size_t first = out.time.pieces.size();
       append_lines(out.model, piece, moved, utc_minus_host, out.time);
       reach_back(out.time, first, told);
       if (before != nullptr && moved == last_moved) keep_rising(out.time, first);
-      last_moved = moved;
       told = stamp_at(piece.knots.back().node, moved);
       before = &piece;
     }

@@ -112,12 +112,11 @@ std::vector<Stretch> even_stretches(std::span<const Exchange> exchanges, Stretch
 std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOrigin& origin,
                              double begin, double end) {
   std::vector<std::int64_t> seconds;
-  seconds.reserve(exchanges.size());
   for (const Exchange& e : exchanges) {
     const double s = bound_by(origin, Side::above, e.n_tx, e.h_rx).s;
     const auto second = static_cast<std::int64_t>(std::floor((s - begin) / knot_s));
     if (!seconds.empty() && seconds.back() == second + 1) continue;
-    for (const std::int64_t near : {second, second + 1}) seconds.push_back(near);
+    seconds.insert(seconds.end(), {second, second + 1});
   }
   std::sort(seconds.begin(), seconds.end());
   seconds.erase(std::unique(seconds.begin(), seconds.end()), seconds.end());
