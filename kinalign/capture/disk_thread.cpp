@@ -29,6 +29,7 @@ DiskThread::DiskThread(RecordingDisk disk, McapCompression compression)
 
 DiskThread::~DiskThread() {
   finish();
+  give_up();
   writer_.join();
   syncer_.join();
 }
@@ -50,6 +51,14 @@ void DiskThread::finish() {
   {
     const std::lock_guard lock(mutex_);
     finishing_ = true;
+  }
+  written_.notify_one();
+}
+
+void DiskThread::give_up() {
+  {
+    const std::lock_guard lock(mutex_);
+    giving_up_ = true;
   }
   written_.notify_one();
 }
@@ -90,7 +99,6 @@ void DiskThread::write() {
 /// file is spoilt.
 void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
   Result<void> result;
-  bool finished = false;
   if (synced_) {
     const Result<void> answer = *std::exchange(synced_, std::nullopt);
     const RecordingDisk::Sync sync = *std::exchange(due_, std::nullopt);
@@ -106,17 +114,26 @@ void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
     queue_bytes_ -= chunk.size();
     lock.unlock();
   } else if (!syncing_) {
-    due_.reset();  // finish() syncs itself
-    lock.unlock();
-    result = disk_.finish();
-    finished = true;
+    return work_on_end(lock);
   } else {
     written_.wait(lock, [this] { return synced_.has_value(); });
     return;
   }
   lock.lock();
   publish(result);
-  done_ = status_.finished = finished;  // together with how it went
+}
+
+/// That it is finished is published together with how it went.
+void DiskThread::work_on_end(std::unique_lock<std::mutex>& lock) {
+  due_.reset();  // finish() syncs itself
+  const bool last = giving_up_;
+  lock.unlock();
+  const Result<void> result = disk_.finish();
+  lock.lock();
+  publish(result);
+  done_ = status_.finished = result || last;
+  if (!result && last) status_.dropped += disk_.unwritten();
+  if (!done_) written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
 }
 
 /// Here and not where it is shown: of a network disk that is gone the question hangs.

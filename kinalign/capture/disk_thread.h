@@ -21,7 +21,7 @@ struct DiskStatus {
   std::uint64_t bytes = 0;                  // in them
   std::uint64_t waiting_bytes = 0;          // that only memory has
   std::optional<std::uint64_t> free_bytes;  // that the disk still takes; absent: it does not say
-  std::uint64_t dropped = 0;     // messages: the disk was refused too long, memory was full
+  std::uint64_t dropped = 0;     // messages: memory was full, or they were given up at the end
   std::optional<Error> refused;  // by the disk just now; tried again with what comes next
   bool finished = false;         // nothing more is written; `refused`: not all could be
 };
@@ -32,15 +32,18 @@ class DiskThread {
   static constexpr std::uint64_t most_waiting = std::uint64_t{256} << 20;
 
   DiskThread(RecordingDisk disk, McapCompression compression);
-  /// As finish(), and waits.
+  /// As finish() and give_up(), and waits.
   ~DiskThread();
   DiskThread(const DiskThread&) = delete;
   DiskThread& operator=(const DiskThread&) = delete;
 
   /// Waits for nothing.
   void push(McapChunkContent chunk);
-  /// No more will be pushed. Returns at once: status().finished says when all is done.
+  /// No more will be pushed. Returns at once: status().finished says when all is done. What the
+  /// disk refuses is tried again each second: somebody may make room.
   void finish();
+  /// After finish(): tries once more. What the disk then refuses counts as dropped.
+  void give_up();
 
   DiskStatus status() const;
   /// Since this was asked last.
@@ -51,6 +54,7 @@ class DiskThread {
   void sync();
   void look_at_room(std::unique_lock<std::mutex>& lock);
   void work_on(std::unique_lock<std::mutex>& lock);
+  void work_on_end(std::unique_lock<std::mutex>& lock);
   void publish(const Result<void>& result);
 
   RecordingDisk disk_;  // the writing thread's
@@ -62,7 +66,7 @@ class DiskThread {
   std::uint64_t queue_bytes_ = 0;
   std::optional<RecordingDisk::Sync> due_;  // for the syncing thread
   std::optional<Result<void>> synced_;      // and its answer
-  bool syncing_ = false, finishing_ = false, done_ = false;
+  bool syncing_ = false, finishing_ = false, giving_up_ = false, done_ = false;
   DiskStatus status_;
   std::vector<PartFailure> failures_;
 

@@ -72,7 +72,7 @@ Result<void> RecordingDisk::open_part() {
 /// With no file open the next write tries again, and nothing is told: that was.
 Result<void> RecordingDisk::write(McapStoredChunk chunk) {
   kept_bytes_ += chunk.bytes.size();
-  kept_.push_back({std::move(chunk), 0});
+  kept_.push_back({std::move(chunk)});
   Result<void> put = put_kept();
   return put || !open_ ? put : next_part(put.error());
 }
@@ -88,6 +88,7 @@ Result<void> RecordingDisk::put_kept() {
     if (!written && fresh && &kept == &kept_.front()) remove_part();
     if (!written) return written;
     kept.end = file_->size();
+    kept.written = true;
   }
   if (given_up_) failures_.push_back({*std::exchange(given_up_, std::nullopt), paths_.back()});
   return {};
@@ -107,6 +108,15 @@ Result<void> RecordingDisk::next_part(const Error& why) {
   Result<void> result = put_kept();
   if (!result && !told) failures_.push_back({why, ""});
   return result;
+}
+
+std::uint64_t RecordingDisk::unwritten() const {
+  std::uint64_t messages = 0;
+  for (const Kept& kept : kept_) {
+    if (kept.written) continue;
+    for (const auto& [channel, count] : kept.chunk.channel_messages) messages += count;
+  }
+  return messages;
 }
 
 std::optional<RecordingDisk::Sync> RecordingDisk::unsynced() const {

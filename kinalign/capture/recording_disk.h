@@ -62,6 +62,8 @@ class RecordingDisk {
   std::uint64_t bytes() const { return bytes_before_ + (open_ ? file_->size() : 0); }
   /// Bytes that only memory has for sure.
   std::uint64_t kept_bytes() const { return kept_bytes_; }
+  /// Messages that no file ever took.
+  std::uint64_t unwritten() const;
 
  private:
   RecordingDisk(FileSystem& files, std::string path, MakeHead head)
@@ -85,6 +87,7 @@ class RecordingDisk {
   struct Kept {
     McapStoredChunk chunk;
     std::uint64_t end = 0;  // in the file; 0: it is not in it
+    bool written = false;   // it is, or was in one before
   };
   std::deque<Kept> kept_;
   std::uint64_t kept_bytes_ = 0, bytes_before_ = 0;

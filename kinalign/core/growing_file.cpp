@@ -3,6 +3,8 @@
 
 #include "kinalign/core/file_calls.h"
 
+#include <sys/stat.h>
+
 #include <utility>
 
 namespace kinalign {
@@ -75,6 +77,10 @@ Result<void> GrowingFile::sync() const {
   }
   // Some file systems can't; the file's own sync is what counts.
   if (!std::exchange(named_, true)) sync_folder(*files_, path_);
+  struct stat status {};
+  const bool removed =
+      ::fstat(fd_, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 0;
+  if (removed) return Failure(Error{path_, 0, "a file that stays", "none: it was removed"});
   return {};
 }
 

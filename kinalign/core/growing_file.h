@@ -29,8 +29,8 @@ class GrowingFile {
   Result<void> cut(std::uint64_t size);
   /// Fills `to` with what was appended at `at`.
   Result<void> read_at(std::uint64_t at, std::span<char> to) const;
-  /// What was appended before reaches the disk, and with the first sync the name. Another thread
-  /// may call it meanwhile, one at a time.
+  /// What was appended before reaches the disk, and with the first sync the name. Fails, too, where
+  /// the file was removed. Another thread may call it meanwhile, one at a time.
   Result<void> sync() const;
   /// What was synced before can't be lost by it.
   void close();

@@ -5,6 +5,7 @@
 #include "tests/io/mcap_files.h"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
 
 #include <atomic>
 #include <future>
@@ -121,4 +122,81 @@ TEST_CASE("a failed sync is told, and the recording goes on in a new file") {
   CHECK(failures[0].why.expected == "data that reach the disk");
   CHECK(failures[0].next == folder / "a.part2.mcap");
   CHECK(read_mcap(folder.read("a.part2.mcap")).messages.size() == 20);
+}
+
+namespace {
+
+/// Takes nothing while it is full.
+struct FullDisk : PosixFiles {
+  std::atomic<bool> full{false};
+
+  int open(const char* path, int flags, mode_t mode) override {
+    return full && (flags & O_CREAT) != 0 ? refuse() : PosixFiles::open(path, flags, mode);
+  }
+  ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
+    return full ? refuse() : PosixFiles::write_at(fd, data, size, at);
+  }
+  static int refuse() {
+    errno = ENOSPC;
+    return -1;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what a full disk refuses at the end is written as soon as there is room") {
+  const FreshFolder folder;
+  FullDisk files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  DiskThread thread(*std::move(disk), McapCompression::none);
+  files.full = true;
+  thread.push(chunk(0, 28));
+  thread.finish();
+  wait_until([&] { return thread.status().refused.has_value(); });
+  CHECK(!thread.status().finished);
+  files.full = false;
+  wait_until([&] { return thread.status().finished; });
+  CHECK(!thread.status().refused);
+  CHECK(thread.status().dropped == 0);
+  const std::vector<std::string> paths = thread.status().paths;
+  const std::string last(file_name(paths.back()));
+  CHECK(read_mcap(folder.read(last)).messages.size() == 28);
+}
+
+TEST_CASE("what a full disk never takes is counted when it is given up") {
+  const FreshFolder folder;
+  FullDisk files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  DiskThread thread(*std::move(disk), McapCompression::none);
+  thread.push(chunk(0, 10));
+  wait_until([&] { return thread.status().waiting_bytes == 0; });
+  files.full = true;
+  thread.push(chunk(10, 38));
+  thread.finish();
+  wait_until([&] { return thread.status().refused.has_value(); });
+  thread.give_up();
+  wait_until([&] { return thread.status().finished; });
+  CHECK(thread.status().refused);
+  CHECK(thread.status().dropped == 28);
+  CHECK(read_mcap(folder.read("a.mcap")).messages.size() == 10);
+}
+
+TEST_CASE("a file that is removed is told, and the recording goes on in a new one") {
+  const FreshFolder folder;
+  PosixFiles files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  DiskThread thread(*std::move(disk), McapCompression::none);
+  wait_until([&] { return thread.status().free_bytes.has_value(); });
+  REQUIRE(files.remove((folder / "a.mcap").c_str()) == 0);
+  thread.push(chunk(0, 10));
+  wait_until([&] { return thread.status().paths.size() == 2; });
+  thread.finish();
+  wait_until([&] { return thread.status().finished; });
+  const auto failures = thread.take_failures();
+  REQUIRE(failures.size() == 1);
+  CHECK(failures[0].why.found == "none: it was removed");
+  CHECK(read_mcap(folder.read("a.part2.mcap")).messages.size() == 10);
 }
