@@ -46,18 +46,24 @@ std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t p
 }
 
 /// A new place, or that of the one who has been silent longest. Who said little was a stranger, who
-/// comes from the newcomer's host likely the newcomer itself: two seconds are enough of them.
+/// comes from the newcomer's host likely the newcomer itself: two seconds are enough of them. Who
+/// says everything from another port crowds out itself alone.
 std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime now) {
   constexpr std::uint64_t little = 10;
   if (senders_.size() < most) {
     senders_.emplace_back();
     return senders_.size() - 1;
   }
+  const auto own = std::count_if(senders_.begin(), senders_.end(),
+                                 [&](const Sender& sender) { return sender.host == host; });
+  const bool crowds = 2 * static_cast<std::size_t>(own) >= most;
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < senders_.size(); ++i) {
     const Sender& sender = senders_[i];
-    const bool soon = sender.times < little || sender.host == host;
-    const Duration patience = soon ? std::chrono::seconds(2) : std::chrono::minutes(1);
+    const bool stranger = sender.times < little, same_host = sender.host == host;
+    Duration patience = std::chrono::minutes(1);
+    if (stranger || same_host) patience = std::chrono::seconds(2);
+    if (stranger && same_host && crowds) patience = Duration::zero();
     if (now - sender.heard < patience) continue;
     if (!found || sender.heard < senders_[*found].heard) found = i;
   }

@@ -79,3 +79,16 @@ TEST_CASE("after 1000 lives a device goes on with one of its own, and strangers 
     CHECK(senders.number(host(3, stranger), 8, later + 1s) == number);
   }
 }
+
+TEST_CASE("a sender with another port for every frame loses none, and takes nobody else's place") {
+  Senders senders;
+  const HostAddress device = host(0, 1), other = host(0, 2);
+  REQUIRE(senders.number(other, 7, begin) == 0);
+  for (std::uint16_t k = 0; k < 5000; ++k) {
+    const HostTime now = begin + k * 8ms;
+    const auto number = senders.number(device, k, now);
+    REQUIRE(number);
+    CHECK(senders.at(*number).port == k);
+    if (k % 200 == 0) CHECK(senders.number(other, 7, now) == 0);
+  }
+}
