@@ -46,6 +46,12 @@ bool MarkPort::decode(const Piece& piece, Mark& mark) {
   return true;
 }
 
+PortCounts MarkPort::port_counts() const {
+  PortCounts counts = pieces_.counts();
+  for (const auto& [cause, times] : counts_.refused) counts.refused += times;
+  return counts;
+}
+
 void MarkPort::take_piece(const Piece& piece, const TakeMark& take) {
   RecordedMark heard;
   if (!decode(piece, heard.mark)) return;

@@ -4,6 +4,7 @@
 
 #include "kinalign/capture/pieces.h"
 #include "kinalign/io/mark.h"
+#include "kinalign/io/recording_counts.h"
 #include "kinalign/io/recording_format.h"
 
 #include <cstdint>
@@ -32,8 +33,10 @@ class MarkPort {
   /// Tells each mark once.
   void drain(HostAxis& axis, const TakeMark& take);
 
-  Form form() const { return form_; }
+  /// "marks", "trigger".
+  std::string name() const { return form_ == Form::call ? "marks" : "trigger"; }
   std::uint16_t port() const { return pieces_.port(); }
+  PortCounts port_counts() const;
   const MarkPortCounts& counts() const { return counts_; }
 
  private:

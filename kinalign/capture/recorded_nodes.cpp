@@ -102,6 +102,7 @@ void RecordedNodes::judge(Node& node, const NodeNews& news) {
       return;
   }
   ++counts.frames;
+  node.raw.status.samples += news.readings.size();
   if (!news.exchange) return;
   const BootKey before = std::exchange(node.boot, news.exchange->boot);
   const bool same_life = before == node.boot && counts.frames > 1;

@@ -101,10 +101,12 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
       }
     }
     if (!source.exchanges) {
+      source.clock = std::make_unique<FollowedClock>();
       McapChannel channel = to_channel(topic("exchange", source.life), source.raw);
       channel.message_encoding = exchange_encoding;
       source.exchanges = recorder.add_channel(std::move(channel));
     }
+    source.clock->push(*exchange, axis.epoch());
     const std::int64_t sent_ns = exchange->n_tx.time_since_epoch().count();
     const auto device_ns =
         sent_ns < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(sent_ns));
@@ -150,6 +152,7 @@ void RecordedPort::look_at(Source& source) const {
   counts.frames = watched.frames;
   counts.order = watched.order;
   counts.refused = watched.refused;
+  if (source.clock) source.recorded.status.clock = source.clock->now();
   const SlimeDevice* tracker = slimes_ ? slimes_->device_at(source.address) : nullptr;
   if (tracker == nullptr) return;
   counts.order = tracker->counts();

@@ -51,6 +51,7 @@ class RecordedPort {
     std::uint64_t life = 0;                    // of its sender
     NodeAddress address;                       // whose newest piece it was
     std::optional<std::uint16_t> exchanges{};  // channel
+    std::unique_ptr<FollowedClock> clock{};    // since it pinged
   };
 
   RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret);

@@ -24,7 +24,8 @@ void RecordedSource::record(Recorder& recorder, HostTime arrival, std::string_vi
 void RecordedSource::tell(Recorder& recorder, std::uint16_t counts, double elapsed_s,
                           HostTime now) {
   const SenderCounts& all = status.counts;
-  const std::uint64_t came = all.frames > 0 ? all.frames : all.messages;
+  const std::uint64_t frames = all.frames > 0 ? all.frames : all.messages;
+  const std::uint64_t came = status.samples > 0 ? status.samples : frames;
   const std::uint64_t before = std::exchange(second_began_, came);
   status.rate_hz = came > before ? static_cast<double>(came - before) / elapsed_s : 0.0;
   recorder.record(counts, now, to_json(status.stream, status.sender, status.node, all));

@@ -24,6 +24,18 @@ std::vector<McapAttachment> attachments_of(const RecordingSession::Options& opti
   return all;
 }
 
+/// Of nodes those that have places: which others there are nobody says.
+ExpectedDevices expected_of(const Lab& lab) {
+  ExpectedDevices expected;
+  for (const DeviceOptions& device : lab.devices) {
+    if (device.nodes.empty()) expected[device.name] = device.required;
+    for (const auto& [id, place] : device.nodes) {
+      expected[device.name + "/" + id] = device.required;
+    }
+  }
+  return expected;
+}
+
 /// A key for each port, so that no two draw the same nonces.
 SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
   SipHashKey key{};
@@ -63,9 +75,9 @@ RecordingSession::RecordingSession(Options options, Machine machine)
     return recorder_->add_channel({0, 0, std::string(topic), "json", {}}, &schema);
   };
   pairs_ = add_json(host_clock_topic, clock_pair_schema());
-  counts_ = add_json("/counts", sender_counts_schema());
-  port_counts_ = add_json("/counts/ports", port_counts_schema());
-  mark_channel_ = add_json("/marks", mark_schema());
+  counts_ = add_json(sender_counts_topic, sender_counts_schema());
+  port_counts_ = add_json(port_counts_topic, port_counts_schema());
+  mark_channel_ = add_json(marks_topic, mark_schema());
 }
 
 Result<void> RecordingSession::open_ports() {
@@ -162,11 +174,12 @@ Result<void> RecordingSession::start(const std::string& path, const std::string&
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
   // Asked for on the disk's thread: it owns what it needs.
-  auto head = [facts = facts_, attachments = attachments_of(options_, facts_.anchor.utc)](
-                  int part) mutable -> RecordingHead {
+  auto head = [facts = facts_, expected = expected_of(options_.lab),
+               attachments =
+                   attachments_of(options_, facts_.anchor.utc)](int part) mutable -> RecordingHead {
     facts.part = part;
     return {{std::string(recording_profile), "kinalign " KINALIGN_VERSION},
-            {to_metadata(facts)},
+            {to_metadata(facts), to_metadata(expected)},
             attachments};
   };
   RecordingDisk disk = KA_TRY(RecordingDisk::open(machine_.files, path, std::move(head)));
@@ -218,7 +231,7 @@ std::vector<std::pair<std::string, std::uint16_t>> RecordingSession::ports() con
   for (const RecordedPort& port : ports_) all.emplace_back(port.device().name, port.port());
   if (nodes_) all.emplace_back(nodes_->device().name, nodes_->port());
   for (const MarkPort& port : mark_ports_) {
-    all.emplace_back(port.form() == MarkPort::Form::call ? "marks" : "trigger", port.port());
+    all.emplace_back(port.name(), port.port());
   }
   return all;
 }
@@ -227,6 +240,7 @@ std::vector<std::pair<std::string, PortCounts>> RecordingSession::port_counts() 
   std::vector<std::pair<std::string, PortCounts>> all;
   for (const RecordedPort& port : ports_) all.emplace_back(port.device().name, port.counts());
   if (nodes_) all.emplace_back(nodes_->device().name, nodes_->counts());
+  for (const MarkPort& port : mark_ports_) all.emplace_back(port.name(), port.port_counts());
   return all;
 }
 

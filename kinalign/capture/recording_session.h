@@ -8,6 +8,7 @@
 #include "kinalign/capture/recorded_nodes.h"
 #include "kinalign/capture/recorded_port.h"
 #include "kinalign/capture/recorder.h"
+#include "kinalign/io/recording_counts.h"
 #include "kinalign/io/recording_format.h"
 #include "kinalign/take/lab.h"
 
@@ -55,6 +56,8 @@ class RecordingSession {
                      const std::string& action);
   /// Ends it: what has come to the machine goes to the disk, see disk().finished.
   void stop();
+  /// After stop(): what the disk still refuses is given up.
+  void give_up() { disk_->give_up(); }
   bool recording() const { return recorder_->started(); }
 
   /// Onto the channel of marks; before a take into its pre-roll.
@@ -72,10 +75,11 @@ class RecordingSession {
   std::vector<HostClockEvent> take_clock_events() { return axis_.take_events(); }
   /// By the device's name, or "marks" and "trigger": the port that it is heard on.
   std::vector<std::pair<std::string, std::uint16_t>> ports() const;
-  /// By the device's name.
+  /// As ports().
   std::vector<std::pair<std::string, PortCounts>> port_counts() const;
   const std::vector<MarkPort>& mark_ports() const { return mark_ports_; }
-  const NodeReceiver* nodes() const { return nodes_ ? &nodes_->receiver() : nullptr; }
+  /// nullptr where the lab has no nodes.
+  NodeReceiver* nodes() { return nodes_ ? &nodes_->receiver() : nullptr; }
   const Lab& lab() const { return options_.lab; }
   HostTime now() { return axis_.now(); }
 

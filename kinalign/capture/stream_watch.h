@@ -7,7 +7,7 @@
 #include "kinalign/io/kinect_frames.h"
 #include "kinalign/io/kinect_stream.h"
 #include "kinalign/io/noitom_stream.h"
-#include "kinalign/io/recording_format.h"
+#include "kinalign/io/recording_counts.h"
 #include "kinalign/io/xsens_stream.h"
 
 #include <map>

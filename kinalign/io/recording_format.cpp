@@ -8,7 +8,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <initializer_list>
 
 namespace kinalign {
 
@@ -43,15 +42,6 @@ template <class Stamp>
 bool is_near(Stamp stamp) {
   constexpr Duration furthest{1'000'000'000'000'000'000};
   return -furthest <= stamp.time_since_epoch() && stamp.time_since_epoch() <= furthest;
-}
-
-/// Properties of a schema, behind others.
-std::string integers(std::initializer_list<std::string_view> names) {
-  std::string properties;
-  for (const std::string_view name : names) {
-    properties += fmt::format(R"(, "{}": {{"type": "integer"}})", name);
-  }
-  return properties;
 }
 
 // What an exchange's flags say.
@@ -91,6 +81,21 @@ std::optional<RecordingFacts> to_facts(const McapMetadata& metadata) {
   return RecordingFacts{text_of(texts, "subject"), text_of(texts, "action"),
                         text_of(texts, "host"),    text_of(texts, "first"),
                         static_cast<int>(*part),   {host, Time{Duration{*utc}}}};
+}
+
+McapMetadata to_metadata(const ExpectedDevices& devices) {
+  McapMetadata metadata{std::string(devices_metadata), {}};
+  for (const auto& [device, required] : devices) {
+    metadata.texts[device] = required ? "required" : "optional";
+  }
+  return metadata;
+}
+
+std::optional<ExpectedDevices> to_expected_devices(const McapMetadata& metadata) {
+  if (metadata.name != devices_metadata) return std::nullopt;
+  ExpectedDevices devices;
+  for (const auto& [device, how] : metadata.texts) devices[device] = how == "required";
+  return devices;
 }
 
 McapChannel to_channel(std::string topic, const RawChannel& raw) {
@@ -136,46 +141,6 @@ std::optional<ClockPair> to_clock_pair(std::string_view json) {
   const auto raw = ns("raw_ns"), utc = ns("utc_ns");
   if (!raw || !utc) return std::nullopt;
   return ClockPair{HostTime{*raw}, Time{*utc}};
-}
-
-McapSchema sender_counts_schema() {
-  return {0, "kinalign.SenderCounts", "jsonschema",
-          R"({"type": "object", "properties": {"stream": {"type": "string"}, )"
-          R"("sender": {"type": "string"}, "node": {"type": "string"})" +
-              integers({"messages", "bytes", "frames", "lost", "late", "duplicates", "restarts",
-                        "refused"}) +
-              R"(}, "required": ["stream", "sender", "messages"]})"};
-}
-
-std::string to_json(const std::string& stream, const std::string& sender, const std::string& node,
-                    const SenderCounts& counts) {
-  nlohmann::ordered_json json{{"stream", stream},
-                              {"sender", sender},
-                              {"messages", counts.messages},
-                              {"bytes", counts.bytes},
-                              {"frames", counts.frames},
-                              {"lost", counts.order.lost},
-                              {"late", counts.order.late},
-                              {"duplicates", counts.order.duplicates},
-                              {"restarts", counts.order.restarts},
-                              {"refused", counts.refused}};
-  if (!node.empty()) json["node"] = node;
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
-McapSchema port_counts_schema() {
-  return {0, "kinalign.PortCounts", "jsonschema",
-          R"({"type": "object", "properties": {"stream": {"type": "string"})" +
-              integers({"pieces", "bytes", "refused", "cut", "dropped", "links", "unsent"}) +
-              R"(}, "required": ["stream", "pieces"]})"};
-}
-
-std::string to_json(const std::string& stream, const PortCounts& counts) {
-  const nlohmann::ordered_json json{{"stream", stream},      {"pieces", counts.pieces},
-                                    {"bytes", counts.bytes}, {"refused", counts.refused},
-                                    {"cut", counts.cut},     {"dropped", counts.dropped},
-                                    {"links", counts.links}, {"unsent", counts.unsent}};
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 McapSchema mark_schema() {

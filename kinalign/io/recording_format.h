@@ -8,9 +8,9 @@
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/io/mark.h"
 #include "kinalign/io/mcap_records.h"
-#include "kinalign/io/sequence_count.h"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,6 +34,14 @@ McapMetadata to_metadata(const RecordingFacts& facts);
 /// raw one 31 years from its start, UTC as log times.
 std::optional<RecordingFacts> to_facts(const McapMetadata& metadata);
 
+/// The metadata record of that name: who was to be heard, as topics begin ("mocap", "imu/7"), and
+/// whether they are required.
+inline constexpr std::string_view devices_metadata = "kinalign.devices";
+using ExpectedDevices = std::map<std::string, bool>;
+McapMetadata to_metadata(const ExpectedDevices& devices);
+/// Absent where the record is another.
+std::optional<ExpectedDevices> to_expected_devices(const McapMetadata& metadata);
+
 /// What a channel of raw payloads is, as its metadata.
 struct RawChannel {
   std::string stream;     // "mocap"
@@ -55,36 +63,12 @@ McapSchema clock_pair_schema();
 std::string to_json(const ClockPair& pair);
 std::optional<ClockPair> to_clock_pair(std::string_view json);
 
-/// What has come of a stream so far, and what its sender's own numbers say of the way.
-struct SenderCounts {
-  std::uint64_t messages = 0, bytes = 0;  // as they came
-  std::uint64_t frames = 0;               // that were complete, where the protocol is decoded
-  SequenceCounts order;                   // of these, where the sender numbers them
-  std::uint64_t refused = 0;              // recognised and of no use
-};
-McapSchema sender_counts_schema();
-/// `node`: of inertial nodes the id, else empty.
-std::string to_json(const std::string& stream, const std::string& sender, const std::string& node,
-                    const SenderCounts& counts);
-
-/// What has come to a port so far, and what was lost before it could be recorded.
-struct PortCounts {
-  std::uint64_t pieces = 0, bytes = 0;
-  std::uint64_t refused = 0;  // of one sender too many
-  std::uint64_t cut = 0;      // datagrams longer than any can be
-  std::uint64_t dropped = 0;  // by the kernel, for want of room; of nodes also what is no frame
-  std::uint64_t links = 0;    // connections that were made
-  std::uint64_t unsent = 0;   // answers that the system did not take
-  bool sifted = false;        // the kernel throws away what is no frame, and counts it so
-};
-McapSchema port_counts_schema();
-std::string to_json(const std::string& stream, const PortCounts& counts);
-
 /// A mark, and who made it: "keyboard", "call" or "trigger"; of the last two the address.
 struct RecordedMark {
   Mark mark;
   std::string source, sender;
 };
+inline constexpr std::string_view marks_topic = "/marks";
 McapSchema mark_schema();
 std::string to_json(const RecordedMark& recorded);
 std::optional<RecordedMark> to_mark(std::string_view json);

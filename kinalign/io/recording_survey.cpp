@@ -23,6 +23,26 @@ bool has_rotation(std::string_view payload) {
                      });
 }
 
+constexpr std::size_t most_counted = 4096, most_marks = 65'536;
+
+/// Of a message on a channel of counts: who is counted, in the words that it begins with.
+std::string_view counted(std::string_view json) {
+  return json.substr(0, std::min(json.find("\"messages\":"), json.find("\"pieces\":")));
+}
+
+/// The last message of each.
+using LastCounts = std::map<std::string, std::string, std::less<>>;
+
+template <class Counted>
+std::vector<Counted> all_of(const LastCounts& last,
+                            std::optional<Counted> (*decode)(std::string_view)) {
+  std::vector<Counted> all;
+  for (const auto& [who, json] : last) {
+    if (auto one = decode(json)) all.push_back(*std::move(one));
+  }
+  return all;
+}
+
 /// Collects what the records of one file say.
 class Surveyor {
  public:
@@ -38,6 +58,8 @@ class Surveyor {
     std::stable_sort(
         survey_.channels.begin(), survey_.channels.end(),
         [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
+    survey_.senders = all_of(senders_, to_counted_sender);
+    survey_.ports = all_of(ports_, to_counted_port);
     if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
     return std::move(survey_);
   }
@@ -45,6 +67,7 @@ class Surveyor {
  private:
   void add(const McapChannel& channel) { channels_[channel.id].channel = channel; }
   void add(const McapMetadata& metadata) {
+    if (auto devices = to_expected_devices(metadata)) survey_.expected = *std::move(devices);
     if (survey_.facts) return;
     survey_.facts = to_facts(metadata);
     if (survey_.facts) clock_.push_back(survey_.facts->anchor);
@@ -69,8 +92,30 @@ class Surveyor {
     channel.bytes += message.data.size();
     const bool tracker = channel.channel.message_encoding == "slimevr";
     if (tracker && !channel.rotates) channel.rotates = has_rotation(message.data);
-    if (channel.channel.topic != host_clock_topic) return;
+    if (survey_.facts && channel.channel.message_encoding == "json") {
+      add_told(channel.channel.topic, message);
+    }
+  }
+  /// What the recorder itself says.
+  void add_told(std::string_view topic, const McapMessage& message) {
+    if (topic == sender_counts_topic) return keep_last(message.data, senders_);
+    if (topic == port_counts_topic) return keep_last(message.data, ports_);
+    if (topic == marks_topic && survey_.marks.size() < most_marks) {
+      if (auto mark = to_mark(message.data)) {
+        survey_.marks.emplace_back(*std::move(mark), message.log_time);
+      }
+    }
+    if (topic != host_clock_topic) return;
     if (const auto pair = to_clock_pair(message.data)) clock_.push_back(*pair);
+  }
+  static void keep_last(std::string_view json, LastCounts& last) {
+    const std::string_view who = counted(json);
+    const auto known = last.find(who);
+    if (known != last.end()) {
+      known->second = json;
+    } else if (last.size() < most_counted) {
+      last.emplace(who, json);
+    }
   }
   template <class Other>
   void add(const Other&) {}
@@ -78,6 +123,7 @@ class Surveyor {
   const McapReader& reader_;
   std::map<std::uint16_t, ChannelSurvey> channels_;
   std::vector<ClockPair> clock_;
+  LastCounts senders_, ports_;
   RecordingSurvey survey_;
 };
 

@@ -7,6 +7,7 @@
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
 #include "kinalign/io/mcap_reader.h"
+#include "kinalign/io/recording_counts.h"
 #include "kinalign/io/recording_format.h"
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -36,7 +38,11 @@ struct RecordingSurvey {
   bool closed = false;                   // index and end are there
   std::vector<std::string> attachments;  // names
   std::vector<WallClockStep> steps;      // of the recording machine's wall clock
-  std::uint64_t bytes = 0;               // of the file
+  ExpectedDevices expected;
+  std::vector<CountedSender> senders;                         // the last counts of each, …
+  std::vector<CountedPort> ports;                             // … and of each device's port
+  std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times
+  std::uint64_t bytes = 0;                                    // of the file
   Findings findings;
 };
 

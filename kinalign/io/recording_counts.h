@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a recording counts while it is made: docs/formats/recording.md.
+#pragma once
+
+#include "kinalign/io/mcap_records.h"
+#include "kinalign/io/sequence_count.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+inline constexpr std::string_view sender_counts_topic = "/counts";
+inline constexpr std::string_view port_counts_topic = "/counts/ports";
+
+/// What has come of a stream so far, and what its sender's own numbers say of the way.
+struct SenderCounts {
+  std::uint64_t messages = 0, bytes = 0;  // as they came
+  std::uint64_t frames = 0;               // that were complete, where the protocol is decoded
+  SequenceCounts order;                   // of these, where the sender numbers them
+  std::uint64_t refused = 0;              // recognised and of no use
+};
+McapSchema sender_counts_schema();
+/// `node`: of inertial nodes the id, else empty.
+std::string to_json(const std::string& stream, const std::string& sender, const std::string& node,
+                    const SenderCounts& counts);
+struct CountedSender {
+  std::string stream, sender, node;
+  SenderCounts counts;
+};
+/// Counts that are missing are 0; absent where nobody is named.
+std::optional<CountedSender> to_counted_sender(std::string_view json);
+
+/// What has come to a port so far, and what was lost before it could be recorded.
+struct PortCounts {
+  std::uint64_t pieces = 0, bytes = 0;
+  std::uint64_t refused = 0;  // of one sender too many; of marks also what is none
+  std::uint64_t cut = 0;      // datagrams longer than any can be
+  std::uint64_t dropped = 0;  // by the kernel, for want of room; of nodes also what is no frame
+  std::uint64_t links = 0;    // connections that were made
+  std::uint64_t unsent = 0;   // answers that the system did not take
+  bool sifted = false;        // the kernel throws away what is no frame, and counts it so
+};
+McapSchema port_counts_schema();
+std::string to_json(const std::string& stream, const PortCounts& counts);
+struct CountedPort {
+  std::string stream;
+  PortCounts counts;
+};
+std::optional<CountedPort> to_counted_port(std::string_view json);
+
+}  // namespace kinalign
