@@ -156,12 +156,12 @@ Progress Console::progress() {
 
 void Console::show(const std::vector<std::pair<std::string, Colour>>& lines) {
   if (!progress_ || err_.holds()) return;
-  const auto [rows, columns] = size_of(surroundings_.err);
+  const std::size_t rows = size_of(surroundings_.err).rows;
   std::string all = shown_ ? start_of_lines(shown_lines_) : "";
   const std::size_t count = std::min(lines.size(), rows - 1);
   for (std::size_t i = 0; i < count; ++i) {
     const auto& [text, colour] = lines[i];
-    all += painted(colour_err_, colour, first_places(text, columns - 1));
+    all += painted(colour_err_, colour, first_places(text, columns()));
     if (i + 1 < count) all += '\n';
   }
   err_.put(all);
@@ -169,6 +169,8 @@ void Console::show(const std::vector<std::pair<std::string, Colour>>& lines) {
   shown_ = count > 0;
   shown_lines_ = std::max<std::size_t>(count, 1);
 }
+
+std::size_t Console::columns() const { return size_of(surroundings_.err).columns - 1; }
 
 void Console::ring() {
   if (!progress_) return;

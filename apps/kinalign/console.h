@@ -80,6 +80,9 @@ class Console {
   Failure refuse(Error error);
   bool refused() const { return refused_; }
 
+  /// Places in a line of what show() shows.
+  std::size_t columns() const;
+
   /// Says what went wrong and what was advised.
   void report(const Error& error);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/json_text.h"
+#include "apps/kinalign/record_text.h"
 #include "apps/kinalign/summary.h"
 
 #include <fmt/format.h>
@@ -36,6 +37,90 @@ Json json_of(const ChannelSurvey& channel) {
           {"missing", channel.missing}};
 }
 
+/// "mocap from 192.168.7.5:51234", "imu/7 from 192.168.7.21:4000"
+std::string name_of(const CountedSender& sender) {
+  const std::string node = sender.node.empty() ? "" : "/" + sender.node;
+  return sender.stream + node + (sender.sender.empty() ? "" : " from " + sender.sender);
+}
+
+/// Seconds from the recording's first message.
+double moment_of(std::uint64_t log_time, const RecordingSurvey& survey) {
+  std::uint64_t first = log_time;
+  for (const ChannelSurvey& channel : survey.channels) {
+    if (channel.messages > 0) first = std::min(first, channel.first);
+  }
+  return static_cast<double>(log_time - first) / 1e9;
+}
+
+std::string mark_text(const RecordedMark& mark, double at_s) {
+  const std::string text = mark.mark.text.empty() ? "" : " " + shown(mark.mark.text);
+  const std::string latency = mark.mark.latency ? fmt::format(", {:g} ms before its effect",
+                                                              1e3 * seconds(*mark.mark.latency))
+                                                : "";
+  return fmt::format("{}{} at {:.3f} s, by {}{}", kinalign::name_of(mark.mark.kind), text, at_s,
+                     mark.source, latency);
+}
+
+/// What the recorder counted and was told.
+void add_told(const RecordingSurvey& survey, Json& json) {
+  json["marks"] = json["senders"] = json["ports"] = Json::array();
+  for (const auto& [mark, log_time] : survey.marks) {
+    Json one = Json::parse(to_json(mark));
+    one["time_ns"] = log_time;
+    json["marks"].push_back(one);
+  }
+  for (const CountedSender& one : survey.senders) {
+    json["senders"].push_back(Json::parse(to_json(one.stream, one.sender, one.node, one.counts)));
+  }
+  for (const CountedPort& one : survey.ports) {
+    json["ports"].push_back(Json::parse(to_json(one.stream, one.counts)));
+  }
+}
+
+/// Those that the lab wanted, and that the file has nothing of.
+std::vector<std::string> unheard(const RecordingSurvey& survey) {
+  std::vector<std::string> names;
+  for (const auto& [name, required] : survey.expected) {
+    const std::string begins = "/" + name + "/raw";
+    const bool heard =
+        std::any_of(survey.channels.begin(), survey.channels.end(), [&](const ChannelSurvey& one) {
+          return one.channel.topic.starts_with(begins) && one.messages > 0;
+        });
+    if (!heard && required) names.push_back(name);
+  }
+  return names;
+}
+
+/// Of what the devices sent, before it could be recorded.
+Findings losses(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  for (const std::string& name : unheard(survey)) {
+    findings.push_back({Severity::warning,
+                        {path, 0, "messages of " + name, "none"},
+                        "a device that the lab requires is not in it",
+                        "see that it sends to the recording machine; docs/recording.md"});
+  }
+  for (const CountedSender& one : survey.senders) {
+    const SequenceCounts& order = one.counts.order;
+    if (order.lost == 0) continue;
+    findings.push_back({Severity::note,
+                        {path, 0, "every frame that " + name_of(one) + " sent",
+                         fmt::format("{} lost of {}", grouped(order.lost),
+                                     grouped(order.lost + one.counts.frames))},
+                        "by the sender's own numbers; they did not reach the recording machine",
+                        ""});
+  }
+  for (const CountedPort& one : survey.ports) {
+    const std::string lost = loss_of(one.counts);
+    if (lost.empty() || one.counts.sifted) continue;
+    findings.push_back({Severity::warning,
+                        {path, 0, "everything that came to the port of " + one.stream, lost},
+                        "these reached the recording machine and are not in it",
+                        "see what else it does while it records"});
+  }
+  return findings;
+}
+
 }  // namespace
 
 Description describe_survey(const std::string& path, const RecordingSurvey& survey,
@@ -60,6 +145,16 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
                      grouped(channel.messages), seconds_of(channel), rate_of(channel),
                      static_cast<double>(channel.bytes) / 1e6));
   }
+  for (const CountedSender& one : survey.senders) {
+    line("sender", name_of(one) + ": " + counts_text(one.counts));
+  }
+  for (const CountedPort& one : survey.ports) {
+    const std::string lost = loss_of(one.counts);
+    if (!lost.empty()) line("port", one.stream + ": " + lost);
+  }
+  for (const auto& [mark, log_time] : survey.marks) {
+    line("mark", mark_text(mark, moment_of(log_time, survey)));
+  }
   Json json{{"file", path},
             {"closed", survey.closed},
             {"messages", survey.messages},
@@ -74,6 +169,7 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
   }
   for (std::size_t k = 1; k < parts.size(); ++k) json["goes_on_in"].push_back(parts[k].path);
   for (const ChannelSurvey& channel : survey.channels) json["channels"].push_back(json_of(channel));
+  add_told(survey, json);
   return {text, json_text(json)};
 }
 
@@ -105,6 +201,7 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
                         "these messages reached the recorder and are not in the file",
                         "a further part of the recording may have them: recover takes all parts"});
   }
+  append(findings, losses(path, survey));
   return findings;
 }
 

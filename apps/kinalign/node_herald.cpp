@@ -86,11 +86,7 @@ void NodeHerald::tell_end() {
     console_.print("  " + summary_of(status) + "\n");
     console_.print_json(status_json(status));
   }
-  const std::string refused = refused_text(receiver_.counts());
-  if (!refused.empty()) console_.print("  refused  " + refused + "\n");
-  for (const std::string& line : claims_text(receiver_.refused_nodes(), receiver_.counts())) {
-    console_.print("  " + line + "\n");
-  }
+  console_.print(refused_lines(receiver_));
   console_.print_json(node_counts_json(receiver_));
 }
 

@@ -150,6 +150,15 @@ std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCoun
   return lines;
 }
 
+std::string refused_lines(const NodeReceiver& receiver) {
+  const std::string refused = refused_text(receiver.counts());
+  std::string lines = refused.empty() ? "" : "  refused  " + refused + "\n";
+  for (const std::string& line : claims_text(receiver.refused_nodes(), receiver.counts())) {
+    lines += "  " + line + "\n";
+  }
+  return lines;
+}
+
 std::string node_counts_json(const NodeReceiver& receiver) {
   const NodeCounts& counts = receiver.counts();
   Json json{

@@ -31,6 +31,9 @@ std::string refused_text(const NodeCounts& counts);
 /// three that have to do with keys; of datagrams whose ids nobody vouches for.
 std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCounts& counts);
 
+/// Both, as whole lines; empty where nothing was refused.
+std::string refused_lines(const NodeReceiver& receiver);
+
 std::string pair_json(const ClockPair& pair);
 /// Each count by its name.
 std::string node_counts_json(const NodeReceiver& receiver);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/key_advice.h"
-#include "apps/kinalign/mark_keys.h"
-#include "apps/kinalign/record_herald.h"
+#include "apps/kinalign/program.h"
+#include "apps/kinalign/record_stage.h"
 #include "apps/kinalign/settings.h"
 #include "apps/kinalign/steady_memory.h"
 #include "apps/kinalign/take_path.h"
@@ -22,14 +22,11 @@
 #include <cerrno>
 #include <cstring>
 #include <set>
-#include <thread>
 #include <utility>
 
 namespace kinalign {
 
 namespace {
-
-using namespace std::chrono_literals;
 
 // What waits for a slow disk, before the program grows.
 constexpr std::size_t waiting_room = std::size_t{16} << 20;
@@ -40,7 +37,7 @@ struct Record {
   std::string lab_key;
   std::optional<double> seconds;
   std::optional<std::int64_t> marks_port, trigger_port;
-  bool wait = false;
+  bool wait = false, repeat = false;
   RecordOptions options;
 };
 
@@ -86,7 +83,8 @@ Usage describe_record(Record& o) {
       {"subject", "who moves: part of the file's name", &o.subject},
       {"action", "what they do: part of the file's name", &o.action},
       {"seconds", "end by itself after so long", &o.seconds, 0.0, 1e6},
-      {"wait", "wait for a mark that starts the take; one that stops ends it", &o.wait}};
+      {"wait", "wait for a mark that starts the take; one that stops ends it", &o.wait},
+      {"repeat", "with --wait: then wait for the next take, until Ctrl-C", &o.repeat}};
   usage.settings = {{"lab_key", "file of the key that the nodes' keys come from", &o.lab_key},
                     {"marks_port", "UDP port for marks of other programs; 0: any free one",
                      &o.marks_port, 0.0, 65535.0},
@@ -98,6 +96,9 @@ Usage describe_record(Record& o) {
     if (o.marks_port && o.marks_port == o.trigger_port && o.marks_port != 0) {
       return Failure(Error{"--trigger-port", 0, "another port than --marks-port",
                            std::to_string(*o.trigger_port)});
+    }
+    if (o.repeat && !o.wait) {
+      return Failure(Error{"--repeat", 0, "--wait beside it: takes need a start", "none"});
     }
     KA_TRY(lab_of(o, {}));
     return {};
@@ -171,60 +172,38 @@ Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
   return options;
 }
 
-/// Devices, keyboard and marks while a take is awaited and recorded.
-class Stage {
- public:
-  Stage(RecordingSession& session, RecordHerald& herald) : session_(session), herald_(herald) {}
-
-  /// What comes within a twentieth of a second. Whether to go on.
-  bool turn() {
-    session_.turn(50ms, keyboard_.fd());
-    for (const char key : keyboard_.read()) {
-      if (const auto pressed = keys_.take(key, session_.now())) {
-        session_.mark({pressed->first, "keyboard", ""}, pressed->second);
-      }
-    }
-    for (const HeardMark& heard : session_.take_marks()) {
-      marks_.push_back(heard.first.mark.kind);
-      herald_.tell(heard);
-    }
-    herald_.look(keys_.typed());
-    return !interrupted() && !herald_.disk_full();
+/// A take: whether nothing of it is amiss, as an exit code.
+Result<int> record_take(const Record& o, Call& call, RecordingSession& session, Stage& stage) {
+  RecordHerald& herald = stage.herald();
+  const std::string path = free_take_path(call.common.out, o.subject, o.action);
+  KA_TRY(session.start(path, o.subject, o.action));
+  herald.tell_start(path);
+  stage.record({o.seconds, o.wait});
+  herald.tell_end();
+  const DiskStatus disk = *session.disk();
+  if (disk.refused) {
+    call.console.report(*disk.refused);
+    return failed;
   }
-  /// Whether a mark of that kind came since one was found last; those before it are forgotten.
-  bool take_mark(Mark::Kind kind) {
-    const auto found = std::find(marks_.begin(), marks_.end(), kind);
-    const bool came = found != marks_.end();
-    marks_.erase(marks_.begin(), came ? found + 1 : found);
-    return came;
-  }
-
- private:
-  RecordingSession& session_;
-  RecordHerald& herald_;
-  Keyboard keyboard_;
-  MarkKeys keys_;
-  std::vector<Mark::Kind> marks_;
-};
-
-/// False: somebody ended it first.
-bool wait_for_start(Stage& stage) {
-  while (stage.turn()) {
-    if (stage.take_mark(Mark::Kind::start)) return true;
-  }
-  return false;
+  const bool whole = disk.dropped == 0 && disk.paths.size() == 1 && !herald.disk_full();
+  return whole && herald.unheard_required().empty() ? 0 : 1;
 }
 
-/// Until somebody, --seconds, with --wait a stop, or a full disk ends it, and all is written.
-void serve(RecordingSession& session, Stage& stage, const Record& o) {
-  const HostTime begun = session.now();
-  const auto goes_on = [&] {
-    const bool stopped = stage.take_mark(Mark::Kind::stop) && o.wait;
-    return !stopped && !(o.seconds && seconds(session.now() - begun) >= *o.seconds);
-  };
-  for (bool going = true; going && goes_on();) going = stage.turn();
-  session.stop();
-  while (!session.disk()->finished) std::this_thread::sleep_for(5ms);
+/// One take, or with --repeat one after another. The worst exit code of all.
+Result<int> record_takes(const Record& o, Call& call, RecordingSession& session, Stage& stage) {
+  int worst = 0;
+  for (bool first = true;; first = false) {
+    if (o.wait) {
+      stage.herald().tell_waiting();
+      if (!stage.wait_for_start()) {
+        if (!first) return worst;
+        call.console.note("kinalign record: stopped before a start came; nothing was recorded");
+        return 1;
+      }
+    }
+    worst = std::max(worst, KA_TRY(record_take(o, call, session, stage)));
+    if (!o.repeat || stage.ends()) return worst;
+  }
 }
 
 Result<int> run(Record& o, Call& call) {
@@ -239,21 +218,7 @@ Result<int> run(Record& o, Call& call) {
       std::move(options), {call.surroundings.files, ports_clock, nodes_clock}));
   RecordHerald herald(*session, console);
   Stage stage(*session, herald);
-  if (o.wait) {
-    herald.tell_waiting();
-    if (!wait_for_start(stage)) {
-      console.note("kinalign record: stopped before a start came; nothing was recorded");
-      return 1;
-    }
-  }
-  const std::string path = free_take_path(call.common.out, o.subject, o.action);
-  KA_TRY(session->start(path, o.subject, o.action));
-  herald.tell_start(path);
-  serve(*session, stage, o);
-  herald.tell_end();
-  const DiskStatus disk = *session->disk();
-  if (disk.refused) return Failure(*disk.refused);
-  return disk.dropped > 0 || disk.paths.size() > 1 || herald.disk_full() ? 1 : 0;
+  return record_takes(o, call, *session, stage);
 }
 
 }  // namespace
@@ -269,7 +234,7 @@ Verb record_verb() {
            "slimevr; transports: udp, tcp (to the device's address), tcp-listen. On a terminal "
            "keys make marks: s start, e stop, t T-pose, Enter begins and ends a text. Exit code "
            "1 where the disk failed and the recording went on in another file, or was nearly "
-           "full and ended it.",
+           "full and ended it, or where a required device sent nothing.",
        .examples =
            {{"kinalign record -o takes --device imu=nodes:5005 --device mocap=xsens:udp:9763",
              "inertial nodes, and Xsens MVN sending to this machine"},
@@ -279,8 +244,8 @@ Verb record_verb() {
              "manifest"},
             {"kinalign record -o takes --config lab.toml",
              "the devices of a lab: docs/recording.md"},
-            {"kinalign record -o takes --config lab.toml --trigger-port 30 --wait",
-             "a take from Vicon's start to its stop, and the seconds before"}},
+            {"kinalign record -o takes --config lab.toml --trigger-port 30 --wait --repeat",
+             "a take from each start of Vicon's to its stop, and the seconds before"}},
        .common = {"out", "json"},
        .out_is_folder = true},
       describe_record, run);

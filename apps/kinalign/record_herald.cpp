@@ -3,8 +3,10 @@
 
 #include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/json_text.h"
+#include "apps/kinalign/lab_table.h"
 #include "apps/kinalign/mark_keys.h"
 #include "apps/kinalign/node_event_text.h"
+#include "apps/kinalign/node_text.h"
 #include "apps/kinalign/summary.h"
 
 #include <fmt/format.h>
@@ -42,6 +44,12 @@ std::string minutes_text(double minutes) {
 
 }  // namespace
 
+std::vector<std::string> RecordHerald::unheard_required() const {
+  Lab lab = session_.lab();
+  std::erase_if(lab.devices, [](const DeviceOptions& device) { return !device.required; });
+  return unheard(lab, lab_status());
+}
+
 LabStatus RecordHerald::lab_status() const {
   LabStatus status{session_.now(), begun_, session_.streams(), {}, session_.port_counts()};
   if (session_.nodes() != nullptr) status.nodes = session_.nodes()->status();
@@ -56,6 +64,7 @@ void RecordHerald::tell_waiting() {
 
 void RecordHerald::tell_start(const std::string& path) {
   path_ = path;
+  forecast_ = {};
   console_.print(harmless(fmt::format("recording to {}\n  {}\n", path, ports_text(session_))));
   console_.print_json(
       json_text(Json{{"event", "started"}, {"file", path}, {"ports", ports_of(session_)}}));
@@ -86,6 +95,7 @@ void RecordHerald::look(const std::optional<std::string>& typed) {
   if (second) {
     next_second_ = now + 1s;
     if (session_.recording()) look_at_disk(now);
+    tell_who_lacks(status);
     tell_who_is_silent(status);
     tell_status(status);
   }
@@ -97,6 +107,23 @@ void RecordHerald::tell_news() {
   for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
   for (const Finding& finding : session_.take_findings()) tell(finding);
   for (const HostClockEvent& event : session_.take_clock_events()) tell(event);
+  if (NodeReceiver* nodes = session_.nodes()) tell_news_of(*nodes);
+}
+
+/// Who falls silent and who comes back is told of all devices alike: tell_who_is_silent().
+void RecordHerald::tell_news_of(NodeReceiver& nodes) {
+  using Kind = NodeEvent::Kind;
+  for (const NodeEvent& event : nodes.take_node_events()) {
+    const bool told = event.kind == Kind::left || event.kind == Kind::returned;
+    if (!told) console_.note(harmless(event_text(event)));
+    console_.print_json(event_json(event));
+  }
+  const HostTime now = session_.now();
+  for (const auto& [stream, node_id, event] : nodes.take_clock_events()) {
+    clock_news_.hear(stream, node_id, event, now);
+    console_.print_json(event_json(event, stream, node_id));
+  }
+  for (const std::string& line : clock_news_.lines(now)) console_.note(line);
 }
 
 void RecordHerald::look_at_disk(HostTime now) {
@@ -115,6 +142,16 @@ void RecordHerald::look_at_disk(HostTime now) {
         "kinalign record: warning: the disk is full in {:.0f} min at this rate", minutes));
     console_.print_json(json_text(Json{{"event", "disk_low"}, {"minutes_left", minutes}}));
     console_.ring();
+  }
+}
+
+/// Once, when devices had time to come.
+void RecordHerald::tell_who_lacks(const LabStatus& status) {
+  if (status.now - status.begun < 5s || std::exchange(lacks_told_, true)) return;
+  const auto ports = session_.ports();
+  for (const std::string& line :
+       lines_of_unheard(session_.lab(), status, {ports.begin(), ports.end()})) {
+    console_.note(harmless(line));
   }
 }
 
@@ -164,6 +201,15 @@ void RecordHerald::tell(const PartFailure& failure) {
       {"event", "disk_failed"}, {"what", to_string(failure.why)}, {"goes_on_in", failure.next}}));
 }
 
+void RecordHerald::tell_refused(const Error& why) {
+  console_.complain(harmless(
+      fmt::format("kinalign record: {}: the end of the take is kept in memory and tried again for "
+                  "30 s: make room, or give it up with another Ctrl-C",
+                  to_string(why))));
+  console_.print_json(json_text(Json{{"event", "end_refused"}, {"what", to_string(why)}}));
+  console_.flush();
+}
+
 void RecordHerald::tell_status(const LabStatus& status) {
   Json event{{"event", "status"}};
   if (const auto disk = session_.disk()) {
@@ -187,7 +233,7 @@ void RecordHerald::tell_status(const LabStatus& status) {
 /// "disk  34.2 MB in takes/03_S1A02_01.mcap, 120.5 GB left: 12 h at this rate"
 std::string RecordHerald::disk_line() const {
   const auto disk = session_.disk();
-  if (!disk) return "waiting for a start";
+  if (!session_.recording() || !disk) return "waiting for a start";
   const auto left = forecast_.minutes_left();
   return fmt::format(
       "disk  {:.1f} MB in {}, {:.1f} GB left{}", static_cast<double>(disk->bytes) / 1e6,
@@ -198,7 +244,7 @@ std::string RecordHerald::disk_line() const {
 void RecordHerald::show(const LabStatus& status, const std::optional<std::string>& typed) {
   if (!console_.shows()) return;
   std::vector<std::pair<std::string, Colour>> lines;
-  for (const TableLine& line : lab_table(session_.lab(), status)) {
+  for (const TableLine& line : lab_table(session_.lab(), status, console_.columns())) {
     lines.emplace_back(harmless(line.text), line.bad ? Colour::bad : Colour::plain);
   }
   const auto left = forecast_.minutes_left();
@@ -218,6 +264,9 @@ void RecordHerald::tell_end() {
              {"streams", Json::array()}};
   std::string lines;
   for (const std::string& path : disk.paths) lines.append(path).append("\n");
+  if (disk.dropped > 0) {
+    lines += fmt::format("  {} messages lost: the disk did not take them\n", grouped(disk.dropped));
+  }
   for (const StreamStatus& stream : status.streams) {
     event["streams"].push_back(Json::parse(json_of(stream, status)));
     lines += end_line(stream);
@@ -225,16 +274,17 @@ void RecordHerald::tell_end() {
   for (const std::string& name : unheard(session_.lab(), status)) {
     lines += "  " + name + ": nothing came\n";
   }
+  event["missing"] = unheard_required();
   for (const auto& [name, counts] : status.ports) {
     event["ports"][name] = Json::parse(to_json(name, counts));
     lines += port_line(name, counts);
   }
   for (const MarkPort& port : session_.mark_ports()) {
-    const char* name = port.form() == MarkPort::Form::call ? "marks" : "trigger";
-    event["ports"][name] = {{"marks", port.counts().marks},
-                            {"repeats", port.counts().repeats},
-                            {"refused", port.counts().refused}};
+    event["ports"][port.name()].update(Json{{"marks", port.counts().marks},
+                                            {"repeats", port.counts().repeats},
+                                            {"refused_for", port.counts().refused}});
   }
+  if (const NodeReceiver* nodes = session_.nodes()) lines += refused_lines(*nodes);
   console_.print(harmless(lines));
   console_.print_json(json_text(event));
 }

@@ -2,6 +2,7 @@
 // Tells what happens while a lab is recorded: a table on a terminal, lines of JSON for programs.
 #pragma once
 
+#include "apps/kinalign/clock_news.h"
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/disk_forecast.h"
 #include "apps/kinalign/record_text.h"
@@ -11,6 +12,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace kinalign {
 
@@ -25,17 +27,23 @@ class RecordHerald {
   void tell(const HeardMark& mark);
   /// Asked after each turn, it looks ten times a second. `typed`: a text that is being typed.
   void look(const std::optional<std::string>& typed);
+  /// The disk does not take the end of a take.
+  void tell_refused(const Error& why);
   void tell_end();
 
   /// The disk has nothing left but its reserve: the take has to end.
   bool disk_full() const { return disk_full_; }
+  /// Required devices and nodes of which nothing came.
+  std::vector<std::string> unheard_required() const;
 
  private:
   void look_at_disk(HostTime now);
   void tell_news();
+  void tell_news_of(NodeReceiver& nodes);
   void tell(const PartFailure& failure);
   void tell(const Finding& finding);
   void tell(const HostClockEvent& event);
+  void tell_who_lacks(const LabStatus& status);
   void tell_who_is_silent(const LabStatus& status);
   void tell_status(const LabStatus& status);
   void show(const LabStatus& status, const std::optional<std::string>& typed);
@@ -46,8 +54,9 @@ class RecordHerald {
   Console& console_;
   std::string path_;  // of the take; empty: none has begun
   DiskForecast forecast_;
+  ClockNews clock_news_;
   std::set<std::string> silent_;  // who was told to be
-  bool disk_full_ = false;
+  bool disk_full_ = false, lacks_told_ = false;
   HostTime begun_, next_look_ = HostTime::min(), next_second_ = HostTime::min();
 };
 

@@ -17,70 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A sender in whose place another is heard is shown for so long.
-constexpr Duration forgotten_after = std::chrono::seconds(30);
-
-double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
-
-bool is_silent(const StreamStatus& stream, HostTime now) {
-  return now - stream.heard >= silent_after;
-}
-
-/// The node's present stream: of two nodes of one id the one that was heard last.
-const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStatus>& nodes) {
-  const NodeStatus* found = nullptr;
-  for (const NodeStatus& node : nodes) {
-    if (std::to_string(node.node_id) != stream.node) continue;
-    if (found == nullptr || node.heard > found->heard) found = &node;
-  }
-  return found;
-}
-
-/// Host minus node, and half the certified interval: "-1000.0031 s ± 1.04 ms".
-std::string clock_cell(const NodeStatus* node) {
-  if (node == nullptr || !node->n || !node->stamp) return "";
-  const ClockStamp& stamp = *node->stamp;
-  if (stamp.certainty != Certainty::certified) return "not locked";
-  const Duration offset = stamp.time.time_since_epoch() - node->n->time_since_epoch();
-  return fmt::format("{:.4f} s ± {:.2f} ms", seconds(offset),
-                     1e3 * seconds(*stamp.latest - *stamp.earliest) / 2);
-}
-
-std::string rate_cell(const StreamStatus& stream, double nominal_hz) {
-  const std::string rate = fmt::format("{:.1f}", stream.rate_hz);
-  return nominal_hz > 0 ? fmt::format("{} of {:g}", rate, nominal_hz) : rate;
-}
-
-std::string row(const std::array<std::string, 10>& cells) {
-  std::string line = fmt::format("{:<18} {:>12} {:>7} {:>5} {:>5} {:>8} {:>22} {:>7} {:>7}  {}",
-                                 cells[0], cells[1], cells[2], cells[3], cells[4], cells[5],
-                                 cells[6], cells[7], cells[8], cells[9]);
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line;
-}
-
-/// Whether another sender of the same device is heard: a program that was started again has
-/// another port. Nodes stand each for itself.
-bool is_replaced(const StreamStatus& stream, const LabStatus& status) {
-  return stream.node.empty() &&
-         std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& other) {
-           return other.stream == stream.stream && !is_silent(other, status.now);
-         });
-}
-
-std::string stream_row(const StreamStatus& stream, const DeviceOptions& device,
-                       const LabStatus& status) {
-  const NodeStatus* node = node_of(stream, status.nodes);
-  const SequenceCounts& order = stream.counts.order;
-  return row({name_of(stream), rate_cell(stream, nominal_rate_hz(device)), grouped(order.lost),
-              grouped(order.late), grouped(order.duplicates),
-              fmt::format("{:.1f} s", seconds(status.now - stream.heard)), clock_cell(node),
-              node != nullptr && node->n ? fmt::format("{:+.1f}", 1e6 * node->drift) : "",
-              stream.battery_volts ? fmt::format("{:.2f} V", *stream.battery_volts) : "",
-              fmt::format("{:.1f} MB  {} {}", megabytes(stream.counts.bytes), device.transport,
-                          stream.sender)});
-}
-
 /// Its nodes that have places and that were never heard.
 std::vector<std::string> unheard_nodes(const DeviceOptions& device, const LabStatus& status) {
   std::vector<std::string> names;
@@ -99,14 +35,42 @@ bool is_heard(const DeviceOptions& device, const LabStatus& status) {
                      [&](const StreamStatus& stream) { return stream.stream == device.name; });
 }
 
-/// Its unheard nodes; or itself, where nothing at all came.
+}  // namespace
+
+double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
+
+bool is_silent(const StreamStatus& stream, HostTime now) {
+  return now - stream.heard >= silent_after;
+}
+
+const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStatus>& nodes) {
+  const NodeStatus* found = nullptr;
+  for (const NodeStatus& node : nodes) {
+    if (std::to_string(node.node_id) != stream.node) continue;
+    if (found == nullptr || node.heard > found->heard) found = &node;
+  }
+  return found;
+}
+
+std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus* node) {
+  if (node == nullptr) return stream.clock;
+  if (!node->n || !node->stamp) return std::nullopt;
+  const ClockStamp& stamp = *node->stamp;
+  SenderClock clock;
+  clock.host_minus_sender = stamp.time.time_since_epoch() - node->n->time_since_epoch();
+  clock.drift = node->drift;
+  if (stamp.certainty == Certainty::certified) {
+    clock.half_interval = (*stamp.latest - *stamp.earliest) / 2;
+  }
+  return clock;
+}
+
 std::vector<std::string> unheard_of(const DeviceOptions& device, const LabStatus& status) {
   std::vector<std::string> names = unheard_nodes(device, status);
   if (names.empty() && !is_heard(device, status)) names.push_back(device.name);
   return names;
 }
 
-/// "1,234 dropped by the kernel"; empty: nothing.
 std::string loss_of(const PortCounts& counts) {
   std::string text;
   for (const auto& [count, what] :
@@ -118,14 +82,6 @@ std::string loss_of(const PortCounts& counts) {
   }
   return text;
 }
-
-std::string port_loss(const std::string& device, const LabStatus& status) {
-  const auto port = std::find_if(status.ports.begin(), status.ports.end(),
-                                 [&](const auto& one) { return one.first == device; });
-  return port == status.ports.end() ? "" : loss_of(port->second);
-}
-
-}  // namespace
 
 std::string name_of(const StreamStatus& stream) {
   if (stream.node.empty()) return stream.stream;
@@ -141,26 +97,22 @@ std::vector<std::string> unheard(const Lab& lab, const LabStatus& status) {
   return all;
 }
 
-std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status) {
-  std::vector<TableLine> lines{{row({"device", "rate/s", "lost", "late", "twice", "heard", "clock",
-                                     "ppm", "battery", "recorded"}),
-                                false}};
+std::vector<std::string> lines_of_unheard(const Lab& lab, const LabStatus& status,
+                                          const std::map<std::string, std::uint16_t>& ports) {
+  std::vector<std::string> lines;
   for (const DeviceOptions& device : lab.devices) {
-    for (const StreamStatus& stream : status.streams) {
-      if (stream.stream != device.name) continue;
-      const bool silent = is_silent(stream, status.now);
-      const bool replaced = silent && is_replaced(stream, status);
-      if (replaced && status.now - stream.heard >= forgotten_after) continue;
-      lines.push_back({stream_row(stream, device, status), device.required && silent && !replaced});
+    const auto counts = std::find_if(status.ports.begin(), status.ports.end(),
+                                     [&](const auto& one) { return one.first == device.name; });
+    const bool linked = counts != status.ports.end() && counts->second.links > 0;
+    const std::uint16_t port = ports.at(device.name);
+    std::string what = fmt::format("nothing has come to port {} yet", port);
+    if (device.transport == "tcp") {
+      what = fmt::format("{} {}:{} yet", linked ? "nothing has come from" : "no connection to",
+                         device.address, port);
+    } else if (device.transport == "tcp-listen" && !linked) {
+      what = fmt::format("nobody has connected to port {} yet", port);
     }
-    for (const std::string& name : unheard_of(device, status)) {
-      lines.push_back(
-          {fmt::format("{:<18} nothing yet, {:.0f} s", name, seconds(status.now - status.begun)),
-           device.required});
-    }
-    if (const std::string lost = port_loss(device.name, status); !lost.empty()) {
-      lines.push_back({fmt::format("{:<18} {}", device.name, lost), true});
-    }
+    for (const std::string& name : unheard_of(device, status)) lines.push_back(name + ": " + what);
   }
   return lines;
 }
@@ -199,19 +151,23 @@ std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& stream
   return newest;
 }
 
-std::string end_line(const StreamStatus& stream) {
-  const SenderCounts& counts = stream.counts;
-  std::string line = fmt::format("  {} from {}: {} messages, {:.1f} MB", name_of(stream),
-                                 stream.sender, grouped(counts.messages), megabytes(counts.bytes));
+std::string counts_text(const SenderCounts& counts) {
+  std::string text =
+      fmt::format("{} messages, {:.1f} MB", grouped(counts.messages), megabytes(counts.bytes));
   std::string_view between = "; ";
   for (const auto& [count, what] :
        {std::pair(counts.order.lost, "lost"), std::pair(counts.order.late, "late"),
         std::pair(counts.order.duplicates, "twice"), std::pair(counts.refused, "refused")}) {
     if (count == 0) continue;
-    line += fmt::format("{}{} {}", between, grouped(count), what);
+    text += fmt::format("{}{} {}", between, grouped(count), what);
     between = ", ";
   }
-  return line + "\n";
+  return text;
+}
+
+std::string end_line(const StreamStatus& stream) {
+  return fmt::format("  {} from {}: {}\n", name_of(stream), stream.sender,
+                     counts_text(stream.counts));
 }
 
 std::string port_line(const std::string& name, const PortCounts& counts) {
@@ -226,6 +182,13 @@ std::string json_of(const StreamStatus& stream, const LabStatus& status) {
   json["silent_s"] = seconds(status.now - stream.heard);
   if (stream.battery_volts) json["battery_v"] = *stream.battery_volts;
   const NodeStatus* node = node_of(stream, status.nodes);
+  if (stream.clock) {
+    json["clock"] = {{"host_minus_sender_ns", stream.clock->host_minus_sender.count()},
+                     {"drift_ppm", 1e6 * stream.clock->drift}};
+    if (const auto half = stream.clock->half_interval) {
+      json["clock"]["half_interval_ms"] = 1e3 * seconds(*half);
+    }
+  }
   if (node == nullptr) return json_text(json);
   Json clock = Json::parse(status_json(*node));
   for (const char* said_above :

@@ -4,6 +4,8 @@
 
 #include "kinalign/capture/recording_session.h"
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,18 +24,27 @@ struct LabStatus {
   std::vector<std::pair<std::string, PortCounts>> ports{};  // by the device's name
 };
 
-/// A line of the table; `bad` lines are of what is missing and required, and of what is lost.
-struct TableLine {
-  std::string text;
-  bool bad = false;
-};
+bool is_silent(const StreamStatus& stream, HostTime now);
 
-/// Head and a line for each sender, each device of which nothing comes, and each port where
-/// something was lost before it could be recorded.
-std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status);
+/// The node's present stream: of two nodes of one id the one that was heard last; nullptr: none.
+const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStatus>& nodes);
+
+/// Of a node or of a sender that pings; absent: it has none, or nothing is known of it yet.
+std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus* node);
+
+/// "1,234 dropped by the kernel"; empty: nothing was lost.
+std::string loss_of(const PortCounts& counts);
+
+/// Its nodes that have places and were never heard; or itself, where nothing at all came.
+std::vector<std::string> unheard_of(const DeviceOptions& device, const LabStatus& status);
 
 /// Devices, and nodes with places, of which nothing came.
 std::vector<std::string> unheard(const Lab& lab, const LabStatus& status);
+
+/// "kinect: nobody has connected to port 7201 yet": of each device that is heard on such a port and
+/// that lacks, or of whose nodes one does.
+std::vector<std::string> lines_of_unheard(const Lab& lab, const LabStatus& status,
+                                          const std::map<std::string, std::uint16_t>& ports);
 
 /// The required devices, and nodes that have places, of which nothing comes: "mocap", "imu waist".
 std::vector<std::string> missing(const Lab& lab, const LabStatus& status);
@@ -41,10 +52,14 @@ std::vector<std::string> missing(const Lab& lab, const LabStatus& status);
 /// Of connections that one device made one after another, from one port, the newest alone.
 std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& streams);
 
+double megabytes(std::uint64_t bytes);
+
 /// "mocap", "imu waist", "imu 7".
 std::string name_of(const StreamStatus& stream);
 
-/// "mocap from 192.168.7.5:51234: 7,500 messages, 11.1 MB; 3 frames lost"
+/// "7,500 messages, 11.1 MB; 3 lost, 1 late"
+std::string counts_text(const SenderCounts& counts);
+/// "  mocap from 192.168.7.5:51234: 7,500 messages, 11.1 MB; 3 lost\n"
 std::string end_line(const StreamStatus& stream);
 /// "  port of mocap: 12 dropped by the kernel\n"; empty: nothing worth telling.
 std::string port_line(const std::string& name, const PortCounts& counts);

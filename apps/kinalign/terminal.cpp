@@ -10,19 +10,6 @@ namespace kinalign {
 
 namespace {
 
-/// Places on a terminal: a character each, none for a colour.
-std::size_t places(std::string_view text) {
-  std::size_t count = 0;
-  bool colour = false;
-  for (const char c : text) {
-    if (c == '\x1b') colour = true;
-    const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // of a UTF-8 character
-    if (!colour && !goes_on) ++count;
-    if (c == 'm') colour = false;
-  }
-  return count;
-}
-
 /// Where a line's text begins: behind "  space  ", "warning  ".
 std::size_t text_column(std::string_view line) {
   constexpr std::size_t most = 24;
@@ -65,6 +52,18 @@ TerminalSize size_of(int fd) {
 std::string start_of_lines(std::size_t lines) {
   if (lines <= 1) return "\r\x1b[K";
   return fmt::format("\r\x1b[{}A\x1b[J", lines - 1);
+}
+
+std::size_t places(std::string_view text) {
+  std::size_t count = 0;
+  bool colour = false;
+  for (const char c : text) {
+    if (c == '\x1b') colour = true;
+    const bool goes_on = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // of a UTF-8 character
+    if (!colour && !goes_on) ++count;
+    if (c == 'm') colour = false;
+  }
+  return count;
 }
 
 std::string_view first_places(std::string_view text, std::size_t most) {

@@ -18,6 +18,9 @@ TerminalSize size_of(int fd);
 /// erased.
 std::string start_of_lines(std::size_t lines);
 
+/// That a text takes: a character each, none for a colour.
+std::size_t places(std::string_view text);
+
 /// As much of a text without colours as has room in so many places.
 std::string_view first_places(std::string_view text, std::size_t most);
 

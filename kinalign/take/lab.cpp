@@ -34,6 +34,7 @@ Failure wrong(const DeviceOptions& device, std::string expected, std::string fou
 
 /// Whether a device can be reached, or reach us.
 Result<void> check_place(const DeviceOptions& device) {
+  if (device.port < 0) return wrong(device, "port, where it is heard (0: any free one)", "none");
   if (device.transport == "tcp" && (device.address.empty() || device.port == 0)) {
     return wrong(device, "an address and a port to connect to", "none");
   }

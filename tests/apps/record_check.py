@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What devices send stands in the recording, however it ends.
+"""What devices send stands in the recording, and what is said of it meanwhile.
 record_check.py BUILD_FOLDER [CASE...]"""
 import fcntl
 import json
@@ -9,78 +9,17 @@ import pty
 import random
 import re
 import select
-import signal
 import socket
 import struct
-import subprocess
 import sys
 import termios
-import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
-from cases import LONG, Skip, case, in_time, kinalign, main
+from cases import case, in_time, kinalign, main
 from mcap_walk import Walk
-
-KILLS = 200 if LONG else 20
-
-
-class Recording:
-    """The real program with a mocap port, until it is told to end. `first`: the event that it begins with."""
-
-    def __init__(self, folder, *words, device="mocap=noitom:udp:127.0.0.1:0", first="started"):
-        device = ["--device", device] if device else []
-        self.program = subprocess.Popen(
-            [str(cases.PROGRAM), "record", "-o", str(folder), *device, "--compression", "none", "--json",
-             *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        line = self.program.stdout.readline()
-        assert line, self.program.communicate()[1]
-        self.started = json.loads(line)
-        assert self.started["event"] == first, line
-        self.port = self.started["ports"].get("mocap")
-        self.path = pathlib.Path(self.started.get("file", ""))
-
-    def until(self, event):
-        """What it says up to an event of that name, with it."""
-        said = []
-        while not said or said[-1]["event"] != event:
-            line = self.program.stdout.readline()
-            assert line, (event, said)
-            said.append(json.loads(line))
-        return said
-
-    def end(self, sign=signal.SIGINT):
-        self.program.send_signal(sign)
-        out, err = self.program.communicate(timeout=60)
-        return self.program.returncode, [json.loads(line) for line in out.splitlines()], err
-
-
-class Sender(threading.Thread):
-    """Numbered datagrams, 200 a second, as long as those of 354 floats; when each was sent."""
-
-    def __init__(self, port):
-        super().__init__()
-        self.to, self.sent, self.going = ("127.0.0.1", port), [], True
-
-    def run(self):
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
-            while self.going:
-                one.sendto(f"{len(self.sent):010}".encode() + bytes(1470), self.to)
-                self.sent.append(time.monotonic())
-                time.sleep(0.005)
-
-    def __enter__(self):
-        self.start()
-        return self
-
-    def __exit__(self, *_):
-        self.going = False
-        self.join()
-
-
-def numbers(walk):
-    return [int(payload[:10]) for topic, *_, payload in walk.messages if topic == "/mocap/raw"]
+from recording_program import Recording, Sender, free_port, numbers, send, sender_to
 
 
 @case
@@ -109,7 +48,7 @@ def a_take_is_never_overwritten(folder):
     paths = []
     for _ in range(3):
         recording = Recording(folder / "takes", "--seconds", "0")
-        assert recording.program.wait(60) == 0
+        assert recording.program.wait(60) == 1, "its required device sent nothing"
         recording.program.communicate()
         paths.append(recording.path.name)
     assert paths == ["take_01.mcap", "take_02.mcap", "take_03.mcap"], paths
@@ -134,37 +73,14 @@ def a_port_that_cannot_be_used_is_told_of_while_it_is_recorded(folder):
 
 
 @case
-def a_kill_at_any_moment_costs_at_most_the_last_second_and_recover_closes_what_is_left(folder):
-    draw = random.Random(11)
-    for k in range(KILLS):
-        recording = Recording(folder / f"takes{k}")
-        with Sender(recording.port) as sender:
-            time.sleep(draw.uniform(0.1, 10 if LONG else 3))
-            recording.program.send_signal(signal.SIGKILL)
-            killed = time.monotonic()
-            recording.program.communicate()
-        torn = recording.path.read_bytes()
-        found = set(numbers(Walk(recording.path)))
-        owed = [n for n, sent in enumerate(sender.sent) if sent < killed - 1]
-        lost = [n for n in owed if n not in found]
-        assert not lost, f"kill {k}: {len(lost)} of {len(owed)} messages lost, the first {lost[0]}"
-        whole = folder / f"whole{k}.mcap"
-        done = kinalign("recover", recording.path, "-o", whole, "--json")
-        assert done.returncode in (0, 1), done.stderr
-        assert json.loads(done.stdout)["messages"] >= len(found), done.stdout
-        assert recording.path.read_bytes() == torn, "the torn file was touched"
-        assert kinalign("recover", whole, "-o", folder / f"again{k}.mcap").returncode == 0, "not whole"
-
-
-@case
 def the_page_names_every_kind_of_line(_):
     root = pathlib.Path(__file__).parents[2]
     table = (root / "docs/recording.md").read_text().split("| event | |\n| --- | --- |\n")[1].split("\n\n")[0]
     listed = {name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.split("|")[1])}
     source = (root / "apps/kinalign/record_herald.cpp").read_text()
     made = set(re.findall(r'"(\w+)"', " ".join(re.findall(r'"event", ([^}]+)}', source))))
-    if "HostClockEvent& event)" in source:  # in time-server's words
-        made |= set(re.findall(r'"(host_event)"', (root / "apps/kinalign/node_event_text.cpp").read_text()))
+    words = (root / "apps/kinalign/node_event_text.cpp").read_text()  # time-server's, for the same
+    made |= set(re.findall(r'"((?:host|node|clock)_event)"', words))
     assert made and made == listed, (made, listed)
 
 
@@ -217,9 +133,11 @@ def the_pages_lab_records_and_stands_in_the_file_with_the_skeleton(folder):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
         one.sendto(b"hello", ("127.0.0.1", ports["kinect"]))
         time.sleep(0.3)
-    code, _, err = recording.end()
-    assert code == 0, err
+    code, events, err = recording.end()
+    assert code == 1 and sorted(events[-1]["missing"]) == ["imu Hips", "imu RightForeArm", "mocap"], (code, events[-1], err)
     walk = Walk(recording.path)
+    assert walk.metadata["kinalign.devices"] == {"mocap": "required", "kinect": "required", "imu/7": "required",
+                                                 "imu/12": "required"}, walk.metadata
     assert walk.attachments["lab.toml"].decode() == lab
     assert walk.attachments["mocap.bvh"].decode() == BVH + "Frames: 0\nFrame Time: 0.008\n"
     assert walk.channels["/kinect/raw"]["transport"] == "udp", "a flag wins over the file"
@@ -231,25 +149,15 @@ def what_is_wrong_with_a_lab_is_told_with_its_line(folder):
     for text, says in (('[device.mocap]\nprotocol = "noitm"\n', ':2: expected protocol as one of nodes, noitom'),
                        ('[device.mocap]\nprotocol = "noitom"\nprt = 1\n', ":3: expected a key of [device.mocap] (nearest: port)"),
                        ('[record]\npre_rol_s = 1\n', ":2: expected a setting of record (did you mean pre_roll_s?)"),
+                       ('[device.mocap]\nprotocol = "noitom"\n', ":1: expected port, where it is heard (0: any free one), found none"),
                        ('[align]\ngap_ms = 1\n', "--device: expected at least one device, or a lab.toml")):
         lab.write_text(text)
         done = kinalign("record", "-o", folder / "takes", "--config", lab)
         assert done.returncode == 2 and says in done.stderr.decode(), done.stderr
-    lab.write_text('[device.mocap]\nprotocol = "noitom"\nskeleton = "none.bvh"\n')
+    lab.write_text('[device.mocap]\nprotocol = "noitom"\nport = 0\nskeleton = "none.bvh"\n')
     done = kinalign("record", "-o", folder / "takes", "--config", lab)
     assert done.returncode == 3 and f"{folder}/none.bvh: expected" in done.stderr.decode(), done.stderr
     assert not (folder / "takes").exists()
-
-
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
-
-
-def send(port, data):
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
-        one.sendto(data if isinstance(data, bytes) else data.encode(), ("127.0.0.1", port))
 
 
 @case
@@ -273,7 +181,8 @@ def with_wait_a_take_begins_with_a_start_and_what_came_before_and_ends_with_a_st
     assert recording.program.wait(30) == 0
     recording.program.communicate()
     mocap.close()
-    assert last["ports"]["trigger"] == {"marks": 2, "repeats": 0, "refused": {}}, last
+    trigger = last["ports"]["trigger"]
+    assert (trigger["marks"], trigger["repeats"], trigger["refused_for"]) == (2, 0, {}), last
     walk = Walk(path)
     assert walk.closed and numbers(walk) == [0, 1], numbers(walk)
     in_file = [json.loads(payload) for topic, *_, payload in walk.messages if topic == "/marks"]
@@ -289,11 +198,40 @@ def a_start_and_a_stop_that_come_together_are_a_take(folder):
         send(recording.started["ports"]["marks"],
              json.dumps({"schema": "kinalign.mark/1", "kind": kind, "id": str(random.random())}))
     said = recording.until("stopped")
-    assert recording.program.wait(30) == 0
+    assert recording.program.wait(30) == 1, "mocap sent nothing"
     recording.program.communicate()
     walk = Walk(pathlib.Path(said[-1]["files"][0]))
     marks = [json.loads(payload)["kind"] for topic, *_, payload in walk.messages if topic == "/marks"]
     assert marks[:3] == ["stop", "start", "stop"], marks
+
+
+@case
+def with_repeat_each_start_begins_a_take_of_its_own_until_ctrl_c(folder):
+    recording = Recording(folder / "takes", "--wait", "--repeat", "--marks-port", "0", "--pre-roll-s", "0",
+                          first="waiting")
+    marks, files = recording.started["ports"]["marks"], []
+
+    def mark(kind):
+        send(marks, json.dumps({"schema": "kinalign.mark/1", "kind": kind, "id": str(random.random())}))
+
+    with sender_to(recording.port) as device:
+        for take in range(2):
+            if take > 0:
+                recording.until("waiting")
+                device(f"{9:010}")  # between takes
+                time.sleep(1)  # longer than a chunk of the pre-roll
+            mark("start")
+            recording.until("started")
+            device(f"{take:010}")
+            time.sleep(0.2)
+            mark("stop")
+            files += recording.until("stopped")[-1]["files"]
+    recording.until("waiting")
+    code, _, err = recording.end()
+    assert code == 0, err
+    assert [pathlib.Path(file).name for file in files] == ["take_01.mcap", "take_02.mcap"], files
+    found = [numbers(Walk(pathlib.Path(file))) for file in files]
+    assert found == [[0], [1]], found
 
 
 @case
@@ -319,8 +257,45 @@ def who_falls_silent_and_comes_back_is_told_once(folder):
         in_time("mocap" not in status["missing"], status)
         assert status["free_bytes"] > 0, status
     code, events, err = recording.end()
+    assert code == 1, err
+    assert events[-1]["ports"]["mocap"]["pieces"] == 2 and events[-1]["missing"] == ["kinect"], events[-1]
+    done = kinalign("check", recording.path, "--json")
+    found = [(one["expected"], one["found"]) for one in json.loads(done.stdout)["findings"]]
+    assert done.returncode == 1 and ("messages of kinect", "none") in found, found
+
+
+@case
+def a_node_that_is_not_heard_is_told_with_its_reason(folder):
+    page = (pathlib.Path(__file__).parents[2] / "docs/formats/imu_node.md").read_text()
+    rows = re.findall(r"^00[0-9a-f]{2}  ((?:[0-9a-f]{2} )*[0-9a-f]{2})", page.split("version 1, a frame")[0].rsplit("```text", 1)[1]
+                      + page.split("version 1, a frame")[1].split("```")[0], re.M)
+    frame = bytes.fromhex("".join(rows))
+    assert len(frame) == 89, frame
+    recording = Recording(folder / "takes", "--device", "imu=nodes:udp:127.0.0.1:0")
+    send(recording.started["ports"]["imu"], frame)
+    told = recording.until("node_event")[-1]
+    assert (told["kind"], told["refusal"], told["node_id"]) == ("wrong_key", "no_key", 7), told
+    code, _, err = recording.end()
+    assert code == 1 and "--lab-key FILE, the lab's, lets it in" in err, err
+
+
+@case
+def what_is_no_mark_is_counted_on_the_screen_and_in_the_file(folder):
+    recording = Recording(folder / "takes", "--marks-port", "0")
+    send(recording.port, b"0000000000")
+    send(recording.started["ports"]["marks"], "no mark")
+    send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"text","id":"1","text":"a word"}')
+    recording.until("mark")
+    code, events, err = recording.end()
     assert code == 0, err
-    assert events[-1]["ports"]["mocap"]["pieces"] == 2, events[-1]
+    assert events[-1]["ports"]["marks"]["refused"] == 1, events[-1]
+    assert events[-1]["ports"]["marks"]["refused_for"] == {"bad_json": 1}, events[-1]
+    told = json.loads(kinalign("info", recording.path, "--json").stdout)
+    assert [port["refused"] for port in told["ports"] if port["stream"] == "marks"] == [1], told
+    assert [(mark["kind"], mark["text"]) for mark in told["marks"]] == [("text", "a word")], told
+    assert [one["messages"] for one in told["senders"]] == [1], told
+    text = kinalign("info", recording.path).stdout.decode()
+    assert re.search(r"^  mark +text \S*a word\S* at \d+\.\d{3} s, by call$", text, re.M), text
 
 
 class Terminal:
@@ -366,7 +341,7 @@ def on_a_terminal_a_table_stands_keys_make_marks_and_a_bell_rings_for_who_falls_
     screen.until(b"recording to")
     send(port, b"0000000000")
     screen.until(b"127.0.0.1:")
-    screen.until(b"\x1b[31mkinect             nothing yet")
+    screen.until(b"\x1b[31mkinect missing: nothing yet")
     screen.until(b"Enter a text")
     screen.press(b"st\r")
     screen.until(b"text: ")
@@ -375,41 +350,13 @@ def on_a_terminal_a_table_stands_keys_make_marks_and_a_bell_rings_for_who_falls_
     screen.until(b"\a")
     screen.until(b"fell silent")
     screen.until(b"GB left")
-    assert screen.end() == 0
+    assert screen.end() == 1, "nothing came of the Kinect"
     assert b"\x1b[A" in screen.shown or b"A\x1b[J" in screen.shown, "the table is drawn over itself"
     walk = Walk(folder / "takes/take_01.mcap")
     assert walk.closed
     marks = [(json.loads(payload)["kind"], json.loads(payload).get("text"))
              for topic, *_, payload in walk.messages if topic == "/marks"]
     assert marks == [("start", None), ("t_pose", None), ("text", "grüß"), ("stop", None)], marks
-
-
-@case
-def a_disk_with_64_mib_left_ends_the_take_in_order(folder):
-    small = folder / "small"
-    small.mkdir()
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=80m", "tmpfs", str(small)], capture_output=True,
-                      check=False).returncode != 0:
-        raise Skip("no right to mount a small disk")
-    try:
-        recording = Recording(small / "takes")
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
-            sent, end = 0, time.monotonic() + 60
-            while recording.program.poll() is None and time.monotonic() < end:
-                one.sendto(f"{sent:010}".encode() + bytes(30000), ("127.0.0.1", recording.port))
-                sent += 1
-                time.sleep(0.01)
-        out, err = recording.program.communicate(timeout=60)
-        events = [json.loads(line) for line in out.splitlines()]
-        names = [event["event"] for event in events]
-        assert recording.program.returncode == 1 and "the take ends here, in order" in err, (names, err)
-        assert "disk_full" in names and "disk_low" in names and "disk_failed" not in names, names
-        assert events[-1]["event"] == "stopped" and events[-1]["dropped"] == 0, events[-1]
-        walk = Walk(recording.path)
-        found = numbers(walk)
-        assert walk.closed and found == list(range(len(found))) and len(found) > 100, len(found)
-    finally:
-        subprocess.run(["umount", str(small)], check=True)
 
 
 if __name__ == "__main__":

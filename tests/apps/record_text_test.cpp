@@ -1,109 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record_text.h"
 
+#include "tests/apps/lab_scene.h"
+
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
 using namespace kinalign;
-using namespace std::chrono_literals;
-
-namespace {
-
-/// A lab a minute after its ports were opened: mocap at work, one of two nodes, a silent Kinect.
-struct Scene {
-  Lab lab;
-  LabStatus status;
-
-  Scene() {
-    lab.devices = {*parse_device("mocap=noitom:7012"), *parse_device("kinect=kinect:7201"),
-                   *parse_device("imu=nodes:5005")};
-    lab.devices[0].rate_hz = 125;
-    lab.devices[2].nodes = {{"7", "waist"}, {"12", "wrist"}};
-    status.begun = HostTime{100s};
-    status.now = HostTime{160s};
-    StreamStatus mocap;
-    mocap.stream = "mocap";
-    mocap.sender = "192.168.7.5:51234";
-    mocap.counts.messages = 7500;
-    mocap.counts.bytes = 11'100'000;
-    mocap.counts.order.lost = 3;
-    mocap.rate_hz = 124.9;
-    mocap.heard = HostTime{159900ms};
-    StreamStatus kinect = mocap;
-    kinect.stream = "kinect";
-    kinect.heard = HostTime{150s};
-    kinect.rate_hz = 0;
-    StreamStatus node = mocap;
-    node.stream = "imu";
-    node.node = "7";
-    node.place = "waist";
-    node.battery_volts = 3.7;
-    status.streams = {mocap, kinect, node};
-    NodeStatus clock;
-    clock.node_id = 7;
-    clock.n = NodeTime{1160s};
-    clock.drift = 20.1e-6;
-    clock.stamp = ClockStamp{};
-    clock.stamp->time = HostTime{160s};
-    clock.stamp->earliest = HostTime{160s - 1040us};
-    clock.stamp->latest = HostTime{160s + 1040us};
-    clock.stamp->certainty = Certainty::certified;
-    status.nodes = {clock};
-  }
-};
-
-}  // namespace
-
-TEST_CASE("a lab's table has a line for each sender, and one for each device that lacks") {
-  const Scene scene;
-  const auto lines = lab_table(scene.lab, scene.status);
-  REQUIRE(lines.size() == 5);
-  CHECK(lines[0].text ==
-        "device                   rate/s    lost  late twice    heard                  clock     "
-        "ppm battery  recorded");
-  CHECK(
-      lines[1].text ==
-      "mocap              124.9 of 125       3     0     0    0.1 s                                "
-      "         11.1 MB  udp 192.168.7.5:51234");
-  CHECK(!lines[1].bad);
-  CHECK(lines[2].text.starts_with("kinect                0.0 of 30       3     0     0   10.0 s"));
-  CHECK(lines[2].bad);
-  CHECK(lines[3].text ==
-        "imu waist                 124.9       3     0     0    0.1 s -1000.0000 s ± 1.04 ms   "
-        "+20.1  3.70 V  11.1 MB  udp 192.168.7.5:51234");
-  CHECK(lines[4].text == "imu wrist          nothing yet, 60 s");
-  CHECK(lines[4].bad);
-}
-
-TEST_CASE("what a port lost stands red below its device, required or not") {
-  Scene scene;
-  scene.lab.devices[0].required = false;
-  PortCounts counts;
-  counts.pieces = 7500;
-  scene.status.ports = {{"mocap", counts}, {"kinect", counts}};
-  CHECK(lab_table(scene.lab, scene.status).size() == 5);
-  scene.status.ports[0].second.dropped = 1234;
-  const auto lines = lab_table(scene.lab, scene.status);
-  REQUIRE(lines.size() == 6);
-  CHECK(lines[2].text == "mocap              1,234 dropped by the kernel");
-  CHECK(lines[2].bad);
-  CHECK(!lines[1].bad);
-}
-
-TEST_CASE("a sender that another has replaced is not missing, and soon not shown") {
-  Scene scene;
-  StreamStatus again = scene.status.streams[1];  // the silent Kinect
-  again.sender = "192.168.7.5:51300";
-  again.heard = scene.status.now;
-  scene.status.streams.push_back(again);
-  const auto lines = lab_table(scene.lab, scene.status);
-  REQUIRE(lines.size() == 6);
-  CHECK(!lines[2].bad);
-  CHECK(!lines[3].bad);
-  scene.status.now += 25s;
-  scene.status.streams.back().heard = scene.status.now;
-  CHECK(lab_table(scene.lab, scene.status).size() == 5);
-}
 
 TEST_CASE("of connections made anew from one port the newest says whether the device is silent") {
   Scene scene;
@@ -116,11 +19,21 @@ TEST_CASE("of connections made anew from one port the newest says whether the de
   CHECK(newest[1].heard == scene.status.now);
 }
 
-TEST_CASE("what is not required is missing without red") {
+TEST_CASE("of what has not come yet it is told where it would be heard") {
   Scene scene;
-  for (DeviceOptions& device : scene.lab.devices) device.required = false;
-  for (const TableLine& line : lab_table(scene.lab, scene.status)) CHECK(!line.bad);
-  CHECK(missing(scene.lab, scene.status).empty());
+  scene.lab.devices.push_back(*parse_device("suit=noitom:tcp:192.168.7.5:7001"));
+  scene.lab.devices.push_back(*parse_device("camera=kinect:tcp-listen:7202"));
+  scene.status.ports = {{"suit", {}}, {"camera", {}}};
+  const std::map<std::string, std::uint16_t> ports{
+      {"mocap", 7012}, {"kinect", 7201}, {"imu", 5005}, {"suit", 7001}, {"camera", 7202}};
+  CHECK(lines_of_unheard(scene.lab, scene.status, ports) ==
+        std::vector<std::string>{"imu wrist: nothing has come to port 5005 yet",
+                                 "suit: no connection to 192.168.7.5:7001 yet",
+                                 "camera: nobody has connected to port 7202 yet"});
+  for (auto& [name, counts] : scene.status.ports) counts.links = 1;
+  const auto linked = lines_of_unheard(scene.lab, scene.status, ports);
+  CHECK(linked[1] == "suit: nothing has come from 192.168.7.5:7001 yet");
+  CHECK(linked[2] == "camera: nothing has come to port 7202 yet");
 }
 
 TEST_CASE("missing are required devices that are silent or were never heard, and nodes by place") {

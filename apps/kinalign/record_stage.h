@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Devices, keyboard and marks while takes are awaited and recorded.
+#pragma once
+
+#include "apps/kinalign/mark_keys.h"
+#include "apps/kinalign/record_herald.h"
+
+#include <optional>
+#include <vector>
+
+namespace kinalign {
+
+class Stage {
+ public:
+  Stage(RecordingSession& session, RecordHerald& herald) : session_(session), herald_(herald) {}
+
+  /// False: somebody ended it first.
+  bool wait_for_start();
+
+  struct End {
+    std::optional<double> seconds;
+    bool by_mark = false;  // that says stop
+  };
+  /// Until that, somebody or a full disk ends it, and all is written.
+  void record(const End& end);
+
+  /// No take is to begin any more.
+  bool ends() const { return ends_ || herald_.disk_full(); }
+  RecordHerald& herald() { return herald_; }
+
+ private:
+  bool turn();
+  bool take_mark(Mark::Kind kind);
+  void write_rest();
+
+  RecordingSession& session_;
+  RecordHerald& herald_;
+  Keyboard keyboard_;
+  MarkKeys keys_;
+  std::vector<Mark::Kind> marks_;
+  bool ends_ = false;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What stands in a recording whose program or disk fails it.
+record_disk_check.py BUILD_FOLDER [CASE...]"""
+import contextlib
+import json
+import pathlib
+import random
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from cases import LONG, Skip, case, kinalign, main
+from mcap_walk import Walk
+from recording_program import Recording, Sender, numbers, sender_to
+
+KILLS = 200 if LONG else 20
+
+
+@contextlib.contextmanager
+def small_disk(folder, megabytes):
+    small = folder / "small"
+    small.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={megabytes}m", "tmpfs", str(small)], capture_output=True,
+                      check=False).returncode != 0:
+        raise Skip("no right to mount a small disk")
+    try:
+        yield small
+    finally:
+        subprocess.run(["umount", str(small)], check=True)
+
+
+@case
+def a_kill_at_any_moment_costs_at_most_the_last_second_and_recover_closes_what_is_left(folder):
+    draw = random.Random(11)
+    for k in range(KILLS):
+        recording = Recording(folder / f"takes{k}")
+        with Sender(recording.port) as sender:
+            time.sleep(draw.uniform(0.1, 10 if LONG else 3))
+            recording.program.send_signal(signal.SIGKILL)
+            killed = time.monotonic()
+            recording.program.communicate()
+        torn = recording.path.read_bytes()
+        found = set(numbers(Walk(recording.path)))
+        owed = [n for n, sent in enumerate(sender.sent) if sent < killed - 1]
+        lost = [n for n in owed if n not in found]
+        assert not lost, f"kill {k}: {len(lost)} of {len(owed)} messages lost, the first {lost[0]}"
+        whole = folder / f"whole{k}.mcap"
+        done = kinalign("recover", recording.path, "-o", whole, "--json")
+        assert done.returncode in (0, 1), done.stderr
+        assert json.loads(done.stdout)["messages"] >= len(found), done.stdout
+        assert recording.path.read_bytes() == torn, "the torn file was touched"
+        assert kinalign("recover", whole, "-o", folder / f"again{k}.mcap").returncode == 0, "not whole"
+
+
+@case
+def a_disk_with_64_mib_left_ends_the_take_in_order(folder):
+    with small_disk(folder, 80) as small:
+        recording = Recording(small / "takes")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+            sent, end = 0, time.monotonic() + 60
+            while recording.program.poll() is None and time.monotonic() < end:
+                one.sendto(f"{sent:010}".encode() + bytes(30000), ("127.0.0.1", recording.port))
+                sent += 1
+                time.sleep(0.01)
+        out, err = recording.program.communicate(timeout=60)
+        events = [json.loads(line) for line in out.splitlines()]
+        names = [event["event"] for event in events]
+        assert recording.program.returncode == 1 and "the take ends here, in order" in err, (names, err)
+        assert "disk_full" in names and "disk_low" in names and "disk_failed" not in names, names
+        assert events[-1]["event"] == "stopped" and events[-1]["dropped"] == 0, events[-1]
+        walk = Walk(recording.path)
+        found = numbers(walk)
+        assert walk.closed and found == list(range(len(found))) and len(found) > 100, len(found)
+
+
+def fill(folder):
+    """Another program takes every byte that is left."""
+    with (folder / "other").open("wb", buffering=0) as other, contextlib.suppress(OSError):
+        while True:
+            other.write(bytes(4096))
+
+
+def recording_on_a_full(disk):
+    """One message is on it, 28 have reached the machine, and the program knows that it can't write them."""
+    recording = Recording(disk / "takes")
+    with sender_to(recording.port) as device:
+        device(f"{0:010}")
+        recording.until("status")
+        time.sleep(1)  # what came stands in the file
+        recording.program.send_signal(signal.SIGSTOP)  # else it ended in order before the last byte
+        fill(disk)
+        for number in range(1, 29):
+            device(f"{number:010}".encode() + bytes(30000))
+        recording.program.send_signal(signal.SIGCONT)
+    recording.until("end_refused")
+    return recording
+
+
+@case
+def what_a_full_disk_refuses_at_the_end_is_written_when_somebody_makes_room(folder):
+    with small_disk(folder, 80) as small:
+        recording = recording_on_a_full(small)
+        (small / "other").unlink()
+        last = recording.until("stopped")[-1]
+        assert recording.program.wait(60) == 1
+        assert last["dropped"] == 0, last
+        found = {number for path in last["files"] for number in numbers(Walk(pathlib.Path(path)))}
+        assert found == set(range(29)), sorted(found)
+
+
+@case
+def what_a_full_disk_never_takes_is_counted_and_told(folder):
+    with small_disk(folder, 80) as small:
+        recording = recording_on_a_full(small)
+        recording.program.send_signal(signal.SIGINT)  # give it up
+        last = recording.until("stopped")[-1]
+        assert recording.program.wait(60) == 3
+        err = recording.program.communicate()[1]
+        assert last["dropped"] >= 28 and "No space left" in err, (last, err)
+        found = {number for path in last["files"] for number in numbers(Walk(pathlib.Path(path)))}
+        assert 0 in found, "what was there before is lost"
+
+
+@case
+def a_folder_that_is_removed_is_told_within_a_second_or_two_and_the_end_says_so(folder):
+    recording = Recording(folder / "takes")
+    with Sender(recording.port):
+        recording.until("status")
+        shutil.rmtree(folder / "takes")
+        failed = recording.until("disk_failed")[-1]
+        assert "it was removed" in failed["what"] and failed["goes_on_in"] == "", failed
+        (folder / "takes").mkdir()
+        assert recording.until("disk_failed")[-1]["goes_on_in"].endswith("take_01.part2.mcap")
+        time.sleep(0.5)
+    code, events, err = recording.end()
+    assert code == 1, err
+    assert numbers(Walk(pathlib.Path(events[-1]["files"][-1]))), "nothing of what came afterwards"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

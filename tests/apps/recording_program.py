@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""kinalign record as a program, and devices that send to it."""
+import contextlib
+import json
+import pathlib
+import signal
+import socket
+import subprocess
+import threading
+import time
+
+import cases
+
+
+class Recording:
+    """The real program with a mocap port, until it is told to end. `first`: the event that it begins with."""
+
+    def __init__(self, folder, *words, device="mocap=noitom:udp:127.0.0.1:0", first="started"):
+        device = ["--device", device] if device else []
+        self.program = subprocess.Popen(
+            [str(cases.PROGRAM), "record", "-o", str(folder), *device, "--compression", "none", "--json",
+             *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        line = self.program.stdout.readline()
+        assert line, self.program.communicate()[1]
+        self.started = json.loads(line)
+        assert self.started["event"] == first, line
+        self.port = self.started["ports"].get("mocap")
+        self.path = pathlib.Path(self.started.get("file", ""))
+
+    def until(self, event):
+        """What it says up to an event of that name, with it."""
+        said = []
+        while not said or said[-1]["event"] != event:
+            line = self.program.stdout.readline()
+            assert line, (event, said)
+            said.append(json.loads(line))
+        return said
+
+    def end(self, sign=signal.SIGINT):
+        self.program.send_signal(sign)
+        out, err = self.program.communicate(timeout=60)
+        return self.program.returncode, [json.loads(line) for line in out.splitlines()], err
+
+
+class Sender(threading.Thread):
+    """Numbered datagrams, 200 a second, as long as those of 354 floats; when each was sent."""
+
+    def __init__(self, port):
+        super().__init__()
+        self.to, self.sent, self.going = ("127.0.0.1", port), [], True
+
+    def run(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+            while self.going:
+                one.sendto(f"{len(self.sent):010}".encode() + bytes(1470), self.to)
+                self.sent.append(time.monotonic())
+                time.sleep(0.005)
+
+    def __enter__(self):
+        self.start()
+        return self
+
+    def __exit__(self, *_):
+        self.going = False
+        self.join()
+
+
+def numbers(walk):
+    return [int(payload[:10]) for topic, *_, payload in walk.messages if topic == "/mocap/raw"]
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+@contextlib.contextmanager
+def sender_to(port):
+    """A call sends a datagram; all of them from one port."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        yield lambda data: one.sendto(data if isinstance(data, bytes) else data.encode(), ("127.0.0.1", port))
+
+
+def send(port, data):
+    with sender_to(port) as to:
+        to(data)
