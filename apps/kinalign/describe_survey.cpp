@@ -81,7 +81,7 @@ void add_told(const RecordingSurvey& survey, Json& json) {
 std::vector<std::string> unheard(const RecordingSurvey& survey) {
   std::vector<std::string> names;
   for (const auto& [name, required] : survey.expected) {
-    const std::string begins = "/" + name + "/raw";
+    const std::string begins = "/" + name + "/";  // of nodes any one's
     const bool heard =
         std::any_of(survey.channels.begin(), survey.channels.end(), [&](const ChannelSurvey& one) {
           return one.channel.topic.starts_with(begins) && one.messages > 0;

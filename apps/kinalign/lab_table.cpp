@@ -166,6 +166,7 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::s
   for (const char* port : {"marks", "trigger"}) add_losses(port, status, rows);
   const auto wide = widths_of(rows, width);
   std::vector<TableLine> lines;
+  lines.reserve(rows.size());
   for (const Row& row : rows) lines.push_back({line_of(row, wide), row.bad});
   return lines;
 }

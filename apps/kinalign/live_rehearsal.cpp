@@ -34,6 +34,7 @@ Result<LiveRehearsal> LiveRehearsal::open(const Motion& motion, const Rehearsal&
                          std::to_string(motion.skeleton.joints()) + " joints"});
   }
   LiveSocket mocap = KA_TRY(LiveSocket::connected_to(options.to, options.mocap_port));
+  LiveSocket marks = KA_TRY(LiveSocket::connected_to(options.to, options.marks_port));
   LiveSocket kinect = KA_TRY(LiveSocket::connected_to(options.to, options.kinect_port));
   std::vector<LiveSocket> sockets;
   for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
@@ -49,6 +50,7 @@ Result<LiveRehearsal> LiveRehearsal::open(const Motion& motion, const Rehearsal&
       rehearsal,
       LiveCameraOptions{options.seed, static_cast<std::uint32_t>(run), start, motion.length_s},
       clock, std::move(kinect));
+  live.clicks_ = std::make_unique<LiveClicks>(rehearsal.mocap, run, start, std::move(marks));
   for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
     LiveNodeOptions node{.id = static_cast<std::uint32_t>(n + 1),
                          .boot_id = static_cast<std::uint32_t>(mix64(run + n)),
@@ -73,8 +75,10 @@ void LiveRehearsal::run(const std::function<bool(double)>& go_on) {
     if (!go_on(seconds(now - start_.raw))) return;
     suit_->work(now);
     camera_->work();
+    clicks_->work(now);
     for (const auto& node : nodes_) node->work();
-    HostTime next = std::min({end, now + longest_wait, suit_->next(), camera_->next()});
+    HostTime next =
+        std::min({end, now + longest_wait, suit_->next(), camera_->next(), clicks_->next()});
     for (const auto& node : nodes_) next = std::min(next, node->next());
     wait(next);
   }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "apps/kinalign/live_camera.h"
+#include "apps/kinalign/live_clicks.h"
 #include "apps/kinalign/live_node.h"
 #include "apps/kinalign/live_suit.h"
 
@@ -17,7 +18,7 @@ namespace kinalign {
 
 struct LiveOptions {
   std::string to = "127.0.0.1";
-  std::uint16_t mocap_port = 7012, kinect_port = 7020, node_port = 5005;
+  std::uint16_t mocap_port = 7012, kinect_port = 7020, node_port = 5005, marks_port = 7030;
   Link link = Link::paper;  // of the nodes
   std::uint64_t seed = 1;
   double begin_in_s = 0.5;
@@ -54,6 +55,7 @@ class LiveRehearsal {
   double length_s_;
   std::unique_ptr<LiveSuit> suit_;
   std::unique_ptr<LiveCamera> camera_;
+  std::unique_ptr<LiveClicks> clicks_;
   std::vector<std::unique_ptr<LiveNode>> nodes_;
 };
 

@@ -112,7 +112,9 @@ std::vector<std::string> lines_of_unheard(const Lab& lab, const LabStatus& statu
     } else if (device.transport == "tcp-listen" && !linked) {
       what = fmt::format("nobody has connected to port {} yet", port);
     }
-    for (const std::string& name : unheard_of(device, status)) lines.push_back(name + ": " + what);
+    for (const std::string& name : unheard_of(device, status)) {
+      lines.push_back(fmt::format("{}: {}", name, what));
+    }
   }
   return lines;
 }

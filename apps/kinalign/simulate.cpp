@@ -35,7 +35,7 @@ struct Simulate {
   std::string node_stamps = "own";
   bool live = false;
   std::string to = "127.0.0.1";
-  std::int64_t mocap_port = 7012, kinect_port = 7020, node_port = 5005;
+  std::int64_t mocap_port = 7012, kinect_port = 7020, node_port = 5005, marks_port = 7030;
   std::string link = "C";
   double begin_in = 0.5;
   bool clockless = false;
@@ -58,6 +58,8 @@ Usage describe_simulate(Simulate& o) {
       {"mocap_port", "live: the host's port for the suit", &o.mocap_port, 1.0, 65535.0},
       {"kinect_port", "live: the host's port for the Kinect", &o.kinect_port, 1.0, 65535.0},
       {"node_port", "live: the host's port for the nodes", &o.node_port, 1.0, 65535.0},
+      {"marks_port", "live: the host's port for marks: the clicks on the suit's program",
+       &o.marks_port, 1.0, 65535.0},
       {.name = "link",
        .meaning =
            "live: the nodes' radio (docs/clock.md: A wired, B quiet Wi-Fi, C the paper's ...)",
@@ -79,7 +81,8 @@ Usage describe_simulate(Simulate& o) {
     for (const auto& [name, flag] :
          {std::pair("to", "--to"), std::pair("link", "--link"), std::pair("begin_in", "--begin-in"),
           std::pair("clockless", "--clockless"), std::pair("mocap_port", "--mocap-port"),
-          std::pair("kinect_port", "--kinect-port"), std::pair("node_port", "--node-port")}) {
+          std::pair("kinect_port", "--kinect-port"), std::pair("node_port", "--node-port"),
+          std::pair("marks_port", "--marks-port")}) {
       KA_TRY(refuse(name, flag, "--live beside it", "none"));
     }
     return {};
@@ -139,8 +142,8 @@ void tell_start(const TrueRecording& truth, const Rehearsal& rehearsal, const Si
   const std::string& folder = call.common.out;
   call.console.print(
       harmless(head_line(truth, folder) +
-               fmt::format("  sending to {}: mocap on port {}, kinect {}, imu {}\n", o.to,
-                           o.mocap_port, o.kinect_port, o.node_port) +
+               fmt::format("  sending to {}: mocap on port {}, kinect {}, imu {}, marks {}\n", o.to,
+                           o.mocap_port, o.kinect_port, o.node_port, o.marks_port) +
                fmt::format("  record  kinalign record -o {0} --config {0}/lab.toml\n", folder)));
   Json json{{"event", "sending"}};
   json.update(json_of(truth, rehearsal, folder));
@@ -204,6 +207,7 @@ Result<int> send_live(const Simulate& o, const RehearsalFolder& folder, const Mo
                             .mocap_port = static_cast<std::uint16_t>(o.mocap_port),
                             .kinect_port = static_cast<std::uint16_t>(o.kinect_port),
                             .node_port = static_cast<std::uint16_t>(o.node_port),
+                            .marks_port = static_cast<std::uint16_t>(o.marks_port),
                             .link = static_cast<Link>(o.link.front() - 'A'),
                             .seed = static_cast<std::uint64_t>(o.seed),
                             .begin_in_s = o.begin_in,

@@ -136,7 +136,10 @@ Result<void> write_lab(const RehearsalFolder& folder, const LiveOptions& options
                          rehearsal.nodes[n].mounting.node_name);
   }
   return write_text(folder, "lab.toml",
-                    fmt::format(R"([device.mocap]
+                    fmt::format(R"([record]
+marks_port = {}
+
+[device.mocap]
 protocol = "noitom"
 port = {}
 skeleton = "suit.bvh"
@@ -151,8 +154,8 @@ protocol = "nodes"
 port = {}
 nodes = {{ {} }}
 )",
-                                options.mocap_port, rehearsal.mocap.rate_hz, options.kinect_port,
-                                options.node_port, nodes));
+                                options.marks_port, options.mocap_port, rehearsal.mocap.rate_hz,
+                                options.kinect_port, options.node_port, nodes));
 }
 
 Result<void> write_live_manifest(const RehearsalFolder& folder, const Rehearsal& rehearsal,

@@ -34,14 +34,14 @@ Failure wrong(const DeviceOptions& device, std::string expected, std::string fou
 
 /// Whether a device can be reached, or reach us.
 Result<void> check_place(const DeviceOptions& device) {
-  if (device.port < 0) return wrong(device, "port, where it is heard (0: any free one)", "none");
-  if (device.transport == "tcp" && (device.address.empty() || device.port == 0)) {
+  if (device.transport == "tcp" && (device.address.empty() || device.port <= 0)) {
     return wrong(device, "an address and a port to connect to", "none");
   }
   const bool datagrams = device.protocol == "nodes" || device.protocol == "slimevr";
   if (datagrams && device.transport != "udp") {
     return wrong(device, device.protocol + " by udp", device.transport);
   }
+  if (device.port < 0) return wrong(device, "port, where it is heard (0: any free one)", "none");
   return {};
 }
 
@@ -132,8 +132,8 @@ Result<void> validate(const Lab& lab) {
   for (std::size_t i = 0; i < lab.devices.size(); ++i) {
     const DeviceOptions& device = lab.devices[i];
     KA_TRY(check_stream_name(device.name));
-    KA_TRY(check_place(device));
     KA_TRY(check_use(device));
+    KA_TRY(check_place(device));
     for (std::size_t k = 0; k < i; ++k) KA_TRY(check_pair(device, lab.devices[k]));
   }
   return {};

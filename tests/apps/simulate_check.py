@@ -170,12 +170,13 @@ class Recorder:
         self.program = subprocess.Popen(
             [str(cases.PROGRAM), "record", "-o", str(folder), "--compression", "none", "--json", "--device",
              "mocap=noitom:udp:127.0.0.1:0", "--device", "kinect=kinect:udp:127.0.0.1:0", "--config",
-             str(folder / "lab.toml")], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+             str(folder / "lab.toml"), "--marks-port", "0"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.started = json.loads(self.program.stdout.readline())
 
     def flags(self):
         ports = self.started["ports"]
-        return ["--mocap-port", ports["mocap"], "--kinect-port", ports["kinect"], "--node-port", ports["imu"]]
+        return ["--mocap-port", ports["mocap"], "--kinect-port", ports["kinect"], "--node-port", ports["imu"],
+                "--marks-port", ports["marks"]]
 
     def end(self):
         self.program.send_signal(signal.SIGINT)
@@ -208,6 +209,16 @@ def all_that_is_sent_live_stands_in_the_recording(folder):
     frames = sum(topic.endswith("/raw") and topic.startswith("/imu/") for topic, *_ in walk.messages)
     assert 0.9 * sent["node_frames"] < frames < sent["node_frames"], f"{frames} of {sent}"  # link C loses 2 %
     assert sent["replies"] > 0.85 * frames, sent
+
+
+@case
+def the_suits_clicks_stand_in_the_recording_as_marks(folder):
+    _, _, _, walk, truth = recorded(folder, "--begin-in", 1, seconds=4)
+    marks = [(log, json.loads(payload)) for topic, _, log, _, payload in walk.messages if topic == "/marks"]
+    assert [(mark["kind"], mark["source"], mark["latency_ms"]) for _, mark in marks] == [
+        ("start", "call", 53.333333), ("stop", "call", 53.333333)], marks
+    for (log, _), click in zip(marks, (truth["mocap"]["start_click_ns"], truth["mocap"]["stop_click_ns"])):
+        assert 0 < log - click < 20e6, (log - click) / 1e6
 
 
 def raw_offset(walk, truth):

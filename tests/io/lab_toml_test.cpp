@@ -70,8 +70,11 @@ TEST_CASE("what is wrong with a device is told with its line and the nearest kno
         "labs/lab.toml:3: expected port as a whole number from 0 to 65535, found 70000");
   CHECK(error_of(mocap + "[device.b]\nprotocol = \"xsens\"\nport = 7012\n") ==
         "labs/lab.toml:4: expected a port of its own, found 7012, as mocap");
-  CHECK(error_of("[device.a]\nprotocol = \"nodes\"\n[device.b]\nprotocol = \"nodes\"\n") ==
-        "labs/lab.toml:3: expected one device for all nodes, found a beside it");
+  CHECK(error_of("[device.a]\nprotocol = \"nodes\"\n") ==
+        "labs/lab.toml:1: expected port, where it is heard (0: any free one), found none");
+  CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nport = 1\n[device.b]\nprotocol = "
+                 "\"nodes\"\nport = 2\n") ==
+        "labs/lab.toml:4: expected one device for all nodes, found a beside it");
   CHECK(error_of(mocap + "nodes = { \"1\" = \"Hips\" }\n") ==
         "labs/lab.toml:1: expected nodes of nodes alone, found of noitom");
   CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nnodes = { waist = \"Hips\" }\n") ==
