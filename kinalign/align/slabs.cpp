@@ -3,6 +3,7 @@
 
 #include "kinalign/align/nodes.h"
 #include "kinalign/align/own_rows.h"
+#include "kinalign/align/rotation_signs.h"
 #include "kinalign/core/parallel.h"
 
 #include <algorithm>
@@ -18,6 +19,13 @@ std::size_t width(const TakeGroup& group) {
     return 4 * points->joint_names.size();
   }
   return 12 * std::get<ImuGroup>(group.kind).node_names.size();
+}
+
+/// Columns of rotations in a group.
+std::size_t rotations_of(const TakeGroup& group) {
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return clip->skeleton.joints();
+  if (const auto* nodes = std::get_if<ImuGroup>(&group.kind)) return nodes->node_names.size();
+  return 0;
 }
 
 std::size_t rows_at_once(const TakeHeader& header) {
@@ -77,7 +85,8 @@ struct SlabMaker::State {
   const Recording* recording = nullptr;
   const AlignPlan* plan = nullptr;
   std::vector<StreamRows> streams;
-  ImuRows nodes;  // of one stream, on the way into its group
+  ImuRows nodes;                     // of one stream, on the way into its group
+  std::vector<RotationSigns> signs;  // [groups]
   std::uint64_t done = 0;
 
   Result<void> open(std::size_t i);
@@ -87,6 +96,7 @@ struct SlabMaker::State {
   void put_reference(ReferenceSlab& reference, TakeSlab& slab) const;
   Result<void> other_rows(std::size_t i, std::span<const std::int64_t> grid, TakeSlab& slab);
   void finish_nodes(TakeSlab& slab) const;
+  void align_signs(TakeSlab& slab);
 };
 
 Result<void> SlabMaker::State::open(std::size_t i) {
@@ -170,6 +180,16 @@ void SlabMaker::State::finish_nodes(TakeSlab& slab) const {
   }
 }
 
+void SlabMaker::State::align_signs(TakeSlab& slab) {
+  for (std::size_t g = 0; g < slab.rows.size(); ++g) {
+    if (auto* clip = std::get_if<ClipRows>(&slab.rows[g])) {
+      signs[g].align(clip->local_rotations, clip->valid);
+    } else if (auto* imu = std::get_if<ImuRows>(&slab.rows[g])) {
+      signs[g].align(imu->orientation, imu->valid);
+    }
+  }
+}
+
 Result<void> SlabMaker::State::make(ReferenceSlab& reference, TakeSlab& slab) {
   slab.first = done;
   slab.stamps.clear();
@@ -179,6 +199,7 @@ Result<void> SlabMaker::State::make(ReferenceSlab& reference, TakeSlab& slab) {
     if (i != plan->reference) KA_TRY(other_rows(i, reference.grid, slab));
   }
   finish_nodes(slab);
+  align_signs(slab);
   done += slab.stamps.size();
   return {};
 }
@@ -194,6 +215,7 @@ Result<SlabMaker> SlabMaker::start(const Recording& recording, const AlignPlan& 
   state->recording = &recording;
   state->plan = &plan;
   state->streams.resize(recording.streams.size());
+  for (const TakeGroup& group : plan.header.groups) state->signs.emplace_back(rotations_of(group));
   for (std::size_t i = 0; i < recording.streams.size(); ++i) {
     if (i == plan.reference || groups[plan.streams[i].group]) KA_TRY(state->open(i));
   }
