@@ -120,7 +120,9 @@ Result<Findings> check_stream(const Check& o, const Input& input, const Recorded
   append(found, judge_stamps(stream, options));
   append(found, judge_arrivals(stream, arrivals, role));
   append(found, judge_start(stream, options, arrivals));
-  return said_of(stream, input.recording, std::move(found));
+  Findings out = said_of_file(stream, input.recording);
+  append(out, said_of(stream, input.recording, std::move(found)));
+  return out;
 }
 
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {

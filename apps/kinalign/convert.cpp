@@ -5,6 +5,7 @@
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/align/judge.h"
 #include "kinalign/align/own_rows.h"
 #include "kinalign/io/bvh_copy.h"
 #include "kinalign/io/open_recording.h"
@@ -151,7 +152,10 @@ Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& c
 
 Findings findings_of(const Recording& recording) {
   Findings all;
-  for (const RecordedStream& stream : recording.streams) append(all, stream.findings);
+  for (const RecordedStream& stream : recording.streams) {
+    append(all, said_of_file(stream, recording));
+    append(all, said_of(stream, recording, stream.findings));
+  }
   return all;
 }
 

@@ -6,6 +6,7 @@
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/json_text.h"
 
+#include "kinalign/align/judge.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
@@ -119,7 +120,7 @@ std::string stream_lines(const RecordedStream& s, const Contents& c, Names names
   return line;
 }
 
-Json stream_json(const RecordedStream& s, const Contents& c) {
+Json stream_json(const RecordedStream& s, const Contents& c, const Findings& findings) {
   return {{"name", s.name},
           {"kind", c.kind},
           {"format", s.format},
@@ -133,7 +134,7 @@ Json stream_json(const RecordedStream& s, const Contents& c) {
           {"backward_stamps", s.survey.backward},
           {"ahead_stamps", s.survey.ahead},
           {"files", files_json(s.files)},
-          {"findings", Json::parse(findings_json(s.findings))}};
+          {"findings", Json::parse(findings_json(findings))}};
 }
 
 /// In the child: everything about a take as one JSON text.
@@ -184,9 +185,11 @@ Description describe_recording(const std::string& path, const Recording& recordi
   std::size_t findings = 0;
   for (const RecordedStream& s : recording.streams) {
     const Contents c = contents_of(s);
-    out["streams"].push_back(stream_json(s, c));
+    Findings found = said_of_file(s, recording);
+    append(found, s.findings);
+    out["streams"].push_back(stream_json(s, c, found));
     text += stream_lines(s, c, names);
-    findings += s.findings.size();
+    findings += found.size();
   }
   if (findings > 0) {
     text += fmt::format("  {} finding{}: see kinalign check {}\n", findings,

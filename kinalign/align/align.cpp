@@ -79,16 +79,20 @@ void add_marks(const TakeSlab& slab, const TakeHeader& header, const RecordedStr
   }
 }
 
+/// A take shall not depend on where its inputs lay.
+Findings without_folders(Findings findings) {
+  for (Finding& finding : findings) finding.what.file = file_name(finding.what.file);
+  return findings;
+}
+
 AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) {
   AlignmentReport report;
   report.frames = plan.header.frames;
   report.reference = recording.streams[plan.reference].name;
   report.rate_hz = plan.streams[plan.reference].rule.rate_hz();
   for (const RecordedStream& s : recording.streams) {
-    Findings found = s.findings;
-    for (Finding& finding : found) {  // a take shall not depend on where its inputs lay
-      finding.what.file = file_name(finding.what.file);
-    }
+    append(report.findings, without_folders(said_of_file(s, recording)));
+    Findings found = without_folders(s.findings);
     append(found, judge_stamps(s, options_of(plan.header.parameters, s.name)));
     append(report.findings, said_of(s, recording, std::move(found)));
   }

@@ -37,10 +37,11 @@ std::string spans(const Recording& recording) {
 
 /// What the reader of a stream without samples found wrong, where it found anything.
 Error no_samples(const RecordedStream& s) {
-  const auto worst =
-      std::max_element(s.findings.begin(), s.findings.end(),
-                       [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
-  if (worst != s.findings.end() && worst->severity == Severity::error) return worst->what;
+  Findings all = s.findings;
+  append(all, s.file_findings);
+  const auto worst = std::max_element(
+      all.begin(), all.end(), [](const auto& a, const auto& b) { return a.severity < b.severity; });
+  if (worst != all.end() && worst->severity == Severity::error) return worst->what;
   return {s.files.empty() ? "" : s.files.front().name, 0,
           "at least one sample for stream '" + s.name + "'", "none"};
 }

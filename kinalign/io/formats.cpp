@@ -144,7 +144,8 @@ Result<FoundFormat> recording_format(const Source& source, const Progress& progr
                   std::move(device.make),
                   std::move(device.further_files),
                   {},
-                  device.heard->clock.time});
+                  device.heard->clock.time,
+                  std::move(device.file_findings)});
 }
 
 Result<FoundFormat> program_format(const Format& format, const Source& source) {

@@ -137,10 +137,10 @@ std::optional<std::size_t> RecordedMessages::place_on_roll(const RawChannel& raw
 void RecordedMessages::judge_file() {
   for (Finding finding : reader_.findings()) {
     finding.what.file = file();
-    findings_.push_back(std::move(finding));
+    file_findings_.push_back(std::move(finding));
   }
   if (!reader_.closed()) {
-    findings_.push_back(
+    file_findings_.push_back(
         {Severity::warning, Error{file(), 0, "a file that was closed", "one that breaks off"},
          "everything up to the break was read", "kinalign recover makes a whole file of it"});
   }

@@ -58,7 +58,9 @@ class RecordedMessages {
   const std::optional<RawChannel>& chosen() const { return chosen_; }
   /// Who else spoke in the stream; empty where it is one of nodes. Complete after finish().
   const SenderRoll& senders() const { return roll_; }
-  /// That the file is torn or damaged; complete after finish().
+  /// That the files are torn or damaged, whichever device is read; complete after finish().
+  const Findings& file_findings() const { return file_findings_; }
+  /// That messages of the device are missing; complete after finish().
   const Findings& findings() const { return findings_; }
 
  private:
@@ -90,7 +92,7 @@ class RecordedMessages {
   std::set<std::string> streams_, nodes_;  // that are there
   SenderRoll roll_;
   std::uint64_t missing_ = 0;
-  Findings findings_;
+  Findings file_findings_, findings_;
 };
 
 }  // namespace kinalign

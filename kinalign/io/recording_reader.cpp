@@ -170,6 +170,7 @@ class Listening {
     return heard;
   }
   const DeviceProtocol& protocol() const { return *protocol_; }
+  const Findings& file_findings() const { return messages_.file_findings(); }
   const SenderRoll& senders() const { return messages_.senders(); }
   const RawChannel& channel() const { return *messages_.chosen(); }
 
@@ -238,19 +239,20 @@ Result<DeviceWish> whole_wish(FileSystem& files, const StreamOptions& options,
   return wish;
 }
 
-RecordedDevice device_of(FileSystem& files, const DeviceWish& wish, const DeviceProtocol& protocol,
+RecordedDevice device_of(FileSystem& files, const DeviceWish& wish, const Listening& listening,
                          HeardDevice heard) {
-  append(heard.findings, judge_parts(*wish.parts, PartsBehind::read));
+  Findings file_findings = listening.file_findings();
+  append(file_findings, judge_parts(*wish.parts, PartsBehind::read));
   const auto shared = std::make_shared<const HeardDevice>(std::move(heard));
   std::vector<std::string> further;
   for (const RecordingPart& part : *wish.parts) further.push_back(part.path);
   further.erase(further.begin());
   if (!wish.skeleton.empty()) further.push_back(wish.options.skeleton);
   return {shared,
-          [&files, wish, shared, protocol]() -> Result<AnyReader> {
+          [&files, wish, shared, protocol = listening.protocol()]() -> Result<AnyReader> {
             return reader_of(files, wish, shared, protocol.rows(wish, shared));
           },
-          std::move(further)};
+          std::move(further), std::move(file_findings)};
 }
 
 }  // namespace
@@ -278,7 +280,7 @@ Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
       continue;
     }
     append(heard->findings, judge_senders(wish, any_sender, senders));
-    return device_of(files, wish, listening->protocol(), std::move(*heard));
+    return device_of(files, wish, *listening, std::move(*heard));
   }
   return Failure(*why);
 }

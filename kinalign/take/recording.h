@@ -63,7 +63,8 @@ struct RecordedStream {
   bool counted = false;
   TimeModel clock;  // from those to the take's axis
   std::vector<InputFacts> files;
-  Findings findings;  // of the reader
+  Findings findings;       // of the reader
+  Findings file_findings;  // of the file as a whole: each stream that reads it has the same
 };
 
 struct Recording {

@@ -167,4 +167,8 @@ TEST_CASE("a stream without samples is refused with what its reader found wrong,
       {Severity::error, Error{"k.csv", 0, "rows of body 3", "none"}, "the stream is empty", ""},
       {Severity::note, Error{"k.csv", 0, "less", "more"}, "", ""}};
   CHECK(refusal() == "k.csv: expected rows of body 3, found none");
+  recording.streams[1].findings.clear();
+  recording.streams[1].file_findings = {
+      {Severity::error, Error{"k.mcap", 0, "a record", "none"}, "nothing was read", ""}};
+  CHECK(refusal() == "k.mcap: expected a record, found none");
 }

@@ -191,7 +191,7 @@ TEST_CASE("a file that breaks off anywhere is read up to there, and that is said
     const std::string path = folder.write("torn.mcap", whole.substr(0, size));
     const RecordedStream stream = opened(files, stream_named("imu", path));
     const auto torn = std::count_if(
-        stream.findings.begin(), stream.findings.end(),
+        stream.file_findings.begin(), stream.file_findings.end(),
         [](const Finding& f) { return f.repair == "kinalign recover makes a whole file of it"; });
     CHECK(torn == 1);
     const Errors errors = node_errors(stream);

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording of several devices that breaks off or is damaged, aligned.
+#include "tests/folder.h"
+#include "tests/io/recorded_lab.h"
+
+#include "kinalign/align/align.h"
+#include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_reader.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+using namespace kinalign;
+
+namespace {
+
+/// Two nodes, a Kinect and mocap for ten seconds.
+std::string four_streams() {
+  RecordedLab lab(20261123);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 10.0);
+  lab.add_node(13, 1, {4.0, 10.0}, 0.0, 10.0);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 10.0);
+  lab.add_mocap(NoitomForm::new_header, "udp", 10.0);
+  return lab.file(false);
+}
+
+/// What aligning all of it warns of.
+std::vector<std::string> warnings(const std::string& bytes) {
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto survey = survey_recording(files, folder.write("take.mcap", bytes));
+  REQUIRE(survey);
+  auto manifest = manifest_of(*survey, "take.mcap");
+  REQUIRE(manifest);
+  manifest->spaces["kinect"] = {};
+  manifest->spaces["kinect"].method = "none";
+  const auto recording = open_recording(files, *manifest, folder.path() + "/");
+  REQUIRE(recording);
+  REQUIRE(recording->streams.size() == 4);
+  const auto take = align(*recording, *manifest);
+  if (!take) FAIL(to_string(take.error()));
+  std::vector<std::string> out;
+  for (const Finding& finding : take->report.findings) {
+    if (finding.severity == Severity::note) continue;
+    out.push_back(to_string(finding.what));
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a recording that breaks off is said to once, however many streams are read from it") {
+  const std::string whole = four_streams();
+  const auto told = warnings(whole.substr(0, 7 * whole.size() / 10));
+  const std::string torn = "take.mcap: expected a file that was closed, found one that breaks off";
+  CHECK(std::count(told.begin(), told.end(), torn) == 1);
+  for (const std::string& text : told) {
+    INFO(text);
+    CHECK(std::count(told.begin(), told.end(), text) == 1);
+  }
+}
+
+TEST_CASE("damage is told once, and of each stream what it has lost by it") {
+  std::string bytes = four_streams();
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
+  const auto told = warnings(bytes);
+  for (const std::string stream : {"mocap", "kinect", "imu 12", "imu 13"}) {
+    CAPTURE(stream);
+    CHECK(std::count_if(told.begin(), told.end(), [&stream](const std::string& text) {
+            return text.find("of '" + stream + "' every message") != std::string::npos;
+          }) == 1);
+  }
+  for (const std::string& text : told) {
+    INFO(text);
+    CHECK(std::count(told.begin(), told.end(), text) == 1);
+  }
+}
