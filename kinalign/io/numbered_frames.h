@@ -86,7 +86,8 @@ std::optional<Time> stamp_of(const HeardDevice& heard, const PlacedFrame<Frame>&
   return stamp_of(heard.clock, one.place->life, counter_of(*one.place, heard.step_ns), one.arrival);
 }
 
-/// Rows of such frames. `Source` also says what they are: `frames`, and as what they were expected
+/// Rows of such frames, in the order of their numbers: what was overtaken in a network is put where
+/// it belongs. `Source` also says what they are: `frames`, and as what they were expected
 /// where there is none.
 template <class Source, class Frames>
 class NumberedRows : public DeviceRows<Frames> {
@@ -97,24 +98,22 @@ class NumberedRows : public DeviceRows<Frames> {
   Result<void> take(const RecordedMessage& message, Frames& out) final {
     placed_.clear();
     frames_.take(message, placed_);
-    for (const auto& one : placed_) {
+    for (auto& one : placed_) {
       const auto stamp = stamp_of(*heard_, one);
       if (!stamp) {
         ++unknown_;
-        continue;
+      } else if (heard_->by_arrival) {
+        put(one.frame, *stamp, out);
+      } else {
+        waiting_.emplace(*stamp, std::move(one.frame));
+        if (waiting_.size() > most_overtaking) put_first(out);
       }
-      auto appended = append(one.frame, *stamp, out);
-      if (appended) {
-        ++appended_;
-        continue;
-      }
-      if (!misfit_) misfit_ = std::move(appended).error();
-      ++misfits_;
     }
     return {};
   }
 
-  Result<void> finish(Frames&) final {
+  Result<void> finish(Frames& out) final {
+    while (!waiting_.empty()) put_first(out);
     if (appended_ == 0 && (misfit_ || this->header() == nullptr)) {
       return Failure(misfit_.value_or(Error{this->file(), 0, std::string(Source::what), "none"}));
     }
@@ -134,9 +133,28 @@ class NumberedRows : public DeviceRows<Frames> {
   virtual Result<void> append(const typename Source::Frame& frame, Time stamp, Frames& out) = 0;
   virtual Findings further_findings() const { return {}; }
 
+  void put(const typename Source::Frame& frame, Time stamp, Frames& out) {
+    auto appended = append(frame, stamp, out);
+    if (appended) {
+      ++appended_;
+      return;
+    }
+    if (!misfit_) misfit_ = std::move(appended).error();
+    ++misfits_;
+  }
+  void put_first(Frames& out) {
+    const auto first = waiting_.begin();
+    put(first->second, first->first, out);
+    waiting_.erase(first);
+  }
+
+  // Chosen: a network that lets more datagrams than these overtake one has not been seen.
+  static constexpr std::size_t most_overtaking = 16;
+
   std::shared_ptr<const HeardDevice> heard_;
   NumberedFrames<Source> frames_;
   std::vector<PlacedFrame<typename Source::Frame>> placed_;
+  std::multimap<Time, typename Source::Frame> waiting_;  // for those that they have overtaken
   std::optional<Error> misfit_;
   std::uint64_t appended_ = 0, misfits_ = 0, unknown_ = 0;
 };

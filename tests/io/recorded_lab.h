@@ -288,6 +288,11 @@ class RecordedLab {
     }
   }
 
+  /// Each `each`th message arrives `by_s` later than it was to, overtaken by those behind it.
+  void hold_back(std::size_t each, double by_s) {
+    for (std::size_t i = each - 1; i < messages_.size(); i += each) messages_[i].arrival += by_s;
+  }
+
   static HostTime host(double t) { return HostTime{Duration{host_begin + std::llround(1e9 * t)}}; }
   /// When a moment of the recording was.
   static Time utc(double t) { return utc_time(utc_begin + std::llround(1e9 * t)); }

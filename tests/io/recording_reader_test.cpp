@@ -180,6 +180,29 @@ TEST_CASE("frames without a number are counted over a connection, and stamped as
   }
 }
 
+TEST_CASE("frames of mocap that were overtaken in the network stand where they belong") {
+  const FreshFolder folder;
+  PosixFiles files;
+  for (const bool xsens : {false, true}) {
+    CAPTURE(xsens);
+    RecordedLab lab(20261123);
+    if (xsens) {
+      lab.add_xsens(20.0);
+    } else {
+      lab.add_mocap(NoitomForm::new_header, "udp", 20.0);
+    }
+    lab.hold_back(9, xsens ? 0.04 : 0.03);  // up to four are quicker
+    const std::string path = folder.write("take.mcap", lab.file());
+    const RecordedStream stream = opened(files, stream_named(xsens ? "xsens" : "mocap", path));
+    CHECK(stream.survey.backward == 0);
+    CHECK(stream.survey.kept() == (xsens ? 1200 : 2500));
+    if (xsens) continue;
+    const Errors errors = mocap_errors(stream);
+    CHECK(errors.samples == 2500);
+    CHECK(errors.most - errors.least < 0.5);
+  }
+}
+
 TEST_CASE("a file that breaks off anywhere is read up to there, and that is said") {
   const FreshFolder folder;
   RecordedLab lab(20261123);
