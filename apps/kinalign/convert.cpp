@@ -16,7 +16,7 @@
 #include "kinalign/io/show_xdf.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_npz.h"
-#include "kinalign/io/xdf.h"
+#include "kinalign/io/xdf_survey.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -173,11 +173,6 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
       open_recording(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));
   KA_TRY(show_recording(job.files, recording, {job.from, job.to, job.overwrite}, progress));
   return findings_of(recording);
-}
-
-Result<bool> is_xdf(FileSystem& files, const std::string& path) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  return looks_like_xdf(KA_TRY(file.next()));
 }
 
 Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {

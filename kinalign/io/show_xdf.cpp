@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/show_xdf.h"
 
-#include "kinalign/io/xdf.h"
-#include "kinalign/io/xdf_clock.h"
+#include "kinalign/io/xdf_survey.h"
 
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <functional>
 #include <map>
 #include <optional>
 
@@ -16,26 +14,6 @@ namespace kinalign {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using TakeItem = std::function<Result<void>(const XdfItem&)>;
-
-/// All items of a file, in its order.
-Result<Findings> read_xdf(FileSystem& files, const std::string& path, const Progress& progress,
-                          const TakeItem& take) {
-  InputFile input = KA_TRY(InputFile::open(files, path));
-  XdfReader reader(path);
-  std::vector<XdfItem> items;
-  std::uint64_t done = 0;
-  for (bool ended = false; !ended;) {
-    const std::string_view piece = KA_TRY(input.next());
-    ended = piece.empty();
-    items.clear();
-    KA_TRY(ended ? reader.finish(items) : reader.feed(piece, items));
-    for (const XdfItem& item : items) KA_TRY(take(item));
-    done += piece.size();
-    if (!go_on(progress, "converting", done, input.size())) return Failure(interruption(path));
-  }
-  return reader.findings();
-}
 
 McapSchema sample_schema() {
   return {0, "kinalign.XdfSample", "jsonschema",
@@ -43,24 +21,6 @@ McapSchema sample_schema() {
           R"("s, the sender's clock, not corrected"}, "deduced": {"type": "boolean", )"
           R"("description": "not written: the one before and the nominal rate"}, )"
           R"("values": {"type": "array"}}})"};
-}
-
-/// What the first pass has found.
-struct Heads {
-  std::map<std::uint32_t, XdfStream> streams;
-  std::map<std::uint32_t, std::vector<XdfClockOffset>> offsets;
-};
-
-Result<Heads> heads_of(FileSystem& files, const std::string& path) {
-  Heads heads;
-  KA_TRY(read_xdf(files, path, {}, [&](const XdfItem& item) -> Result<void> {
-    if (const auto* stream = std::get_if<XdfStream>(&item)) heads.streams[stream->id] = *stream;
-    if (const auto* offset = std::get_if<XdfClockOffset>(&item)) {
-      heads.offsets[offset->stream].push_back(*offset);
-    }
-    return {};
-  }));
-  return heads;
 }
 
 /// Absent of what is no time of a recorder.
@@ -84,20 +44,20 @@ std::string sample_json(const XdfSamples& samples, std::size_t t) {
         for (std::size_t c = 0; c < width; ++c) values.push_back(value_json(all[t * width + c]));
       },
       samples.values);
-  const Json json = {{"stamp", value_json(samples.stamps[t])},
+  const Json json = {{"stamp", samples.stamps[t]},
                      {"deduced", samples.deduced[t] != 0},
                      {"values", std::move(values)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// A channel's name: the stream's, with its id where two have one, and no slash or blank in it.
-std::string topic_of(const Heads& heads, const XdfStream& stream) {
+std::string topic_of(const XdfSurvey& survey, const XdfStream& stream) {
   std::string name = stream.name.empty() ? "stream" : stream.name;
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ' || c == '/') c = '_';
   }
-  for (const auto& [id, other] : heads.streams) {
-    if (id != stream.id && other.name == stream.name)
+  for (const XdfStreamSurvey& other : survey.streams) {
+    if (other.stream.id != stream.id && other.stream.name == stream.name)
       return "/" + name + "/" + std::to_string(stream.id);
   }
   return "/" + name;
@@ -111,16 +71,13 @@ struct Channel {
 /// What samples go to: a channel for each stream.
 class Channels {
  public:
-  Channels(const Heads& heads, ShownFile& out) : heads_(heads), out_(out) {}
+  Channels(const XdfSurvey& survey, ShownFile& out) : survey_(survey), out_(out) {}
 
   Result<void> begin() {
-    for (const auto& [id, stream] : heads_.streams) {
-      const std::string topic = topic_of(heads_, stream);
-      KA_TRY(out_.attach(topic.substr(1) + ".xml", stream.xml));
-      Channel& channel = channels_[id];
-      channel.id = out_.add_channel(topic, sample_schema());
-      const auto offsets = heads_.offsets.find(id);
-      if (offsets != heads_.offsets.end()) channel.lines = fit_xdf_clock(offsets->second);
+    for (const XdfStreamSurvey& one : survey_.streams) {
+      const std::string topic = topic_of(survey_, one.stream);
+      KA_TRY(out_.attach(topic.substr(1) + ".xml", one.stream.xml));
+      channels_[one.stream.id] = {out_.add_channel(topic, sample_schema()), one.clock};
     }
     return {};
   }
@@ -145,7 +102,7 @@ class Channels {
   std::uint64_t timeless = 0;
 
  private:
-  const Heads& heads_;
+  const XdfSurvey& survey_;
   ShownFile& out_;
   std::map<std::uint32_t, Channel> channels_;
 };
@@ -154,11 +111,11 @@ class Channels {
 
 Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
                           Overwrite overwrite, const Progress& progress) {
-  const Heads heads = KA_TRY(heads_of(files, from));
+  const XdfSurvey survey = KA_TRY(survey_xdf(files, from, progress));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   ShownFile shown(file);
   KA_TRY(shown.begin());
-  Channels channels(heads, shown);
+  Channels channels(survey, shown);
   KA_TRY(channels.begin());
   ShownXdf done;
   done.findings = KA_TRY(
