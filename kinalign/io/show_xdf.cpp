@@ -20,7 +20,8 @@ McapSchema sample_schema() {
           R"({"type": "object", "properties": {"stamp": {"type": "number", "description": )"
           R"("s, the sender's clock, not corrected"}, "deduced": {"type": "boolean", )"
           R"("description": "not written: the one before and the nominal rate"}, )"
-          R"("values": {"type": "array"}}})"};
+          R"("values": {"type": "array", "items": {"type": ["number", "string"]}, "description": )"
+          R"("one a channel; of numbers NaN, Infinity and -Infinity as these words"}}})"};
 }
 
 /// Absent of what is no time of a recorder.
@@ -30,8 +31,12 @@ std::optional<Time> time_of(double s) {
   return utc_time(std::llround(s * 1e9));
 }
 
+/// JSON has no word for what is no number: as protobuf's JSON has it,
+/// https://protobuf.dev/programming-guides/json/
 Json value_json(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);  // JSON has no NaN
+  if (std::isnan(value)) return "NaN";
+  if (std::isinf(value)) return value > 0.0 ? "Infinity" : "-Infinity";
+  return value;
 }
 Json value_json(std::int64_t value) { return value; }
 Json value_json(const std::string& value) { return value; }

@@ -14,6 +14,9 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <map>
 
 using namespace kinalign;
@@ -150,4 +153,26 @@ TEST_CASE("an XDF's whole numbers and doubles are shown as they are, on the reco
   CHECK(messages["/N2"][0].json["values"][0] == third);
   CHECK(messages["/N2"][0].log_time == 12'750'000'000);  // by the stream's clock offset
   CHECK(messages["/N2"][0].json["stamp"] == 10.25);
+}
+
+TEST_CASE("an XDF's values that are no numbers are words, which say what they were") {
+  const FreshFolder folder;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::string doubles, floats;
+  for (const double value : {std::nan(""), infinity, -infinity, 0.5}) {
+    doubles += little_text(value);
+    floats += little_text(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+  }
+  const std::string path = folder.write(
+      "rec.xdf", xdf_begin + xdf_header(1, "double64", 4) + xdf_header(2, "float32", 4) +
+                     xdf_samples(1, 1, xdf_sample(10.5, doubles)) +
+                     xdf_samples(2, 1, xdf_sample(10.5, floats)));
+  PosixFiles files;
+  const std::string out = folder / "rec.mcap";
+  REQUIRE(show_xdf(files, path, out, Overwrite::no));
+  auto messages = messages_in(out);
+  for (const char* topic : {"/N1", "/N2"}) {
+    REQUIRE(messages[topic].size() == 1);
+    CHECK(messages[topic][0].json["values"] == Json{"NaN", "Infinity", "-Infinity", 0.5});
+  }
 }
