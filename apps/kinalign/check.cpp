@@ -2,6 +2,7 @@
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/describe_report.h"
+#include "apps/kinalign/describe_xdf.h"
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/program.h"
 #include "apps/kinalign/verbs.h"
@@ -27,7 +28,7 @@ struct Check {
 Usage describe_check(Check& o) {
   Usage usage;
   usage.positionals = {
-      {"FILE", "takes, recordings, recording.toml or streams' files", &o.files, 1, SIZE_MAX}};
+      {"FILE", "takes, recordings, recording.toml, XDF or streams' files", &o.files, 1, SIZE_MAX}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     KA_TRY(o.stream.stream({}));
@@ -108,6 +109,12 @@ Result<Checked> check_recording(const Check& o, const std::string& path, Call& c
   return out;
 }
 
+Result<Checked> check_xdf(const Check& o, const std::string& path, Call& call) {
+  KA_TRY(check_flags(o, path, nullptr, call));
+  return Checked{
+      judge_xdf(path, KA_TRY(survey_xdf(call.surroundings.files, path, call.console.progress())))};
+}
+
 /// What is wrong with one stream's samples.
 Result<Findings> check_stream(const Check& o, const Input& input, const RecordedStream& stream,
                               const std::string& reference, Call& call) {
@@ -128,6 +135,7 @@ Result<Findings> check_stream(const Check& o, const Input& input, const Recorded
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
   if (KA_TRY(is_recording(files, path))) return check_recording(o, path, call);
+  if (KA_TRY(is_xdf(files, path))) return check_xdf(o, path, call);
   if (KA_TRY(is_take(files, path))) return check_take(o, path, call);
   if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
   const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/describe_file.h"
+#include "apps/kinalign/describe_xdf.h"
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/verbs.h"
 
@@ -16,7 +17,7 @@ struct Info {
 Usage describe_info(Info& o) {
   Usage usage;
   usage.positionals = {
-      {"FILE", "a take, a recording, a recording.toml or a stream's file", &o.file}};
+      {"FILE", "a take, a recording, a recording.toml, an XDF or a stream's file", &o.file}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     KA_TRY(o.stream.stream({}));
@@ -42,11 +43,15 @@ Result<Description> describe(const Info& o, Call& call) {
   const Names names = call.common.verbose ? Names::yes : Names::no;
   const bool recording = KA_TRY(is_recording(files, path));
   const bool take = !recording && KA_TRY(is_take(files, path));
-  if (recording || take || path.ends_with(".toml")) {
+  const bool xdf = !recording && !take && KA_TRY(is_xdf(files, path));
+  if (recording || take || xdf || path.ends_with(".toml")) {
     auto used = o.stream.check_use(path, nullptr, call.sources);
     if (!used) return call.console.refuse(std::move(used).error());
   }
   if (take) return describe_take(files, path, names);
+  if (xdf) {
+    return describe_xdf(path, KA_TRY(survey_xdf(files, path, call.console.progress())), names);
+  }
   if (!recording) return describe_input(o, call, path, names);
   const Progress progress = call.console.progress();
   return describe_survey(path, KA_TRY(survey_recording(files, path, progress)),
