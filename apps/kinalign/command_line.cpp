@@ -166,7 +166,8 @@ class Walk {
 Fields common_fields(Common& common, const Page& page) {
   const Field out_file{"out", "file to write", &common.out};
   const Field out_folder{.name = "out",
-                         .meaning = "folder to write into, made if need be",
+                         .meaning = page.out_is_new ? "folder to write into; none may be there"
+                                                    : "folder to write into, made if need be",
                          .value = &common.out,
                          .stands_for = "FOLDER"};
   const Fields choosable{

@@ -267,7 +267,8 @@ Verb simulate_verb() {
                     {"kinalign simulate built-in -o rehearsal --live --seconds 20",
                      "to kinalign record -o rehearsal --config rehearsal/lab.toml"}},
        .common = {"out", "json"},
-       .out_is_folder = true},
+       .out_is_folder = true,
+       .out_is_new = true},
       describe_simulate, run);
 }
 

@@ -90,6 +90,7 @@ struct Page {
   std::vector<Example> examples;    // the first one opens the help page
   std::vector<std::string> common;  // of out, force, json, dry_run, jobs: those it takes
   bool out_is_folder = false;
+  bool out_is_new = false;  // of a folder: none may be there
 };
 
 struct Verb {

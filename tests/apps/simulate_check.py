@@ -141,6 +141,8 @@ def a_motion_of_ones_own_is_simulated_as_it_is(folder):
 
 @case
 def nothing_is_ever_written_over(folder):
+    page = " ".join(done_with(0, "simulate", "--help")[0].split())
+    assert "folder to write into; none may be there" in page and "made if need be" not in page, page
     made, _ = simulate(folder, "--seconds", "3")
     before = digests(made)
     refused("simulate", "built-in", "-o", made, naming=f"{made}: expected no file or folder of that name, found one")
