@@ -79,6 +79,12 @@ static_assert([] {
   return true;
 }());
 
+/// What a tracker finds by the torso's surface: the trunk and the joints that sit on it.
+constexpr bool of_torso(KinectJoint joint) {
+  return kinect_limbs[joint].part == KinectPart::trunk || joint == shoulder_left ||
+         joint == shoulder_right || joint == hip_left || joint == hip_right;
+}
+
 /// All 25, each behind its parent.
 inline constexpr std::array<KinectJoint, kinect_joint_count> kinect_tree_order{
     spine_base,     spine_mid,      spine_shoulder, neck,        head,

@@ -21,6 +21,8 @@ bool belongs(KinectJoint joint, const KinectCapsule& capsule) {
   if (joint == capsule.from || joint == capsule.to) return true;
   const KinectLimb& place = kinect_limbs[joint];
   const bool hip = joint == hip_left || joint == hip_right;
+  // The tracker finds these by the torso's whole surface: an arm before it hides too little.
+  if (of_torso(joint) && kinect_limbs[capsule.to].part == KinectPart::arm) return true;
   if (capsule.to == head) return place.part == KinectPart::trunk || is_shoulder(joint);
   if (capsule.from == spine_base) return place.part == KinectPart::trunk ? joint != head : hip;
   if (capsule.to == knee_left || capsule.to == knee_right) return hip || joint == spine_base;

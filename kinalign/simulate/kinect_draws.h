@@ -19,7 +19,9 @@ enum class KinectDraw : std::uint8_t {
   white,
   twitches,
   occlusion,
-  exchange
+  exchange,
+  pose_noise,
+  take_size
 };
 
 /// Of a person: the same in all takes and for all cameras.

@@ -4,8 +4,10 @@
 #include "kinalign/simulate/kinect_coloured.h"
 #include "kinalign/simulate/kinect_draws.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace kinalign {
 
@@ -17,9 +19,14 @@ struct Shares {
   Group group;
   double sideways;  // share of frames where left and right lie one behind the other
 };
-// Measured on two Kinects at 0, 45 and 90 degrees, of which one looks along the shoulders at times.
+// Fitted to two Kinects at 0, 45 and 90 degrees, of which one looks along the shoulders at times.
 constexpr std::array<Shares, 3> groups{
-    {{Group::body, 0.04}, {Group::legs, 0.08}, {Group::arms, 0.07}}};
+    {{Group::body, 0.07}, {Group::legs, 0.16}, {Group::arms, 0.14}}};
+// Labels are lost as limbs pass one another, less on a body that stands (at 90 degrees the two
+// Kinects are 9.8 cm apart while it stands, 13.6 while it steps) …
+constexpr double still_share = 0.4, full_bustle = 0.25;  // m/s
+// … and hold for as long while a turning body passes through its profile. An estimate.
+constexpr double labels_hold_s = 2.0;
 // Sides that lie further apart than this across the view are not confused, m.
 constexpr double told_apart = 0.25;
 
@@ -28,7 +35,7 @@ constexpr double median_s = 0.4, spread = 0.5;
 constexpr double mean_s = median_s * 1.1331484530668263;  // exp(spread^2 / 2)
 constexpr double back_from = 110.0 * std::numbers::pi / 180.0;
 constexpr double turn_s = 4.0;  // cameras that see a back within as long see the same turn
-constexpr double back_misread = 0.15;
+constexpr double back_misread = 0.04;
 
 bool in_group(KinectLimb place, Group group) {
   if (place.side == KinectSide::middle) return false;
@@ -75,10 +82,14 @@ class Spells {
  public:
   Spells(RandomStream random, std::uint64_t lane) : random_(random), lane_(lane) {}
 
-  bool step(const KinectTick& tick, double step_s, double share) {
+  /// `likeness`: how nearly the sides lie one behind the other; counts by how long they have.
+  bool step(const KinectTick& tick, double step_s, double share, double likeness) {
+    if (!lasted_) lasted_ = likeness;
+    *lasted_ += (likeness - *lasted_) * step_s / labels_hold_s;
     if (tick.seconds < until_) return true;
     const std::uint64_t k = shared_key(tick.seconds, kinect_frame_s);
-    const double rate = share / ((1.0 - share) * mean_s);
+    const double now = share * *lasted_;
+    const double rate = now / ((1.0 - now) * mean_s);
     if (!random_.chance(k, lane_, rate * step_s)) return false;
     until_ = tick.seconds + median_s * std::exp(spread * random_.normal(k, lane_ + 1));
     return true;
@@ -88,6 +99,7 @@ class Spells {
   RandomStream random_;
   std::uint64_t lane_;
   double until_ = -1e300;
+  std::optional<double> lasted_;
 };
 
 }  // namespace
@@ -102,6 +114,8 @@ void exchange_sides(const KinectScene& scene, const KinectIds& ids, PointFrames&
     const double yaw = scene.headings[t].yaw;
     const double step_s = std::min(tick.seconds - before, 0.1);
     before = tick.seconds;
+    const double moved =
+        still_share + (1.0 - still_share) * std::min(1.0, scene.bustle[t] / full_bustle);
     const bool turned = yaw > back_from;
     if (turned && !back)
       misread = random.chance(shared_key(tick.seconds, turn_s), 12, back_misread);
@@ -111,8 +125,9 @@ void exchange_sides(const KinectScene& scene, const KinectIds& ids, PointFrames&
       continue;
     }
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      const double share = groups[g].sideways * confusable(scene.joints(t), groups[g].group);
-      if (spells[g].step(tick, step_s, share)) exchange(frames, t, groups[g].group);
+      const double likeness = confusable(scene.joints(t), groups[g].group);
+      const double share = moved * groups[g].sideways * likeness;
+      if (spells[g].step(tick, step_s, share, likeness)) exchange(frames, t, groups[g].group);
     }
   }
 }

@@ -9,6 +9,8 @@ constexpr double cm = 1e-2, mm = 1e-3;
 
 using Table = std::array<KinectJointNoise, kinect_joint_count>;
 
+// Fitted, joint by joint: `white` to the second differences by speed, `twitch` to the
+// autocorrelation at one frame, `spread` to the shares of residuals above 10 cm.
 constexpr double slow_limbs = 0.33, quick_feet = 0.23;  // s
 constexpr double usual_tail = 3.0, feet_tail = 1.5;
 
@@ -24,10 +26,13 @@ KinectJointNoise joint(KinectJoint source, double kinship, const Bias& bias, con
           .person = bias.person * cm,
           .take = bias.take * cm,
           .within = within * cm,
+          .spread = 0.5,
           .tau = slow_limbs,
-          .white = 0.07 * mm,
-          .white_speed = 2.2 * mm,
-          .tail = usual_tail};
+          .white = 0.1 * mm,
+          .white_speed = 2.7 * mm,
+          .white_stir = 0.0,
+          .tail = usual_tail,
+          .twitch = 0.5};
 }
 
 KinectJointNoise with_white(KinectJointNoise noise, double rest_mm, double speed_mm) {
@@ -39,8 +44,10 @@ KinectJointNoise with_white(KinectJointNoise noise, double rest_mm, double speed
 KinectJointNoise on_the_ground(KinectJointNoise noise) {
   noise.tau = quick_feet;
   noise.tail = feet_tail;
-  noise.twitch = 4.0;
-  return with_white(noise, 0.4, 1.5);
+  noise.twitch = 10.0;
+  noise.spread = 0.7;
+  noise.white_stir = 0.7 * mm;  // a foot at rest trembles while its leg bends
+  return with_white(noise, 0.2, 1.3);
 }
 
 /// Hands were not in the table against Vicon: the wrist's figures, larger.
@@ -60,20 +67,26 @@ void put_trunk(Table& t) {
   t[spine_mid] = joint(spine_base, 0.6, {{0.0, -3.6, -4.1}, 1.8, 2.5}, {0.9, 1.2, 1.4});
   t[spine_shoulder] = joint(spine_mid, 0.6, {{0.5, -3.2, -1.6}, 0.8, 1.8}, {0.8, 1.4, 1.3});
   t[head] = joint(spine_shoulder, 0.5, {{0.0, -1.3, -3.3}, 0.9, 1.9}, {0.9, 1.3, 1.3});
+  t[spine_shoulder].spread = 0.7;
+  t[head].spread = 0.85;
+  t[spine_mid].twitch = t[spine_shoulder].twitch = t[head].twitch = 1.3;
   t[neck] = joint(neck, 0.0, {}, Vec3::Zero());  // the mean of its neighbours: no draw of its own
 }
 
 void put_arms(Table& t) {
   t[shoulder_left] = joint(spine_shoulder, 0.5, {{0.6, -3.5, 2.1}, 1.4, 3.7}, {1.2, 1.4, 1.5});
   t[shoulder_right] = joint(spine_shoulder, 0.5, {{-2.2, -2.7, 1.0}, 1.9, 3.7}, {1.5, 1.5, 1.4});
+  t[shoulder_left].spread = t[shoulder_right].spread = 0.5;
   t[elbow_left] = joint(shoulder_left, 0.4, {{-3.8, -1.3, 3.2}, 1.9, 5.2}, {2.5, 2.1, 1.7});
   t[elbow_right] = joint(shoulder_right, 0.4, {{3.4, -2.2, 3.2}, 1.1, 4.3}, {1.6, 2.4, 2.1});
   t[wrist_left] = joint(elbow_left, 0.54, {{-0.5, -0.6, -0.2}, 1.1, 3.5}, {1.5, 2.5, 1.6});
   t[wrist_right] = joint(elbow_right, 0.54, {{1.2, -0.2, -0.3}, 1.9, 4.0}, {1.9, 3.0, 2.7});
   for (const KinectJoint j : {elbow_left, elbow_right, wrist_left, wrist_right}) {
-    t[j] = with_white(t[j], 0.17, 2.3);
+    t[j] = with_white(t[j], 0.2, 3.1);
+    t[j].twitch = 1.3;
+    t[j].spread = 0.75;
   }
-  for (const KinectJoint j : {wrist_left, wrist_right}) t[j].twitch = 2.0;
+  for (const KinectJoint j : {wrist_left, wrist_right}) t[j].twitch = 4.5;
   t[hand_left] = with_white(of_hand(t[wrist_left], wrist_left, 1.2), 0.7, 5.0);
   t[hand_right] = with_white(of_hand(t[wrist_right], wrist_right, 1.2), 0.7, 5.0);
   t[hand_tip_left] = with_white(of_hand(t[wrist_left], hand_left, 1.5), 1.8, 5.0);
@@ -92,11 +105,12 @@ void put_legs(Table& t) {
   t[foot_left] = joint(ankle_left, 0.72, {{-1.9, 2.4, -1.7}, 3.0, 5.1}, {2.4, 3.2, 3.2});
   t[foot_right] = joint(ankle_right, 0.72, {{2.3, 1.7, -1.9}, 3.2, 5.1}, {2.1, 3.4, 3.8});
   for (const KinectJoint j : {knee_left, knee_right}) {
-    t[j] = with_white(t[j], 0.12, 2.3);
-    t[j].twitch = 1.5;
+    t[j] = with_white(t[j], 0.19, 3.3);
+    t[j].twitch = 1.1;
   }
   for (const KinectJoint j : {ankle_left, ankle_right, foot_left, foot_right}) {
     t[j] = on_the_ground(t[j]);
+    if (j == foot_left || j == foot_right) t[j].twitch = 12.0;
   }
 }
 

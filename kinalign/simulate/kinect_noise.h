@@ -19,9 +19,11 @@ struct KinectJointNoise {
   double person;        // m, sd of the offset between people, norm of three axes
   double take;          // m, sd between takes of one person, likewise
   Vec3 within;          // m, sd inside a take, per axis
+  double spread;        // of the log of that sd between takes: how much they differ
   double tau;           // s, of the fast coloured part
   double white;         // m, per axis, at rest …
-  double white_speed;   // … and what a speed of 1 m/s adds
+  double white_speed;   // … what a speed of 1 m/s adds …
+  double white_stir;    // … and a pose that changes by 1 m/s
   double tail;          // degrees of freedom of Student's t that the white part is drawn from
   double twitch = 1.0;  // how often it twitches, times the usual
 };

@@ -4,7 +4,6 @@
 #include "kinalign/simulate/kinect_capsules.h"
 #include "kinalign/simulate/kinect_coloured.h"
 #include "kinalign/simulate/kinect_draws.h"
-#include "kinalign/simulate/kinect_noise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,20 +18,25 @@ constexpr double way_per_frame = 1.0 / 3.0;  // to the guess
 constexpr double guess_tau_s = 0.8;
 constexpr double doubt = 0.003;  // of a frame of a joint that is seen, for one or two frames
 
+// A guess is off by an angle: the bone's length times these, sd per axis. Fitted to the far side of
+// a body that stands and steps at 90 degrees: far arm, far leg, rms of all joints.
 struct GuessNoise {
-  double at_entry, process;  // m, sd per axis
+  double at_entry, process;  // rad
 };
+constexpr double of_parent = 0.7;                      // of a guessed parent's error: the same rows
+constexpr double longest_bone = 1.0;                   // m: beyond it nothing is a bone
+constexpr double still_share = 0.3, full_stir = 0.25;  // m/s: a still limb is guessed better
 
 GuessNoise guess_noise(KinectPart part) {
   switch (part) {
     case KinectPart::arm:
-      return {0.05, 0.06};
+      return {0.19, 0.29};
     case KinectPart::leg:
-      return {0.06, 0.06};
+      return {0.18, 0.18};
     case KinectPart::trunk:
       break;
   }
-  return {0.02, 0.0};
+  return {0.1, 0.0};
 }
 
 /// What the tracker remembers of one joint.
@@ -43,12 +47,12 @@ struct Memory {
   double back = 1.0;          // share of that way per frame when the joint is seen again
   int doubted = 0;            // frames that are still to be marked
   Vec3 bone = Vec3::Zero();   // from the parent, heading space, as last seen
-  Vec3 entry = Vec3::Zero();  // draw at entry, unit, along the tree
+  Vec3 entry = Vec3::Zero();  // draw at entry, unit
   std::array<SmoothNoise, 3> wandering{};  // unit
-  std::array<Vec3, 2> draws{Vec3::Zero(), Vec3::Zero()};
-  Vec3 guess = Vec3::Zero();  // m, camera space, without its error
+  Vec3 guess = Vec3::Zero();               // m, camera space, without its error
+  Vec3 error = Vec3::Zero();               // m, heading space, of a guess
 
-  Vec3 wander() const { return {wandering[0].value, wandering[1].value, wandering[2].value}; }
+  Vec3 wander() const { return {wandering[0].value(), wandering[1].value(), wandering[2].value()}; }
 };
 
 class Tracker {
@@ -85,7 +89,7 @@ class Tracker {
     Memory& memory = memories_[j];
     const std::uint64_t k = counter(t, j);
     const Vec3 seen = vec3(frames_.positions, t * kinect_joint_count + j);
-    wander(memory, j, k);
+    wander(memory, k);
     if (hider || below) {
       if (++memory.hidden == patience + 1) enter(memory, j, k, below);
     } else {
@@ -104,29 +108,17 @@ class Tracker {
   }
 
   /// Runs on whether it is used or not, so that it does not begin anew at each entry.
-  void wander(Memory& memory, KinectJoint j, std::uint64_t k) {
-    const KinectJointNoise& noise = kinect_joint_noise()[j];
-    const double own = std::sqrt(1.0 - noise.kinship * noise.kinship);
+  void wander(Memory& memory, std::uint64_t k) {
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto axis = static_cast<Eigen::Index>(a);
       const auto [first, second] = random_.normals(k, 2 + 2 * a);
-      const std::array<double, 2> fresh{first, second};
-      for (std::size_t d = 0; d < 2; ++d) {
-        const double kin = noise.source == j ? 0.0 : memories_[noise.source].draws[d][axis];
-        memory.draws[d][axis] = noise.kinship * kin + own * fresh[d];
-      }
-      step_.run(memory.wandering[a], memory.draws[0][axis], memory.draws[1][axis]);
+      step_.run(memory.wandering[a], first, second);
     }
   }
 
   void enter(Memory& memory, KinectJoint j, std::uint64_t k, bool below) {
-    const KinectJointNoise& noise = kinect_joint_noise()[j];
-    const Memory& kin = memories_[noise.source];
-    const bool trunk = kinect_limbs[j].part == KinectPart::trunk;  // too large to be another part
-    memory.infers = below || trunk || random_.chance(k, 0, gives_up);
-    const Vec3 own(random_.normal(k, 8), random_.normal(k, 10), random_.normal(k, 12));
-    const double shared = noise.source != j && kin.hidden > 0 ? noise.kinship : 0.0;
-    memory.entry = shared * kin.entry + std::sqrt(1.0 - shared * shared) * own;
+    const bool torso = of_torso(j);  // too large to be another part
+    memory.infers = below || torso || random_.chance(k, 0, gives_up);
+    memory.entry = Vec3(random_.normal(k, 8), random_.normal(k, 10), random_.normal(k, 12));
   }
 
   /// Where it is from its parent: what a guess begins with.
@@ -144,12 +136,17 @@ class Tracker {
     const bool root = kinect_limbs[j].parent == j;
     if (memory.hidden == 0 && memory.away <= 0.0) {
       remember(t, j, seen);
+      memory.error.setZero();
       return;
     }
     memory.guess = hider ? *hider : root ? seen : Vec3(parent.guess + axes * memory.bone);
     const GuessNoise size = guess_noise(kinect_limbs[j].part);
-    const Vec3 error = size.at_entry * memory.entry + size.process * memory.wander();
-    const Vec3 guessed = memory.guess + axes * error;
+    const double length = std::min(memory.bone.norm(), longest_bone);
+    const double stir = scene_.stir[t * kinect_joint_count + j];
+    const double moved = std::min(1.0, still_share + stir / full_stir);
+    memory.error = of_parent * parent.error +
+                   length * (size.at_entry * memory.entry + moved * size.process * memory.wander());
+    const Vec3 guessed = memory.guess + axes * memory.error;
     vec3(frames_.positions, t * kinect_joint_count + j) =
         (1.0 - memory.away) * seen + memory.away * guessed;
   }

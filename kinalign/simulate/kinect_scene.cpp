@@ -54,37 +54,65 @@ BodyHeading heading(std::span<const double> joints, const Vec3& up, const BodyHe
   return found;
 }
 
-void take_speeds(KinectScene& scene) {
+void take_poses(KinectScene& scene) {
+  for (std::size_t t = 0; t < scene.frames(); ++t) {
+    const std::span<const double> joints = scene.joints(t);
+    const Vec3 ground = 0.5 * (vec3(joints, ankle_left) + vec3(joints, ankle_right));
+    const Eigen::Matrix3d heading_from_camera = scene.headings[t].axes.transpose();
+    for (std::size_t j = 0; j < kinect_joint_count; ++j) {
+      const Vec3 from =
+          of_torso(static_cast<KinectJoint>(j)) ? ground : Vec3(vec3(joints, spine_base));
+      vec3(scene.poses, t * kinect_joint_count + j) =
+          heading_from_camera * (vec3(joints, j) - from);
+    }
+  }
+}
+
+/// How fast joints of `places` [T,25,3] m are, m/s [T,25].
+std::vector<double> speeds(const KinectScene& scene, const std::vector<double>& places) {
   const std::size_t frames = scene.frames();
+  std::vector<double> found(scene.known.size(), 0.0);
   for (std::size_t t = 0; t < frames; ++t) {
     const std::size_t a = t > 0 && follows(scene.ticks[t - 1], scene.ticks[t]) ? t - 1 : t;
     const std::size_t b = t + 1 < frames && follows(scene.ticks[t], scene.ticks[t + 1]) ? t + 1 : t;
     const double dt = scene.ticks[b].seconds - scene.ticks[a].seconds;
     if (!(dt > 0.0)) continue;
     for (std::size_t j = 0; j < kinect_joint_count; ++j) {
-      const Vec3 way = vec3(scene.truth, b * kinect_joint_count + j) -
-                       vec3(scene.truth, a * kinect_joint_count + j);
-      scene.speeds[t * kinect_joint_count + j] = way.norm() / dt;
+      const Vec3 way =
+          vec3(places, b * kinect_joint_count + j) - vec3(places, a * kinect_joint_count + j);
+      found[t * kinect_joint_count + j] = way.norm() / dt;
     }
   }
+  return found;
 }
 
-void take_bustle(KinectScene& scene) {
+/// Means over half a second of `values` [T,C].
+std::vector<double> smoothed(const KinectScene& scene, const std::vector<double>& values,
+                             std::size_t channels) {
   const std::size_t frames = scene.frames();
-  std::vector<double> sums(frames + 1, 0.0);
-  for (std::size_t t = 0; t < frames; ++t) {
-    sums[t + 1] = sums[t];
-    for (std::size_t j = 0; j < kinect_joint_count; ++j) {
-      sums[t + 1] += scene.speeds[t * kinect_joint_count + j] / kinect_joint_count;
-    }
-  }
+  std::vector<double> found(values.size());
+  std::vector<double> sum(channels, 0.0);
   std::size_t a = 0, b = 0;
+  const auto add = [&](std::size_t t, double sign) {
+    for (std::size_t c = 0; c < channels; ++c) sum[c] += sign * values[t * channels + c];
+  };
   for (std::size_t t = 0; t < frames; ++t) {
     const double now = scene.ticks[t].seconds;
-    while (scene.ticks[a].seconds < now - bustle_s / 2.0) ++a;
-    while (b < frames && scene.ticks[b].seconds <= now + bustle_s / 2.0) ++b;
-    scene.bustle[t] = (sums[b] - sums[a]) / static_cast<double>(b - a);
+    for (; scene.ticks[a].seconds < now - bustle_s / 2.0; ++a) add(a, -1.0);
+    for (; b < frames && scene.ticks[b].seconds <= now + bustle_s / 2.0; ++b) add(b, 1.0);
+    for (std::size_t c = 0; c < channels; ++c) {
+      found[t * channels + c] = std::max(0.0, sum[c]) / static_cast<double>(b - a);
+    }
   }
+  return found;
+}
+
+std::vector<double> over_joints(const std::vector<double>& values) {
+  std::vector<double> means(values.size() / kinect_joint_count, 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    means[i / kinect_joint_count] += values[i] / kinect_joint_count;
+  }
+  return means;
 }
 
 }  // namespace
@@ -100,8 +128,10 @@ KinectScene kinect_scene(const KinectJointsAt& joints_at, std::span<const Kinect
                     std::vector<double>(3 * points),
                     std::vector<std::uint8_t>(points),
                     std::vector<BodyHeading>(ticks.size()),
-                    std::vector<double>(points),
-                    std::vector<double>(ticks.size())};
+                    {},
+                    {},
+                    std::vector<double>(3 * points),
+                    {}};
   take_truth(joints_at, options.world_from_kinect, scene);
   const Vec3 up = options.world_from_kinect.rotation.conjugate() * Vec3::UnitY();
   BodyHeading last;
@@ -110,8 +140,10 @@ KinectScene kinect_scene(const KinectJointsAt& joints_at, std::span<const Kinect
                                          3 * kinect_joint_count);
     last = scene.headings[t] = heading(joints, up, last);
   }
-  take_speeds(scene);
-  take_bustle(scene);
+  take_poses(scene);
+  scene.speeds = speeds(scene, scene.truth);
+  scene.bustle = smoothed(scene, over_joints(scene.speeds), 1);
+  scene.stir = smoothed(scene, speeds(scene, scene.poses), kinect_joint_count);
   return scene;
 }
 

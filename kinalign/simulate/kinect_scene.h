@@ -20,6 +20,9 @@ struct KinectScene {
   std::vector<BodyHeading> headings;  // [T]
   std::vector<double> speeds;         // [T,25] m/s
   std::vector<double> bustle;         // [T] m/s, mean of all joints' speeds over 0.5 s
+  std::vector<double> poses;          // [T,25,3] m, heading space: limbs from the spine's base, the
+                                      // torso from between the ankles
+  std::vector<double> stir;           // [T,25] m/s, how fast poses change, mean over 0.5 s
 
   std::size_t frames() const { return ticks.size(); }
   /// The true ones of a frame [25,3].

@@ -15,13 +15,13 @@ namespace {
 constexpr double of_robust = 0.75;  // the measured figures are of second differences
 constexpr double furthest = 0.08;   // m
 
-// Twitches: the measured autocorrelation falls by 5 % within one frame while the usual second
-// difference stays under a millimetre, so a few frames must be far off. Rate and size were chosen
-// for the autocorrelation at one frame.
-constexpr double twitch_rate = 0.0115, twitch_at_rest = 0.05;  // per frame; share of it at rest
+// Twitches: the measured autocorrelation falls within one frame by 5 % (trunk) to 24 % (feet) while
+// the usual second difference stays under a millimetre, so a few frames must be far off. The rate,
+// and how it differs between joints, was fitted to each joint's autocorrelation at one frame.
+constexpr double twitch_rate = 0.0115, twitch_at_rest = 0.02;  // per frame; share of it at rest
 constexpr double twitch_sd = 0.025;                            // m per axis, times an exponential
 constexpr int longest_twitch = 4;                              // frames
-constexpr double full_bustle = 0.25;                           // m/s
+constexpr double full_stir = 0.25;                             // m/s
 
 struct Twitch {
   int left = 0;  // frames
@@ -34,9 +34,10 @@ void add_twitches(const KinectScene& scene, const KinectIds& ids, std::span<doub
   const RandomStream random = kinect_stream(KinectDraw::twitches, ids);
   std::array<Twitch, kinect_joint_count> twitches{};
   for (std::size_t t = 0; t < scene.frames(); ++t) {
-    const double moved = twitch_at_rest + std::min(scene.bustle[t], full_bustle) / full_bustle;
     for (std::size_t j = 0; j < kinect_joint_count; ++j) {
       const auto k = static_cast<std::uint64_t>(scene.ticks[t].number) * kinect_joint_count + j;
+      const double stir = scene.stir[t * kinect_joint_count + j];
+      const double moved = twitch_at_rest + std::min(stir, full_stir) / full_stir;
       Twitch& twitch = twitches[j];
       if (twitch.left == 0 &&
           random.chance(k, 0, kinect_joint_noise()[j].twitch * twitch_rate * moved)) {
@@ -63,7 +64,8 @@ void add_white_noise(const KinectScene& scene, const KinectIds& ids, std::span<d
     for (std::size_t j = 0; j < kinect_joint_count; ++j) {
       const KinectJointNoise& noise = kinect_joint_noise()[j];
       const std::size_t i = t * kinect_joint_count + j;
-      const double size = of_robust * (noise.white + noise.white_speed * scene.speeds[i]);
+      const double size = of_robust * (noise.white + noise.white_speed * scene.speeds[i] +
+                                       noise.white_stir * scene.stir[i]);
       for (std::size_t a = 0; a < 3; ++a) {
         const double draw = size * student_t(noise.tail, random.uniform(k + j, 2 * a),
                                              random.uniform(k + j, 2 * a + 1));
