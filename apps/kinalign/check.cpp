@@ -127,7 +127,7 @@ Result<Findings> check_stream(const Check& o, const Input& input, const Recorded
   append(found, judge_stamps(stream, options));
   append(found, judge_arrivals(stream, arrivals, role));
   append(found, judge_start(stream, options, arrivals));
-  Findings out = said_of_file(stream, input.recording);
+  Findings out = said_by_file(stream, input.recording).findings;
   append(out, said_of(stream, input.recording, std::move(found)));
   return out;
 }

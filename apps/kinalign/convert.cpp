@@ -153,7 +153,7 @@ Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& c
 Findings findings_of(const Recording& recording) {
   Findings all;
   for (const RecordedStream& stream : recording.streams) {
-    append(all, said_of_file(stream, recording));
+    append(all, said_by_file(stream, recording).findings);
     append(all, said_of(stream, recording, stream.findings));
   }
   return all;

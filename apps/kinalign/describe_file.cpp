@@ -185,7 +185,7 @@ Description describe_recording(const std::string& path, const Recording& recordi
   std::size_t findings = 0;
   for (const RecordedStream& s : recording.streams) {
     const Contents c = contents_of(s);
-    Findings found = said_of_file(s, recording);
+    Findings found = said_by_file(s, recording).findings;
     append(found, s.findings);
     out["streams"].push_back(stream_json(s, c, found));
     text += stream_lines(s, c, names);

@@ -174,6 +174,16 @@ std::string space_text(const Json& space) {
   return text;
 }
 
+/// Against the take's first frame: what was said before it is negative.
+std::string mark_text(const Json& mark, std::int64_t begin_ns) {
+  const std::string text = text_at(mark, "text");
+  return fmt::format(
+      "  mark     {}{} at {:.3f} s, by {}\n", text_at(mark, "kind"),
+      text.empty() ? "" : " " + shown(text),
+      1e-9 * (static_cast<double>(stamp_at(mark, "time_ns")) - static_cast<double>(begin_ns)),
+      text_at(mark, "source"));
+}
+
 std::string finding_text(const Json& finding) {
   const Error what{text_at(finding, "file"), static_cast<std::int64_t>(count_at(finding, "line")),
                    text_at(finding, "expected"), text_at(finding, "found")};
@@ -220,6 +230,9 @@ std::string take_text(const std::string& json, Names names) {
   std::string text = head_text(take, report);
   for (const Json& stream : list_at(take, "streams")) text += stream_text(stream, report, names);
   for (const Json& space : list_at(report, "spaces")) text += space_text(space);
+  for (const Json& mark : list_at(report, "marks")) {
+    text += mark_text(mark, stamp_at(report, "begin_ns"));
+  }
   for (const Json& finding : list_at(report, "findings")) text += finding_text(finding);
   return text;
 }

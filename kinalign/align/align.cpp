@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace kinalign {
 
@@ -91,7 +92,9 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
   report.reference = recording.streams[plan.reference].name;
   report.rate_hz = plan.streams[plan.reference].rule.rate_hz();
   for (const RecordedStream& s : recording.streams) {
-    append(report.findings, without_folders(said_of_file(s, recording)));
+    SaidByFile by_file = said_by_file(s, recording);
+    append(report.findings, without_folders(std::move(by_file.findings)));
+    std::move(by_file.marks.begin(), by_file.marks.end(), std::back_inserter(report.marks));
     Findings found = without_folders(s.findings);
     append(found, judge_stamps(s, options_of(plan.header.parameters, s.name)));
     append(report.findings, said_of(s, recording, std::move(found)));

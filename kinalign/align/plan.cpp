@@ -38,7 +38,7 @@ std::string spans(const Recording& recording) {
 /// What the reader of a stream without samples found wrong, where it found anything.
 Error no_samples(const RecordedStream& s) {
   Findings all = s.findings;
-  append(all, s.file_findings);
+  append(all, s.by_file.findings);
   const auto worst = std::max_element(
       all.begin(), all.end(), [](const auto& a, const auto& b) { return a.severity < b.severity; });
   if (worst != all.end() && worst->severity == Severity::error) return worst->what;

@@ -145,7 +145,7 @@ Result<FoundFormat> recording_format(const Source& source, const Progress& progr
                   std::move(device.further_files),
                   {},
                   device.heard->clock.time,
-                  std::move(device.file_findings)});
+                  std::move(device.by_file)});
 }
 
 Result<FoundFormat> program_format(const Format& format, const Source& source) {

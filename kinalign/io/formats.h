@@ -27,7 +27,7 @@ struct FoundFormat {
   std::vector<std::string> further_files;  // that the reader opens itself
   SurveyClip survey;                       // empty: rows are read
   std::optional<TimeModel> clock;          // of the device's stamps; absent: as the options say
-  Findings file_findings{};                // of a file that several streams may be read from
+  SaidByFile by_file{};                    // that several streams may be read from
 };
 
 /// Decides by `options.layout` (a format's name, a built-in layout's, or the path of a layout) or,

@@ -11,6 +11,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_names = 32;  // of streams and nodes in messages
+constexpr std::size_t most_marks = 10'000;
 
 void remember(std::set<std::string>& names, const std::string& name) {
   if (names.size() < most_names) names.insert(shown(name));
@@ -90,7 +91,22 @@ Result<void> RecordedMessages::take_one(const McapRecord& record, const TakeMess
   return {};
 }
 
+void RecordedMessages::take_mark(const McapMessage& message) {
+  if (by_file_.marks.size() >= most_marks) return;
+  auto said = to_mark(message.data);
+  if (!said) return;
+  const Time at{Duration{static_cast<std::int64_t>(message.log_time)}};
+  by_file_.marks.push_back({at, name_of(said->mark.kind), std::move(said->mark.text),
+                            said->mark.latency, std::move(said->source)});
+}
+
 Result<void> RecordedMessages::take_message(const McapMessage& message, const TakeMessage& take) {
+  if (mark_channels_.contains(message.channel)) {
+    if (message.log_time <= latest_log_time && !stands_later(*parts_, part_, message)) {
+      take_mark(message);
+    }
+    return {};
+  }
   const auto found = channels_.find(message.channel);
   if (found == channels_.end() || !facts_ || message.log_time > latest_log_time) return {};
   if (stands_later(*parts_, part_, message)) return {};
@@ -107,6 +123,7 @@ Result<void> RecordedMessages::take_message(const McapMessage& message, const Ta
 
 /// Each chunk names its channels again.
 void RecordedMessages::add(const McapChannel& channel) {
+  if (channel.topic == marks_topic) mark_channels_.insert(channel.id);
   auto raw = to_raw(channel);
   if (!raw) return;
   const auto [at, fresh] = channels_.try_emplace(channel.id);
@@ -137,10 +154,10 @@ std::optional<std::size_t> RecordedMessages::place_on_roll(const RawChannel& raw
 void RecordedMessages::judge_file() {
   for (Finding finding : reader_.findings()) {
     finding.what.file = file();
-    file_findings_.push_back(std::move(finding));
+    by_file_.findings.push_back(std::move(finding));
   }
   if (!reader_.closed()) {
-    file_findings_.push_back(
+    by_file_.findings.push_back(
         {Severity::warning, Error{file(), 0, "a file that was closed", "one that breaks off"},
          "everything up to the break was read", "kinalign recover makes a whole file of it"});
   }

@@ -6,6 +6,7 @@
 #include "kinalign/io/mcap_reader.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/sender_roll.h"
+#include "kinalign/take/recording.h"
 
 #include <functional>
 #include <map>
@@ -58,8 +59,9 @@ class RecordedMessages {
   const std::optional<RawChannel>& chosen() const { return chosen_; }
   /// Who else spoke in the stream; empty where it is one of nodes. Complete after finish().
   const SenderRoll& senders() const { return roll_; }
-  /// That the files are torn or damaged, whichever device is read; complete after finish().
-  const Findings& file_findings() const { return file_findings_; }
+  /// That the files are torn or damaged, and the marks in them, whichever device is read; complete
+  /// after finish().
+  const SaidByFile& by_file() const { return by_file_; }
   /// That messages of the device are missing; complete after finish().
   const Findings& findings() const { return findings_; }
 
@@ -72,6 +74,7 @@ class RecordedMessages {
   };
   Result<void> take_records(const TakeMessage& take);
   Result<void> take_one(const McapRecord& record, const TakeMessage& take);
+  void take_mark(const McapMessage& message);
   Result<void> take_message(const McapMessage& message, const TakeMessage& take);
   void add(const McapChannel& channel);
   bool is_wanted(const RawChannel& raw);
@@ -92,7 +95,9 @@ class RecordedMessages {
   std::set<std::string> streams_, nodes_;  // that are there
   SenderRoll roll_;
   std::uint64_t missing_ = 0;
-  Findings file_findings_, findings_;
+  std::set<std::uint16_t> mark_channels_;
+  SaidByFile by_file_;
+  Findings findings_;
 };
 
 }  // namespace kinalign

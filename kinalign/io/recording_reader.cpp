@@ -170,7 +170,7 @@ class Listening {
     return heard;
   }
   const DeviceProtocol& protocol() const { return *protocol_; }
-  const Findings& file_findings() const { return messages_.file_findings(); }
+  const SaidByFile& by_file() const { return messages_.by_file(); }
   const SenderRoll& senders() const { return messages_.senders(); }
   const RawChannel& channel() const { return *messages_.chosen(); }
 
@@ -241,8 +241,8 @@ Result<DeviceWish> whole_wish(FileSystem& files, const StreamOptions& options,
 
 RecordedDevice device_of(FileSystem& files, const DeviceWish& wish, const Listening& listening,
                          HeardDevice heard) {
-  Findings file_findings = listening.file_findings();
-  append(file_findings, judge_parts(*wish.parts, PartsBehind::read));
+  SaidByFile by_file = listening.by_file();
+  append(by_file.findings, judge_parts(*wish.parts, PartsBehind::read));
   const auto shared = std::make_shared<const HeardDevice>(std::move(heard));
   std::vector<std::string> further;
   for (const RecordingPart& part : *wish.parts) further.push_back(part.path);
@@ -252,7 +252,7 @@ RecordedDevice device_of(FileSystem& files, const DeviceWish& wish, const Listen
           [&files, wish, shared, protocol = listening.protocol()]() -> Result<AnyReader> {
             return reader_of(files, wish, shared, protocol.rows(wish, shared));
           },
-          std::move(further), std::move(file_findings)};
+          std::move(further), std::move(by_file)};
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct RecordedDevice {
   std::shared_ptr<const HeardDevice> heard;
   std::function<Result<AnyReader>()> make;
   std::vector<std::string> further_files;  // the recording went on in them, and they are read
-  Findings file_findings;                  // of all these files, whichever device is read
+  SaidByFile by_file;                      // by all these files, whichever device is read
 };
 
 /// Reads the file once, and those that the recording went on in: by itself it looks for them in the

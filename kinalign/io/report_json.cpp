@@ -68,6 +68,13 @@ Json space_json(const SpaceReport& space) {
   return out;
 }
 
+Json mark_json(const TakeMark& mark) {
+  Json out = {{"time_ns", to_ns(mark.at)}, {"kind", mark.kind}, {"source", mark.source}};
+  if (!mark.text.empty()) out["text"] = mark.text;
+  if (mark.latency) out["latency_ms"] = 1e3 * seconds(*mark.latency);
+  return out;
+}
+
 Json finding_json(const Finding& finding) {
   return {{"severity", std::string(to_string(finding.severity))},
           {"file", finding.what.file},
@@ -98,6 +105,7 @@ std::string report_json(const AlignmentReport& report) {
               {"streams", Json::array()},        {"spaces", Json::array()}};
   for (const StreamReport& stream : report.streams) out["streams"].push_back(stream_json(stream));
   for (const SpaceReport& space : report.spaces) out["spaces"].push_back(space_json(space));
+  for (const TakeMark& mark : report.marks) out["marks"].push_back(mark_json(mark));
   out["findings"] = findings_array(report.findings);
   return written(out);
 }

@@ -180,7 +180,7 @@ Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) 
         [&](auto& any) { return survey(job, std::move(file), head, format, std::move(any)); },
         reader));
   }
-  out.stream.file_findings = format.file_findings;
+  out.stream.by_file = format.by_file;
   for (const std::string& further : format.further_files) {
     out.stream.files.push_back(KA_TRY(facts_of(*job.files, further, *job.progress)));
     out.paths.push_back(further);

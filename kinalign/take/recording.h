@@ -52,6 +52,22 @@ struct InputFacts {
   bool operator==(const InputFacts&) const = default;
 };
 
+/// That something happened while a recording was made: somebody or a program said so.
+struct TakeMark {
+  Time at{};
+  std::string kind, text;           // "start", "stop", "t_pose", "text"
+  std::optional<Duration> latency;  // from the mark to its effect
+  std::string source;               // "keyboard", "call", "trigger"
+
+  bool operator==(const TakeMark&) const = default;
+};
+
+/// What a file says, whichever of its streams is read.
+struct SaidByFile {
+  Findings findings;            // of the file as a whole
+  std::vector<TakeMark> marks;  // in the order of their arrival
+};
+
 struct RecordedStream {
   std::string name;    // the take's group: "mocap", "kinect"; streams of nodes may share one, "imu"
   std::string format;  // what its file was read as: "bvh", a layout's name; empty: memory
@@ -63,8 +79,8 @@ struct RecordedStream {
   bool counted = false;
   TimeModel clock;  // from those to the take's axis
   std::vector<InputFacts> files;
-  Findings findings;       // of the reader
-  Findings file_findings;  // of the file as a whole: each stream that reads it has the same
+  Findings findings;   // of the reader
+  SaidByFile by_file;  // each stream that reads it has the same
 };
 
 struct Recording {

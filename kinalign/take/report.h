@@ -6,6 +6,7 @@
 #include "kinalign/motion/arrivals.h"
 #include "kinalign/motion/rigid_fit.h"
 #include "kinalign/motion/stamps.h"
+#include "kinalign/take/recording.h"
 
 #include <cstdint>
 #include <optional>
@@ -61,6 +62,8 @@ struct AlignmentReport {
   std::string reference;
   std::vector<StreamReport> streams;
   std::vector<SpaceReport> spaces;
+  std::vector<TakeMark>
+      marks;          // of the recordings, on the take's axis; also before its first frame
   Findings findings;  // of readers and of alignment, worst first
 };
 

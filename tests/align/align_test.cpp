@@ -168,7 +168,20 @@ TEST_CASE("a stream without samples is refused with what its reader found wrong,
       {Severity::note, Error{"k.csv", 0, "less", "more"}, "", ""}};
   CHECK(refusal() == "k.csv: expected rows of body 3, found none");
   recording.streams[1].findings.clear();
-  recording.streams[1].file_findings = {
+  recording.streams[1].by_file.findings = {
       {Severity::error, Error{"k.mcap", 0, "a record", "none"}, "nothing was read", ""}};
   CHECK(refusal() == "k.mcap: expected a record, found none");
+}
+
+TEST_CASE("the marks of a file that two streams are read from stand once in the report") {
+  Recording recording =
+      two(points(joints, every(10 * ms, 100), wander), points(joints, every(30 * ms, 33), wander));
+  const TakeMark start{Time{Duration{5 * ms}}, "start", "dance", std::nullopt, "keyboard"};
+  for (RecordedStream& stream : recording.streams) {
+    stream.files = {{"take.mcap", "", 0}};
+    stream.by_file.marks = {start};
+  }
+  const auto take = align(recording, {});
+  REQUIRE(take);
+  CHECK(take->report.marks == std::vector<TakeMark>{start});
 }

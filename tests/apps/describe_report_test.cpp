@@ -45,6 +45,8 @@ AlignmentReport full_report(std::mt19937_64& random) {
   report.streams = {kinect};
   report.spaces = {
       {"kinect", "mocap", "fit", {}, 1.0, 2.362, 0.043, {{"Head", "Head", 5, 1.0, 0.1}}}};
+  report.marks = {{report.begin - std::chrono::milliseconds(53), "start", "dance",
+                   std::chrono::milliseconds(53), "trigger"}};
   for (std::size_t n = 1 + random() % 5; n > 0; --n) {
     report.findings.push_back({static_cast<Severity>(random() % 3),
                                {any_text(random), static_cast<std::int64_t>(random() % 100),
@@ -98,6 +100,7 @@ TEST_CASE("a take's page says its span in UTC, its streams, their losses and the
   CHECK(
       text.starts_with("t.h5: a take by kinalign 1, 3,601 frames at 60 Hz, 1 min 00 s\n"
                        "  subject S, action walk\n"));
+  CHECK(has("  mark     start dance at -0.053 s, by trigger\n"));
   CHECK(has("  from " + calendar(1'700'000'000, 123) + " to " + calendar(1'700'000'060, 123) +
             " UTC\n"));
   CHECK(

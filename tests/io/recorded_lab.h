@@ -220,6 +220,13 @@ class RecordedLab {
     }
   }
 
+  void add_mark(double t, const Mark& mark) {
+    McapChannel described;
+    described.topic = marks_topic;
+    described.message_encoding = "json";
+    add(channel(described), t, to_json(RecordedMark{mark, "call", "10.0.0.9:40000"}));
+  }
+
   static std::string tracker_packet(std::uint64_t number, double t) {
     std::string bytes;
     const auto put = [&bytes](std::uint64_t value, int size) {

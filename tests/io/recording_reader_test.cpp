@@ -214,13 +214,30 @@ TEST_CASE("a file that breaks off anywhere is read up to there, and that is said
     const std::string path = folder.write("torn.mcap", whole.substr(0, size));
     const RecordedStream stream = opened(files, stream_named("imu", path));
     const auto torn = std::count_if(
-        stream.file_findings.begin(), stream.file_findings.end(),
+        stream.by_file.findings.begin(), stream.by_file.findings.end(),
         [](const Finding& f) { return f.repair == "kinalign recover makes a whole file of it"; });
     CHECK(torn == 1);
     const Errors errors = node_errors(stream);
     CHECK(errors.outside == 0);
     CHECK(static_cast<double>(errors.samples) > 300.0 * (share - 0.1));
   }
+}
+
+TEST_CASE("marks come with each stream of a recording, on the take's axis") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 4.0);
+  lab.add_mark(1.0, {Mark::Kind::start, "dance", Duration{53'000'000}, "1"});
+  lab.add_mark(3.0, {Mark::Kind::text, "a word", std::nullopt, "2"});
+  PosixFiles files;
+  const RecordedStream stream =
+      opened(files, stream_named("imu", folder.write("take.mcap", lab.file())));
+  const std::vector<TakeMark>& marks = stream.by_file.marks;
+  REQUIRE(marks.size() == 2);
+  CHECK(marks[0] == TakeMark{utc_time(RecordedLab::utc_begin + 1'000'000'000), "start", "dance",
+                             Duration{53'000'000}, "call"});
+  CHECK(marks[1].text == "a word");
+  CHECK(marks[1].at - marks[0].at == std::chrono::seconds(2));
 }
 
 TEST_CASE("what is not in a recording is refused by the names of what is") {
