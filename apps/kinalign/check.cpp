@@ -132,11 +132,9 @@ Result<Findings> check_stream(const Check& o, const Input& input, const Recorded
   return out;
 }
 
-Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
+/// A stream's file, or a manifest with all of its streams.
+Result<Checked> check_input(const Check& o, const std::string& path, Call& call) {
   FileSystem& files = call.surroundings.files;
-  if (KA_TRY(is_recording(files, path))) return check_recording(o, path, call);
-  if (KA_TRY(is_xdf(files, path))) return check_xdf(o, path, call);
-  if (KA_TRY(is_take(files, path))) return check_take(o, path, call);
   if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
   const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
   if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
@@ -153,6 +151,14 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
     name_as_typed(path, input.recording.streams.front(), out.findings);
   }
   return out;
+}
+
+Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  if (KA_TRY(is_recording(files, path))) return check_recording(o, path, call);
+  if (KA_TRY(is_xdf(files, path))) return check_xdf(o, path, call);
+  if (KA_TRY(is_take(files, path))) return check_take(o, path, call);
+  return check_input(o, path, call);
 }
 
 Result<int> run(Check& o, Call& call) {
