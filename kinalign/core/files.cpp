@@ -23,6 +23,12 @@ std::string kind_of(mode_t mode) {
   return "a device";
 }
 
+/// Beside `path`, for this process alone, not shown by ls.
+std::string hidden_name(const std::string& path) {
+  return std::string(folder(path)) + "." + std::string(file_name(path)) + "." +
+         std::to_string(::getpid()) + ".part";
+}
+
 }  // namespace
 
 int PosixFiles::open(const char* path, int flags, mode_t mode) {
@@ -139,8 +145,7 @@ Result<OutputFile> OutputFile::create(FileSystem& files, std::string path, Overw
   if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) {
     return failed(file.path_, "a folder that can be written", errno);
   }
-  file.beside_ = std::string(folder(file.path_)) + "." + std::string(file_name(file.path_)) + "." +
-                 std::to_string(::getpid()) + ".part";
+  file.beside_ = hidden_name(file.path_);
   file.unfinished_ = file.beside_;
   file.fd_ = files.open(file.beside_.c_str(), O_RDWR | O_CREAT | O_EXCL, 0644);
   if (file.fd_ < 0) {
@@ -214,31 +219,27 @@ Result<std::size_t> OutputFile::read_at(std::uint64_t at, std::span<char> to) co
 }
 
 Result<void> OutputFile::place() {
-  if (beside_.empty() && overwrite_ == Overwrite::yes) {
+  // link, not rename, to a free name: it refuses one that another program took in the meantime.
+  const std::string from = beside_.empty() ? unfinished_ : beside_;
+  if (files_->link(from.c_str(), path_.c_str()) == 0) return {};
+  if (errno != EEXIST) return failed(path_, "a folder that can be written", errno);
+  if (overwrite_ == Overwrite::no) {
+    return Failure(Error{path_, 0, "no file of that name (--force overwrites)", "one"});
+  }
+  if (beside_.empty()) {
     // A nameless file can only be linked to a free name: take one, then rename over the old file.
-    beside_ = std::string(folder(path_)) + "." + std::string(file_name(path_)) + "." +
-              std::to_string(::getpid()) + ".part";
+    // Killed between the two, the whole new file is left beside the old one.
+    beside_ = hidden_name(path_);
     if (files_->link(unfinished_.c_str(), beside_.c_str()) != 0) {
       const int code = errno;
       beside_.clear();
       return failed(path_, "a folder that can be written", code);
     }
   }
-  if (overwrite_ == Overwrite::yes) {
-    if (files_->rename(beside_.c_str(), path_.c_str()) != 0) {
-      return failed(path_, "a file that can be replaced", errno);
-    }
-    beside_.clear();
-    return {};
+  if (files_->rename(beside_.c_str(), path_.c_str()) != 0) {
+    return failed(path_, "a file that can be replaced", errno);
   }
-  // link, not rename: it refuses a name that another program took in the meantime.
-  const char* from = beside_.empty() ? unfinished_.c_str() : beside_.c_str();
-  if (files_->link(from, path_.c_str()) != 0) {
-    if (errno == EEXIST) {
-      return Failure(Error{path_, 0, "no file of that name (--force overwrites)", "one"});
-    }
-    return failed(path_, "a folder that can be written", errno);
-  }
+  beside_.clear();
   return {};
 }
 
