@@ -43,7 +43,7 @@ Result<int> run(Recover& o, Call& call) {
   std::string text = fmt::format("{}: {} messages in {} channels, read again and whole\n", out,
                                  grouped(done.messages), done.proof.channels.size());
   if (done.unchecked > 0) {
-    text += fmt::format("  {} of them from a torn end, which no checksum covers\n",
+    text += fmt::format("  {} of them no checksum covers (a torn end, or messages outside of chunks)\n",
                         grouped(done.unchecked));
   }
   if (done.twice > 0) text += fmt::format("  {} stood in two files\n", grouped(done.twice));

@@ -160,6 +160,7 @@ std::optional<McapRecord> McapReader::read_record() {
     lose("a record whose fields and checksum fit", "another one");
     return std::nullopt;
   }
+  in_no_chunk_ = !is_chunk;
   if (is_chunk) record = next_in_chunk();
   if (record) check_crc(*record, whole);
   crc_ = crc_of(whole, crc_);
@@ -175,6 +176,7 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
   std::uint32_t stated = 0, covered = crc_;
   if (const auto* end = std::get_if<McapDataEnd>(&record)) {
     stated = end->data_crc;
+    all_checked_ = stated != 0 && stated == covered;
   } else if (const auto* footer = std::get_if<McapFooter>(&record)) {
     constexpr std::size_t fields = mcap_record_head + 8 + 8;
     stated = footer->summary_crc;

@@ -33,8 +33,11 @@ class McapReader {
   /// Ends as a file does that was closed. Else it is torn, however much of it was read.
   bool closed() const { return state_ == State::closed; }
   bool is_mcap() const { return state_ != State::foreign; }
-  /// The last message was read from the chunk at which the file breaks off: unchecked.
-  bool unchecked() const { return in_torn_chunk_; }
+  /// No checksum of a chunk covers the last message: it stands in the chunk at which the file
+  /// breaks off, or in none.
+  bool unchecked() const { return in_torn_chunk_ || in_no_chunk_; }
+  /// The data section's checksum, read at its end, covers every message of the file.
+  bool all_checked() const { return all_checked_; }
   /// What was wrong, each with its place in `found`; no more than some hundred.
   const Findings& findings() const { return findings_; }
 
@@ -68,7 +71,8 @@ class McapReader {
   bool crc_counts_ = true;  // nothing was skipped
   std::string chunk_;       // its records
   std::size_t chunk_taken_ = 0;
-  bool in_torn_chunk_ = false;
+  bool in_torn_chunk_ = false, in_no_chunk_ = false;
+  bool all_checked_ = false;
   std::uint64_t tried_ = 0;  // bytes that were unpacked in vain, looking for a chunk
   Findings findings_;
 };

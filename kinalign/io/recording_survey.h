@@ -33,7 +33,7 @@ struct RecordingSurvey {
   std::optional<RecordingFacts> facts;  // absent: not ours
   std::vector<ChannelSurvey> channels;  // by topic
   std::uint64_t messages = 0;
-  std::uint64_t unchecked = 0;           // of these at a torn end
+  std::uint64_t unchecked = 0;           // of these without a checksum
   std::uint32_t contents = 0;            // CRC-32 of all messages, see add_to()
   bool closed = false;                   // index and end are there
   std::vector<std::string> attachments;  // names

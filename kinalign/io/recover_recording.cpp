@@ -141,10 +141,12 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
     const std::string& path = parts[part].path;
     McapReader reader;
     copier.begin_part(parts, part);
+    const std::uint64_t unchecked_before = recovered.unchecked;
     KA_TRY(read_recording(
         files, path, reader,
         [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); },
         progress));
+    if (reader.all_checked()) recovered.unchecked = unchecked_before;
     for (Finding finding : reader.findings()) {
       finding.what.file = path;
       recovered.findings.push_back(std::move(finding));

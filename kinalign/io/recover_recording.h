@@ -15,7 +15,7 @@ namespace kinalign {
 
 struct Recovered {
   std::uint64_t messages = 0;
-  std::uint64_t unchecked = 0;  // of these from torn ends: no checksum covers them
+  std::uint64_t unchecked = 0;  // of these no checksum covers: from a torn end, or outside of chunks
   std::uint64_t twice = 0;      // stood in two files; the later one's were taken
   std::uint64_t nameless = 0;   // left out: the definition of their channel is lost
   RecordingSurvey proof;        // of the new file

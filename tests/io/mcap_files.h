@@ -31,13 +31,15 @@ struct MemoryFile {
 struct OwnedMessage {
   McapMessage message;
   std::string data;
+  bool unchecked = false;
 };
 
 struct ReadMcap {
   std::vector<McapRecord> records;  // but messages, whose data would not last
   std::vector<OwnedMessage> messages;
   Findings findings;
-  bool closed = false, unchecked = false;
+  bool closed = false;
+  bool unchecked = false, all_checked = false;  // the last message; all of a closed file
 };
 
 inline ReadMcap read_mcap(std::string_view bytes, std::size_t piece = std::size_t{64} << 10) {
@@ -46,8 +48,8 @@ inline ReadMcap read_mcap(std::string_view bytes, std::size_t piece = std::size_
   const auto take_all = [&] {
     while (const auto record = reader.next()) {
       if (const auto* message = std::get_if<McapMessage>(&*record)) {
-        read.messages.push_back({*message, std::string(message->data)});
         read.unchecked = reader.unchecked();
+        read.messages.push_back({*message, std::string(message->data), read.unchecked});
       } else {
         read.records.push_back(*record);
       }
@@ -61,6 +63,7 @@ inline ReadMcap read_mcap(std::string_view bytes, std::size_t piece = std::size_
   take_all();
   read.findings = reader.findings();
   read.closed = reader.closed();
+  read.all_checked = reader.all_checked();
   return read;
 }
 

@@ -2,6 +2,7 @@
 #include "tests/io/mcap_files.h"
 #include "tests/seeds.h"
 
+#include "kinalign/io/crc.h"
 #include "kinalign/io/mcap_reader.h"
 #include "kinalign/io/mcap_writer.h"
 
@@ -46,6 +47,7 @@ TEST_CASE("what was written is read, in pieces of any size") {
       CHECK(read.messages.size() == 100);
       CHECK(are_the_first(read.messages));
       CHECK(!read.unchecked);
+      CHECK(read.all_checked);
     }
   }
 }
@@ -125,6 +127,22 @@ TEST_CASE("of an uncompressed chunk at which the file breaks off messages are re
                 "expected a whole record, found the file's end in the midst of one at byte"));
 }
 
+TEST_CASE("a message outside of chunks is unchecked but by the checksum of all data") {
+  std::string data(mcap_magic);
+  append_mcap(data, McapHeader{});
+  append_mcap(data, McapMessage{1, 2, 3, 4, "five"});
+  for (const std::uint32_t stated : {0U, crc_of(data), crc_of(data) ^ 1U}) {
+    std::string bytes = data;
+    append_mcap(bytes, McapDataEnd{stated});
+    append_mcap(bytes, McapFooter{});
+    bytes += mcap_magic;
+    const ReadMcap read = read_mcap(bytes);
+    REQUIRE(read.messages.size() == 1);
+    CHECK(read.messages[0].unchecked);
+    CHECK(read.all_checked == (stated == crc_of(data)));
+  }
+}
+
 TEST_CASE("a chunk with a flipped bit is left out, those behind it are read") {
   std::vector<std::size_t> ends;
   const std::string whole = mcap_file(30, 10, McapCompression::none, &ends);
@@ -191,7 +209,7 @@ TEST_CASE("rubbish of any kind ends in findings") {
     for (const OwnedMessage& m : read.messages) {
       const bool is_whole =
           m.message.sequence < 40 && m.data == nth_message(m.message.sequence).data;
-      CHECK((is_whole || read.unchecked));
+      CHECK((is_whole || m.unchecked));
     }
     CHECK(read.findings.size() <= 200);
   }
