@@ -247,6 +247,18 @@ Result<ValueJudgement> judge_node(const JudgedTake& judged, std::size_t g, std::
   return ValueJudgement{group.name, name, after.count, std::nullopt, after.value(), alone.value()};
 }
 
+Result<std::vector<ValueJudgement>> judge_nodes(const JudgedTake& judged, std::size_t g) {
+  const TakeGroup& group = judged.take.header.groups[g];
+  const auto& imu = std::get<ImuGroup>(group.kind);
+  std::vector<ValueJudgement> nodes;
+  for (std::size_t n = 0; n < imu.node_names.size() && imu.content.angular_velocity; ++n) {
+    const TrueNode* node = true_node(judged.truth, group.name, imu.node_names[n]);
+    if (node == nullptr) continue;
+    nodes.push_back(KA_TRY(judge_node(judged, g, n, imu.node_names.size(), *node)));
+  }
+  return nodes;
+}
+
 }  // namespace
 
 Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecording& truth,
@@ -276,6 +288,20 @@ Result<TimeJudgement> judge_time(const RecordedStream& stream, const TrueRecordi
   return judgement;
 }
 
+ValueJudgement together(std::span<const ValueJudgement> nodes) {
+  ValueJudgement all{nodes.front().stream, "all nodes", 0, std::nullopt, 0.0, 0.0};
+  for (const ValueJudgement& node : nodes) {
+    const auto rows = static_cast<double>(node.count);
+    all.count += node.count;
+    all.after += rows * node.after * node.after;
+    all.alone = *all.alone + rows * node.alone.value_or(0.0) * node.alone.value_or(0.0);
+  }
+  const double rows = std::max(1.0, static_cast<double>(all.count));
+  all.after = std::sqrt(all.after / rows);
+  all.alone = std::sqrt(*all.alone / rows);
+  return all;
+}
+
 Result<std::vector<ValueJudgement>> judge_values(const JudgedTake& judged) {
   std::vector<ValueJudgement> out;
   const auto& groups = judged.take.header.groups;
@@ -286,12 +312,9 @@ Result<std::vector<ValueJudgement>> judge_values(const JudgedTake& judged) {
       if (groups[g].name == judged.truth.kinect.stream)
         out.push_back(KA_TRY(judge_points(judged, g)));
     } else {
-      const auto& imu = std::get<ImuGroup>(groups[g].kind);
-      for (std::size_t n = 0; n < imu.node_names.size() && imu.content.angular_velocity; ++n) {
-        const TrueNode* node = true_node(judged.truth, groups[g].name, imu.node_names[n]);
-        if (node == nullptr) continue;
-        out.push_back(KA_TRY(judge_node(judged, g, n, imu.node_names.size(), *node)));
-      }
+      const auto nodes = KA_TRY(judge_nodes(judged, g));
+      out.insert(out.end(), nodes.begin(), nodes.end());
+      if (nodes.size() > 1) out.push_back(together(nodes));
     }
   }
   return out;

@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,8 +48,11 @@ struct JudgedTake {
   Duration shift{};
 };
 
+/// All nodes of a stream as one, each as often as it has rows in the take: "all nodes".
+ValueJudgement together(std::span<const ValueJudgement> nodes);
+
 /// Of every group of the take whose device the truth has; of nodes how fast they turn, which does
-/// not depend on how they are worn.
+/// not depend on how they are worn: each, and behind them all.
 Result<std::vector<ValueJudgement>> judge_values(const JudgedTake& judged);
 
 }  // namespace kinalign

@@ -16,7 +16,6 @@ namespace {
 // at 5 and 15 frames, and with how much of a residual other repetitions foretell at the nearest
 // pose.
 constexpr double pose_share = 1.3, moving_share = 0.8;
-constexpr double full_stir = 0.25;     // m/s: the moving part grows up to here
 constexpr double at_rest = 0.0014;     // m, of a still body: the thigh's length trembles by 0.6 %
 constexpr std::int64_t warm_up = 300;  // frames: four time constants of a joint at rest
 

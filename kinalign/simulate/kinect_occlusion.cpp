@@ -23,9 +23,9 @@ constexpr double doubt = 0.003;  // of a frame of a joint that is seen, for one 
 struct GuessNoise {
   double at_entry, process;  // rad
 };
-constexpr double of_parent = 0.7;                      // of a guessed parent's error: the same rows
-constexpr double longest_bone = 1.0;                   // m: beyond it nothing is a bone
-constexpr double still_share = 0.3, full_stir = 0.25;  // m/s: a still limb is guessed better
+constexpr double of_parent = 0.7;     // of a guessed parent's error: the same rows
+constexpr double longest_bone = 1.0;  // m: beyond it nothing is a bone
+constexpr double still_share = 0.3;   // a still limb is guessed better
 
 GuessNoise guess_noise(KinectPart part) {
   switch (part) {

@@ -13,6 +13,10 @@ struct BodyHeading {
   bool left_is_far = false;  // the left side is the one away from the camera
 };
 
+/// A pose that changes as fast (KinectScene::stir) or faster has all of the error that moving
+/// makes.
+inline constexpr double full_stir = 0.25;  // m/s
+
 struct KinectScene {
   std::span<const KinectTick> ticks;  // [T]
   std::vector<double> truth;          // [T,25,3] m, camera space

@@ -21,7 +21,6 @@ constexpr double furthest = 0.08;   // m
 constexpr double twitch_rate = 0.0115, twitch_at_rest = 0.02;  // per frame; share of it at rest
 constexpr double twitch_sd = 0.025;                            // m per axis, times an exponential
 constexpr int longest_twitch = 4;                              // frames
-constexpr double full_stir = 0.25;                             // m/s
 
 struct Twitch {
   int left = 0;  // frames

@@ -7,6 +7,9 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
+#include <cmath>
+
 using namespace kinalign;
 using namespace std::chrono_literals;
 
@@ -116,4 +119,14 @@ TEST_CASE("points that are true have no error, those 1 cm beside have one of 1 c
     CHECK(kinect.alone.value() > 0.02);  // docs/kinect_noise.md: 5 to 10 cm
     CHECK(kinect.alone.value() < 0.2);
   }
+}
+
+TEST_CASE("nodes together are off by the root of their mean square, by rows") {
+  const ValueJudgement all =
+      together(std::array{ValueJudgement{"imu", "waist", 300, std::nullopt, 1.0, 0.5},
+                          ValueJudgement{"imu", "head", 100, std::nullopt, 3.0, 0.5}});
+  CHECK(all.node == "all nodes");
+  CHECK(all.count == 400);
+  CHECK(all.after == doctest::Approx(std::sqrt(3.0)));  // (3 * 1 + 9) / 4
+  CHECK(all.alone.value() == doctest::Approx(0.5));
 }
