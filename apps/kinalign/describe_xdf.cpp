@@ -16,27 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// As its header writes it.
-std::string_view format_name(XdfFormat format) {
-  switch (format) {
-    case XdfFormat::int8:
-      return "int8";
-    case XdfFormat::int16:
-      return "int16";
-    case XdfFormat::int32:
-      return "int32";
-    case XdfFormat::int64:
-      return "int64";
-    case XdfFormat::float32:
-      return "float32";
-    case XdfFormat::double64:
-      return "double64";
-    case XdfFormat::string:
-      return "string";
-  }
-  return "";
-}
-
 std::string rate_text(const XdfStreamSurvey& one) {
   const double nominal = one.stream.nominal_rate_hz;
   std::string text = nominal > 0.0 ? fmt::format("{:.6g} Hz nominal", nominal) : "irregular";
@@ -72,7 +51,7 @@ std::string stream_lines(const XdfStreamSurvey& one, Names names) {
   };
   line("stream", fmt::format("{}{}: {} channel{} of {}, {} samples, {}", shown(s.name),
                              s.type.empty() ? "" : " (" + shown(s.type) + ")", s.channel_count,
-                             s.channel_count == 1 ? "" : "s", format_name(s.format),
+                             s.channel_count == 1 ? "" : "s", name_of(s.format),
                              grouped(one.samples), rate_text(one)));
   if (one.first) line("  stamps", stamps_text(one));
   line("  clock", clock_text(one));
@@ -94,7 +73,7 @@ Json json_of(const XdfStreamSurvey& one) {
             {"source_id", s.source_id},
             {"hostname", s.hostname},
             {"created_at", s.created_at},
-            {"channel_format", format_name(s.format)},
+            {"channel_format", name_of(s.format)},
             {"channel_count", s.channel_count},
             {"channels", Json::array()},
             {"nominal_rate_hz", s.nominal_rate_hz},

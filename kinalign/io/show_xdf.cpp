@@ -98,7 +98,7 @@ class Channels {
         ++timeless;
         continue;
       }
-      const Time device = time_of(samples->stamps[t]).value_or(Time{});
+      const Time device = time_of(samples->stamps[t]).value_or(*at);
       KA_TRY(out_.add(channel->second.id, *at, device, sample_json(*samples, t)));
     }
     return {};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 namespace kinalign {
 
@@ -62,14 +63,34 @@ Quat quat_from(const Json& json) {
   const auto q = json.get<std::array<double, 4>>();
   return Quat(q[0], q[1], q[2], q[3]).normalized();
 }
+
+/// What it is whole: get() would cast 1e30.
+template <class Integer>
+Integer integer_from(const Json& json) {
+  const bool fits =
+      json.is_number_unsigned()
+          ? std::in_range<Integer>(json.get<std::uint64_t>())
+          : json.is_number_integer() && std::in_range<Integer>(json.get<std::int64_t>());
+  if (!fits)
+    throw Json::other_error::create(
+        501, std::string("an integer in range expected, found another ") + json.type_name(), &json);
+  return json.get<Integer>();
+}
+std::vector<std::int64_t> integers_from(const Json& json) {
+  std::vector<std::int64_t> integers;
+  for (const Json& one : json.get_ref<const Json::array_t&>()) {
+    integers.push_back(integer_from<std::int64_t>(one));
+  }
+  return integers;
+}
 TrueClock clock_from(const Json& json) {
-  return {json.at("stamps_ns").get<std::vector<std::int64_t>>(),
-          json.at("times_ns").get<std::vector<std::int64_t>>()};
+  return {integers_from(json.at("stamps_ns")), integers_from(json.at("times_ns"))};
 }
 
 TrueMocap mocap_from(const Json& json) {
-  return {json.at("stream"),         json.at("rate_hz"),       json.at("frames"),
-          json.at("start_click_ns"), json.at("stop_click_ns"), json.at("first_frame_ns")};
+  const auto ns = [&](const char* key) { return integer_from<std::int64_t>(json.at(key)); };
+  return {json.at("stream"),    json.at("rate_hz"),  integer_from<std::uint64_t>(json.at("frames")),
+          ns("start_click_ns"), ns("stop_click_ns"), ns("first_frame_ns")};
 }
 
 TrueKinect kinect_from(const Json& json) {
@@ -83,7 +104,7 @@ TrueNode node_from(const Json& json) {
   return {json.at("stream"),
           json.at("node"),
           json.at("joint"),
-          json.at("id"),
+          integer_from<std::uint32_t>(json.at("id")),
           vec3_from(json.at("offset")),
           quat_from(json.at("bone_from_sensor")),
           json.at("sensor_delay_ms"),
@@ -94,14 +115,15 @@ TrueNode node_from(const Json& json) {
 
 TrueRecording truth_from(const Json& json) {
   TrueRecording truth;
-  truth.seed = json.at("seed");
+  truth.seed = integer_from<std::uint64_t>(json.at("seed"));
   truth.motion = json.at("motion");
   truth.motion_file = json.at("motion_file");
   truth.length_s = json.at("length_s");
-  truth.start_ns = json.at("start_ns");
+  truth.start_ns = integer_from<std::int64_t>(json.at("start_ns"));
   truth.link = json.at("link");
   if (json.contains("host")) {
-    truth.host = TrueHost{json.at("host").at("raw_ns"), json.at("host").at("utc_ns")};
+    truth.host = TrueHost{integer_from<std::int64_t>(json.at("host").at("raw_ns")),
+                          integer_from<std::int64_t>(json.at("host").at("utc_ns"))};
   }
   truth.mocap = mocap_from(json.at("mocap"));
   truth.kinect = kinect_from(json.at("kinect"));

@@ -17,6 +17,9 @@ namespace kinalign {
 
 enum class XdfFormat : std::uint8_t { int8, int16, int32, int64, float32, double64, string };
 
+/// As a header writes it: "double64".
+std::string_view name_of(XdfFormat format);
+
 struct XdfChannel {
   std::string label, unit, type;  // as written; empty where not
 

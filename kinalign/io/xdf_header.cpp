@@ -20,18 +20,20 @@ bool is(Path path, std::initializer_list<std::string_view> names) {
   return std::equal(path.begin(), path.end(), names.begin(), names.end());
 }
 
+/// Of two names of one format the usual one first.
+constexpr std::array<std::pair<std::string_view, XdfFormat>, 9> formats{
+    {{"int8", XdfFormat::int8},
+     {"int16", XdfFormat::int16},
+     {"int32", XdfFormat::int32},
+     {"int64", XdfFormat::int64},
+     {"float32", XdfFormat::float32},
+     {"float", XdfFormat::float32},
+     {"double64", XdfFormat::double64},
+     {"double", XdfFormat::double64},
+     {"string", XdfFormat::string}}};
+
 std::optional<XdfFormat> format_of(std::string_view word) {
-  constexpr std::array<std::pair<std::string_view, XdfFormat>, 9> known{
-      {{"int8", XdfFormat::int8},
-       {"int16", XdfFormat::int16},
-       {"int32", XdfFormat::int32},
-       {"int64", XdfFormat::int64},
-       {"float32", XdfFormat::float32},
-       {"float", XdfFormat::float32},
-       {"double64", XdfFormat::double64},
-       {"double", XdfFormat::double64},
-       {"string", XdfFormat::string}}};
-  for (const auto& [name, format] : known) {
+  for (const auto& [name, format] : formats) {
     if (name == word) return format;
   }
   return std::nullopt;
@@ -75,6 +77,13 @@ Failure refused(const std::string& expected, const std::string& word) {
 }
 
 }  // namespace
+
+std::string_view name_of(XdfFormat format) {
+  for (const auto& [name, named] : formats) {
+    if (named == format) return name;
+  }
+  return "";
+}
 
 Result<XdfStream> parse_xdf_header(std::uint32_t id, std::string_view xml,
                                    std::vector<Error>& notes) {

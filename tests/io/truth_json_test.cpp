@@ -75,6 +75,10 @@ TEST_CASE("a truth that lacks a key, or has one of another kind, is refused by n
   CHECK(error_of(without("[-5,10]", "[-5,1,10]")) != "none");
   CHECK(error_of(without("[-5,10]", "[-5,2000000000000000001]")) ==
         "truth.json: expected stamps and times of waist within 2e18 ns, found others");
+  CHECK(error_of(without("[-5,10]", "[-5,1.79e27]"))
+            .starts_with(
+                "truth.json: expected JSON as kinalign.truth/1 has it, found an integer in range"));
+  CHECK(error_of(without("\"id\":4", "\"id\":4294967296")) != "none");
   CHECK(error_of(without("\"rate_hz\":60.0", "\"rate_hz\":0")) ==
         "truth.json: expected a mocap of 1 Hz to 1 MHz, 1e9 frames at the most, found "
         "another");
