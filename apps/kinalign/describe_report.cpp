@@ -176,12 +176,10 @@ std::string space_text(const Json& space) {
 
 /// Against the take's first frame: what was said before it is negative.
 std::string mark_text(const Json& mark, std::int64_t begin_ns) {
-  const std::string text = text_at(mark, "text");
-  return fmt::format(
-      "  mark     {}{} at {:.3f} s, by {}\n", text_at(mark, "kind"),
-      text.empty() ? "" : " " + shown(text),
-      1e-9 * (static_cast<double>(stamp_at(mark, "time_ns")) - static_cast<double>(begin_ns)),
-      text_at(mark, "source"));
+  const double at_s =
+      1e-9 * (static_cast<double>(stamp_at(mark, "time_ns")) - static_cast<double>(begin_ns));
+  return fmt::format("  mark     {}\n", mark_words(text_at(mark, "kind"), text_at(mark, "text"),
+                                                   at_s, text_at(mark, "source")));
 }
 
 std::string finding_text(const Json& finding) {
@@ -205,6 +203,12 @@ Finding finding_of(const Json& finding) {
 }
 
 }  // namespace
+
+std::string mark_words(std::string_view kind, std::string_view text, double at_s,
+                       std::string_view source) {
+  return fmt::format("{}{} at {:.3f} s, by {}", kind, text.empty() ? "" : " " + shown(text), at_s,
+                     source);
+}
 
 std::string name_lines(const std::vector<std::string>& names) {
   constexpr std::size_t indent = 11, width = 80;

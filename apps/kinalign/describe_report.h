@@ -8,6 +8,7 @@
 #include "kinalign/core/error.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kinalign {
@@ -17,6 +18,10 @@ std::string take_text(const std::string& json, Names names);
 
 /// What a report of schema kinalign.report/1 says was found; `path` is its take's.
 Result<Findings> report_findings(const std::string& report, const std::string& path);
+
+/// "start dance at 1.234 s, by call"
+std::string mark_words(std::string_view kind, std::string_view text, double at_s,
+                       std::string_view source);
 
 /// Lines of names below a stream's.
 std::string name_lines(const std::vector<std::string>& names);

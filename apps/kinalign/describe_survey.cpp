@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/describe_file.h"
+#include "apps/kinalign/describe_report.h"
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/record_text.h"
 #include "apps/kinalign/summary.h"
@@ -43,22 +44,20 @@ std::string name_of(const CountedSender& sender) {
   return sender.stream + node + (sender.sender.empty() ? "" : " from " + sender.sender);
 }
 
-/// Seconds from the recording's first message.
-double moment_of(std::uint64_t log_time, const RecordingSurvey& survey) {
-  std::uint64_t first = log_time;
+/// The log time of the first message, ns.
+std::uint64_t first_of(const RecordingSurvey& survey) {
+  std::uint64_t first = UINT64_MAX;
   for (const ChannelSurvey& channel : survey.channels) {
     if (channel.messages > 0) first = std::min(first, channel.first);
   }
-  return static_cast<double>(log_time - first) / 1e9;
+  return first;
 }
 
 std::string mark_text(const RecordedMark& mark, double at_s) {
-  const std::string text = mark.mark.text.empty() ? "" : " " + shown(mark.mark.text);
   const std::string latency = mark.mark.latency ? fmt::format(", {:g} ms before its effect",
                                                               1e3 * seconds(*mark.mark.latency))
                                                 : "";
-  return fmt::format("{}{} at {:.3f} s, by {}{}", kinalign::name_of(mark.mark.kind), text, at_s,
-                     mark.source, latency);
+  return mark_words(kinalign::name_of(mark.mark.kind), mark.mark.text, at_s, mark.source) + latency;
 }
 
 /// What the recorder counted and was told.
@@ -70,10 +69,10 @@ void add_told(const RecordingSurvey& survey, Json& json) {
     json["marks"].push_back(one);
   }
   for (const CountedSender& one : survey.senders) {
-    json["senders"].push_back(Json::parse(to_json(one.stream, one.sender, one.node, one.counts)));
+    json["senders"].push_back(Json::parse(to_json(one)));
   }
   for (const CountedPort& one : survey.ports) {
-    json["ports"].push_back(Json::parse(to_json(one.stream, one.counts)));
+    json["ports"].push_back(Json::parse(to_json(one)));
   }
 }
 
@@ -107,7 +106,7 @@ Findings losses(const std::string& path, const RecordingSurvey& survey) {
                         {path, 0, "every frame that " + name_of(one) + " sent",
                          fmt::format("{} lost of {}", grouped(order.lost),
                                      grouped(order.lost + one.counts.frames))},
-                        "by the sender's own numbers; they did not reach the recording machine",
+                        "by the sender's own numbers; they did not reach the recorder",
                         ""});
   }
   for (const CountedPort& one : survey.ports) {
@@ -152,8 +151,9 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
     const std::string lost = loss_of(one.counts);
     if (!lost.empty()) line("port", one.stream + ": " + lost);
   }
+  const std::uint64_t first = first_of(survey);
   for (const auto& [mark, log_time] : survey.marks) {
-    line("mark", mark_text(mark, moment_of(log_time, survey)));
+    line("mark", mark_text(mark, static_cast<double>(log_time - first) / 1e9));
   }
   Json json{{"file", path},
             {"closed", survey.closed},

@@ -10,7 +10,6 @@ void DiskForecast::look(HostTime now, std::uint64_t written, std::uint64_t free)
   looks_.push_back({now, written});
   while (now - looks_.front().at > window) looks_.pop_front();
   free_ = free;
-  looked_ = true;
 }
 
 std::optional<double> DiskForecast::minutes_left() const {
@@ -19,7 +18,7 @@ std::optional<double> DiskForecast::minutes_left() const {
   const double s = seconds(looks_.back().at - looks_.front().at);
   const std::uint64_t came = looks_.back().written - looks_.front().written;
   if (s < least_s || looks_.back().written <= looks_.front().written) return std::nullopt;
-  const double left = free_ > reserve ? static_cast<double>(free_ - reserve) : 0.0;
+  const double left = free_ > reserve ? static_cast<double>(*free_ - reserve) : 0.0;
   return left / (static_cast<double>(came) / s) / 60.0;
 }
 

@@ -18,9 +18,10 @@ class DiskForecast {
   /// Once a second or so. `written`: all bytes so far; `free`: what the disk still takes.
   void look(HostTime now, std::uint64_t written, std::uint64_t free);
 
-  std::uint64_t free() const { return free_; }
+  /// Absent: nobody has looked.
+  std::optional<std::uint64_t> free() const { return free_; }
   /// Nothing but the reserve is left: the recording has to end.
-  bool full() const { return looked_ && free_ <= reserve; }
+  bool full() const { return free_ && *free_ <= reserve; }
   /// Until only the reserve is left, at the rate of the last half minute; absent: nothing comes.
   std::optional<double> minutes_left() const;
   /// Whether to warn now: at 10, 5, 2 and 1 minutes left, each once.
@@ -32,8 +33,7 @@ class DiskForecast {
     std::uint64_t written = 0;
   };
   std::deque<Look> looks_;
-  std::uint64_t free_ = 0;
-  bool looked_ = false;
+  std::optional<std::uint64_t> free_;
   double warned_ = 1e9;  // at so many minutes
 };
 

@@ -178,7 +178,12 @@ Result<int> record_take(const Record& o, Call& call, RecordingSession& session, 
   const std::string path = free_take_path(call.common.out, o.subject, o.action);
   KA_TRY(session.start(path, o.subject, o.action));
   herald.tell_start(path);
-  stage.record({o.seconds, o.wait});
+  if (!stage.record({o.seconds, o.wait})) {
+    session.leave_disk();
+    call.console.report(
+        Error{path, 0, "a disk that takes the end of the take", "one that stands still"});
+    return failed;
+  }
   herald.tell_end();
   const DiskStatus disk = *session.disk();
   if (disk.refused) {

@@ -47,7 +47,7 @@ std::string minutes_text(double minutes) {
 std::vector<std::string> RecordHerald::unheard_required() const {
   Lab lab = session_.lab();
   std::erase_if(lab.devices, [](const DeviceOptions& device) { return !device.required; });
-  return unheard(lab, lab_status());
+  return unheard_in_take(lab, at_end_);
 }
 
 LabStatus RecordHerald::lab_status() const {
@@ -65,6 +65,7 @@ void RecordHerald::tell_waiting() {
 void RecordHerald::tell_start(const std::string& path) {
   path_ = path;
   forecast_ = {};
+  dropped_told_ = 0;
   console_.print(harmless(fmt::format("recording to {}\n  {}\n", path, ports_text(session_))));
   console_.print_json(
       json_text(Json{{"event", "started"}, {"file", path}, {"ports", ports_of(session_)}}));
@@ -126,16 +127,28 @@ void RecordHerald::tell_news_of(NodeReceiver& nodes) {
   for (const std::string& line : clock_news_.lines(now)) console_.note(line);
 }
 
+/// At once, and then each time that it has doubled.
+void RecordHerald::tell_dropped(std::uint64_t dropped) {
+  if (dropped == 0 || dropped < 2 * dropped_told_) return;
+  dropped_told_ = dropped;
+  console_.complain(fmt::format(
+      "kinalign record: {} messages lost: memory is full, and the disk does not take them",
+      grouped(dropped)));
+  console_.print_json(json_text(Json{{"event", "dropped"}, {"dropped", dropped}}));
+  console_.ring();
+}
+
 void RecordHerald::look_at_disk(HostTime now) {
   const DiskStatus disk = *session_.disk();
+  tell_dropped(disk.dropped);
   if (!disk.free_bytes) return;
   const std::uint64_t still_to_write = std::min(disk.waiting_bytes, *disk.free_bytes);
   forecast_.look(now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - still_to_write);
   if (forecast_.full() && !std::exchange(disk_full_, true)) {
     console_.complain(
         fmt::format("kinalign record: the disk has {} MiB left; the take ends here, in order",
-                    forecast_.free() >> 20U));
-    console_.print_json(json_text(Json{{"event", "disk_full"}, {"free_bytes", forecast_.free()}}));
+                    *forecast_.free() >> 20U));
+    console_.print_json(json_text(Json{{"event", "disk_full"}, {"free_bytes", *forecast_.free()}}));
   } else if (forecast_.take_warning()) {
     const double minutes = *forecast_.minutes_left();
     console_.complain(fmt::format(
@@ -155,7 +168,7 @@ void RecordHerald::tell_who_lacks(const LabStatus& status) {
   }
 }
 
-/// Each that falls silent or comes back, once; a bell where one is required.
+/// Each that falls silent, with a bell, or comes back, once.
 void RecordHerald::tell_who_is_silent(const LabStatus& status) {
   for (const StreamStatus& stream : newest_of_each(status.streams)) {
     const std::string who = name_of(stream) + " from " + stream.sender;
@@ -210,12 +223,21 @@ void RecordHerald::tell_refused(const Error& why) {
   console_.flush();
 }
 
+void RecordHerald::tell_slow(std::uint64_t waiting_bytes) {
+  console_.complain(fmt::format(
+      "kinalign record: {:.1f} MB wait for the disk; another Ctrl-C loses what it has not taken",
+      megabytes(waiting_bytes)));
+  console_.print_json(json_text(Json{{"event", "end_waits"}, {"waiting_bytes", waiting_bytes}}));
+  console_.flush();
+}
+
 void RecordHerald::tell_status(const LabStatus& status) {
   Json event{{"event", "status"}};
   if (const auto disk = session_.disk()) {
     event["bytes"] = disk->bytes;
     event["waiting_bytes"] = disk->waiting_bytes;
-    event["free_bytes"] = forecast_.free();
+    event["dropped"] = disk->dropped;
+    if (const auto free = forecast_.free()) event["free_bytes"] = *free;
     if (const auto left = forecast_.minutes_left()) event["minutes_left"] = *left;
   }
   event["missing"] = missing(session_.lab(), status);
@@ -224,7 +246,7 @@ void RecordHerald::tell_status(const LabStatus& status) {
     event["streams"].push_back(Json::parse(json_of(stream, status)));
   }
   for (const auto& [name, counts] : status.ports) {
-    event["ports"][name] = Json::parse(to_json(name, counts));
+    event["ports"][name] = Json::parse(to_json(CountedPort{name, counts}));
   }
   console_.print_json(json_text(event));
   console_.flush();
@@ -233,12 +255,14 @@ void RecordHerald::tell_status(const LabStatus& status) {
 /// "disk  34.2 MB in takes/03_S1A02_01.mcap, 120.5 GB left: 12 h at this rate"
 std::string RecordHerald::disk_line() const {
   const auto disk = session_.disk();
+  if (disk && !session_.recording() && !disk->finished) return "disk  writes the end of " + path_;
   if (!session_.recording() || !disk) return "waiting for a start";
   const auto left = forecast_.minutes_left();
-  return fmt::format(
-      "disk  {:.1f} MB in {}, {:.1f} GB left{}", static_cast<double>(disk->bytes) / 1e6,
-      disk->paths.empty() ? path_ : disk->paths.back(), static_cast<double>(forecast_.free()) / 1e9,
-      left ? ": " + minutes_text(*left) + " at this rate" : "");
+  const auto free = forecast_.free();
+  return fmt::format("disk  {:.1f} MB in {}{}{}", megabytes(disk->bytes),
+                     disk->paths.empty() ? path_ : disk->paths.back(),
+                     free ? fmt::format(", {:.1f} GB left", megabytes(*free) / 1e3) : "",
+                     left ? ": " + minutes_text(*left) + " at this rate" : "");
 }
 
 void RecordHerald::show(const LabStatus& status, const std::optional<std::string>& typed) {
@@ -255,7 +279,7 @@ void RecordHerald::show(const LabStatus& status, const std::optional<std::string
 
 void RecordHerald::tell_end() {
   tell_news();
-  const LabStatus status = lab_status();
+  const LabStatus& status = at_end_;
   const DiskStatus disk = *session_.disk();
   Json event{{"event", "stopped"},
              {"files", disk.paths},
@@ -271,12 +295,12 @@ void RecordHerald::tell_end() {
     event["streams"].push_back(Json::parse(json_of(stream, status)));
     lines += end_line(stream);
   }
-  for (const std::string& name : unheard(session_.lab(), status)) {
+  for (const std::string& name : unheard_in_take(session_.lab(), status)) {
     lines += "  " + name + ": nothing came\n";
   }
   event["missing"] = unheard_required();
   for (const auto& [name, counts] : status.ports) {
-    event["ports"][name] = Json::parse(to_json(name, counts));
+    event["ports"][name] = Json::parse(to_json(CountedPort{name, counts}));
     lines += port_line(name, counts);
   }
   for (const MarkPort& port : session_.mark_ports()) {

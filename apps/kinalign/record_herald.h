@@ -29,15 +29,20 @@ class RecordHerald {
   void look(const std::optional<std::string>& typed);
   /// The disk does not take the end of a take.
   void tell_refused(const Error& why);
+  /// Nor does it refuse it: so many bytes wait.
+  void tell_slow(std::uint64_t waiting_bytes);
+  /// The take is over: what comes while its rest is written is the next one's.
+  void end_take() { at_end_ = lab_status(); }
   void tell_end();
 
   /// The disk has nothing left but its reserve: the take has to end.
   bool disk_full() const { return disk_full_; }
-  /// Required devices and nodes of which nothing came.
+  /// Required devices and nodes of which nothing came in the take that is over.
   std::vector<std::string> unheard_required() const;
 
  private:
   void look_at_disk(HostTime now);
+  void tell_dropped(std::uint64_t dropped);
   void tell_news();
   void tell_news_of(NodeReceiver& nodes);
   void tell(const PartFailure& failure);
@@ -53,6 +58,8 @@ class RecordHerald {
   RecordingSession& session_;
   Console& console_;
   std::string path_;  // of the take; empty: none has begun
+  LabStatus at_end_;  // of the last take
+  std::uint64_t dropped_told_ = 0;
   DiskForecast forecast_;
   ClockNews clock_news_;
   std::set<std::string> silent_;  // who was told to be

@@ -2,23 +2,30 @@
 #include "apps/kinalign/record_stage.h"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 namespace kinalign {
 
 using namespace std::chrono_literals;
 
-/// What comes within a twentieth of a second. Whether to go on.
-bool Stage::turn() {
-  session_.turn(50ms, keyboard_.fd());
+namespace {
+
+constexpr Duration one_turn = 50ms;
+
+}  // namespace
+
+/// What comes within that time. Whether to go on.
+bool Stage::turn(Duration patience) {
+  session_.turn(patience, keyboard_.fd());
   for (const char key : keyboard_.read()) {
     if (const auto pressed = keys_.take(key, session_.now())) {
       session_.mark({pressed->first, "keyboard", ""}, pressed->second);
     }
   }
   for (const HeardMark& heard : session_.take_marks()) {
-    marks_.push_back(heard.first.mark.kind);
+    const Mark::Kind kind = heard.first.mark.kind;
+    marks_.push_back(kind);
+    if (kind == Mark::Kind::start && !session_.recording()) session_.expect_start(heard.second);
     herald_.tell(heard);
   }
   herald_.look(keys_.typed());
@@ -35,35 +42,54 @@ bool Stage::take_mark(Mark::Kind kind) {
 }
 
 bool Stage::wait_for_start() {
-  while (turn()) {
+  while (turn(one_turn)) {
     if (take_mark(Mark::Kind::start)) return true;
   }
   return false;
 }
 
-void Stage::record(const End& end) {
+bool Stage::record(const End& end) {
   const HostTime begun = session_.now();
   const auto goes_on = [&] {
     const bool stopped = take_mark(Mark::Kind::stop) && end.by_mark;
     return !stopped && !(end.seconds && seconds(session_.now() - begun) >= *end.seconds);
   };
-  for (bool going = true; going && goes_on();) going = turn();
+  for (bool going = true; going && goes_on();) going = turn(one_turn);
+  listen_anew();  // a Ctrl-C that is pressed twice ends nothing out of order
   session_.stop();
-  write_rest();
+  herald_.end_take();
+  return write_rest();
 }
 
-/// What the disk refuses is tried again for half a minute: somebody may make room.
-void Stage::write_rest() {
-  const HostTime latest = session_.now() + 30s;
-  bool told = false;
+/// What the disk refuses is tried again for half a minute: somebody may make room. Devices go on
+/// meanwhile, and so do keys and what is told. False: it does not even refuse, and somebody has
+/// lost patience.
+bool Stage::write_rest() {
+  const HostTime begun = session_.now();
+  std::optional<HostTime> refused;
+  bool slow = false;  // and told to be
   for (DiskStatus disk = *session_.disk(); !disk.finished; disk = *session_.disk()) {
-    if (disk.refused && !std::exchange(told, true)) {
+    const HostTime now = session_.now();
+    if (disk.refused && !refused) {
+      refused = now;
       herald_.tell_refused(*disk.refused);
-      take_signals();  // another Ctrl-C
+      listen_anew();
+    } else if (!refused && now - begun > 2s && !std::exchange(slow, true)) {
+      herald_.tell_slow(disk.waiting_bytes);
+      listen_anew();
     }
-    if (told && (interrupted() || session_.now() > latest)) session_.give_up();
-    std::this_thread::sleep_for(5ms);
+    turn(5ms);
+    const bool again = (refused || slow) && interrupted();
+    if (again && !refused) return false;
+    if (again || (refused && now - *refused > 30s)) session_.give_up();
   }
+  return true;
+}
+
+/// To another Ctrl-C.
+void Stage::listen_anew() {
+  ends_ = ends_ || interrupted();
+  take_signals();
 }
 
 }  // namespace kinalign

@@ -21,17 +21,19 @@ class Stage {
     std::optional<double> seconds;
     bool by_mark = false;  // that says stop
   };
-  /// Until that, somebody or a full disk ends it, and all is written.
-  void record(const End& end);
+  /// Until that, somebody or a full disk ends it, and all is written. False: the disk stands still,
+  /// and somebody has lost patience with it; then nothing may wait for it any more.
+  bool record(const End& end);
 
   /// No take is to begin any more.
   bool ends() const { return ends_ || herald_.disk_full(); }
   RecordHerald& herald() { return herald_; }
 
  private:
-  bool turn();
+  bool turn(Duration patience);
   bool take_mark(Mark::Kind kind);
-  void write_rest();
+  bool write_rest();
+  void listen_anew();
 
   RecordingSession& session_;
   RecordHerald& herald_;

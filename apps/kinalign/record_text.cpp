@@ -55,14 +55,7 @@ const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStat
 std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus* node) {
   if (node == nullptr) return stream.clock;
   if (!node->n || !node->stamp) return std::nullopt;
-  const ClockStamp& stamp = *node->stamp;
-  SenderClock clock;
-  clock.host_minus_sender = stamp.time.time_since_epoch() - node->n->time_since_epoch();
-  clock.drift = node->drift;
-  if (stamp.certainty == Certainty::certified) {
-    clock.half_interval = (*stamp.latest - *stamp.earliest) / 2;
-  }
-  return clock;
+  return sender_clock(*node->stamp, *node->n, node->drift);
 }
 
 std::vector<std::string> unheard_of(const DeviceOptions& device, const LabStatus& status) {
@@ -88,7 +81,9 @@ std::string name_of(const StreamStatus& stream) {
   return stream.stream + " " + (stream.place.empty() ? stream.node : stream.place);
 }
 
-std::vector<std::string> unheard(const Lab& lab, const LabStatus& status) {
+std::vector<std::string> unheard_in_take(const Lab& lab, LabStatus status) {
+  std::erase_if(status.streams,
+                [](const StreamStatus& stream) { return stream.counts.messages == 0; });
   std::vector<std::string> all;
   for (const DeviceOptions& device : lab.devices) {
     const auto of_one = unheard_of(device, status);
@@ -168,6 +163,7 @@ std::string counts_text(const SenderCounts& counts) {
 }
 
 std::string end_line(const StreamStatus& stream) {
+  if (stream.counts.messages == 0) return "";
   return fmt::format("  {} from {}: {}\n", name_of(stream), stream.sender,
                      counts_text(stream.counts));
 }
@@ -178,7 +174,8 @@ std::string port_line(const std::string& name, const PortCounts& counts) {
 }
 
 std::string json_of(const StreamStatus& stream, const LabStatus& status) {
-  Json json = Json::parse(to_json(stream.stream, stream.sender, stream.node, stream.counts));
+  Json json = Json::parse(
+      to_json({stream.topic, stream.stream, stream.sender, stream.node, stream.counts}));
   if (!stream.place.empty()) json["place"] = stream.place;
   json["rate_hz"] = stream.rate_hz;
   json["silent_s"] = seconds(status.now - stream.heard);

@@ -38,8 +38,8 @@ std::string loss_of(const PortCounts& counts);
 /// Its nodes that have places and were never heard; or itself, where nothing at all came.
 std::vector<std::string> unheard_of(const DeviceOptions& device, const LabStatus& status);
 
-/// Devices, and nodes with places, of which nothing came.
-std::vector<std::string> unheard(const Lab& lab, const LabStatus& status);
+/// Devices, and nodes with places, of which nothing came in the present or last take.
+std::vector<std::string> unheard_in_take(const Lab& lab, LabStatus status);
 
 /// "kinect: nobody has connected to port 7201 yet": of each device that is heard on such a port and
 /// that lacks, or of whose nodes one does.
@@ -59,7 +59,7 @@ std::string name_of(const StreamStatus& stream);
 
 /// "7,500 messages, 11.1 MB; 3 lost, 1 late"
 std::string counts_text(const SenderCounts& counts);
-/// "  mocap from 192.168.7.5:51234: 7,500 messages, 11.1 MB; 3 lost\n"
+/// "  mocap from 192.168.7.5:51234: 7,500 messages, 11.1 MB; 3 lost\n"; empty: nothing came.
 std::string end_line(const StreamStatus& stream);
 /// "  port of mocap: 12 dropped by the kernel\n"; empty: nothing worth telling.
 std::string port_line(const std::string& name, const PortCounts& counts);

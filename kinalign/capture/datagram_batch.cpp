@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/datagram_batch.h"
 
+#include "kinalign/capture/kernel_stamp.h"
+
 #include <arpa/inet.h>
 
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 
 namespace kinalign {
 
@@ -31,9 +32,8 @@ HostAddress bytes_of(const in_addr& address) {
 }
 
 void read_control(const cmsghdr& control, Datagram& datagram) {
-  if (control.cmsg_level == SOL_SOCKET && control.cmsg_type == SCM_TIMESTAMPNS) {
-    const auto stamp = read_as<timespec>(control);
-    datagram.received = Time{std::chrono::seconds(stamp.tv_sec) + Duration{stamp.tv_nsec}};
+  if (const auto stamp = kernel_stamp(control)) {
+    datagram.received = stamp;
   } else if (control.cmsg_level == IPPROTO_IP && control.cmsg_type == IP_PKTINFO) {
     const auto info = read_as<in_pktinfo>(control);
     datagram.to = bytes_of(info.ipi_addr);

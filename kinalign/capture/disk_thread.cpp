@@ -3,6 +3,7 @@
 
 #include <sys/statvfs.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -145,12 +146,18 @@ void DiskThread::look_at_room(std::unique_lock<std::mutex>& lock) {
   status_.free_bytes = free;
 }
 
+/// After one that failed it waits, each time twice as long: each makes a new file.
 void DiskThread::sync() {
+  using Clock = std::chrono::steady_clock;
+  constexpr Clock::duration shortest = std::chrono::seconds(1), longest = std::chrono::seconds(32);
+  Clock::duration pause = shortest;
+  Clock::time_point next{};
+  const auto may_sync = [&] { return due_ && !syncing_ && Clock::now() >= next; };
   std::unique_lock lock(mutex_);
   while (!done_) {
     look_at_room(lock);
-    asked_.wait_for(lock, std::chrono::seconds(1), [this] { return (due_ && !syncing_) || done_; });
-    if (done_ || !due_ || syncing_) continue;
+    asked_.wait_for(lock, shortest, [&] { return may_sync() || done_; });
+    if (done_ || !may_sync()) continue;
     syncing_ = true;
     const RecordingDisk::Sync sync = *due_;
     lock.unlock();
@@ -158,6 +165,8 @@ void DiskThread::sync() {
     lock.lock();
     synced_ = answer;
     written_.notify_one();
+    if (!answer) next = Clock::now() + pause;
+    pause = answer ? shortest : std::min(2 * pause, longest);
   }
 }
 

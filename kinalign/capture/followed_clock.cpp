@@ -7,6 +7,14 @@
 
 namespace kinalign {
 
+SenderClock sender_clock(const ClockStamp& stamp, NodeTime n, double drift) {
+  SenderClock clock{stamp.time.time_since_epoch() - n.time_since_epoch(), std::nullopt, drift};
+  if (stamp.certainty == Certainty::certified) {
+    clock.half_interval = (*stamp.latest - *stamp.earliest) / 2;
+  }
+  return clock;
+}
+
 void FollowedClock::push(Exchange exchange, std::uint32_t epoch) {
   exchange.boot = life_of(exchange.boot, epoch);
   // In the order in which they came, by microseconds of rounding: later is as true.
@@ -16,12 +24,8 @@ void FollowedClock::push(Exchange exchange, std::uint32_t epoch) {
   now_.reset();
   const auto stamp = clock_.host_from_node(exchange.boot, exchange.n_tx);
   if (!stamp) return;
-  now_.emplace();
-  now_->host_minus_sender = stamp->time.time_since_epoch() - exchange.n_tx.time_since_epoch();
-  if (stamp->certainty == Certainty::certified) {
-    now_->half_interval = (*stamp->latest - *stamp->earliest) / 2;
-  }
-  if (const ClockPiece* piece = clock_.piece()) now_->drift = piece->estimate().slope().mean;
+  const ClockPiece* piece = clock_.piece();
+  now_ = sender_clock(*stamp, exchange.n_tx, piece ? piece->estimate().slope().mean : 0.0);
 }
 
 }  // namespace kinalign

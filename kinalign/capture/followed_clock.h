@@ -16,6 +16,9 @@ struct SenderClock {
   double drift = 0.0;                     // of the host's rate against the sender's, as estimated
 };
 
+/// `n`: the sender's clock at that stamp.
+SenderClock sender_clock(const ClockStamp& stamp, NodeTime n, double drift);
+
 class FollowedClock {
  public:
   /// `epoch`: of the host's axis.

@@ -60,9 +60,9 @@ void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {
   if (news.clockless) {
     recorder_.record(node.exchanges, arrival.h_rx, to_bytes({receiver_.epoch(), *news.clockless}));
   }
-  node.raw.record(recorder_, arrival.h_rx, text_of(arrival.bytes), device_ns);
   bytes_ += arrival.bytes.size();
   judge(node, news);
+  node.raw.record(recorder_, arrival.h_rx, text_of(arrival.bytes), device_ns);
 }
 
 RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress& from) {
@@ -111,7 +111,17 @@ void RecordedNodes::judge(Node& node, const NodeNews& news) {
   node.newest = same_life ? std::max(node.newest, news.frame) : news.frame;
 }
 
-void RecordedNodes::tell(std::uint16_t counts, double elapsed_s, HostTime now) {
+void RecordedNodes::look(HostTime now) {
+  count_lost();
+  for (auto& [id, node] : nodes_) node.raw.take_rate(now);
+}
+
+void RecordedNodes::remember(std::uint64_t chunk, std::uint64_t first) {
+  count_lost();
+  for (auto& [id, node] : nodes_) node.raw.remember(chunk, first);
+}
+
+void RecordedNodes::count_lost() {
   for (const NodeStatus& status : receiver_.status()) {
     const auto found = nodes_.find(status.node_id);
     if (found == nodes_.end()) continue;
@@ -125,8 +135,15 @@ void RecordedNodes::tell(std::uint16_t counts, double elapsed_s, HostTime now) {
     std::uint64_t& lost = node.raw.status.counts.order.lost;
     lost = 0;
     for (const auto& [stream, of_one] : node.lost) lost += of_one.before + of_one.present;
-    node.raw.tell(recorder_, counts, elapsed_s, now);
   }
+}
+
+void RecordedNodes::begin(std::uint64_t chunk) {
+  for (auto& [id, node] : nodes_) node.raw.begin(chunk);
+}
+
+void RecordedNodes::tell(std::uint16_t counts, HostTime now) const {
+  for (const auto& [id, node] : nodes_) node.raw.tell(recorder_, counts, now);
 }
 
 PortCounts RecordedNodes::counts() const {
@@ -142,7 +159,7 @@ PortCounts RecordedNodes::counts() const {
 }
 
 void RecordedNodes::add_streams(std::vector<StreamStatus>& all) const {
-  for (const auto& [id, node] : nodes_) all.push_back(node.raw.status);
+  for (const auto& [id, node] : nodes_) all.push_back(node.raw.of_take());
 }
 
 }  // namespace kinalign

@@ -27,8 +27,11 @@ class RecordedNodes {
 
   NodeReceiver& receiver() { return receiver_; }
   const NodeReceiver& receiver() const { return receiver_; }
-  /// Once a second: rates, and counts onto the channel `counts`.
-  void tell(std::uint16_t counts, double elapsed_s, HostTime now);
+  /// These for each node, as RecordedSource has them.
+  void look(HostTime now);
+  void remember(std::uint64_t chunk, std::uint64_t first);
+  void begin(std::uint64_t chunk);
+  void tell(std::uint16_t counts, HostTime now) const;
 
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const { return receiver_.sockets().front().port(); }
@@ -52,6 +55,7 @@ class RecordedNodes {
   void take(const NodeArrival& arrival, const NodeNews& news);
   Node& node_of(std::uint32_t id, const NodeAddress& from);
   static void judge(Node& node, const NodeNews& news);
+  void count_lost();
 
   DeviceOptions device_;
   bool keyed_;

@@ -134,15 +134,36 @@ void RecordedPort::tick(HostTime now) {
   send_answers();
 }
 
-void RecordedPort::tell(Recorder& recorder, std::uint16_t counts, double elapsed_s, HostTime now) {
-  const auto tell_one = [&](std::optional<Source>& source) {
-    if (!source) return;
-    look_at(*source);
-    find_faults(*source);
-    source->recorded.tell(recorder, counts, elapsed_s, now);
-  };
-  for (std::optional<Source>& source : sources_) tell_one(source);
-  tell_one(others_);
+template <class Port, class Visit>
+void RecordedPort::for_each_source(Port& port, Visit visit) {
+  for (auto& source : port.sources_) {
+    if (source) visit(*source);
+  }
+  if (port.others_) visit(*port.others_);
+}
+
+void RecordedPort::look(HostTime now) {
+  for_each_source(*this, [&](Source& source) {
+    look_at(source);
+    find_faults(source);
+    source.recorded.take_rate(now);
+  });
+}
+
+void RecordedPort::remember(std::uint64_t chunk, std::uint64_t first) {
+  for_each_source(*this, [&](Source& source) {
+    look_at(source);
+    source.recorded.remember(chunk, first);
+  });
+}
+
+void RecordedPort::begin(std::uint64_t chunk) {
+  for_each_source(*this, [&](Source& source) { source.recorded.begin(chunk); });
+}
+
+void RecordedPort::tell(Recorder& recorder, std::uint16_t counts, HostTime now) const {
+  for_each_source(*this,
+                  [&](const Source& source) { source.recorded.tell(recorder, counts, now); });
 }
 
 /// What is known of a sender beside its messages and bytes.
@@ -194,10 +215,7 @@ PortCounts RecordedPort::counts() const {
 }
 
 void RecordedPort::add_streams(std::vector<StreamStatus>& all) const {
-  for (const std::optional<Source>& source : sources_) {
-    if (source) all.push_back(source->recorded.status);
-  }
-  if (others_) all.push_back(others_->recorded.status);
+  for_each_source(*this, [&](const Source& source) { all.push_back(source.recorded.of_take()); });
 }
 
 }  // namespace kinalign

@@ -31,8 +31,12 @@ class RecordedPort {
   void drain(HostAxis& axis, Recorder& recorder);
   /// Ten times a second or so: what a desk says unasked.
   void tick(HostTime now);
-  /// Once a second: rates, and counts onto the channel `counts`.
-  void tell(Recorder& recorder, std::uint16_t counts, double elapsed_s, HostTime now);
+  /// These for each of its senders, as RecordedSource has them; once a second faults are looked
+  /// for.
+  void look(HostTime now);
+  void remember(std::uint64_t chunk, std::uint64_t first);
+  void begin(std::uint64_t chunk);
+  void tell(Recorder& recorder, std::uint16_t counts, HostTime now) const;
 
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const;
@@ -62,6 +66,8 @@ class RecordedPort {
   void answer_pings(Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
   void answer_trackers(const Source& source, const Piece& piece);
   void send_answers();
+  template <class Port, class Visit>
+  static void for_each_source(Port& port, Visit visit);
   void look_at(Source& source) const;
   void find_faults(const Source& source);
 

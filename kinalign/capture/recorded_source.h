@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/capture/followed_clock.h"
+#include "kinalign/capture/past_counts.h"
 #include "kinalign/capture/recorder.h"
 #include "kinalign/io/recording_counts.h"
 #include "kinalign/io/recording_format.h"
@@ -16,12 +17,12 @@ namespace kinalign {
 
 /// How a stream does: one sender's, or one node's.
 struct StreamStatus {
-  std::string stream, sender;
-  std::string node, place;              // of nodes: the id, and where the lab says that it is worn
-  SenderCounts counts;                  // since it was first heard
-  std::uint64_t samples = 0;            // of nodes: a frame has several
-  double rate_hz = 0.0;                 // of the last second: samples, else frames, else messages
-  HostTime heard{};                     // last
+  std::string topic, stream, sender;
+  std::string node, place;    // of nodes: the id, and where the lab says that it is worn
+  SenderCounts counts;        // of the present or last take; else since it was first heard
+  std::uint64_t samples = 0;  // of nodes: a frame has several
+  double rate_hz = 0.0;       // of the last second: samples, else frames, else messages
+  HostTime heard{};           // last
   std::optional<double> battery_volts;  // where the device says that
   std::optional<SenderClock> clock;     // of a Kinect's sender
 };
@@ -33,14 +34,26 @@ class RecordedSource {
 
   void record(Recorder& recorder, HostTime arrival, std::string_view bytes,
               std::optional<std::uint64_t> device_ns = std::nullopt);
-  /// Once a second: the rate; and the counts onto the channel `counts`.
-  void tell(Recorder& recorder, std::uint16_t counts, double elapsed_s, HostTime now);
+  /// Once a second: the rate.
+  void take_rate(HostTime now);
+  /// As PastCounts has it.
+  void remember(std::uint64_t chunk, std::uint64_t first) {
+    past_.remember(chunk, first, status.counts);
+  }
+  /// A take begins with that chunk.
+  void begin(std::uint64_t chunk) { before_ = past_.before(chunk); }
+  /// Onto the channel `counts`, if it is heard in this take.
+  void tell(Recorder& recorder, std::uint16_t counts, HostTime now) const;
+  StreamStatus of_take() const;
 
-  StreamStatus status;
+  StreamStatus status;  // counts: since it was first heard
 
  private:
   std::uint16_t channel_ = 0;
-  std::uint64_t second_began_ = 0;  // what had come then
+  std::optional<HostTime> rated_;  // when the rate was looked at last, or the first message came
+  std::uint64_t came_ = 0;         // until then
+  PastCounts<SenderCounts> past_;
+  SenderCounts before_;  // the take
 };
 
 }  // namespace kinalign

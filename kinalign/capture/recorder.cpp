@@ -32,6 +32,7 @@ std::uint64_t Recorder::log_time(HostTime t) const {
 
 void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view data,
                       std::optional<std::uint64_t> device_ns) {
+  newest_ = opened_ ? std::max(newest_, arrival) : arrival;
   if (!opened_) opened_ = arrival;
   Channel& channel = channels_[number];
   if (!channel.in_chunk) {
@@ -53,16 +54,26 @@ void Recorder::tick(HostTime now) {
 
 void Recorder::close() {
   if (!opened_) return;
-  const HostTime opened = *std::exchange(opened_, std::nullopt);
+  opened_.reset();
   McapChunkContent chunk = std::exchange(chunk_, {});
   for (Channel& channel : channels_) channel.in_chunk = false;
-  if (started()) return take_(std::move(chunk));
-  pre_roll_bytes_ += chunk.size();
-  pre_roll_.push_back({std::move(chunk), opened + options_.chunk});
+  const std::uint64_t number = number_++;
+  if (started()) {
+    take_(std::move(chunk));
+  } else {
+    pre_roll_bytes_ += chunk.size();
+    pre_roll_.push_back({std::move(chunk), newest_, number});
+  }
+  if (closed_) closed_(number_, first_number());
+}
+
+std::uint64_t Recorder::first_number() const {
+  return pre_roll_.empty() ? number_ : pre_roll_.front().number;
 }
 
 /// Whole chunks: what is kept reaches back the pre-roll, and a chunk more.
 void Recorder::forget_before(HostTime first) {
+  first = std::min(first, keep_since_.value_or(first));
   while (!pre_roll_.empty() &&
          (pre_roll_.front().end < first || pre_roll_bytes_ > options_.pre_roll_bytes)) {
     pre_roll_bytes_ -= pre_roll_.front().chunk.size();
@@ -70,8 +81,14 @@ void Recorder::forget_before(HostTime first) {
   }
 }
 
+std::uint64_t Recorder::first_chunk(HostTime now) {
+  forget_before(now - options_.pre_roll);
+  return first_number();
+}
+
 void Recorder::start(HostTime now, Take take) {
   forget_before(now - options_.pre_roll);
+  keep_since_.reset();
   take_ = std::move(take);
   for (Kept& kept : std::exchange(pre_roll_, {})) take_(std::move(kept.chunk));
   pre_roll_bytes_ = 0;

@@ -7,11 +7,13 @@
 #include "kinalign/io/mcap_chunk.h"
 #include "kinalign/wire/time.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -40,11 +42,19 @@ class Recorder {
   /// Closes a chunk that is due: some times a chunk's length.
   void tick(HostTime now);
 
+  /// Until a take begins nothing that came since then is forgotten, as far as there is room.
+  void keep_since(HostTime since) { keep_since_ = std::min(keep_since_.value_or(since), since); }
+  /// The chunk that a take would begin with: its number, of all that were ever begun.
+  std::uint64_t first_chunk(HostTime now);
   /// From now on chunks go to `take`, those of the pre-roll first.
   void start(HostTime now, Take take);
   /// The chunk that is open goes there, too; then none any more.
   void stop();
   bool started() const { return take_ != nullptr; }
+
+  /// Whenever a chunk is closed: the next one's number, and that which a take would begin with.
+  using Closed = std::function<void(std::uint64_t next, std::uint64_t first)>;
+  void when_closed(Closed closed) { closed_ = std::move(closed); }
 
   /// Recorded on a channel since it was added, in takes and before.
   std::uint64_t messages(std::uint16_t channel) const { return channels_[channel].messages; }
@@ -64,13 +74,19 @@ class Recorder {
   std::vector<McapSchema> schemas_;           // [i] has the id i + 1
   std::vector<Channel> channels_{Channel{}};  // [0]: none
   McapChunkContent chunk_;
-  std::optional<HostTime> opened_;  // the chunk
+  std::optional<HostTime> opened_;  // the chunk: the first arrival in it
+  HostTime newest_{};               // arrival in it
   struct Kept {
     McapChunkContent chunk;
     HostTime end{};
+    std::uint64_t number = 0;
   };
+  std::uint64_t first_number() const;
   std::deque<Kept> pre_roll_;
   std::size_t pre_roll_bytes_ = 0;
+  std::optional<HostTime> keep_since_;
+  std::uint64_t number_ = 0;  // of the open chunk
+  Closed closed_;
   Take take_;
 };
 

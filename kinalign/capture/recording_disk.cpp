@@ -3,6 +3,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace kinalign {
@@ -63,7 +64,7 @@ Result<void> RecordingDisk::open_part() {
   }
   file_ = std::move(file);
   writer_ = std::move(writer);
-  open_ = true;
+  open_ = stands_ = true;
   synced_ = 0;
   paths_.push_back(path);
   return {};
@@ -90,6 +91,7 @@ Result<void> RecordingDisk::put_kept() {
     kept.end = file_->size();
     kept.written = true;
   }
+  if (repeated_) files_->remove(std::exchange(repeated_, std::nullopt)->path.c_str());
   if (given_up_) failures_.push_back({*std::exchange(given_up_, std::nullopt), paths_.back()});
   return {};
 }
@@ -97,14 +99,33 @@ Result<void> RecordingDisk::put_kept() {
 void RecordingDisk::remove_part() {
   files_->remove(paths_.back().c_str());
   paths_.pop_back();
-  open_ = false;
+  open_ = stands_ = false;
+}
+
+/// Ends the file for what it is worth; all that memory has goes into the next one, too. A further
+/// file of which no sync has brought anything to the disk is repeated by that one, and stays until
+/// then alone: where every sync fails, there would be a thousand. Of two such files the fuller one
+/// stays.
+void RecordingDisk::give_up_part() {
+  if (!std::exchange(stands_, false)) return;
+  const std::uint64_t of_others = bytes_before_ - (open_ ? 0 : file_->size());
+  (void)finish_part();
+  const auto chunks = static_cast<std::size_t>(
+      std::count_if(kept_.begin(), kept_.end(), [](const Kept& kept) { return kept.end != 0; }));
+  for (Kept& kept : kept_) kept.end = 0;
+  if (synced_ != 0 || paths_.size() < 2) return;
+  Repeated one{paths_.back(), chunks, bytes_before_ - of_others};
+  bytes_before_ = of_others;
+  paths_.pop_back();
+  if (repeated_ && repeated_->chunks > chunks) std::swap(*repeated_, one);
+  if (repeated_) files_->remove(repeated_->path.c_str());
+  repeated_ = std::move(one);
 }
 
 /// Told once, and once more where it goes on later.
 Result<void> RecordingDisk::next_part(const Error& why) {
   const bool told = std::exchange(given_up_, given_up_.value_or(why)).has_value();
-  (void)finish_part();  // for what it is worth
-  for (Kept& kept : kept_) kept.end = 0;
+  give_up_part();
   Result<void> result = put_kept();
   if (!result && !told) failures_.push_back({why, ""});
   return result;
@@ -159,11 +180,26 @@ Result<void> RecordingDisk::finish_once() {
   return {};
 }
 
+/// Two tries. What failed in the end was the last sync, say: the file may hold nothing of it.
 Result<void> RecordingDisk::finish() {
   Result<void> result = finish_once();
   if (result) return result;
-  KA_TRY(next_part(result.error()));
-  return finish_once();
+  const auto told = static_cast<std::ptrdiff_t>(failures_.size());
+  result = next_part(result.error());
+  if (result) result = finish_once();
+  if (!result) give_up_part();
+  if (std::exchange(end_told_, true)) failures_.erase(failures_.begin() + told, failures_.end());
+  return result;
+}
+
+std::uint64_t RecordingDisk::bytes() const {
+  return bytes_before_ + (open_ ? file_->size() : 0) + (repeated_ ? repeated_->bytes : 0);
+}
+
+std::vector<std::string> RecordingDisk::paths() const {
+  std::vector<std::string> all = paths_;
+  if (repeated_) all.push_back(repeated_->path);
+  return all;
 }
 
 }  // namespace kinalign

@@ -58,8 +58,8 @@ class RecordingDisk {
 
   /// Since this was asked last.
   std::vector<PartFailure> take_failures() { return std::exchange(failures_, {}); }
-  const std::vector<std::string>& paths() const { return paths_; }  // all files, in order
-  std::uint64_t bytes() const { return bytes_before_ + (open_ ? file_->size() : 0); }
+  std::vector<std::string> paths() const;  // all files, in order
+  std::uint64_t bytes() const;
   /// Bytes that only memory has for sure.
   std::uint64_t kept_bytes() const { return kept_bytes_; }
   /// Messages that no file ever took.
@@ -71,6 +71,7 @@ class RecordingDisk {
   Result<void> open_part();
   Result<void> put_kept();
   Result<void> next_part(const Error& why);
+  void give_up_part();
   void remove_part();
   Result<void> finish_part();
   Result<void> finish_once();
@@ -83,6 +84,7 @@ class RecordingDisk {
   std::shared_ptr<GrowingFile> file_;
   std::unique_ptr<McapWriter> writer_;
   bool open_ = false;         // the file: chunks may be added to it
+  bool stands_ = false;       // the newest of paths_: it has not been given up
   std::uint64_t synced_ = 0;  // bytes of it
   struct Kept {
     McapStoredChunk chunk;
@@ -91,7 +93,14 @@ class RecordingDisk {
   };
   std::deque<Kept> kept_;
   std::uint64_t kept_bytes_ = 0, bytes_before_ = 0;
-  std::optional<Error> given_up_;  // a file was, and the recording has not gone on yet
+  struct Repeated {
+    std::string path;
+    std::size_t chunks = 0;
+    std::uint64_t bytes = 0;
+  };
+  std::optional<Repeated> repeated_;  // a file that goes once the next one has all of it
+  bool end_told_ = false;             // that it failed
+  std::optional<Error> given_up_;     // a file was, and the recording has not gone on yet
   std::vector<PartFailure> failures_;
 };
 

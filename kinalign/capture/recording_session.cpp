@@ -10,7 +10,7 @@ namespace kinalign {
 namespace {
 
 constexpr Duration between_looks = std::chrono::milliseconds(100);
-constexpr std::size_t most_marks = 256;  // that nobody takes
+constexpr std::size_t most_untaken = 256;  // marks
 
 std::vector<McapAttachment> attachments_of(const RecordingSession::Options& options, Time at) {
   const auto utc = static_cast<std::uint64_t>(to_ns(at));
@@ -49,6 +49,10 @@ SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
   return key;
 }
 
+Duration pre_roll_of(const Lab& lab) {
+  return Duration{static_cast<std::int64_t>(lab.record.pre_roll_s * 1e9)};
+}
+
 bool is_ready(std::span<const pollfd> fds) {
   return std::any_of(fds.begin(), fds.end(), [](const pollfd& one) { return one.revents != 0; });
 }
@@ -67,7 +71,7 @@ RecordingSession::RecordingSession(Options options, Machine machine)
   facts_.host = options_.host;
   facts_.anchor = axis_.watch();
   RecorderOptions recorder;
-  recorder.pre_roll = Duration{static_cast<std::int64_t>(options_.lab.record.pre_roll_s * 1e9)};
+  recorder.pre_roll = pre_roll_of(options_.lab);
   recorder.utc_minus_host =
       facts_.anchor.utc.time_since_epoch() - facts_.anchor.raw.time_since_epoch();
   recorder_ = std::make_unique<Recorder>(recorder);
@@ -78,6 +82,8 @@ RecordingSession::RecordingSession(Options options, Machine machine)
   counts_ = add_json(sender_counts_topic, sender_counts_schema());
   port_counts_ = add_json(port_counts_topic, port_counts_schema());
   mark_channel_ = add_json(marks_topic, mark_schema());
+  recorder_->when_closed(
+      [this](std::uint64_t next, std::uint64_t first) { remember_counts(next, first); });
 }
 
 Result<void> RecordingSession::open_ports() {
@@ -148,22 +154,45 @@ bool RecordingSession::wait(Duration patience, std::optional<int> also) {
 
 void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
   recorder_->record(mark_channel_, at, to_json(mark));
-  if (marks_.size() < most_marks) marks_.emplace_back(mark, at);
+  if (marks_.size() < most_untaken) marks_.emplace_back(mark, at);
 }
 
 void RecordingSession::tick(HostTime now) {
   recorder_->tick(now);
   if (now < next_second_) return;
-  constexpr Duration second = std::chrono::seconds(1);
-  const double elapsed =
-      next_second_ == HostTime::min() ? 1.0 : seconds(now - next_second_ + second);
-  next_second_ = now + second;
+  next_second_ = now + std::chrono::seconds(1);
+  tell(now);
+}
+
+void RecordingSession::expect_start(HostTime at) {
+  recorder_->keep_since(at - pre_roll_of(options_.lab));
+}
+
+/// Both clocks of the host, and what has come: the latter once a take has begun.
+void RecordingSession::tell(HostTime now) {
   recorder_->record(pairs_, now, to_json(axis_.watch()));
-  for (RecordedPort& port : ports_) port.tell(*recorder_, counts_, elapsed, now);
-  if (nodes_) nodes_->tell(counts_, elapsed, now);
+  for (RecordedPort& port : ports_) port.look(now);
+  if (nodes_) nodes_->look(now);
+  if (!recording()) return;
+  for (const RecordedPort& port : ports_) port.tell(*recorder_, counts_, now);
+  if (nodes_) nodes_->tell(counts_, now);
   for (const auto& [name, counts] : port_counts()) {
-    recorder_->record(port_counts_, now, to_json(name, counts));
+    recorder_->record(port_counts_, now, to_json(CountedPort{name, counts}));
   }
+}
+
+void RecordingSession::remember_counts(std::uint64_t chunk, std::uint64_t first) {
+  for (RecordedPort& port : ports_) port.remember(chunk, first);
+  if (nodes_) nodes_->remember(chunk, first);
+  for (const auto& [name, counts] : running_port_counts()) {
+    port_counts_past_[name].past.remember(chunk, first, counts);
+  }
+}
+
+void RecordingSession::begin_counts(std::uint64_t chunk) {
+  for (RecordedPort& port : ports_) port.begin(chunk);
+  if (nodes_) nodes_->begin(chunk);
+  for (auto& [name, port] : port_counts_past_) port.before = port.past.before(chunk);
 }
 
 Result<void> RecordingSession::start(const std::string& path, const std::string& subject,
@@ -184,7 +213,9 @@ Result<void> RecordingSession::start(const std::string& path, const std::string&
   };
   RecordingDisk disk = KA_TRY(RecordingDisk::open(machine_.files, path, std::move(head)));
   disk_ = std::make_unique<DiskThread>(std::move(disk), compression);
-  recorder_->start(axis_.now(), [this](McapChunkContent chunk) { disk_->push(std::move(chunk)); });
+  const HostTime now = axis_.now();
+  begin_counts(recorder_->first_chunk(now));
+  recorder_->start(now, [this](McapChunkContent chunk) { disk_->push(std::move(chunk)); });
   return {};
 }
 
@@ -199,8 +230,7 @@ void RecordingSession::drain_all() {
 void RecordingSession::stop() {
   if (!recording()) return;
   drain_all();
-  next_second_ = HostTime::min();  // the last counts, too
-  tick(axis_.now());
+  tell(axis_.now());
   recorder_->stop();
   disk_->finish();
 }
@@ -237,6 +267,15 @@ std::vector<std::pair<std::string, std::uint16_t>> RecordingSession::ports() con
 }
 
 std::vector<std::pair<std::string, PortCounts>> RecordingSession::port_counts() const {
+  auto all = running_port_counts();
+  for (auto& [name, counts] : all) {
+    const auto past = port_counts_past_.find(name);
+    if (past != port_counts_past_.end()) counts = since(past->second.before, counts);
+  }
+  return all;
+}
+
+std::vector<std::pair<std::string, PortCounts>> RecordingSession::running_port_counts() const {
   std::vector<std::pair<std::string, PortCounts>> all;
   for (const RecordedPort& port : ports_) all.emplace_back(port.device().name, port.counts());
   if (nodes_) all.emplace_back(nodes_->device().name, nodes_->counts());

@@ -51,6 +51,8 @@ class RecordingSession {
   /// of the caller's to wake up for. Whether something came.
   bool turn(Duration patience, std::optional<int> also = std::nullopt);
 
+  /// A take will begin with the pre-roll of that time, however long that takes.
+  void expect_start(HostTime at);
   /// Begins a take with the pre-roll; `path` ends in .mcap and must be free.
   Result<void> start(const std::string& path, const std::string& subject,
                      const std::string& action);
@@ -58,6 +60,9 @@ class RecordingSession {
   void stop();
   /// After stop(): what the disk still refuses is given up.
   void give_up() { disk_->give_up(); }
+  /// After stop(), of a disk that stands still: nothing waits for it any more, and nothing more is
+  /// known of it. Its threads live until the process ends, which the system may hold up.
+  void leave_disk() { static_cast<void>(disk_.release()); }
   bool recording() const { return recorder_->started(); }
 
   /// Onto the channel of marks; before a take into its pre-roll.
@@ -75,7 +80,7 @@ class RecordingSession {
   std::vector<HostClockEvent> take_clock_events() { return axis_.take_events(); }
   /// By the device's name, or "marks" and "trigger": the port that it is heard on.
   std::vector<std::pair<std::string, std::uint16_t>> ports() const;
-  /// As ports().
+  /// As ports(); of the present or last take, before the first since they were opened.
   std::vector<std::pair<std::string, PortCounts>> port_counts() const;
   const std::vector<MarkPort>& mark_ports() const { return mark_ports_; }
   /// nullptr where the lab has no nodes.
@@ -89,6 +94,15 @@ class RecordingSession {
   bool wait(Duration patience, std::optional<int> also);
   void drain_all();
   void tick(HostTime now);
+  void tell(HostTime now);
+  void remember_counts(std::uint64_t chunk, std::uint64_t first);
+  void begin_counts(std::uint64_t chunk);
+  std::vector<std::pair<std::string, PortCounts>> running_port_counts() const;
+
+  struct PortPast {
+    PastCounts<PortCounts> past;
+    PortCounts before{};  // the take
+  };
 
   Options options_;
   Machine machine_;
@@ -101,6 +115,7 @@ class RecordingSession {
   std::uint16_t pairs_ = 0, counts_ = 0, port_counts_ = 0, mark_channel_ = 0;
   RecordingFacts facts_;
   HostTime next_second_ = HostTime::min(), next_look_ = HostTime::min();
+  std::map<std::string, PortPast> port_counts_past_;
   std::vector<int> fds_;              // of this turn
   std::vector<std::size_t> fds_end_;  // by port, marks' last: where in fds_ those of the next begin
   std::vector<pollfd> waiting_;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SlimeVR's trackers on the host's side (docs/formats/slimevr.md): what becomes of each datagram,
-// what is sent, who is who. No socket, no clock and no growth: time is an argument. Their packets
-// carry no time, so a sample has an arrival and nothing better.
+// what is sent, who is who. No socket, no clock and no growth: time is an argument. What a tracker
+// measures is no matter here: it is recorded as it came.
 #pragma once
 
 #include "kinalign/capture/counts_by.h"
-#include "kinalign/capture/event_queue.h"
 #include "kinalign/capture/node_life.h"
 #include "kinalign/capture/rate_limit.h"
 #include "kinalign/io/sequence_count.h"
@@ -37,21 +36,9 @@ enum class SlimeVerdict : std::uint8_t {
 };
 inline constexpr std::size_t slime_verdicts = 8;
 
-/// As in --json: "too_short".
-const char* name_of(SlimeVerdict verdict);
-
-/// One reading of one sensor, which arrived with its datagram.
-struct SlimeSample {
-  std::uint8_t sensor = 0;
-  std::optional<std::array<double, 4>> orientation;   // w,x,y,z, world (y up) from sensor
-  std::optional<std::array<double, 3>> acceleration;  // m/s2, sensor's space, without gravity
-};
-
 struct SlimeNews {
   SlimeVerdict verdict = SlimeVerdict::too_short;
-  std::size_t device = 0;                // if accepted
-  std::uint64_t number = 0;              // of the packet
-  std::span<const SlimeSample> samples;  // good until the next datagram
+  std::size_t device = 0;  // if accepted
 };
 
 /// To be sent, in this order.
@@ -60,36 +47,16 @@ struct SlimeSending {
   SlimeAnswer answer;
 };
 
-struct SlimeSensor {
-  bool used = false;
-  std::uint8_t status = 0;
-  std::optional<std::uint8_t> imu, position;
-  std::uint64_t samples = 0;
-};
-
 struct SlimeDevice {
-  static constexpr std::size_t most_sensors = 32;
-
   bool used = false;
   std::optional<SlimeMac> mac;  // absent: the address is its name
   NodeAddress address;
-  std::int32_t protocol = 0;
-  std::string firmware;
-  std::array<SlimeSensor, most_sensors> sensors{};
-  std::optional<float> battery_volts, battery_level;
-  std::optional<Duration> round_trip;  // of the newest ping that came back
+  std::optional<float> battery_volts;
   HostTime heard{};
-  bool silent = false;
-  std::uint64_t handshakes = 0;
-  SequenceCounts earlier;  // before the newest handshake
+  SequenceCounts earlier;  // at this address, before the newest handshake
   SequenceCount numbers{64};
   std::uint64_t credit = 0;  // bytes that may still be sent there
   HostTime next_heartbeat{}, next_ping{};
-  struct Ping {
-    std::uint32_t id = 0;
-    HostTime sent{};
-  };
-  std::optional<Ping> ping;  // that has not come back
 
   SequenceCounts counts() const {
     SequenceCounts sum = earlier;
@@ -97,30 +64,9 @@ struct SlimeDevice {
   }
 };
 
-struct SlimeEvent {
-  enum class Kind : std::uint8_t {
-    joined,    // a device
-    started,   // another handshake of a known one
-    moved,     // likewise, from another address
-    left,      // nothing for a second
-    returned,  // a datagram since
-    too_many   // warning: a device was not taken in
-  };
-  Kind kind{};
-  std::size_t device = 0;
-  HostTime at{};
-  NodeAddress address;
-};
-inline constexpr std::size_t slime_event_kinds = 6;
-
-const char* name_of(SlimeEvent::Kind kind);
-
 struct SlimeCounts {
-  CountsBy<SlimeVerdict, slime_verdicts> verdicts;            // each datagram once
-  std::uint64_t unknown_type = 0, too_short = 0, nested = 0;  // packets, in what is accepted
-  std::uint64_t wild = 0;       // rotations and accelerations that are none
-  std::uint64_t no_sensor = 0;  // of sensors above 31
-  std::uint64_t unsent = 0;     // what would have been more bytes than came
+  CountsBy<SlimeVerdict, slime_verdicts> verdicts;  // each datagram once
+  std::uint64_t unsent = 0;                         // what would have been more bytes than came
   std::uint64_t sent = 0;
 };
 
@@ -133,7 +79,7 @@ class SlimeDesk {
 
   /// In the order of arrival.
   SlimeNews receive(const SlimeArrival& arrival);
-  /// Ten times a second or so: heartbeats, pings, and who has left.
+  /// Ten times a second or so: heartbeats and pings.
   void tick(HostTime now);
   /// What the calls since brought about; good until the next one of them.
   std::span<const SlimeSending> take_sendings();
@@ -142,32 +88,25 @@ class SlimeDesk {
   /// nullptr: none.
   const SlimeDevice* device_at(const NodeAddress& address) const;
   const SlimeCounts& counts() const { return counts_; }
-  std::vector<SlimeEvent> take_events() { return events_.take(); }
-  std::uint64_t missed_events() const { return events_.missed(); }
 
  private:
-  SlimeVerdict judge(const SlimeArrival& arrival, SlimeNews& news);
+  SlimeVerdict judge(const SlimeArrival& arrival, std::size_t& device);
   SlimeVerdict shake_hands(const SlimeHandshake& handshake, const SlimeArrival& arrival);
   SlimeDevice* find_device(const NodeAddress& address);
   SlimeDevice* device_named(const SlimeHandshake& handshake, const NodeAddress& address);
   SlimeDevice* new_device(HostTime now);
-  void hear(SlimeDevice& device, const SlimeArrival& arrival);
-  void take(SlimeDevice& device, const SlimePacket& packet, HostTime now);
-  void take_motion(SlimeDevice& device, const SlimeMotion& motion);
+  static void hear(SlimeDevice& device, const SlimeArrival& arrival);
+  void take(SlimeDevice& device, const SlimePacket& packet);
   void send(SlimeDevice& device, const SlimeAnswer& answer);
   void ping(SlimeDevice& device, HostTime now);
   std::size_t index(const SlimeDevice& device) const;
-  void tell(SlimeEvent::Kind kind, const SlimeDevice& device, HostTime at);
 
   SipHashKey secret_;
   std::vector<SlimeDevice> devices_;
   RateLimit strangers_;
   SlimeCounts counts_;
-  EventQueue<SlimeEvent> events_;
-  HostTime tell_too_many_ = HostTime::min();  // not sooner
   std::uint64_t pings_ = 0;
   std::vector<SlimeSending> sendings_, taken_;
-  std::vector<SlimeSample> samples_;  // of the datagram before
   SlimeDatagram datagram_;
 };
 

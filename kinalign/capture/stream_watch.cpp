@@ -50,7 +50,9 @@ void StreamWatch::feed(Kinect& kinect, std::span<const std::uint8_t> bytes) {
     }
     kinect.frames.clear();
     kinect.sensors[sensor].take(std::move(*frame), kinect.frames);
-    kinect.whole += kinect.frames.size();
+    kinect.whole += static_cast<std::uint64_t>(
+        std::count_if(kinect.frames.begin(), kinect.frames.end(),
+                      [](const JoinedKinectFrame& one) { return one.whole; }));
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/kernel_stamp.h"
 #include "kinalign/capture/pieces.h"
 #include "kinalign/capture/socket_address.h"
 
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <tuple>
@@ -42,6 +44,12 @@ std::pair<HostAddress, std::uint16_t> peer_of(int fd) {
   return {host, ntohs(six.sin6_port)};
 }
 
+/// The kernel stamps what arrives. Of a listener: on its connections, from their first byte on.
+void ask_for_stamps(int fd) {
+  const int yes = 1;
+  ::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
+}
+
 /// Notices a device that vanished without a word within half a minute.
 void keep_alive(int fd) {
   const auto set = [fd](int level, int name, int value) {
@@ -59,6 +67,24 @@ void keep_alive(int fd) {
 void ask_briefly(int fd) {
   const int once_more = 1;
   ::setsockopt(fd, IPPROTO_TCP, TCP_SYNCNT, &once_more, sizeof once_more);
+}
+
+/// recv(2), and when the last of those bytes arrived. Behind a lost segment earlier ones may have
+/// come later; they were sent earlier, which is what clocks are bounded by.
+ssize_t receive_stamped(int fd, std::span<char> room, std::optional<Time>& stamp) {
+  alignas(cmsghdr) std::array<std::uint8_t, 128> control{};
+  iovec in{room.data(), room.size()};
+  msghdr head{};
+  head.msg_iov = &in;
+  head.msg_iovlen = 1;
+  head.msg_control = control.data();
+  head.msg_controllen = control.size();
+  const ssize_t got = ::recvmsg(fd, &head, 0);
+  if (got <= 0) return got;
+  for (cmsghdr* c = CMSG_FIRSTHDR(&head); c != nullptr; c = CMSG_NXTHDR(&head, c)) {
+    if (const auto said = kernel_stamp(*c)) stamp = said;
+  }
+  return got;
 }
 
 Failure no_address(const std::string& address) {
@@ -90,6 +116,7 @@ Result<TcpPieces> TcpPieces::listen(const std::string& address, std::uint16_t po
   Handle listener(::socket(found->ai_family, type, 0));
   const int yes = 1;
   ::setsockopt(listener.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  ask_for_stamps(listener.fd());
   if (listener.fd() < 0 || ::bind(listener.fd(), found->ai_addr, found->ai_addrlen) != 0 ||
       ::listen(listener.fd(), static_cast<int>(most_links)) != 0) {
     return Failure(Error{endpoint_text(own, port), 0, "a TCP port to serve on",
@@ -136,6 +163,7 @@ void TcpPieces::try_to_connect(HostTime now) {
   if (socket.fd() < 0) return;
   keep_alive(socket.fd());
   ask_briefly(socket.fd());
+  ask_for_stamps(socket.fd());
   if (::connect(socket.fd(), found->ai_addr, found->ai_addrlen) != 0 && errno != EINPROGRESS) {
     return;
   }
@@ -180,11 +208,13 @@ bool TcpPieces::settle(Link& link) {
 bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
   if (!link.connected && !settle(link)) return false;
   for (int turn = 0; link.connected && turn < reads_in_turn; ++turn) {
-    const ssize_t got = ::read(link.socket.fd(), buffer_.data(), buffer_.size());
+    std::optional<Time> stamp;
+    const ssize_t got = receive_stamped(link.socket.fd(), buffer_, stamp);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     if (got == 0) return false;
-    const HostTime arrival = link.heard = axis.now();
+    axis.look();
+    const HostTime arrival = link.heard = axis.arrival(stamp);
     const auto sender = senders_.number(link.sender, link.host, link.port, arrival);
     ++(sender ? counts_.pieces : counts_.refused);
     if (!sender) continue;

@@ -24,6 +24,8 @@ struct Mark {
   bool operator==(const Mark&) const = default;
 };
 inline constexpr std::size_t mark_kinds = 4;
+inline constexpr double most_latency_ms = 60'000.0;
+inline constexpr std::size_t most_marks = 10'000;  // of a recording that are looked at
 
 /// "t_pose", as in calls and --json.
 const char* name_of(Mark::Kind kind);

@@ -15,7 +15,6 @@ using Json = nlohmann::ordered_json;
 using Refusal = MarkCallRefusal;
 
 constexpr const char* schema = "kinalign.mark/1";
-constexpr double most_latency_ms = 60'000.0;
 
 std::optional<std::string> text_at(const Json& call, const char* key) {
   const auto found = call.find(key);

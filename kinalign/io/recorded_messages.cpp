@@ -11,7 +11,6 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_names = 32;  // of streams and nodes in messages
-constexpr std::size_t most_marks = 10'000;
 
 void remember(std::set<std::string>& names, const std::string& name) {
   if (names.size() < most_names) names.insert(shown(name));

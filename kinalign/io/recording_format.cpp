@@ -176,9 +176,8 @@ std::optional<RecordedMark> to_mark(std::string_view json) {
   recorded.mark.kind = *kind;
   const auto latency = object.find("latency_ms");
   if (latency == object.end()) return recorded;
-  constexpr double most_ms = 60'000;  // of a call
   const double ms = latency->is_number() ? latency->get<double>() : -1.0;
-  if (!(ms >= 0.0 && ms <= most_ms)) return std::nullopt;
+  if (!(ms >= 0.0 && ms <= most_latency_ms)) return std::nullopt;
   recorded.mark.latency = Duration{std::llround(ms * 1e6)};
   return recorded;
 }

@@ -23,7 +23,7 @@ bool has_rotation(std::string_view payload) {
                      });
 }
 
-constexpr std::size_t most_counted = 4096, most_marks = 65'536;
+constexpr std::size_t most_counted = 4096;
 
 /// Of a message on a channel of counts: who is counted, in the words that it begins with.
 std::string_view counted(std::string_view json) {
@@ -60,6 +60,7 @@ class Surveyor {
         [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
     survey_.senders = all_of(senders_, to_counted_sender);
     survey_.ports = all_of(ports_, to_counted_port);
+    if (reader_.all_checked()) survey_.unchecked = 0;
     if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
     return std::move(survey_);
   }

@@ -86,7 +86,7 @@ def fill(folder):
 
 def recording_on_a_full(disk):
     """One message is on it, 28 have reached the machine, and the program knows that it can't write them."""
-    recording = Recording(disk / "takes")
+    recording = Recording(disk / "takes", "--marks-port", "0")
     with sender_to(recording.port) as device:
         device(f"{0:010}")
         recording.until("status")
@@ -110,6 +110,18 @@ def what_a_full_disk_refuses_at_the_end_is_written_when_somebody_makes_room(fold
         assert last["dropped"] == 0, last
         found = {number for path in last["files"] for number in numbers(Walk(pathlib.Path(path)))}
         assert found == set(range(29)), sorted(found)
+
+
+@case
+def while_the_end_waits_for_the_disk_who_calls_is_answered(folder):
+    with small_disk(folder, 80) as small, socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as caller:
+        recording = recording_on_a_full(small)
+        caller.settimeout(5)
+        call = json.dumps({"schema": "kinalign.mark/1", "kind": "text", "text": "next", "id": "1"}).ljust(200)
+        caller.sendto(call.encode(), ("127.0.0.1", recording.started["ports"]["marks"]))
+        assert json.loads(caller.recv(1000))["is"] == "new"
+        recording.program.send_signal(signal.SIGINT)
+        recording.until("stopped")
 
 
 @case

@@ -36,6 +36,15 @@ TEST_CASE("of what has not come yet it is told where it would be heard") {
   CHECK(linked[2] == "camera: nothing has come to port 7202 yet");
 }
 
+TEST_CASE("who came in an earlier take and not in this one did not come") {
+  Scene scene;
+  for (StreamStatus& stream : scene.status.streams) stream.counts.messages = 7;
+  CHECK(unheard_in_take(scene.lab, scene.status) == std::vector<std::string>{"imu wrist"});
+  scene.status.streams[0].counts.messages = 0;
+  CHECK(unheard_in_take(scene.lab, scene.status) == std::vector<std::string>{"mocap", "imu wrist"});
+  CHECK(end_line(scene.status.streams[0]).empty());
+}
+
 TEST_CASE("missing are required devices that are silent or were never heard, and nodes by place") {
   Scene scene;
   CHECK(missing(scene.lab, scene.status) == std::vector<std::string>{"kinect", "imu wrist"});

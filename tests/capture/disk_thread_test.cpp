@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/disk_thread.h"
 
+#include "tests/capture/failing_disks.h"
 #include "tests/folder.h"
 #include "tests/io/mcap_files.h"
 
 #include <doctest/doctest.h>
-#include <fcntl.h>
 
 #include <atomic>
 #include <future>
@@ -124,25 +124,27 @@ TEST_CASE("a failed sync is told, and the recording goes on in a new file") {
   CHECK(read_mcap(folder.read("a.part2.mcap")).messages.size() == 20);
 }
 
-namespace {
-
-/// Takes nothing while it is full.
-struct FullDisk : PosixFiles {
-  std::atomic<bool> full{false};
-
-  int open(const char* path, int flags, mode_t mode) override {
-    return full && (flags & O_CREAT) != 0 ? refuse() : PosixFiles::open(path, flags, mode);
+TEST_CASE("a disk that fails every sync is not asked again at once") {
+  const FreshFolder folder;
+  FailingSyncs files;
+  files.fails = true;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  DiskThread thread(*std::move(disk), McapCompression::none);
+  wait_until([&] { return thread.status().paths.size() == 2; });
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    thread.push(chunk(10 * i, 10 * i + 10));
+    wait_until([&] { return thread.status().bytes > 500 * i; });
   }
-  ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
-    return full ? refuse() : PosixFiles::write_at(fd, data, size, at);
-  }
-  static int refuse() {
-    errno = ENOSPC;
-    return -1;
-  }
-};
-
-}  // namespace
+  CHECK(files.failed < 10);  // a second lies between two; else each chunk's would be one
+  thread.finish();
+  wait_until([&] { return thread.status().refused.has_value(); });
+  thread.give_up();
+  wait_until([&] { return thread.status().finished; });
+  CHECK(thread.status().dropped == 0);  // all was written, though nothing is sure
+  CHECK(folder.names().size() == 2);
+  CHECK(read_mcap(bytes_in(thread.status().paths.back())).messages.size() == 500);
+}
 
 TEST_CASE("what a full disk refuses at the end is written as soon as there is room") {
   const FreshFolder folder;

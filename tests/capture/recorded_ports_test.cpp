@@ -182,6 +182,23 @@ TEST_CASE(
   CHECK(live.session().take_findings().empty());
 }
 
+TEST_CASE("a Kinect's frame that lacks a part is no frame of the counts") {
+  LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
+  KinectFrame six;
+  six.origin = sensor_2;
+  six.bodies.resize(6);
+  for (std::size_t b = 0; b < 6; ++b) six.bodies[b].id = b + 1;
+  KinectFrame one = six;
+  one.bodies.resize(1);
+  ++one.origin.sequence;
+  const Client sender;
+  sender.send("127.0.0.1", live.port(), encode_kinect_binary(kinect_parts(six).front()));
+  sender.send("127.0.0.1", live.port(), encode_kinect_binary(one));
+  live.serve_until([&] { return live.pieces() == 2; });
+  live.finish();
+  CHECK(live.session().streams().at(0).counts.frames == 1);
+}
+
 TEST_CASE("a device that sends to another one's port is told of while recording, once") {
   LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
   NoitomFrame frame;

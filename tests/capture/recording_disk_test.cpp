@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/recording_disk.h"
 
+#include "tests/capture/failing_disks.h"
 #include "tests/faulty_files.h"
 #include "tests/folder.h"
 #include "tests/io/mcap_files.h"
@@ -104,6 +105,39 @@ TEST_CASE("after a failed sync all that was not synced stands in the next file")
   CHECK(found_in(disk->paths()).sequences.size() == 40);
 }
 
+TEST_CASE("where every sync fails there are two files, the second with all that came") {
+  const FreshFolder folder;
+  FailingSyncs files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    CHECK(disk->write(chunk(10 * i, 10 * i + 10)));
+    const auto sync = disk->unsynced();
+    REQUIRE(sync);
+    CHECK(disk->synced(*sync, Failure(Error{})));
+    REQUIRE(disk->paths().size() == 2);
+    CHECK(found_in({disk->paths()[1]}).sequences.size() == 10 * i + 10);
+    CHECK(disk->bytes() == folder.read("a.mcap").size() + bytes_in(disk->paths()[1]).size());
+  }
+  CHECK(folder.names().size() == 2);
+  files.fails = true;
+  for (int i = 0; i < 10; ++i) {
+    CHECK(!disk->finish());
+    CHECK(folder.names().size() == 2);
+    REQUIRE(disk->paths().size() == 2);
+    CHECK(found_in({disk->paths()[1]}).sequences.size() == 200);
+    CHECK(disk->bytes() == folder.read("a.mcap").size() + bytes_in(disk->paths()[1]).size());
+  }
+  CHECK(disk->take_failures().size() < 25);  // 20 while it recorded
+  files.fails = false;
+  const int before = files.synced;
+  CHECK(disk->finish());
+  CHECK(files.synced > before);  // what failed before proves nothing
+  CHECK(disk->unwritten() == 0);
+  CHECK(folder.names().size() == 2);
+  CHECK(found_in({disk->paths()[1]}).sequences.size() == 200);
+}
+
 TEST_CASE("a recording never takes another's place") {
   const FreshFolder folder;
   PosixFiles files;
@@ -156,32 +190,19 @@ TEST_CASE("whichever call fails, nothing is lost and every file is in order") {
 }
 
 TEST_CASE("a disk that refuses everything for a while loses nothing") {
-  struct Refusing : PosixFiles {
-    bool refuses = false;
-    int open(const char* path, int flags, mode_t mode) override {
-      return refuses ? fail() : PosixFiles::open(path, flags, mode);
-    }
-    ssize_t write_at(int fd, const void* data, std::size_t size, off_t at) override {
-      return refuses ? fail() : static_cast<int>(PosixFiles::write_at(fd, data, size, at));
-    }
-    static int fail() {
-      errno = ENOSPC;
-      return -1;
-    }
-  };
   const FreshFolder folder;
-  Refusing files;
+  FullDisk files;
   auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
   REQUIRE(disk);
   CHECK(disk->write(chunk(0, 10)));
-  files.refuses = true;
+  files.full = true;
   CHECK(!disk->write(chunk(10, 20)));
   CHECK(!disk->write(chunk(20, 30)));
   CHECK(!disk->write(chunk(30, 35)));
   const auto told = disk->take_failures();  // once, however often it is tried
   REQUIRE(told.size() == 1);
   CHECK(told[0].next.empty());
-  files.refuses = false;
+  files.full = false;
   CHECK(disk->write(chunk(35, 40)));
   const auto then = disk->take_failures();
   REQUIRE(then.size() == 1);

@@ -6,10 +6,12 @@
 
 #include "kinalign/io/mark_call.h"
 #include "kinalign/io/noitom_frame.h"
+#include "kinalign/io/recording_survey.h"
 
 #include <doctest/doctest.h>
 #include <poll.h>
 
+#include <algorithm>
 #include <thread>
 
 using namespace kinalign;
@@ -24,6 +26,17 @@ DeviceOptions device(const std::string& text) { return *parse_device(text); }
 template <class Holds>
 void serve_until(RecordingSession& session, const Holds& holds) {
   while (!holds()) session.turn(10ms);  // CTest's own limit ends a test that hangs
+}
+
+std::vector<std::uint8_t> noitom_frame(std::uint32_t index) {
+  NoitomFrame frame;
+  frame.name = "Char00";
+  frame.frame_index = index;
+  frame.displacement = true;
+  frame.values.assign(354, 1.0F);
+  std::vector<std::uint8_t> bytes;
+  REQUIRE(append_noitom(frame, bytes));
+  return bytes;
 }
 
 }  // namespace
@@ -153,6 +166,83 @@ TEST_CASE("what had reached the machine when a take is ended stands in the file"
   CHECK(payloads.at("/marks").size() == 1);
 }
 
+TEST_CASE("a take's counts begin with it") {
+  const FreshFolder folder;
+  Machine machine;
+  RecordingSession::Options options;
+  options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
+  options.lab.record.pre_roll_s = 0.0;
+  auto session = RecordingSession::open(options, machine.parts());
+  REQUIRE(session);
+  const std::uint16_t port = (*session)->ports().front().second;
+  const Client one;
+  std::uint64_t sent = 0;
+  const auto say = [&](std::uint32_t index) {
+    one.send("127.0.0.1", port, noitom_frame(index));
+    ++sent;
+  };
+  const auto came = [&] { return (*session)->port_counts().front().second.pieces; };
+  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  for (const std::uint32_t index : {1U, 5U}) say(index);  // 2 to 4 lost
+  serve_until(**session, [&] { return came() == 2; });
+  finish(**session);
+  CHECK((*session)->streams().at(0).counts.order.lost == 3);
+  REQUIRE((*session)->start(folder / "b.mcap", "", ""));
+  CHECK((*session)->streams().at(0).counts.messages == 0);
+  for (const std::uint32_t index : {6U, 8U}) say(index);  // 7 lost
+  serve_until(**session, [&] { return came() == 2; });
+  finish(**session);
+  PosixFiles files;
+  const auto survey = survey_recording(files, folder / "b.mcap");
+  REQUIRE(survey);
+  REQUIRE(survey->senders.size() == 1);
+  CHECK(survey->senders[0].topic == "/mocap/raw");
+  CHECK(survey->senders[0].counts.messages == 2);
+  CHECK(survey->senders[0].counts.order.lost == 1);
+  REQUIRE(survey->ports.size() == 1);
+  CHECK(survey->ports[0].counts.pieces == 2);
+}
+
+TEST_CASE("a take's counts are those of the messages in its file, whatever its pre-roll reaches") {
+  for (const double pre_roll_s : {0.0, 0.3, 5.0}) {
+    CAPTURE(pre_roll_s);
+    const FreshFolder folder;
+    Machine machine;
+    RecordingSession::Options options;
+    options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
+    options.lab.record.pre_roll_s = pre_roll_s;
+    auto session = RecordingSession::open(options, machine.parts());
+    REQUIRE(session);
+    const std::uint16_t port = (*session)->ports().front().second;
+    const Client one;
+    std::uint32_t sent = 0;
+    const auto say_for = [&](Duration length) {
+      const HostTime end = (*session)->now() + length;
+      while ((*session)->now() < end) {
+        one.send("127.0.0.1", port, noitom_frame(sent++));
+        (*session)->turn(2ms);
+      }
+    };
+    for (const std::string name : {"a.mcap", "b.mcap"}) {
+      say_for(900ms);
+      REQUIRE((*session)->start(folder / name, "", ""));
+      say_for(200ms);
+      finish(**session);
+      PosixFiles files;
+      const auto survey = survey_recording(files, folder / name);
+      REQUIRE(survey);
+      REQUIRE(survey->senders.size() == 1);
+      const auto raw =
+          std::find_if(survey->channels.begin(), survey->channels.end(),
+                       [](const auto& channel) { return channel.channel.topic == "/mocap/raw"; });
+      REQUIRE(raw != survey->channels.end());
+      CHECK(survey->senders[0].counts.messages == raw->messages);
+      CHECK(survey->senders[0].counts.frames == raw->messages);
+      CHECK(survey->ports.at(0).counts.pieces == raw->messages);
+    }
+  }
+}
+
 TEST_CASE("a second take needs a name of its own, and has its own file") {
   const FreshFolder folder;
   Machine machine;
@@ -181,14 +271,7 @@ TEST_CASE("what a sender's own numbers miss is counted while recording, and in t
   REQUIRE((*session)->start(folder / "a.mcap", "", ""));
   std::uint64_t sent = 0;
   for (const std::uint32_t index : {10U, 11U, 14U, 13U, 14U, 15U}) {  // 12 lost, 13 late, 14 twice
-    NoitomFrame frame;
-    frame.name = "Char00";
-    frame.frame_index = index;
-    frame.displacement = true;
-    frame.values.assign(354, 1.0F);
-    std::vector<std::uint8_t> bytes;
-    REQUIRE(append_noitom(frame, bytes));
-    one.send("127.0.0.1", port, bytes);
+    one.send("127.0.0.1", port, noitom_frame(index));
     ++sent;
     serve_until(**session, [&] { return (*session)->port_counts().front().second.pieces == sent; });
   }

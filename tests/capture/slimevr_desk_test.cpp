@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/slimevr_desk.h"
 
-#include "tests/about.h"
 #include "tests/io/slimevr_bytes.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <limits>
 #include <map>
 
 using namespace kinalign;
@@ -16,7 +13,6 @@ using namespace std::chrono_literals;
 
 namespace {
 
-using Kind = SlimeEvent::Kind;
 using std::chrono::milliseconds;
 
 constexpr SipHashKey secret{1, 2, 3};
@@ -44,11 +40,6 @@ class Lab {
     const auto sendings = desk.take_sendings();
     return {sendings.begin(), sendings.end()};
   }
-  std::vector<Kind> events() {
-    std::vector<Kind> kinds;
-    for (const auto& event : desk.take_events()) kinds.push_back(event.kind);
-    return kinds;
-  }
   SlimeDesk desk{secret};
   HostTime now{1000s};
 
@@ -68,10 +59,9 @@ using Verdict = SlimeVerdict;
 
 }  // namespace
 
-TEST_CASE("a tracker that shakes hands is answered, and its readings are samples") {
+TEST_CASE("a tracker that shakes hands is answered, and heard from then on") {
   Lab lab;
   CHECK(lab.shake(address(7), mac(1)).verdict == Verdict::accepted);
-  CHECK(lab.events() == std::vector{Kind::joined});
   const auto sent = lab.sent();
   REQUIRE(sent.size() == 1);
   CHECK(sent[0].to == address(7));
@@ -79,27 +69,7 @@ TEST_CASE("a tracker that shakes hands is answered, and its readings are samples
   CHECK(sent[0].answer.bytes[0] == 3);
   const SlimeNews news = lab.hear(address(7), rotation(1, 2));
   CHECK(news.verdict == Verdict::accepted);
-  CHECK(news.number == 1);
-  REQUIRE(news.samples.size() == 1);
-  CHECK(news.samples[0].sensor == 2);
-  REQUIRE(news.samples[0].orientation);
-  CHECK((*news.samples[0].orientation)[1] == about(-0.70710678118654752));
-  CHECK(!news.samples[0].acceleration);
   CHECK(lab.desk.device(news.device).mac == mac(1));
-  CHECK(lab.desk.device(news.device).firmware == "0.7.0");
-  CHECK(lab.desk.device(news.device).sensors[2].samples == 1);
-}
-
-TEST_CASE("a bundle of rotations and accelerations is as many samples") {
-  Lab lab;
-  lab.shake(address(7), mac(1), 21);
-  const Bytes both{16, 23, 5, 0, 0, 0, 0, 0, 0, 0x7f, 0xff, 1, 0, 0, 128, 0, 0};
-  const SlimeNews news = lab.hear(address(7), slime_datagram(101, 1, joined({both, both})));
-  REQUIRE(news.samples.size() == 2);
-  REQUIRE(news.samples[1].acceleration);
-  CHECK((*news.samples[1].acceleration)[0] == 1.0);  // turned: protocol 21
-  CHECK((*news.samples[1].acceleration)[1] == -2.0);
-  CHECK(news.samples[1].orientation);
 }
 
 TEST_CASE("who made no handshake is a stranger, and gets nothing") {
@@ -117,30 +87,24 @@ TEST_CASE("sensor infos are acknowledged with their status, feature flags answer
   lab.shake(address(7), mac(1));
   lab.sent();
   const Bytes infos = joined({{4, 15, 0, 1, 4}, {4, 15, 1, 2, 4}, {8, 15, 40, 1, 4, 0, 0, 0, 5}});
-  const SlimeNews news = lab.hear(address(7), slime_datagram(101, 1, infos));
+  lab.hear(address(7), slime_datagram(101, 1, infos));
   auto sent = lab.sent();
   REQUIRE(sent.size() == 3);
   CHECK(bytes_of(sent[0]) == Bytes{0, 0, 0, 15, 0, 1});
   CHECK(bytes_of(sent[1]) == Bytes{0, 0, 0, 15, 1, 2});
-  CHECK(lab.desk.device(news.device).sensors[1].status == 2);
-  CHECK(lab.desk.device(news.device).sensors[1].imu == 4);
-  CHECK(!lab.desk.device(news.device).sensors[2].used);
-  CHECK(lab.desk.counts().no_sensor == 1);
   lab.hear(address(7), slime_datagram(22, 2, {1}));
   sent = lab.sent();
   REQUIRE(sent.size() == 1);
   CHECK(bytes_of(sent[0]) == Bytes{0, 0, 0, 22, 0, 0, 0, 0, 0, 0, 0, 0, 3});
 }
 
-TEST_CASE("order is by packet number: doubled and overtaken packets are no samples") {
+TEST_CASE("order is by packet number: doubled and overtaken packets are told apart") {
   Lab lab;
   lab.shake(address(7), mac(1));
   CHECK(lab.hear(address(7), rotation(5)).verdict == Verdict::accepted);
   CHECK(lab.hear(address(7), rotation(5)).verdict == Verdict::duplicate);
   CHECK(lab.hear(address(7), rotation(8)).verdict == Verdict::accepted);
-  const SlimeNews late = lab.hear(address(7), rotation(6));
-  CHECK(late.verdict == Verdict::late);
-  CHECK(late.samples.empty());
+  CHECK(lab.hear(address(7), rotation(6)).verdict == Verdict::late);
   const SlimeNews news = lab.hear(address(7), rotation(9));
   CHECK(lab.desk.device(news.device).counts().lost == 1);
   CHECK(lab.desk.device(news.device).counts().received == 5);
@@ -152,13 +116,11 @@ TEST_CASE("a tracker that starts again counts anew, and what was on its way bloc
   lab.hear(address(7), rotation(50'000));
   lab.now += 3s;
   CHECK(lab.shake(address(7), mac(1)).device == device);
-  CHECK(lab.events() == std::vector{Kind::joined, Kind::started});
   CHECK(lab.hear(address(7), rotation(1)).verdict == Verdict::accepted);
   lab.hear(address(7), rotation(50'001));  // of before
   CHECK(lab.hear(address(7), rotation(2)).verdict == Verdict::accepted);
   CHECK(lab.hear(address(7), rotation(3)).verdict == Verdict::accepted);
   CHECK(lab.desk.device(device).counts().received == 5);
-  CHECK(lab.desk.device(device).handshakes == 2);
 }
 
 TEST_CASE("a device is its MAC, and moves with it once its old address is silent") {
@@ -171,9 +133,9 @@ TEST_CASE("a device is its MAC, and moves with it once its old address is silent
   const SlimeNews moved = lab.shake(address(8), mac(1));
   CHECK(moved.verdict == Verdict::accepted);
   CHECK(moved.device == device);
-  CHECK(lab.events() == std::vector{Kind::joined, Kind::moved});
   CHECK(lab.hear(address(7), rotation(2)).verdict == Verdict::stranger);
   CHECK(lab.hear(address(8), rotation(3)).verdict == Verdict::accepted);
+  CHECK(lab.desk.device(device).counts().received == 1);  // the old address's stay there
 }
 
 TEST_CASE("without a MAC the address is the name, port and all") {
@@ -193,23 +155,9 @@ TEST_CASE("an address that another tracker takes over is that one's") {
   CHECK(lab.desk.device(other.device).mac == mac(2));
 }
 
-TEST_CASE("silence for a second is told, and the return") {
-  Lab lab;
-  lab.shake(address(7), mac(1));
-  lab.now += 999ms;
-  lab.desk.tick(lab.now);
-  CHECK(lab.events() == std::vector{Kind::joined});
-  lab.now += 1ms;
-  lab.desk.tick(lab.now);
-  lab.desk.tick(lab.now);
-  CHECK(lab.events() == std::vector{Kind::left});
-  lab.hear(address(7), rotation(1));
-  CHECK(lab.events() == std::vector{Kind::returned});
-}
-
 TEST_CASE("a tracker at work gets a heartbeat each half second and a ping each second") {
   Lab lab;
-  const std::size_t device = lab.shake(address(7), mac(1)).device;
+  lab.shake(address(7), mac(1));
   std::map<std::uint8_t, int> sent;
   std::uint64_t number = 0;
   for (int i = 0; i < 1000; ++i) {  // ten seconds at 100 Hz
@@ -221,7 +169,6 @@ TEST_CASE("a tracker at work gets a heartbeat each half second and a ping each s
       if (one.answer.bytes[0] == 3 || one.answer.bytes[3] != 10) continue;
       lab.now += 4ms;
       CHECK(lab.hear(address(7), bytes_of(one)).verdict == Verdict::accepted);  // unchanged
-      CHECK(lab.desk.device(device).round_trip == 4ms);
     }
   }
   CHECK(sent[1] >= 16);
@@ -229,14 +176,6 @@ TEST_CASE("a tracker at work gets a heartbeat each half second and a ping each s
   CHECK(sent[10] >= 9);
   CHECK(sent[10] <= 10);
   CHECK(lab.desk.counts().unsent == 0);
-}
-
-TEST_CASE("a ping that another one made up is none of ours") {
-  Lab lab;
-  const std::size_t device = lab.shake(address(7), mac(1)).device;
-  lab.desk.tick(lab.now);
-  lab.hear(address(7), slime_datagram(10, 0, {1, 2, 3, 4}));
-  CHECK(!lab.desk.device(device).round_trip);
 }
 
 TEST_CASE("an address never gets more bytes than it sent since its handshake") {
@@ -307,7 +246,6 @@ TEST_CASE("an idle tracker that returns what it gets keeps its heartbeats") {
     }
   }
   CHECK(heartbeats >= 18);
-  CHECK(lab.events() == std::vector{Kind::joined});  // it never was silent
 }
 
 TEST_CASE("a handshake of nothing but a head has no answer, being shorter than any") {
@@ -338,10 +276,8 @@ TEST_CASE("sixty-four devices and no more, until one was silent for a minute") {
     lab.now += 10ms;
     CHECK(lab.shake(address(i), mac(i)).verdict == Verdict::accepted);
   }
-  lab.desk.take_events();
   CHECK(lab.shake(address(200), mac(200)).verdict == Verdict::no_room);
   CHECK(lab.shake(address(201), mac(201)).verdict == Verdict::no_room);
-  CHECK(lab.events() == std::vector{Kind::too_many});
   lab.now += 59s;
   lab.hear(address(0), rotation(1));
   lab.now += 500ms;
@@ -350,37 +286,11 @@ TEST_CASE("sixty-four devices and no more, until one was silent for a minute") {
   CHECK(lab.hear(address(0), rotation(2)).verdict == Verdict::accepted);
 }
 
-TEST_CASE("corrections, rotations of zeros and sensors out of range are no samples") {
-  Lab lab;
-  lab.shake(address(7), mac(1));
-  CHECK(lab.hear(address(7), rotation(1, 0, 2)).samples.empty());
-  CHECK(lab.hear(address(7), slime_datagram(17, 2, Bytes(19))).samples.empty());
-  CHECK(lab.hear(address(7), rotation(3, 32)).samples.empty());
-  CHECK(lab.hear(address(7), rotation(4, 31)).samples.size() == 1);
-  CHECK(lab.desk.counts().wild == 1);
-  CHECK(lab.desk.counts().no_sensor == 1);
-  const SlimeNews half = lab.hear(  // a good rotation with an acceleration that is none
-      address(7), slime_datagram(4, 5, {0x7f, 0xc0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
-  CHECK(half.samples.empty());
-  CHECK(lab.desk.counts().wild == 2);
-}
-
-TEST_CASE("faults within what is accepted are counted") {
-  Lab lab;
-  lab.shake(address(7), mac(1));
-  lab.hear(address(7), slime_datagram(101, 1, {3, 99, 0, 0, 1, 17, 1, 100}));
-  CHECK(lab.desk.counts().unknown_type == 1);
-  CHECK(lab.desk.counts().too_short == 1);
-  CHECK(lab.desk.counts().nested == 1);
-  CHECK(lab.hear(address(7), Bytes(11)).verdict == Verdict::too_short);
-}
-
 TEST_CASE("battery is as the tracker said last") {
   Lab lab;
   const std::size_t device = lab.shake(address(7), mac(1)).device;
   lab.hear(address(7), slime_datagram(12, 1, {0x40, 0x70, 0, 0, 0x3f, 0, 0, 0}));
   CHECK(lab.desk.device(device).battery_volts == 3.75F);
-  CHECK(lab.desk.device(device).battery_level == 0.5F);
 }
 
 TEST_CASE("what nobody takes away does not grow") {
@@ -393,8 +303,7 @@ TEST_CASE("what nobody takes away does not grow") {
   CHECK(lab.sent().empty());
 }
 
-TEST_CASE("verdicts and events have their names") {
-  CHECK(std::string(name_of(Verdict::elsewhere)) == "elsewhere");
-  CHECK(std::string(name_of(Verdict::too_short)) == "too_short");
-  CHECK(std::string(name_of(Kind::too_many)) == "too_many");
+TEST_CASE("what is no datagram of a tracker is too short") {
+  Lab lab;
+  CHECK(lab.hear(address(7), Bytes(11)).verdict == Verdict::too_short);
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/capture/recorded.h"
+
 #include "kinalign/capture/pieces.h"
 
 #include <doctest/doctest.h>
@@ -10,6 +12,7 @@
 #include <array>
 
 using namespace kinalign;
+using namespace std::chrono_literals;
 
 namespace {
 
@@ -43,6 +46,13 @@ class FullDevice {
   std::array<int, 4> guests_{};
 };
 
+/// The system's, and so much later.
+struct LateClocks : SystemClocks {
+  Duration late{0};
+  HostTime raw() override { return SystemClocks::raw() + late; }
+  Time utc() override { return SystemClocks::utc() + late; }
+};
+
 }  // namespace
 
 TEST_CASE("a connection that nobody answers is given up within seconds, and tried anew") {
@@ -67,4 +77,19 @@ TEST_CASE("a connection that nobody answers is given up within seconds, and trie
   drain();
   CHECK(fds().size() == 1);  // another
   CHECK(pieces->counts().links == 0);
+}
+
+TEST_CASE("what a connection brought has the kernel's stamp, however late it is read") {
+  LateClocks clocks;
+  HostAxis axis(clocks);
+  auto pieces = TcpPieces::listen("127.0.0.1", 0);
+  REQUIRE(pieces);
+  const Connection device(pieces->port());
+  device.send("said before the connection was taken");
+  const HostTime sent = axis.now();  // or received already, as loopback does it in the same call
+  clocks.late = 10min;
+  std::vector<HostTime> arrivals;
+  pieces->drain(axis, [&](const Piece& piece) { arrivals.push_back(piece.arrival); });
+  REQUIRE(arrivals.size() == 1);
+  CHECK(arrivals[0] - sent < 5min);
 }

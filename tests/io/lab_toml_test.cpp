@@ -95,3 +95,15 @@ TEST_CASE("what a flag says of a device's port wins, and leaves what else is kno
   CHECK(lab.devices[0].skeleton == "rig.bvh");
   CHECK(lab.devices[1].name == "imu");
 }
+
+TEST_CASE("a device has a name that may stand on a screen and is none of our own ports'") {
+  for (const std::string name : {"m\x1b[2J", "m\nx", "marks", "trigger"}) {
+    CAPTURE(name);
+    Lab lab;
+    lab.devices = {*parse_device("mocap=noitom:7012")};
+    CHECK(validate(lab));
+    lab.devices[0].name = name;
+    REQUIRE(!validate(lab));
+    CHECK(validate(lab).error().expected.starts_with("a name without control characters"));
+  }
+}

@@ -63,15 +63,17 @@ SenderCounts counts(std::uint64_t messages) {
 TEST_CASE("of each sender and each port the last counts are found, whatever they are called") {
   Told told;
   for (const std::uint64_t n : {10U, 20U, 30U}) {
-    told.add(1, sender_counts_topic, to_json("mocap", "10.0.0.1:7", "", counts(n)));
-    told.add(1, sender_counts_topic, to_json("imu", "10.0.0.2:7", "7", counts(n + 1)));
-    told.add(1, sender_counts_topic, to_json("imu", "10.0.0.2:7", "8", counts(n + 2)));
+    told.add(1, sender_counts_topic, to_json({"/mocap/raw", "mocap", "10.0.0.1:7", "", counts(n)}));
+    told.add(1, sender_counts_topic,
+             to_json({"/imu/7/raw", "imu", "10.0.0.2:7", "7", counts(n + 1)}));
+    told.add(1, sender_counts_topic,
+             to_json({"/imu/8/raw", "imu", "10.0.0.2:7", "8", counts(n + 2)}));
     PortCounts port;
     port.pieces = n;
     port.dropped = n / 10;
-    told.add(2, port_counts_topic, to_json("\"messages\":", port));
+    told.add(2, port_counts_topic, to_json(CountedPort{"\"messages\":", port}));
     port.sifted = true;
-    told.add(2, port_counts_topic, to_json("imu", port));
+    told.add(2, port_counts_topic, to_json(CountedPort{"imu", port}));
   }
   const RecordingSurvey survey = told.survey();
   REQUIRE(survey.senders.size() == 3);
@@ -94,6 +96,17 @@ TEST_CASE("of each sender and each port the last counts are found, whatever they
   CHECK(survey.ports[0].counts.dropped == 3);
   CHECK(!survey.ports[0].counts.sifted);
   CHECK(survey.ports[1].counts.sifted);
+}
+
+TEST_CASE("two connections of one device, made one after another, are counted each") {
+  Told told;
+  told.add(1, sender_counts_topic, to_json({"/mocap/raw", "mocap", "10.0.0.1:7", "", counts(10)}));
+  told.add(1, sender_counts_topic, to_json({"/mocap/raw/2", "mocap", "10.0.0.1:7", "", counts(5)}));
+  const RecordingSurvey survey = told.survey();
+  REQUIRE(survey.senders.size() == 2);
+  CHECK(survey.senders[0].topic == "/mocap/raw");
+  CHECK(survey.senders[0].counts.messages == 10);
+  CHECK(survey.senders[1].counts.messages == 5);
 }
 
 TEST_CASE("marks and who was to be heard are found") {
