@@ -78,8 +78,10 @@ Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
   KA_TRY(
       InputFile::open(call.surroundings.files, path));  // what it is comes before what it is named
   if (KA_TRY(is_recording(call.surroundings.files, path))) {
+    FileSystem& files = call.surroundings.files;
+    const Progress progress = call.console.progress();
     const RecordingSurvey survey =
-        KA_TRY(survey_parts(call.surroundings.files, path, call.console.progress()));
+        KA_TRY(survey_parts(files, KA_TRY(parts_from(files, path, progress)), progress));
     Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(path))));
     manifest.align = o.options;
     if (o.slerp) manifest.align.rotations = "slerp";

@@ -100,11 +100,10 @@ void name_as_typed(const std::string& path, const RecordedStream& stream, Findin
 
 Result<Checked> check_recording(const Check& o, const std::string& path, Call& call) {
   KA_TRY(check_flags(o, path, nullptr, call));
-  const RecordingSurvey survey =
-      KA_TRY(survey_recording(call.surroundings.files, path, call.console.progress()));
-  const RecordingParts parts =
-      KA_TRY(parts_from(call.surroundings.files, path, call.console.progress()));
-  Checked out{judge_survey(path, survey)};
+  FileSystem& files = call.surroundings.files;
+  const Progress progress = call.console.progress();
+  const RecordingParts parts = KA_TRY(parts_from(files, path, progress));
+  Checked out{judge_survey(path, KA_TRY(survey_parts(files, parts, progress)))};
   append(out.findings, judge_parts(parts, PartsBehind::left));
   return out;
 }

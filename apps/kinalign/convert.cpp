@@ -167,7 +167,8 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
                                      "another ending (kinalign align makes a take of it)"});
   }
   KA_TRY(check_flags(o, nullptr, call));
-  const RecordingSurvey survey = KA_TRY(survey_parts(job.files, job.from, progress));
+  const RecordingParts parts = KA_TRY(parts_from(job.files, job.from, progress));
+  const RecordingSurvey survey = KA_TRY(survey_parts(job.files, parts, progress));
   const Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(job.from))));
   const Recording recording = KA_TRY(
       open_recording(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));

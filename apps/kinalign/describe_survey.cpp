@@ -168,6 +168,7 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
     json["part"] = survey.facts->part;
   }
   for (std::size_t k = 1; k < parts.size(); ++k) json["goes_on_in"].push_back(parts[k].path);
+  if (survey.end) json["dropped"] = survey.end->dropped;
   for (const ChannelSurvey& channel : survey.channels) json["channels"].push_back(json_of(channel));
   add_told(survey, json);
   return {text, json_text(json)};
@@ -200,6 +201,13 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
                          grouped(channel.missing) + " missing"},
                         "these messages reached the recorder and are not in the file",
                         "a further part of the recording may have them: recover takes all parts"});
+  }
+  if (survey.end && survey.end->dropped > 0) {
+    findings.push_back({Severity::error,
+                        {path, 0, "every message that reached the recorder",
+                         grouped(survey.end->dropped) + " fewer"},
+                        "the disk was too slow for too long, and memory full",
+                        "record to a disk of the machine itself"});
   }
   append(findings, losses(path, survey));
   return findings;

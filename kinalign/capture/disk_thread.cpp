@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/disk_thread.h"
 
+#include "kinalign/io/recording_format.h"
+
 #include <sys/statvfs.h>
 
 #include <algorithm>
@@ -128,8 +130,9 @@ void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
 void DiskThread::work_on_end(std::unique_lock<std::mutex>& lock) {
   due_.reset();  // finish() syncs itself
   const bool last = giving_up_;
+  const McapMetadata end = to_metadata(RecordingEnd{status_.dropped});
   lock.unlock();
-  const Result<void> result = disk_.finish();
+  const Result<void> result = disk_.finish(end);
   lock.lock();
   publish(result);
   done_ = status_.finished = result || last;

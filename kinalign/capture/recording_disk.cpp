@@ -171,8 +171,9 @@ Result<void> RecordingDisk::finish_part() {
   return finished;
 }
 
-Result<void> RecordingDisk::finish_once() {
+Result<void> RecordingDisk::finish_once(const McapMetadata& end) {
   KA_TRY(put_kept());
+  KA_TRY(writer_->write(end));
   KA_TRY(finish_part());
   KA_TRY(file_->sync());
   forget_synced(file_->size());
@@ -181,12 +182,12 @@ Result<void> RecordingDisk::finish_once() {
 }
 
 /// Two tries. What failed in the end was the last sync, say: the file may hold nothing of it.
-Result<void> RecordingDisk::finish() {
-  Result<void> result = finish_once();
+Result<void> RecordingDisk::finish(const McapMetadata& end) {
+  Result<void> result = finish_once(end);
   if (result) return result;
   const auto told = static_cast<std::ptrdiff_t>(failures_.size());
   result = next_part(result.error());
-  if (result) result = finish_once();
+  if (result) result = finish_once(end);
   if (!result) give_up_part();
   if (std::exchange(end_told_, true)) failures_.erase(failures_.begin() + told, failures_.end());
   return result;

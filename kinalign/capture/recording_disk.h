@@ -53,8 +53,8 @@ class RecordingDisk {
   /// How the sync went. Fails as write() does.
   Result<void> synced(const Sync& sync, const Result<void>& result);
 
-  /// Index, end, sync. The files stay whatever happens.
-  Result<void> finish();
+  /// `end`, index, sync. The files stay whatever happens.
+  Result<void> finish(const McapMetadata& end);
 
   /// Since this was asked last.
   std::vector<PartFailure> take_failures() { return std::exchange(failures_, {}); }
@@ -74,7 +74,7 @@ class RecordingDisk {
   void give_up_part();
   void remove_part();
   Result<void> finish_part();
-  Result<void> finish_once();
+  Result<void> finish_once(const McapMetadata& end);
   void forget_synced(std::uint64_t size);
 
   FileSystem* files_;

@@ -98,6 +98,16 @@ std::optional<ExpectedDevices> to_expected_devices(const McapMetadata& metadata)
   return devices;
 }
 
+McapMetadata to_metadata(const RecordingEnd& end) {
+  return {std::string(end_metadata), {{"dropped", std::to_string(end.dropped)}}};
+}
+
+std::optional<RecordingEnd> to_end(const McapMetadata& metadata) {
+  const auto dropped = number_of(metadata.texts, "dropped");
+  if (metadata.name != end_metadata || !dropped || *dropped < 0) return std::nullopt;
+  return RecordingEnd{static_cast<std::uint64_t>(*dropped)};
+}
+
 McapChannel to_channel(std::string topic, const RawChannel& raw) {
   McapChannel channel{0, 0, std::move(topic), raw.protocol, {}};
   channel.metadata = {{"stream", raw.stream}, {"transport", raw.transport}, {"sender", raw.sender}};

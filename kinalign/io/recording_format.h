@@ -42,6 +42,17 @@ McapMetadata to_metadata(const ExpectedDevices& devices);
 /// Absent where the record is another.
 std::optional<ExpectedDevices> to_expected_devices(const McapMetadata& metadata);
 
+/// The metadata record of that name, which the last file of a recording ends with: messages that
+/// reached the recorder and stand in none of its files, because the disk was not as fast as they
+/// came and memory was full.
+inline constexpr std::string_view end_metadata = "kinalign.end";
+struct RecordingEnd {
+  std::uint64_t dropped = 0;
+};
+McapMetadata to_metadata(const RecordingEnd& end);
+/// Absent where the record is another, or says no number.
+std::optional<RecordingEnd> to_end(const McapMetadata& metadata);
+
 /// What a channel of raw payloads is, as its metadata.
 struct RawChannel {
   std::string stream;     // "mocap"

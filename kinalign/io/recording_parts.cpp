@@ -50,24 +50,82 @@ std::vector<std::string> files_behind(FileSystem& files, const std::string& path
   return found;
 }
 
-}  // namespace
-
-void MessageNumbers::add(const McapMessage& message) {
-  Stretches& stretches = channels_[message.channel];
-  const std::uint32_t number = message.sequence;
-  auto next = stretches.upper_bound(number);
-  if (next != stretches.begin()) {
-    const auto before = std::prev(next);
-    if (number < before->second) return;
-    if (number == before->second) {
-      ++before->second;
-      if (next == stretches.end() || next->first != before->second) return;
-      before->second = next->second;
-      stretches.erase(next);
-      return;
+/// What the same one says later, or what is new.
+template <class Counted, class Same>
+void replace(std::vector<Counted>&& later, const Same& same, std::vector<Counted>& all) {
+  for (Counted& one : later) {
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const Counted& known) { return same(known, one); });
+    if (found == all.end()) {
+      all.push_back(std::move(one));
+    } else {
+      *found = std::move(one);
     }
   }
-  stretches[number] = std::uint64_t{number} + 1;
+}
+
+/// What a file that goes on behind adds.
+void add(RecordingSurvey&& more, RecordingSurvey& survey) {
+  for (const ChannelSurvey& one : more.channels) {
+    const auto same = [&](const ChannelSurvey& c) { return c.channel == one.channel; };
+    const auto found = std::find_if(survey.channels.begin(), survey.channels.end(), same);
+    if (found == survey.channels.end()) {
+      survey.channels.push_back(one);
+    } else {
+      found->messages += one.messages;
+      found->rotates |= one.rotates;
+    }
+  }
+  replace(
+      std::move(more.senders),
+      [](const CountedSender& a, const CountedSender& b) {
+        return a.topic == b.topic && a.stream == b.stream && a.sender == b.sender &&
+               a.node == b.node;
+      },
+      survey.senders);
+  replace(
+      std::move(more.ports),
+      [](const CountedPort& a, const CountedPort& b) { return a.stream == b.stream; },
+      survey.ports);
+  survey.end = more.end;
+}
+
+}  // namespace
+
+/// Numbers that touch are one stretch.
+void MessageNumbers::add(Stretches& stretches, std::uint32_t begin, std::uint64_t end) {
+  auto at = stretches.upper_bound(begin);
+  if (at != stretches.begin() && std::prev(at)->second >= begin) {
+    --at;
+  } else {
+    at = stretches.emplace_hint(at, begin, end);
+  }
+  at->second = std::max(at->second, end);
+  for (auto next = std::next(at); next != stretches.end() && next->first <= at->second;) {
+    at->second = std::max(at->second, next->second);
+    next = stretches.erase(next);
+  }
+}
+
+void MessageNumbers::add(const McapMessage& message) {
+  add(channels_[message.channel], message.sequence, std::uint64_t{message.sequence} + 1);
+}
+
+void MessageNumbers::add_all(const MessageNumbers& others) {
+  for (const auto& [id, stretches] : others.channels_) {
+    for (const auto& [begin, end] : stretches) add(channels_[id], begin, end);
+  }
+}
+
+std::uint64_t MessageNumbers::missing(std::uint16_t channel) const {
+  const auto found = channels_.find(channel);
+  if (found == channels_.end() || found->second.empty()) return 0;
+  std::uint64_t missing = 0, behind = found->second.begin()->first;
+  for (const auto& [begin, end] : found->second) {
+    missing += begin - behind;
+    behind = end;
+  }
+  return missing;
 }
 
 bool MessageNumbers::has(const McapMessage& message) const {
@@ -190,24 +248,16 @@ Findings judge_parts(const RecordingParts& parts, PartsBehind behind) {
   return findings;
 }
 
-Result<RecordingSurvey> survey_parts(FileSystem& files, const std::string& path,
+Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& parts,
                                      const Progress& progress) {
-  RecordingSurvey survey = KA_TRY(survey_recording(files, path, progress));
-  RecordingParts behind = KA_TRY(parts_from(files, path, progress));
-  behind.erase(behind.begin());
-  for (const RecordingPart& part : behind) {
-    const RecordingSurvey more = KA_TRY(survey_recording(files, part.path, progress));
-    for (const ChannelSurvey& one : more.channels) {
-      const auto same = [&](const ChannelSurvey& c) { return c.channel == one.channel; };
-      const auto found = std::find_if(survey.channels.begin(), survey.channels.end(), same);
-      if (found == survey.channels.end()) {
-        survey.channels.push_back(one);
-      } else {
-        found->messages += one.messages;
-        found->rotates |= one.rotates;
-      }
-    }
+  RecordingSurvey survey = KA_TRY(survey_recording(files, parts.front().path, progress));
+  if (parts.size() == 1) return survey;
+  MessageNumbers numbers;
+  for (const RecordingPart& part : parts) numbers.add_all(part.numbers);
+  for (auto part = parts.begin() + 1; part != parts.end(); ++part) {
+    add(KA_TRY(survey_recording(files, part->path, progress)), survey);
   }
+  for (ChannelSurvey& one : survey.channels) one.missing = numbers.missing(one.channel.id);
   return survey;
 }
 

@@ -22,9 +22,13 @@ class MessageNumbers {
   void add(const McapMessage& message);
   bool has(const McapMessage& message) const;
   bool has_all(const MessageNumbers& others) const;
+  void add_all(const MessageNumbers& others);
+  /// Left out between the first and the last of a channel.
+  std::uint64_t missing(std::uint16_t channel) const;
 
  private:
   using Stretches = std::map<std::uint32_t, std::uint64_t>;  // first number: behind the last one
+  static void add(Stretches& stretches, std::uint32_t begin, std::uint64_t end);
   std::map<std::uint16_t, Stretches> channels_;
 };
 
@@ -60,8 +64,9 @@ Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
 enum class PartsBehind { left, read };
 Findings judge_parts(const RecordingParts& parts, PartsBehind behind);
 
-/// A survey with the channels of the files that go on behind, for a manifest.
-Result<RecordingSurvey> survey_parts(FileSystem& files, const std::string& path,
+/// A survey of the first of these with what those behind add to it: channels, numbers that are
+/// missing in all of them, the last counts, the end.
+Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& parts,
                                      const Progress& progress);
 
 }  // namespace kinalign

@@ -69,6 +69,7 @@ class Surveyor {
   void add(const McapChannel& channel) { channels_[channel.id].channel = channel; }
   void add(const McapMetadata& metadata) {
     if (auto devices = to_expected_devices(metadata)) survey_.expected = *std::move(devices);
+    if (const auto end = to_end(metadata)) survey_.end = end;
     if (survey_.facts) return;
     survey_.facts = to_facts(metadata);
     if (survey_.facts) clock_.push_back(survey_.facts->anchor);

@@ -7,6 +7,7 @@
 
 #include "kinalign/capture/recorder.h"
 #include "kinalign/capture/recording_disk.h"
+#include "kinalign/io/recording_format.h"
 
 #include <doctest/doctest.h>
 
@@ -78,7 +79,7 @@ void record_ten_seconds(Recorded& run, std::uint64_t seed, McapCompression compr
     run.moments.push_back({at(t), run.files.changes.size(), run.files.synced[path]});
   }
   recorder.stop();
-  CHECK(disk->finish());
+  CHECK(disk->finish(to_metadata(RecordingEnd{})));
   run.changed.resize(run.files.changes.size(), at(10s));
 }
 

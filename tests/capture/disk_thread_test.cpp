@@ -5,6 +5,8 @@
 #include "tests/folder.h"
 #include "tests/io/mcap_files.h"
 
+#include "kinalign/io/recording_survey.h"
+
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -102,6 +104,28 @@ TEST_CASE("who begins a recording waits for no sync, and its name is synced all 
       [&] { return files.by_others == 2; });  // the file's and the folder's, before any chunk
   CHECK(files.by_receiver == 0);
   wait_until([&] { return thread.status().free_bytes.has_value(); });
+}
+
+TEST_CASE("what memory had no room for is counted, in the file too") {
+  const FreshFolder folder;
+  PosixFiles files;
+  auto disk = RecordingDisk::open(files, folder / "a.mcap", head);
+  REQUIRE(disk);
+  DiskThread thread(*std::move(disk), McapCompression::none);
+  thread.push(chunk(0, 10));
+  McapChunkContent more_than_all;
+  const std::string payload(DiskThread::most_waiting, 'x');
+  more_than_all.add(McapChannel{1, 0, "/topic1", "json", {}});
+  more_than_all.add(McapMessage{1, 0, 0, 0, payload});
+  thread.push(std::move(more_than_all));
+  CHECK(thread.status().dropped == 1);
+  thread.finish();
+  wait_until([&] { return thread.status().finished; });
+  const auto survey = survey_recording(files, folder / "a.mcap");
+  REQUIRE(survey);
+  CHECK(survey->messages == 10);
+  REQUIRE(survey->end);
+  CHECK(survey->end->dropped == 1);
 }
 
 TEST_CASE("a failed sync is told, and the recording goes on in a new file") {

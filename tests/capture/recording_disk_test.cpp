@@ -6,6 +6,8 @@
 #include "tests/folder.h"
 #include "tests/io/mcap_files.h"
 
+#include "kinalign/io/recording_format.h"
+
 #include <doctest/doctest.h>
 
 #include <set>
@@ -61,7 +63,7 @@ Written write_chunks(FileSystem& files, const std::string& path) {
     written.messages += 10;
     if (const auto sync = disk->unsynced()) (void)disk->synced(*sync, sync->file->sync());
   }
-  written.finished = disk->finish().has_value();
+  written.finished = disk->finish(to_metadata(RecordingEnd{})).has_value();
   written.paths = disk->paths();
   written.failures = disk->take_failures();
   return written;
@@ -95,7 +97,7 @@ TEST_CASE("after a failed sync all that was not synced stands in the next file")
   CHECK(disk->write(chunk(20, 30)));  // while it is synced
   CHECK(disk->synced(*sync, Failure(Error{"a.mcap", 0, "data that reach the disk", "I/O error"})));
   CHECK(disk->write(chunk(30, 40)));
-  CHECK(disk->finish());
+  CHECK(disk->finish(to_metadata(RecordingEnd{})));
 
   CHECK(disk->paths() == std::vector<std::string>{folder / "a.mcap", folder / "a.part2.mcap"});
   const auto failures = disk->take_failures();
@@ -122,7 +124,7 @@ TEST_CASE("where every sync fails there are two files, the second with all that 
   CHECK(folder.names().size() == 2);
   files.fails = true;
   for (int i = 0; i < 10; ++i) {
-    CHECK(!disk->finish());
+    CHECK(!disk->finish(to_metadata(RecordingEnd{})));
     CHECK(folder.names().size() == 2);
     REQUIRE(disk->paths().size() == 2);
     CHECK(found_in({disk->paths()[1]}).sequences.size() == 200);
@@ -131,7 +133,7 @@ TEST_CASE("where every sync fails there are two files, the second with all that 
   CHECK(disk->take_failures().size() < 25);  // 20 while it recorded
   files.fails = false;
   const int before = files.synced;
-  CHECK(disk->finish());
+  CHECK(disk->finish(to_metadata(RecordingEnd{})));
   CHECK(files.synced > before);  // what failed before proves nothing
   CHECK(disk->unwritten() == 0);
   CHECK(folder.names().size() == 2);
@@ -157,7 +159,7 @@ TEST_CASE("a part that an earlier recording left takes its number, and nothing m
   const auto sync = disk->unsynced();
   REQUIRE(sync);
   CHECK(disk->synced(*sync, Failure(Error{})));
-  CHECK(disk->finish());
+  CHECK(disk->finish(to_metadata(RecordingEnd{})));
   CHECK(disk->paths() == std::vector<std::string>{folder / "a.mcap", folder / "a.part4.mcap"});
   CHECK(found_in({folder / "a.part4.mcap"}).sequences.size() == 10);
   CHECK(folder.read("a.part2.mcap") == "kept");
@@ -207,7 +209,7 @@ TEST_CASE("a disk that refuses everything for a while loses nothing") {
   const auto then = disk->take_failures();
   REQUIRE(then.size() == 1);
   CHECK(then[0].next == folder / "a.part2.mcap");
-  CHECK(disk->finish());
+  CHECK(disk->finish(to_metadata(RecordingEnd{})));
   CHECK(disk->take_failures().empty());
   CHECK(found_in(disk->paths()).sequences.size() == 40);
 }
@@ -233,7 +235,7 @@ TEST_CASE("a disk that takes names and no data does not fill with files") {
   CHECK(disk->take_failures().size() == 1);
   files.full = false;
   CHECK(disk->write(chunk(1000, 1100)));
-  CHECK(disk->finish());
+  CHECK(disk->finish(to_metadata(RecordingEnd{})));
   CHECK(disk->paths().size() == 2);
   CHECK(disk->bytes() == folder.read("a.mcap").size() + folder.read("a.part2.mcap").size());
   CHECK(found_in(disk->paths()).sequences.size() == 1100);
@@ -262,7 +264,7 @@ TEST_CASE("a sync that succeeds after one that failed proves nothing") {
   CHECK(disk->kept_bytes() > 0);
   files.refuses = false;
   CHECK(disk->write(chunk(10, 20)));
-  CHECK(disk->finish());
+  CHECK(disk->finish(to_metadata(RecordingEnd{})));
   CHECK(disk->kept_bytes() == 0);
   CHECK(found_in({disk->paths().back()}).sequences.size() == 20);
 }

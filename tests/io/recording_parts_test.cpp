@@ -80,7 +80,8 @@ TEST_CASE("a recording is read on in the files that it went on in") {
   CHECK(samples(files, path, "12") == all);
   CHECK(samples(files, path, "13") == samples(files, whole, "13"));
   // The nodes of all files are in the manifest, and those files in the take.
-  const auto manifest = manifest_of(*survey_parts(files, path, {}), "take.mcap");
+  const auto manifest =
+      manifest_of(*survey_parts(files, *parts_from(files, path, {}), {}), "take.mcap");
   REQUIRE(manifest);
   CHECK(manifest->streams.front().files.size() == 2);
   const auto recording = open_recording(files, *manifest, folder.path() + "/");
@@ -106,6 +107,26 @@ TEST_CASE("of a recording's files it is said which are not there or were not rea
   // Of a file that has all of it the others are no parts, and neither are files of another run.
   folder.write("other.part2.mcap", lab.lab().file({2, 24.5, 35.0, "take_02.mcap"}));
   CHECK(judged(lab.write("other.mcap", {})).empty());
+}
+
+TEST_CASE("what is missing of a recording is what no file of it has") {
+  const FreshFolder folder;
+  TornLab lab(folder);
+  PosixFiles files;
+  const auto missing = [&](const std::string& path) {
+    const auto survey = survey_parts(files, *parts_from(files, path, {}), {});
+    REQUIRE(survey);
+    std::map<std::string, std::uint64_t> by_topic;
+    for (const ChannelSurvey& one : survey->channels) by_topic[one.channel.topic] = one.missing;
+    return by_topic;
+  };
+  const std::string path = lab.first();
+  CHECK(missing(path).count("/imu/13/raw") == 0);
+  lab.write("take.part3.mcap", {3, 30.0, 1e9});  // of the second one nothing is left
+  CHECK(missing(path)["/imu/12/raw"] == 5 * 15);
+  CHECK(missing(path)["/imu/13/raw"] == 0);
+  lab.second();
+  CHECK(missing(path)["/imu/12/raw"] == 0);
 }
 
 TEST_CASE("recover takes parts in any order, and none of another run") {

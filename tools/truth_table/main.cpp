@@ -37,7 +37,8 @@ Result<Opened> open(FileSystem& files, const std::string& path) {
   Opened opened;
   Manifest manifest;
   if (KA_TRY(is_recording(files, path))) {
-    const RecordingSurvey survey = KA_TRY(survey_parts(files, path, {}));
+    const RecordingSurvey survey =
+        KA_TRY(survey_parts(files, KA_TRY(parts_from(files, path, {})), {}));
     opened.facts = survey.facts;
     manifest = KA_TRY(manifest_of(survey, std::string(file_name(path))));
   } else {
