@@ -291,6 +291,7 @@ def what_is_no_mark_is_counted_on_the_screen_and_in_the_file(folder):
     assert events[-1]["ports"]["marks"]["refused"] == 1, events[-1]
     assert events[-1]["ports"]["marks"]["refused_for"] == {"bad_json": 1}, events[-1]
     told = json.loads(kinalign("info", recording.path, "--json").stdout)
+    assert told["closed"] and told["dropped"] == 0, told
     assert [port["refused"] for port in told["ports"] if port["stream"] == "marks"] == [1], told
     assert [(mark["kind"], mark["text"]) for mark in told["marks"]] == [("text", "a word")], told
     assert [one["messages"] for one in told["senders"]] == [1], told
