@@ -10,10 +10,11 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from cases import LONG, Skip, case, kinalign, main
+from cases import LONG, SANITIZED, Skip, case, kinalign, main
 from mcap_walk import Walk
 from recording_program import Recording, Sender, numbers, sender_to
 
@@ -151,6 +152,59 @@ def a_folder_that_is_removed_is_told_within_a_second_or_two_and_the_end_says_so(
     code, events, err = recording.end()
     assert code == 1, err
     assert numbers(Walk(pathlib.Path(events[-1]["files"][-1]))), "nothing of what came afterwards"
+
+
+@contextlib.contextmanager
+def standing_still():
+    """A file, and the environment of a program whose syncs last as long as it is there."""
+    if SANITIZED:
+        raise Skip("a sanitizer comes before every other library")
+    with tempfile.TemporaryDirectory() as plain:  # LD_PRELOAD ends a name at a space
+        still, source, library = (pathlib.Path(plain) / name for name in ("still", "still.c", "still.so"))
+        source.write_text("#include <sys/syscall.h>\n#include <unistd.h>\n"
+                          f'int fsync(int fd) {{ while (access("{still}", F_OK) == 0) usleep(10000); '
+                          "return (int)syscall(SYS_fsync, fd); }\n")
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", str(library), str(source)], check=True)
+        yield still, {"LD_PRELOAD": str(library)}
+
+
+@case
+def a_disk_that_stands_still_can_be_left_and_what_it_took_before_is_whole(folder):
+    with standing_still() as (still, env):
+        recording = Recording(folder / "takes", env=env)
+        with Sender(recording.port) as sender:
+            time.sleep(1.5)
+            still.touch()
+            stood = time.monotonic()
+            time.sleep(0.5)
+            recording.program.send_signal(signal.SIGINT)
+            waits = recording.until("end_waits")[-1]
+        assert waits["waiting_bytes"] > 0, waits
+        assert recording.program.poll() is None, "it left by itself"
+        recording.program.send_signal(signal.SIGINT)
+        out, err = recording.program.communicate(timeout=10)
+    assert recording.program.returncode == 3 and "stands still" in err, (recording.program.returncode, err)
+    assert "stopped" not in out, out
+    found = set(numbers(Walk(recording.path)))
+    owed = [n for n, sent in enumerate(sender.sent) if sent < stood - 1]
+    assert owed and found.issuperset(owed), (len(owed), len(found))
+
+
+@case
+def a_disk_that_stands_still_for_a_while_loses_nothing(folder):
+    with standing_still() as (still, env):
+        recording = Recording(folder / "takes", env=env)
+        with Sender(recording.port):
+            still.touch()
+            time.sleep(0.5)
+            recording.program.send_signal(signal.SIGINT)
+            recording.until("end_waits")
+            still.unlink()
+            last = recording.until("stopped")[-1]
+        assert recording.program.wait(10) == 0 and last["dropped"] == 0, last
+    walk = Walk(recording.path)
+    found = numbers(walk)
+    assert walk.closed and found == list(range(len(found))) and found, len(found)
 
 
 if __name__ == "__main__":

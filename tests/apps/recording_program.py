@@ -2,6 +2,7 @@
 """kinalign record as a program, and devices that send to it."""
 import contextlib
 import json
+import os
 import pathlib
 import signal
 import socket
@@ -15,11 +16,12 @@ import cases
 class Recording:
     """The real program with a mocap port, until it is told to end. `first`: the event that it begins with."""
 
-    def __init__(self, folder, *words, device="mocap=noitom:udp:127.0.0.1:0", first="started"):
+    def __init__(self, folder, *words, device="mocap=noitom:udp:127.0.0.1:0", first="started", env=None):
         device = ["--device", device] if device else []
         self.program = subprocess.Popen(
             [str(cases.PROGRAM), "record", "-o", str(folder), *device, "--compression", "none", "--json",
-             *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+             *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            env={**os.environ, **(env or {})})
         line = self.program.stdout.readline()
         assert line, self.program.communicate()[1]
         self.started = json.loads(line)

@@ -79,6 +79,21 @@ TEST_CASE("a connection that nobody answers is given up within seconds, and trie
   CHECK(pieces->counts().links == 0);
 }
 
+TEST_CASE("what waited in a connection is read in small pieces, each with its own stamp") {
+  LateClocks clocks;
+  HostAxis axis(clocks);
+  auto pieces = TcpPieces::listen("127.0.0.1", 0);
+  REQUIRE(pieces);
+  const Connection device(pieces->port());
+  device.send(std::string(20'000, 'x'));
+  std::size_t bytes = 0;
+  pieces->drain(axis, [&](const Piece& piece) {
+    CHECK(piece.bytes.size() <= 4096);
+    bytes += piece.bytes.size();
+  });
+  CHECK(bytes == 20'000);
+}
+
 TEST_CASE("what a connection brought has the kernel's stamp, however late it is read") {
   LateClocks clocks;
   HostAxis axis(clocks);
