@@ -155,6 +155,7 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
   for (const auto& [mark, log_time] : survey.marks) {
     line("mark", mark_text(mark, static_cast<double>(log_time - first) / 1e9));
   }
+  if (survey.more_marks > 0) line("marks", grouped(survey.more_marks) + " more, not shown");
   Json json{{"file", path},
             {"closed", survey.closed},
             {"messages", survey.messages},
@@ -201,6 +202,13 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
                          grouped(channel.missing) + " missing"},
                         "these messages reached the recorder and are not in the file",
                         "a further part of the recording may have them: recover takes all parts"});
+  }
+  if (survey.more_marks > 0) {
+    findings.push_back({Severity::note,
+                        {path, 0, fmt::format("at most {} marks", grouped(most_marks)),
+                         grouped(survey.more_marks) + " more"},
+                        "alignment leaves them out",
+                        ""});
   }
   if (survey.end && survey.end->dropped > 0) {
     findings.push_back({Severity::error,

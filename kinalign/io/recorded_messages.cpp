@@ -80,6 +80,7 @@ Result<void> RecordedMessages::take_records(const TakeMessage& take) {
 Result<void> RecordedMessages::take_one(const McapRecord& record, const TakeMessage& take) {
   if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
     if (!facts_) facts_ = to_facts(*metadata);
+    if (const auto end = to_end(*metadata)) end_ = end;
   } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
     if (attachment->name == choice_.stream + ".bvh") skeleton_ = attachment->data;
   } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
@@ -91,7 +92,10 @@ Result<void> RecordedMessages::take_one(const McapRecord& record, const TakeMess
 }
 
 void RecordedMessages::take_mark(const McapMessage& message) {
-  if (by_file_.marks.size() >= most_marks) return;
+  if (by_file_.marks.size() >= most_marks) {
+    ++more_marks_;
+    return;
+  }
   auto said = to_mark(message.data);
   if (!said) return;
   const Time at{Duration{static_cast<std::int64_t>(message.log_time)}};
@@ -164,6 +168,18 @@ void RecordedMessages::judge_file() {
 
 void RecordedMessages::judge_end() {
   judge_file();
+  if (more_marks_ > 0) {
+    by_file_.findings.push_back({Severity::warning,
+                                 Error{file(), 0, fmt::format("at most {} marks", most_marks),
+                                       fmt::format("{} more", more_marks_)},
+                                 "they are left out", ""});
+  }
+  if (end_ && end_->dropped > 0) {
+    by_file_.findings.push_back({Severity::warning,
+                                 Error{file(), 0, "every message that reached the recorder",
+                                       fmt::format("{} fewer, of all devices", end_->dropped)},
+                                 "the disk was too slow for too long, and memory full", ""});
+  }
   if (missing_ > 0) {
     findings_.push_back(
         {Severity::warning,

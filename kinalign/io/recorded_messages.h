@@ -96,6 +96,8 @@ class RecordedMessages {
   SenderRoll roll_;
   std::uint64_t missing_ = 0;
   std::set<std::uint16_t> mark_channels_;
+  std::uint64_t more_marks_ = 0;  // than are looked at
+  std::optional<RecordingEnd> end_;
   SaidByFile by_file_;
   Findings findings_;
 };

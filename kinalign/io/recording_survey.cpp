@@ -102,13 +102,18 @@ class Surveyor {
   void add_told(std::string_view topic, const McapMessage& message) {
     if (topic == sender_counts_topic) return keep_last(message.data, senders_);
     if (topic == port_counts_topic) return keep_last(message.data, ports_);
-    if (topic == marks_topic && survey_.marks.size() < most_marks) {
-      if (auto mark = to_mark(message.data)) {
-        survey_.marks.emplace_back(*std::move(mark), message.log_time);
-      }
-    }
+    if (topic == marks_topic) return add_mark(message);
     if (topic != host_clock_topic) return;
     if (const auto pair = to_clock_pair(message.data)) clock_.push_back(*pair);
+  }
+  void add_mark(const McapMessage& message) {
+    auto mark = to_mark(message.data);
+    if (!mark) return;
+    if (survey_.marks.size() < most_marks) {
+      survey_.marks.emplace_back(*std::move(mark), message.log_time);
+    } else {
+      ++survey_.more_marks;
+    }
   }
   static void keep_last(std::string_view json, LastCounts& last) {
     const std::string_view who = counted(json);

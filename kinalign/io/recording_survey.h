@@ -43,6 +43,7 @@ struct RecordingSurvey {
   std::vector<CountedSender> senders;  // the last counts of each, …
   std::vector<CountedPort> ports;      // … and of each device's port
   std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times
+  std::uint64_t more_marks = 0;                               // than are looked at
   std::uint64_t bytes = 0;                                    // of the file
   Findings findings;
 };

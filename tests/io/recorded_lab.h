@@ -45,6 +45,8 @@ class RecordedLab {
 
   explicit RecordedLab(std::uint64_t seed) : random_(seed) {}
 
+  std::uint64_t dropped = 0;  // that memory had no room for
+
   /// A counter that reads `at_begin_s` when the recording begins and runs `ppm` fast. While the
   /// host sleeps it runs on by `slept_s`, the host's clock does not; less than 0: that went back.
   struct Counter {
@@ -224,7 +226,8 @@ class RecordedLab {
     McapChannel described;
     described.topic = marks_topic;
     described.message_encoding = "json";
-    add(channel(described), t, to_json(RecordedMark{mark, "call", "10.0.0.9:40000"}));
+    if (!marks_) marks_ = channel(described);
+    add(*marks_, t, to_json(RecordedMark{mark, "call", "10.0.0.9:40000"}));
   }
 
   static std::string tracker_packet(std::uint64_t number, double t) {
@@ -272,6 +275,7 @@ class RecordedLab {
       }
       if (!content.empty()) REQUIRE(writer.write(store(content, McapCompression::zstd)));
     }
+    if (dropped > 0) REQUIRE(writer.write(to_metadata(RecordingEnd{dropped})));
     if (closed) REQUIRE(writer.finish());
     return file.bytes;
   }
@@ -324,6 +328,7 @@ class RecordedLab {
   std::mt19937_64 random_;
   std::vector<McapChannel> channels_;
   std::vector<Message> messages_;
+  std::optional<std::uint16_t> marks_;  // their channel
   std::string skeleton_;
 };
 

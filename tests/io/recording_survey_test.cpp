@@ -122,6 +122,15 @@ TEST_CASE("marks and who was to be heard are found") {
   CHECK(survey.expected == ExpectedDevices{{"mocap", true}, {"imu/7", false}});
 }
 
+TEST_CASE("marks beyond what is looked at are counted") {
+  Told told;
+  const std::string mark = R"({"kind": "text", "source": "call", "text": "x"})";
+  for (std::size_t k = 0; k < most_marks + 3; ++k) told.add(9, marks_topic, mark);
+  const RecordingSurvey survey = told.survey();
+  CHECK(survey.marks.size() == most_marks);
+  CHECK(survey.more_marks == 3);
+}
+
 TEST_CASE("what is no count is none, and what is missing of one is 0") {
   CHECK(!to_counted_sender("no JSON"));
   CHECK(!to_counted_sender("[1]"));

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Streams that are read from a recording of tests/io/recorded_lab.h, and how far their stamps are
+// from the truth that their samples carry.
+#pragma once
+
+#include "tests/folder.h"
+#include "tests/io/recorded_lab.h"
+
+#include "kinalign/io/open_recording.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+inline StreamOptions stream_named(const std::string& name, const std::string& path,
+                                  const std::string& node = "") {
+  StreamOptions options;
+  options.name = name;
+  options.files = {{path, node}};
+  return options;
+}
+
+inline RecordedStream opened(FileSystem& files, const StreamOptions& options) {
+  auto streams = open_streams(files, {options});
+  INFO(options.name);
+  if (!streams) FAIL(streams.error().expected, ", found ", streams.error().found);
+  REQUIRE(streams->size() == 1);
+  return std::move(streams->front());
+}
+
+/// What it warns of, and what that means.
+inline std::vector<std::string> warnings(const RecordedStream& stream) {
+  std::vector<std::string> texts;
+  for (const Finding& finding : stream.findings) {
+    if (finding.severity != Severity::warning) continue;
+    texts.push_back(to_string(finding.what) + "; " + finding.meaning);
+  }
+  return texts;
+}
+
+/// How far a stream's stamps are behind the truth that its samples carry, ms.
+struct Errors {
+  double least = 1e9, most = -1e9, widest = 0.0;  // and the widest half-width
+  std::size_t samples = 0, certified = 0, outside = 0;
+
+  void add(const RecordedStream& stream, Time stamp, double truth) {
+    const auto error = take_time(stream.clock, stamp) - RecordedLab::utc(truth);
+    const double ms = 1e-6 * static_cast<double>(error.count());
+    least = std::min(least, ms);
+    most = std::max(most, ms);
+    ++samples;
+    const auto half = half_width(stream.clock, stamp);
+    if (!half) return;
+    ++certified;
+    widest = std::max(widest, 1e-6 * static_cast<double>(half->count()));
+    // What single precision leaves of the truth is not the clock's fault.
+    outside += std::abs(error.count()) > half->count() + 4000 ? 1 : 0;
+  }
+};
+
+template <class Input, class Truth>
+Errors errors_of(const RecordedStream& stream, Truth truth) {
+  auto pass = std::get<Input>(stream.data).passes();
+  REQUIRE(pass);
+  Errors errors;
+  using Frames = std::conditional_t<
+      std::is_same_v<Input, ClipInput>, ClipFrames,
+      std::conditional_t<std::is_same_v<Input, PointInput>, PointFrames, ImuSamples>>;
+  Frames block;
+  for (;;) {
+    const auto more = (*pass)(block);
+    REQUIRE(more);
+    if (!*more) return errors;
+    for (std::size_t t = 0; t < block.size(); ++t) {
+      errors.add(stream, block.stamps[t], truth(block, t));
+    }
+  }
+}
+
+inline Errors node_errors(const RecordedStream& stream) {
+  return errors_of<ImuInput>(
+      stream, [](const ImuSamples& s, std::size_t t) { return s.acceleration[3 * t]; });
+}
+inline Errors kinect_errors(const RecordedStream& stream) {
+  return errors_of<PointInput>(
+      stream, [](const PointFrames& f, std::size_t t) { return f.positions[25 * 3 * t]; });
+}
+inline Errors mocap_errors(const RecordedStream& stream) {
+  return errors_of<ClipInput>(
+      stream, [](const ClipFrames& f, std::size_t t) { return f.local_positions[59 * 3 * t]; });
+}
+
+}  // namespace kinalign

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which device of a recording is read, and what is said of the file.
+#include "tests/io/recorded_streams.h"
+
+#include "kinalign/io/recording_reader.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+using namespace std::chrono_literals;
+
+TEST_CASE("marks come with each stream of a recording, on the take's axis") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 4.0);
+  lab.add_mark(1.0, {Mark::Kind::start, "dance", Duration{53'000'000}, "1"});
+  lab.add_mark(3.0, {Mark::Kind::text, "a word", std::nullopt, "2"});
+  PosixFiles files;
+  const RecordedStream stream =
+      opened(files, stream_named("imu", folder.write("take.mcap", lab.file())));
+  const std::vector<TakeMark>& marks = stream.by_file.marks;
+  REQUIRE(marks.size() == 2);
+  CHECK(marks[0] == TakeMark{utc_time(RecordedLab::utc_begin + 1'000'000'000), "start", "dance",
+                             Duration{53'000'000}, "call"});
+  CHECK(marks[1].text == "a word");
+  CHECK(marks[1].at - marks[0].at == std::chrono::seconds(2));
+}
+
+TEST_CASE("what a recording does not have, and what of it is not looked at, is told") {
+  const FreshFolder folder;
+  RecordedLab lab(20261124);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 4.0);
+  for (std::size_t k = 0; k < most_marks + 2; ++k) {
+    lab.add_mark(1.0, {Mark::Kind::text, "a word", std::nullopt, ""});
+  }
+  lab.dropped = 5;
+  PosixFiles files;
+  const RecordedStream stream =
+      opened(files, stream_named("imu", folder.write("take.mcap", lab.file())));
+  CHECK(stream.by_file.marks.size() == most_marks);
+  REQUIRE(stream.by_file.findings.size() == 2);
+  CHECK(stream.by_file.findings[0].what.found == "2 more");
+  CHECK(stream.by_file.findings[1].what.found == "5 fewer, of all devices");
+}
+
+TEST_CASE("what is not in a recording is refused by the names of what is") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 2.0);
+  lab.add_node(13, 1, {4.0, 10.0}, 0.0, 2.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto refusal = [&](const StreamOptions& options) {
+    const auto streams = open_streams(files, {options});
+    REQUIRE(!streams);
+    return streams.error().expected + "; " + streams.error().found;
+  };
+  CHECK(refusal(stream_named("mocap", path)) ==
+        "select.stream, or a stream's name, of imu; 'mocap'");
+  CHECK(refusal(stream_named("imu", path)) == "one node of stream imu: select.node; 12, 13");
+  CHECK(refusal(stream_named("imu", path, "14")) == "of stream imu node 12, 13; '14'");
+  StreamOptions options = stream_named("imu", path, "12");
+  options.select["colour"] = "red";
+  CHECK(refusal(options) ==
+        "select by stream, node, sender, body or kind (poses, trackers); colour = red");
+}
+
+TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as one stream") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 2.0, "waist");
+  lab.add_node(13, 1, {4.0, 10.0}, 0.0, 2.0);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 2.0);
+  lab.add_mocap(NoitomForm::new_header, "udp", 2.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto survey = survey_recording(files, path);
+  REQUIRE(survey);
+  const auto manifest = manifest_of(*survey, "take.mcap");
+  REQUIRE(manifest);
+  CHECK(manifest->subject == "03");
+  CHECK(manifest->action == "S1A02");
+  REQUIRE(manifest->streams.size() == 3);
+  CHECK(manifest->streams[0].name == "mocap");
+  CHECK(manifest->streams[1].name == "kinect");
+  CHECK(manifest->streams[2].name == "imu");
+  REQUIRE(manifest->streams[2].files.size() == 2);
+  CHECK(manifest->streams[2].files[0].node == "waist");  // where the lab says that
+  CHECK(manifest->streams[2].files[1].node == "13");
+  REQUIRE(manifest->spaces.size() == 1);
+  CHECK(manifest->spaces.at("kinect").method == "fit");
+  const auto recording = open_recording(files, *manifest, folder.path() + "/");
+  REQUIRE(recording);
+  CHECK(recording->streams.size() == 4);
+}
+
+TEST_CASE("a wall clock that is set while recording is told by the recording's survey") {
+  const FreshFolder folder;
+  PosixFiles files;
+  for (const double step_s : {0.0, -0.25, 3.0}) {
+    RecordedLab lab(20261123);
+    lab.add_clock(20.0, 12.0, step_s);
+    const auto survey = survey_recording(files, folder.write("take.mcap", lab.file()));
+    REQUIRE(survey);
+    REQUIRE(survey->steps.size() == (step_s == 0.0 ? 0 : 1));
+    if (survey->steps.empty()) continue;
+    CHECK(survey->steps[0].at == RecordedLab::host(12.0));
+    CHECK(seconds(survey->steps[0].by) == doctest::Approx(step_s));
+  }
+}
+
+TEST_CASE("a stranger's datagram before the device is not taken for it") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 40.0);
+  lab.add_datagram({"kinect", "kinect", "udp", "10.0.0.66:40000", "", ""}, 0.0, "GET / HTTP/1.0");
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const RecordedStream stream = opened(files, stream_named("kinect", path));
+  CHECK(kinect_errors(stream).samples == 1200);
+  const auto told = warnings(stream);
+  REQUIRE(!told.empty());
+  CHECK(told.front() == path +
+                            ": expected one sender of kinect, found 10.0.0.9, 10.0.0.66; only "
+                            "10.0.0.9 was read");
+}
+
+TEST_CASE("a stranger who says more than the device is found to be none") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 2.0);
+  const RawChannel stranger{"kinect", "kinect", "udp", "10.0.0.66:40000", "", ""};
+  for (int k = 0; k < 200; ++k) lab.add_datagram(stranger, 0.01 * k, "GET / HTTP/1.0");
+  PosixFiles files;
+  const std::string path = folder.write("take.mcap", lab.file());
+  CHECK(kinect_errors(opened(files, stream_named("kinect", path))).samples == 60);
+}
+
+TEST_CASE("where nobody is the device, its senders are named") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  for (const std::string host : {"10.0.0.66", "10.0.0.67"}) {
+    lab.add_datagram({"kinect", "kinect", "udp", host + ":40000", "", ""}, 0.0, "GET /");
+  }
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto streams = open_streams(files, {stream_named("kinect", path)});
+  REQUIRE(!streams);
+  CHECK(to_string(streams.error()) ==
+        path +
+            ": expected frames of a Kinect, found none from 10.0.0.66; heard were 10.0.0.66, "
+            "10.0.0.67: select.sender");
+}
+
+TEST_CASE("a stranger at the trackers' port is no node of the manifest") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_datagram({"slime", "slimevr", "udp", "10.0.0.66:40000", "", ""}, 0.0, "GET / HTTP/1.0");
+  lab.add_tracker("10.0.0.21", 2.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto manifest = manifest_of(*survey_recording(files, path), path);
+  REQUIRE(manifest);
+  REQUIRE(manifest->streams.size() == 1);
+  REQUIRE(manifest->streams.front().files.size() == 1);
+  CHECK(manifest->streams.front().files.front().node == "10.0.0.21");
+}
+
+TEST_CASE("of two sources on one host that speak in turn one is read, and either by its port") {
+  const FreshFolder folder;
+  PosixFiles files;
+  for (const std::string transport : {"tcp", "udp"}) {
+    CAPTURE(transport);
+    RecordedLab lab(20261123);
+    lab.add_mocap(NoitomForm::new_header, transport, 40.0, 9, "10.0.0.3:7012");
+    lab.add_mocap(NoitomForm::new_header, transport, 40.0, 10, "10.0.0.3:7013");
+    const std::string path = folder.write(transport + ".mcap", lab.file());
+    const RecordedStream stream = opened(files, stream_named("mocap", path));
+    const Errors errors = mocap_errors(stream);
+    CHECK(errors.samples == 5000 - 5000 / 10);
+    CHECK(errors.least > 0.2);
+    CHECK(errors.most < 1.0);
+    const auto told = warnings(stream);
+    REQUIRE(!told.empty());
+    CHECK(told.front() ==
+          path +
+              ": expected one sender of mocap at 10.0.0.3, found 10.0.0.3:7013, 10.0.0.3:7012; of "
+              "those that speak in turn only the one that said most was read");
+    StreamOptions other = stream_named("mocap", path);
+    other.select["sender"] = "10.0.0.3:7012";
+    CHECK(mocap_errors(opened(files, other)).samples == 5000 - 5000 / 9);
+  }
+}
+
+TEST_CASE("of Xsens' stream the trackers are taken where they are asked for, else the poses") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_xsens(20.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  StreamOptions options = stream_named("xsens", path);
+  CHECK(std::get<ClipInput>(opened(files, options).data).skeleton.joints() == 23);
+  options.select = {{"kind", "trackers"}};
+  const RecordedStream stream = opened(files, options);
+  const auto& input = std::get<ImuInput>(stream.data);
+  CHECK(input.node_names == std::vector<std::string>{"Pelvis", "T8", "RightHand"});
+  CHECK(input.content == ImuContent{true, true, true, true});
+  const Errors errors = errors_of<ImuInput>(
+      stream, [](const ImuSamples& s, std::size_t t) { return s.acceleration[9 * t]; });
+  CHECK(errors.samples == 1200);
+  CHECK(errors.certified == 0);
+  CHECK(errors.least > 0.2);
+  CHECK(errors.most < 1.5);
+}
+
+TEST_CASE("mocap that was recorded without a skeleton gets the one that the manifest names") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_mocap(NoitomForm::new_header, "udp", 20.0);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 2.0);
+  lab.forget_skeleton();
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  StreamOptions options = stream_named("mocap", path);
+  const auto without = open_streams(files, {options});
+  REQUIRE(!without);
+  CHECK(without.error().expected.find("or now in the manifest") != std::string::npos);
+  options.skeleton = folder.write("suit.bvh", noitom_chain("Spine3", false));
+  const RecordedStream stream = opened(files, options);
+  CHECK(stream.files.size() == 2);  // hashed, too
+  CHECK(std::get<ClipInput>(stream.data).skeleton.joints() == 59);
+  CHECK(mocap_errors(stream).samples == 2500);
+  options.name = "kinect";
+  const auto of_kinect = open_streams(files, {options});
+  REQUIRE(!of_kinect);
+  CHECK(of_kinect.error().expected == "a skeleton of a noitom stream alone");
+}
