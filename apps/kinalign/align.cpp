@@ -67,24 +67,28 @@ Usage describe_verb_options(AlignVerb& o) {
   return usage;
 }
 
-Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
+/// Of the recording that begins in `path`; knows no options.
+Result<Manifest> recorded_manifest(const std::string& path, const Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const Progress progress = call.console.progress();
+  const RecordingParts parts = KA_TRY(parts_from(files, path, progress));
+  return manifest_of(KA_TRY(survey_parts(files, parts, progress)), std::string(file_name(path)));
+}
+
+/// As it stands in a file or follows from flags, with the options of the call.
+Result<Manifest> manifest_with_options(AlignVerb& o, const Call& call) {
+  Manifest manifest;
   if (o.manifest.empty()) {
-    Manifest manifest = KA_TRY(quick_manifest(o.quick));
+    manifest = KA_TRY(quick_manifest(o.quick));
     manifest.align = o.options;
-    if (o.slerp) manifest.align.rotations = "slerp";
     return manifest;
   }
+  FileSystem& files = call.surroundings.files;
   const std::string& path = o.manifest.front();
-  KA_TRY(
-      InputFile::open(call.surroundings.files, path));  // what it is comes before what it is named
-  if (KA_TRY(is_recording(call.surroundings.files, path))) {
-    FileSystem& files = call.surroundings.files;
-    const Progress progress = call.console.progress();
-    const RecordingSurvey survey =
-        KA_TRY(survey_parts(files, KA_TRY(parts_from(files, path, progress)), progress));
-    Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(path))));
+  KA_TRY(InputFile::open(files, path));  // what it is comes before what it is named
+  if (KA_TRY(is_recording(files, path))) {
+    manifest = KA_TRY(recorded_manifest(path, call));
     manifest.align = o.options;
-    if (o.slerp) manifest.align.rotations = "slerp";
     return manifest;
   }
   if (!path.ends_with(".toml")) {
@@ -93,8 +97,13 @@ Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
                          "--kinect, ...)",
                          "another ending"});
   }
-  Manifest manifest = KA_TRY(load_manifest(call.surroundings.files, path, o.options));
+  manifest = KA_TRY(load_manifest(files, path, o.options));
   copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
+  return manifest;
+}
+
+Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
+  Manifest manifest = KA_TRY(manifest_with_options(o, call));
   if (o.slerp) manifest.align.rotations = "slerp";
   return manifest;
 }

@@ -159,7 +159,7 @@ Findings findings_of(const Recording& recording) {
   return all;
 }
 
-/// All devices of a recording, or, where the user names one, that stream.
+/// All devices of a recording of which rows can be made, and what it says itself.
 Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call) {
   const Progress progress = call.console.progress();
   if (!job.to.ends_with(".mcap")) {
@@ -170,10 +170,12 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
   const RecordingParts parts = KA_TRY(parts_from(job.files, job.from, progress));
   const RecordingSurvey survey = KA_TRY(survey_parts(job.files, parts, progress));
   const Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(job.from))));
-  const Recording recording = KA_TRY(
-      open_recording(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));
-  KA_TRY(show_recording(job.files, recording, {job.from, job.to, job.overwrite}, progress));
-  return findings_of(recording);
+  const OpenedInPart opened = KA_TRY(
+      open_what_can_be(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));
+  KA_TRY(show_recording(job.files, opened.recording, {parts, job.to, job.overwrite}, progress));
+  Findings findings = findings_of(opened.recording);
+  append(findings, opened.left_out);
+  return findings;
 }
 
 Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {
@@ -200,7 +202,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
     });
   }
   if (job.to.ends_with(".mcap")) {
-    KA_TRY(show_recording(job.files, input.recording, {"", job.to, job.overwrite},
+    KA_TRY(show_recording(job.files, input.recording, {{}, job.to, job.overwrite},
                           call.console.progress()));
   } else {
     KA_TRY(stream_to_npz(job, stream, call.console.progress()));

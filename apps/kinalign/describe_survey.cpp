@@ -90,6 +90,39 @@ std::vector<std::string> unheard(const RecordingSurvey& survey) {
   return names;
 }
 
+/// Of a topic: of what the recorder counted before it wrote the last counts, what is neither there
+/// nor between two that are. Counts of a later part begin with the recording, not with the file.
+std::uint64_t uncovered(const CountedSender& counted, const RecordingSurvey& survey) {
+  std::uint64_t known = 0;
+  for (const ChannelSurvey& channel : survey.channels) {
+    if (channel.channel.topic == counted.topic) known += channel.messages + channel.missing;
+  }
+  const bool whole = survey.facts && survey.facts->part == 1;
+  return whole && counted.counts.messages > known ? counted.counts.messages - known : 0;
+}
+
+/// What reached the recorder and is not in the file: its numbers are left out, or, at either end of
+/// a topic, its own counts say so.
+Findings gone(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  const auto tell = [&](std::string expected, std::uint64_t lacks) {
+    if (lacks == 0) return;
+    findings.push_back({Severity::error,
+                        {path, 0, std::move(expected), grouped(lacks) + " missing"},
+                        "these messages reached the recorder and are not in the file",
+                        "a further part of the recording may have them: recover takes all parts"});
+  };
+  for (const ChannelSurvey& channel : survey.channels) {
+    tell(channel.channel.topic + " without a number left out", channel.missing);
+  }
+  for (const CountedSender& one : survey.senders) {
+    tell(fmt::format("the {} messages on {} that were counted", grouped(one.counts.messages),
+                     one.topic),
+         uncovered(one, survey));
+  }
+  return findings;
+}
+
 /// Of what the devices sent, before it could be recorded.
 Findings losses(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
@@ -120,10 +153,8 @@ Findings losses(const std::string& path, const RecordingSurvey& survey) {
   return findings;
 }
 
-}  // namespace
-
-Description describe_survey(const std::string& path, const RecordingSurvey& survey,
-                            const RecordingParts& parts) {
+std::string text_of(const std::string& path, const RecordingSurvey& survey,
+                    const RecordingParts& parts) {
   std::string text = fmt::format("{}\n", path);
   const auto line = [&text](std::string_view name, const std::string& value) {
     text += fmt::format("  {:<12}{}\n", name, value);
@@ -135,7 +166,7 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
     line("part", fmt::format("{} of {}", survey.facts->part, survey.facts->first));
   }
   for (std::size_t k = 1; k < parts.size(); ++k) line("goes on in", parts[k].path);
-  line("state", survey.closed ? "whole" : "torn: no index at its end");
+  line("state", survey.torn.empty() ? "whole" : "torn: no index at its end");
   line("messages", grouped(survey.messages));
   line("size", fmt::format("{:.1f} MB", static_cast<double>(survey.bytes) / 1e6));
   for (const ChannelSurvey& channel : survey.channels) {
@@ -156,8 +187,12 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
     line("mark", mark_text(mark, static_cast<double>(log_time - first) / 1e9));
   }
   if (survey.more_marks > 0) line("marks", grouped(survey.more_marks) + " more, not shown");
+  return text;
+}
+
+Json json_of(const std::string& path, const RecordingSurvey& survey, const RecordingParts& parts) {
   Json json{{"file", path},
-            {"closed", survey.closed},
+            {"closed", survey.torn.empty()},
             {"messages", survey.messages},
             {"unchecked", survey.unchecked},
             {"bytes", survey.bytes},
@@ -172,16 +207,23 @@ Description describe_survey(const std::string& path, const RecordingSurvey& surv
   if (survey.end) json["dropped"] = survey.end->dropped;
   for (const ChannelSurvey& channel : survey.channels) json["channels"].push_back(json_of(channel));
   add_told(survey, json);
-  return {text, json_text(json)};
+  return json;
+}
+
+}  // namespace
+
+Description describe_survey(const std::string& path, const RecordingSurvey& survey,
+                            const RecordingParts& parts) {
+  return {text_of(path, survey, parts), json_text(json_of(path, survey, parts))};
 }
 
 Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
   Findings findings = survey.findings;
-  if (!survey.closed) {
+  for (const std::string& torn : survey.torn) {
     findings.push_back({Severity::warning,
-                        {path, 0, "an index at the recording's end", "none"},
+                        {torn, 0, "an index at the recording's end", "none"},
                         "it was not closed: the program or the machine stopped, or the disk did",
-                        "kinalign recover " + path + " -o whole.mcap gives it one"});
+                        "kinalign recover " + torn + " -o whole.mcap gives it one"});
   }
   if (!survey.steps.empty()) {
     const WallClockStep& worst = *std::max_element(
@@ -195,14 +237,7 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
                         "UTC in it is the clock's of the beginning; time differences are right",
                         "let the machine's clock be set before recording: docs/time_server.md"});
   }
-  for (const ChannelSurvey& channel : survey.channels) {
-    if (!survey.facts || channel.missing == 0) continue;
-    findings.push_back({Severity::error,
-                        {path, 0, channel.channel.topic + " without a number left out",
-                         grouped(channel.missing) + " missing"},
-                        "these messages reached the recorder and are not in the file",
-                        "a further part of the recording may have them: recover takes all parts"});
-  }
+  if (survey.facts) append(findings, gone(path, survey));
   if (survey.more_marks > 0) {
     findings.push_back({Severity::note,
                         {path, 0, fmt::format("at most {} marks", grouped(most_marks)),

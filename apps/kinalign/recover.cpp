@@ -43,8 +43,9 @@ Result<int> run(Recover& o, Call& call) {
   std::string text = fmt::format("{}: {} messages in {} channels, read again and whole\n", out,
                                  grouped(done.messages), done.proof.channels.size());
   if (done.unchecked > 0) {
-    text += fmt::format("  {} of them no checksum covers (a torn end, or messages outside of chunks)\n",
-                        grouped(done.unchecked));
+    text +=
+        fmt::format("  {} of them no checksum covers (a torn end, or messages outside of chunks)\n",
+                    grouped(done.unchecked));
   }
   if (done.twice > 0) text += fmt::format("  {} stood in two files\n", grouped(done.twice));
   if (done.nameless > 0) {

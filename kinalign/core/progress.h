@@ -26,4 +26,8 @@ inline Error interruption(std::string file = {}) {
   return {std::move(file), 0, "the end of the job", "an interruption"};
 }
 
+inline bool is_interruption(const Error& error) {
+  return error.expected == interruption().expected && error.found == interruption().found;
+}
+
 }  // namespace kinalign

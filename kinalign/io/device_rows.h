@@ -38,12 +38,20 @@ struct HeardDevice {
   std::string skeleton;  // a BVH's header, where the recording has one
   Duration utc_minus_host{};
   DeviceClock clock;
-  double step_ns = 0.0;     // of devices whose frames are counted
+  double step_ns = 0.0;     // of frames that are counted, or come in one datagram
   bool by_arrival = false;  // of devices that say no time and no number: stamps are UTC of arrival
   ImuContent content;       // of a node
   HostEpochs epochs;        // of a Kinect
   Findings findings;
 };
+
+/// Of a device whose packets say no time, and no number that could stand for it.
+inline void stamp_by_arrival(const std::string& file, HeardDevice& heard) {
+  heard.by_arrival = true;
+  heard.findings.push_back(
+      {Severity::note, Error{file, 0, "packets that say when they were measured", "none that do"},
+       "stamps are arrivals, late by unknown times", "offset_ms takes off a delay that is known"});
+}
 
 /// The first pass.
 class DeviceListener {

@@ -39,6 +39,18 @@ bool KinectFrameJoiner::is_stale(std::uint32_t session) {
   return session != session_ && std::find(over_.begin(), end, session) != end;
 }
 
+void KinectFrameJoiner::begin_session(std::uint32_t session) {
+  counts_.frames += sequence_.counts();
+  sequence_ = SequenceCount(32);
+  session_ = session;
+  over_[counts_.sessions++ % over_.size()] = session;
+}
+
+void KinectFrameJoiner::follow(const KinectOrigin& last) {
+  begin_session(last.session);
+  sequence_.push(last.sequence);
+}
+
 void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>& out) {
   const KinectOrigin origin = message.origin;
   if (is_stale(origin.session)) {
@@ -47,10 +59,7 @@ void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>
   }
   if (session_ != origin.session) {
     close(out);
-    counts_.frames += sequence_.counts();
-    sequence_ = SequenceCount(32);
-    session_ = origin.session;
-    over_[counts_.sessions++ % over_.size()] = origin.session;
+    begin_session(origin.session);
   }
   if (open_ && open_->origin.sequence == origin.sequence) {
     join(std::move(message));

@@ -32,6 +32,9 @@ struct KinectFrameCounts {
 /// Frames of one sensor, in the order of arrival.
 class KinectFrameJoiner {
  public:
+  /// Before the first frame: the sensor's last one came another way, and what lacks behind it is
+  /// lost.
+  void follow(const KinectOrigin& last);
   /// Appends what is done: frames that are whole, and the one before if it never will be.
   void take(KinectFrame message, std::vector<JoinedKinectFrame>& out);
   /// What waits for its parts still.
@@ -41,6 +44,7 @@ class KinectFrameJoiner {
 
  private:
   bool is_stale(std::uint32_t session);
+  void begin_session(std::uint32_t session);
   void begin(KinectFrame message, std::vector<JoinedKinectFrame>& out);
   void join(KinectFrame message);
   void close(std::vector<JoinedKinectFrame>& out);

@@ -7,6 +7,7 @@
 #include "kinalign/io/kinect_person.h"
 #include "kinalign/io/kinect_stream.h"
 #include "kinalign/io/little_endian_reader.h"
+#include "kinalign/io/rows_in_order.h"
 
 #include <algorithm>
 #include <map>
@@ -56,6 +57,8 @@ struct Taken {
   HostTime arrival{};
 };
 
+bool came_before(const Exchange& a, const Exchange& b) { return a.h_rx < b.h_rx; }
+
 class KinectListener final : public DeviceListener {
  public:
   explicit KinectListener(const DeviceWish& wish) : file_(wish.file.path) {}
@@ -85,8 +88,7 @@ class KinectListener final : public DeviceListener {
       one.life = epochs_.life_at(one.life, one.sent, one.arrival);
       exchanges_.push_back({one.life, one.sent, one.arrival, std::nullopt});
     }
-    std::stable_sort(exchanges_.begin(), exchanges_.end(),
-                     [](const Exchange& a, const Exchange& b) { return a.h_rx < b.h_rx; });
+    std::stable_sort(exchanges_.begin(), exchanges_.end(), came_before);
     const DeviceClock sender = device_clock(exchanges_, {});
     std::vector<Exchange> from_sensor;
     from_sensor.reserve(taken_.size());
@@ -94,6 +96,7 @@ class KinectListener final : public DeviceListener {
       const auto at = host_from_node(sender.model, one.life, one.sender, one.arrival);
       if (at) from_sensor.push_back({one.life, one.device, at->time, std::nullopt});
     }
+    std::stable_sort(from_sensor.begin(), from_sensor.end(), came_before);
     heard.clock = device_clock(from_sensor, heard.utc_minus_host);
     heard.epochs = std::move(epochs_);
     return {};
@@ -121,14 +124,17 @@ class KinectRows final : public DeviceRows<PointFrames> {
     joined_.clear();
     frames_.take(message, joined_, nullptr);
     arrival_ = message.arrival;
-    append_all(out);
+    stamp_joined();
+    append_waiting(out);
     return {};
   }
 
   Result<void> finish(PointFrames& out) override {
     joined_.clear();
     frames_.finish(joined_);
-    append_all(out);
+    stamp_joined();
+    waiting_.finish();
+    append_waiting(out);
     person_.report(file(), findings);
     const KinectFrameCounts counts = frames_.counts();
     tell(counts.frames.lost, "each frame's number", "that never came",
@@ -144,9 +150,9 @@ class KinectRows final : public DeviceRows<PointFrames> {
   const PointHeader* header() const override { return &header_; }
 
  private:
-  void append_all(PointFrames& out) {
-    for (const JoinedKinectFrame& joined : joined_) {
-      const KinectFrame& frame = joined.frame;
+  void stamp_joined() {
+    for (JoinedKinectFrame& joined : joined_) {
+      KinectFrame& frame = joined.frame;
       const BootKey life = heard_->epochs.life_at(frame.origin.session,
                                                   kinect_sender_time(frame.sent_ticks), arrival_);
       const auto stamp =
@@ -155,8 +161,15 @@ class KinectRows final : public DeviceRows<PointFrames> {
         ++unknown_;
         continue;
       }
+      waiting_.add(*stamp, std::move(frame));
+    }
+  }
+
+  void append_waiting(PointFrames& out) {
+    while (const auto first = waiting_.take_first()) {
+      const KinectFrame& frame = first->second;
       wild_ += append_kinect_row(frame, person_(frame).value_or(0), out);
-      out.stamps.back() = *stamp;
+      out.stamps.back() = first->first;
     }
   }
 
@@ -165,6 +178,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
   PointHeader header_;
   KinectFrames frames_;
   std::vector<JoinedKinectFrame> joined_;
+  RowsInOrder<KinectFrame> waiting_{16};  // half a second: no network holds one back for longer
   HostTime arrival_{};
   std::uint64_t unknown_ = 0, wild_ = 0;
 };

@@ -45,6 +45,11 @@ Failure unfit(std::string expected, std::string found) {
   return Failure(Error{"", 0, std::move(expected), std::move(found)});
 }
 
+Failure misfit(const McapChunkHead& head, std::uint64_t size) {
+  return unfit("a chunk of " + std::to_string(head.uncompressed_size) + " bytes",
+               std::to_string(size));
+}
+
 }  // namespace
 
 void McapChunkContent::add(const McapSchema& schema) {
@@ -78,8 +83,9 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
   constexpr std::size_t heads = 128;  // of the chunk and of an index, at most
   chunk.bytes.reserve(stored.size() + heads * (1 + content.messages().size()));
   append_mcap(chunk.bytes, head, stored);
-  chunk.index = {head.start,    head.end,      0, chunk.bytes.size(), {}, 0, head.compression,
-                 stored.size(), records.size()};
+  chunk.index = {
+      head.start,    head.end,      0, chunk.bytes.size(), {}, 0, std::string(head.compression),
+      stored.size(), records.size()};
   for (const auto& [channel, entries] : content.messages()) {
     chunk.index.message_index_offsets[channel] = chunk.bytes.size();
     chunk.channel_messages[channel] = entries.size();
@@ -99,11 +105,11 @@ Result<std::string> unpack(const McapChunkView& chunk, std::uint64_t most) {
   if (!head.compression.empty() && head.compression != "zstd") {
     return unfit("a chunk that is not compressed or by zstd", shown(head.compression));
   }
-  std::string records = unpack_torn(chunk, most);
-  if (records.size() != head.uncompressed_size) {
-    return unfit("a chunk of " + std::to_string(head.uncompressed_size) + " bytes",
-                 std::to_string(records.size()));
+  if (head.compression.empty() && chunk.stored_size != head.uncompressed_size) {
+    return misfit(head, chunk.stored_size);  // before it is copied
   }
+  std::string records = unpack_torn(chunk, most);
+  if (records.size() != head.uncompressed_size) return misfit(head, records.size());
   if (head.uncompressed_crc != 0 && head.uncompressed_crc != crc_of(records)) {
     return unfit("a chunk whose checksum fits", "another one");
   }

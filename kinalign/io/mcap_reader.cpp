@@ -234,11 +234,10 @@ void McapReader::end_in_record() {
 }
 
 /// A chunk tells itself by its sizes, and proves it by its checksum.
-bool McapReader::is_chunk(std::string_view bytes) {
-  const auto chunk = decode_mcap_chunk(bytes.substr(mcap_record_head, head_of(bytes)->length));
-  if (!chunk) return false;
-  const bool is = unpack(*chunk, most_record).has_value();
-  if (!is) tried_ += chunk->head.uncompressed_size;
+bool McapReader::is_chunk(const McapChunkView& chunk) {
+  constexpr std::uint64_t beginning = std::uint64_t{128} << 10;  // the room that zstd is given
+  const bool is = unpack(chunk, most_record).has_value();
+  if (!is) tried_ += beginning + chunk.stored_size + chunk.head.uncompressed_size;
   return is;
 }
 
@@ -255,7 +254,7 @@ void McapReader::find_chunk() {
                         chunk->head.uncompressed_size <= most_record &&
                         chunk->head.compression.size() <= 4 && head->length == chunk->size();
     if (likely && !chunk->whole() && !ended_) return;
-    if (likely && chunk->whole() && is_chunk(bytes)) {
+    if (likely && chunk->whole() && is_chunk(*chunk)) {
       state_ = State::records;
       return;
     }

@@ -53,7 +53,7 @@ class McapReader {
   bool open_chunk(std::string_view content);
   void end_in_record();
   void find_chunk();
-  bool is_chunk(std::string_view bytes);
+  bool is_chunk(const McapChunkView& chunk);
   void find_magic();
   void check_crc(const McapRecord& record, std::string_view bytes);
   void consume(std::size_t size);
@@ -73,7 +73,7 @@ class McapReader {
   std::size_t chunk_taken_ = 0;
   bool in_torn_chunk_ = false, in_no_chunk_ = false;
   bool all_checked_ = false;
-  std::uint64_t tried_ = 0;  // bytes that were unpacked in vain, looking for a chunk
+  std::uint64_t tried_ = 0;  // bytes that were gone through in vain, looking for a chunk
   Findings findings_;
 };
 

@@ -21,6 +21,9 @@ void take(LittleEndianReader& from, T& value) {
   value = from.take<T>();
 }
 void take(LittleEndianReader& from, std::string& value) { value = text(from); }
+void take(LittleEndianReader& from, std::string_view& value) {
+  value = text_of(from.take_bytes(from.take<std::uint32_t>()));
+}
 
 /// Entries of a map or an array, as many as its length in bytes holds.
 template <class Take>

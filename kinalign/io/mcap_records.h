@@ -81,7 +81,7 @@ struct McapChunkHead {
   std::uint64_t start = 0, end = 0;  // log times
   std::uint64_t uncompressed_size = 0;
   std::uint32_t uncompressed_crc = 0;  // 0: not checked
-  std::string compression;             // "", "zstd", "lz4"
+  std::string_view compression;        // "", "zstd", "lz4"; of a chunk that was read in its bytes
 };
 
 struct McapChunkIndex {

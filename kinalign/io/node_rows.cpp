@@ -6,12 +6,12 @@
 #include "kinalign/io/imu_converter.h"
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/numbered_frames.h"
+#include "kinalign/io/rows_in_order.h"
 #include "kinalign/wire/clockless.h"
 #include "kinalign/wire/node_frame.h"
 
 #include <fmt/format.h>
 
-#include <map>
 #include <utility>
 
 namespace kinalign {
@@ -200,14 +200,15 @@ class NodeRows final : public DeviceRows<ImuSamples> {
         ++unknown_;
         continue;
       }
-      waiting_.emplace(*stamp, sample);
+      waiting_.add(*stamp, sample);
     }
-    while (waiting_.size() > most_waiting) release(out);
+    append_waiting(out);
     return {};
   }
 
   Result<void> finish(ImuSamples& out) override {
-    while (!waiting_.empty()) release(out);
+    waiting_.finish();
+    append_waiting(out);
     converter_.report(file(), findings);
     tell(frames_.others, "datagrams that were accepted", "others: held, late, twice or damaged",
          "they were passed over");
@@ -231,10 +232,11 @@ class NodeRows final : public DeviceRows<ImuSamples> {
                     arrival);
   }
 
-  void release(ImuSamples& out) {
-    out.stamps.push_back(waiting_.begin()->first);
-    append(waiting_.begin()->second, out);
-    waiting_.erase(waiting_.begin());
+  void append_waiting(ImuSamples& out) {
+    while (const auto first = waiting_.take_first()) {
+      out.stamps.push_back(first->first);
+      append(first->second, out);
+    }
   }
 
   void append(const NodeSample& sample, ImuSamples& out) {
@@ -262,9 +264,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   ImuConverter converter_;
   ImuHeader header_;
   AcceptedFrames frames_;
-  // A radio lets frames overtake each other: samples wait for those that were taken before them.
-  static constexpr std::size_t most_waiting = 64;
-  std::multimap<Time, NodeSample> waiting_;
+  RowsInOrder<NodeSample> waiting_{64};  // of some frames: a radio lets them overtake each other
   std::uint64_t unknown_ = 0, partial_ = 0;
 };
 

@@ -52,9 +52,12 @@ class NoitomListener final : public DeviceListener {
   Result<void> finish(HeardDevice& heard) override {
     append(heard.findings, frames_.findings(wish_.file.path));
     const BvhHierarchy hierarchy = KA_TRY(hierarchy_of(heard, wish_.file.path));
-    heard.by_arrival = unnumbered_;
-    if (unnumbered_) return {};
-    count_clock(counted_, 1e9 * hierarchy.frame_seconds, wish_, heard);
+    heard.step_ns = 1e9 * hierarchy.frame_seconds;
+    if (unnumbered_) {
+      stamp_by_arrival(wish_.file.path, heard);
+    } else {
+      count_clock(counted_, heard.step_ns, wish_, heard);
+    }
     return {};
   }
 

@@ -37,6 +37,15 @@ std::size_t next_header(std::span<const std::uint8_t> frame) {
   return frame.size();
 }
 
+std::vector<float> values_of(std::span<const std::uint8_t> frame) {
+  std::vector<float> values;
+  values.reserve((frame.size() - noitom_header_size) / 4);
+  for (std::size_t at = noitom_header_size; at < frame.size(); at += 4) {
+    values.push_back(std::bit_cast<float>(little_at<std::uint32_t>(frame, at)));
+  }
+  return values;
+}
+
 struct Advice {
   NoitomRefusal refusal;
   std::string_view expected, meaning, repair;
@@ -143,9 +152,7 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
     skip(next);
     return Step::go_on;
   }
-  for (std::size_t at = noitom_header_size; at < size; at += 4) {
-    header->frame.values.push_back(std::bit_cast<float>(little_at<std::uint32_t>(bytes, at)));
-  }
+  if (parts_ == NoitomParts::all) header->frame.values = values_of(bytes.first(size));
   take(size);
   give(std::move(header->frame), out);
   return Step::go_on;

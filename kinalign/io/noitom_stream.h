@@ -48,9 +48,17 @@ struct NoitomAvatar {
   SequenceCount by_index;  // empty where the source gives no frame index
 };
 
+/// What of a frame is handed on.
+enum class NoitomParts {
+  all,
+  heads  // what counts need: values of binary frames are passed over
+};
+
 /// One sender. Which form it uses is seen by content, at every frame anew.
 class NoitomDecoder {
  public:
+  explicit NoitomDecoder(NoitomParts parts = NoitomParts::all) : parts_(parts) {}
+
   /// Takes bytes cut anywhere and appends the frames that they complete, duplicates and late ones
   /// too. The frames don't depend on where the bytes were cut.
   void feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out);
@@ -80,6 +88,7 @@ class NoitomDecoder {
   void skip(std::size_t bytes);
   void take(std::size_t bytes);
 
+  NoitomParts parts_;
   std::vector<std::uint8_t> held_;
   std::size_t at_ = 0;        // of `held_`: what is before is done
   std::size_t searched_ = 0;  // bytes of a text that hold no end

@@ -7,8 +7,10 @@
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/recorded_messages.h"
+#include "kinalign/io/rows_in_order.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -78,10 +80,9 @@ class NumberedFrames {
   std::vector<typename Source::Arrival> arrivals_;
 };
 
-/// A frame's stamp; absent where its clock is not known.
+/// The stamp of a frame that has a number; absent where its clock is not known.
 template <class Frame>
 std::optional<Time> stamp_of(const HeardDevice& heard, const PlacedFrame<Frame>& one) {
-  if (heard.by_arrival) return Time{one.arrival.time_since_epoch() + heard.utc_minus_host};
   if (!one.place) return std::nullopt;
   return stamp_of(heard.clock, one.place->life, counter_of(*one.place, heard.step_ns), one.arrival);
 }
@@ -98,22 +99,24 @@ class NumberedRows : public DeviceRows<Frames> {
   Result<void> take(const RecordedMessage& message, Frames& out) final {
     placed_.clear();
     frames_.take(message, placed_);
+    if (heard_->by_arrival) {
+      put_arrived(Time{message.arrival.time_since_epoch() + heard_->utc_minus_host}, out);
+      return {};
+    }
     for (auto& one : placed_) {
-      const auto stamp = stamp_of(*heard_, one);
-      if (!stamp) {
-        ++unknown_;
-      } else if (heard_->by_arrival) {
-        put(one.frame, *stamp, out);
+      if (const auto stamp = stamp_of(*heard_, one)) {
+        waiting_.add(*stamp, std::move(one.frame));
       } else {
-        waiting_.emplace(*stamp, std::move(one.frame));
-        if (waiting_.size() > most_overtaking) put_first(out);
+        ++unknown_;
       }
     }
+    put_waiting(out);
     return {};
   }
 
   Result<void> finish(Frames& out) final {
-    while (!waiting_.empty()) put_first(out);
+    waiting_.finish();
+    put_waiting(out);
     if (appended_ == 0 && (misfit_ || this->header() == nullptr)) {
       return Failure(misfit_.value_or(Error{this->file(), 0, std::string(Source::what), "none"}));
     }
@@ -142,19 +145,25 @@ class NumberedRows : public DeviceRows<Frames> {
     if (!misfit_) misfit_ = std::move(appended).error();
     ++misfits_;
   }
-  void put_first(Frames& out) {
-    const auto first = waiting_.begin();
-    put(first->second, first->first, out);
-    waiting_.erase(first);
+  /// Frames that came at once were not taken at once: the last one's stamp is the arrival, those
+  /// before it are a step apart, or less where that would reach back to the message before.
+  void put_arrived(Time arrival, Frames& out) {
+    if (placed_.empty()) return;
+    auto behind = static_cast<Duration::rep>(placed_.size());
+    Duration step{std::llround(heard_->step_ns)};
+    if (arrived_) step = std::clamp((arrival - *arrived_) / behind, Duration{0}, step);
+    for (const auto& one : placed_) put(one.frame, arrival - --behind * step, out);
+    arrived_ = arrival;
   }
-
-  // Chosen: a network that lets more datagrams than these overtake one has not been seen.
-  static constexpr std::size_t most_overtaking = 16;
+  void put_waiting(Frames& out) {
+    while (const auto first = waiting_.take_first()) put(first->second, first->first, out);
+  }
 
   std::shared_ptr<const HeardDevice> heard_;
   NumberedFrames<Source> frames_;
   std::vector<PlacedFrame<typename Source::Frame>> placed_;
-  std::multimap<Time, typename Source::Frame> waiting_;  // for those that they have overtaken
+  RowsInOrder<typename Source::Frame> waiting_{16};  // more have not been seen to overtake one
+  std::optional<Time> arrived_;                      // of those that are stamped so
   std::optional<Error> misfit_;
   std::uint64_t appended_ = 0, misfits_ = 0, unknown_ = 0;
 };

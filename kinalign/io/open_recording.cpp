@@ -67,6 +67,7 @@ class SharedProgress {
 struct NamedFile {
   const StreamOptions* options = nullptr;
   const StreamFile* file = nullptr;
+  std::string name() const { return options->name + (file->node.empty() ? "" : " " + file->node); }
 };
 
 /// With paths as a manifest in `folder` has them.
@@ -171,9 +172,8 @@ void drop_repeated(std::vector<SurveyedFile>& opened) {
   }
 }
 
-Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string& folder,
-                                           const std::vector<StreamOptions>& streams,
-                                           const Progress& progress, std::size_t jobs) {
+/// Their files.
+Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& streams) {
   std::vector<NamedFile> named;
   for (const StreamOptions& options : streams) {
     if (options.files.empty()) {
@@ -181,11 +181,25 @@ Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string&
     }
     for (const StreamFile& file : options.files) named.push_back({&options, &file});
   }
+  return named;
+}
+
+/// Side by side; what becomes of each.
+std::vector<Result<SurveyedFile>> open_each(FileSystem& files, const std::string& folder,
+                                            const std::vector<NamedFile>& named,
+                                            const Progress& progress, std::size_t jobs) {
   SharedProgress shared(progress, named.size());
   std::vector<Result<SurveyedFile>> opened(named.size());
   parallel_for(named.size(), jobs, [&](std::size_t i) {
     opened[i] = open_file(files, folder, named[i], shared.part(i));
   });
+  return opened;
+}
+
+Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string& folder,
+                                           const std::vector<StreamOptions>& streams,
+                                           const Progress& progress, std::size_t jobs) {
+  auto opened = open_each(files, folder, KA_TRY(named_files(streams)), progress, jobs);
   std::vector<SurveyedFile> out;
   out.reserve(opened.size());
   for (auto& one : opened) out.push_back(KA_TRY(std::move(one)));
@@ -201,6 +215,12 @@ std::vector<RecordedStream> streams_of(std::vector<SurveyedFile> opened) {
   return out;
 }
 
+/// Fails where a take could not name the files.
+Result<Recording> recording_of(const Manifest& manifest, std::vector<SurveyedFile> opened) {
+  KA_TRY(check_names(opened));
+  return Recording{manifest.subject, manifest.action, streams_of(std::move(opened))};
+}
+
 }  // namespace
 
 Result<std::vector<RecordedStream>> open_streams(FileSystem& files,
@@ -214,12 +234,29 @@ Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
                                  std::size_t jobs) {
   KA_TRY(check_texts(manifest));
   auto opened = KA_TRY(open_all(files, folder, manifest.streams, progress, jobs));
-  KA_TRY(check_names(opened));
-  Recording recording;
-  recording.subject = manifest.subject;
-  recording.action = manifest.action;
-  recording.streams = streams_of(std::move(opened));
-  return recording;
+  return recording_of(manifest, std::move(opened));
+}
+
+Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifest,
+                                      const std::string& folder, const Progress& progress,
+                                      std::size_t jobs) {
+  KA_TRY(check_texts(manifest));
+  const std::vector<NamedFile> named = KA_TRY(named_files(manifest.streams));
+  auto each = open_each(files, folder, named, progress, jobs);
+  std::vector<SurveyedFile> opened;
+  Findings left_out;
+  for (std::size_t i = 0; i < each.size(); ++i) {
+    if (each[i]) {
+      opened.push_back(*std::move(each[i]));
+    } else if (is_interruption(each[i].error())) {
+      return Failure(each[i].error());
+    } else {
+      left_out.push_back(
+          {Severity::warning, each[i].error(), named[i].name() + " is left out", ""});
+    }
+  }
+  for (const StreamOptions& options : manifest.streams) KA_TRY(start_together(options, opened));
+  return OpenedInPart{KA_TRY(recording_of(manifest, std::move(opened))), std::move(left_out)};
 }
 
 }  // namespace kinalign

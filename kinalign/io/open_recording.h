@@ -27,4 +27,13 @@ Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
                                  const std::string& folder, const Progress& progress = {},
                                  std::size_t jobs = 1);
 
+/// The same of what can be read, and of each stream or node that can't a warning why.
+struct OpenedInPart {
+  Recording recording;
+  Findings left_out;
+};
+Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifest,
+                                      const std::string& folder, const Progress& progress = {},
+                                      std::size_t jobs = 1);
+
 }  // namespace kinalign

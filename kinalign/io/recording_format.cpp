@@ -44,6 +44,12 @@ bool is_near(Stamp stamp) {
   return -furthest <= stamp.time_since_epoch() && stamp.time_since_epoch() <= furthest;
 }
 
+/// Absent where a clock is further than its limit.
+std::optional<ClockPair> believable(HostTime raw, Time utc) {
+  if (!is_near(raw) || to_ns(utc) < 0 || to_ns(utc) > latest_log_time) return std::nullopt;
+  return ClockPair{raw, utc};
+}
+
 // What an exchange's flags say.
 constexpr std::uint32_t echoed = 1, clockless = 2;
 constexpr std::uint64_t most_frames = std::uint64_t{1} << 33U;  // nine years at 15 Hz
@@ -76,11 +82,10 @@ std::optional<RecordingFacts> to_facts(const McapMetadata& metadata) {
              utc = number_of(texts, "utc_ns");
   const bool is_ours = metadata.name == recording_metadata && text_of(texts, "format") == format;
   if (!is_ours || !part || !raw || !utc || *part < 1 || *part > 1'000'000) return std::nullopt;
-  const HostTime host{Duration{*raw}};
-  if (!is_near(host) || *utc < 0 || *utc > latest_log_time) return std::nullopt;
-  return RecordingFacts{text_of(texts, "subject"), text_of(texts, "action"),
-                        text_of(texts, "host"),    text_of(texts, "first"),
-                        static_cast<int>(*part),   {host, Time{Duration{*utc}}}};
+  const auto anchor = believable(HostTime{Duration{*raw}}, Time{Duration{*utc}});
+  if (!anchor) return std::nullopt;
+  return RecordingFacts{text_of(texts, "subject"), text_of(texts, "action"), text_of(texts, "host"),
+                        text_of(texts, "first"),   static_cast<int>(*part),  *anchor};
 }
 
 McapMetadata to_metadata(const ExpectedDevices& devices) {
@@ -146,11 +151,13 @@ std::optional<ClockPair> to_clock_pair(std::string_view json) {
     if (!object.is_object() || !object.contains(key) || !object[key].is_number_integer()) {
       return std::nullopt;
     }
+    if (object[key].is_number_unsigned() && object[key].get<std::uint64_t>() > INT64_MAX) {
+      return std::nullopt;
+    }
     return Duration{object[key].get<std::int64_t>()};
   };
   const auto raw = ns("raw_ns"), utc = ns("utc_ns");
-  if (!raw || !utc) return std::nullopt;
-  return ClockPair{HostTime{*raw}, Time{*utc}};
+  return raw && utc ? believable(HostTime{*raw}, Time{*utc}) : std::nullopt;
 }
 
 McapSchema mark_schema() {

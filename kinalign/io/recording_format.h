@@ -72,12 +72,15 @@ inline constexpr std::string_view host_clock_topic = "/clock/host";
 /// What is said to be a channel's content: schema and the text of its JSON.
 McapSchema clock_pair_schema();
 std::string to_json(const ClockPair& pair);
+/// Absent where it is none, or a clock is further than in the facts.
 std::optional<ClockPair> to_clock_pair(std::string_view json);
 
 /// A mark, and who made it: "keyboard", "call" or "trigger"; of the last two the address.
 struct RecordedMark {
   Mark mark;
   std::string source, sender;
+
+  bool operator==(const RecordedMark&) const = default;
 };
 inline constexpr std::string_view marks_topic = "/marks";
 McapSchema mark_schema();

@@ -2,6 +2,8 @@
 #include "kinalign/io/recording_reader.h"
 
 #include <algorithm>
+#include <bit>
+#include <map>
 #include <vector>
 
 namespace kinalign {
@@ -15,11 +17,39 @@ int rank_of(std::string_view protocol) {
   return protocol == "kinect" ? kinect_rank : 2;
 }
 
-/// What a manifest calls one of several that are a stream: trackers are told apart by their
-/// addresses, and who sends no rotation is none; of mocap and Kinects listening finds the one.
-std::string node_name(const RawChannel& raw) {
-  if (raw.protocol == "slimevr") return host_of(raw.sender);
-  return raw.place.empty() ? raw.node : raw.place;
+/// By address: the sensors of SlimeVR's trackers.
+using Trackers = std::map<std::string, std::uint32_t>;
+
+Trackers trackers_in(const RecordingSurvey& survey) {
+  Trackers trackers;
+  for (const ChannelSurvey& one : survey.channels) {
+    if (const auto raw = to_raw(one.channel)) trackers[host_of(raw->sender)] |= one.sensors;
+  }
+  return trackers;
+}
+
+/// What a manifest calls those of several that are a stream: trackers are told apart by their
+/// addresses, and their sensors by numbers behind these, where there are some; of mocap and Kinects
+/// listening finds the one.
+std::vector<std::string> node_names(const RawChannel& raw, const Trackers& trackers) {
+  if (raw.protocol != "slimevr") return {raw.place.empty() ? raw.node : raw.place};
+  const std::string host = host_of(raw.sender);
+  const std::uint32_t sensors = trackers.at(host);
+  if (std::popcount(sensors) < 2) return {host};
+  std::vector<std::string> names;
+  for (unsigned k = 0; k < 32; ++k) {
+    if ((sensors >> k & 1U) != 0) names.push_back(host + "/" + std::to_string(k));
+  }
+  return names;
+}
+
+/// Each name once: a node may have had several addresses.
+void add_nodes(const std::string& path, const std::vector<std::string>& names,
+               std::vector<StreamFile>& files) {
+  for (const std::string& name : names) {
+    const auto same = [&](const StreamFile& file) { return file.node == name; };
+    if (std::none_of(files.begin(), files.end(), same)) files.push_back({path, name});
+  }
 }
 
 }  // namespace
@@ -32,12 +62,13 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
     StreamOptions options;
   };
   std::vector<Device> devices;
-  const bool some_rotates = std::any_of(survey.channels.begin(), survey.channels.end(),
-                                        [](const ChannelSurvey& one) { return one.rotates; });
+  const Trackers trackers = trackers_in(survey);
+  const bool some_rotate = std::any_of(trackers.begin(), trackers.end(),
+                                       [](const auto& tracker) { return tracker.second != 0; });
   for (const ChannelSurvey& one : survey.channels) {
     const auto raw = to_raw(one.channel);
     if (!raw || raw->protocol == exchange_encoding || one.messages == 0) continue;
-    if (raw->protocol == "slimevr" && !one.rotates && some_rotates) continue;
+    if (raw->protocol == "slimevr" && one.sensors == 0 && some_rotate) continue;
     auto device = std::find_if(devices.begin(), devices.end(),
                                [&](const Device& d) { return d.options.name == raw->stream; });
     if (device == devices.end()) {
@@ -45,11 +76,7 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
       device->options.name = raw->stream;
       device->options.select = {{"stream", raw->stream}};
     }
-    std::vector<StreamFile>& streams = device->options.files;
-    std::string node = node_name(*raw);
-    const auto same = [&](const StreamFile& file) { return file.node == node; };
-    if (std::any_of(streams.begin(), streams.end(), same)) continue;
-    streams.push_back({path, std::move(node)});
+    add_nodes(path, node_names(*raw, trackers), device->options.files);
   }
   if (devices.empty()) {
     return Failure(Error{path, 0, "a recording of devices", "one in which none was heard"});

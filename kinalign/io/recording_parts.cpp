@@ -64,6 +64,25 @@ void replace(std::vector<Counted>&& later, const Same& same, std::vector<Counted
   }
 }
 
+void add(const ChannelSurvey& more, ChannelSurvey& channel) {
+  channel.first = std::min(channel.first, more.first);
+  channel.last = std::max(channel.last, more.last);
+  channel.bytes += more.bytes;
+  channel.sensors |= more.sensors;
+}
+
+/// Marks that stand in both files are one.
+void add_marks(RecordingSurvey&& more, RecordingSurvey& survey) {
+  for (auto& [mark, log_time] : more.marks) {
+    const auto same = [time = log_time, &one = mark](const auto& known) {
+      return known.second == time && known.first == one;
+    };
+    if (std::any_of(survey.marks.begin(), survey.marks.end(), same)) continue;
+    survey.marks.emplace_back(std::move(mark), log_time);
+  }
+  survey.more_marks = std::max(survey.more_marks, more.more_marks);
+}
+
 /// What a file that goes on behind adds.
 void add(RecordingSurvey&& more, RecordingSurvey& survey) {
   for (const ChannelSurvey& one : more.channels) {
@@ -72,8 +91,7 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
     if (found == survey.channels.end()) {
       survey.channels.push_back(one);
     } else {
-      found->messages += one.messages;
-      found->rotates |= one.rotates;
+      add(one, *found);
     }
   }
   replace(
@@ -88,6 +106,14 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
       [](const CountedPort& a, const CountedPort& b) { return a.stream == b.stream; },
       survey.ports);
   survey.end = more.end;
+  survey.bytes += more.bytes;
+  survey.unchecked += more.unchecked;
+  survey.torn.insert(survey.torn.end(), more.torn.begin(), more.torn.end());
+  for (const WallClockStep& step : more.steps) {  // one may stand in both
+    if (survey.steps.empty() || step.at > survey.steps.back().at) survey.steps.push_back(step);
+  }
+  append(survey.findings, more.findings);
+  add_marks(std::move(more), survey);
 }
 
 }  // namespace
@@ -115,6 +141,14 @@ void MessageNumbers::add_all(const MessageNumbers& others) {
   for (const auto& [id, stretches] : others.channels_) {
     for (const auto& [begin, end] : stretches) add(channels_[id], begin, end);
   }
+}
+
+std::uint64_t MessageNumbers::present(std::uint16_t channel) const {
+  std::uint64_t present = 0;
+  const auto found = channels_.find(channel);
+  if (found == channels_.end()) return present;
+  for (const auto& [begin, end] : found->second) present += end - begin;
+  return present;
 }
 
 std::uint64_t MessageNumbers::missing(std::uint16_t channel) const {
@@ -257,7 +291,11 @@ Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& pa
   for (auto part = parts.begin() + 1; part != parts.end(); ++part) {
     add(KA_TRY(survey_recording(files, part->path, progress)), survey);
   }
-  for (ChannelSurvey& one : survey.channels) one.missing = numbers.missing(one.channel.id);
+  survey.messages = 0;
+  for (ChannelSurvey& one : survey.channels) {
+    survey.messages += one.messages = numbers.present(one.channel.id);
+    one.missing = numbers.missing(one.channel.id);
+  }
   return survey;
 }
 

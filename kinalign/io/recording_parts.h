@@ -23,6 +23,8 @@ class MessageNumbers {
   bool has(const McapMessage& message) const;
   bool has_all(const MessageNumbers& others) const;
   void add_all(const MessageNumbers& others);
+  /// Of a channel, each once.
+  std::uint64_t present(std::uint16_t channel) const;
   /// Left out between the first and the last of a channel.
   std::uint64_t missing(std::uint16_t channel) const;
 
@@ -64,8 +66,9 @@ Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
 enum class PartsBehind { left, read };
 Findings judge_parts(const RecordingParts& parts, PartsBehind behind);
 
-/// A survey of the first of these with what those behind add to it: channels, numbers that are
-/// missing in all of them, the last counts, the end.
+/// A survey of the first of these with what those behind add to it: channels, their messages, each
+/// once (bytes as they stand in all), numbers that are missing in all of them, the last counts, the
+/// end, marks, steps of the wall clock, which are torn, and what is wrong with any.
 Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& parts,
                                      const Progress& progress);
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <charconv>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -44,6 +45,15 @@ std::string selected(const StreamOptions& options, const char* key, const std::s
   return found == options.select.end() ? otherwise : found->second;
 }
 
+/// "10.0.0.21" and "1" of "10.0.0.21/1", a tracker's sensor; of other nodes this says nothing.
+std::pair<std::string, std::string> tracker_of(const std::string& node) {
+  const auto slash = node.rfind('/');
+  const bool has_sensor = slash != std::string::npos && slash + 1 < node.size() &&
+                          node.find_first_not_of("0123456789", slash + 1) == std::string::npos;
+  if (!has_sensor) return {node, ""};
+  return {node.substr(0, slash), node.substr(slash + 1)};
+}
+
 Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file) {
   for (const auto& [name, value] : options.select) {
     if (name == "stream" || name == "node" || name == "sender" || name == "body") continue;
@@ -56,8 +66,9 @@ Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file)
   wish.trackers = selected(options, "kind", "poses") == "trackers";
   wish.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
                  selected(options, "sender", "")};
-  if (wish.choice.sender.empty()) wish.choice.sender = wish.choice.node;  // of a tracker
-  const std::string body = selected(options, "body", "");
+  const auto [tracker, sensor] = tracker_of(wish.choice.node);
+  if (wish.choice.sender.empty()) wish.choice.sender = tracker;
+  const std::string body = selected(options, "body", sensor);
   if (body.empty()) return wish;
   std::uint64_t id = 0;
   const auto [behind, fault] = std::from_chars(body.data(), body.data() + body.size(), id);

@@ -12,15 +12,17 @@ namespace kinalign {
 
 namespace {
 
-/// A stranger's datagram has none.
-bool has_rotation(std::string_view payload) {
+/// Whose rotations a tracker's datagram brings. A stranger's brings none.
+std::uint32_t rotating_sensors(std::string_view payload) {
+  std::uint32_t sensors = 0;
   SlimeDatagram datagram;
-  if (!decode_slime(octets(payload), datagram)) return false;
-  return std::any_of(datagram.packets.begin(), datagram.packets.end(),
-                     [](const SlimePacket& packet) {
-                       const auto* motion = std::get_if<SlimeMotion>(&packet);
-                       return motion != nullptr && motion->rotation && !motion->is_correction;
-                     });
+  if (!decode_slime(octets(payload), datagram)) return sensors;
+  for (const SlimePacket& packet : datagram.packets) {
+    const auto* motion = std::get_if<SlimeMotion>(&packet);
+    const bool rotates = motion != nullptr && motion->rotation && !motion->is_correction;
+    if (rotates && motion->sensor < 32) sensors |= 1U << motion->sensor;
+  }
+  return sensors;
 }
 
 constexpr std::size_t most_counted = 4096;
@@ -93,7 +95,7 @@ class Surveyor {
     ++channel.messages;
     channel.bytes += message.data.size();
     const bool tracker = channel.channel.message_encoding == "slimevr";
-    if (tracker && !channel.rotates) channel.rotates = has_rotation(message.data);
+    if (tracker) channel.sensors |= rotating_sensors(message.data);
     if (survey_.facts && channel.channel.message_encoding == "json") {
       add_told(channel.channel.topic, message);
     }
@@ -184,7 +186,7 @@ Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progre
       source, reader, [&](const McapRecord& record) { return surveyor.take(record); }, count));
   RecordingSurvey survey = surveyor.finish();
   survey.bytes = bytes;
-  survey.closed = reader.closed();
+  if (!reader.closed()) survey.torn.push_back(source.path);
   survey.findings = reader.findings();
   for (Finding& finding : survey.findings) finding.what.file = source.path;
   return survey;

@@ -26,7 +26,7 @@ struct ChannelSurvey {
   std::uint64_t first = 0, last = 0;      // log time, the least and the greatest, ns
   std::uint64_t missing = 0;              // numbers left out between the first and the last
   std::uint32_t last_number = 0;
-  bool rotates = false;  // of a SlimeVR tracker: a rotation came
+  std::uint32_t sensors = 0;  // of a SlimeVR tracker, a bit each: rotations came of it
 };
 
 struct RecordingSurvey {
@@ -35,7 +35,7 @@ struct RecordingSurvey {
   std::uint64_t messages = 0;
   std::uint64_t unchecked = 0;           // of these without a checksum
   std::uint32_t contents = 0;            // CRC-32 of all messages, see add_to()
-  bool closed = false;                   // index and end are there
+  std::vector<std::string> torn;         // files whose index or end is not there
   std::vector<std::string> attachments;  // names
   std::vector<WallClockStep> steps;      // of the recording machine's wall clock
   ExpectedDevices expected;

@@ -34,6 +34,7 @@ class Copier {
   void begin_part(const RecordingParts& parts, std::size_t part) {
     parts_ = &parts;
     part_ = part;
+    of_earlier_ = names_;
   }
 
   Result<void> take(const McapRecord& record, bool unchecked) {
@@ -54,7 +55,7 @@ class Copier {
       const auto channel = channels_.find(one.channel.id);
       return channel != channels_.end() && one.channel == channel->second;
     };
-    return proof.closed && proof.findings.empty() && proof.messages == recovered.messages &&
+    return proof.torn.empty() && proof.findings.empty() && proof.messages == recovered.messages &&
            proof.contents == contents_ &&
            std::all_of(proof.channels.begin(), proof.channels.end(), known);
   }
@@ -75,12 +76,12 @@ class Copier {
     return {};
   }
   Result<void> add(const McapMetadata& metadata) {
-    if (!written_.insert("metadata " + metadata.name).second) return {};
+    if (is_repeated("metadata " + metadata.name)) return {};
     KA_TRY(close_chunk());
     return writer_.write(metadata);
   }
   Result<void> add(const McapAttachment& attachment) {
-    if (!written_.insert("attachment " + attachment.name).second) return {};
+    if (is_repeated("attachment " + attachment.name)) return {};
     KA_TRY(close_chunk());
     return writer_.write(attachment);
   }
@@ -106,6 +107,13 @@ class Copier {
     if (unchecked_) ++recovered.unchecked;
     return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
   }
+  /// Each file of a recording begins with what the first one says. Within a file records may share
+  /// a name: programs of others write several.
+  bool is_repeated(std::string name) {
+    const bool known = of_earlier_.contains(name);
+    names_.insert(std::move(name));
+    return known;
+  }
   template <class Other>
   Result<void> add(const Other&) {
     return {};  // the summary is made anew
@@ -123,9 +131,27 @@ class Copier {
   const RecordingParts* parts_ = nullptr;
   std::size_t part_ = 0;
   std::uint32_t contents_ = 0;
-  std::set<std::string> written_;
+  std::set<std::string> names_, of_earlier_;  // of metadata and attachments; those of earlier files
   McapChunkContent chunk_;
 };
+
+Result<void> copy_part(FileSystem& files, const RecordingParts& parts, std::size_t part,
+                       Copier& copier, const Progress& progress) {
+  Recovered& recovered = copier.recovered;
+  const std::string& path = parts[part].path;
+  McapReader reader;
+  copier.begin_part(parts, part);
+  const std::uint64_t unchecked_before = recovered.unchecked;
+  KA_TRY(read_recording(
+      files, path, reader,
+      [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); }, progress));
+  if (reader.all_checked()) recovered.unchecked = unchecked_before;
+  for (Finding finding : reader.findings()) {
+    finding.what.file = path;
+    recovered.findings.push_back(std::move(finding));
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -136,31 +162,20 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   if (paths.size() > 1) parts = KA_TRY(read_parts(files, paths, progress));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   Copier copier(file);
-  Recovered& recovered = copier.recovered;
   for (std::size_t part = 0; part < parts.size(); ++part) {
-    const std::string& path = parts[part].path;
-    McapReader reader;
-    copier.begin_part(parts, part);
-    const std::uint64_t unchecked_before = recovered.unchecked;
-    KA_TRY(read_recording(
-        files, path, reader,
-        [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); },
-        progress));
-    if (reader.all_checked()) recovered.unchecked = unchecked_before;
-    for (Finding finding : reader.findings()) {
-      finding.what.file = path;
-      recovered.findings.push_back(std::move(finding));
-    }
+    KA_TRY(copy_part(files, parts, part, copier, progress));
   }
   KA_TRY(copier.finish());
 
   std::string buffer;
+  Recovered& recovered = copier.recovered;
   recovered.proof = KA_TRY(survey_recording(pieces_of(file, copier.size(), buffer), progress));
   const RecordingSurvey& proof = recovered.proof;
   if (!copier.proved_by(proof)) {
-    return Failure(Error{out, 0, std::to_string(recovered.messages) + " messages, read again",
-                         std::to_string(proof.messages) +
-                             (proof.closed ? ", not all as they were written" : " and no end")});
+    return Failure(
+        Error{out, 0, std::to_string(recovered.messages) + " messages, read again",
+              std::to_string(proof.messages) +
+                  (proof.torn.empty() ? ", not all as they were written" : " and no end")});
   }
   KA_TRY(file.commit());
   return std::move(recovered);

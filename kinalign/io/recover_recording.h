@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A torn recording, or one that a bad disk split over several files, made into one whole file:
-// every message that can be read, once, with an index. What was written is read again to prove it:
-// as many messages, and the same numbers, times and payloads.
+// every message that can be read, once, all metadata and attachments, with an index. What was
+// written is read again to prove it: as many messages, and the same numbers, times and payloads.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -15,11 +15,12 @@ namespace kinalign {
 
 struct Recovered {
   std::uint64_t messages = 0;
-  std::uint64_t unchecked = 0;  // of these no checksum covers: from a torn end, or outside of chunks
-  std::uint64_t twice = 0;      // stood in two files; the later one's were taken
-  std::uint64_t nameless = 0;   // left out: the definition of their channel is lost
-  RecordingSurvey proof;        // of the new file
-  Findings findings;            // of the old ones
+  /// Of these no checksum covers: from a torn end, or outside of chunks.
+  std::uint64_t unchecked = 0;
+  std::uint64_t twice = 0;     // stood in two files; the later one's were taken
+  std::uint64_t nameless = 0;  // left out: the definition of their channel is lost
+  RecordingSurvey proof;       // of the new file
+  Findings findings;           // of the old ones
 };
 
 /// `paths`: the recording's files in any order; fails where they are not all of one. Nothing stands

@@ -186,6 +186,22 @@ class JsonChannels {
   std::map<std::uint16_t, std::uint16_t> copied_;  // its id -> ours
 };
 
+/// Of what stands in two files the later one's.
+Result<void> copy_json(FileSystem& files, const RecordingParts& parts, const Progress& progress,
+                       ShownFile& shown) {
+  JsonChannels channels(shown);
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    McapReader reader;
+    const auto take = [&](const McapRecord& record) -> Result<void> {
+      const auto* message = std::get_if<McapMessage>(&record);
+      if (message != nullptr && stands_later(parts, part, *message)) return {};
+      return channels.take(record);
+    };
+    KA_TRY(read_recording(files, parts[part].path, reader, take, progress));
+  }
+  return {};
+}
+
 /// All streams by turns, in the order of their samples' times.
 Result<void> show_streams(const std::vector<RecordedStream>& recorded, ShownFile& shown,
                           const Progress& progress) {
@@ -216,12 +232,7 @@ Result<Shown> show_recording(FileSystem& files, const Recording& recording, cons
   ShownFile shown(file);
   KA_TRY(shown.begin());
   KA_TRY(show_streams(recording.streams, shown, progress));
-  if (!paths.from.empty()) {
-    McapReader reader;
-    JsonChannels channels(shown);
-    KA_TRY(read_recording(files, paths.from, reader,
-                          [&](const McapRecord& record) { return channels.take(record); }));
-  }
+  KA_TRY(copy_json(files, paths.from, progress, shown));
   KA_TRY(shown.finish());
   KA_TRY(file.commit());
   return shown.counts();

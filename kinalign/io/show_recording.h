@@ -5,6 +5,7 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
+#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/shown_file.h"
 #include "kinalign/take/recording.h"
 
@@ -13,7 +14,8 @@
 namespace kinalign {
 
 struct ShowFiles {
-  std::string from;  // a recording whose JSON channels (marks, counts, clocks) are copied; or empty
+  RecordingParts
+      from;  // a recording's files: their JSON channels (marks, counts, clocks) are copied
   std::string out;
   Overwrite overwrite = Overwrite::no;
 };

@@ -85,7 +85,8 @@ class SlimeSamples {
 
 class SlimeListener final : public DeviceListener {
  public:
-  explicit SlimeListener(const DeviceWish& wish) : file_(wish.file.path), samples_(wish.body) {}
+  explicit SlimeListener(const DeviceWish& wish)
+      : file_(wish.file.path), any_sensor_(!wish.body), samples_(wish.body) {}
 
   void take(const RecordedMessage& message) override {
     taken_.clear();
@@ -96,21 +97,24 @@ class SlimeListener final : public DeviceListener {
 
   Result<void> finish(HeardDevice& heard) override {
     if (rotations_ == 0) return Failure(Error{file_, 0, "rotations of a SlimeVR tracker", "none"});
-    heard.by_arrival = true;
+    stamp_by_arrival(file_, heard);
     // Few of many have one where the tracker sends them now and then: then they are no stream's.
     heard.content = {true, 2 * accelerations_ > rotations_, false, false};
-    if (samples_.sensors.size() > 1) {
+    if (any_sensor_ && samples_.sensors.size() > 1) {
       heard.findings.push_back(
           {Severity::warning,
            Error{file_, 0, "one sensor of tracker " + host_of(heard.channel.sender),
                  fmt::format("{} of them", samples_.sensors.size())},
-           "the first that was heard was read", "select.body names another, by its number"});
+           "the first that was heard was read",
+           fmt::format("{}/{} as a node's name, say, is one", host_of(heard.channel.sender),
+                       *samples_.sensors.rbegin())});
     }
     return {};
   }
 
  private:
   std::string file_;
+  bool any_sensor_;
   SlimeSamples samples_;
   std::vector<SlimeSample> taken_;
   std::uint64_t rotations_ = 0, accelerations_ = 0;

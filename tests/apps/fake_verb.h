@@ -85,6 +85,9 @@ struct Machine {
   int out = -1;  // where stdout goes; -1: to Outcome::out
 
   Outcome run(const Job& job, const std::vector<std::string>& words) const {
+    return run_verb(mix_verb(job), words);
+  }
+  Outcome run_verb(const Verb& verb, const std::vector<std::string>& words) const {
     PosixFiles files;
     const int held_out = ::memfd_create("out", 0);
     const int err = ::memfd_create("err", 0);
@@ -100,7 +103,7 @@ struct Machine {
                                     .out_is_terminal = out_is_terminal,
                                     .err_is_terminal = err_is_terminal,
                                     .files = files};
-    Outcome outcome{run_program({mix_verb(job)}, words, surroundings), "", ""};
+    Outcome outcome{run_program({verb}, words, surroundings), "", ""};
     outcome.out = all_of(held_out);
     outcome.err = all_of(err);
     ::close(held_out);

@@ -80,7 +80,9 @@ TEST_CASE("what is wrong with a device is told with its line and the nearest kno
   CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nnodes = { waist = \"Hips\" }\n") ==
         "labs/lab.toml:1: expected a node's id, a whole number, as the key in nodes, found waist");
   CHECK(error_of("[device.a]\nprotocol = \"kinect\"\nskeleton = \"a.bvh\"\n") ==
-        "labs/lab.toml:1: expected skeleton of noitom or xsens alone, found of kinect");
+        "labs/lab.toml:1: expected skeleton of noitom alone, found of kinect");
+  CHECK(error_of("[device.a]\nprotocol = \"xsens\"\nskeleton = \"a.bvh\"\n") ==
+        "labs/lab.toml:1: expected skeleton of noitom alone, found of xsens");
   CHECK(error_of("device = 3\n") == "labs/lab.toml:1: expected device as a table, found a number");
   CHECK(error_of("[device.a\n").starts_with("labs/lab.toml:1: expected TOML, found a fault in it"));
 }
@@ -96,8 +98,8 @@ TEST_CASE("what a flag says of a device's port wins, and leaves what else is kno
   CHECK(lab.devices[1].name == "imu");
 }
 
-TEST_CASE("a device has a name that may stand on a screen and is none of our own ports'") {
-  for (const std::string name : {"m\x1b[2J", "m\nx", "marks", "trigger"}) {
+TEST_CASE("a device has a name that may stand on a screen and is none of the recorder's own") {
+  for (const std::string name : {"m\x1b[2J", "m\nx", "marks", "trigger", "clock", "counts"}) {
     CAPTURE(name);
     Lab lab;
     lab.devices = {*parse_device("mocap=noitom:7012")};

@@ -3,10 +3,13 @@
 #include "tests/seeds.h"
 
 #include "kinalign/io/crc.h"
+#include "kinalign/io/little_endian.h"
 #include "kinalign/io/mcap_reader.h"
 #include "kinalign/io/mcap_writer.h"
 
 #include <doctest/doctest.h>
+
+#include <ctime>
 
 namespace kinalign {
 
@@ -24,6 +27,33 @@ bool are_the_first(const std::vector<OwnedMessage>& messages) {
     }
   }
   return true;
+}
+
+/// At each seventh byte a chunk could begin whose compression has a name of 2 MiB.
+std::string named_chunks(std::size_t size) {
+  std::string bytes;
+  while (bytes.size() < size) bytes += std::string("\6\1\0\0\x20\0\1", 7);
+  return bytes;
+}
+
+/// Chunks of a byte, as they say, in each of which all that stands behind its head is stored.
+std::string nested_chunks(std::size_t size) {
+  const std::string_view none;
+  std::string head;
+  append_mcap(head, McapChunkHead{0, 0, 1, 0, ""}, none);
+  std::string bytes;
+  for (std::size_t left = size; left > head.size();) {
+    left -= head.size();
+    put_little(static_cast<std::uint64_t>(left + McapChunkView::fields), head.data() + 1);
+    put_little(static_cast<std::uint64_t>(left), head.data() + head.size() - 8);
+    bytes += head;
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+double processor_seconds() {
+  return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
 }
 
 template <class T>
@@ -194,6 +224,21 @@ TEST_CASE("a chunk that states more than it holds takes no memory for it") {
   CHECK(read.findings[0].what.expected == "a chunk of 209715200 bytes");
   CHECK(read.findings[1].what.expected == "a chunk of at most 256 MiB");
   CHECK(read.findings[2].what.found.starts_with("brotli"));
+}
+
+TEST_CASE("a file made to be searched for ever is searched in a moment") {
+  constexpr std::size_t size = std::size_t{8} << 20;
+  for (const std::string& rubbish : {named_chunks(size), nested_chunks(size)}) {
+    std::string bytes(mcap_magic);
+    bytes += static_cast<char>(McapOp::message);
+    append_little(std::uint64_t{200} << 20, bytes);  // longer than the file: chunks are looked for
+    const double begin = processor_seconds();
+    const ReadMcap read = read_mcap(bytes + rubbish);
+    CHECK(processor_seconds() - begin < 5.0);  // without limits it is up to a minute
+    CHECK(read.messages.empty());
+    REQUIRE(read.findings.size() == 1);
+    CHECK(read.findings[0].what.found.starts_with("the file's end in the midst of one"));
+  }
 }
 
 TEST_CASE("rubbish of any kind ends in findings") {

@@ -198,7 +198,8 @@ class RecordedLab {
   /// A SlimeVR tracker's packets of type 23, a hundred a second: an acceleration whose x, in steps
   /// of 1/128 m/s2, is as near to the time as that goes. `forged`: the number of one in the middle
   /// that isn't the tracker's.
-  void add_tracker(const std::string& host, double to, std::uint64_t forged = 0) {
+  void add_tracker(const std::string& host, double to, std::uint64_t forged = 0,
+                   std::uint8_t sensors = 1) {
     const auto channel_id = channel(
         to_channel("/slime/raw/" + host, {"slime", "slimevr", "udp", host + ":6969", "", ""}));
     if (forged > 0) add(channel_id, to / 2.0, tracker_packet(forged, to / 2.0));
@@ -206,7 +207,10 @@ class RecordedLab {
     for (std::uint32_t k = 0; k < 100.0 * to; ++k) {
       const double t = 0.01 * k;
       last = std::max(last, t + way());  // no overtaking
-      add(channel_id, last, tracker_packet(std::uint64_t{k} + 1, t));
+      for (std::uint8_t sensor = 0; sensor < sensors; ++sensor) {
+        const std::uint64_t number = std::uint64_t{k} * sensors + sensor + 1;
+        add(channel_id, last, tracker_packet(number, t, sensor));
+      }
     }
   }
 
@@ -230,14 +234,14 @@ class RecordedLab {
     add(*marks_, t, to_json(RecordedMark{mark, "call", "10.0.0.9:40000"}));
   }
 
-  static std::string tracker_packet(std::uint64_t number, double t) {
+  static std::string tracker_packet(std::uint64_t number, double t, std::uint8_t sensor = 0) {
     std::string bytes;
     const auto put = [&bytes](std::uint64_t value, int size) {
       for (int i = size - 1; i >= 0; --i) bytes += static_cast<char>(value >> 8 * i);
     };
     put(23, 4);
     put(number, 8);
-    put(0, 1);
+    put(sensor, 1);
     for (const int part : {0, 0, 0, 32767}) put(static_cast<std::uint64_t>(part), 2);
     for (const auto a : {std::llround(128.0 * t), 0LL, 0LL}) put(static_cast<std::uint64_t>(a), 2);
     return bytes;
@@ -268,7 +272,7 @@ class RecordedLab {
         const std::uint16_t id = message->channel;
         const std::uint32_t number = numbers[id]++;
         if (message->arrival < part.from || message->arrival >= part.to) continue;
-        if (!content.messages().contains(id)) content.add(channels_[id - 1U]);
+        if (!content.messages().contains(id)) define(channels_[id - 1U], content);
         const auto log =
             static_cast<std::uint64_t>(utc_begin + std::llround(1e9 * message->arrival));
         content.add(McapMessage{id, number, log, log, message->data});
@@ -304,6 +308,16 @@ class RecordedLab {
     for (std::size_t i = each - 1; i < messages_.size(); i += each) messages_[i].arrival += by_s;
   }
 
+  /// Messages come by twos in one, when the later one was to come.
+  void join_pairs() {
+    std::vector<Message> joined;
+    for (std::size_t i = 1; i < messages_.size(); i += 2) {
+      joined.push_back(messages_[i]);
+      joined.back().data = messages_[i - 1].data + messages_[i].data;
+    }
+    messages_ = std::move(joined);
+  }
+
   static HostTime host(double t) { return HostTime{Duration{host_begin + std::llround(1e9 * t)}}; }
   /// When a moment of the recording was.
   static Time utc(double t) { return utc_time(utc_begin + std::llround(1e9 * t)); }
@@ -316,8 +330,13 @@ class RecordedLab {
   };
   std::uint16_t channel(McapChannel described) {
     described.id = static_cast<std::uint16_t>(channels_.size() + 1);
+    if (described.message_encoding == "json") described.schema_id = described.id;
     channels_.push_back(std::move(described));
     return channels_.back().id;
+  }
+  static void define(const McapChannel& channel, McapChunkContent& content) {
+    if (channel.schema_id != 0) content.add(McapSchema{channel.schema_id, "any", "jsonschema", ""});
+    content.add(channel);
   }
   void add(std::uint16_t channel, double arrival, std::string data) {
     messages_.push_back({channel, arrival, std::move(data)});

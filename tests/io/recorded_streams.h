@@ -42,6 +42,14 @@ inline std::vector<std::string> warnings(const RecordedStream& stream) {
   return texts;
 }
 
+/// Whether a note says that its stamps are arrivals.
+inline bool says_arrivals(const RecordedStream& stream) {
+  return std::any_of(stream.findings.begin(), stream.findings.end(), [](const Finding& one) {
+    return one.severity == Severity::note &&
+           one.meaning == "stamps are arrivals, late by unknown times";
+  });
+}
+
 /// How far a stream's stamps are behind the truth that its samples carry, ms.
 struct Errors {
   double least = 1e9, most = -1e9, widest = 0.0;  // and the widest half-width

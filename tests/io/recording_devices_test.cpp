@@ -166,6 +166,38 @@ TEST_CASE("a stranger at the trackers' port is no node of the manifest") {
   CHECK(manifest->streams.front().files.front().node == "10.0.0.21");
 }
 
+TEST_CASE("each sensor of a tracker that has several is a node") {
+  const FreshFolder folder;
+  RecordedLab lab(20261124);
+  lab.add_tracker("10.0.0.21", 20.0, 0, 2);
+  lab.add_tracker("10.0.0.22", 20.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto manifest = manifest_of(*survey_recording(files, path), path);
+  REQUIRE(manifest);
+  REQUIRE(manifest->streams.size() == 1);
+  std::vector<std::string> nodes;
+  for (const StreamFile& file : manifest->streams.front().files) nodes.push_back(file.node);
+  CHECK(nodes == std::vector<std::string>{"10.0.0.21/0", "10.0.0.21/1", "10.0.0.22"});
+  const auto streams = open_streams(files, manifest->streams);
+  REQUIRE(streams);
+  REQUIRE(streams->size() == 3);
+  for (const RecordedStream& stream : *streams) {
+    CHECK(stream.findings.size() == 1);
+    CHECK(says_arrivals(stream));
+    CHECK(node_errors(stream).samples == 2000);
+  }
+  CHECK(std::get<ImuInput>((*streams)[1].data).node_names ==
+        std::vector<std::string>{"10.0.0.21/1"});
+  // Whoever asks for the tracker alone is told of the others.
+  const RecordedStream first = opened(files, stream_named("slime", path, "10.0.0.21"));
+  REQUIRE(warnings(first).size() == 1);
+  CHECK(warnings(first).front() ==
+        path +
+            ": expected one sensor of tracker 10.0.0.21, found 2 of them; the first that was "
+            "heard was read");
+}
+
 TEST_CASE("of two sources on one host that speak in turn one is read, and either by its port") {
   const FreshFolder folder;
   PosixFiles files;

@@ -109,6 +109,37 @@ TEST_CASE("of a recording's files it is said which are not there or were not rea
   CHECK(judged(lab.write("other.mcap", {})).empty());
 }
 
+TEST_CASE(
+    "what is wrong with a later file is found with the first, what stands twice counts once") {
+  const FreshFolder folder;
+  TornLab lab(folder);
+  lab.lab().add_clock(40.0, 33.0, 2.0);  // the wall clock is set in the second file
+  lab.lab().add_mark(24.7, {Mark::Kind::t_pose, "", {}, ""});
+  lab.lab().add_mark(31.0, {Mark::Kind::stop, "", {}, ""});
+  PosixFiles files;
+  const std::string path = lab.first();
+  const std::string second = lab.second();
+  const auto survey = [&] { return *survey_parts(files, *parts_from(files, path, {}), {}); };
+  const RecordingSurvey whole = survey();
+  CHECK(whole.torn.empty());
+  CHECK(whole.findings.empty());
+  CHECK(whole.steps.size() == 1);
+  REQUIRE(whole.marks.size() == 2);
+  CHECK(whole.marks.back().first.mark.kind == Mark::Kind::stop);
+  std::uint64_t messages = 0;
+  for (const ChannelSurvey& one : whole.channels) messages += one.messages;
+  CHECK(whole.messages == messages);
+  CHECK(whole.bytes == folder.read("take.mcap").size() + folder.read("take.part2.mcap").size());
+
+  std::string bytes = folder.read("take.part2.mcap");
+  bytes[bytes.size() / 2] ^= 1;
+  folder.write("take.part2.mcap", bytes.substr(0, bytes.size() - 100));
+  const RecordingSurvey broken = survey();
+  CHECK(broken.torn == std::vector<std::string>{second});
+  REQUIRE(!broken.findings.empty());
+  CHECK(broken.findings.front().what.file == second);
+}
+
 TEST_CASE("what is missing of a recording is what no file of it has") {
   const FreshFolder folder;
   TornLab lab(folder);

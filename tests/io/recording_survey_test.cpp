@@ -131,6 +131,24 @@ TEST_CASE("marks beyond what is looked at are counted") {
   CHECK(survey.more_marks == 3);
 }
 
+TEST_CASE("a reading of the host's clocks that can't be is passed over") {
+  const std::string pair = R"({"raw_ns": 1001000000000, "utc_ns": 1700000001000000000})";
+  REQUIRE(to_clock_pair(pair));
+  CHECK(to_json(*to_clock_pair(pair)) == pair);
+  Told told;
+  told.add(4, host_clock_topic, pair);
+  for (const char* wild : {R"({"raw_ns": -9000000000000000000, "utc_ns": 9000000000000000000})",
+                           R"({"raw_ns": 18446744073709551615, "utc_ns": 1700000002000000000})",
+                           R"({"raw_ns": 1002000000000, "utc_ns": -1})",
+                           R"({"raw_ns": 1002000000000, "utc_ns": 4000000000000000001})",
+                           R"({"raw_ns": 1000000000000000001, "utc_ns": 1700000002000000000})"}) {
+    CAPTURE(wild);
+    CHECK(!to_clock_pair(wild));
+    told.add(4, host_clock_topic, wild);
+  }
+  CHECK(told.survey().steps.empty());
+}
+
 TEST_CASE("what is no count is none, and what is missing of one is 0") {
   CHECK(!to_counted_sender("no JSON"));
   CHECK(!to_counted_sender("[1]"));

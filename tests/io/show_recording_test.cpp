@@ -6,6 +6,7 @@
 #include "tests/io/xdf_cases.h"
 
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/show_xdf.h"
 #include "kinalign/io/shown_rows.h"
@@ -14,6 +15,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -50,25 +52,32 @@ double seconds_of(std::uint64_t log_time) {
   return 1e-9 * static_cast<double>(static_cast<std::int64_t>(log_time) - RecordedLab::utc_begin);
 }
 
-/// A lab of three devices as it is shown.
-std::map<std::string, std::vector<ShownMessage>> shown_lab(const FreshFolder& folder) {
-  RecordedLab lab(20261123);
-  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 20.0);
-  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 20.0);
-  lab.add_mocap(NoitomForm::new_header, "udp", 20.0);
+/// A recording, with the files that it went on in, as it is shown.
+std::map<std::string, std::vector<ShownMessage>> shown_recording(const FreshFolder& folder,
+                                                                 const std::string& path) {
   PosixFiles files;
-  const std::string path = folder.write("take.mcap", lab.file());
-  const auto survey = survey_recording(files, path);
+  const auto parts = parts_from(files, path, {});
+  REQUIRE(parts);
+  const auto survey = survey_parts(files, *parts, {});
   REQUIRE(survey);
   const auto manifest = manifest_of(*survey, "take.mcap");
   REQUIRE(manifest);
   const auto recording = open_recording(files, *manifest, folder.path() + "/");
   REQUIRE(recording);
   const std::string out = folder / "shown.mcap";
-  const auto shown = show_recording(files, *recording, {path, out, Overwrite::no});
+  const auto shown = show_recording(files, *recording, {*parts, out, Overwrite::no});
   REQUIRE(shown);
   CHECK(shown->out_of_range == 0);
   return messages_in(out);
+}
+
+/// A lab of three devices as it is shown.
+std::map<std::string, std::vector<ShownMessage>> shown_lab(const FreshFolder& folder) {
+  RecordedLab lab(20261123);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 20.0);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 20.0);
+  lab.add_mocap(NoitomForm::new_header, "udp", 20.0);
+  return shown_recording(folder, folder.write("take.mcap", lab.file()));
 }
 
 }  // namespace
@@ -110,6 +119,24 @@ TEST_CASE("skeletons are frame transforms, at most 30 a second, from the world t
     while (at != "world" && ++steps < 100) at = parents.at(at);
     CHECK(steps == (stream == "mocap" ? 60 : 9));
   }
+}
+
+TEST_CASE("of a recording in parts the marks and clocks of all are shown, each once") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 10.0);
+  lab.add_clock(10.0, 1e9, 0.0);
+  for (const double t : {1.0, 5.75, 9.0}) {
+    lab.add_mark(t, {Mark::Kind::text, std::to_string(t), std::nullopt, ""});
+  }
+  const std::string path = folder.write("take.mcap", lab.file({1, -1e9, 6.0}));
+  folder.write("take.part2.mcap", lab.file({2, 5.5, 1e9}));  // half a second stands in both
+  auto shown = shown_recording(folder, path);
+  REQUIRE(shown["/marks"].size() == 3);
+  for (const std::size_t k : {0U, 1U, 2U}) {
+    CHECK(shown["/marks"][k].json["text"] == std::to_string(std::array{1.0, 5.75, 9.0}[k]));
+  }
+  CHECK(shown["/clock/host"].size() == 10);
 }
 
 TEST_CASE("a Kinect's joint hangs past a missing one, where it was") {

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// What check says of a recording's survey.
+#include "apps/kinalign/describe_file.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+using namespace kinalign;
+
+namespace {
+
+/// A whole recording of one Kinect.
+RecordingSurvey kinect_survey(std::uint64_t counted, std::uint64_t present, std::uint64_t missing) {
+  RecordingSurvey survey;
+  survey.facts.emplace();
+  survey.facts->part = 1;
+  survey.end = RecordingEnd{};
+  ChannelSurvey channel;
+  channel.channel.topic = "/kinect/raw";
+  channel.messages = present;
+  channel.missing = missing;
+  survey.channels.push_back(channel);
+  CountedSender sender;
+  sender.topic = "/kinect/raw";
+  sender.stream = "kinect";
+  sender.counts.messages = counted;
+  survey.senders.push_back(sender);
+  return survey;
+}
+
+std::string judged(const RecordingSurvey& survey) {
+  std::string all;
+  for (const Finding& finding : judge_survey("a.mcap", survey)) {
+    all += finding.what.expected + ": " + finding.what.found + "\n";
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("what the recorder counted and the file lacks is found, at its ends too") {
+  CHECK(judged(kinect_survey(1000, 1000, 0)).empty());
+  CHECK(judged(kinect_survey(1000, 1010, 0)).empty());  // ten came behind the last count
+  CHECK(judged(kinect_survey(1000, 993, 0)) ==
+        "the 1,000 messages on /kinect/raw that were counted: 7 missing\n");
+  CHECK(judged(kinect_survey(1000, 993, 7)) ==
+        "/kinect/raw without a number left out: 7 missing\n");
+  CHECK(judged(kinect_survey(1000, 990, 7)) ==
+        "/kinect/raw without a number left out: 7 missing\n"
+        "the 1,000 messages on /kinect/raw that were counted: 3 missing\n");
+}
+
+TEST_CASE("a topic that has nothing at all is missed, several of one name are one") {
+  RecordingSurvey none = kinect_survey(5, 0, 0);
+  none.channels.clear();
+  CHECK(judged(none) == "the 5 messages on /kinect/raw that were counted: 5 missing\n");
+  RecordingSurvey two = kinect_survey(10, 6, 0);
+  two.channels.push_back(two.channels.front());
+  CHECK(judged(two).empty());
+}
+
+TEST_CASE("a later part by itself, which counts from the recording's beginning, lacks nothing") {
+  RecordingSurvey part = kinect_survey(1000, 10, 0);
+  part.facts->part = 2;
+  CHECK(judged(part).empty());
+}
