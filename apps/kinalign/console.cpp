@@ -116,7 +116,7 @@ void Console::print(std::string_view text) {
 }
 
 void Console::print_json(std::string_view object, int version) {
-  if (!common_.json) return;
+  if (!prints_json()) return;
   if (const std::uint64_t missed = out_.take_dropped()) {
     put_json(fmt::format(R"({{"event": "missed", "lines": {}}})", missed), version);
   }

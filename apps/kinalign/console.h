@@ -43,6 +43,8 @@ class Console {
   /// What --json asks for: `object` is the text "{...}" of a JSON object, which gets
   /// "schema": "kinalign.<verb>/<version>" as its first member. Silent without --json.
   void print_json(std::string_view object, int version = 1);
+  /// Whether print_json() prints anything: what is told each second is made only then.
+  bool prints_json() const { return common_.json; }
 
   /// Text that is the result itself (a man page, a completion): on stdout whatever the flags.
   void put(std::string_view text);

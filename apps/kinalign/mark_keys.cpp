@@ -32,6 +32,21 @@ std::optional<Mark::Kind> kind_of(char key) {
 
 }  // namespace
 
+/// ECMA-48: Esc [, parameters below 0x40, a last character; Esc O and one character.
+std::string single_keys(std::string_view sent) {
+  std::string keys;
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    const char next = sent[i] == escape && i + 1 < sent.size() ? sent[i + 1] : '\0';
+    if (next != '[' && next != 'O') {
+      keys += sent[i];
+      continue;
+    }
+    i += 2;
+    while (next == '[' && i < sent.size() && sent[i] >= 0x20 && sent[i] < 0x40) ++i;
+  }
+  return keys;
+}
+
 std::optional<std::pair<Mark, HostTime>> MarkKeys::take(char key, HostTime now) {
   if (!text_) {
     if (is_enter(key)) text_ = Text{"", now};
@@ -69,8 +84,9 @@ Keyboard::Keyboard() {
   ::tcsetattr(STDIN_FILENO, TCSANOW, &mode);
 }
 
-Keyboard::~Keyboard() {
+void Keyboard::leave() {
   if (before_) ::tcsetattr(STDIN_FILENO, TCSANOW, &*before_);
+  before_.reset();
 }
 
 std::optional<int> Keyboard::fd() const {

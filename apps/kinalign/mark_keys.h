@@ -9,12 +9,16 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace kinalign {
 
 inline constexpr const char* mark_keys_text =
     "s start  e stop  t T-pose  Enter a text  Ctrl-C ends";
+
+/// Of what a terminal sent at once the single keys: an arrow, say, is Esc and more, and none.
+std::string single_keys(std::string_view sent);
 
 class MarkKeys {
  public:
@@ -38,10 +42,12 @@ class Keyboard {
   Keyboard();
   Keyboard(const Keyboard&) = delete;
   Keyboard& operator=(const Keyboard&) = delete;
-  ~Keyboard();
+  ~Keyboard() { leave(); }
 
   /// To wait for; absent: no keys come.
   std::optional<int> fd() const;
+  /// The terminal is as it was before, and no keys come any more.
+  void leave();
   /// What was pressed since.
   std::string read();
 

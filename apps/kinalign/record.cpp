@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <set>
 #include <utility>
@@ -172,17 +173,32 @@ Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
   return options;
 }
 
+/// Of a disk that stands still, and with which somebody has lost patience. Its threads work on with
+/// what main() has made, so nothing of that may end before the process does.
+[[noreturn]] void leave(Console& console, Stage& stage, const Error& why) {
+  console.report(why);
+  (void)console.finish();
+  stage.leave();
+  std::_Exit(failed);
+}
+
 /// A take: whether nothing of it is amiss, as an exit code.
 Result<int> record_take(const Record& o, Call& call, RecordingSession& session, Stage& stage) {
   RecordHerald& herald = stage.herald();
-  const std::string path = free_take_path(call.common.out, o.subject, o.action);
-  KA_TRY(session.start(path, o.subject, o.action));
+  const auto free_path = [folder = call.common.out, subject = o.subject, action = o.action] {
+    return free_take_path(folder, subject, action);
+  };
+  if (!stage.begin(free_path, o.subject, o.action)) {
+    leave(call.console, stage,
+          Error{call.common.out, 0, "a disk that begins a file", "one that stands still"});
+  }
+  const DiskStatus begun = *session.disk();
+  if (begun.paths.empty()) return Failure(*begun.refused);
+  const std::string& path = begun.paths.front();
   herald.tell_start(path);
   if (!stage.record({o.seconds, o.wait})) {
-    session.leave_disk();
-    call.console.report(
-        Error{path, 0, "a disk that takes the end of the take", "one that stands still"});
-    return failed;
+    leave(call.console, stage,
+          Error{path, 0, "a disk that takes the end of the take", "one that stands still"});
   }
   herald.tell_end();
   const DiskStatus disk = *session.disk();
@@ -234,8 +250,8 @@ Verb record_verb() {
        .summary = "devices into a recording, nothing lost",
        .text =
            "Receives, stamps and stores until Ctrl-C what devices send. The file (MCAP) is "
-           "whole up to the last quarter of a second at any time, whatever becomes of the "
-           "program; no file is ever overwritten. Protocols: nodes, noitom, xsens, kinect, "
+           "whole up to the last second at any time, whatever becomes of the program, on a disk "
+           "that keeps up; no file is ever overwritten. Protocols: nodes, noitom, xsens, kinect, "
            "slimevr; transports: udp, tcp (to the device's address), tcp-listen. On a terminal "
            "keys make marks: s start, e stop, t T-pose, Enter begins and ends a text. Exit code "
            "1 where the disk failed and the recording went on in another file, or was nearly "

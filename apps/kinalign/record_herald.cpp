@@ -57,12 +57,14 @@ LabStatus RecordHerald::lab_status() const {
 }
 
 void RecordHerald::tell_waiting() {
+  ports_told_ = true;
   console_.print(harmless(fmt::format("waiting for a start\n  {}\n", ports_text(session_))));
   console_.print_json(json_text(Json{{"event", "waiting"}, {"ports", ports_of(session_)}}));
   console_.flush();
 }
 
 void RecordHerald::tell_start(const std::string& path) {
+  ports_told_ = true;
   path_ = path;
   forecast_ = {};
   dropped_told_ = 0;
@@ -87,7 +89,7 @@ void RecordHerald::tell(const HeardMark& heard) {
 
 void RecordHerald::look(const std::optional<std::string>& typed) {
   const HostTime now = session_.now();
-  if (now < next_look_) return;
+  if (!ports_told_ || now < next_look_) return;
   next_look_ = now + 100ms;
   tell_news();
   const bool second = now >= next_second_;
@@ -98,7 +100,8 @@ void RecordHerald::look(const std::optional<std::string>& typed) {
     if (session_.recording()) look_at_disk(now);
     tell_who_lacks(status);
     tell_who_is_silent(status);
-    tell_status(status);
+    if (console_.prints_json()) tell_status(status);
+    console_.flush();
   }
   show(status, typed);
 }
@@ -168,20 +171,12 @@ void RecordHerald::tell_who_lacks(const LabStatus& status) {
   }
 }
 
-/// Each that falls silent, with a bell, or comes back, once.
+/// Each that falls silent, with a bell, or comes back.
 void RecordHerald::tell_who_is_silent(const LabStatus& status) {
-  for (const StreamStatus& stream : newest_of_each(status.streams)) {
-    const std::string who = name_of(stream) + " from " + stream.sender;
-    const bool silent = status.now - stream.heard >= silent_after;
-    const bool told = silent_.contains(who);
-    if (silent == told) continue;
-    if (silent) {
-      silent_.insert(who);
-      console_.ring();
-    } else {
-      silent_.erase(who);
-    }
-    console_.note(harmless(fmt::format("{} {}", who, silent ? "fell silent" : "is back")));
+  for (const auto& [stream, silent] : silence_news_.changes(status)) {
+    if (silent) console_.ring();
+    console_.note(harmless(fmt::format("{} from {} {}", kinalign::name_of(stream), stream.sender,
+                                       silent ? "fell silent" : "is back")));
     Json event{{"event", silent ? "silent" : "returned"},
                {"stream", stream.stream},
                {"sender", stream.sender}};
@@ -243,24 +238,23 @@ void RecordHerald::tell_status(const LabStatus& status) {
   event["missing"] = missing(session_.lab(), status);
   event["streams"] = Json::array();
   for (const StreamStatus& stream : status.streams) {
-    event["streams"].push_back(Json::parse(json_of(stream, status)));
+    event["streams"].push_back(json_of(stream, status));
   }
   for (const auto& [name, counts] : status.ports) {
     event["ports"][name] = Json::parse(to_json(CountedPort{name, counts}));
   }
   console_.print_json(json_text(event));
-  console_.flush();
 }
 
 /// "disk  34.2 MB in takes/03_S1A02_01.mcap, 120.5 GB left: 12 h at this rate"
 std::string RecordHerald::disk_line() const {
   const auto disk = session_.disk();
+  if (session_.recording() && disk->paths.empty()) return "disk  begins the take's file";
   if (disk && !session_.recording() && !disk->finished) return "disk  writes the end of " + path_;
   if (!session_.recording() || !disk) return "waiting for a start";
   const auto left = forecast_.minutes_left();
   const auto free = forecast_.free();
-  return fmt::format("disk  {:.1f} MB in {}{}{}", megabytes(disk->bytes),
-                     disk->paths.empty() ? path_ : disk->paths.back(),
+  return fmt::format("disk  {:.1f} MB in {}{}{}", megabytes(disk->bytes), disk->paths.back(),
                      free ? fmt::format(", {:.1f} GB left", megabytes(*free) / 1e3) : "",
                      left ? ": " + minutes_text(*left) + " at this rate" : "");
 }
@@ -292,7 +286,7 @@ void RecordHerald::tell_end() {
     lines += fmt::format("  {} messages lost: the disk did not take them\n", grouped(disk.dropped));
   }
   for (const StreamStatus& stream : status.streams) {
-    event["streams"].push_back(Json::parse(json_of(stream, status)));
+    event["streams"].push_back(json_of(stream, status));
     lines += end_line(stream);
   }
   for (const std::string& name : unheard_in_take(session_.lab(), status)) {

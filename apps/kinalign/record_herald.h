@@ -6,11 +6,11 @@
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/disk_forecast.h"
 #include "apps/kinalign/record_text.h"
+#include "apps/kinalign/silence_news.h"
 
 #include "kinalign/capture/recording_session.h"
 
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -25,7 +25,8 @@ class RecordHerald {
   void tell_waiting();
   void tell_start(const std::string& path);
   void tell(const HeardMark& mark);
-  /// Asked after each turn, it looks ten times a second. `typed`: a text that is being typed.
+  /// Asked after each turn, it looks ten times a second, once it has told what it waits for or that
+  /// a take has begun. `typed`: a text that is being typed.
   void look(const std::optional<std::string>& typed);
   /// The disk does not take the end of a take.
   void tell_refused(const Error& why);
@@ -62,8 +63,8 @@ class RecordHerald {
   std::uint64_t dropped_told_ = 0;
   DiskForecast forecast_;
   ClockNews clock_news_;
-  std::set<std::string> silent_;  // who was told to be
-  bool disk_full_ = false, lacks_told_ = false;
+  SilenceNews silence_news_;
+  bool disk_full_ = false, lacks_told_ = false, ports_told_ = false;
   HostTime begun_, next_look_ = HostTime::min(), next_second_ = HostTime::min();
 };
 

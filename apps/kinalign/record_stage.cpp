@@ -17,7 +17,7 @@ constexpr Duration one_turn = 50ms;
 /// What comes within that time. Whether to go on.
 bool Stage::turn(Duration patience) {
   session_.turn(patience, keyboard_.fd());
-  for (const char key : keyboard_.read()) {
+  for (const char key : single_keys(keyboard_.read())) {
     if (const auto pressed = keys_.take(key, session_.now())) {
       session_.mark({pressed->first, "keyboard", ""}, pressed->second);
     }
@@ -46,6 +46,20 @@ bool Stage::wait_for_start() {
     if (take_mark(Mark::Kind::start)) return true;
   }
   return false;
+}
+
+bool Stage::begin(RecordingSession::FreePath free_path, const std::string& subject,
+                  const std::string& action) {
+  session_.start(std::move(free_path), subject, action);
+  bool lost_patience = false;
+  for (DiskStatus disk = *session_.disk(); disk.paths.empty() && !disk.finished;
+       disk = *session_.disk()) {
+    turn(5ms);
+    if (!interrupted()) continue;
+    if (std::exchange(lost_patience, true)) return false;
+    listen_anew();
+  }
+  return true;
 }
 
 bool Stage::record(const End& end) {

@@ -6,6 +6,7 @@
 #include "apps/kinalign/record_herald.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace kinalign {
@@ -16,6 +17,10 @@ class Stage {
 
   /// False: somebody ended it first.
   bool wait_for_start();
+  /// Begins a take, as RecordingSession::start() does; what comes while its file is begun is in it.
+  /// Until that is done or refused. False: the disk stands still, as of record().
+  bool begin(RecordingSession::FreePath free_path, const std::string& subject,
+             const std::string& action);
 
   struct End {
     std::optional<double> seconds;
@@ -28,6 +33,8 @@ class Stage {
   /// No take is to begin any more.
   bool ends() const { return ends_ || herald_.disk_full(); }
   RecordHerald& herald() { return herald_; }
+  /// Its program ends without ending it: the terminal is as it was before.
+  void leave() { keyboard_.leave(); }
 
  private:
   bool turn(Duration patience);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record_text.h"
 
-#include "apps/kinalign/json_text.h"
 #include "apps/kinalign/node_text.h"
 #include "apps/kinalign/summary.h"
 
@@ -173,7 +172,7 @@ std::string port_line(const std::string& name, const PortCounts& counts) {
   return text.empty() ? "" : fmt::format("  port of {}: {}\n", name, text);
 }
 
-std::string json_of(const StreamStatus& stream, const LabStatus& status) {
+Json json_of(const StreamStatus& stream, const LabStatus& status) {
   Json json = Json::parse(
       to_json({stream.topic, stream.stream, stream.sender, stream.node, stream.counts}));
   if (!stream.place.empty()) json["place"] = stream.place;
@@ -188,14 +187,14 @@ std::string json_of(const StreamStatus& stream, const LabStatus& status) {
       json["clock"]["half_interval_ms"] = 1e3 * seconds(*half);
     }
   }
-  if (node == nullptr) return json_text(json);
+  if (node == nullptr) return json;
   Json clock = Json::parse(status_json(*node));
   for (const char* said_above :
        {"event", "stream", "node_id", "address", "accepted", "lost", "rate_hz", "battery_mv"}) {
     clock.erase(said_above);
   }
   json["clock"] = clock;
-  return json_text(json);
+  return json;
 }
 
 }  // namespace kinalign

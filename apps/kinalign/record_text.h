@@ -4,6 +4,8 @@
 
 #include "kinalign/capture/recording_session.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -64,7 +66,7 @@ std::string end_line(const StreamStatus& stream);
 /// "  port of mocap: 12 dropped by the kernel\n"; empty: nothing worth telling.
 std::string port_line(const std::string& name, const PortCounts& counts);
 
-/// The JSON of a stream, with its node's clock where it has one.
-std::string json_of(const StreamStatus& stream, const LabStatus& status);
+/// A stream, with its node's clock where it has one.
+nlohmann::ordered_json json_of(const StreamStatus& stream, const LabStatus& status);
 
 }  // namespace kinalign

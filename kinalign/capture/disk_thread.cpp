@@ -22,10 +22,8 @@ std::optional<std::uint64_t> free_bytes(const std::string& path) {
 
 }  // namespace
 
-DiskThread::DiskThread(RecordingDisk disk, McapCompression compression)
-    : disk_(std::move(disk)), compression_(compression) {
-  publish({});
-  due_ = disk_.unsynced();  // the file's name and its head
+DiskThread::DiskThread(Open open, McapCompression compression)
+    : open_(std::move(open)), compression_(compression) {
   writer_ = std::thread([this] { write(); });
   syncer_ = std::thread([this] { sync(); });
 }
@@ -80,19 +78,36 @@ std::vector<PartFailure> DiskThread::take_failures() {
 
 /// After each step on the disk, under the lock.
 void DiskThread::publish(const Result<void>& result) {
-  status_.paths = disk_.paths();
-  status_.bytes = disk_.bytes();
-  status_.waiting_bytes = disk_.kept_bytes();
+  status_.paths = disk_->paths();
+  status_.bytes = disk_->bytes();
+  status_.waiting_bytes = disk_->kept_bytes();
   status_.refused = result ? std::nullopt : std::optional(result.error());
-  for (PartFailure& failure : disk_.take_failures()) failures_.push_back(std::move(failure));
+  for (PartFailure& failure : disk_->take_failures()) failures_.push_back(std::move(failure));
+}
+
+/// Whether there is a file to write to.
+bool DiskThread::begin() {
+  Result<RecordingDisk> opened = std::exchange(open_, nullptr)();
+  const std::lock_guard lock(mutex_);
+  if (opened) {
+    disk_ = *std::move(opened);
+    publish({});
+    due_ = disk_->unsynced();  // the file's name and its head
+  } else {
+    status_.refused = opened.error();
+    done_ = status_.finished = true;
+  }
+  asked_.notify_one();
+  return disk_.has_value();
 }
 
 void DiskThread::write() {
+  if (!begin()) return;
   std::unique_lock lock(mutex_);
   while (!done_) {
     written_.wait(lock, [this] { return !queue_.empty() || synced_ || finishing_; });
     work_on(lock);
-    if (!done_ && !syncing_) due_ = disk_.unsynced();
+    if (!done_ && !syncing_) due_ = disk_->unsynced();
     if (due_) asked_.notify_one();
   }
   asked_.notify_one();
@@ -102,20 +117,19 @@ void DiskThread::write() {
 /// file is spoilt.
 void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
   Result<void> result;
+  std::uint64_t taken = 0;  // of what waits in the queue
   if (synced_) {
     const Result<void> answer = *std::exchange(synced_, std::nullopt);
     const RecordingDisk::Sync sync = *std::exchange(due_, std::nullopt);
     syncing_ = false;
     lock.unlock();
-    result = disk_.synced(sync, answer);
+    result = disk_->synced(sync, answer);
   } else if (!queue_.empty()) {
     const McapChunkContent chunk = std::move(queue_.front());
     queue_.pop_front();
+    taken = chunk.size();
     lock.unlock();
-    result = disk_.write(store(chunk, compression_));
-    lock.lock();
-    queue_bytes_ -= chunk.size();
-    lock.unlock();
+    result = disk_->write(store(chunk, compression_));
   } else if (!syncing_) {
     return work_on_end(lock);
   } else {
@@ -123,6 +137,7 @@ void DiskThread::work_on(std::unique_lock<std::mutex>& lock) {
     return;
   }
   lock.lock();
+  queue_bytes_ -= taken;
   publish(result);
 }
 
@@ -132,16 +147,17 @@ void DiskThread::work_on_end(std::unique_lock<std::mutex>& lock) {
   const bool last = giving_up_;
   const McapMetadata end = to_metadata(RecordingEnd{status_.dropped});
   lock.unlock();
-  const Result<void> result = disk_.finish(end);
+  const Result<void> result = disk_->finish(end);
   lock.lock();
   publish(result);
   done_ = status_.finished = result || last;
-  if (!result && last) status_.dropped += disk_.unwritten();
+  if (!result && last) status_.dropped += disk_->unwritten();
   if (!done_) written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
 }
 
 /// Here and not where it is shown: of a network disk that is gone the question hangs.
 void DiskThread::look_at_room(std::unique_lock<std::mutex>& lock) {
+  if (status_.paths.empty()) return;
   const std::string path = status_.paths.back();
   lock.unlock();
   const auto free = free_bytes(path);

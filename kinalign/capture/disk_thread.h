@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A RecordingDisk behind two threads: one packs and writes, one syncs, so that who receives never
-// waits, and a kill during a slow sync costs no more than at any other time.
+// A RecordingDisk behind two threads: one begins the file, packs and writes, one syncs, so that who
+// receives never waits, and a kill during a slow sync costs no more than at any other time.
 #pragma once
 
 #include "kinalign/capture/recording_disk.h"
@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -17,13 +18,14 @@
 namespace kinalign {
 
 struct DiskStatus {
-  std::vector<std::string> paths;           // the recording's files
+  std::vector<std::string> paths;           // the recording's files; none: not begun yet
   std::uint64_t bytes = 0;                  // in them
   std::uint64_t waiting_bytes = 0;          // that only memory has
   std::optional<std::uint64_t> free_bytes;  // that the disk still takes; absent: it does not say
   std::uint64_t dropped = 0;     // messages: memory was full, or they were given up at the end
   std::optional<Error> refused;  // by the disk just now; tried again with what comes next
-  bool finished = false;         // nothing more is written; `refused`: not all could be
+  bool finished = false;         // nothing more is written; `refused`: not all could be, and
+                                 // without a path nothing at all
 };
 
 class DiskThread {
@@ -31,7 +33,9 @@ class DiskThread {
   /// Bytes that wait for the disk at most: 19 minutes of the paper's devices.
   static constexpr std::uint64_t most_waiting = std::uint64_t{256} << 20;
 
-  DiskThread(RecordingDisk disk, McapCompression compression);
+  /// Asked once, on the writing thread: what is pushed meanwhile waits.
+  using Open = std::function<Result<RecordingDisk>()>;
+  DiskThread(Open open, McapCompression compression);
   /// As finish() and give_up(), and waits.
   ~DiskThread();
   DiskThread(const DiskThread&) = delete;
@@ -51,13 +55,15 @@ class DiskThread {
 
  private:
   void write();
+  bool begin();
   void sync();
   void look_at_room(std::unique_lock<std::mutex>& lock);
   void work_on(std::unique_lock<std::mutex>& lock);
   void work_on_end(std::unique_lock<std::mutex>& lock);
   void publish(const Result<void>& result);
 
-  RecordingDisk disk_;  // the writing thread's
+  Open open_;
+  std::optional<RecordingDisk> disk_;  // both the writing thread's
   McapCompression compression_;
 
   mutable std::mutex mutex_;  // of all below

@@ -24,6 +24,23 @@ class ClockReader {
   virtual bool wall_was_set() = 0;
 };
 
+/// The wall clock runs with CLOCK_MONOTONIC, slewed as that is, unless it is set. So what a look at
+/// both says spares the question to the kernel, a system call for each datagram: a step shows in
+/// it, unless it is smaller than a look takes, some 0.1 us. Such a one the next question finds.
+class WallWatch {
+ public:
+  struct Look {
+    Duration at{};             // CLOCK_MONOTONIC
+    Duration least{}, most{};  // CLOCK_REALTIME less that: read between two readings of it
+  };
+  /// Whether the kernel has to be asked: the wall clock may have been set, or it was not asked for
+  /// a tenth of a second.
+  bool must_ask(const Look& look);
+
+ private:
+  std::optional<Look> ran_;  // since the kernel was asked: when that was, and what all looks allow
+};
+
 class SystemClocks : public ClockReader {
  public:
   SystemClocks() = default;
@@ -34,10 +51,12 @@ class SystemClocks : public ClockReader {
   HostTime raw() override;
   Time utc() override;
   Duration asleep() override;
-  /// By a timer that the kernel cancels then (timerfd_create(2)); false where there is none.
+  /// By a timer that the kernel cancels then (timerfd_create(2)); false where there is none. What
+  /// WallWatch says of how little.
   bool wall_was_set() override;
 
  private:
+  WallWatch watch_;
   std::optional<int> timer_;  // since it was asked first
 };
 

@@ -6,9 +6,7 @@
 
 #include "kinalign/capture/answer_pace.h"
 #include "kinalign/capture/answer_table.h"
-#include "kinalign/capture/counts_by.h"
 #include "kinalign/capture/host_address.h"
-#include "kinalign/capture/node_verdict.h"
 #include "kinalign/capture/rate_limit.h"
 #include "kinalign/clock/host_from_node.h"
 #include "kinalign/io/kinect_message.h"
@@ -19,19 +17,6 @@
 
 namespace kinalign {
 
-enum class PingVerdict : std::uint8_t {
-  accepted,
-  limited,  // a stranger's address that begins sessions too often
-  no_room   // more sessions at once than are kept
-};
-inline constexpr std::size_t ping_verdicts = 3;
-
-struct KinectPingCounts {
-  CountsBy<PingVerdict, ping_verdicts> verdicts;  // each ping once
-  CountsBy<EchoVerdict, echo_verdicts> echoes;    // of those that are accepted
-  std::uint64_t pongs = 0;
-};
-
 class KinectDesk {
  public:
   static constexpr std::size_t most_sessions = 32;
@@ -39,13 +24,12 @@ class KinectDesk {
   /// `secret`: random in each run; nonces and the strangers' table come from it.
   explicit KinectDesk(const SipHashKey& secret) : secret_(secret) {}
 
-  /// In the order of arrival. Absent: the ping was not accepted.
+  /// In the order of arrival. Absent: the ping is refused, of one session too many at once, or of
+  /// an address that begins them too often.
   std::optional<Exchange> receive(const KinectPing& ping, const HostAddress& from, HostTime h_rx);
   /// The pong to the ping before; absent: none is due. `h_tx` was read before this call, and what
   /// is returned is to be sent at once.
   std::optional<KinectPong> answer(HostTime h_tx);
-
-  const KinectPingCounts& counts() const { return counts_; }
 
  private:
   struct Session {
@@ -55,14 +39,12 @@ class KinectDesk {
     AnswerPace pace;
     std::uint32_t next_pong = 0;
   };
-  PingVerdict find_session(const KinectPing& ping, const HostAddress& from, HostTime now,
-                           Session*& session);
-  std::optional<HostTime> take_echo(Session& session, const KinectPing& ping);
+  Session* session_of(const KinectPing& ping, const HostAddress& from, HostTime now);
+  static std::optional<HostTime> take_echo(Session& session, const KinectPing& ping);
 
   SipHashKey secret_;
   std::vector<Session> sessions_;
   RateLimit strangers_;
-  KinectPingCounts counts_;
   std::uint64_t nonces_ = 0;
   Session* asked_by_ = nullptr;  // of the ping before; nullptr: it is not answered
   KinectOrigin asked_;

@@ -47,7 +47,7 @@ void RecordedPort::drain(HostAxis& axis, Recorder& recorder) {
 /// Answers go out before anything is written: what is done in between delays one way alone.
 void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
   Source& source = source_of(piece.sender, recorder);
-  source.watch.feed(piece.bytes);
+  source.watch.feed(piece.bytes, newest_frames_);
   if (kinects_) answer_pings(source, piece, axis, recorder);
   if (slimes_) answer_trackers(source, piece);
   source.recorded.record(recorder, piece.arrival, piece.bytes);
@@ -91,7 +91,10 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
   std::size_t may_send = piece.bytes.size();  // nobody who forges an address gains by it
   for (const KinectPing& ping : source.watch.pings()) {
     const auto exchange = kinects_->receive(ping, source.address.host, piece.arrival);
-    if (!exchange) continue;
+    if (!exchange) {
+      ++source.pings_refused;
+      continue;
+    }
     if (const auto pong = kinects_->answer(axis.now())) {
       const std::string bytes = encoded(*pong, source.watch.speaks_lines());
       const bool forgeable = device_.transport == "udp";
@@ -115,8 +118,12 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
   }
 }
 
-void RecordedPort::answer_trackers(const Source& source, const Piece& piece) {
-  slimes_->receive({octets(piece.bytes), source.address, piece.arrival});
+/// Whoever shakes hands counts anew, also at an address where another tracker was.
+void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
+  look_at(source);
+  const SlimeNews news = slimes_->receive({octets(piece.bytes), source.address, piece.arrival});
+  ++source.verdicts[news.verdict];
+  if (news.counts_anew) source.greeted = source.recorded.status.counts.order;
   send_answers();
 }
 
@@ -171,12 +178,13 @@ void RecordedPort::look_at(Source& source) const {
   SenderCounts& counts = source.recorded.status.counts;
   const SenderCounts watched = source.watch.counts();
   counts.frames = watched.frames;
-  counts.order = watched.order;
-  counts.refused = watched.refused;
+  if (!slimes_) counts.order = watched.order;
+  counts.refused = watched.refused + refused(source.verdicts) + source.pings_refused;
   if (source.clock) source.recorded.status.clock = source.clock->now();
   const SlimeDevice* tracker = slimes_ ? slimes_->device_at(source.address) : nullptr;
-  if (tracker == nullptr) return;
-  counts.order = tracker->counts();
+  if (tracker == nullptr) return;  // it went elsewhere: the address keeps what it counted
+  counts.order = source.greeted;
+  counts.order += tracker->numbers.counts();
   if (tracker->battery_volts) source.recorded.status.battery_volts = *tracker->battery_volts;
 }
 
@@ -192,6 +200,7 @@ void RecordedPort::find_faults(const Source& source) {
   const std::string host = to_string(source.address.host);
   const std::string name = device_.name + " from " + endpoint_text(host, source.address.port);
   Findings findings = source.watch.findings(name);
+  append(findings, findings_of(source.verdicts, name));
   if (none) {
     findings.push_back({Severity::warning,
                         Error{name, 0, "frames of " + device_.protocol,

@@ -56,6 +56,9 @@ class RecordedPort {
     NodeAddress address;                       // whose newest piece it was
     std::optional<std::uint16_t> exchanges{};  // channel
     std::unique_ptr<FollowedClock> clock{};    // since it pinged
+    SequenceCounts greeted{};                  // of its address, up to the newest handshake there
+    SlimeVerdicts verdicts{};                  // of a tracker's datagrams
+    std::uint64_t pings_refused = 0;
   };
 
   RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret);
@@ -64,7 +67,7 @@ class RecordedPort {
   Source& source_of(std::size_t sender, Recorder& recorder);
   std::string topic(const char* content, std::uint64_t life) const;
   void answer_pings(Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
-  void answer_trackers(const Source& source, const Piece& piece);
+  void answer_trackers(Source& source, const Piece& piece);
   void send_answers();
   template <class Port, class Visit>
   static void for_each_source(Port& port, Visit visit);
@@ -75,7 +78,8 @@ class RecordedPort {
   Pieces pieces_;
   std::vector<std::optional<Source>> sources_;  // by the sender's number
   std::optional<Source> others_;                // strangers after too many lives share it
-  std::set<std::string> told_;                  // faults, of whom
+  NewestKinectFrames newest_frames_;
+  std::set<std::string> told_;  // faults, of whom
   Findings findings_;
   std::unique_ptr<SlimeDesk> slimes_;
   std::unique_ptr<KinectDesk> kinects_;

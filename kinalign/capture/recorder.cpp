@@ -7,6 +7,12 @@
 namespace kinalign {
 
 std::uint16_t Recorder::add_channel(McapChannel channel, const McapSchema* schema) {
+  constexpr std::uint16_t last = 0xffff;
+  if (channels_.size() > last) return last;
+  if (channels_.size() == last) {
+    channel = {0, 0, "/others", "", {}};
+    schema = nullptr;
+  }
   channel.id = static_cast<std::uint16_t>(channels_.size());
   channel.schema_id = 0;
   if (schema != nullptr) {
@@ -41,6 +47,7 @@ void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view d
     chunk_.add(channel.channel);
     channel.in_chunk = true;
   }
+  ++messages_;
   const std::uint64_t log = log_time(arrival);
   chunk_.add(McapMessage{number, static_cast<std::uint32_t>(channel.messages++), log,
                          device_ns.value_or(log), data});
@@ -81,18 +88,14 @@ void Recorder::forget_before(HostTime first) {
   }
 }
 
-std::uint64_t Recorder::first_chunk(HostTime now) {
-  forget_before(now - options_.pre_roll);
-  return first_number();
-}
-
-void Recorder::start(HostTime now, Take take) {
+std::uint64_t Recorder::start(HostTime now, Take take) {
   forget_before(now - options_.pre_roll);
   keep_since_.reset();
+  const std::uint64_t first = first_number();
   take_ = std::move(take);
   for (Kept& kept : std::exchange(pre_roll_, {})) take_(std::move(kept.chunk));
   pre_roll_bytes_ = 0;
-  close();
+  return first;
 }
 
 void Recorder::stop() {

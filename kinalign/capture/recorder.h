@@ -19,10 +19,12 @@
 namespace kinalign {
 
 struct RecorderOptions {
-  Duration chunk = std::chrono::milliseconds(250);      // what a kill costs at most, nearly
-  std::size_t chunk_bytes = std::size_t{1} << 20;       // or earlier at that size
-  Duration pre_roll = std::chrono::seconds(5);          // kept before a take
-  std::size_t pre_roll_bytes = std::size_t{256} << 20;  // at most
+  Duration chunk = std::chrono::milliseconds(250);  // what a kill costs at most, nearly
+  std::size_t chunk_bytes = std::size_t{1} << 20;   // or earlier at that size
+  Duration pre_roll = std::chrono::seconds(5);      // kept before a take
+  /// At most. A take begins with all of them at once, and what comes next must have room beside
+  /// them where chunks wait for the disk: less than DiskThread::most_waiting.
+  std::size_t pre_roll_bytes = std::size_t{192} << 20;
   /// UTC less the host's axis, the same for the whole run: log times in a file are UTC.
   Duration utc_minus_host{};
 };
@@ -33,7 +35,8 @@ class Recorder {
 
   explicit Recorder(const RecorderOptions& options) : options_(options) {}
 
-  /// A channel to record on; its number. `schema`'s id is set here, absent: none.
+  /// A channel to record on; its number. `schema`'s id is set here, absent: none. More than a file
+  /// can number, 65,534, share one more, "/others".
   std::uint16_t add_channel(McapChannel channel, const McapSchema* schema = nullptr);
 
   /// `device`: on the device's own clock, ns; absent where it has none.
@@ -44,10 +47,9 @@ class Recorder {
 
   /// Until a take begins nothing that came since then is forgotten, as far as there is room.
   void keep_since(HostTime since) { keep_since_ = std::min(keep_since_.value_or(since), since); }
-  /// The chunk that a take would begin with: its number, of all that were ever begun.
-  std::uint64_t first_chunk(HostTime now);
-  /// From now on chunks go to `take`, those of the pre-roll first.
-  void start(HostTime now, Take take);
+  /// From now on chunks go to `take`, those of the pre-roll at once. The first one's number, of all
+  /// that were ever begun.
+  std::uint64_t start(HostTime now, Take take);
   /// The chunk that is open goes there, too; then none any more.
   void stop();
   bool started() const { return take_ != nullptr; }
@@ -56,7 +58,9 @@ class Recorder {
   using Closed = std::function<void(std::uint64_t next, std::uint64_t first)>;
   void when_closed(Closed closed) { closed_ = std::move(closed); }
 
-  /// Recorded on a channel since it was added, in takes and before.
+  /// Recorded on all channels, in takes and before.
+  std::uint64_t messages() const { return messages_; }
+  /// On one, since it was added.
   std::uint64_t messages(std::uint16_t channel) const { return channels_[channel].messages; }
   std::uint64_t log_time(HostTime t) const;
 
@@ -86,6 +90,7 @@ class Recorder {
   std::size_t pre_roll_bytes_ = 0;
   std::optional<HostTime> keep_since_;
   std::uint64_t number_ = 0;  // of the open chunk
+  std::uint64_t messages_ = 0;
   Closed closed_;
   Take take_;
 };

@@ -34,7 +34,7 @@ struct PartFailure {
 
 class RecordingDisk {
  public:
-  /// Makes PATH, and syncs nothing: who receives may open it. `path` ends in .mcap; further files
+  /// Makes PATH, and syncs nothing. `path` ends in .mcap; further files
   /// are PATH with .part2.mcap at its end, and so on. `head` is asked for the number of the part,
   /// from 1.
   using MakeHead = std::function<RecordingHead(int part)>;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <span>
+#include <thread>
 #include <utility>
 
 namespace kinalign {
@@ -35,6 +36,30 @@ ExpectedDevices expected_of(const Lab& lab) {
   }
   return expected;
 }
+
+/// What a take needs to begin its files, on the disk's thread: it owns all of it.
+struct TakeFiles {
+  FileSystem* files;
+  RecordingSession::FreePath free_path;
+  RecordingFacts facts;
+  ExpectedDevices expected;
+  std::vector<McapAttachment> attachments;
+  std::shared_ptr<DiskThread> before;  // the last take's, whose disk may stand still by now
+
+  Result<RecordingDisk> operator()() {
+    before.reset();
+    const std::string path = free_path();
+    facts.first = std::string(file_name(path));
+    const auto head = [facts = facts, expected = expected,
+                       attachments = attachments](int part) mutable -> RecordingHead {
+      facts.part = part;
+      return {{std::string(recording_profile), "kinalign " KINALIGN_VERSION},
+              {to_metadata(facts), to_metadata(expected)},
+              attachments};
+    };
+    return RecordingDisk::open(*files, path, head);
+  }
+};
 
 /// A key for each port, so that no two draw the same nonces.
 SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
@@ -105,8 +130,20 @@ Result<void> RecordingSession::open_ports() {
   return {};
 }
 
+/// A waking costs more than the messages that it is for. At a lab's speed those of 10 ms are taken
+/// together; where so many come that buffers fill, nobody rests. No clock sees it: arrivals are the
+/// kernel's, and of an answer it is known when it was asked for and when it was given.
+void RecordingSession::rest(Duration patience) const {
+  constexpr Duration short_rest = std::chrono::milliseconds(10);
+  constexpr std::uint64_t few = 16;
+  const bool busy = came_ > 0 && came_ <= few;
+  if (busy && patience >= short_rest) std::this_thread::sleep_for(short_rest);
+}
+
 /// Only ports where something has come cost a call; connections are looked after with the clock.
 bool RecordingSession::turn(Duration patience, std::optional<int> also) {
+  rest(patience);
+  const std::uint64_t before = recorder_->messages();
   const bool some = wait(patience, also);
   const HostTime now = axis_.now();
   const bool look_after = now >= next_look_;
@@ -128,6 +165,7 @@ bool RecordingSession::turn(Duration patience, std::optional<int> also) {
     if (!next_is_ready(ports_.size() + i)) continue;
     mark_ports_[i].drain(axis_, [this](const RecordedMark& m, HostTime at) { mark(m, at); });
   }
+  came_ = recorder_->messages() - before;
   tick(now);
   return some;
 }
@@ -195,28 +233,21 @@ void RecordingSession::begin_counts(std::uint64_t chunk) {
   for (auto& [name, port] : port_counts_past_) port.before = port.past.before(chunk);
 }
 
-Result<void> RecordingSession::start(const std::string& path, const std::string& subject,
-                                     const std::string& action) {
+void RecordingSession::start(FreePath free_path, const std::string& subject,
+                             const std::string& action) {
   facts_.subject = subject;
   facts_.action = action;
-  facts_.first = std::string(file_name(path));
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
-  // Asked for on the disk's thread: it owns what it needs.
-  auto head = [facts = facts_, expected = expected_of(options_.lab),
-               attachments =
-                   attachments_of(options_, facts_.anchor.utc)](int part) mutable -> RecordingHead {
-    facts.part = part;
-    return {{std::string(recording_profile), "kinalign " KINALIGN_VERSION},
-            {to_metadata(facts), to_metadata(expected)},
-            attachments};
-  };
-  RecordingDisk disk = KA_TRY(RecordingDisk::open(machine_.files, path, std::move(head)));
-  disk_ = std::make_unique<DiskThread>(std::move(disk), compression);
-  const HostTime now = axis_.now();
-  begin_counts(recorder_->first_chunk(now));
-  recorder_->start(now, [this](McapChunkContent chunk) { disk_->push(std::move(chunk)); });
-  return {};
+  TakeFiles open{&machine_.files,
+                 std::move(free_path),
+                 facts_,
+                 expected_of(options_.lab),
+                 attachments_of(options_, facts_.anchor.utc),
+                 std::move(disk_)};
+  disk_ = std::make_unique<DiskThread>(std::move(open), compression);
+  begin_counts(recorder_->start(axis_.now(),
+                                [this](McapChunkContent chunk) { disk_->push(std::move(chunk)); }));
 }
 
 /// What lies in the kernel's buffers; no longer than a flood may hold up the end.

@@ -15,6 +15,7 @@
 #include <poll.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -53,16 +54,15 @@ class RecordingSession {
 
   /// A take will begin with the pre-roll of that time, however long that takes.
   void expect_start(HostTime at);
-  /// Begins a take with the pre-roll; `path` ends in .mcap and must be free.
-  Result<void> start(const std::string& path, const std::string& subject,
-                     const std::string& action);
+  /// A take begins: the pre-roll and all that comes from now on is in it. Where it goes, a path
+  /// that ends in .mcap, is asked for on the disk's thread, and the file begun there, however long
+  /// that takes; disk() says once it is done, or why it can't be.
+  using FreePath = std::function<std::string()>;
+  void start(FreePath free_path, const std::string& subject, const std::string& action);
   /// Ends it: what has come to the machine goes to the disk, see disk().finished.
   void stop();
   /// After stop(): what the disk still refuses is given up.
   void give_up() { disk_->give_up(); }
-  /// After stop(), of a disk that stands still: nothing waits for it any more, and nothing more is
-  /// known of it. Its threads live until the process ends, which the system may hold up.
-  void leave_disk() { static_cast<void>(disk_.release()); }
   bool recording() const { return recorder_->started(); }
 
   /// Onto the channel of marks; before a take into its pre-roll.
@@ -91,6 +91,7 @@ class RecordingSession {
  private:
   RecordingSession(Options options, Machine machine);
   Result<void> open_ports();
+  void rest(Duration patience) const;
   bool wait(Duration patience, std::optional<int> also);
   void drain_all();
   void tick(HostTime now);
@@ -119,6 +120,7 @@ class RecordingSession {
   std::vector<int> fds_;              // of this turn
   std::vector<std::size_t> fds_end_;  // by port, marks' last: where in fds_ those of the next begin
   std::vector<pollfd> waiting_;
+  std::uint64_t came_ = 0;  // in the last turn
   std::unique_ptr<DiskThread> disk_;
 };
 

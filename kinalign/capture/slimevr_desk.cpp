@@ -19,28 +19,54 @@ constexpr std::uint32_t handshake_type = 3, ping_type = 10;
 
 }  // namespace
 
+std::uint64_t refused(const SlimeVerdicts& verdicts) {
+  using Verdict = SlimeVerdict;
+  return verdicts.total() - verdicts[Verdict::accepted] - verdicts[Verdict::duplicate] -
+         verdicts[Verdict::late];
+}
+
+/// Who moves is let in a second after it was heard from its old address.
+Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name) {
+  constexpr std::uint64_t too_often = 3;  // for one that moves
+  constexpr const char* unanswered = "it is not answered, so it sends nothing of use";
+  Findings findings;
+  if (verdicts[SlimeVerdict::no_room] > 0) {
+    findings.push_back(
+        {Severity::warning,
+         Error{name, 0, "at most " + std::to_string(SlimeDesk::most_devices) + " trackers",
+               "one more"},
+         unanswered, "switch others off: a minute later it has their place"});
+  }
+  if (verdicts[SlimeVerdict::elsewhere] >= too_often) {
+    findings.push_back({Severity::warning,
+                        Error{name, 0, "a tracker of its own", "the MAC of another one at work"},
+                        unanswered, "see which two trackers have one MAC"});
+  }
+  return findings;
+}
+
 SlimeDesk::SlimeDesk(const SipHashKey& secret) : secret_(secret), devices_(most_devices) {}
 
 SlimeNews SlimeDesk::receive(const SlimeArrival& arrival) {
   SlimeNews news;
-  news.verdict = judge(arrival, news.device);
-  ++counts_.verdicts[news.verdict];
+  news.verdict = judge(arrival, news);
   return news;
 }
 
-SlimeVerdict SlimeDesk::judge(const SlimeArrival& arrival, std::size_t& number) {
+SlimeVerdict SlimeDesk::judge(const SlimeArrival& arrival, SlimeNews& news) {
   if (!decode_slime(arrival.bytes, datagram_)) return SlimeVerdict::too_short;
   // Of a bundle a handshake counts for nothing: trackers that have one are known already.
   const bool handshake = datagram_.type == handshake_type && !datagram_.packets.empty();
   if (handshake) {
     const auto& said = std::get<SlimeHandshake>(datagram_.packets.front());
     const SlimeVerdict verdict = shake_hands(said, arrival);
-    if (verdict == SlimeVerdict::accepted) number = index(*device_at(arrival.from));
+    news.counts_anew = verdict == SlimeVerdict::accepted;
+    if (news.counts_anew) news.device = index(*device_at(arrival.from));
     return verdict;
   }
   SlimeDevice* device = find_device(arrival.from);
   if (device == nullptr) return SlimeVerdict::stranger;
-  number = index(*device);
+  news.device = index(*device);
   hear(*device, arrival);
   if (datagram_.type != ping_type) {
     const Order order = device->numbers.push(datagram_.number);
@@ -70,11 +96,6 @@ SlimeVerdict SlimeDesk::shake_hands(const SlimeHandshake& handshake, const Slime
   device->used = true;
   device->mac = handshake.mac;
   device->address = arrival.from;
-  if (moves) {
-    device->earlier = {};  // the old address keeps them
-  } else {
-    device->earlier += device->numbers.counts();
-  }
   device->numbers = SequenceCount(64);
   device->credit = 0;
   device->next_heartbeat = arrival.h_rx + heartbeat_every;
@@ -132,12 +153,8 @@ void SlimeDesk::take(SlimeDevice& device, const SlimePacket& packet) {
 
 /// Never more bytes than came from there since its handshake.
 void SlimeDesk::send(SlimeDevice& device, const SlimeAnswer& answer) {
-  if (device.credit < answer.size || sendings_.size() >= most_sendings) {
-    ++counts_.unsent;
-    return;
-  }
+  if (device.credit < answer.size || sendings_.size() >= most_sendings) return;
   device.credit -= answer.size;
-  ++counts_.sent;
   sendings_.push_back({device.address, answer});
 }
 

@@ -7,6 +7,7 @@
 #include "kinalign/capture/counts_by.h"
 #include "kinalign/capture/node_life.h"
 #include "kinalign/capture/rate_limit.h"
+#include "kinalign/core/error.h"
 #include "kinalign/io/sequence_count.h"
 #include "kinalign/io/slimevr_packet.h"
 #include "kinalign/wire/siphash.h"
@@ -14,6 +15,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace kinalign {
@@ -35,10 +37,16 @@ enum class SlimeVerdict : std::uint8_t {
   too_short   // no datagram of a tracker
 };
 inline constexpr std::size_t slime_verdicts = 8;
+using SlimeVerdicts = CountsBy<SlimeVerdict, slime_verdicts>;
+/// Of them those of datagrams that were of no use.
+std::uint64_t refused(const SlimeVerdicts& verdicts);
+/// What the user should know of an address with these; `name` stands in the messages.
+Findings findings_of(const SlimeVerdicts& verdicts, const std::string& name);
 
 struct SlimeNews {
   SlimeVerdict verdict = SlimeVerdict::too_short;
-  std::size_t device = 0;  // if accepted
+  std::size_t device = 0;    // if accepted
+  bool counts_anew = false;  // it shook hands
 };
 
 /// To be sent, in this order.
@@ -53,21 +61,9 @@ struct SlimeDevice {
   NodeAddress address;
   std::optional<float> battery_volts;
   HostTime heard{};
-  SequenceCounts earlier;  // at this address, before the newest handshake
-  SequenceCount numbers{64};
-  std::uint64_t credit = 0;  // bytes that may still be sent there
+  SequenceCount numbers{64};  // since the newest handshake
+  std::uint64_t credit = 0;   // bytes that may still be sent there
   HostTime next_heartbeat{}, next_ping{};
-
-  SequenceCounts counts() const {
-    SequenceCounts sum = earlier;
-    return sum += numbers.counts();
-  }
-};
-
-struct SlimeCounts {
-  CountsBy<SlimeVerdict, slime_verdicts> verdicts;  // each datagram once
-  std::uint64_t unsent = 0;                         // what would have been more bytes than came
-  std::uint64_t sent = 0;
 };
 
 class SlimeDesk {
@@ -87,10 +83,9 @@ class SlimeDesk {
   const SlimeDevice& device(std::size_t i) const { return devices_[i]; }
   /// nullptr: none.
   const SlimeDevice* device_at(const NodeAddress& address) const;
-  const SlimeCounts& counts() const { return counts_; }
 
  private:
-  SlimeVerdict judge(const SlimeArrival& arrival, std::size_t& device);
+  SlimeVerdict judge(const SlimeArrival& arrival, SlimeNews& news);
   SlimeVerdict shake_hands(const SlimeHandshake& handshake, const SlimeArrival& arrival);
   SlimeDevice* find_device(const NodeAddress& address);
   SlimeDevice* device_named(const SlimeHandshake& handshake, const NodeAddress& address);
@@ -104,7 +99,6 @@ class SlimeDesk {
   SipHashKey secret_;
   std::vector<SlimeDevice> devices_;
   RateLimit strangers_;
-  SlimeCounts counts_;
   std::uint64_t pings_ = 0;
   std::vector<SlimeSending> sendings_, taken_;
   SlimeDatagram datagram_;

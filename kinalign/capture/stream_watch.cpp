@@ -3,17 +3,31 @@
 
 #include "kinalign/io/little_endian_reader.h"
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_sensors = 8;
+constexpr std::size_t most_sensors = 8;     // of a sender
+constexpr std::size_t most_of_a_port = 64;  // that are remembered
 
 template <class Refused>
 std::uint64_t sum(const Refused& refused) {
   return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
+}
+
+/// One that was overtaken is not the newest.
+void note(const KinectOrigin& origin, NewestKinectFrames& newest) {
+  const auto known = newest.find(origin.sensor);
+  if (known == newest.end()) {
+    if (newest.size() < most_of_a_port) newest.emplace(origin.sensor, origin);
+    return;
+  }
+  const auto ahead = static_cast<std::int32_t>(origin.sequence - known->second.sequence);
+  if (known->second.session != origin.session || ahead > 0) known->second = origin;
 }
 
 }  // namespace
@@ -24,43 +38,54 @@ StreamWatch::StreamWatch(const std::string& protocol, bool datagrams) {
   if (protocol == "kinect") decoder_.emplace<Kinect>().datagrams = datagrams;
 }
 
-void StreamWatch::feed(Noitom& noitom, std::span<const std::uint8_t> bytes) {
+void StreamWatch::feed(Noitom& noitom, std::span<const std::uint8_t> bytes, NewestKinectFrames&) {
   noitom.frames.clear();
   noitom.decoder.feed(bytes, noitom.frames);
 }
 
-void StreamWatch::feed(Xsens& xsens, std::span<const std::uint8_t> bytes) {
+void StreamWatch::feed(Xsens& xsens, std::span<const std::uint8_t> bytes, NewestKinectFrames&) {
   xsens.samples.clear();
   xsens.decoder.feed(bytes, xsens.samples);
 }
 
-void StreamWatch::feed(Kinect& kinect, std::span<const std::uint8_t> bytes) {
+void StreamWatch::feed(Kinect& kinect, std::span<const std::uint8_t> bytes,
+                       NewestKinectFrames& newest) {
   kinect.messages.clear();
   kinect.pings.clear();
   kinect.decoder.feed(bytes, kinect.messages);
   if (kinect.datagrams) kinect.decoder.finish(kinect.messages);
   for (KinectMessage& message : kinect.messages) {
     if (const auto* ping = std::get_if<KinectPing>(&message)) kinect.pings.push_back(*ping);
-    auto* frame = std::get_if<KinectFrame>(&message);
-    if (frame == nullptr) continue;
-    const std::uint32_t sensor = frame->origin.sensor;
-    if (kinect.sensors.size() == most_sensors && !kinect.sensors.contains(sensor)) {
-      ++kinect.further_sensors;
-      continue;
-    }
-    kinect.frames.clear();
-    kinect.sensors[sensor].take(std::move(*frame), kinect.frames);
-    kinect.whole += static_cast<std::uint64_t>(
-        std::count_if(kinect.frames.begin(), kinect.frames.end(),
-                      [](const JoinedKinectFrame& one) { return one.whole; }));
+    if (auto* frame = std::get_if<KinectFrame>(&message)) count(kinect, std::move(*frame), newest);
   }
 }
 
-void StreamWatch::feed(std::string_view piece) {
+void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest) {
+  const KinectOrigin origin = frame.origin;
+  auto found = kinect.sensors.find(origin.sensor);
+  if (found == kinect.sensors.end()) {
+    if (kinect.sensors.size() == most_sensors) {
+      ++kinect.further_sensors;
+      return;
+    }
+    found = kinect.sensors.emplace(origin.sensor, KinectFrameJoiner()).first;
+    const auto before = newest.find(origin.sensor);
+    const bool goes_on = before != newest.end() && before->second.session == origin.session;
+    if (goes_on) found->second.follow(before->second);
+  }
+  note(origin, newest);
+  kinect.frames.clear();
+  found->second.take(std::move(frame), kinect.frames);
+  kinect.whole += static_cast<std::uint64_t>(
+      std::count_if(kinect.frames.begin(), kinect.frames.end(),
+                    [](const JoinedKinectFrame& one) { return one.whole; }));
+}
+
+void StreamWatch::feed(std::string_view piece, NewestKinectFrames& newest) {
   std::visit(
       [&](auto& decoder) {
         if constexpr (!std::is_same_v<std::decay_t<decltype(decoder)>, std::monostate>) {
-          feed(decoder, octets(piece));
+          feed(decoder, octets(piece), newest);
         }
       },
       decoder_);
@@ -95,7 +120,11 @@ SenderCounts StreamWatch::counts(const Xsens& xsens) {
 SenderCounts StreamWatch::counts(const Kinect& kinect) {
   SenderCounts out{
       0, 0, kinect.whole, {}, sum(kinect.decoder.counts().refused) + kinect.further_sensors};
-  for (const auto& [sensor, joiner] : kinect.sensors) out.order += joiner.counts().frames;
+  for (const auto& [sensor, joiner] : kinect.sensors) {
+    const KinectFrameCounts joined = joiner.counts();
+    out.order += joined.frames;
+    out.refused += joined.stale + joined.contradicting;
+  }
   return out;
 }
 

@@ -19,13 +19,18 @@
 
 namespace kinalign {
 
+/// By sensor: a port's Kinects' newest frames, whichever sender brought them.
+using NewestKinectFrames = std::map<std::uint32_t, KinectOrigin>;
+
 class StreamWatch {
  public:
   /// `protocol` as in take/lab.h. Of one that is not decoded here nothing is counted.
   /// `datagrams`: a piece is one, with whole messages in it; else bytes cut anywhere.
   explicit StreamWatch(const std::string& protocol = "", bool datagrams = false);
 
-  void feed(std::string_view piece);
+  /// `newest`: a Kinect that is heard on another way than before, in a connection made anew, goes
+  /// on with its count.
+  void feed(std::string_view piece, NewestKinectFrames& newest);
   /// Of a Kinect's sender: the pings that the last piece completed, and how pongs are to look.
   std::span<const KinectPing> pings() const;
   bool speaks_lines() const;
@@ -38,7 +43,7 @@ class StreamWatch {
 
  private:
   struct Noitom {
-    NoitomDecoder decoder;
+    NoitomDecoder decoder{NoitomParts::heads};
     std::vector<NoitomArrival> frames{};
   };
   struct Xsens {
@@ -54,9 +59,10 @@ class StreamWatch {
     std::vector<KinectPing> pings{};
     bool datagrams = false;
   };
-  static void feed(Noitom& noitom, std::span<const std::uint8_t> bytes);
-  static void feed(Xsens& xsens, std::span<const std::uint8_t> bytes);
-  static void feed(Kinect& kinect, std::span<const std::uint8_t> bytes);
+  static void feed(Noitom& noitom, std::span<const std::uint8_t> bytes, NewestKinectFrames& newest);
+  static void feed(Xsens& xsens, std::span<const std::uint8_t> bytes, NewestKinectFrames& newest);
+  static void feed(Kinect& kinect, std::span<const std::uint8_t> bytes, NewestKinectFrames& newest);
+  static void count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest);
   static SenderCounts counts(const Noitom& noitom);
   static SenderCounts counts(const Xsens& xsens);
   static SenderCounts counts(const Kinect& kinect);

@@ -13,6 +13,8 @@ namespace {
 
 const std::vector<std::string> protocols{"nodes", "noitom", "xsens", "kinect", "slimevr"};
 const std::vector<std::string> transports{"udp", "tcp", "tcp-listen"};
+// What a recorder has itself: ports, and topics that would stand below the device's name.
+const std::vector<std::string> own_names{"marks", "trigger", "clock", "counts"};
 
 bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -64,9 +66,8 @@ Result<void> check_use(const DeviceOptions& device) {
   if (!is_one_of(protocols, device.protocol)) {
     return wrong(device, "protocol, what the device speaks", "none");
   }
-  const bool mocap = device.protocol == "noitom" || device.protocol == "xsens";
-  if (!device.skeleton.empty() && !mocap) {
-    return wrong(device, "skeleton of noitom or xsens alone", "of " + device.protocol);
+  if (!device.skeleton.empty() && device.protocol != "noitom") {
+    return wrong(device, "skeleton of noitom alone", "of " + device.protocol);
   }
   if (device.protocol != "nodes") {
     if (!device.lab_key.empty())
@@ -85,13 +86,13 @@ Result<void> check_use(const DeviceOptions& device) {
   return {};
 }
 
-/// It stands on the screen, and ports are told by it.
+/// It stands on the screen, and ports and topics are told by it.
 Result<void> check_name(const DeviceOptions& device) {
   const bool harmless = std::none_of(device.name.begin(), device.name.end(),
                                      [](unsigned char c) { return c < ' ' || c == 0x7f; });
-  if (harmless && device.name != "marks" && device.name != "trigger") return {};
+  if (harmless && !is_one_of(own_names, device.name)) return {};
   return Failure(Error{shown(device.name), 0,
-                       "a name without control characters, and not that of our own ports",
+                       "a name without control characters, and not marks, trigger, clock or counts",
                        shown(device.name)});
 }
 
@@ -163,7 +164,7 @@ Fields describe(DeviceOptions& o) {
        &o.transport, -unlimited, unlimited, transports},
       {"address", "of the device to connect to; else ours to listen on (all)", &o.address},
       {"port", "its port to connect to; else ours", &o.port, 0.0, 65535.0},
-      {"skeleton", "of mocap: a BVH file with the header that the stream lacks", &o.skeleton},
+      {"skeleton", "of noitom: a BVH file with the header that the stream lacks", &o.skeleton},
       {"rate_hz", "nominal rate; 0: as usual for the protocol", &o.rate_hz, 0.0, 10'000.0},
       {"required", "whether a take needs it: red while it is missing", &o.required},
       {"lab_key", "of nodes: the file of the lab's key", &o.lab_key},

@@ -20,7 +20,7 @@ struct DeviceOptions {
   std::string transport = "udp";  // udp; tcp: we connect; tcp-listen: the device does
   std::string address;            // of the device to connect to; else ours to listen on (all)
   std::int64_t port = -1;         // 0: any free one, where we listen; -1: nobody said
-  std::string skeleton;           // of mocap: the BVH file whose header the stream lacks
+  std::string skeleton;           // of noitom: the BVH file whose header the stream lacks
   double rate_hz = 0.0;           // nominal; 0: the protocol's usual one
   bool required = true;           // red while it is missing
   std::string lab_key;            // of nodes: the file of the key

@@ -58,6 +58,14 @@ TEST_CASE("--json prints one object with its schema and nothing else on stdout")
   CHECK(Machine{}.run(empty, {"mix", "a", "--json"}).out == "{\"schema\": \"kinalign.mix/1\"}\n");
 }
 
+TEST_CASE("a job knows whether anybody reads its JSON, and need not make it else") {
+  const auto job = [](Mix&, Call& call) -> Result<int> {
+    return call.console.prints_json() ? 0 : 1;
+  };
+  CHECK(Machine{}.run(job, {"mix", "a", "--json"}).code == 0);
+  CHECK(Machine{}.run(job, {"mix", "a"}).code == 1);
+}
+
 TEST_CASE("colour stands on a terminal without NO_COLOR, or where it was asked for") {
   const std::string red = "a result, \x1b[31mred\x1b[0m\n";
   const std::string plain = "a result, red\n";

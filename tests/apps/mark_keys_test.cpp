@@ -48,6 +48,17 @@ TEST_CASE("a text that is given up, empty or no text is no mark") {
   CHECK(marks_of("\n" + std::string(2000, 'a') + "\n").at(0).first.text.size() == 500);
 }
 
+TEST_CASE("an arrow, a function key or a keypad's key is no key of ours, and Esc alone is one") {
+  CHECK(single_keys("a\x1b[Ab\x1b[1;5Dc\x1b[3~d\x1bOte") == "abcde");
+  CHECK(single_keys("\x1b") == "\x1b");
+  CHECK(single_keys("a\x1b") == "a\x1b");
+  CHECK(single_keys("\x1b\x1b[A") == "\x1b");
+  CHECK(single_keys("a\x1b[1") == "a");  // cut off
+  const auto marks = marks_of(single_keys("\nab\x1b[Dc\n"));
+  REQUIRE(marks.size() == 1);
+  CHECK(marks[0].first.text == "abc");
+}
+
 TEST_CASE("a text shows while it is typed") {
   MarkKeys keys;
   CHECK(!keys.typed());

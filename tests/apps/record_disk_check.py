@@ -16,7 +16,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from cases import LONG, SANITIZED, Skip, case, kinalign, main
 from mcap_walk import Walk
-from recording_program import Recording, Sender, numbers, sender_to
+from recording_program import Recording, Sender, numbers, send, sender_to
 
 KILLS = 200 if LONG else 20
 
@@ -156,14 +156,16 @@ def a_folder_that_is_removed_is_told_within_a_second_or_two_and_the_end_says_so(
 
 @contextlib.contextmanager
 def standing_still():
-    """A file, and the environment of a program whose syncs last as long as it is there."""
+    """A file, and the environment of a program whose syncs, and the making of its recordings, last as long as it is there."""
     if SANITIZED:
         raise Skip("a sanitizer comes before every other library")
     with tempfile.TemporaryDirectory() as plain:  # LD_PRELOAD ends a name at a space
         still, source, library = (pathlib.Path(plain) / name for name in ("still", "still.c", "still.so"))
-        source.write_text("#include <sys/syscall.h>\n#include <unistd.h>\n"
-                          f'int fsync(int fd) {{ while (access("{still}", F_OK) == 0) usleep(10000); '
-                          "return (int)syscall(SYS_fsync, fd); }\n")
+        source.write_text("#include <fcntl.h>\n#include <string.h>\n#include <sys/syscall.h>\n#include <unistd.h>\n"
+                          f'static void stand(void) {{ while (access("{still}", F_OK) == 0) usleep(10000); }}\n'
+                          "int fsync(int fd) { stand(); return (int)syscall(SYS_fsync, fd); }\n"
+                          "int open(const char* path, int flags, ...) { if (strstr(path, \".mcap\")) stand(); "
+                          "return (int)syscall(SYS_openat, AT_FDCWD, path, flags, 0644); }\n")
         subprocess.run(["cc", "-shared", "-fPIC", "-o", str(library), str(source)], check=True)
         yield still, {"LD_PRELOAD": str(library)}
 
@@ -205,6 +207,43 @@ def a_disk_that_stands_still_for_a_while_loses_nothing(folder):
     walk = Walk(recording.path)
     found = numbers(walk)
     assert walk.closed and found == list(range(len(found))) and found, len(found)
+
+
+@case
+def what_comes_while_a_disk_takes_its_time_to_begin_a_take_stands_in_it(folder):
+    with standing_still() as (still, env):
+        recording = Recording(folder / "takes", "--wait", "--marks-port", "0", "--pre-roll-s", "0", first="waiting", env=env)
+        still.touch()
+        send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"start","id":"1"}')
+        recording.until("mark")
+        with Sender(recording.port) as sender:
+            time.sleep(1)
+        status = recording.until("status")[-1]
+        while status.get("waiting_bytes", 0) == 0:  # told before any chunk was full
+            status = recording.until("status")[-1]
+        assert not list((folder / "takes").iterdir()), status
+        still.unlink()
+        path = pathlib.Path(recording.until("started")[-1]["file"])
+        code, events, err = recording.end()
+    assert code == 0 and events[-1]["dropped"] == 0, err
+    assert numbers(Walk(path)) == list(range(len(sender.sent)))
+
+
+@case
+def a_disk_that_stands_still_when_a_take_begins_can_be_left(folder):
+    with standing_still() as (still, env):
+        recording = Recording(folder / "takes", "--wait", "--marks-port", "0", first="waiting", env=env)
+        still.touch()
+        send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"start","id":"1"}')
+        while "bytes" not in recording.until("status")[-1]:  # the take has begun
+            pass
+        recording.program.send_signal(signal.SIGINT)
+        recording.until("status")
+        recording.until("status")
+        assert recording.program.poll() is None, "it left by itself"
+        recording.program.send_signal(signal.SIGINT)
+        err = recording.program.communicate(timeout=10)[1]
+    assert recording.program.returncode == 3 and "stands still" in err, (recording.program.returncode, err)
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ TEST_CASE("missing are required devices that are silent or were never heard, and
 
 TEST_CASE("a stream's JSON has its counts and its node's clock") {
   const Scene scene;
-  const auto json = nlohmann::json::parse(json_of(scene.status.streams[2], scene.status));
+  const auto json = json_of(scene.status.streams[2], scene.status);
   CHECK(json["stream"] == "imu");
   CHECK(json["node"] == "7");
   CHECK(json["place"] == "waist");
@@ -65,7 +65,7 @@ TEST_CASE("a stream's JSON has its counts and its node's clock") {
   CHECK(json["clock"]["certainty"] == "certified");
   CHECK(json["clock"]["drift_ppm"] == doctest::Approx(20.1));
   CHECK(!json["clock"].contains("address"));
-  CHECK(!nlohmann::json::parse(json_of(scene.status.streams[0], scene.status)).contains("clock"));
+  CHECK(!json_of(scene.status.streams[0], scene.status).contains("clock"));
 }
 
 TEST_CASE("a port's line tells what was not recorded, and nothing else") {

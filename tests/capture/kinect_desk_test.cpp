@@ -57,7 +57,6 @@ TEST_CASE("a ping is answered with its own numbers, and its echo gives what the 
   REQUIRE(second->echo);
   CHECK(second->echo->n_rx == NodeTime{1005ms});
   CHECK(second->echo->h_tx == at(101s + 3ms));
-  CHECK(desk.counts().echoes[EchoVerdict::taken] == 1);
 }
 
 TEST_CASE("an echo of a pong that was never sent, or that arrived after the ping left, is none") {
@@ -74,8 +73,6 @@ TEST_CASE("an echo of a pong that was never sent, or that arrived after the ping
   sender.session = 1;  // another run of the sender
   sender.hear(pong, at(101s));
   CHECK(!desk.receive(sender.ping(at(105s)), host(5), at(105s))->echo);
-  CHECK(desk.counts().echoes[EchoVerdict::unknown] == 2);
-  CHECK(desk.counts().echoes[EchoVerdict::future] == 1);
 }
 
 TEST_CASE("a sender's clock is certified by its pings, and the interval holds the truth") {
@@ -120,10 +117,9 @@ TEST_CASE("a flood of pings is answered 30 times a second, and one of sessions h
   for (std::uint32_t session = 1; session <= 1000; ++session) {
     Sender stranger{session};
     const HostTime now = at(104s + session * 1ms);
-    desk.receive(stranger.ping(now), host(66), now);
+    CHECK(desk.receive(stranger.ping(now), host(66), now).has_value() == (session <= 8));
     CHECK(desk.answer(now).has_value() == (session <= 8));
   }
-  CHECK(desk.counts().verdicts[PingVerdict::limited] == 992);
   CHECK(desk.receive(sender.ping(at(106s)), host(5), at(106s)));  // who is known goes on
 }
 
@@ -136,6 +132,5 @@ TEST_CASE("32 sessions are kept, a further one takes the place of one that was s
   };
   for (std::uint32_t session = 1; session <= 32; ++session) CHECK(begins(session, at(100s)));
   CHECK(!begins(33, at(160s)));
-  CHECK(desk.counts().verdicts[PingVerdict::no_room] == 1);
   CHECK(begins(33, at(161s)));
 }

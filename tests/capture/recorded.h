@@ -26,6 +26,11 @@ struct RecordingMachine {
   RecordingSession::Machine parts() { return {files, ports_clock, nodes_clock}; }
 };
 
+inline void start(RecordingSession& session, const std::string& path,
+                  const std::string& subject = "", const std::string& action = "") {
+  session.start([path] { return path; }, subject, action);
+}
+
 inline void finish(RecordingSession& session) {
   session.stop();
   while (!session.disk()->finished) std::this_thread::yield();
@@ -63,10 +68,11 @@ class LiveSession {
     auto opened = RecordingSession::open(std::move(options), machine_.parts());
     REQUIRE(opened);
     session_ = *std::move(opened);
-    REQUIRE(session_->start(folder_ / "a.mcap", "", ""));
+    start(*session_, folder_ / "a.mcap");
   }
 
   RecordingSession& session() { return *session_; }
+  const RecordingSession& session() const { return *session_; }
   /// Of the first device.
   std::uint16_t port() const { return session_->ports().front().second; }
   std::uint64_t pieces() const { return session_->port_counts().front().second.pieces; }

@@ -2,11 +2,13 @@
 // What the recorder answers on its devices' ports, over loopback, and what then stands in the file.
 #include "tests/capture/recorded.h"
 #include "tests/capture/test_node.h"
+#include "tests/io/slimevr_bytes.h"
 
 #include "kinalign/capture/recording_session.h"
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_lines.h"
 #include "kinalign/io/kinect_stream.h"
+#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/mark_call.h"
 #include "kinalign/io/noitom_stream.h"
 #include "kinalign/io/vicon_trigger.h"
@@ -68,6 +70,17 @@ TEST_CASE("a Kinect's pings are answered over UDP, and each exchange stands in t
   }
 }
 
+TEST_CASE("pings of a Kinect that begins sessions too often are refused, and counted") {
+  LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
+  const Client sender;
+  for (std::uint32_t session = 1; session <= 10; ++session) {
+    sender.send("127.0.0.1", live.port(), encode_kinect_binary(KinectPing{{2, session, 0}, 5, {}}));
+    live.serve_until([&] { return live.pieces() == session; });
+  }
+  CHECK(live.finish().at("/kinect/exchange").size() == 8);
+  CHECK(live.session().streams().at(0).counts.refused == 2);
+}
+
 TEST_CASE("exchanges of two Kinects stand beside what each of them sent") {
   LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
   const Client one, two;
@@ -123,6 +136,52 @@ TEST_CASE("a SlimeVR tracker's handshake is answered, it is pinged, and all it s
   CHECK(payloads.at("/imu/raw").size() == 4);
   const SenderCounts counts = live.session().streams().at(0).counts;
   CHECK(counts.order.late == 1);
+}
+
+TEST_CASE(
+    "what was lost on the way from a tracker's address stays so, whoever shakes hands there") {
+  LiveSession live({"imu=slimevr:udp:127.0.0.1:0"});
+  const Client address;
+  std::uint64_t sent = 0;
+  const auto send = [&](const std::vector<std::uint8_t>& bytes) {
+    address.send("127.0.0.1", live.port(), bytes);
+    live.serve_until([&, n = ++sent] { return live.pieces() == n; });
+  };
+  for (const std::uint8_t name :
+       std::array<std::uint8_t, 3>{1, 1, 2}) {  // its own restart, then another tracker
+    send(handshake_packet({{2, 0, 0, 0, 0, name}}));
+    for (const std::uint64_t heartbeat : {1, 5}) send(slime_datagram(0, heartbeat, {}));
+  }
+  live.finish();
+  CHECK(live.session().streams().at(0).counts.order.lost == 9);
+}
+
+TEST_CASE("what is refused on the trackers' port is counted, and told where somebody can mend it") {
+  LiveSession live({"imu=slimevr:udp:127.0.0.1:0"});
+  std::uint64_t sent = 0;
+  const auto send = [&](const Client& from, const std::vector<std::uint8_t>& bytes) {
+    from.send("127.0.0.1", live.port(), bytes);
+    live.serve_until([&, n = ++sent] { return live.pieces() == n; });
+  };
+  const Client tracker, rubbish, twin;
+  const auto handshake = handshake_packet({{2, 0, 0, 0, 0, 1}});
+  send(tracker, handshake);
+  for (const std::uint64_t heartbeat : {1, 1}) send(tracker, slime_datagram(0, heartbeat, {}));
+  for (int i = 0; i < 5; ++i) send(rubbish, std::vector<std::uint8_t>(11));
+  for (int i = 0; i < 3; ++i) send(twin, handshake);  // while the first one is at work
+  Findings findings;
+  live.serve_until([&] {
+    append(findings, live.session().take_findings());
+    return !findings.empty();
+  });
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].what.found == "the MAC of another one at work");
+  live.finish();
+  const auto streams = live.session().streams();
+  REQUIRE(streams.size() == 3);
+  CHECK(streams[0].counts.refused == 0);  // the first tracker's, one of them twice
+  CHECK(streams[1].counts.refused == 5);
+  CHECK(streams[2].counts.refused == 3);
 }
 
 TEST_CASE("a tracker that calls to all is answered by a host that has the port open for all") {
@@ -199,6 +258,57 @@ TEST_CASE("a Kinect's frame that lacks a part is no frame of the counts") {
   CHECK(live.session().streams().at(0).counts.frames == 1);
 }
 
+TEST_CASE("what a Kinect's frames are dropped for is counted") {
+  LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
+  const Client sender;
+  const auto send = [&](std::uint32_t session, std::uint32_t sequence) {
+    KinectFrame frame;
+    frame.origin = {2, session, sequence};
+    sender.send("127.0.0.1", live.port(), encode_kinect_binary(frame));
+  };
+  send(1, 7);
+  send(2, 1);
+  send(1, 8);  // of a session that is over
+  live.serve_until([&] { return live.pieces() == 3; });
+  live.finish();
+  const SenderCounts counts = live.session().streams().at(0).counts;
+  CHECK(counts.frames == 2);
+  CHECK(counts.refused == 1);
+}
+
+TEST_CASE(
+    "what a Kinect lost between two connections is counted, and between two ports of its own") {
+  const auto bytes = [](std::uint32_t sequence, std::uint32_t session) {
+    KinectFrame frame;
+    frame.origin = {2, session, sequence};
+    return encode_kinect_binary(frame);
+  };
+  const auto lost = [](const LiveSession& live) {
+    std::uint64_t sum = 0;
+    for (const StreamStatus& stream : live.session().streams()) sum += stream.counts.order.lost;
+    return sum;
+  };
+  LiveSession by_tcp({"kinect=kinect:tcp-listen:127.0.0.1:0"});
+  LiveSession by_udp({"kinect=kinect:udp:127.0.0.1:0"});
+  std::uint64_t sent = 0;
+  for (const std::uint32_t sequence : {1U, 5U, 6U}) {  // 2 to 4 fell between
+    ++sent;
+    const Connection connection(by_tcp.port());
+    connection.send(std::string(text_of(bytes(sequence, 1))));
+    by_tcp.serve_until([&] { return by_tcp.pieces() == sent; });
+    const Client port;
+    port.send("127.0.0.1", by_udp.port(), bytes(sequence, 1));
+    by_udp.serve_until([&] { return by_udp.pieces() == sent; });
+  }
+  const Client restarted;
+  restarted.send("127.0.0.1", by_udp.port(), bytes(100, 2));
+  by_udp.serve_until([&] { return by_udp.pieces() == sent + 1; });
+  by_tcp.finish();
+  by_udp.finish();
+  CHECK(lost(by_tcp) == 3);
+  CHECK(lost(by_udp) == 3);
+}
+
 TEST_CASE("a device that sends to another one's port is told of while recording, once") {
   LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
   NoitomFrame frame;
@@ -235,7 +345,7 @@ TEST_CASE("that the host's wall clock was set is told while recording") {
   options.lab.devices = {*parse_device("mocap=noitom:udp:127.0.0.1:0")};
   auto session = RecordingSession::open(options, {files, clocks, nodes_clock});
   REQUIRE(session);
-  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  start(**session, folder / "a.mcap");
   (*session)->turn(0ms);
   CHECK((*session)->take_clock_events().empty());
   clocks.was_set = true;
@@ -305,7 +415,7 @@ TEST_CASE("a mark before a take stands in its pre-roll") {
   auto session = RecordingSession::open(options, machine.parts());
   REQUIRE(session);
   (*session)->mark({{Mark::Kind::start, "", std::nullopt, ""}, "keyboard", ""}, (*session)->now());
-  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  start(**session, folder / "a.mcap");
   finish(**session);
   CHECK(payloads_in(folder.read("a.mcap")).at("/marks").size() == 1);
 }

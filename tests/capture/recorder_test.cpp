@@ -93,6 +93,25 @@ TEST_CASE("each chunk can be read by itself") {
   }
 }
 
+TEST_CASE("of more channels than a file can number the rest share one, and none is another's") {
+  Recorder recorder(RecorderOptions{});
+  Taken taken;
+  std::uint16_t number = 0;
+  for (int k = 1; k < 65'535; ++k) number = recorder.add_channel({0, 0, "/a/raw", "x", {}});
+  CHECK(number == 65'534);
+  for (const char* topic : {"/b/raw", "/c/raw"}) {
+    CHECK(recorder.add_channel({0, 0, topic, "x", {}}) == 65'535);
+  }
+  recorder.start(at_ms(0), taken.take());
+  recorder.record(number, at_ms(1), "a");
+  for (const char* text : {"b", "c"}) recorder.record(65'535, at_ms(1), text);
+  recorder.stop();
+  CHECK(taken.texts() == std::vector<std::string>{"a", "b", "c"});
+  const auto& channels = taken.chunks.at(0).definitions().channels;
+  CHECK(channels.at(65'534).topic == "/a/raw");
+  CHECK(channels.at(65'535).topic == "/others");
+}
+
 TEST_CASE("a take begins with the last five seconds before it") {
   Recorder recorder(RecorderOptions{});
   Taken taken;

@@ -12,6 +12,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <atomic>
 #include <thread>
 
 using namespace kinalign;
@@ -50,7 +51,7 @@ TEST_CASE("datagrams of several senders stand in the file, each sender's on a ch
   REQUIRE(session);
   const std::uint16_t port = (*session)->ports().front().second;
   const Client one, two;
-  REQUIRE((*session)->start(folder / "a.mcap", "03", "S1A02"));
+  start(**session, folder / "a.mcap", "03", "S1A02");
   for (int i = 0; i < 50; ++i) {
     one.send("127.0.0.1", port, bytes_of("one " + std::to_string(i)));
     serve_until(**session, [&] {
@@ -82,7 +83,7 @@ TEST_CASE("what a device says over TCP stands in the file byte for byte, also af
   auto session = RecordingSession::open(options, machine.parts());
   REQUIRE(session);
   const std::uint16_t port = (*session)->ports().front().second;
-  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  start(**session, folder / "a.mcap");
   std::string sent;
   for (int life = 0; life < 2; ++life) {
     const Connection device_itself(port);
@@ -150,6 +151,38 @@ TEST_CASE("each connection to a device that serves has a channel of its own") {
   CHECK(payloads.at("/kinect/raw/2") == std::vector<std::string>{"whole"});
 }
 
+TEST_CASE("while a disk takes its time to begin a take's file, what comes is received and kept") {
+  struct SlowOpen : PosixFiles {
+    std::atomic<bool> slow{true};
+    int open(const char* path, int flags, mode_t mode) override {
+      for (int ms = 0; slow && ms < 3000; ++ms) std::this_thread::sleep_for(1ms);
+      return PosixFiles::open(path, flags, mode);
+    }
+  };
+  const FreshFolder folder;
+  SlowOpen files;
+  SystemClocks ports_clock, nodes_clock;
+  RecordingSession::Options options;
+  options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
+  options.lab.record.pre_roll_s = 0.0;
+  auto session = RecordingSession::open(options, {files, ports_clock, nodes_clock});
+  REQUIRE(session);
+  const std::uint16_t port = (*session)->ports().front().second;
+  const Client one;
+  start(**session, folder / "a.mcap");
+  const auto came = [&] { return (*session)->port_counts().front().second.pieces; };
+  for (std::uint32_t index = 1; index <= 20; ++index) {
+    one.send("127.0.0.1", port, noitom_frame(index));
+    serve_until(**session, [&] { return came() == index; });
+  }
+  serve_until(**session, [&] { return (*session)->disk()->waiting_bytes > 0; });  // a chunk
+  CHECK((*session)->disk()->paths.empty());
+  files.slow = false;
+  finish(**session);
+  CHECK((*session)->disk()->dropped == 0);
+  CHECK(payloads_in(folder.read("a.mcap")).at("/mocap/raw").size() == 20);
+}
+
 TEST_CASE("what had reached the machine when a take is ended stands in the file") {
   RecordingSession::Options options;
   options.marks_port = 0;
@@ -182,12 +215,12 @@ TEST_CASE("a take's counts begin with it") {
     ++sent;
   };
   const auto came = [&] { return (*session)->port_counts().front().second.pieces; };
-  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  start(**session, folder / "a.mcap");
   for (const std::uint32_t index : {1U, 5U}) say(index);  // 2 to 4 lost
   serve_until(**session, [&] { return came() == 2; });
   finish(**session);
   CHECK((*session)->streams().at(0).counts.order.lost == 3);
-  REQUIRE((*session)->start(folder / "b.mcap", "", ""));
+  start(**session, folder / "b.mcap");
   CHECK((*session)->streams().at(0).counts.messages == 0);
   for (const std::uint32_t index : {6U, 8U}) say(index);  // 7 lost
   serve_until(**session, [&] { return came() == 2; });
@@ -225,7 +258,7 @@ TEST_CASE("a take's counts are those of the messages in its file, whatever its p
     };
     for (const std::string name : {"a.mcap", "b.mcap"}) {
       say_for(900ms);
-      REQUIRE((*session)->start(folder / name, "", ""));
+      start(**session, folder / name);
       say_for(200ms);
       finish(**session);
       PosixFiles files;
@@ -250,10 +283,13 @@ TEST_CASE("a second take needs a name of its own, and has its own file") {
   options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
   auto session = RecordingSession::open(options, machine.parts());
   REQUIRE(session);
-  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  start(**session, folder / "a.mcap");
   finish(**session);
-  CHECK(!(*session)->start(folder / "a.mcap", "", ""));
-  REQUIRE((*session)->start(folder / "b.mcap", "", ""));
+  start(**session, folder / "a.mcap");
+  finish(**session);
+  CHECK((*session)->disk()->refused->file == folder / "a.mcap");
+  CHECK((*session)->disk()->paths.empty());
+  start(**session, folder / "b.mcap");
   finish(**session);
   CHECK(read_mcap(folder.read("a.mcap")).closed);
   CHECK(read_mcap(folder.read("b.mcap")).closed);
@@ -268,7 +304,7 @@ TEST_CASE("what a sender's own numbers miss is counted while recording, and in t
   REQUIRE(session);
   const std::uint16_t port = (*session)->ports().front().second;
   const Client one;
-  REQUIRE((*session)->start(folder / "a.mcap", "", ""));
+  start(**session, folder / "a.mcap");
   std::uint64_t sent = 0;
   for (const std::uint32_t index : {10U, 11U, 14U, 13U, 14U, 15U}) {  // 12 lost, 13 late, 14 twice
     one.send("127.0.0.1", port, noitom_frame(index));

@@ -79,7 +79,6 @@ TEST_CASE("who made no handshake is a stranger, and gets nothing") {
   lab.shake(address(7), mac(1));
   CHECK(lab.hear(address(7, 7000), rotation(1)).verdict == Verdict::stranger);
   CHECK(lab.sent().size() == 1);
-  CHECK(lab.desk.counts().verdicts[Verdict::stranger] == 3);
 }
 
 TEST_CASE("sensor infos are acknowledged with their status, feature flags answered") {
@@ -106,8 +105,8 @@ TEST_CASE("order is by packet number: doubled and overtaken packets are told apa
   CHECK(lab.hear(address(7), rotation(8)).verdict == Verdict::accepted);
   CHECK(lab.hear(address(7), rotation(6)).verdict == Verdict::late);
   const SlimeNews news = lab.hear(address(7), rotation(9));
-  CHECK(lab.desk.device(news.device).counts().lost == 1);
-  CHECK(lab.desk.device(news.device).counts().received == 5);
+  CHECK(lab.desk.device(news.device).numbers.counts().lost == 1);
+  CHECK(lab.desk.device(news.device).numbers.counts().received == 5);
 }
 
 TEST_CASE("a tracker that starts again counts anew, and what was on its way blocks nothing") {
@@ -120,7 +119,7 @@ TEST_CASE("a tracker that starts again counts anew, and what was on its way bloc
   lab.hear(address(7), rotation(50'001));  // of before
   CHECK(lab.hear(address(7), rotation(2)).verdict == Verdict::accepted);
   CHECK(lab.hear(address(7), rotation(3)).verdict == Verdict::accepted);
-  CHECK(lab.desk.device(device).counts().received == 5);
+  CHECK(lab.desk.device(device).numbers.counts().received == 4);
 }
 
 TEST_CASE("a device is its MAC, and moves with it once its old address is silent") {
@@ -135,7 +134,7 @@ TEST_CASE("a device is its MAC, and moves with it once its old address is silent
   CHECK(moved.device == device);
   CHECK(lab.hear(address(7), rotation(2)).verdict == Verdict::stranger);
   CHECK(lab.hear(address(8), rotation(3)).verdict == Verdict::accepted);
-  CHECK(lab.desk.device(device).counts().received == 1);  // the old address's stay there
+  CHECK(lab.desk.device(device).numbers.counts().received == 1);  // the old address's stay there
 }
 
 TEST_CASE("without a MAC the address is the name, port and all") {
@@ -175,7 +174,6 @@ TEST_CASE("a tracker at work gets a heartbeat each half second and a ping each s
   CHECK(sent[1] <= 20);
   CHECK(sent[10] >= 9);
   CHECK(sent[10] <= 10);
-  CHECK(lab.desk.counts().unsent == 0);
 }
 
 TEST_CASE("an address never gets more bytes than it sent since its handshake") {
@@ -258,12 +256,12 @@ TEST_CASE("a handshake of nothing but a head has no answer, being shorter than a
 
 TEST_CASE("one address that shakes hands in many names is limited, a known one is not") {
   Lab lab;
-  int accepted = 0;
+  SlimeVerdicts verdicts;
   for (std::uint8_t i = 0; i < 50; ++i) {
-    accepted += lab.shake(address(9, 1000 + i), mac(i)).verdict == Verdict::accepted ? 1 : 0;
+    ++verdicts[lab.shake(address(9, 1000 + i), mac(i)).verdict];
   }
-  CHECK(accepted == 8);
-  CHECK(lab.desk.counts().verdicts[Verdict::limited] == 42);
+  CHECK(verdicts[Verdict::accepted] == 8);
+  CHECK(verdicts[Verdict::limited] == 42);
   CHECK(lab.shake(address(10), mac(100)).verdict == Verdict::accepted);
   for (int i = 0; i < 50; ++i) {
     CHECK(lab.shake(address(10), mac(100)).verdict == Verdict::accepted);
@@ -284,6 +282,25 @@ TEST_CASE("sixty-four devices and no more, until one was silent for a minute") {
   CHECK(lab.shake(address(202), mac(202)).verdict == Verdict::accepted);  // of number 1
   CHECK(lab.hear(address(1), rotation(1)).verdict == Verdict::stranger);
   CHECK(lab.hear(address(0), rotation(2)).verdict == Verdict::accepted);
+}
+
+TEST_CASE(
+    "a tracker for which there is no room is told, and one in another one's name, not who moves") {
+  SlimeVerdicts verdicts;
+  for (const auto verdict : {Verdict::stranger, Verdict::elsewhere, Verdict::elsewhere}) {
+    ++verdicts[verdict];
+  }
+  CHECK(findings_of(verdicts, "imu").empty());
+  ++verdicts[Verdict::elsewhere];
+  ++verdicts[Verdict::no_room];
+  const Findings findings = findings_of(verdicts, "imu from 192.168.1.7:6969");
+  REQUIRE(findings.size() == 2);
+  CHECK(to_string(findings[0].what) ==
+        "imu from 192.168.1.7:6969: expected at most 64 trackers, found one more");
+  CHECK(to_string(findings[1].what) ==
+        "imu from 192.168.1.7:6969: expected a tracker of its own, found the MAC of another one at "
+        "work");
+  CHECK(refused(verdicts) == 5);
 }
 
 TEST_CASE("battery is as the tracker said last") {
