@@ -11,6 +11,8 @@ kinalign=$build/apps/kinalign/kinalign
 
 "$kinalign" simulate built-in -o "$folder" --live --begin-in 2 --seconds "$seconds" --quiet "${@:4}" &
 simulation=$!
+# Whatever ends this, nobody goes on sending.
+trap 'kill "$simulation" 2>/dev/null && wait "$simulation" || true' EXIT
 until [[ -e $folder/lab.toml ]]; do
   kill -0 "$simulation" 2>/dev/null || wait "$simulation"
   sleep 0.05
@@ -18,6 +20,7 @@ done
 echo "rehearsing live for $seconds s: a suit, a Kinect and five nodes over loopback"
 "$kinalign" record -o "$folder" --config "$folder/lab.toml" --seconds $((seconds + 3)) --quiet
 wait "$simulation"
+trap - EXIT
 
 "$kinalign" align "$folder/recording.toml" -o "$folder/take.h5" || (($? == 1)) # 1: with warnings
 "$build/tools/kinalign_truth_table" "$folder/recording.toml" "$folder/take.h5" "$folder/truth/truth.json"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far off each joint of a Kinect v2 is: figures measured on UI-PRMD against Vicon (690
+// How far off each joint of a Kinect v2 is: figures measured on UI-PRMD against Vicon (620
 // repetitions of seven people) and on the two-Kinect recordings of KinectMultiTrack. Where a figure
 // had to move so that the model's statistics meet the measured ones, docs/kinect_noise.md says why.
 #pragma once

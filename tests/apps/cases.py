@@ -94,6 +94,20 @@ def wrong(*words, says, **how):
     assert first == f"kinalign {words[0]}: {says}", f"{first}\nnot {says}"
 
 
+def examples(verb):
+    """The commands of a help page."""
+    page, _ = done_with(0, verb, "--help")
+    commands = [line.strip() for line in page.split(f"\n{verb}: ")[0].splitlines() if line.startswith("  kinalign ")]
+    assert commands, page
+    return commands
+
+
+def typed(command, folder):
+    """Such a command as somebody types it in a folder."""
+    place = {"PATH": f"{PROGRAM.parent}:/usr/bin:/bin", "HOME": str(folder)}
+    return subprocess.run(["bash", "-c", command], cwd=folder, env=place, capture_output=True, check=False, timeout=60)
+
+
 def demo(folder, seconds=1, seed=1):
     subprocess.run([DEMO, folder, "--seed", str(seed), "--seconds", str(seconds)], check=True,
                    capture_output=True)

@@ -22,6 +22,20 @@ def records(data, at=0):
         at += 9 + length
 
 
+def whole_chunks(data):
+    """(where it ends, its messages) of each chunk of a whole file, by the message indexes that stand behind it:
+    compressed ones, too."""
+    chunks, at = [], 8
+    for op, content in records(data, 8):
+        at += 9 + len(content)
+        if op == 0x06:
+            chunks.append((at, 0))
+        elif op == 0x07:
+            end, messages = chunks[-1]
+            chunks[-1] = end, messages + struct.unpack_from("<I", content, 2)[0] // 16
+    return chunks
+
+
 class Walk:
     """`messages`: (topic, sequence, log_time, publish_time, payload) of whole chunks whose checksum fits;
     `attachments`: the bytes by name; `channels`: the metadata by topic."""

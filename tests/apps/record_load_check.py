@@ -26,9 +26,11 @@ def a_lab_at_twenty_times_its_speed_loses_no_message(folder):
     assert recorder.info["closed"] is True, recorder.info
     counts = [files for _, _, files in recorder.samples]
     assert max(counts) == min(counts), counts
-    # After the first minute's worth. The limit is wide: a lab's bar is measured by bench/record_load.py.
+    # After the first minute's worth: flat within 1 MiB either way, which a leak of 8 bytes a message leaves five times
+    # over. Only where the disk stands still for a second or more what waits for it makes it grow, once.
     settled = [mb for s, mb, _ in recorder.samples if s > 60 / TIMES]
     assert SANITIZED or max(settled) < 100, settled
+    in_time(SANITIZED or max(settled) - min(settled) <= 2, settled)
 
 
 @case

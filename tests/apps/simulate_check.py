@@ -7,7 +7,6 @@ import json
 import math
 import pathlib
 import signal
-import socket
 import struct
 import subprocess
 import sys
@@ -15,19 +14,13 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
-from cases import BUILD, case, done_with, in_time, kinalign, law, main, refused, wrong
-from mcap_walk import Walk
-
-NODES = ["waist", "wrist_left", "wrist_right", "ankle_left", "ankle_right"]
+from cases import case, done_with, in_time, kinalign, law, main, refused, wrong
+from rehearsing import NODES, recorded, truth_of, truth_table
 
 
 def simulate(folder, *words, motion="built-in", name="r"):
     out, _ = done_with(0, "simulate", motion, "-o", folder / name, "--json", *words)
     return folder / name, json.loads(out)
-
-
-def truth_of(folder):
-    return json.loads((folder / "truth/truth.json").read_text())
 
 
 def time_of(clock, stamp):
@@ -81,31 +74,22 @@ def stamps_lie_within_what_the_manifest_says_of_them(folder):
     assert manifest.count("interval_ms = 0.51\n") == 2, manifest
 
 
-def table_rows(text):
-    """Lines of both tables as lists of cells, without their heads."""
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line]
-    return [row for row in rows if not row[0].startswith(("---", "device", "values"))]
-
-
 @case
 def the_truth_table_finds_all_within_its_interval_and_alignment_adding_little(folder):
     made, _ = simulate(folder, "--seconds", "30", "--seed", "6")
     aligned(made)
-    done = subprocess.run([BUILD / "tools/kinalign_truth_table", made / "recording.toml", made / "take.h5",
-                           made / "truth/truth.json"], capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    rows = table_rows(done.stdout)
+    code, said, rows = truth_table(made / "recording.toml", made / "take.h5", made / "truth/truth.json")
+    assert code == 0, said
     devices = ["mocap", "kinect"] + [f"imu {node}" for node in NODES]
-    assert [row[0] for row in rows] == 2 * devices + ["imu all nodes"], done.stdout
-    assert all(" 0 of " in row[5] for row in rows[1:7]), done.stdout
+    assert [row[0] for row in rows] == 2 * devices + ["imu all nodes"], said
+    assert all(" 0 of " in row[5] for row in rows[1:7]), said
     for modality in (rows[8], rows[-1]):
         assert float(modality[4].removesuffix("%")) < 5, modality  # the bar: noise alone and 5 % more
     truth = json.loads((made / "truth/truth.json").read_text())
     truth["nodes"][2]["clock"]["times_ns"] = [time + 2_000_000 for time in truth["nodes"][2]["clock"]["times_ns"]]
     (made / "truth/truth.json").write_text(json.dumps(truth))
-    done = subprocess.run([BUILD / "tools/kinalign_truth_table", made / "recording.toml", made / "take.h5",
-                           made / "truth/truth.json"], capture_output=True, text=True, timeout=60, check=False)
-    assert done.returncode == 1 and float(table_rows(done.stdout)[4][2]) > 1.2, done.stdout
+    code, said, rows = truth_table(made / "recording.toml", made / "take.h5", made / "truth/truth.json")
+    assert code == 1 and float(rows[4][2]) > 1.2, said
 
 
 @case
@@ -161,43 +145,6 @@ def wrong_use_is_told(folder):
 
 
 # ---- live
-
-class Recorder:
-    """kinalign record for a suit, a Kinect and nodes on ports of its own."""
-
-    def __init__(self, folder):
-        folder.mkdir()
-        places = ", ".join(f'"{i}" = "{node}"' for i, node in enumerate(NODES, 1))
-        (folder / "lab.toml").write_text('[device.imu]\nprotocol = "nodes"\naddress = "127.0.0.1"\nport = 0\n'
-                                         f"nodes = {{ {places} }}\n")
-        self.program = subprocess.Popen(
-            [str(cases.PROGRAM), "record", "-o", str(folder), "--compression", "none", "--json", "--device",
-             "mocap=noitom:udp:127.0.0.1:0", "--device", "kinect=kinect:udp:127.0.0.1:0", "--config",
-             str(folder / "lab.toml"), "--marks-port", "0"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.started = json.loads(self.program.stdout.readline())
-
-    def flags(self):
-        ports = self.started["ports"]
-        return ["--mocap-port", ports["mocap"], "--kinect-port", ports["kinect"], "--node-port", ports["imu"],
-                "--marks-port", ports["marks"]]
-
-    def end(self):
-        self.program.send_signal(signal.SIGINT)
-        out, err = self.program.communicate(timeout=60)
-        assert self.program.returncode == 0, err
-        return [json.loads(line) for line in out.splitlines()][-1], Walk(pathlib.Path(self.started["file"]))
-
-
-def recorded(folder, *words, seconds=6):
-    recorder = Recorder(folder / "takes")
-    done = kinalign("simulate", "built-in", "-o", folder / "r", "--live", "--seconds", seconds, "--json", *words,
-                    *recorder.flags())
-    assert done.returncode == 0, done.stderr
-    begun, sent = (json.loads(line) for line in done.stdout.decode().splitlines())
-    time.sleep(0.2)
-    stopped, walk = recorder.end()
-    return begun, sent, stopped, walk, truth_of(folder / "r")
-
 
 @case
 def all_that_is_sent_live_stands_in_the_recording(folder):
@@ -297,11 +244,10 @@ def nodes_without_a_counter_are_aligned_within_three_milliseconds(folder):
     manifest.write_text(without_suit.replace("take_01.mcap", str(take.resolve())))
     done = kinalign("align", manifest, "-o", folder / "take.h5")
     assert done.returncode in (0, 1), done.stderr
-    done = subprocess.run([BUILD / "tools/kinalign_truth_table", manifest, folder / "take.h5",
-                           made / "truth/truth.json"], capture_output=True, text=True, timeout=60, check=False)
-    rows = [row for row in table_rows(done.stdout) if row[0].startswith("imu") and len(row) == 6]
-    assert len(rows) == 5 and all(int(row[1]) > 150 and row[5] == "none" for row in rows), done.stdout + done.stderr
-    in_time(all(float(row[2]) < 3 for row in rows), done.stdout)  # half of a round trip: 33 in the mean
+    _, said, rows = truth_table(manifest, folder / "take.h5", made / "truth/truth.json")
+    rows = [row for row in rows if row[0].startswith("imu") and len(row) == 6]
+    assert len(rows) == 5 and all(int(row[1]) > 150 and row[5] == "none" for row in rows), said
+    in_time(all(float(row[2]) < 3 for row in rows), said)  # half of a round trip: 33 in the mean
 
 
 @case
@@ -321,36 +267,12 @@ def frames_of_suit_and_camera_come_some_milliseconds_after_they_were_true(folder
         in_time(sorted(ns)[len(ns) // 2] < 4e6, f"{name}: {sorted(ns)[len(ns) // 2]}")
 
 
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
-
-
-@case
-def the_whole_chain_loses_no_truth_from_the_socket_to_the_take(folder):
-    ports = [word for name in ("mocap", "kinect", "node") for word in (f"--{name}-port", str(free_port()))]
-    done = subprocess.run([pathlib.Path(__file__).parents[2] / "tools/rehearse.sh", BUILD, folder / "r", "12", *ports], capture_output=True,
-                          text=True, timeout=120, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    rows = table_rows(done.stdout[done.stdout.index("| device"):])
-    times, values = rows[:7], rows[7:]
-    assert [row[0] for row in times] == ["mocap", "kinect"] + [f"imu {node}" for node in NODES], done.stdout
-    for row in times[2:]:
-        median, worst = float(row[2]), float(row[4])
-        assert int(row[1]) > 1000 and " 0 of " in row[5], row
-        in_time(median < 0.5 and worst < 2, row)  # the link's floors differ by 0.2 ms at the most
-    for row in times[:2]:
-        in_time(1.9 < float(row[2]) < 3 and float(row[4]) < 4, row)  # 2 ms in the devices' own programs
-    kinect = next(row for row in values if row[0] == "kinect")
-    in_time(float(kinect[4].removesuffix("%")) < 5, kinect)
-
-
 @case
 def ctrl_c_ends_a_live_one_in_order_and_nobody_listening_is_told(folder):
     with subprocess.Popen(
-            [str(cases.PROGRAM), "simulate", "built-in", "-o", str(folder / "r"), "--live", "--mocap-port", "9", "--json",
-             "--kinect-port", "9", "--node-port", "9"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as one:
+            [str(cases.PROGRAM), "simulate", "built-in", "-o", str(folder / "r"), "--live", "--json", "--mocap-port",
+             "9", "--kinect-port", "9", "--node-port", "9", "--marks-port", "9"], stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, text=True) as one:
         assert json.loads(one.stdout.readline())["event"] == "sending"
         time.sleep(2)
         one.send_signal(signal.SIGINT)

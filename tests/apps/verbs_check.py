@@ -3,14 +3,11 @@
 verbs_check.py BUILD_FOLDER [CASE...]"""
 import json
 import pathlib
-import struct
-import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-import cases
 import samples
-from cases import case, demo, done_with, kinalign, main, parsed, refused
+from cases import case, demo, done_with, examples, kinalign, main, parsed, refused, typed
 
 
 def rows_dropped(path, rows):
@@ -292,43 +289,12 @@ def an_error_in_a_manifest_leads_to_its_page_and_one_in_a_layout_does_not(folder
 def every_example_of_a_help_page_runs_as_it_stands_beside_a_new_demo(folder):
     demo(folder / "demo", seconds=2)  # what ./dev demo leaves
     done_with(0, "align", folder / "demo/recording.toml", "-o", folder / "demo/take.h5")
-    place = {"PATH": f"{cases.PROGRAM.parent}:/usr/bin:/bin", "HOME": str(folder)}
     for verb in ("align", "info", "check", "convert", "rebuild", "config"):
-        page, _ = done_with(0, verb, "--help")
-        examples = [l.strip() for l in page.split(f"\n{verb}: ")[0].splitlines() if l.startswith("  kinalign ")]
-        assert examples, page
-        for command in examples:
-            if "takes/" in command:  # a recording: simulate_check.py makes one and goes on with it
+        for command in examples(verb):
+            if "takes/" in command:  # a recording: rehearsal_check.py makes one and runs these beside it
                 continue
-            done = subprocess.run(["bash", "-c", command], cwd=folder, env=place, capture_output=True, check=False)
+            done = typed(command, folder)
             assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
-
-
-def xdf_chunk(tag, content):
-    return b"\x04" + struct.pack("<IH", len(content) + 2, tag) + content
-
-
-@case
-def info_and_check_know_an_XDF_and_its_torn_end(folder):
-    header = (b"<info><name>wrist</name><type>IMU</type><channel_count>1</channel_count><nominal_srate>4</nominal_srate>"
-              b"<channel_format>double64</channel_format></info>")
-    whole = b"XDF:" + xdf_chunk(1, b"<info><version>1.0</version></info>") + xdf_chunk(2, struct.pack("<I", 7) + header)
-    whole += xdf_chunk(4, struct.pack("<Idd", 7, 5.0, -0.25))
-    for k in range(8):
-        whole += xdf_chunk(3, struct.pack("<IBBBdd", 7, 1, 1, 8, 5.0 + k / 4, 0.5))
-    path = folder / "rec.xdf"
-    path.write_bytes(whole)
-    out, _ = done_with(0, "info", path)
-    assert "wrist (IMU): 1 channel of double64, 8 samples, 4 Hz nominal, 4 Hz by the stamps" in out, out
-    streams = parsed(done_with(0, "info", path, "--json")[0])["streams"]
-    assert [(s["name"], s["samples"], s["first_s"], s["last_s"]) for s in streams] == [("wrist", 8, 5.0, 6.75)], streams
-    out, _ = done_with(0, "check", path)
-    assert out == "1 file read, nothing found\n", out
-    path.write_bytes(whole[:-5])
-    out, _ = done_with(1, "check", path)
-    assert out.startswith(f"warning  {path}: expected a last chunk of 25 bytes, found 20 bytes at byte "), out
-    assert "1 finding: see kinalign check" in done_with(0, "info", path)[0]
-    done_with(2, "info", path, "--rate-hz", "60")
 
 
 @case

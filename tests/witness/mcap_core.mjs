@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What @mcap/core makes of recordings: mcap_core.mjs NODE_MODULES stream|indexed FILE [CUT...]
+// What @mcap/core makes of recordings: mcap_core.mjs NODE_MODULES stream|indexed|texts FILE [CUT...]
 // Prints a line of JSON for each cut (the whole file where none is given): the messages that a reader
-// of bytes from front to end, or one that goes by the index, has seen.
+// of bytes from front to end, or one that goes by the index, has seen; with `texts` from front to end
+// their topics, times and data.
 import { createRequire } from "node:module";
 import { readFileSync } from "node:fs";
 
@@ -14,12 +15,18 @@ const whole = new Uint8Array(readFileSync(path));
 
 const seen = (message) => [message.channelId, message.sequence, String(message.logTime), message.data.byteLength];
 
-function fromFrontToEnd(bytes) {
+const text = (message, topic) =>
+  [topic, String(message.logTime), String(message.publishTime), new TextDecoder().decode(message.data)];
+
+function fromFrontToEnd(bytes, shown) {
   const reader = new McapStreamReader({ decompressHandlers, validateCrcs: true });
-  const messages = [];
+  const messages = [], topics = new Map();
   try {
     reader.append(bytes);
-    for (let record; (record = reader.nextRecord()); ) if (record.type === "Message") messages.push(seen(record));
+    for (let record; (record = reader.nextRecord()); ) {
+      if (record.type === "Channel") topics.set(record.id, record.topic);
+      if (record.type === "Message") messages.push(shown(record, topics.get(record.channelId)));
+    }
     return { messages, done: reader.done() };
   } catch (error) {
     return { messages, error: error.message };
@@ -43,5 +50,6 @@ async function byTheIndex(bytes) {
 
 for (const cut of cuts.length > 0 ? cuts.map(Number) : [whole.byteLength]) {
   const bytes = whole.subarray(0, cut);
-  console.log(JSON.stringify(how === "stream" ? fromFrontToEnd(bytes) : await byTheIndex(bytes)));
+  const read = how === "indexed" ? await byTheIndex(bytes) : fromFrontToEnd(bytes, how === "texts" ? text : seen);
+  console.log(JSON.stringify(read));
 }

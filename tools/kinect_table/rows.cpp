@@ -140,6 +140,12 @@ Result<std::vector<Row>> measured_rows(const std::vector<Repetition>& real, std:
   std::vector<Row> rows;
   add_marks(real_figures, all, rows);
   add_noise(real_figures, all, rows);
+  for (Row& row : KA_TRY(camera_rows(seeds, jobs))) rows.push_back(std::move(row));
+  return rows;
+}
+
+Result<std::vector<Row>> camera_rows(std::size_t seeds, std::size_t jobs) {
+  std::vector<Row> rows;
   add_cameras(KA_TRY(median_camera_figures(1, seeds, jobs)), rows);
   add_stamps(seeds, rows);
   return rows;

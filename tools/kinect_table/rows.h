@@ -21,6 +21,9 @@ struct Row {
 Result<std::vector<Row>> measured_rows(const std::vector<Repetition>& real, std::size_t seeds,
                                        std::size_t jobs);
 
+/// Those of two cameras and of stamps, which need no recordings.
+Result<std::vector<Row>> camera_rows(std::size_t seeds, std::size_t jobs);
+
 std::string plain(const std::vector<Row>& rows);
 std::string markdown(const std::vector<Row>& rows, std::size_t seeds);
 
