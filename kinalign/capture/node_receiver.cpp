@@ -39,6 +39,7 @@ void NodeReceiver::drain() {
       const std::size_t datagrams = batch_->receive(socket->fd());
       if (datagrams == 0) break;
       axis_.look();
+      datagrams_ += datagrams;
       take(*socket, datagrams);
       if (datagrams < DatagramBatch::most) break;
     }

@@ -49,6 +49,8 @@ class NodeReceiver {
 
   /// Takes and answers what has come, at most some hundred datagrams of each socket.
   void drain();
+  /// Datagrams since it was opened, of whatever kind.
+  std::uint64_t heard() const { return datagrams_; }
   /// Four times a second or so: who left, how the host's clocks run.
   void tick();
 
@@ -131,7 +133,7 @@ class NodeReceiver {
   std::size_t kept_length_ = 0;
   Watcher watcher_;
   std::vector<std::optional<HostAddress>> heard_;  // by stream: where its frames came to, this time
-  std::uint64_t unsent_ = 0, not_unicast_ = 0, from_port_0_ = 0;
+  std::uint64_t datagrams_ = 0, unsent_ = 0, not_unicast_ = 0, from_port_0_ = 0;
   HostTime next_watch_ = HostTime::min();
   EventQueue<ClockPair> pairs_;
 };

@@ -85,6 +85,8 @@ class UdpPieces {
   std::uint16_t port() const { return sockets_.front().port(); }
   const Senders& senders() const { return senders_; }
   PortCounts counts() const;
+  /// All that came, without asking the kernel.
+  std::uint64_t heard() const { return counts_.pieces + counts_.refused; }
 
  private:
   explicit UdpPieces(std::vector<UdpSocket> sockets);
@@ -112,6 +114,7 @@ class TcpPieces {
   std::uint16_t port() const { return port_; }
   const Senders& senders() const { return senders_; }
   PortCounts counts() const { return counts_; }
+  std::uint64_t heard() const { return counts_.pieces + counts_.refused; }
 
  private:
   /// A descriptor of our own.

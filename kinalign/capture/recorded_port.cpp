@@ -223,6 +223,10 @@ PortCounts RecordedPort::counts() const {
   return std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
 }
 
+std::uint64_t RecordedPort::heard() const {
+  return std::visit([](const auto& pieces) { return pieces.heard(); }, pieces_);
+}
+
 void RecordedPort::add_streams(std::vector<StreamStatus>& all) const {
   for_each_source(*this, [&](const Source& source) { all.push_back(source.recorded.of_take()); });
 }

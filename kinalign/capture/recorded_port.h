@@ -41,6 +41,8 @@ class RecordedPort {
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const;
   PortCounts counts() const;
+  /// Pieces since it was opened, also refused ones.
+  std::uint64_t heard() const;
   void add_streams(std::vector<StreamStatus>& all) const;
   /// What the user should know of what is sent, since this was asked last: each fault of a host
   /// once.

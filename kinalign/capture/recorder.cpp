@@ -47,7 +47,6 @@ void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view d
     chunk_.add(channel.channel);
     channel.in_chunk = true;
   }
-  ++messages_;
   const std::uint64_t log = log_time(arrival);
   chunk_.add(McapMessage{number, static_cast<std::uint32_t>(channel.messages++), log,
                          device_ns.value_or(log), data});

@@ -58,9 +58,7 @@ class Recorder {
   using Closed = std::function<void(std::uint64_t next, std::uint64_t first)>;
   void when_closed(Closed closed) { closed_ = std::move(closed); }
 
-  /// Recorded on all channels, in takes and before.
-  std::uint64_t messages() const { return messages_; }
-  /// On one, since it was added.
+  /// Recorded on a channel since it was added, in takes and before.
   std::uint64_t messages(std::uint16_t channel) const { return channels_[channel].messages; }
   std::uint64_t log_time(HostTime t) const;
 
@@ -90,7 +88,6 @@ class Recorder {
   std::size_t pre_roll_bytes_ = 0;
   std::optional<HostTime> keep_since_;
   std::uint64_t number_ = 0;  // of the open chunk
-  std::uint64_t messages_ = 0;
   Closed closed_;
   Take take_;
 };

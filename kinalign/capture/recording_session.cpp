@@ -130,20 +130,30 @@ Result<void> RecordingSession::open_ports() {
   return {};
 }
 
-/// A waking costs more than the messages that it is for. At a lab's speed those of 10 ms are taken
-/// together; where so many come that buffers fill, nobody rests. No clock sees it: arrivals are the
-/// kernel's, and of an answer it is known when it was asked for and when it was given.
-void RecordingSession::rest(Duration patience) const {
-  constexpr Duration short_rest = std::chrono::milliseconds(10);
-  constexpr std::uint64_t few = 16;
-  const bool busy = came_ > 0 && came_ <= few;
-  if (busy && patience >= short_rest) std::this_thread::sleep_for(short_rest);
+std::uint64_t RecordingSession::heard() const {
+  std::uint64_t heard = nodes_ ? nodes_->receiver().heard() : 0;
+  for (const RecordedPort& port : ports_) heard += port.heard();
+  return heard;
+}
+
+/// A waking costs more than the messages that it is for. At a lab's speed those of 20 ms are taken
+/// together; while so many come that buffers fill, in a flood, nobody rests. No clock sees it:
+/// arrivals are the kernel's, and of an answer it is known when it was asked for and given.
+void RecordingSession::rest(Duration patience) {
+  constexpr Duration short_rest = std::chrono::milliseconds(20);
+  constexpr std::uint64_t few = 32;  // in a turn; the kernel's buffers hold twice as many
+  const std::uint64_t all = heard();
+  const std::uint64_t came = all - std::exchange(heard_before_, all);
+  const HostTime now = axis_.now();
+  if (came > few) awake_until_ = now + std::chrono::seconds(1);
+  if (came > 0 && now >= awake_until_ && patience >= short_rest) {
+    std::this_thread::sleep_for(short_rest);
+  }
 }
 
 /// Only ports where something has come cost a call; connections are looked after with the clock.
 bool RecordingSession::turn(Duration patience, std::optional<int> also) {
   rest(patience);
-  const std::uint64_t before = recorder_->messages();
   const bool some = wait(patience, also);
   const HostTime now = axis_.now();
   const bool look_after = now >= next_look_;
@@ -165,7 +175,6 @@ bool RecordingSession::turn(Duration patience, std::optional<int> also) {
     if (!next_is_ready(ports_.size() + i)) continue;
     mark_ports_[i].drain(axis_, [this](const RecordedMark& m, HostTime at) { mark(m, at); });
   }
-  came_ = recorder_->messages() - before;
   tick(now);
   return some;
 }

@@ -91,7 +91,8 @@ class RecordingSession {
  private:
   RecordingSession(Options options, Machine machine);
   Result<void> open_ports();
-  void rest(Duration patience) const;
+  void rest(Duration patience);
+  std::uint64_t heard() const;
   bool wait(Duration patience, std::optional<int> also);
   void drain_all();
   void tick(HostTime now);
@@ -120,7 +121,8 @@ class RecordingSession {
   std::vector<int> fds_;              // of this turn
   std::vector<std::size_t> fds_end_;  // by port, marks' last: where in fds_ those of the next begin
   std::vector<pollfd> waiting_;
-  std::uint64_t came_ = 0;  // in the last turn
+  std::uint64_t heard_before_ = 0;  // the last turn
+  HostTime awake_until_ = HostTime::min();
   std::unique_ptr<DiskThread> disk_;
 };
 
