@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 
 namespace kinalign {
 
@@ -135,12 +136,13 @@ Findings losses(const std::string& path, const RecordingSurvey& survey) {
   for (const CountedSender& one : survey.senders) {
     const SequenceCounts& order = one.counts.order;
     if (order.lost == 0) continue;
-    findings.push_back({Severity::note,
-                        {path, 0, "every frame that " + name_of(one) + " sent",
-                         fmt::format("{} lost of {}", grouped(order.lost),
-                                     grouped(order.lost + one.counts.frames))},
-                        "by the sender's own numbers; they did not reach the recorder",
-                        ""});
+    const std::uint64_t came = std::max(one.counts.frames, one.counts.messages);  // or uncounted
+    findings.push_back(
+        {Severity::note,
+         {path, 0, "every frame that " + name_of(one) + " sent",
+          fmt::format("{} lost of {}", grouped(order.lost), grouped(order.lost + came))},
+         "by the sender's own numbers; they did not reach the recorder",
+         ""});
   }
   for (const CountedPort& one : survey.ports) {
     const std::string lost = loss_of(one.counts);
@@ -210,6 +212,41 @@ Json json_of(const std::string& path, const RecordingSurvey& survey, const Recor
   return json;
 }
 
+/// Of what no rows can be made: the recorder saw none of the protocol's frames in it, or nothing
+/// says whose body moves.
+Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
+  constexpr std::uint64_t enough = 20;  // messages: a datagram or two may be anybody's
+  Findings findings;
+  std::set<std::string> without_skeleton;
+  for (const CountedSender& one : survey.senders) {
+    const auto channel =
+        std::find_if(survey.channels.begin(), survey.channels.end(),
+                     [&](const ChannelSurvey& known) { return known.channel.topic == one.topic; });
+    if (channel == survey.channels.end()) continue;
+    const std::string& protocol = channel->channel.message_encoding;
+    const bool counted = protocol == "noitom" || protocol == "xsens" || protocol == "kinect";
+    if (counted && one.counts.frames == 0 && one.counts.messages >= enough) {
+      findings.push_back({Severity::warning,
+                          {path, 0, "frames of " + protocol + " in what " + name_of(one) + " sent",
+                           grouped(one.counts.messages) + " messages, none of them one"},
+                          "nothing of it can be aligned as " + protocol,
+                          "see which port and protocol the device sends to"});
+    }
+    const auto& names = survey.attachments;
+    const bool has_body = std::find(names.begin(), names.end(), one.stream + ".bvh") != names.end();
+    if (protocol == "noitom" && one.counts.frames > 0 && !has_body) {
+      without_skeleton.insert(one.stream);
+    }
+  }
+  for (const std::string& stream : without_skeleton) {
+    findings.push_back({Severity::note,
+                        {path, 0, "a skeleton for " + stream, "none"},
+                        "Noitom's stream does not say whose body it moves; alignment needs it",
+                        "skeleton = \"a.bvh\" in [stream." + stream + "] of a recording.toml"});
+  }
+  return findings;
+}
+
 }  // namespace
 
 Description describe_survey(const std::string& path, const RecordingSurvey& survey,
@@ -253,6 +290,7 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
                         "record to a disk of the machine itself"});
   }
   append(findings, losses(path, survey));
+  append(findings, unreadable(path, survey));
   return findings;
 }
 

@@ -186,9 +186,10 @@ Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
 Result<int> record_take(const Record& o, Call& call, RecordingSession& session, Stage& stage) {
   RecordHerald& herald = stage.herald();
   const auto free_path = [folder = call.common.out, subject = o.subject, action = o.action] {
+    (void)make_folder(folder);  // somebody may have removed it; what it lacks, the file will say
     return free_take_path(folder, subject, action);
   };
-  if (!stage.begin(free_path, o.subject, o.action)) {
+  if (!stage.begin({free_path, o.subject, o.action, o.wait})) {
     leave(call.console, stage,
           Error{call.common.out, 0, "a disk that begins a file", "one that stands still"});
   }

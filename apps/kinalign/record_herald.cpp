@@ -226,6 +226,14 @@ void RecordHerald::tell_slow(std::uint64_t waiting_bytes) {
   console_.flush();
 }
 
+/// On stderr alone: for programs the first line is that it has begun.
+void RecordHerald::tell_slow_begin() {
+  console_.complain(
+      "kinalign record: the disk has not begun the take's file yet; what comes waits in memory. "
+      "Ctrl-C ends the take, another one loses it");
+  console_.flush();
+}
+
 void RecordHerald::tell_status(const LabStatus& status) {
   Json event{{"event", "status"}};
   if (const auto disk = session_.disk()) {

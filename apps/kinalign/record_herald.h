@@ -28,10 +28,14 @@ class RecordHerald {
   /// Asked after each turn, it looks ten times a second, once it has told what it waits for or that
   /// a take has begun. `typed`: a text that is being typed.
   void look(const std::optional<std::string>& typed);
+  /// The disk failed, or does not begin a take's file.
+  void tell(const PartFailure& failure);
   /// The disk does not take the end of a take.
   void tell_refused(const Error& why);
   /// Nor does it refuse it: so many bytes wait.
   void tell_slow(std::uint64_t waiting_bytes);
+  /// Nor does it begin its file.
+  void tell_slow_begin();
   /// The take is over: what comes while its rest is written is the next one's.
   void end_take() { at_end_ = lab_status(); }
   void tell_end();
@@ -46,7 +50,6 @@ class RecordHerald {
   void tell_dropped(std::uint64_t dropped);
   void tell_news();
   void tell_news_of(NodeReceiver& nodes);
-  void tell(const PartFailure& failure);
   void tell(const Finding& finding);
   void tell(const HostClockEvent& event);
   void tell_who_lacks(const LabStatus& status);

@@ -48,13 +48,20 @@ bool Stage::wait_for_start() {
   return false;
 }
 
-bool Stage::begin(RecordingSession::FreePath free_path, const std::string& subject,
-                  const std::string& action) {
-  session_.start(std::move(free_path), subject, action);
-  bool lost_patience = false;
+bool Stage::begin(Beginning beginning) {
+  begun_ = session_.now();
+  session_.start(std::move(beginning.free_path), beginning.subject, beginning.action);
+  bool lost_patience = false, slow = false, refused = false;
   for (DiskStatus disk = *session_.disk(); disk.paths.empty() && !disk.finished;
        disk = *session_.disk()) {
     turn(5ms);
+    if (disk.refused && !std::exchange(refused, true) && beginning.tries_again) {
+      herald_.tell(PartFailure{*disk.refused, ""});
+    }
+    if (refused && (!beginning.tries_again || ends_)) session_.give_up();
+    if (!refused && session_.now() - begun_ > 2s && !std::exchange(slow, true)) {
+      herald_.tell_slow_begin();
+    }
     if (!interrupted()) continue;
     if (std::exchange(lost_patience, true)) return false;
     listen_anew();
@@ -63,10 +70,9 @@ bool Stage::begin(RecordingSession::FreePath free_path, const std::string& subje
 }
 
 bool Stage::record(const End& end) {
-  const HostTime begun = session_.now();
   const auto goes_on = [&] {
     const bool stopped = take_mark(Mark::Kind::stop) && end.by_mark;
-    return !stopped && !(end.seconds && seconds(session_.now() - begun) >= *end.seconds);
+    return !stopped && !(end.seconds && seconds(session_.now() - begun_) >= *end.seconds);
   };
   for (bool going = true; going && goes_on();) going = turn(one_turn);
   listen_anew();  // a Ctrl-C that is pressed twice ends nothing out of order

@@ -17,10 +17,14 @@ class Stage {
 
   /// False: somebody ended it first.
   bool wait_for_start();
+  struct Beginning {
+    RecordingSession::FreePath free_path;
+    std::string subject, action;
+    bool tries_again = false;  // what the disk refuses is told, and tried until somebody ends it
+  };
   /// Begins a take, as RecordingSession::start() does; what comes while its file is begun is in it.
   /// Until that is done or refused. False: the disk stands still, as of record().
-  bool begin(RecordingSession::FreePath free_path, const std::string& subject,
-             const std::string& action);
+  bool begin(Beginning beginning);
 
   struct End {
     std::optional<double> seconds;
@@ -47,6 +51,7 @@ class Stage {
   Keyboard keyboard_;
   MarkKeys keys_;
   std::vector<Mark::Kind> marks_;
+  HostTime begun_{};  // the take
   bool ends_ = false;
 };
 

@@ -85,18 +85,22 @@ void DiskThread::publish(const Result<void>& result) {
   for (PartFailure& failure : disk_->take_failures()) failures_.push_back(std::move(failure));
 }
 
-/// Whether there is a file to write to.
+/// Whether there is a file to write to: tried until give_up().
 bool DiskThread::begin() {
-  Result<RecordingDisk> opened = std::exchange(open_, nullptr)();
-  const std::lock_guard lock(mutex_);
-  if (opened) {
-    disk_ = *std::move(opened);
-    publish({});
-    due_ = disk_->unsynced();  // the file's name and its head
-  } else {
+  while (!disk_ && !done_) {
+    Result<RecordingDisk> opened = open_();
+    std::unique_lock lock(mutex_);
+    if (opened) {
+      disk_ = *std::move(opened);
+      publish({});
+      due_ = disk_->unsynced();  // the file's name and its head
+      continue;
+    }
     status_.refused = opened.error();
-    done_ = status_.finished = true;
+    done_ = status_.finished = giving_up_;
+    if (!done_) written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
   }
+  open_ = nullptr;
   asked_.notify_one();
   return disk_.has_value();
 }

@@ -33,7 +33,8 @@ class DiskThread {
   /// Bytes that wait for the disk at most: 19 minutes of the paper's devices.
   static constexpr std::uint64_t most_waiting = std::uint64_t{256} << 20;
 
-  /// Asked once, on the writing thread: what is pushed meanwhile waits.
+  /// Asked on the writing thread, each second until it succeeds or nobody wants it any more: what
+  /// is pushed meanwhile waits.
   using Open = std::function<Result<RecordingDisk>()>;
   DiskThread(Open open, McapCompression compression);
   /// As finish() and give_up(), and waits.

@@ -48,7 +48,14 @@ struct TakeFiles {
 
   Result<RecordingDisk> operator()() {
     before.reset();
-    const std::string path = free_path();
+    for (std::string path = free_path();;) {
+      Result<RecordingDisk> opened = open(path);
+      const std::string next = opened ? path : free_path();
+      if (next == path) return opened;
+      path = next;  // another recorder has taken the name meanwhile
+    }
+  }
+  Result<RecordingDisk> open(const std::string& path) {
     facts.first = std::string(file_name(path));
     const auto head = [facts = facts, expected = expected,
                        attachments = attachments](int part) mutable -> RecordingHead {

@@ -19,6 +19,17 @@ std::uint64_t sum(const Refused& refused) {
   return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
 }
 
+/// What a decoder could make nothing of: rises with each piece that has some in it.
+std::uint64_t trouble(const NoitomCounts& counts) {
+  return sum(counts.refused) + counts.bytes_skipped;
+}
+std::uint64_t trouble(const XsensCounts& counts) {
+  return sum(counts.refused) + counts.bytes_skipped;
+}
+std::uint64_t trouble(const KinectStreamCounts& counts) {
+  return sum(counts.refused) + counts.skipped_bytes;
+}
+
 /// One that was overtaken is not the newest.
 void note(const KinectOrigin& origin, NewestKinectFrames& newest) {
   const auto known = newest.find(origin.sensor);
@@ -40,20 +51,26 @@ StreamWatch::StreamWatch(const std::string& protocol, bool datagrams) {
 
 void StreamWatch::feed(Noitom& noitom, std::span<const std::uint8_t> bytes, NewestKinectFrames&) {
   noitom.frames.clear();
+  const std::uint64_t before = trouble(noitom.decoder.counts());
   noitom.decoder.feed(bytes, noitom.frames);
+  if (trouble(noitom.decoder.counts()) > before) ++noitom.refused;
 }
 
 void StreamWatch::feed(Xsens& xsens, std::span<const std::uint8_t> bytes, NewestKinectFrames&) {
   xsens.samples.clear();
+  const std::uint64_t before = trouble(xsens.decoder.counts());
   xsens.decoder.feed(bytes, xsens.samples);
+  if (trouble(xsens.decoder.counts()) > before) ++xsens.refused;
 }
 
 void StreamWatch::feed(Kinect& kinect, std::span<const std::uint8_t> bytes,
                        NewestKinectFrames& newest) {
   kinect.messages.clear();
   kinect.pings.clear();
+  const std::uint64_t before = trouble(kinect.decoder.counts());
   kinect.decoder.feed(bytes, kinect.messages);
   if (kinect.datagrams) kinect.decoder.finish(kinect.messages);
+  if (trouble(kinect.decoder.counts()) > before) ++kinect.refused;
   for (KinectMessage& message : kinect.messages) {
     if (const auto* ping = std::get_if<KinectPing>(&message)) kinect.pings.push_back(*ping);
     if (auto* frame = std::get_if<KinectFrame>(&message)) count(kinect, std::move(*frame), newest);
@@ -103,7 +120,7 @@ bool StreamWatch::speaks_lines() const {
 
 SenderCounts StreamWatch::counts(const Noitom& noitom) {
   const NoitomCounts& counts = noitom.decoder.counts();
-  SenderCounts out{0, 0, counts.frames, {}, sum(counts.refused)};
+  SenderCounts out{0, 0, counts.frames, {}, noitom.refused};
   for (const auto& [index, avatar] : noitom.decoder.avatars()) {
     out.order += avatar.by_index.counts();
   }
@@ -112,14 +129,13 @@ SenderCounts StreamWatch::counts(const Noitom& noitom) {
 
 SenderCounts StreamWatch::counts(const Xsens& xsens) {
   const XsensCounts& counts = xsens.decoder.counts();
-  SenderCounts out{0, 0, counts.samples, {}, sum(counts.refused)};
+  SenderCounts out{0, 0, counts.samples, {}, xsens.refused};
   for (const auto& [channel, order] : xsens.decoder.channels()) out.order += order;
   return out;
 }
 
 SenderCounts StreamWatch::counts(const Kinect& kinect) {
-  SenderCounts out{
-      0, 0, kinect.whole, {}, sum(kinect.decoder.counts().refused) + kinect.further_sensors};
+  SenderCounts out{0, 0, kinect.whole, {}, kinect.refused + kinect.further_sensors};
   for (const auto& [sensor, joiner] : kinect.sensors) {
     const KinectFrameCounts joined = joiner.counts();
     out.order += joined.frames;

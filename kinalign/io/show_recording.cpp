@@ -108,15 +108,20 @@ class StreamShowing final : public Showing {
   std::optional<Time> next() const override { return next_; }
   Result<void> show(ShownFile& out) override {
     const ShownTime time{*next_, half_width(*clock_, block_.stamps[row_])};
-    const bool due =
-        !transformed_ || time.at - *transformed_ >= between_transforms || time.at < *transformed_;
-    if (due) transformed_ = time.at;
+    const bool due = is_due(time.at);
     KA_TRY(show_(block_, row_, time, due, out));
     ++row_;
     return fill();
   }
 
  private:
+  /// By a grid that moves on with what was shown: frames of 30 Hz that jitter are all shown.
+  bool is_due(Time at) {
+    if (due_ && at < *due_ && *due_ - at <= between_transforms) return false;
+    const bool follows = due_ && at >= *due_ && at - *due_ < between_transforms;
+    due_ = (follows ? *due_ : at) + between_transforms;
+    return true;
+  }
   Result<void> fill() {
     while (!ended_ && row_ >= block_.size()) {
       ended_ = !KA_TRY(pass_(block_));
@@ -132,7 +137,7 @@ class StreamShowing final : public Showing {
   Frames block_;
   std::size_t row_ = 0;
   bool ended_ = false;
-  std::optional<Time> next_, transformed_;
+  std::optional<Time> next_, due_;  // due_: the next transforms
 };
 
 template <class Frames, class Show, class Input>

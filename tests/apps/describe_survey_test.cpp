@@ -60,6 +60,21 @@ TEST_CASE("a topic that has nothing at all is missed, several of one name are on
   CHECK(judged(two).empty());
 }
 
+TEST_CASE("a stream of which no rows can be made is told") {
+  RecordingSurvey survey = kinect_survey(1000, 1000, 0);
+  survey.channels[0].channel.message_encoding = "kinect";
+  survey.senders[0].sender = "10.0.0.3:7012";
+  CHECK(judged(survey) ==
+        "frames of kinect in what kinect from 10.0.0.3:7012 sent: 1,000 messages, none of them "
+        "one\n");
+  survey.senders[0].counts.frames = 1000;
+  CHECK(judged(survey).empty());
+  survey.channels[0].channel.message_encoding = "noitom";
+  CHECK(judged(survey) == "a skeleton for kinect: none\n");
+  survey.attachments = {"kinect.bvh"};
+  CHECK(judged(survey).empty());
+}
+
 TEST_CASE("a later part by itself, which counts from the recording's beginning, lacks nothing") {
   RecordingSurvey part = kinect_survey(1000, 10, 0);
   part.facts->part = 2;

@@ -230,6 +230,23 @@ def what_comes_while_a_disk_takes_its_time_to_begin_a_take_stands_in_it(folder):
 
 
 @case
+def a_take_whose_folder_is_gone_when_it_begins_waits_for_one_and_has_all_that_came(folder):
+    takes = folder / "takes"
+    recording = Recording(takes, "--wait", "--marks-port", "0", "--pre-roll-s", "0", first="waiting")
+    takes.rmdir()
+    takes.write_text("in the way")
+    send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"start","id":"1"}')
+    assert recording.until("disk_failed")[-1]["goes_on_in"] == ""
+    with Sender(recording.port) as sender:
+        time.sleep(1)
+    takes.unlink()
+    path = pathlib.Path(recording.until("started")[-1]["file"])
+    code, events, err = recording.end()
+    assert code == 0 and events[-1]["dropped"] == 0, err
+    assert numbers(Walk(path)) == list(range(len(sender.sent)))
+
+
+@case
 def a_disk_that_stands_still_when_a_take_begins_can_be_left(folder):
     with standing_still() as (still, env):
         recording = Recording(folder / "takes", "--wait", "--marks-port", "0", first="waiting", env=env)

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <filesystem>
 #include <future>
 
 using namespace kinalign;
@@ -141,11 +142,30 @@ TEST_CASE("what was pushed is synced within half a second, without anything that
         3);  // a busy machine may hold one up; who looks once a second is late five times
 }
 
-TEST_CASE("a file that can't be begun is told, and that is all") {
+TEST_CASE("a file that can't be begun is begun as soon as it can, with all that came meanwhile") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string path = folder / "later/a.mcap";
+  DiskThread thread(opening(files, path), McapCompression::none);
+  thread.push(chunk(0, 10));
+  wait_until([&] { return thread.status().refused.has_value(); });
+  CHECK(!thread.status().finished);
+  std::filesystem::create_directory(folder / "later");
+  wait_until([&] { return !thread.status().paths.empty(); });
+  thread.push(chunk(10, 20));
+  thread.finish();
+  wait_until([&] { return thread.status().finished; });
+  CHECK(!thread.status().refused);
+  CHECK(read_mcap(folder.read("later/a.mcap")).messages.size() == 20);
+}
+
+TEST_CASE("a file that can't be begun is told, and given up when nobody wants it any more") {
   const FreshFolder folder;
   PosixFiles files;
   DiskThread thread(opening(files, folder / "none/a.mcap"), McapCompression::none);
   thread.push(chunk(0, 10));
+  wait_until([&] { return thread.status().refused.has_value(); });
+  thread.give_up();
   wait_until([&] { return thread.status().finished; });
   CHECK(thread.status().paths.empty());
   REQUIRE(thread.status().refused);

@@ -258,6 +258,26 @@ TEST_CASE("a Kinect's frame that lacks a part is no frame of the counts") {
   CHECK(live.session().streams().at(0).counts.frames == 1);
 }
 
+TEST_CASE("a datagram of rubbish is refused once, however much of it there is") {
+  for (const std::string protocol : {"noitom", "xsens", "kinect"}) {
+    CAPTURE(protocol);
+    LiveSession live({"mocap=" + protocol + ":udp:127.0.0.1:0"});
+    const Client sender;
+    for (std::uint64_t k = 1; k <= 3; ++k) {
+      std::string rubbish(400, static_cast<char>(0x90 + k));
+      for (std::size_t i = 0; i < rubbish.size(); i += 40) rubbish.replace(i, 4, "KANK");
+      sender.send("127.0.0.1", live.port(), bytes_of(rubbish));
+      live.serve_until([&] { return live.pieces() == k; });
+    }
+    live.finish();
+    const SenderCounts counts = live.session().streams().at(0).counts;
+    CHECK(counts.messages == 3);
+    CHECK(counts.frames == 0);
+    CHECK(counts.refused >= 1);
+    CHECK(counts.refused <= 3);
+  }
+}
+
 TEST_CASE("what a Kinect's frames are dropped for is counted") {
   LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
   const Client sender;

@@ -151,6 +151,27 @@ TEST_CASE("each connection to a device that serves has a channel of its own") {
   CHECK(payloads.at("/kinect/raw/2") == std::vector<std::string>{"whole"});
 }
 
+TEST_CASE("a name that another recorder takes first is left to it") {
+  const FreshFolder folder;
+  RecordingMachine machine;
+  RecordingSession::Options options;
+  options.lab.devices.push_back(*parse_device("kinect=kinect:udp:127.0.0.1:0"));
+  auto session = RecordingSession::open(std::move(options), machine.parts());
+  REQUIRE(session);
+  folder.write("a.mcap", "another's");
+  std::vector<std::string> names{"b.mcap", "a.mcap"};  // as they seem to be free, the last first
+  (*session)->start(
+      [&] {
+        const std::string name = names.back();
+        if (names.size() > 1) names.pop_back();
+        return folder / name;
+      },
+      "", "");
+  finish(**session);
+  CHECK((*session)->disk()->paths == std::vector<std::string>{folder / "b.mcap"});
+  CHECK(folder.read("a.mcap") == "another's");
+}
+
 TEST_CASE("while a disk takes its time to begin a take's file, what comes is received and kept") {
   struct SlowOpen : PosixFiles {
     std::atomic<bool> slow{true};
@@ -286,6 +307,7 @@ TEST_CASE("a second take needs a name of its own, and has its own file") {
   start(**session, folder / "a.mcap");
   finish(**session);
   start(**session, folder / "a.mcap");
+  (*session)->give_up();
   finish(**session);
   CHECK((*session)->disk()->refused->file == folder / "a.mcap");
   CHECK((*session)->disk()->paths.empty());
