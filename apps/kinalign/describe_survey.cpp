@@ -136,7 +136,7 @@ Findings losses(const std::string& path, const RecordingSurvey& survey) {
   for (const CountedSender& one : survey.senders) {
     const SequenceCounts& order = one.counts.order;
     if (order.lost == 0) continue;
-    const std::uint64_t came = std::max(one.counts.frames, one.counts.messages);  // or uncounted
+    const std::uint64_t came = frames_or_messages(one.counts);
     findings.push_back(
         {Severity::note,
          {path, 0, "every frame that " + name_of(one) + " sent",
@@ -215,7 +215,6 @@ Json json_of(const std::string& path, const RecordingSurvey& survey, const Recor
 /// Of what no rows can be made: the recorder saw none of the protocol's frames in it, or nothing
 /// says whose body moves.
 Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
-  constexpr std::uint64_t enough = 20;  // messages: a datagram or two may be anybody's
   Findings findings;
   std::set<std::string> without_skeleton;
   for (const CountedSender& one : survey.senders) {
@@ -225,7 +224,7 @@ Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
     if (channel == survey.channels.end()) continue;
     const std::string& protocol = channel->channel.message_encoding;
     const bool counted = protocol == "noitom" || protocol == "xsens" || protocol == "kinect";
-    if (counted && one.counts.frames == 0 && one.counts.messages >= enough) {
+    if (counted && speaks_another_protocol(one.counts)) {
       findings.push_back({Severity::warning,
                           {path, 0, "frames of " + protocol + " in what " + name_of(one) + " sent",
                            grouped(one.counts.messages) + " messages, none of them one"},

@@ -8,8 +8,6 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t little = 10;  // messages, as Senders has it
-
 std::string key_of(const StreamStatus& stream) {
   return name_of(stream) + " from " + stream.sender;
 }
@@ -34,7 +32,7 @@ std::vector<SilenceNews::Change> SilenceNews::changes(const LabStatus& status) {
   std::vector<Change> changes;
   for (const StreamStatus& stream : newest) {
     const std::string key = key_of(stream);
-    if (stream.counts.messages >= little) known_.insert(key);
+    if (stream.counts.messages >= Senders::little) known_.insert(key);
     const bool silent = is_silent(stream, status.now);
     const bool is_sender = known_.contains(key) || loudest.at(name_of(stream)) == key;
     if (silent == silent_.contains(key) || (silent && !is_sender)) continue;

@@ -33,6 +33,7 @@ using TakePiece = std::function<void(const Piece& piece)>;
 class Senders {
  public:
   static constexpr std::size_t most = 64;
+  static constexpr std::uint64_t little = 10;        // messages: who said fewer may be a stranger
   static constexpr std::uint64_t most_lives = 1000;  // each takes a channel
 
   struct Sender {

@@ -192,10 +192,8 @@ void RecordedPort::look_at(Source& source) const {
 /// comes back is not told of again.
 void RecordedPort::find_faults(const Source& source) {
   constexpr std::size_t most_told = 256;
-  constexpr std::uint64_t enough = 20;  // messages: a datagram or two may be anybody's
   const SenderCounts& counts = source.recorded.status.counts;
-  const bool none = source.watch.decodes() && !source.exchanges && counts.frames == 0 &&
-                    counts.messages >= enough;
+  const bool none = source.watch.decodes() && !source.exchanges && speaks_another_protocol(counts);
   if (counts.refused == 0 && !none) return;
   const std::string host = to_string(source.address.host);
   const std::string name = device_.name + " from " + endpoint_text(host, source.address.port);

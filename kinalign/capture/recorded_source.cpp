@@ -27,8 +27,7 @@ void RecordedSource::take_rate(HostTime now) {
   const SenderCounts& all = status.counts;
   constexpr Duration shortest = std::chrono::milliseconds(500);  // that a rate can be seen in
   if (!rated_ || now - *rated_ < shortest) return;
-  const std::uint64_t frames = all.frames > 0 ? all.frames : all.messages;
-  const std::uint64_t came = status.samples > 0 ? status.samples : frames;
+  const std::uint64_t came = status.samples > 0 ? status.samples : frames_or_messages(all);
   const std::uint64_t before = std::exchange(came_, came);
   const double elapsed_s = seconds(now - *std::exchange(rated_, now));
   status.rate_hz = came > before ? static_cast<double>(came - before) / elapsed_s : 0.0;

@@ -49,7 +49,6 @@ std::optional<std::size_t> Senders::add(const HostAddress& host, std::uint16_t p
 /// comes from the newcomer's host likely the newcomer itself: two seconds are enough of them. Who
 /// says everything from another port crowds out itself alone.
 std::optional<std::size_t> Senders::place_for(const HostAddress& host, HostTime now) {
-  constexpr std::uint64_t little = 10;
   if (senders_.size() < most) {
     senders_.emplace_back();
     return senders_.size() - 1;

@@ -51,26 +51,20 @@ StreamWatch::StreamWatch(const std::string& protocol, bool datagrams) {
 
 void StreamWatch::feed(Noitom& noitom, std::span<const std::uint8_t> bytes, NewestKinectFrames&) {
   noitom.frames.clear();
-  const std::uint64_t before = trouble(noitom.decoder.counts());
   noitom.decoder.feed(bytes, noitom.frames);
-  if (trouble(noitom.decoder.counts()) > before) ++noitom.refused;
 }
 
 void StreamWatch::feed(Xsens& xsens, std::span<const std::uint8_t> bytes, NewestKinectFrames&) {
   xsens.samples.clear();
-  const std::uint64_t before = trouble(xsens.decoder.counts());
   xsens.decoder.feed(bytes, xsens.samples);
-  if (trouble(xsens.decoder.counts()) > before) ++xsens.refused;
 }
 
 void StreamWatch::feed(Kinect& kinect, std::span<const std::uint8_t> bytes,
                        NewestKinectFrames& newest) {
   kinect.messages.clear();
   kinect.pings.clear();
-  const std::uint64_t before = trouble(kinect.decoder.counts());
   kinect.decoder.feed(bytes, kinect.messages);
   if (kinect.datagrams) kinect.decoder.finish(kinect.messages);
-  if (trouble(kinect.decoder.counts()) > before) ++kinect.refused;
   for (KinectMessage& message : kinect.messages) {
     if (const auto* ping = std::get_if<KinectPing>(&message)) kinect.pings.push_back(*ping);
     if (auto* frame = std::get_if<KinectFrame>(&message)) count(kinect, std::move(*frame), newest);
@@ -102,7 +96,9 @@ void StreamWatch::feed(std::string_view piece, NewestKinectFrames& newest) {
   std::visit(
       [&](auto& decoder) {
         if constexpr (!std::is_same_v<std::decay_t<decltype(decoder)>, std::monostate>) {
+          const std::uint64_t before = trouble(decoder.decoder.counts());
           feed(decoder, octets(piece), newest);
+          if (trouble(decoder.decoder.counts()) > before) ++refused_;
         }
       },
       decoder_);
@@ -120,7 +116,7 @@ bool StreamWatch::speaks_lines() const {
 
 SenderCounts StreamWatch::counts(const Noitom& noitom) {
   const NoitomCounts& counts = noitom.decoder.counts();
-  SenderCounts out{0, 0, counts.frames, {}, noitom.refused};
+  SenderCounts out{0, 0, counts.frames, {}, 0};
   for (const auto& [index, avatar] : noitom.decoder.avatars()) {
     out.order += avatar.by_index.counts();
   }
@@ -129,13 +125,13 @@ SenderCounts StreamWatch::counts(const Noitom& noitom) {
 
 SenderCounts StreamWatch::counts(const Xsens& xsens) {
   const XsensCounts& counts = xsens.decoder.counts();
-  SenderCounts out{0, 0, counts.samples, {}, xsens.refused};
+  SenderCounts out{0, 0, counts.samples, {}, 0};
   for (const auto& [channel, order] : xsens.decoder.channels()) out.order += order;
   return out;
 }
 
 SenderCounts StreamWatch::counts(const Kinect& kinect) {
-  SenderCounts out{0, 0, kinect.whole, {}, kinect.refused + kinect.further_sensors};
+  SenderCounts out{0, 0, kinect.whole, {}, kinect.further_sensors};
   for (const auto& [sensor, joiner] : kinect.sensors) {
     const KinectFrameCounts joined = joiner.counts();
     out.order += joined.frames;
@@ -145,7 +141,7 @@ SenderCounts StreamWatch::counts(const Kinect& kinect) {
 }
 
 SenderCounts StreamWatch::counts() const {
-  return std::visit(
+  SenderCounts all = std::visit(
       [](const auto& decoder) {
         if constexpr (std::is_same_v<std::decay_t<decltype(decoder)>, std::monostate>) {
           return SenderCounts();
@@ -154,6 +150,8 @@ SenderCounts StreamWatch::counts() const {
         }
       },
       decoder_);
+  all.refused += refused_;
+  return all;
 }
 
 Findings StreamWatch::findings(const std::string& name) const {

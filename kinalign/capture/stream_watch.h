@@ -45,12 +45,10 @@ class StreamWatch {
   struct Noitom {
     NoitomDecoder decoder{NoitomParts::heads};
     std::vector<NoitomArrival> frames{};
-    std::uint64_t refused = 0;  // pieces with what is no frame in them
   };
   struct Xsens {
     XsensDecoder decoder;
     std::vector<XsensArrival> samples{};
-    std::uint64_t refused = 0;
   };
   struct Kinect {
     KinectStreamDecoder decoder;
@@ -60,7 +58,6 @@ class StreamWatch {
     std::uint64_t whole = 0, further_sensors = 0;  // frames; messages of one sensor too many
     std::vector<KinectPing> pings{};
     bool datagrams = false;
-    std::uint64_t refused = 0;
   };
   static void feed(Noitom& noitom, std::span<const std::uint8_t> bytes, NewestKinectFrames& newest);
   static void feed(Xsens& xsens, std::span<const std::uint8_t> bytes, NewestKinectFrames& newest);
@@ -71,6 +68,7 @@ class StreamWatch {
   static SenderCounts counts(const Kinect& kinect);
 
   std::variant<std::monostate, Noitom, Xsens, Kinect> decoder_;
+  std::uint64_t refused_ = 0;  // pieces with what is no frame in them
 };
 
 }  // namespace kinalign

@@ -98,6 +98,15 @@ SenderCounts since(const SenderCounts& before, const SenderCounts& now) {
   return difference(of_sender, before, now);
 }
 
+std::uint64_t frames_or_messages(const SenderCounts& counts) {
+  return counts.frames > 0 ? counts.frames : counts.messages;
+}
+
+bool speaks_another_protocol(const SenderCounts& counts) {
+  constexpr std::uint64_t enough = 20;
+  return counts.frames == 0 && counts.messages >= enough;
+}
+
 std::string to_json(const CountedSender& counted) {
   Json json{{"topic", counted.topic}, {"stream", counted.stream}, {"sender", counted.sender}};
   if (!counted.node.empty()) json["node"] = counted.node;

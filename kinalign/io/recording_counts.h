@@ -25,6 +25,10 @@ struct SenderCounts {
 McapSchema sender_counts_schema();
 /// Of counts that run on what came after `before`; none below 0.
 SenderCounts since(const SenderCounts& before, const SenderCounts& now);
+/// Of the frames, where its protocol is decoded, else of the messages.
+std::uint64_t frames_or_messages(const SenderCounts& counts);
+/// Of a protocol that is decoded: nothing of it was a frame. A datagram or two may be anybody's.
+bool speaks_another_protocol(const SenderCounts& counts);
 struct CountedSender {
   std::string topic, stream, sender;  // topic: what it sent stands there
   std::string node;                   // of inertial nodes the id, else empty

@@ -60,6 +60,15 @@ TEST_CASE("a topic that has nothing at all is missed, several of one name are on
   CHECK(judged(two).empty());
 }
 
+TEST_CASE("losses are told of the frames where they are counted, else of the messages") {
+  RecordingSurvey survey = kinect_survey(900, 900, 0);
+  survey.senders[0].counts.frames = 300;  // in three parts each
+  survey.senders[0].counts.order.lost = 3;
+  CHECK(judged(survey) == "every frame that kinect sent: 3 lost of 303\n");
+  survey.senders[0].counts.frames = 0;
+  CHECK(judged(survey) == "every frame that kinect sent: 3 lost of 903\n");
+}
+
 TEST_CASE("a stream of which no rows can be made is told") {
   RecordingSurvey survey = kinect_survey(1000, 1000, 0);
   survey.channels[0].channel.message_encoding = "kinect";

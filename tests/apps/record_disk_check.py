@@ -209,12 +209,17 @@ def a_disk_that_stands_still_for_a_while_loses_nothing(folder):
     assert walk.closed and found == list(range(len(found))) and found, len(found)
 
 
+def start_take(recording):
+    """By a call to one that waits for it."""
+    send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"start","id":"1"}')
+
+
 @case
 def what_comes_while_a_disk_takes_its_time_to_begin_a_take_stands_in_it(folder):
     with standing_still() as (still, env):
         recording = Recording(folder / "takes", "--wait", "--marks-port", "0", "--pre-roll-s", "0", first="waiting", env=env)
         still.touch()
-        send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"start","id":"1"}')
+        start_take(recording)
         recording.until("mark")
         with Sender(recording.port) as sender:
             time.sleep(1)
@@ -235,7 +240,7 @@ def a_take_whose_folder_is_gone_when_it_begins_waits_for_one_and_has_all_that_ca
     recording = Recording(takes, "--wait", "--marks-port", "0", "--pre-roll-s", "0", first="waiting")
     takes.rmdir()
     takes.write_text("in the way")
-    send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"start","id":"1"}')
+    start_take(recording)
     assert recording.until("disk_failed")[-1]["goes_on_in"] == ""
     with Sender(recording.port) as sender:
         time.sleep(1)
@@ -251,7 +256,7 @@ def a_disk_that_stands_still_when_a_take_begins_can_be_left(folder):
     with standing_still() as (still, env):
         recording = Recording(folder / "takes", "--wait", "--marks-port", "0", first="waiting", env=env)
         still.touch()
-        send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"start","id":"1"}')
+        start_take(recording)
         while "bytes" not in recording.until("status")[-1]:  # the take has begun
             pass
         recording.program.send_signal(signal.SIGINT)
