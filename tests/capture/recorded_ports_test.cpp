@@ -2,15 +2,12 @@
 // What the recorder answers on its devices' ports, over loopback, and what then stands in the file.
 #include "tests/capture/recorded.h"
 #include "tests/capture/test_node.h"
-#include "tests/io/slimevr_bytes.h"
 
 #include "kinalign/capture/recording_session.h"
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_lines.h"
 #include "kinalign/io/kinect_stream.h"
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/mark_call.h"
-#include "kinalign/io/noitom_stream.h"
 #include "kinalign/io/vicon_trigger.h"
 
 #include <doctest/doctest.h>
@@ -138,52 +135,6 @@ TEST_CASE("a SlimeVR tracker's handshake is answered, it is pinged, and all it s
   CHECK(counts.order.late == 1);
 }
 
-TEST_CASE(
-    "what was lost on the way from a tracker's address stays so, whoever shakes hands there") {
-  LiveSession live({"imu=slimevr:udp:127.0.0.1:0"});
-  const Client address;
-  std::uint64_t sent = 0;
-  const auto send = [&](const std::vector<std::uint8_t>& bytes) {
-    address.send("127.0.0.1", live.port(), bytes);
-    live.serve_until([&, n = ++sent] { return live.pieces() == n; });
-  };
-  for (const std::uint8_t name :
-       std::array<std::uint8_t, 3>{1, 1, 2}) {  // its own restart, then another tracker
-    send(handshake_packet({{2, 0, 0, 0, 0, name}}));
-    for (const std::uint64_t heartbeat : {1, 5}) send(slime_datagram(0, heartbeat, {}));
-  }
-  live.finish();
-  CHECK(live.session().streams().at(0).counts.order.lost == 9);
-}
-
-TEST_CASE("what is refused on the trackers' port is counted, and told where somebody can mend it") {
-  LiveSession live({"imu=slimevr:udp:127.0.0.1:0"});
-  std::uint64_t sent = 0;
-  const auto send = [&](const Client& from, const std::vector<std::uint8_t>& bytes) {
-    from.send("127.0.0.1", live.port(), bytes);
-    live.serve_until([&, n = ++sent] { return live.pieces() == n; });
-  };
-  const Client tracker, rubbish, twin;
-  const auto handshake = handshake_packet({{2, 0, 0, 0, 0, 1}});
-  send(tracker, handshake);
-  for (const std::uint64_t heartbeat : {1, 1}) send(tracker, slime_datagram(0, heartbeat, {}));
-  for (int i = 0; i < 5; ++i) send(rubbish, std::vector<std::uint8_t>(11));
-  for (int i = 0; i < 3; ++i) send(twin, handshake);  // while the first one is at work
-  Findings findings;
-  live.serve_until([&] {
-    append(findings, live.session().take_findings());
-    return !findings.empty();
-  });
-  REQUIRE(findings.size() == 1);
-  CHECK(findings[0].what.found == "the MAC of another one at work");
-  live.finish();
-  const auto streams = live.session().streams();
-  REQUIRE(streams.size() == 3);
-  CHECK(streams[0].counts.refused == 0);  // the first tracker's, one of them twice
-  CHECK(streams[1].counts.refused == 5);
-  CHECK(streams[2].counts.refused == 3);
-}
-
 TEST_CASE("a tracker that calls to all is answered by a host that has the port open for all") {
   LiveSession live({"imu=slimevr:udp:0.0.0.0:0"});
   const Client tracker;
@@ -203,153 +154,6 @@ TEST_CASE("a stranger gets no more from the trackers' port than the answer to a 
   live.serve_until([&] { return live.pieces() == 1; });
   CHECK(!stranger.receive());
   CHECK(live.finish().at("/imu/raw").size() == 1);
-}
-
-TEST_CASE("what has come to each port, and what it lost, stands in the file") {
-  LiveSession live({"mocap=noitom:udp:127.0.0.1:0", "kinect=kinect:udp:127.0.0.1:0"});
-  const Client one;
-  one.send("127.0.0.1", live.port(), bytes_of("one"));
-  live.serve_until([&] { return live.pieces() == 1; });
-  const auto payloads = live.finish().at("/counts/ports");
-  REQUIRE(payloads.size() >= 2);
-  CHECK(
-      payloads[payloads.size() - 2] ==
-      R"({"stream":"mocap","pieces":1,"bytes":3,"refused":0,"cut":0,"dropped":0,"links":0,"unsent":0})");
-  CHECK(payloads.back().starts_with(R"({"stream":"kinect","pieces":0,)"));
-}
-
-TEST_CASE(
-    "Axis Studio's compressed port is told of while recording, once a host, with what to do") {
-  LiveSession live({"mocap=noitom:udp:127.0.0.1:0"});
-  const std::string compressed =
-      std::string("CCCC\x28\0\0\0\x1f\x8b\x08\0", 12) + std::string(36, 'Z');
-  const Client one, two;
-  one.send("127.0.0.1", live.port(), bytes_of(compressed));
-  live.serve_until([&] { return live.pieces() == 1; });
-  Findings findings;
-  live.serve_until([&] {
-    append(findings, live.session().take_findings());
-    return !findings.empty();
-  });
-  REQUIRE(findings.size() == 1);
-  CHECK(findings[0].what.file.starts_with("mocap from 127.0.0.1:"));
-  CHECK(findings[0].what.expected == "plain BVH frames");
-  CHECK(findings[0].repair.starts_with("switch the capture program to plain BVH broadcast"));
-  two.send("127.0.0.1", live.port(), bytes_of(compressed));
-  live.serve_until([&] { return live.pieces() == 2; });
-  live.finish();
-  CHECK(live.session().take_findings().empty());
-}
-
-TEST_CASE("a Kinect's frame that lacks a part is no frame of the counts") {
-  LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
-  KinectFrame six;
-  six.origin = sensor_2;
-  six.bodies.resize(6);
-  for (std::size_t b = 0; b < 6; ++b) six.bodies[b].id = b + 1;
-  KinectFrame one = six;
-  one.bodies.resize(1);
-  ++one.origin.sequence;
-  const Client sender;
-  sender.send("127.0.0.1", live.port(), encode_kinect_binary(kinect_parts(six).front()));
-  sender.send("127.0.0.1", live.port(), encode_kinect_binary(one));
-  live.serve_until([&] { return live.pieces() == 2; });
-  live.finish();
-  CHECK(live.session().streams().at(0).counts.frames == 1);
-}
-
-TEST_CASE("a datagram of rubbish is refused once, however much of it there is") {
-  for (const std::string protocol : {"noitom", "xsens", "kinect"}) {
-    CAPTURE(protocol);
-    LiveSession live({"mocap=" + protocol + ":udp:127.0.0.1:0"});
-    const Client sender;
-    for (std::uint64_t k = 1; k <= 3; ++k) {
-      std::string rubbish(400, static_cast<char>(0x90 + k));
-      for (std::size_t i = 0; i < rubbish.size(); i += 40) rubbish.replace(i, 4, "KANK");
-      sender.send("127.0.0.1", live.port(), bytes_of(rubbish));
-      live.serve_until([&] { return live.pieces() == k; });
-    }
-    live.finish();
-    const SenderCounts counts = live.session().streams().at(0).counts;
-    CHECK(counts.messages == 3);
-    CHECK(counts.frames == 0);
-    CHECK(counts.refused >= 1);
-    CHECK(counts.refused <= 3);
-  }
-}
-
-TEST_CASE("what a Kinect's frames are dropped for is counted") {
-  LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
-  const Client sender;
-  const auto send = [&](std::uint32_t session, std::uint32_t sequence) {
-    KinectFrame frame;
-    frame.origin = {2, session, sequence};
-    sender.send("127.0.0.1", live.port(), encode_kinect_binary(frame));
-  };
-  send(1, 7);
-  send(2, 1);
-  send(1, 8);  // of a session that is over
-  live.serve_until([&] { return live.pieces() == 3; });
-  live.finish();
-  const SenderCounts counts = live.session().streams().at(0).counts;
-  CHECK(counts.frames == 2);
-  CHECK(counts.refused == 1);
-}
-
-TEST_CASE(
-    "what a Kinect lost between two connections is counted, and between two ports of its own") {
-  const auto bytes = [](std::uint32_t sequence, std::uint32_t session) {
-    KinectFrame frame;
-    frame.origin = {2, session, sequence};
-    return encode_kinect_binary(frame);
-  };
-  const auto lost = [](const LiveSession& live) {
-    std::uint64_t sum = 0;
-    for (const StreamStatus& stream : live.session().streams()) sum += stream.counts.order.lost;
-    return sum;
-  };
-  LiveSession by_tcp({"kinect=kinect:tcp-listen:127.0.0.1:0"});
-  LiveSession by_udp({"kinect=kinect:udp:127.0.0.1:0"});
-  std::uint64_t sent = 0;
-  for (const std::uint32_t sequence : {1U, 5U, 6U}) {  // 2 to 4 fell between
-    ++sent;
-    const Connection connection(by_tcp.port());
-    connection.send(std::string(text_of(bytes(sequence, 1))));
-    by_tcp.serve_until([&] { return by_tcp.pieces() == sent; });
-    const Client port;
-    port.send("127.0.0.1", by_udp.port(), bytes(sequence, 1));
-    by_udp.serve_until([&] { return by_udp.pieces() == sent; });
-  }
-  const Client restarted;
-  restarted.send("127.0.0.1", by_udp.port(), bytes(100, 2));
-  by_udp.serve_until([&] { return by_udp.pieces() == sent + 1; });
-  by_tcp.finish();
-  by_udp.finish();
-  CHECK(lost(by_tcp) == 3);
-  CHECK(lost(by_udp) == 3);
-}
-
-TEST_CASE("a device that sends to another one's port is told of while recording, once") {
-  LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
-  NoitomFrame frame;
-  frame.values.assign(noitom_values(false, false), 0.0F);
-  std::vector<std::uint8_t> bytes;
-  REQUIRE(append_noitom(frame, bytes));
-  const Client suit;
-  for (std::uint64_t k = 1; k <= 60; ++k) {
-    suit.send("127.0.0.1", live.port(), bytes);
-    live.serve_until([&] { return live.pieces() == k; });
-  }
-  Findings findings;
-  live.serve_until([&] {
-    append(findings, live.session().take_findings());
-    return !findings.empty();
-  });
-  const auto of_frames = std::count_if(findings.begin(), findings.end(), [](const Finding& f) {
-    return f.what.expected == "frames of kinect" &&
-           f.repair == "see which port and protocol the device sends to";
-  });
-  CHECK(of_frames == 1);
 }
 
 TEST_CASE("that the host's wall clock was set is told while recording") {
@@ -491,22 +295,4 @@ TEST_CASE(
   CHECK(streams[0].counts.order.late == 1);
   CHECK(streams[0].counts.order.lost == 1);  // the forged one's number
   CHECK(payloads.at("/counts").back().find(R"("node":"7")") != std::string::npos);
-}
-
-TEST_CASE("without keys, nodes that are not let in get no channels, and are counted") {
-  LiveSession live({"imu=nodes:udp:127.0.0.1:0"});
-  SystemClocks clocks;
-  const Client radio;
-  for (std::uint32_t id = 1; id <= 70; ++id) {  // 64 have room
-    TestNode node(id, id);
-    node.drift = 0.0;
-    node.offset_s = 1000.0;
-    radio.send("127.0.0.1", live.port(), node.frame(clocks.raw()));
-    live.serve_until([&] { return live.pieces() == id; });
-  }
-  CHECK(live.session().streams().size() == 64);
-  CHECK(live.session().port_counts().front().second.refused == 6);
-  const auto payloads = live.finish();
-  CHECK(payloads.contains("/imu/64/raw"));
-  CHECK(!payloads.contains("/imu/65/raw"));
 }

@@ -35,9 +35,7 @@ struct HandshakeSaid {
 /// 67 bytes.
 inline Bytes handshake_packet(const HandshakeSaid& said) {
   const auto text = [](const std::string& t) {
-    Bytes bytes{static_cast<std::uint8_t>(t.size())};
-    bytes.insert(bytes.end(), t.begin(), t.end());
-    return bytes;
+    return joined({{static_cast<std::uint8_t>(t.size())}, Bytes(t.begin(), t.end())});
   };
   return slime_datagram(3, 0,
                         joined({{0, 0, 0, 9, 0, 0, 0, 4, 0, 0, 0, 2},
