@@ -187,9 +187,10 @@ TEST_CASE("a take that begins with a full pre-roll loses nothing while its file 
   };
   record_bytes(options.pre_roll_bytes + (std::size_t{32} << 20));
   std::promise<void> stands_still;
+  const std::shared_future<void> goes_on = stands_still.get_future().share();  // asked again
   DiskThread thread(
-      [&]() -> Result<RecordingDisk> {
-        stands_still.get_future().wait();
+      [goes_on]() -> Result<RecordingDisk> {
+        goes_on.wait();
         return Failure(Error{"a.mcap", 0, "a disk", "none"});
       },
       McapCompression::none);
