@@ -20,7 +20,10 @@ void check_recorded(std::string_view text) {
 
 void check_call(std::string_view text) {
   Mark mark, again;
-  if (decode_mark_call(text, mark) != MarkCallRefusal::none) {
+  const MarkCallRefusal refusal = decode_mark_call(text, mark);
+  if (answer_to_refused_call(mark, refusal, text.size()).size() > text.size()) std::abort();
+  if (refusal != MarkCallRefusal::none) {
+    mark.id.clear();
     if (!(mark == Mark{})) std::abort();
     return;
   }

@@ -49,7 +49,7 @@ void ClockNews::hear(std::size_t stream, std::uint32_t node_id, const ClockEvent
   if (clock.contradicts) return;
   if (event.kind == Kind::withdrawn) return withdraw(clock, event, now);
   clock.settled = event.kind == Kind::settled;
-  const std::string text = event_text(event, node_id);
+  const std::string text = event_text(event, node_id, names_);
   if (!text.empty()) lines_.push_back(text);
 }
 
@@ -60,12 +60,12 @@ void ClockNews::take_step(Clock& clock, const ClockEvent& event) {
   if (clock.contradicts) return;
   const HostTime first = clock.steps.front();
   clock.contradicts = first != HostTime::min() && event.end - first <= steps_within;
-  if (!clock.contradicts) return lines_.push_back(event_text(event, clock.node_id));
+  if (!clock.contradicts) return lines_.push_back(event_text(event, clock.node_id, names_));
   clock.waiting.reset();
   lines_.push_back(fmt::format(
-      "node {}: warning: {}, so nothing of it is certified; its steps are told again after a quiet "
+      "{}: warning: {}, so nothing of it is certified; its steps are told again after a quiet "
       "minute",
-      clock.node_id, contradiction));
+      names_.name(clock.node_id), contradiction));
 }
 
 /// Stretches that overlap are one; what is withdrawn as the clock settles was withdrawn before, or
@@ -85,7 +85,7 @@ void ClockNews::withdraw(Clock& clock, const ClockEvent& event, HostTime now) {
 void ClockNews::tell_waiting(Clock& clock) {
   if (!clock.waiting) return;
   const ClockEvent whole{Kind::withdrawn, 0, clock.waiting->begin, clock.waiting->end};
-  lines_.push_back(event_text(whole, clock.node_id));
+  lines_.push_back(event_text(whole, clock.node_id, names_));
   clock.told = std::exchange(clock.waiting, std::nullopt);
 }
 

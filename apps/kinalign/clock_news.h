@@ -4,6 +4,8 @@
 // event (--json).
 #pragma once
 
+#include "apps/kinalign/node_names.h"
+
 #include "kinalign/clock/live_clock.h"
 
 #include <array>
@@ -13,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -23,6 +26,8 @@ inline constexpr std::string_view contradiction =
 
 class ClockNews {
  public:
+  explicit ClockNews(NodeNames names = {}) : names_(std::move(names)) {}
+
   /// In the order of the events; `now`, of the host's raw clock, is when they are told.
   void hear(std::size_t stream, std::uint32_t node_id, const ClockEvent& event, HostTime now);
   /// Lines to be told now. A withdrawal waits for its cause, but not longer than a second.
@@ -52,6 +57,7 @@ class ClockNews {
   static void withdraw(Clock& clock, const ClockEvent& event, HostTime now);
   void tell_waiting(Clock& clock);
 
+  NodeNames names_;
   std::map<std::size_t, Clock> clocks_;  // by stream
   std::vector<std::string> lines_;
 };

@@ -59,7 +59,8 @@ Result<void> list_verb(const Verb& verb, const Call& call, const std::vector<Set
 }
 
 Result<std::vector<InForce>> all_in_force(const Call& call) {
-  const auto files = KA_TRY(find_settings(call.surroundings, call.common.config));
+  const auto files =
+      KA_TRY(parse_settings(KA_TRY(find_settings(call.surroundings, call.common.config))));
   std::vector<InForce> all;
   Common common = call.common;
   Fields everywhere = common_fields(

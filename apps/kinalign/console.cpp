@@ -101,7 +101,8 @@ Console::Console(const Surroundings& surroundings, const Common& common, std::st
       err_(surroundings.err) {}
 
 Console::~Console() {
-  erase_progress();
+  erase_shown();
+  err_.flush();
   flush();
 }
 
@@ -154,20 +155,25 @@ Progress Console::progress() {
   };
 }
 
-void Console::show(const std::vector<std::pair<std::string, Colour>>& lines) {
-  if (!progress_ || err_.holds()) return;
-  const std::size_t rows = size_of(surroundings_.err).rows;
-  std::string all = shown_ ? start_of_lines(shown_lines_) : "";
-  const std::size_t count = std::min(lines.size(), rows - 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto& [text, colour] = lines[i];
-    all += painted(colour_err_, colour, first_places(text, columns()));
-    if (i + 1 < count) all += '\n';
-  }
-  err_.put(all);
+void Console::show(std::vector<std::pair<std::string, Colour>> lines) {
+  if (!progress_) return;
+  table_ = std::move(lines);
+  if (err_.holds()) return;
+  erase_shown();
+  draw_table();
   err_.flush();
-  shown_ = count > 0;
-  shown_lines_ = std::max<std::size_t>(count, 1);
+}
+
+/// With as much of it as has room now.
+void Console::draw_table() {
+  const std::size_t rows = size_of(surroundings_.err).rows;
+  const std::size_t count = std::min(table_.size(), rows - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [text, colour] = table_[i];
+    const std::string_view line = first_places(text, columns());
+    err_.put((i > 0 ? "\n" : "") + painted(colour_err_, colour, line));
+    standing_.push_back(places(line));
+  }
 }
 
 std::size_t Console::columns() const { return size_of(surroundings_.err).columns - 1; }
@@ -207,7 +213,9 @@ std::string Console::out_trouble() const {
 
 Result<void> Console::finish() {
   constexpr std::chrono::milliseconds last_words{1000};
-  erase_progress();
+  erase_shown();
+  err_.flush();
+  table_.clear();
   out_.flush(last_words);
   err_.flush(last_words);
   if (out_.fault() == 0 || out_.fault() == EPIPE) return {};
@@ -221,33 +229,57 @@ void Console::show_progress(std::string_view what, std::uint64_t done, std::uint
     began_ = now;
   }
   constexpr auto redraw = std::chrono::milliseconds(100);
-  if ((shown_ && now - drawn_ < redraw) || err_.holds()) return;
+  if ((!standing_.empty() && now - drawn_ < redraw) || err_.holds()) return;
   drawn_ = now;
-  shown_ = true;
   const double elapsed_s = std::chrono::duration<double>(now - began_).count();
+  const std::string line = progress_line(what, done, total, elapsed_s, columns());
+  if (standing_.empty()) err_.put(start_of_lines(1));  // "^C" may stand there
+  erase_shown();
+  err_.put(line);
+  err_.flush();
+  standing_ = {places(line)};
+}
+
+/// A terminal that was made narrower since has broken the lines anew.
+void Console::erase_shown() {
+  if (standing_.empty()) return;
   const std::size_t width = size_of(surroundings_.err).columns;
-  err_.put(fmt::format("{}{}", start_of_lines(1),
-                       progress_line(what, done, total, elapsed_s, width - 1)));
+  std::size_t rows = 0;
+  for (const std::size_t line : standing_) rows += rows_of(line, width);
+  err_.put(start_of_lines(rows));
+  standing_.clear();
+}
+
+/// In one piece, so that nothing flickers, but for what stdout holds, which comes first. For a
+/// terminal that takes nothing no table is kept with each message.
+void Console::say_above_table(std::string_view message) {
+  const bool stuck = err_.holds();
+  erase_shown();
+  if (out_.holds()) {
+    err_.flush();
+    out_.flush();
+  }
+  err_.put(message);
+  if (!stuck) draw_table();
   err_.flush();
 }
 
-void Console::erase_progress() {
-  if (shown_) err_.put(start_of_lines(shown_lines_));
-  shown_lines_ = 1;
-  err_.flush();
-  shown_ = false;
+void Console::flush() {
+  const bool over_it = surroundings_.out_is_terminal && !standing_.empty() && out_.holds();
+  if (over_it) {
+    say_above_table("");
+  } else {
+    out_.flush();
+  }
 }
 
 void Console::say(std::string_view line, Colour colour) {
-  erase_progress();
-  flush();
   std::string text(line);
   if (surroundings_.err_is_terminal && !line.empty()) {
     text = broken(line, size_of(surroundings_.err).columns);
     text.pop_back();
   }
-  err_.put(painted(colour_err_, colour, text) + "\n");
-  err_.flush();
+  say_above_table(painted(colour_err_, colour, text) + "\n");
 }
 
 }  // namespace kinalign

@@ -64,9 +64,10 @@ class Console {
   /// once).
   Progress progress();
 
-  /// Lines that stand on stderr until the next ones, on a terminal where progress would be, and are
-  /// gone when the job is done; no wider and no more than the terminal has room for.
-  void show(const std::vector<std::pair<std::string, Colour>>& lines);
+  /// Lines that stand on stderr until the next ones, on a terminal where progress would be, below
+  /// all that is said meanwhile, and are gone when the job is done; no wider and no more than the
+  /// terminal has room for.
+  void show(std::vector<std::pair<std::string, Colour>> lines);
   /// Whether show() shows anything.
   bool shows() const { return progress_; }
   /// A sound, where show() shows anything.
@@ -93,7 +94,7 @@ class Console {
   void never_wait();
 
   /// Writes what is held, for a job that goes on.
-  void flush() { out_.flush(); }
+  void flush();
   /// What keeps stdout from taking it, for a job that goes on: "No space left on device"; empty:
   /// nothing.
   std::string out_trouble() const;
@@ -104,7 +105,9 @@ class Console {
   using Clock = std::chrono::steady_clock;
 
   void put_json(std::string_view object, int version);
-  void erase_progress();
+  void erase_shown();
+  void draw_table();
+  void say_above_table(std::string_view message);
   void show_progress(std::string_view what, std::uint64_t done, std::uint64_t total);
   void say(std::string_view line, Colour colour = Colour::plain);
 
@@ -115,9 +118,9 @@ class Console {
   bool refused_ = false;
   bool colour_out_ = false, colour_err_ = false, progress_ = false;
   Outlet out_, err_;
-  std::string doing_;   // what the progress line says
-  bool shown_ = false;  // a progress line stands, or lines do
-  std::size_t shown_lines_ = 1;
+  std::string doing_;                                  // what the progress line says
+  std::vector<std::pair<std::string, Colour>> table_;  // what show() showed last
+  std::vector<std::size_t> standing_;  // of each line that stands, the table's or progress: places
   Clock::time_point began_{}, drawn_{};
 };
 

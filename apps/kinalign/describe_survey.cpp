@@ -2,6 +2,7 @@
 #include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/describe_report.h"
 #include "apps/kinalign/json_text.h"
+#include "apps/kinalign/node_names.h"
 #include "apps/kinalign/record_text.h"
 #include "apps/kinalign/summary.h"
 
@@ -39,10 +40,25 @@ Json json_of(const ChannelSurvey& channel) {
           {"missing", channel.missing}};
 }
 
-/// "mocap from 192.168.7.5:51234", "imu/7 from 192.168.7.21:4000"
-std::string name_of(const CountedSender& sender) {
-  const std::string node = sender.node.empty() ? "" : "/" + sender.node;
-  return sender.stream + node + (sender.sender.empty() ? "" : " from " + sender.sender);
+/// Of a node; empty: nobody said it.
+std::string place_of(const std::string& stream, const std::string& node,
+                     const RecordingSurvey& survey) {
+  const auto place = survey.places.find(stream + "/" + node);
+  return place == survey.places.end() ? "" : place->second;
+}
+
+/// "mocap from 192.168.7.5:51234", "imu waist from 192.168.7.21:4000"
+std::string name_of(const CountedSender& sender, const RecordingSurvey& survey) {
+  return sender_name(sender.stream, sender.node, place_of(sender.stream, sender.node, survey)) +
+         (sender.sender.empty() ? "" : " from " + sender.sender);
+}
+
+/// "mocap", "imu waist", "imu 7" of what topics begin with: "mocap", "imu/7".
+std::string name_of(const std::string& beginning, const RecordingSurvey& survey) {
+  const std::size_t end = beginning.find('/');
+  if (end == std::string::npos) return beginning;
+  const std::string stream = beginning.substr(0, end), node = beginning.substr(end + 1);
+  return sender_name(stream, node, place_of(stream, node, survey));
 }
 
 /// The log time of the first message, ns.
@@ -86,7 +102,7 @@ std::vector<std::string> unheard(const RecordingSurvey& survey) {
         std::any_of(survey.channels.begin(), survey.channels.end(), [&](const ChannelSurvey& one) {
           return one.channel.topic.starts_with(begins) && one.messages > 0;
         });
-    if (!heard && required) names.push_back(name);
+    if (!heard && required) names.push_back(name_of(name, survey));
   }
   return names;
 }
@@ -139,7 +155,7 @@ Findings losses(const std::string& path, const RecordingSurvey& survey) {
     const std::uint64_t came = frames_or_messages(one.counts);
     findings.push_back(
         {Severity::note,
-         {path, 0, "every frame that " + name_of(one) + " sent",
+         {path, 0, "every frame that " + name_of(one, survey) + " sent",
           fmt::format("{} lost of {}", grouped(order.lost), grouped(order.lost + came))},
          "by the sender's own numbers; they did not reach the recorder",
          ""});
@@ -178,7 +194,7 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
                      static_cast<double>(channel.bytes) / 1e6));
   }
   for (const CountedSender& one : survey.senders) {
-    line("sender", name_of(one) + ": " + counts_text(one.counts));
+    line("sender", name_of(one, survey) + ": " + counts_text(one.counts));
   }
   for (const CountedPort& one : survey.ports) {
     const std::string lost = loss_of(one.counts);
@@ -225,11 +241,12 @@ Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
     const std::string& protocol = channel->channel.message_encoding;
     const bool counted = protocol == "noitom" || protocol == "xsens" || protocol == "kinect";
     if (counted && speaks_another_protocol(one.counts)) {
-      findings.push_back({Severity::warning,
-                          {path, 0, "frames of " + protocol + " in what " + name_of(one) + " sent",
-                           grouped(one.counts.messages) + " messages, none of them one"},
-                          "nothing of it can be aligned as " + protocol,
-                          "see which port and protocol the device sends to"});
+      findings.push_back(
+          {Severity::warning,
+           {path, 0, "frames of " + protocol + " in what " + name_of(one, survey) + " sent",
+            grouped(one.counts.messages) + " messages, none of them one"},
+           "nothing of it can be aligned as " + protocol,
+           "see which port and protocol the device sends to"});
     }
     const auto& names = survey.attachments;
     const bool has_body = std::find(names.begin(), names.end(), one.stream + ".bvh") != names.end();

@@ -50,7 +50,7 @@ const char* name_of(HostClockEvent::Kind kind) {
   return kind == HostClockEvent::Kind::backwards ? "backwards" : "wall_stepped";
 }
 
-std::string what_happened(const NodeEvent& event) {
+std::string what_happened(const NodeEvent& event, const NodeNames& names) {
   using Kind = NodeEvent::Kind;
   switch (event.kind) {
     case Kind::joined:
@@ -62,7 +62,7 @@ std::string what_happened(const NodeEvent& event) {
     case Kind::twins:
       return "warning: two nodes have this id; both are kept apart, flash one of them anew";
     case Kind::renamed:
-      return fmt::format("seems to be what node {} was", event.other_id.value_or(0));
+      return fmt::format("seems to be what {} was", names.name(event.other_id.value_or(0)));
     case Kind::moved:
       return "sends from another address";
     case Kind::left:
@@ -81,7 +81,7 @@ std::string what_happened(const NodeEvent& event) {
 }
 
 /// What is refused for its MAC may be anybody, whatever node it says it is.
-std::string wrong_key_text(const NodeEvent& event) {
+std::string wrong_key_text(const NodeEvent& event, const NodeNames& names) {
   const bool no_key = event.refusal == NodeRefusal::no_key;
   const char* what = no_key ? "with a MAC, and there is no --lab-key"
                      : event.refusal == NodeRefusal::no_mac ? "without a MAC"
@@ -92,17 +92,16 @@ std::string wrong_key_text(const NodeEvent& event) {
                    "; if it is that node, flash what kinalign node-key --lab-key LAB --node {} "
                    "prints",
                    event.node_id);
-  return fmt::format(
-      "warning: something that says it is node {} is not heard: it sends {} (from {}){}",
-      event.node_id, what, address_text(event.address), mend);
+  return fmt::format("warning: something that says it is {} is not heard: it sends {} (from {}){}",
+                     names.name(event.node_id), what, address_text(event.address), mend);
 }
 
 }  // namespace
 
-std::string event_text(const NodeEvent& event) {
-  if (event.kind == NodeEvent::Kind::newer_version) return "a node " + what_happened(event);
-  if (event.kind == NodeEvent::Kind::wrong_key) return wrong_key_text(event);
-  return fmt::format("node {}: {} ({})", event.node_id, what_happened(event),
+std::string event_text(const NodeEvent& event, const NodeNames& names) {
+  if (event.kind == NodeEvent::Kind::newer_version) return "a node " + what_happened(event, names);
+  if (event.kind == NodeEvent::Kind::wrong_key) return wrong_key_text(event, names);
+  return fmt::format("{}: {} ({})", names.name(event.node_id), what_happened(event, names),
                      address_text(event.address));
 }
 
@@ -122,11 +121,9 @@ std::string event_json(const NodeEvent& event) {
   return json_text(json);
 }
 
-std::string event_text(const ClockEvent& event, std::uint32_t node_id) {
+std::string event_text(const ClockEvent& event, std::uint32_t node_id, const NodeNames& names) {
   using Kind = ClockEvent::Kind;
-  const auto says = [node_id](const std::string& what) {
-    return fmt::format("node {}: {}", node_id, what);
-  };
+  const auto says = [&](const std::string& what) { return names.name(node_id) + ": " + what; };
   const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // which way is not always known
   if (event.kind == Kind::step && !event.by) {
     return says("warning: its counter stepped, or its crystal bends more than was assumed");

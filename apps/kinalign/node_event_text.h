@@ -3,6 +3,8 @@
 // programs.
 #pragma once
 
+#include "apps/kinalign/node_names.h"
+
 #include "kinalign/capture/host_clock.h"
 #include "kinalign/capture/node_event.h"
 #include "kinalign/clock/live_clock.h"
@@ -14,11 +16,11 @@
 namespace kinalign {
 
 /// "node 7: two nodes have this id (192.168.7.21:4000)"; no line end.
-std::string event_text(const NodeEvent& event);
+std::string event_text(const NodeEvent& event, const NodeNames& names = {});
 std::string event_json(const NodeEvent& event);
 
 /// `node_id`: whose clock. Empty where people need not be told.
-std::string event_text(const ClockEvent& event, std::uint32_t node_id);
+std::string event_text(const ClockEvent& event, std::uint32_t node_id, const NodeNames& names = {});
 std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_t node_id);
 
 std::string event_text(const HostClockEvent& event);

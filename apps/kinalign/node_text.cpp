@@ -137,23 +137,27 @@ std::string refused_text(const NodeCounts& counts) {
   return text;
 }
 
-std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCounts& counts) {
+std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCounts& counts,
+                                     const NodeNames& names) {
   std::map<NodeRefusal, std::set<std::uint32_t>> claimed;
   for (const auto& claim : refused.claims()) claimed[claim.refusal].insert(claim.node_id);
   std::vector<std::string> lines;
   lines.reserve(claimed.size());
   for (const auto& [refusal, ids] : claimed) {
-    lines.push_back(fmt::format("{}: from what says it is node {}{} ({} frames)", words(refusal),
-                                fmt::join(ids, ", "), refused.others(refusal) ? " and others" : "",
+    std::vector<std::string> who;
+    for (const std::uint32_t id : ids) who.push_back(names.short_name(id));
+    const char* others = refused.others(refusal) ? " and others" : "";
+    lines.push_back(fmt::format("{}: from what says it is {} {}{} ({} frames)", words(refusal),
+                                names.device, fmt::join(who, ", "), others,
                                 grouped(counts.refusals[refusal])));
   }
   return lines;
 }
 
-std::string refused_lines(const NodeReceiver& receiver) {
+std::string refused_lines(const NodeReceiver& receiver, const NodeNames& names) {
   const std::string refused = refused_text(receiver.counts());
   std::string lines = refused.empty() ? "" : "  refused  " + refused + "\n";
-  for (const std::string& line : claims_text(receiver.refused_nodes(), receiver.counts())) {
+  for (const std::string& line : claims_text(receiver.refused_nodes(), receiver.counts(), names)) {
     lines += "  " + line + "\n";
   }
   return lines;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the time server says of its nodes: lines for people, JSON objects for programs.
+// What is said of nodes, by the time server above all: lines for people, JSON objects for programs.
 #pragma once
+
+#include "apps/kinalign/node_names.h"
 
 #include "kinalign/capture/node_receiver.h"
 
@@ -29,10 +31,11 @@ std::string refused_text(const NodeCounts& counts);
 
 /// "wrong mac: from what says it is node 11, 12, 13 (12 frames)": a line for each cause of the
 /// three that have to do with keys; of datagrams whose ids nobody vouches for.
-std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCounts& counts);
+std::vector<std::string> claims_text(const RefusedNodes& refused, const NodeCounts& counts,
+                                     const NodeNames& names = {});
 
 /// Both, as whole lines; empty where nothing was refused.
-std::string refused_lines(const NodeReceiver& receiver);
+std::string refused_lines(const NodeReceiver& receiver, const NodeNames& names = {});
 
 std::string pair_json(const ClockPair& pair);
 /// Each count by its name.

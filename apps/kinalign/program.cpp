@@ -35,12 +35,9 @@ class Run {
     const Result<bool> help = set_options(usage);
     Console console(surroundings_, common_, verb_.page.name);
     if (!help) {
-      console.if_it_fails([&](const Error&) {
-        return std::vector<std::string>{"kinalign " + verb_.page.name +
-                                        " --help shows what it takes, with examples"};
-      });
+      console.if_it_fails([&](const Error& error) { return advice(error); });
       console.report(help.error());
-      early_ = wrong_use;
+      early_ = unreadable_ ? failed : wrong_use;
     } else if (*help) {
       console.put(help_page(verb_.page, usage));
       early_ = console.finish() ? done : failed;
@@ -48,6 +45,21 @@ class Run {
       filled_ = true;
     }
     return filled_;
+  }
+
+  std::vector<std::string> advice(const Error& error) const {
+    const std::string variable = surroundings_.variable("KINALIGN_CONFIG");
+    const bool by_variable = common_.config.empty() && error.file == variable;
+    if (unreadable_ && by_variable) return {"KINALIGN_CONFIG names it"};
+    if (unreadable_) return {};
+    if (error.line > 0) return {std::string(settings_pages)};
+    return {"kinalign " + verb_.page.name + " --help shows what it takes, with examples"};
+  }
+
+  Result<std::vector<SettingsFile>> read_settings() {
+    const auto found = find_settings(surroundings_, common_.config);
+    unreadable_ = !found;
+    return parse_settings(KA_TRY(found));
   }
 
   /// Whether the help page was asked for.
@@ -60,7 +72,7 @@ class Run {
     }
     sources_ = std::move(parsed.given);
     const Settable settable{verb_.page, usage.settings, common};
-    for (const SettingsFile& file : KA_TRY(find_settings(surroundings_, common_.config))) {
+    for (const SettingsFile& file : KA_TRY(read_settings())) {
       KA_TRY(apply_settings(file, settable, verbs_, sources_));
     }
     KA_TRY(apply_environment(surroundings_, settable, sources_));
@@ -96,6 +108,7 @@ class Run {
   Sources sources_;
   std::optional<Console> console_;
   bool filled_ = false;
+  bool unreadable_ = false;  // a file of settings is
   int early_ = done;
 };
 

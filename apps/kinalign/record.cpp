@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/key_advice.h"
+#include "apps/kinalign/lab_advice.h"
 #include "apps/kinalign/program.h"
 #include "apps/kinalign/record_stage.h"
 #include "apps/kinalign/settings.h"
@@ -58,6 +59,7 @@ Result<Lab> lab_of(const Record& o, std::vector<DeviceOptions> in_file) {
     come_from(lab, *device);
   }
   KA_TRY(validate(lab));
+  KA_TRY(check_mark_ports(lab, o.marks_port, o.trigger_port));
   return lab;
 }
 
@@ -66,14 +68,28 @@ struct LabFile {
   std::string text;
   std::vector<DeviceOptions> devices;
 };
-Result<LabFile> read_lab_file(const Call& call) {
+Result<LabFile> read_lab_file(Call& call) {
   constexpr std::size_t most_bytes = std::size_t{1} << 20;
   const std::string path = project_settings(call.surroundings, call.common.config);
   if (path.empty()) return LabFile{};
   LabFile lab{KA_TRY(read_whole(call.surroundings.files, path, most_bytes)), {}};
-  lab.devices = KA_TRY(read_devices(lab.text, path));
+  auto devices = read_devices(lab.text, path);
+  if (!devices) {
+    Failure refused = call.console.refuse(std::move(devices).error());
+    call.console.if_it_fails(
+        [](const Error&) { return std::vector<std::string>{std::string(settings_pages)}; });
+    return refused;
+  }
+  lab.devices = *std::move(devices);
   if (lab.devices.empty()) lab.text.clear();
   return lab;
+}
+
+/// Where the lab that is to be recorded is said.
+LabSources sources_of(const Record& o, const Call& call) {
+  LabSources sources{project_settings(call.surroundings, call.common.config), {}};
+  for (const std::string& text : o.devices) sources.by_flag.insert(text.substr(0, text.find('=')));
+  return sources;
 }
 
 Usage describe_record(Record& o) {
@@ -126,22 +142,42 @@ std::string without_skeleton(const std::string& device) {
       device);
 }
 
+/// Of the nodes' device, unless a flag or setting names another. `named`: what does, where that is
+/// the device.
+Result<void> read_key(Call& call, const std::string& path, const std::string& named,
+                      RecordingSession::Options& options) {
+  call.console.if_it_fails([named](const Error& error) {
+    std::vector<std::string> lines = key_advice(error);
+    if (!named.empty()) lines.insert(lines.begin(), named);
+    return lines;
+  });
+  options.desk.lab_key = KA_TRY(read_lab_key(call.surroundings.files, path));
+  call.console.if_it_fails({});
+  return {};
+}
+
+Result<void> read_skeleton(Call& call, const DeviceOptions& device, const std::string& named,
+                           RecordingSession::Options& options) {
+  call.console.if_it_fails([named](const Error&) { return std::vector<std::string>{named}; });
+  options.skeletons[device.name] = KA_TRY(read_bvh_head(call.surroundings.files, device.skeleton));
+  call.console.if_it_fails({});
+  return {};
+}
+
 /// The files that the devices need beside lab.toml.
 Result<void> read_files(const Record& o, Call& call, RecordingSession::Options& options) {
-  FileSystem& files = call.surroundings.files;
-  std::string lab_key = o.lab_key;
+  const LabSources sources = sources_of(o, call);
+  if (!o.lab_key.empty()) KA_TRY(read_key(call, o.lab_key, "", options));
   for (const DeviceOptions& device : options.lab.devices) {
-    if (lab_key.empty()) lab_key = device.lab_key;
-    if (device.skeleton.empty()) {
-      if (device.protocol == "noitom") call.console.note(without_skeleton(device.name));
-      continue;
+    if (!device.lab_key.empty() && o.lab_key.empty()) {
+      KA_TRY(read_key(call, device.lab_key, named_by("lab_key", device, sources), options));
     }
-    options.skeletons[device.name] = KA_TRY(read_bvh_head(files, device.skeleton));
+    if (!device.skeleton.empty()) {
+      KA_TRY(read_skeleton(call, device, named_by("skeleton", device, sources), options));
+    } else if (device.protocol == "noitom") {
+      call.console.note(without_skeleton(device.name));
+    }
   }
-  if (lab_key.empty()) return {};
-  call.console.if_it_fails(key_advice);
-  options.desk.lab_key = KA_TRY(read_lab_key(files, lab_key));
-  call.console.if_it_fails({});
   return {};
 }
 
@@ -150,10 +186,9 @@ std::optional<std::uint16_t> port_of(const std::optional<std::int64_t>& port) {
 }
 
 Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
-  auto file = read_lab_file(call);
-  if (!file) return call.console.refuse(std::move(file).error());
+  LabFile file = KA_TRY(read_lab_file(call));
   RecordingSession::Options options;
-  auto lab = lab_of(o, std::move(file->devices));
+  auto lab = lab_of(o, std::move(file.devices));
   if (!lab) return call.console.refuse(std::move(lab).error());
   options.lab = *std::move(lab);
   if (options.lab.devices.empty()) {
@@ -164,7 +199,7 @@ Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
     return call.console.refuse(
         Error{"--wait", 0, "--marks-port, --trigger-port or a keyboard for the start", "none"});
   }
-  options.lab_toml = std::move(file->text);
+  options.lab_toml = std::move(file.text);
   options.marks_port = port_of(o.marks_port);
   options.trigger_port = port_of(o.trigger_port);
   options.host = host_name();
@@ -183,49 +218,53 @@ Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
 }
 
 /// A take: whether nothing of it is amiss, as an exit code.
-Result<int> record_take(const Record& o, Call& call, RecordingSession& session, Stage& stage) {
+int record_take(const Record& o, Call& call, SessionTake& take, Stage& stage) {
   RecordHerald& herald = stage.herald();
-  const auto free_path = [folder = call.common.out, subject = o.subject, action = o.action] {
-    (void)make_folder(folder);  // somebody may have removed it; what it lacks, the file will say
-    return free_take_path(folder, subject, action);
-  };
-  if (!stage.begin({free_path, o.subject, o.action, o.wait})) {
+  if (!stage.begin(take, o.wait)) {
     leave(call.console, stage,
           Error{call.common.out, 0, "a disk that begins a file", "one that stands still"});
   }
-  const DiskStatus begun = *session.disk();
-  if (begun.paths.empty()) return Failure(*begun.refused);
+  const DiskStatus begun = take.disk.status();
+  if (begun.paths.empty()) {
+    call.console.report(*begun.refused);
+    return failed;
+  }
   const std::string& path = begun.paths.front();
   herald.tell_start(path);
-  if (!stage.record({o.seconds, o.wait})) {
+  if (!stage.record(take, !o.repeat)) {
     leave(call.console, stage,
           Error{path, 0, "a disk that takes the end of the take", "one that stands still"});
   }
   herald.tell_end();
-  const DiskStatus disk = *session.disk();
+  const DiskStatus disk = take.disk.status();
   if (disk.refused) {
     call.console.report(*disk.refused);
     return failed;
   }
   const bool whole = disk.dropped == 0 && disk.paths.size() == 1 && !herald.disk_full();
-  return whole && herald.unheard_required().empty() ? 0 : 1;
+  return whole && herald.unheard_required().empty() && !herald.warned() ? 0 : 1;
 }
 
 /// One take, or with --repeat one after another. The worst exit code of all.
-Result<int> record_takes(const Record& o, Call& call, RecordingSession& session, Stage& stage) {
-  int worst = 0;
-  for (bool first = true;; first = false) {
-    if (o.wait) {
-      stage.herald().tell_waiting();
-      if (!stage.wait_for_start()) {
-        if (!first) return worst;
-        call.console.note("kinalign record: stopped before a start came; nothing was recorded");
-        return 1;
-      }
-    }
-    worst = std::max(worst, KA_TRY(record_take(o, call, session, stage)));
-    if (!o.repeat || stage.ends()) return worst;
+int record_takes(const Record& o, Call& call, RecordingSession& session, Stage& stage) {
+  const auto free_path = [folder = call.common.out, subject = o.subject, action = o.action] {
+    (void)make_folder(folder);  // somebody may have removed it; what it lacks, the file will say
+    return free_take_path(folder, subject, action);
+  };
+  const TakePlan plan{free_path, o.subject, o.action};
+  if (o.wait) {
+    session.obey_marks(plan, o.repeat);
+  } else {
+    session.start(plan);
   }
+  std::optional<int> worst;
+  while (const auto take = stage.next_take()) {
+    worst = std::max(worst.value_or(0), record_take(o, call, *take, stage));
+    if (!o.repeat) return *worst;
+  }
+  if (worst) return *worst;
+  call.console.note("kinalign record: stopped before a start came; nothing was recorded");
+  return 1;
 }
 
 Result<int> run(Record& o, Call& call) {
@@ -236,10 +275,13 @@ Result<int> run(Record& o, Call& call) {
   RecordingSession::Options options = KA_TRY(session_options(o, call));
   KA_TRY(make_folder(call.common.out));
   SystemClocks ports_clock, nodes_clock;
+  console.if_it_fails(
+      lab_port_advice(options.lab, sources_of(o, call), o.marks_port, o.trigger_port));
   const auto session = KA_TRY(RecordingSession::open(
       std::move(options), {call.surroundings.files, ports_clock, nodes_clock}));
+  console.if_it_fails({});
   RecordHerald herald(*session, console);
-  Stage stage(*session, herald);
+  Stage stage(*session, herald, o.seconds);
   return record_takes(o, call, *session, stage);
 }
 
@@ -256,7 +298,9 @@ Verb record_verb() {
            "slimevr; transports: udp, tcp (to the device's address), tcp-listen. On a terminal "
            "keys make marks: s start, e stop, t T-pose, Enter begins and ends a text. Exit code "
            "1 where the disk failed and the recording went on in another file, or was nearly "
-           "full and ended it, or where a required device sent nothing.",
+           "full and ended it, where a required device sent nothing, or anything nothing that can "
+           "be "
+           "used, or with --wait no start came.",
        .examples =
            {{"kinalign record -o takes --device imu=nodes:5005 --device mocap=xsens:udp:9763",
              "inertial nodes, and Xsens MVN sending to this machine"},

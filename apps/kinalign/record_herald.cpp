@@ -6,6 +6,7 @@
 #include "apps/kinalign/lab_table.h"
 #include "apps/kinalign/mark_keys.h"
 #include "apps/kinalign/node_event_text.h"
+#include "apps/kinalign/node_names.h"
 #include "apps/kinalign/node_text.h"
 #include "apps/kinalign/summary.h"
 
@@ -35,6 +36,9 @@ std::string ports_text(const RecordingSession& session) {
   return text;
 }
 
+/// The first one ends recording, where it goes on.
+std::string_view to_give_up(bool ends) { return ends ? "another Ctrl-C" : "Ctrl-C pressed twice"; }
+
 /// "3 min", "2.5 h", "12 d": with as many digits as a forecast deserves.
 std::string minutes_text(double minutes) {
   if (minutes < 120) return fmt::format("{:.0f} min", minutes);
@@ -47,13 +51,28 @@ std::string minutes_text(double minutes) {
 std::vector<std::string> RecordHerald::unheard_required() const {
   Lab lab = session_.lab();
   std::erase_if(lab.devices, [](const DeviceOptions& device) { return !device.required; });
-  return unheard_in_take(lab, at_end_);
+  return unheard_in_take(lab, status_at_end());
 }
 
 LabStatus RecordHerald::lab_status() const {
   LabStatus status{session_.now(), begun_, session_.streams(), {}, session_.port_counts()};
   if (session_.nodes() != nullptr) status.nodes = session_.nodes()->status();
   return status;
+}
+
+/// Of the take: what came while its rest was written is the next one's.
+LabStatus RecordHerald::status_at_end() const {
+  LabStatus status = lab_status();
+  status.now = take_->end->at;
+  status.streams = take_->end->streams;
+  status.ports = take_->end->ports;
+  return status;
+}
+
+void RecordHerald::follow(std::shared_ptr<SessionTake> take) {
+  take_ = std::move(take);
+  forecast_ = {};
+  dropped_told_ = 0;
 }
 
 void RecordHerald::tell_waiting() {
@@ -65,9 +84,6 @@ void RecordHerald::tell_waiting() {
 
 void RecordHerald::tell_start(const std::string& path) {
   ports_told_ = true;
-  path_ = path;
-  forecast_ = {};
-  dropped_told_ = 0;
   console_.print(harmless(fmt::format("recording to {}\n  {}\n", path, ports_text(session_))));
   console_.print_json(
       json_text(Json{{"event", "started"}, {"file", path}, {"ports", ports_of(session_)}}));
@@ -108,7 +124,9 @@ void RecordHerald::look(const std::optional<std::string>& typed) {
 
 /// Each as soon as it is there, once.
 void RecordHerald::tell_news() {
-  for (const PartFailure& failure : session_.take_disk_failures()) tell(failure);
+  if (take_) {
+    for (const PartFailure& failure : take_->disk.take_failures()) tell(failure);
+  }
   for (const Finding& finding : session_.take_findings()) tell(finding);
   for (const HostClockEvent& event : session_.take_clock_events()) tell(event);
   if (NodeReceiver* nodes = session_.nodes()) tell_news_of(*nodes);
@@ -119,7 +137,7 @@ void RecordHerald::tell_news_of(NodeReceiver& nodes) {
   using Kind = NodeEvent::Kind;
   for (const NodeEvent& event : nodes.take_node_events()) {
     const bool told = event.kind == Kind::left || event.kind == Kind::returned;
-    if (!told) console_.note(harmless(event_text(event)));
+    if (!told) console_.note(harmless(event_text(event, node_names(session_.lab()))));
     console_.print_json(event_json(event));
   }
   const HostTime now = session_.now();
@@ -142,7 +160,7 @@ void RecordHerald::tell_dropped(std::uint64_t dropped) {
 }
 
 void RecordHerald::look_at_disk(HostTime now) {
-  const DiskStatus disk = *session_.disk();
+  const DiskStatus disk = session_.newest_take()->disk.status();
   tell_dropped(disk.dropped);
   if (!disk.free_bytes) return;
   const std::uint64_t still_to_write = std::min(disk.waiting_bytes, *disk.free_bytes);
@@ -189,6 +207,7 @@ void RecordHerald::tell(const Finding& finding) {
   std::string lines = finding_lines({finding}, console_);
   lines.pop_back();  // the line end, which complain() has
   console_.complain(lines);
+  warned_ = warned_ || finding.severity != Severity::note;
   console_.print_json(json_text(Json{{"event", "finding"},
                                      {"severity", std::string(to_string(finding.severity))},
                                      {"what", to_string(finding.what)},
@@ -209,19 +228,19 @@ void RecordHerald::tell(const PartFailure& failure) {
       {"event", "disk_failed"}, {"what", to_string(failure.why)}, {"goes_on_in", failure.next}}));
 }
 
-void RecordHerald::tell_refused(const Error& why) {
+void RecordHerald::tell_refused(const Error& why, bool ends) {
   console_.complain(harmless(
       fmt::format("kinalign record: {}: the end of the take is kept in memory and tried again for "
-                  "30 s: make room, or give it up with another Ctrl-C",
-                  to_string(why))));
+                  "30 s: make room, or give it up with {}",
+                  to_string(why), to_give_up(ends))));
   console_.print_json(json_text(Json{{"event", "end_refused"}, {"what", to_string(why)}}));
   console_.flush();
 }
 
-void RecordHerald::tell_slow(std::uint64_t waiting_bytes) {
-  console_.complain(fmt::format(
-      "kinalign record: {:.1f} MB wait for the disk; another Ctrl-C loses what it has not taken",
-      megabytes(waiting_bytes)));
+void RecordHerald::tell_slow(std::uint64_t waiting_bytes, bool ends) {
+  console_.complain(
+      fmt::format("kinalign record: {:.1f} MB wait for the disk; {} loses what it has not taken",
+                  megabytes(waiting_bytes), to_give_up(ends)));
   console_.print_json(json_text(Json{{"event", "end_waits"}, {"waiting_bytes", waiting_bytes}}));
   console_.flush();
 }
@@ -236,10 +255,11 @@ void RecordHerald::tell_slow_begin() {
 
 void RecordHerald::tell_status(const LabStatus& status) {
   Json event{{"event", "status"}};
-  if (const auto disk = session_.disk()) {
-    event["bytes"] = disk->bytes;
-    event["waiting_bytes"] = disk->waiting_bytes;
-    event["dropped"] = disk->dropped;
+  if (const auto& take = session_.newest_take()) {
+    const DiskStatus disk = take->disk.status();
+    event["bytes"] = disk.bytes;
+    event["waiting_bytes"] = disk.waiting_bytes;
+    event["dropped"] = disk.dropped;
     if (const auto free = forecast_.free()) event["free_bytes"] = *free;
     if (const auto left = forecast_.minutes_left()) event["minutes_left"] = *left;
   }
@@ -256,13 +276,18 @@ void RecordHerald::tell_status(const LabStatus& status) {
 
 /// "disk  34.2 MB in takes/03_S1A02_01.mcap, 120.5 GB left: 12 h at this rate"
 std::string RecordHerald::disk_line() const {
-  const auto disk = session_.disk();
-  if (session_.recording() && disk->paths.empty()) return "disk  begins the take's file";
-  if (disk && !session_.recording() && !disk->finished) return "disk  writes the end of " + path_;
-  if (!session_.recording() || !disk) return "waiting for a start";
+  if (take_ && take_->end) {
+    const DiskStatus ended = take_->disk.status();
+    if (!ended.finished && !ended.paths.empty()) {
+      return "disk  writes the end of " + ended.paths.back();
+    }
+  }
+  if (!session_.recording()) return "waiting for a start";
+  const DiskStatus disk = session_.newest_take()->disk.status();
+  if (disk.paths.empty()) return "disk  begins the take's file";
   const auto left = forecast_.minutes_left();
   const auto free = forecast_.free();
-  return fmt::format("disk  {:.1f} MB in {}{}{}", megabytes(disk->bytes), disk->paths.back(),
+  return fmt::format("disk  {:.1f} MB in {}{}{}", megabytes(disk.bytes), disk.paths.back(),
                      free ? fmt::format(", {:.1f} GB left", megabytes(*free) / 1e3) : "",
                      left ? ": " + minutes_text(*left) + " at this rate" : "");
 }
@@ -281,8 +306,8 @@ void RecordHerald::show(const LabStatus& status, const std::optional<std::string
 
 void RecordHerald::tell_end() {
   tell_news();
-  const LabStatus& status = at_end_;
-  const DiskStatus disk = *session_.disk();
+  const LabStatus status = status_at_end();
+  const DiskStatus disk = take_->disk.status();
   Json event{{"event", "stopped"},
              {"files", disk.paths},
              {"bytes", disk.bytes},
@@ -310,7 +335,8 @@ void RecordHerald::tell_end() {
                                             {"repeats", port.counts().repeats},
                                             {"refused_for", port.counts().refused}});
   }
-  if (const NodeReceiver* nodes = session_.nodes()) lines += refused_lines(*nodes);
+  if (const NodeReceiver* nodes = session_.nodes())
+    lines += refused_lines(*nodes, node_names(session_.lab()));
   console_.print(harmless(lines));
   console_.print_json(json_text(event));
 }

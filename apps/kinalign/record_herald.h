@@ -10,6 +10,7 @@
 
 #include "kinalign/capture/recording_session.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,10 +20,15 @@ namespace kinalign {
 class RecordHerald {
  public:
   RecordHerald(RecordingSession& session, Console& console)
-      : session_(session), console_(console), begun_(session.now()) {}
+      : session_(session),
+        console_(console),
+        clock_news_(node_names(session.lab())),
+        begun_(session.now()) {}
 
   /// Ports are open, and a start is waited for.
   void tell_waiting();
+  /// The take that is told of from now on.
+  void follow(std::shared_ptr<SessionTake> take);
   void tell_start(const std::string& path);
   void tell(const HeardMark& mark);
   /// Asked after each turn, it looks ten times a second, once it has told what it waits for or that
@@ -30,18 +36,20 @@ class RecordHerald {
   void look(const std::optional<std::string>& typed);
   /// The disk failed, or does not begin a take's file.
   void tell(const PartFailure& failure);
-  /// The disk does not take the end of a take.
-  void tell_refused(const Error& why);
+  /// The disk does not take the end of a take. `ends`: no other is to come, so that one Ctrl-C is
+  /// enough to give it up.
+  void tell_refused(const Error& why, bool ends);
   /// Nor does it refuse it: so many bytes wait.
-  void tell_slow(std::uint64_t waiting_bytes);
+  void tell_slow(std::uint64_t waiting_bytes, bool ends);
   /// Nor does it begin its file.
   void tell_slow_begin();
-  /// The take is over: what comes while its rest is written is the next one's.
-  void end_take() { at_end_ = lab_status(); }
+  /// The take is over and written.
   void tell_end();
 
   /// The disk has nothing left but its reserve: the take has to end.
   bool disk_full() const { return disk_full_; }
+  /// Something of what devices send can't be used, and was told.
+  bool warned() const { return warned_; }
   /// Required devices and nodes of which nothing came in the take that is over.
   std::vector<std::string> unheard_required() const;
 
@@ -58,16 +66,16 @@ class RecordHerald {
   void show(const LabStatus& status, const std::optional<std::string>& typed);
   std::string disk_line() const;
   LabStatus lab_status() const;
+  LabStatus status_at_end() const;
 
   RecordingSession& session_;
   Console& console_;
-  std::string path_;  // of the take; empty: none has begun
-  LabStatus at_end_;  // of the last take
+  std::shared_ptr<SessionTake> take_;  // nullptr: none has begun
   std::uint64_t dropped_told_ = 0;
   DiskForecast forecast_;
   ClockNews clock_news_;
   SilenceNews silence_news_;
-  bool disk_full_ = false, lacks_told_ = false, ports_told_ = false;
+  bool disk_full_ = false, warned_ = false, lacks_told_ = false, ports_told_ = false;
   HostTime begun_, next_look_ = HostTime::min(), next_second_ = HostTime::min();
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record_stage.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace kinalign {
@@ -11,6 +10,7 @@ using namespace std::chrono_literals;
 namespace {
 
 constexpr Duration one_turn = 50ms;
+constexpr Duration waiting_turn = 5ms;  // for the disk
 
 }  // namespace
 
@@ -22,94 +22,80 @@ bool Stage::turn(Duration patience) {
       session_.mark({pressed->first, "keyboard", ""}, pressed->second);
     }
   }
-  for (const HeardMark& heard : session_.take_marks()) {
-    const Mark::Kind kind = heard.first.mark.kind;
-    marks_.push_back(kind);
-    if (kind == Mark::Kind::start && !session_.recording()) session_.expect_start(heard.second);
-    herald_.tell(heard);
-  }
+  for (const HeardMark& heard : session_.take_marks()) herald_.tell(heard);
   herald_.look(keys_.typed());
-  ends_ = ends_ || interrupted();
+  if (interrupted()) {
+    take_signals();  // a Ctrl-C that is pressed twice ends nothing out of order
+    pressed_again_ = ends_;
+    ends_ = true;
+  }
+  end_what_is_over();
   return !ends();
 }
 
-/// Whether a mark of that kind came since one was found last; those before it are forgotten.
-bool Stage::take_mark(Mark::Kind kind) {
-  const auto found = std::find(marks_.begin(), marks_.end(), kind);
-  const bool came = found != marks_.end();
-  marks_.erase(marks_.begin(), came ? found + 1 : found);
-  return came;
+void Stage::end_what_is_over() {
+  if (ends()) session_.obey_no_start();
+  if (!session_.recording()) return;
+  const HostTime begun = session_.newest_take()->begun;
+  const bool over = seconds_ && seconds(session_.now() - begun) >= *seconds_;
+  if (over || ends()) session_.stop();
 }
 
-bool Stage::wait_for_start() {
-  while (turn(one_turn)) {
-    if (take_mark(Mark::Kind::start)) return true;
-  }
-  return false;
+std::shared_ptr<SessionTake> Stage::next_take() {
+  std::shared_ptr<SessionTake> take = session_.next_take();
+  if (!take && !ends()) herald_.tell_waiting();
+  for (bool going = !ends(); !take && going; take = session_.next_take()) going = turn(one_turn);
+  if (take) herald_.follow(take);
+  return take;
 }
 
-bool Stage::begin(Beginning beginning) {
-  begun_ = session_.now();
-  session_.start(std::move(beginning.free_path), beginning.subject, beginning.action);
-  bool lost_patience = false, slow = false, refused = false;
-  for (DiskStatus disk = *session_.disk(); disk.paths.empty() && !disk.finished;
-       disk = *session_.disk()) {
-    turn(5ms);
-    if (disk.refused && !std::exchange(refused, true) && beginning.tries_again) {
+bool Stage::begin(SessionTake& take, bool tries_again) {
+  const HostTime begun = session_.now();
+  bool slow = false, refused = false;
+  for (DiskStatus disk = take.disk.status(); disk.paths.empty() && !disk.finished;
+       disk = take.disk.status()) {
+    turn(waiting_turn);
+    if (std::exchange(pressed_again_, false)) return false;
+    if (disk.refused && !std::exchange(refused, true) && tries_again) {
       herald_.tell(PartFailure{*disk.refused, ""});
     }
-    if (refused && (!beginning.tries_again || ends_)) session_.give_up();
-    if (!refused && session_.now() - begun_ > 2s && !std::exchange(slow, true)) {
+    if (refused && (!tries_again || ends())) take.disk.give_up();
+    if (!refused && session_.now() - begun > 2s && !std::exchange(slow, true)) {
       herald_.tell_slow_begin();
     }
-    if (!interrupted()) continue;
-    if (std::exchange(lost_patience, true)) return false;
-    listen_anew();
   }
   return true;
 }
 
-bool Stage::record(const End& end) {
-  const auto goes_on = [&] {
-    const bool stopped = take_mark(Mark::Kind::stop) && end.by_mark;
-    return !stopped && !(end.seconds && seconds(session_.now() - begun_) >= *end.seconds);
-  };
-  for (bool going = true; going && goes_on();) going = turn(one_turn);
-  listen_anew();  // a Ctrl-C that is pressed twice ends nothing out of order
-  session_.stop();
-  herald_.end_take();
-  return write_rest();
+bool Stage::record(SessionTake& take, bool last) {
+  while (!take.end) turn(one_turn);
+  ends_ = ends_ || last;
+  return write_rest(take);
 }
 
 /// What the disk refuses is tried again for half a minute: somebody may make room. Devices go on
-/// meanwhile, and so do keys and what is told. False: it does not even refuse, and somebody has
-/// lost patience.
-bool Stage::write_rest() {
+/// meanwhile, and so do keys, what is told, and the next take. False: it does not even refuse, and
+/// somebody has lost patience.
+bool Stage::write_rest(SessionTake& take) {
   const HostTime begun = session_.now();
   std::optional<HostTime> refused;
   bool slow = false;  // and told to be
-  for (DiskStatus disk = *session_.disk(); !disk.finished; disk = *session_.disk()) {
+  for (DiskStatus disk = take.disk.status(); !disk.finished; disk = take.disk.status()) {
     const HostTime now = session_.now();
     if (disk.refused && !refused) {
       refused = now;
-      herald_.tell_refused(*disk.refused);
-      listen_anew();
+      pressed_again_ = false;  // before anybody knew of it
+      herald_.tell_refused(*disk.refused, ends());
     } else if (!refused && now - begun > 2s && !std::exchange(slow, true)) {
-      herald_.tell_slow(disk.waiting_bytes);
-      listen_anew();
+      pressed_again_ = false;
+      herald_.tell_slow(disk.waiting_bytes, ends());
     }
-    turn(5ms);
-    const bool again = (refused || slow) && interrupted();
+    turn(waiting_turn);
+    const bool again = (refused || slow) && std::exchange(pressed_again_, false);
     if (again && !refused) return false;
-    if (again || (refused && now - *refused > 30s)) session_.give_up();
+    if (again || (refused && now - *refused > 30s)) take.disk.give_up();
   }
   return true;
-}
-
-/// To another Ctrl-C.
-void Stage::listen_anew() {
-  ends_ = ends_ || interrupted();
-  take_signals();
 }
 
 }  // namespace kinalign

@@ -1,58 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices, keyboard and marks while takes are awaited and recorded.
+// Devices, keyboard and marks while takes are awaited and recorded. Takes are told of one after
+// another, also where the next one began while the disk still wrote the end of the last.
 #pragma once
 
 #include "apps/kinalign/mark_keys.h"
 #include "apps/kinalign/record_herald.h"
 
+#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 namespace kinalign {
 
 class Stage {
  public:
-  Stage(RecordingSession& session, RecordHerald& herald) : session_(session), herald_(herald) {}
+  /// `seconds`: each take ends by itself after so long.
+  Stage(RecordingSession& session, RecordHerald& herald, std::optional<double> seconds)
+      : session_(session), herald_(herald), seconds_(seconds) {}
 
-  /// False: somebody ended it first.
-  bool wait_for_start();
-  struct Beginning {
-    RecordingSession::FreePath free_path;
-    std::string subject, action;
-    bool tries_again = false;  // what the disk refuses is told, and tried until somebody ends it
-  };
-  /// Begins a take, as RecordingSession::start() does; what comes while its file is begun is in it.
-  /// Until that is done or refused. False: the disk stands still, as of record().
-  bool begin(Beginning beginning);
+  /// Waits for a take to begin; nullptr: somebody ended it first.
+  std::shared_ptr<SessionTake> next_take();
 
-  struct End {
-    std::optional<double> seconds;
-    bool by_mark = false;  // that says stop
-  };
-  /// Until that, somebody or a full disk ends it, and all is written. False: the disk stands still,
-  /// and somebody has lost patience with it; then nothing may wait for it any more.
-  bool record(const End& end);
+  /// Until its file is begun or refused; what comes meanwhile is in it. `tries_again`: what the
+  /// disk refuses is told, and tried until somebody ends it. False: the disk stands still, as of
+  /// record().
+  bool begin(SessionTake& take, bool tries_again);
 
-  /// No take is to begin any more.
-  bool ends() const { return ends_ || herald_.disk_full(); }
+  /// Until a mark, its length, somebody or a full disk has ended it, and all is written. `last`:
+  /// then no other is to begin. False: the disk stands still, and somebody has lost patience with
+  /// it; then nothing may wait for it.
+  bool record(SessionTake& take, bool last);
+
   RecordHerald& herald() { return herald_; }
   /// Its program ends without ending it: the terminal is as it was before.
   void leave() { keyboard_.leave(); }
 
  private:
   bool turn(Duration patience);
-  bool take_mark(Mark::Kind kind);
-  bool write_rest();
-  void listen_anew();
+  void end_what_is_over();
+  bool write_rest(SessionTake& take);
+  bool ends() const { return ends_ || herald_.disk_full(); }
 
   RecordingSession& session_;
   RecordHerald& herald_;
+  std::optional<double> seconds_;
   Keyboard keyboard_;
   MarkKeys keys_;
-  std::vector<Mark::Kind> marks_;
-  HostTime begun_{};  // the take
   bool ends_ = false;
+  bool pressed_again_ = false;  // Ctrl-C, where ends_ was said before
 };
 
 }  // namespace kinalign

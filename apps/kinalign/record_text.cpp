@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record_text.h"
 
+#include "apps/kinalign/node_names.h"
 #include "apps/kinalign/node_text.h"
 #include "apps/kinalign/summary.h"
 
@@ -24,7 +25,7 @@ std::vector<std::string> unheard_nodes(const DeviceOptions& device, const LabSta
         std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& stream) {
           return stream.stream == device.name && stream.node == node.first;
         });
-    if (!heard) names.push_back(device.name + " " + node.second);
+    if (!heard) names.push_back(sender_name(device.name, node.first, node.second));
   }
   return names;
 }
@@ -76,8 +77,7 @@ std::string loss_of(const PortCounts& counts) {
 }
 
 std::string name_of(const StreamStatus& stream) {
-  if (stream.node.empty()) return stream.stream;
-  return stream.stream + " " + (stream.place.empty() ? stream.node : stream.place);
+  return sender_name(stream.stream, stream.node, stream.place);
 }
 
 std::vector<std::string> unheard_in_take(const Lab& lab, LabStatus status) {

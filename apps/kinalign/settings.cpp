@@ -50,15 +50,35 @@ Result<Setting> setting_of(const std::string& path, const toml::key& key, const 
   return setting;
 }
 
+/// Tables within tables are a lab's devices alone.
+Failure no_table(const std::string& path, const toml::node& node, const std::string& name) {
+  const auto dot = name.find('.');
+  const std::string device = dot == std::string::npos ? ".NAME" : name.substr(dot);
+  return Failure(Error{path, line_of(node), "settings, or a lab's device as [device" + device + "]",
+                       "[" + name + "]"});
+}
+
+Result<void> add_table(const toml::key& key, const toml::table& table, SettingsFile& file) {
+  for (const auto& [inner_key, inner] : table) {
+    const toml::table* within = inner.as_table();
+    if (within != nullptr && !within->is_inline()) {
+      return no_table(file.path, inner, shown(key.str()) + "." + shown(inner_key.str()));
+    }
+    Setting setting = KA_TRY(setting_of(file.path, inner_key, inner));
+    setting.verb = key.str();
+    file.settings.push_back(std::move(setting));
+  }
+  return {};
+}
+
 Result<SettingsFile> settings_of(const toml::table& all, SettingsFile file) {
   for (const auto& [key, node] : all) {
     if (key == "device" && node.is_table()) continue;  // a lab's: io/lab_toml.h reads them
+    if (node.is_array_of_tables()) {
+      return no_table(file.path, node, "[" + shown(key.str()) + "]");
+    }
     if (const toml::table* table = node.as_table()) {
-      for (const auto& [inner_key, inner] : *table) {
-        Setting setting = KA_TRY(setting_of(file.path, inner_key, inner));
-        setting.verb = key.str();
-        file.settings.push_back(std::move(setting));
-      }
+      KA_TRY(add_table(key, *table, file));
     } else {
       file.settings.push_back(KA_TRY(setting_of(file.path, key, node)));
     }
@@ -120,6 +140,7 @@ Result<void> check_name(const SettingsFile& file, const Setting& setting, const 
   }
   for (const Verb& verb : verbs) known.push_back(verb.page.name);
   if (std::find(known.begin(), known.end(), setting.verb) == known.end()) {
+    known.emplace_back("device");
     return unknown(file, setting, known, "a verb");
   }
   if (setting.verb != settable.page.name || named(settable.settings, setting.name) != nullptr) {
@@ -132,14 +153,20 @@ Result<void> check_name(const SettingsFile& file, const Setting& setting, const 
 
 }  // namespace
 
-Result<SettingsFile> read_settings(FileSystem& files, const std::string& path, Source source) {
-  const std::string text = KA_TRY(read_whole(files, path, most_bytes));
+Result<SettingsFile> parse_settings(const SettingsText& file) {
   try {
-    return settings_of(toml::parse(text, path), SettingsFile{path, source, {}});
+    return settings_of(toml::parse(file.text, file.path), SettingsFile{file.path, file.source, {}});
   } catch (const toml::parse_error& error) {
-    return Failure(Error{path, static_cast<std::int64_t>(error.source().begin.line), "TOML",
+    return Failure(Error{file.path, static_cast<std::int64_t>(error.source().begin.line), "TOML",
                          std::string(error.description())});
   }
+}
+
+Result<std::vector<SettingsFile>> parse_settings(const std::vector<SettingsText>& files) {
+  std::vector<SettingsFile> parsed;
+  parsed.reserve(files.size());
+  for (const SettingsText& file : files) parsed.push_back(KA_TRY(parse_settings(file)));
+  return parsed;
 }
 
 std::string project_settings(const Surroundings& surroundings, const std::string& config) {
@@ -147,17 +174,17 @@ std::string project_settings(const Surroundings& surroundings, const std::string
   return named.empty() ? projects_file(surroundings.folder) : named;
 }
 
-Result<std::vector<SettingsFile>> find_settings(const Surroundings& surroundings,
+Result<std::vector<SettingsText>> find_settings(const Surroundings& surroundings,
                                                 const std::string& config) {
-  std::vector<SettingsFile> found;
+  std::vector<SettingsText> found;
+  const auto read = [&](const std::string& path, Source source) -> Result<void> {
+    found.push_back({path, source, KA_TRY(read_whole(surroundings.files, path, most_bytes))});
+    return {};
+  };
   const std::string users = users_file(surroundings);
-  if (!users.empty() && there(users)) {
-    found.push_back(KA_TRY(read_settings(surroundings.files, users, Source::user)));
-  }
+  if (!users.empty() && there(users)) KA_TRY(read(users, Source::user));
   const std::string projects = project_settings(surroundings, config);
-  if (!projects.empty()) {
-    found.push_back(KA_TRY(read_settings(surroundings.files, projects, Source::project)));
-  }
+  if (!projects.empty()) KA_TRY(read(projects, Source::project));
   return found;
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kinalign {
@@ -25,16 +26,30 @@ struct SettingsFile {
   std::vector<Setting> settings;
 };
 
-/// Reads one file: `jobs = 4` for every verb, `[align]` with `gap_ms = 50` for one.
-Result<SettingsFile> read_settings(FileSystem& files, const std::string& path, Source source);
+/// A file of settings as it stands.
+struct SettingsText {
+  std::string path;
+  Source source = Source::user;
+  std::string text;
+};
 
 /// The path of the project's file: `config`, else what KINALIGN_CONFIG names, else kinalign.toml in
 /// the current folder or above it; empty: there is none.
 std::string project_settings(const Surroundings& surroundings, const std::string& config);
 
 /// The user's file and the project's (`config`, where not empty, in its place), where they exist.
-Result<std::vector<SettingsFile>> find_settings(const Surroundings& surroundings,
+/// Fails where one can't be read.
+Result<std::vector<SettingsText>> find_settings(const Surroundings& surroundings,
                                                 const std::string& config);
+
+/// `jobs = 4` for every verb, `[align]` with `gap_ms = 50` for one. Fails where the text says
+/// something else, which is wrong use.
+Result<SettingsFile> parse_settings(const SettingsText& file);
+Result<std::vector<SettingsFile>> parse_settings(const std::vector<SettingsText>& files);
+
+/// Where to read on after an error in such a file.
+inline constexpr std::string_view settings_pages =
+    "docs/commands.md says what a file of settings has, docs/recording.md what one of a lab";
 
 /// Options that a verb's table and the front of a file may set.
 struct Settable {

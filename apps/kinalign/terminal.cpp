@@ -66,6 +66,10 @@ std::size_t places(std::string_view text) {
   return count;
 }
 
+std::size_t rows_of(std::size_t places, std::size_t columns) {
+  return std::max<std::size_t>(1, (places + columns - 1) / columns);
+}
+
 std::string_view first_places(std::string_view text, std::size_t most) {
   std::size_t end = 0;
   for (std::size_t count = 0; end < text.size(); ++end) {

@@ -21,6 +21,9 @@ std::string start_of_lines(std::size_t lines);
 /// That a text takes: a character each, none for a colour.
 std::size_t places(std::string_view text);
 
+/// Rows that a line of so many places takes on a terminal that breaks it at `columns`.
+std::size_t rows_of(std::size_t places, std::size_t columns);
+
 /// As much of a text without colours as has room in so many places.
 std::string_view first_places(std::string_view text, std::size_t most);
 

@@ -3,6 +3,7 @@
 
 #include "apps/kinalign/key_advice.h"
 #include "apps/kinalign/node_herald.h"
+#include "apps/kinalign/port_advice.h"
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/time_server_text.h"
 #include "apps/kinalign/verbs.h"
@@ -110,22 +111,9 @@ Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
 }
 
 /// On a port that could not be opened. `flag`: the one that names it.
-Advice port_advice(const std::string& flag) {
-  return [flag](const Error& error) -> std::vector<std::string> {
-    if (error.found == port_taken) {
-      const std::string port = error.file.substr(error.file.rfind(':'));
-      return {
-          fmt::format("ss -ulpn 'sport = {}' shows which one; {} takes another port", port, flag)};
-    }
-    if (error.found == low_port_forbidden || error.found == port_forbidden) {
-      return {"as root, or once: sudo setcap cap_net_bind_service=+ep $(command -v kinalign)",
-              flag + " 12300 needs no rights, for clients that can be told a port"};
-    }
-    if (error.found == address_elsewhere) {
-      return {"ip -brief address shows this machine's; --listen takes one of them"};
-    }
-    return {};
-  };
+Advice advice_on_port(const std::string& flag, std::int64_t port) {
+  const WantedPort wanted{static_cast<std::uint16_t>(port), flag, "--listen", false};
+  return [wanted](const Error& error) { return port_advice(error, wanted); };
 }
 
 Result<LabKeyFile> read_key_file(const TimeServerFlags& flags, Call& call) {
@@ -241,9 +229,9 @@ Result<int> run(TimeServerFlags& o, Call& call) {
   console.never_wait();
   o.listen = KA_TRY(addresses_of(o.listen));
   const LabKeyFile lab = KA_TRY(read_key_file(o, call));
-  console.if_it_fails(port_advice("--port"));
+  console.if_it_fails(advice_on_port("--port", o.port));
   TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));
-  console.if_it_fails(port_advice("--node-port"));
+  console.if_it_fails(advice_on_port("--node-port", o.node_port.value_or(0)));
   SystemClocks clocks;
   auto nodes = KA_TRY(open_nodes(o, lab.key, clocks));
   const ServedPort served = served_port(server, nodes, o);

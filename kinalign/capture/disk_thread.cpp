@@ -22,8 +22,9 @@ std::optional<std::uint64_t> free_bytes(const std::string& path) {
 
 }  // namespace
 
-DiskThread::DiskThread(Open open, McapCompression compression)
-    : open_(std::move(open)), compression_(compression) {
+DiskThread::DiskThread(Open open, McapCompression compression,
+                       std::shared_ptr<const DiskThread> behind)
+    : behind_(std::move(behind)), open_(std::move(open)), compression_(compression) {
   writer_ = std::thread([this] { write(); });
   syncer_ = std::thread([this] { sync(); });
 }
@@ -85,8 +86,22 @@ void DiskThread::publish(const Result<void>& result) {
   for (PartFailure& failure : disk_->take_failures()) failures_.push_back(std::move(failure));
 }
 
+void DiskThread::wait_for_turn() {
+  const auto has_turn = [this] {
+    const DiskStatus before = behind_->status();
+    return !before.paths.empty() || before.finished;
+  };
+  while (behind_ && !has_turn()) {
+    std::unique_lock lock(mutex_);
+    if (written_.wait_for(lock, std::chrono::milliseconds(20), [this] { return giving_up_; }))
+      break;
+  }
+  behind_.reset();
+}
+
 /// Whether there is a file to write to: tried until give_up().
 bool DiskThread::begin() {
+  wait_for_turn();
   while (!disk_ && !done_) {
     Result<RecordingDisk> opened = open_();
     std::unique_lock lock(mutex_);
@@ -159,9 +174,10 @@ void DiskThread::work_on_end(std::unique_lock<std::mutex>& lock) {
   if (!done_) written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
 }
 
-/// Here and not where it is shown: of a network disk that is gone the question hangs.
+/// Here and not where it is shown: of a network disk that is gone the question hangs. Nor at the
+/// end: who waits for the thread would wait for the answer.
 void DiskThread::look_at_room(std::unique_lock<std::mutex>& lock) {
-  if (status_.paths.empty()) return;
+  if (status_.paths.empty() || finishing_) return;
   const std::string path = status_.paths.back();
   lock.unlock();
   const auto free = free_bytes(path);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -36,7 +37,9 @@ class DiskThread {
   /// Asked on the writing thread, each second until it succeeds or nobody wants it any more: what
   /// is pushed meanwhile waits.
   using Open = std::function<Result<RecordingDisk>()>;
-  DiskThread(Open open, McapCompression compression);
+  /// `behind`: whose file has to be begun, or given up, before this one's; nullptr: nobody's.
+  DiskThread(Open open, McapCompression compression,
+             std::shared_ptr<const DiskThread> behind = nullptr);
   /// As finish() and give_up(), and waits.
   ~DiskThread();
   DiskThread(const DiskThread&) = delete;
@@ -56,6 +59,7 @@ class DiskThread {
 
  private:
   void write();
+  void wait_for_turn();
   bool begin();
   void sync();
   void look_at_room(std::unique_lock<std::mutex>& lock);
@@ -63,8 +67,9 @@ class DiskThread {
   void work_on_end(std::unique_lock<std::mutex>& lock);
   void publish(const Result<void>& result);
 
+  std::shared_ptr<const DiskThread> behind_;
   Open open_;
-  std::optional<RecordingDisk> disk_;  // both the writing thread's
+  std::optional<RecordingDisk> disk_;  // all three the writing thread's
   McapCompression compression_;
 
   mutable std::mutex mutex_;  // of all below

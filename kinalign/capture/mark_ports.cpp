@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/mark_ports.h"
 
+#include "kinalign/capture/port_error.h"
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/mark_call.h"
 #include "kinalign/io/vicon_trigger.h"
@@ -13,10 +14,14 @@ namespace {
 constexpr Duration call_repeats = std::chrono::minutes(10);
 constexpr Duration trigger_repeats = std::chrono::seconds(5);
 
+const char* port_name(MarkPort::Form form) {
+  return form == MarkPort::Form::call ? "marks" : "trigger";
+}
+
 }  // namespace
 
 Result<MarkPort> MarkPort::open(Form form, std::uint16_t port) {
-  return MarkPort(form, KA_TRY(UdpPieces::open("", port)));
+  return MarkPort(form, KA_TRY(told_of(port_name(form), UdpPieces::open("", port))));
 }
 
 MarkPort::MarkPort(Form form, UdpPieces pieces)
@@ -28,18 +33,37 @@ void MarkPort::drain(HostAxis& axis, const TakeMark& take) {
   pieces_.drain(axis, [&](const Piece& piece) { take_piece(piece, take); });
 }
 
-/// What is no mark is counted by its cause.
+std::string MarkPort::name() const { return port_name(form_); }
+
+std::string MarkPort::sender_of(const Piece& piece) const {
+  const Senders::Sender& sender = pieces_.senders().at(piece.sender);
+  return endpoint_text(to_string(sender.host), sender.port);
+}
+
+/// Counted by its cause, which is told once: whoever sends one sends many.
+void MarkPort::refuse(const Piece& piece, const std::string& cause, const char* expected) {
+  if (counts_.refused[cause]++ > 0) return;
+  findings_.push_back({Severity::warning,
+                       {"port of " + name(), 0, expected,
+                        shown(piece.bytes) + " from " + sender_of(piece) + ": " + cause},
+                       "it is no mark: nothing begins, ends or is written down with it",
+                       "docs/formats/marks.md shows what this port understands"});
+}
+
+/// A call that is none is answered with the cause, as far as that may be.
 bool MarkPort::decode(const Piece& piece, Mark& mark) {
   if (form_ == Form::call) {
     const MarkCallRefusal refusal = decode_mark_call(piece.bytes, mark);
     if (refusal == MarkCallRefusal::none) return true;
-    ++counts_.refused[kinalign::name_of(refusal)];
+    refuse(piece, kinalign::name_of(refusal), expected_of(refusal));
+    const std::string text = answer_to_refused_call(mark, refusal, piece.bytes.size());
+    if (!text.empty()) pieces_.send(piece.sender, octets(text));
     return false;
   }
   ViconTrigger trigger;
   const ViconRefusal refusal = decode_vicon_trigger(piece.bytes, trigger);
   if (refusal != ViconRefusal::none) {
-    ++counts_.refused[kinalign::name_of(refusal)];
+    refuse(piece, kinalign::name_of(refusal), expected_of(refusal));
     return false;
   }
   mark = mark_of(trigger);
@@ -63,9 +87,8 @@ void MarkPort::take_piece(const Piece& piece, const TakeMark& take) {
     if (!text.empty()) pieces_.send(piece.sender, octets(text));
   }
   if (again) return;
-  const Senders::Sender& sender = pieces_.senders().at(piece.sender);
   heard.source = form_ == Form::call ? "call" : "trigger";
-  heard.sender = endpoint_text(to_string(sender.host), sender.port);
+  heard.sender = sender_of(piece);
   take(heard, piece.arrival);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/capture/pieces.h"
+#include "kinalign/core/error.h"
 #include "kinalign/io/mark.h"
 #include "kinalign/io/recording_counts.h"
 #include "kinalign/io/recording_format.h"
@@ -11,6 +12,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -34,20 +36,25 @@ class MarkPort {
   void drain(HostAxis& axis, const TakeMark& take);
 
   /// "marks", "trigger".
-  std::string name() const { return form_ == Form::call ? "marks" : "trigger"; }
+  std::string name() const;
   std::uint16_t port() const { return pieces_.port(); }
   PortCounts port_counts() const;
   const MarkPortCounts& counts() const { return counts_; }
+  /// Of what was refused since this was asked last: the first of each cause, once.
+  Findings take_findings() { return std::exchange(findings_, {}); }
 
  private:
   MarkPort(Form form, UdpPieces pieces);
   bool decode(const Piece& piece, Mark& mark);
+  void refuse(const Piece& piece, const std::string& cause, const char* expected);
+  std::string sender_of(const Piece& piece) const;
   void take_piece(const Piece& piece, const TakeMark& take);
 
   Form form_;
   UdpPieces pieces_;
   MarkRepeats repeats_;
   MarkPortCounts counts_;
+  Findings findings_;
 };
 
 }  // namespace kinalign

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/recorded_nodes.h"
 
+#include "kinalign/capture/port_error.h"
 #include "kinalign/io/little_endian_reader.h"
 
 #include <algorithm>
@@ -29,8 +30,9 @@ Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& 
   if (!device.address.empty()) options.addresses = {device.address};
   options.port = static_cast<std::uint16_t>(device.port);
   options.desk = desk;
-  return std::unique_ptr<RecordedNodes>(new RecordedNodes(
-      device, desk.lab_key.has_value(), KA_TRY(NodeReceiver::open(options, clocks)), recorder));
+  NodeReceiver receiver = KA_TRY(told_of(device.name, NodeReceiver::open(options, clocks)));
+  return std::unique_ptr<RecordedNodes>(
+      new RecordedNodes(device, desk.lab_key.has_value(), std::move(receiver), recorder));
 }
 
 RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/recorded_port.h"
 
+#include "kinalign/capture/port_error.h"
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_lines.h"
 #include "kinalign/io/little_endian_reader.h"
@@ -19,7 +20,7 @@ std::string encoded(const KinectPong& pong, bool as_line) {
 }  // namespace
 
 Result<RecordedPort> RecordedPort::open(const DeviceOptions& device, const SipHashKey& secret) {
-  return RecordedPort(device, KA_TRY(open_pieces(device)), secret);
+  return RecordedPort(device, KA_TRY(told_of(device.name, open_pieces(device))), secret);
 }
 
 Result<RecordedPort::Pieces> RecordedPort::open_pieces(const DeviceOptions& device) {

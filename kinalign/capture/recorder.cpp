@@ -79,7 +79,6 @@ std::uint64_t Recorder::first_number() const {
 
 /// Whole chunks: what is kept reaches back the pre-roll, and a chunk more.
 void Recorder::forget_before(HostTime first) {
-  first = std::min(first, keep_since_.value_or(first));
   while (!pre_roll_.empty() &&
          (pre_roll_.front().end < first || pre_roll_bytes_ > options_.pre_roll_bytes)) {
     pre_roll_bytes_ -= pre_roll_.front().chunk.size();
@@ -89,7 +88,6 @@ void Recorder::forget_before(HostTime first) {
 
 std::uint64_t Recorder::start(HostTime now, Take take) {
   forget_before(now - options_.pre_roll);
-  keep_since_.reset();
   const std::uint64_t first = first_number();
   take_ = std::move(take);
   for (Kept& kept : std::exchange(pre_roll_, {})) take_(std::move(kept.chunk));

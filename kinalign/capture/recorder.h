@@ -7,7 +7,6 @@
 #include "kinalign/io/mcap_chunk.h"
 #include "kinalign/wire/time.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -45,8 +44,6 @@ class Recorder {
   /// Closes a chunk that is due: some times a chunk's length.
   void tick(HostTime now);
 
-  /// Until a take begins nothing that came since then is forgotten, as far as there is room.
-  void keep_since(HostTime since) { keep_since_ = std::min(keep_since_.value_or(since), since); }
   /// From now on chunks go to `take`, those of the pre-roll at once. The first one's number, of all
   /// that were ever begun.
   std::uint64_t start(HostTime now, Take take);
@@ -86,7 +83,6 @@ class Recorder {
   std::uint64_t first_number() const;
   std::deque<Kept> pre_roll_;
   std::size_t pre_roll_bytes_ = 0;
-  std::optional<HostTime> keep_since_;
   std::uint64_t number_ = 0;  // of the open chunk
   Closed closed_;
   Take take_;

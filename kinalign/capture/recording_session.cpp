@@ -37,37 +37,6 @@ ExpectedDevices expected_of(const Lab& lab) {
   return expected;
 }
 
-/// What a take needs to begin its files, on the disk's thread: it owns all of it.
-struct TakeFiles {
-  FileSystem* files;
-  RecordingSession::FreePath free_path;
-  RecordingFacts facts;
-  ExpectedDevices expected;
-  std::vector<McapAttachment> attachments;
-  std::shared_ptr<DiskThread> before;  // the last take's, whose disk may stand still by now
-
-  Result<RecordingDisk> operator()() {
-    before.reset();
-    for (std::string path = free_path();;) {
-      Result<RecordingDisk> opened = open(path);
-      const std::string next = opened ? path : free_path();
-      if (next == path) return opened;
-      path = next;  // another recorder has taken the name meanwhile
-    }
-  }
-  Result<RecordingDisk> open(const std::string& path) {
-    facts.first = std::string(file_name(path));
-    const auto head = [facts = facts, expected = expected,
-                       attachments = attachments](int part) mutable -> RecordingHead {
-      facts.part = part;
-      return {{std::string(recording_profile), "kinalign " KINALIGN_VERSION},
-              {to_metadata(facts), to_metadata(expected)},
-              attachments};
-    };
-    return RecordingDisk::open(*files, path, head);
-  }
-};
-
 /// A key for each port, so that no two draw the same nonces.
 SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
   SipHashKey key{};
@@ -206,9 +175,21 @@ bool RecordingSession::wait(Duration patience, std::optional<int> also) {
   return ::poll(waiting_.data(), waiting_.size(), static_cast<int>(ms)) > 0;
 }
 
+/// A start stands in the take that it begins, a stop in the one that it ends.
 void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
+  using Kind = Mark::Kind;
+  const Kind kind = mark.mark.kind;
+  if (kind == Kind::start && by_marks_ && by_marks_->begins && !recording()) {
+    by_marks_->begins = by_marks_->again;
+    start(by_marks_->plan, at);
+  }
   recorder_->record(mark_channel_, at, to_json(mark));
+  if (kind == Kind::stop && by_marks_ && recording()) end_take();
   if (marks_.size() < most_untaken) marks_.emplace_back(mark, at);
+}
+
+void RecordingSession::obey_no_start() {
+  if (by_marks_) by_marks_->begins = by_marks_->again = false;
 }
 
 void RecordingSession::tick(HostTime now) {
@@ -216,10 +197,6 @@ void RecordingSession::tick(HostTime now) {
   if (now < next_second_) return;
   next_second_ = now + std::chrono::seconds(1);
   tell(now);
-}
-
-void RecordingSession::expect_start(HostTime at) {
-  recorder_->keep_since(at - pre_roll_of(options_.lab));
 }
 
 /// Both clocks of the host, and what has come: the latter once a take has begun.
@@ -249,21 +226,23 @@ void RecordingSession::begin_counts(std::uint64_t chunk) {
   for (auto& [name, port] : port_counts_past_) port.before = port.past.before(chunk);
 }
 
-void RecordingSession::start(FreePath free_path, const std::string& subject,
-                             const std::string& action) {
-  facts_.subject = subject;
-  facts_.action = action;
+/// `at`: from when on; the pre-roll reaches back from there.
+void RecordingSession::start(const TakePlan& plan, HostTime at) {
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
-  TakeFiles open{&machine_.files,
-                 std::move(free_path),
-                 facts_,
-                 expected_of(options_.lab),
-                 attachments_of(options_, facts_.anchor.utc),
-                 std::move(disk_)};
-  disk_ = std::make_unique<DiskThread>(std::move(open), compression);
-  begin_counts(recorder_->start(axis_.now(),
-                                [this](McapChunkContent chunk) { disk_->push(std::move(chunk)); }));
+  TakeHead head{facts_, expected_of(options_.lab), attachments_of(options_, facts_.anchor.utc)};
+  newest_ = begin_take(machine_.files, plan, std::move(head), compression, newest_);
+  newest_->begun = at;
+  begun_.push_back(newest_);
+  begin_counts(recorder_->start(
+      at, [disk = &newest_->disk](McapChunkContent chunk) { disk->push(std::move(chunk)); }));
+}
+
+std::shared_ptr<SessionTake> RecordingSession::next_take() {
+  if (begun_.empty()) return nullptr;
+  std::shared_ptr<SessionTake> next = std::move(begun_.front());
+  begun_.pop_front();
+  return next;
 }
 
 /// What lies in the kernel's buffers; no longer than a flood may hold up the end.
@@ -277,17 +256,15 @@ void RecordingSession::drain_all() {
 void RecordingSession::stop() {
   if (!recording()) return;
   drain_all();
-  tell(axis_.now());
+  if (recording()) end_take();  // a mark may have done so meanwhile
+}
+
+void RecordingSession::end_take() {
+  const HostTime now = axis_.now();
+  tell(now);
   recorder_->stop();
-  disk_->finish();
-}
-
-std::optional<DiskStatus> RecordingSession::disk() const {
-  return disk_ ? std::optional(disk_->status()) : std::nullopt;
-}
-
-std::vector<PartFailure> RecordingSession::take_disk_failures() {
-  return disk_ ? disk_->take_failures() : std::vector<PartFailure>();
+  newest_->end = TakeEnd{now, streams(), port_counts()};
+  newest_->disk.finish();
 }
 
 std::vector<StreamStatus> RecordingSession::streams() const {
@@ -300,6 +277,7 @@ std::vector<StreamStatus> RecordingSession::streams() const {
 Findings RecordingSession::take_findings() {
   Findings all;
   for (RecordedPort& port : ports_) append(all, port.take_findings());
+  for (MarkPort& port : mark_ports_) append(all, port.take_findings());
   return all;
 }
 

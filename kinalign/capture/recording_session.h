@@ -3,11 +3,11 @@
 // One thread receives; takes begin and end while devices go on.
 #pragma once
 
-#include "kinalign/capture/disk_thread.h"
 #include "kinalign/capture/mark_ports.h"
 #include "kinalign/capture/recorded_nodes.h"
 #include "kinalign/capture/recorded_port.h"
 #include "kinalign/capture/recorder.h"
+#include "kinalign/capture/session_take.h"
 #include "kinalign/io/recording_counts.h"
 #include "kinalign/io/recording_format.h"
 #include "kinalign/take/lab.h"
@@ -15,7 +15,7 @@
 #include <poll.h>
 
 #include <cstdint>
-#include <functional>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -52,27 +52,27 @@ class RecordingSession {
   /// of the caller's to wake up for. Whether something came.
   bool turn(Duration patience, std::optional<int> also = std::nullopt);
 
-  /// A take will begin with the pre-roll of that time, however long that takes.
-  void expect_start(HostTime at);
-  /// A take begins: the pre-roll and all that comes from now on is in it. Where it goes, a path
-  /// that ends in .mcap, is asked for on the disk's thread, and the file begun there, however long
-  /// that takes; disk() says once it is done, or why it can't be.
-  using FreePath = std::function<std::string()>;
-  void start(FreePath free_path, const std::string& subject, const std::string& action);
-  /// Ends it: what has come to the machine goes to the disk, see disk().finished.
+  /// A take begins: the pre-roll and all that comes from now on is in it. Its file is begun on the
+  /// disk's thread; the take's disk.status() says once it is done, or why it can't be.
+  void start(const TakePlan& plan) { start(plan, axis_.now()); }
+  /// From now on a start mark begins a take, where none goes on, and a stop mark ends it, each in
+  /// the turn in which it comes, whatever the disk is doing. `again`: the next start, too.
+  void obey_marks(TakePlan plan, bool again) { by_marks_ = ByMarks{std::move(plan), again}; }
+  /// A mark begins no take any more; one that goes on is still ended by one.
+  void obey_no_start();
+  /// Ends it: what has come to the machine goes to the disk, see the take's disk.
   void stop();
-  /// After stop(): what the disk still refuses is given up.
-  void give_up() { disk_->give_up(); }
   bool recording() const { return recorder_->started(); }
+  /// Those that began, in their order, each once; nullptr: none more.
+  std::shared_ptr<SessionTake> next_take();
+  /// The present or last one; nullptr before the first.
+  const std::shared_ptr<SessionTake>& newest_take() const { return newest_; }
 
-  /// Onto the channel of marks; before a take into its pre-roll.
+  /// Onto the channel of marks; before a take into its pre-roll. It may begin or end one.
   void mark(const RecordedMark& mark, HostTime at);
   /// All marks since this was asked last, at most some hundred.
   std::vector<HeardMark> take_marks() { return std::exchange(marks_, {}); }
 
-  /// Of the present or last take; absent before the first.
-  std::optional<DiskStatus> disk() const;
-  std::vector<PartFailure> take_disk_failures();
   std::vector<StreamStatus> streams() const;
   /// What the user should know of what devices send, each once; looked for once a second.
   Findings take_findings();
@@ -99,11 +99,18 @@ class RecordingSession {
   void tell(HostTime now);
   void remember_counts(std::uint64_t chunk, std::uint64_t first);
   void begin_counts(std::uint64_t chunk);
+  void start(const TakePlan& plan, HostTime at);
+  void end_take();
   std::vector<std::pair<std::string, PortCounts>> running_port_counts() const;
 
   struct PortPast {
     PastCounts<PortCounts> past;
     PortCounts before{};  // the take
+  };
+
+  struct ByMarks {
+    TakePlan plan;
+    bool again = false, begins = true;  // begins: the next start does
   };
 
   Options options_;
@@ -123,7 +130,9 @@ class RecordingSession {
   std::vector<pollfd> waiting_;
   std::uint64_t heard_before_ = 0;  // the last turn
   HostTime awake_until_ = HostTime::min();
-  std::unique_ptr<DiskThread> disk_;
+  std::optional<ByMarks> by_marks_;
+  std::shared_ptr<SessionTake> newest_;
+  std::deque<std::shared_ptr<SessionTake>> begun_;  // since next_take() was asked
 };
 
 }  // namespace kinalign

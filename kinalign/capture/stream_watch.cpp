@@ -81,8 +81,7 @@ void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& n
     }
     found = kinect.sensors.emplace(origin.sensor, KinectFrameJoiner()).first;
     const auto before = newest.find(origin.sensor);
-    const bool goes_on = before != newest.end() && before->second.session == origin.session;
-    if (goes_on) found->second.follow(before->second);
+    if (before != newest.end()) found->second.follow(before->second);
   }
   note(origin, newest);
   kinect.frames.clear();

@@ -29,7 +29,7 @@ class StreamWatch {
   explicit StreamWatch(const std::string& protocol = "", bool datagrams = false);
 
   /// `newest`: a Kinect that is heard on another way than before, in a connection made anew, goes
-  /// on with its count.
+  /// on with its count, or has been started anew.
   void feed(std::string_view piece, NewestKinectFrames& newest);
   /// Of a Kinect's sender: the pings that the last piece completed, and how pongs are to look.
   std::span<const KinectPing> pings() const;

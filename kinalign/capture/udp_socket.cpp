@@ -20,16 +20,6 @@ namespace {
 
 constexpr int receive_buffer = 4 << 20;  // a tenth of a second of a flood
 
-/// What stands in the way of an address and port, for who has to clear it.
-std::string obstacle(int code, std::uint16_t port) {
-  if (code == EADDRINUSE) return std::string(port_taken);
-  if (code == EACCES || code == EPERM) {
-    return std::string(port < 1024 ? low_port_forbidden : port_forbidden);
-  }
-  if (code == EADDRNOTAVAIL) return std::string(address_elsewhere);
-  return std::strerror(code);
-}
-
 bool set(int fd, int level, int name, int value) {
   return ::setsockopt(fd, level, name, &value, sizeof value) == 0;
 }
@@ -69,6 +59,15 @@ struct Socket {
 };
 
 }  // namespace
+
+std::string obstacle(int code, std::uint16_t port) {
+  if (code == EADDRINUSE) return std::string(port_taken);
+  if (code == EACCES || code == EPERM) {
+    return std::string(port < 1024 ? low_port_forbidden : port_forbidden);
+  }
+  if (code == EADDRNOTAVAIL) return std::string(address_elsewhere);
+  return std::strerror(code);
+}
 
 std::optional<std::string> spelt_address(const std::string& text) {
   const FoundAddress found = find_address(text, 0, SOCK_DGRAM);

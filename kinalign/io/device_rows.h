@@ -7,6 +7,7 @@
 #include "kinalign/io/host_epochs.h"
 #include "kinalign/io/reader.h"
 #include "kinalign/io/recorded_messages.h"
+#include "kinalign/io/rows_in_order.h"
 #include "kinalign/take/manifest.h"
 
 #include <cstdint>
@@ -88,6 +89,17 @@ class DeviceRows {
         {Severity::note,
          Error{file_, 0, std::string(expected), std::to_string(count) + " " + std::string(found)},
          std::string(meaning), ""});
+  }
+  /// `rows`: what they are, in words. A warning, unless none came too late.
+  template <class Row>
+  void tell_too_late(const RowsInOrder<Row>& order, std::string_view rows) {
+    if (order.too_late() == 0) return;
+    findings.push_back({Severity::warning,
+                        Error{file_, 0,
+                              std::string(rows) + " that at most " +
+                                  std::to_string(order.most_overtaking()) + " others overtake",
+                              std::to_string(order.too_late()) + " that came later still"},
+                        "they were left out", "look at the network that they come by"});
   }
 
  private:

@@ -121,6 +121,7 @@ void KinectFrameJoiner::finish(std::vector<JoinedKinectFrame>& out) { close(out)
 KinectFrameCounts KinectFrameJoiner::counts() const {
   KinectFrameCounts counts = counts_;
   counts.frames += sequence_.counts();
+  if (counts.sessions > 0) counts.frames.restarts += counts.sessions - 1;
   return counts;
 }
 

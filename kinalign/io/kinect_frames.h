@@ -18,7 +18,7 @@ struct JoinedKinectFrame {
 };
 
 struct KinectFrameCounts {
-  SequenceCounts frames;  // of all sessions so far
+  SequenceCounts frames;  // of all sessions so far; each but the first one is a restart
   std::uint64_t sessions = 0;
   std::uint64_t stale = 0;       // messages of a session that is over
   std::uint64_t parts_lost = 0;  // frames that were not whole
@@ -32,8 +32,8 @@ struct KinectFrameCounts {
 /// Frames of one sensor, in the order of arrival.
 class KinectFrameJoiner {
  public:
-  /// Before the first frame: the sensor's last one came another way, and what lacks behind it is
-  /// lost.
+  /// Before the first frame: the sensor's last one came another way. What lacks behind it is lost;
+  /// a frame of another session is a restart.
   void follow(const KinectOrigin& last);
   /// Appends what is done: frames that are whole, and the one before if it never will be.
   void take(KinectFrame message, std::vector<JoinedKinectFrame>& out);

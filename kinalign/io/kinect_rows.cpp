@@ -139,6 +139,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
     const KinectFrameCounts counts = frames_.counts();
     tell(counts.frames.lost, "each frame's number", "that never came",
          "they were lost on their way");
+    tell_too_late(waiting_, "frames");
     tell(counts.parts_lost, "all parts of a frame", "frames without some",
          "bodies may be missing in them");
     tell(frames_.of_other_sensors, "one sensor", "frames of others", "they were left out");

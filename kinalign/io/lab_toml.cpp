@@ -36,6 +36,10 @@ class LabReader {
 
  private:
   Result<DeviceOptions> read_device(const TomlEntry& device) const {
+    if (!device.value->is_table()) {
+      return file_.at(*device.value, Error{"", 0, "[device.NAME], a table of its own for each",
+                                           device.key + ", " + type_of(*device.value)});
+    }
     DeviceOptions out;
     out.name = device.key;
     const Fields fields = describe(out);

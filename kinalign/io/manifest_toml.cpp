@@ -20,6 +20,7 @@ class ManifestReader {
   Result<Manifest> read(const toml::table& top, const AlignOptions& unsaid) {
     Manifest out;
     out.align = unsaid;
+    KA_TRY(check_purpose(top));
     for (const TomlEntry& entry : in_file_order(top)) {
       if (entry.key == "subject") {
         out.subject = KA_TRY(file_.text(entry));
@@ -41,6 +42,15 @@ class ManifestReader {
   }
 
  private:
+  /// A lab.toml is easily taken for a manifest: both name streams.
+  Result<void> check_purpose(const toml::table& top) const {
+    const toml::node* devices = top.get("device");
+    if (devices == nullptr) return {};
+    return file_.at(*devices, Error{"", 0, "a manifest, recording.toml, with [stream.NAME]",
+                                    "[device], of a lab.toml: kinalign record takes it as "
+                                    "--config"});
+  }
+
   /// Column = value, a text or a whole number.
   Result<Texts> selection(const TomlEntry& entry) const {
     Texts out;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace kinalign {
 
@@ -52,13 +53,20 @@ Refusal take_text(const Json& call, Mark& mark) {
 Refusal take(const Json& call, Mark& mark) {
   if (!call.is_object()) return Refusal::bad_json;
   if (text_at(call, "schema") != schema) return Refusal::wrong_schema;
+  const auto id = text_at(call, "id");
+  if (id && is_id(*id)) mark.id = *id;
   const auto kind = mark_kind_named(text_at(call, "kind").value_or(""));
   if (!kind) return Refusal::wrong_kind;
   mark.kind = *kind;
-  mark.id = text_at(call, "id").value_or("");
-  if (!is_id(mark.id)) return Refusal::wrong_id;
+  if (mark.id.empty()) return Refusal::wrong_id;
   if (const auto refusal = take_latency(call, mark); refusal != Refusal::none) return refusal;
   return take_text(call, mark);
+}
+
+/// A short text in the room that a call has taken.
+std::string fitting(const Json& answer, std::size_t call_size) {
+  const std::string text = answer.dump();
+  return text.size() <= call_size ? text : std::string();
 }
 
 }  // namespace
@@ -70,12 +78,25 @@ const char* name_of(MarkCallRefusal refusal) {
   return names[static_cast<std::size_t>(refusal)];
 }
 
+const char* expected_of(MarkCallRefusal refusal) {
+  static constexpr std::array<const char*, mark_call_refusals> texts{
+      "a mark",
+      "a mark of at most 1200 bytes",
+      "a JSON object",
+      "a schema of kinalign.mark/1",
+      "a kind: start, stop, t_pose or text",
+      "an id, 1 to 64 printable ASCII characters",
+      "a latency_ms from 0 to 60000, of a start or stop",
+      "a text of at most 500 bytes without control characters"};
+  return texts[static_cast<std::size_t>(refusal)];
+}
+
 MarkCallRefusal decode_mark_call(std::string_view datagram, Mark& mark) {
   mark = {};
   if (datagram.size() > most_mark_call) return Refusal::too_long;
   const Json call = Json::parse(datagram.begin(), datagram.end(), nullptr, false);
   const Refusal refusal = call.is_discarded() ? Refusal::bad_json : take(call, mark);
-  if (refusal != Refusal::none) mark = {};
+  if (refusal != Refusal::none) mark = {Mark::Kind::text, "", std::nullopt, std::move(mark.id)};
   return refusal;
 }
 
@@ -88,8 +109,16 @@ std::string encode_mark_call(const Mark& mark) {
 
 std::string answer_to_mark_call(const Mark& mark, MarkAnswer answer, std::size_t call_size) {
   const char* is = answer == MarkAnswer::fresh ? "new" : "repeat";
-  const std::string text = Json{{"mark", mark.id}, {"is", is}}.dump();
-  return text.size() <= call_size ? text : std::string();
+  return fitting({{"mark", mark.id}, {"is", is}}, call_size);
+}
+
+std::string answer_to_refused_call(const Mark& mark, MarkCallRefusal refusal,
+                                   std::size_t call_size) {
+  if (refusal < Refusal::wrong_kind) return {};  // none, or no schema of ours was seen yet
+  Json answer = Json::object();
+  if (!mark.id.empty()) answer["mark"] = mark.id;
+  answer["is"] = name_of(refusal);
+  return fitting(answer, call_size);
 }
 
 }  // namespace kinalign

@@ -212,6 +212,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     converter_.report(file(), findings);
     tell(frames_.others, "datagrams that were accepted", "others: held, late, twice or damaged",
          "they were passed over");
+    tell_too_late(waiting_, "samples");
     tell(unknown_, "samples of a life of the node whose clock is known", "samples of others",
          "they were left out");
     tell(partial_, "samples with all that the node sends at times",

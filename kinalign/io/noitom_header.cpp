@@ -10,6 +10,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t old_flags_end = 18, new_flags_end = 10;
+constexpr std::size_t minor_at = 4, major_at = 5;
 
 struct Shape {
   std::uint64_t count = 0, displacement = 0, reference = 0;
@@ -31,7 +32,7 @@ Shape new_shape(std::span<const std::uint8_t> b) {
 
 /// The layout by the version 1.0 or 1.1, 1.2, ...; by what fits where that is neither.
 std::optional<NoitomForm> form_of(std::span<const std::uint8_t> b) {
-  const unsigned minor = b[4], major = b[5];
+  const unsigned minor = b[minor_at], major = b[major_at];
   const bool may_be_new = major != 1 || minor >= 1, may_be_old = major != 1 || minor == 0;
   if (may_be_new && new_shape(b).fits()) return NoitomForm::new_header;
   if (may_be_old && b.size() >= old_flags_end && old_shape(b).fits()) return NoitomForm::old_header;
@@ -73,6 +74,11 @@ std::optional<NoitomHeader> parse_noitom_header(std::span<const std::uint8_t> by
 
 bool begins_noitom_header(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= new_flags_end && has_noitom_tokens(bytes) && form_of(bytes).has_value();
+}
+
+std::size_t stated_noitom_values(std::span<const std::uint8_t> bytes) {
+  const bool is_old = bytes[major_at] == 1 && bytes[minor_at] == 0;
+  return is_old ? old_shape(bytes).count : new_shape(bytes).count;
 }
 
 }  // namespace kinalign

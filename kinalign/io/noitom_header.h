@@ -24,4 +24,8 @@ std::optional<NoitomHeader> parse_noitom_header(std::span<const std::uint8_t> by
 /// `bytes`.
 bool begins_noitom_header(std::span<const std::uint8_t> bytes);
 
+/// Of 64 bytes whose count and flags fit neither layout: the count that stands there. All layouts
+/// have it in one place; the old one's is longer.
+std::size_t stated_noitom_values(std::span<const std::uint8_t> bytes);
+
 }  // namespace kinalign

@@ -19,6 +19,8 @@ constexpr std::size_t slice = 4096;
 constexpr std::size_t longest_text = 16'384;
 constexpr std::size_t most_avatars = 64;
 constexpr std::size_t zipped_head = 10;  // CCCC, a length, gzip's 1F 8B
+// Of a frame with another count than ours: 200 joints with displacement and a reference.
+constexpr std::size_t most_values = 1206;
 
 bool is_digit(std::uint8_t b) { return b >= '0' && b <= '9'; }
 bool is_white(std::uint8_t b) { return b == ' ' || b == '\t' || b == '\r' || b == '\n'; }
@@ -26,15 +28,18 @@ bool may_stand_in_text(std::uint8_t b) {
   return is_white(b) || (b > ' ' && b != 0x7f && b != 0xff);
 }
 
-/// Where within the values another frame's header begins; their end where none does.
-std::size_t next_header(std::span<const std::uint8_t> frame) {
-  for (std::size_t at = noitom_header_size; at < frame.size(); ++at) {
-    const void* found = std::memchr(&frame[at], 0xff, frame.size() - at);
+using Begins = bool (*)(std::span<const std::uint8_t> bytes);
+
+/// Where from `from` to `end` a header begins; `end` where none does.
+std::size_t header_within(std::span<const std::uint8_t> bytes, std::size_t from, std::size_t end,
+                          Begins begins) {
+  for (std::size_t at = from; at < end; ++at) {
+    const void* found = std::memchr(&bytes[at], 0xff, end - at);
     if (found == nullptr) break;
-    at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - frame.data());
-    if (begins_noitom_header(frame.subspan(at))) return at;
+    at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes.data());
+    if (begins(bytes.subspan(at))) return at;
   }
-  return frame.size();
+  return end;
 }
 
 std::vector<float> values_of(std::span<const std::uint8_t> frame) {
@@ -53,13 +58,16 @@ struct Advice {
 
 constexpr std::string_view plain =
     "switch the capture program to plain BVH broadcast (binary or string, no compression)";
-constexpr std::array<Advice, 7> advice{{
+constexpr std::array<Advice, 8> advice{{
     {NoitomRefusal::compressed, "plain BVH frames", "compressed frames are not read", plain},
     {NoitomRefusal::calculation, "BVH frames", "this is the calculation stream (0x88FF)",
      "connect to the port of the BVH broadcast"},
     {NoitomRefusal::command, "BVH frames", "replies of the command channel are not read", ""},
     {NoitomRefusal::wrong_count, "180, 186, 354 or 360 values in a frame",
      "frames of other sizes were dropped", "broadcast the 59 joints of Axis Neuron or Axis Studio"},
+    {NoitomRefusal::garbage, "frames of the BVH broadcast",
+     "bytes that have a frame's marks and are none were dropped",
+     "see that nothing but the BVH broadcast is sent to this port"},
     {NoitomRefusal::torn, "whole frames", "frames that lacked a piece were dropped",
      "prefer TCP, or a wired network: a UDP frame with displacement is sent in two pieces"},
     {NoitomRefusal::too_long, "text whose frames end in ||", "it was dropped", ""},
@@ -70,9 +78,9 @@ constexpr std::array<Advice, 7> advice{{
 }  // namespace
 
 std::string_view to_string(NoitomRefusal refusal) {
-  constexpr std::array<std::string_view, 7> names{"wrong_count",     "torn",    "compressed",
-                                                  "calculation",     "command", "too_long",
-                                                  "too_many_avatars"};
+  constexpr std::array<std::string_view, 8> names{"wrong_count", "garbage",         "torn",
+                                                  "compressed",  "calculation",     "command",
+                                                  "too_long",    "too_many_avatars"};
   return names[static_cast<std::size_t>(refusal)];
 }
 
@@ -135,11 +143,7 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
     return Step::go_on;
   }
   auto header = parse_noitom_header(bytes);
-  if (!header) {
-    refuse(NoitomRefusal::wrong_count);
-    skip(2);
-    return Step::go_on;
-  }
+  if (!header) return misfit();
   if (header->compressed) {
     refuse(NoitomRefusal::compressed);
     take(noitom_header_size);
@@ -147,7 +151,9 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   }
   const std::size_t size = noitom_header_size + 4 * header->values;
   if (bytes.size() < size) return Step::wait;
-  if (const std::size_t next = next_header(bytes.first(size)); next < size) {
+  const std::size_t next =
+      header_within(bytes.first(size), noitom_header_size, size, begins_noitom_header);
+  if (next < size) {
     refuse(NoitomRefusal::torn);
     skip(next);
     return Step::go_on;
@@ -155,6 +161,29 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   if (parts_ == NoitomParts::all) header->frame.values = values_of(bytes.first(size));
   take(size);
   give(std::move(header->frame), out);
+  return Step::go_on;
+}
+
+// A header whose count and flags fit no layout: of a frame of another count where the next header
+// stands behind as many values. Meanwhile no frame is held back that begins before: whole headers
+// alone are looked at, so that the cuts change nothing.
+NoitomDecoder::Step NoitomDecoder::misfit() {
+  const auto bytes = ahead();
+  const std::size_t values = stated_noitom_values(bytes);
+  bool is_frame = values > 0 && values <= most_values;
+  const std::size_t size = noitom_header_size + 4 * values;
+  if (is_frame) {
+    const std::size_t end = std::min(size, bytes.size() - noitom_header_size + 1);
+    const std::size_t from = std::max<std::size_t>(searched_, 2);
+    is_frame = header_within(bytes, from, end, has_noitom_tokens) == end;
+    if (is_frame && bytes.size() < size + noitom_header_size) {
+      searched_ = end;
+      return Step::wait;
+    }
+    is_frame = is_frame && has_noitom_tokens(bytes.subspan(size));
+  }
+  refuse(is_frame ? NoitomRefusal::wrong_count : NoitomRefusal::garbage);
+  skip(is_frame ? size : 2);
   return Step::go_on;
 }
 
@@ -217,10 +246,18 @@ void NoitomDecoder::text_frame(std::size_t size, std::vector<NoitomArrival>& out
     take(size);
     give(*std::move(frame), out);
   } else {
-    refuse(NoitomRefusal::wrong_count);
+    refuse_text({reinterpret_cast<const char*>(&held_[at_]), size - 2});
     skip(size);
   }
   behind_text_ = true;
+}
+
+void NoitomDecoder::refuse_text(std::string_view text) {
+  const NoitomNoFrame what = judge_noitom_text(text);
+  // Who comes within a frame sees its end: nothing is wrong with it.
+  const bool first = counts_.frames == 0 && counts_.refused == NoitomCounts{}.refused;
+  if (first && what == NoitomNoFrame::numbers) return;
+  refuse(what == NoitomNoFrame::other_count ? NoitomRefusal::wrong_count : NoitomRefusal::garbage);
 }
 
 void NoitomDecoder::give(NoitomFrame frame, std::vector<NoitomArrival>& out) {

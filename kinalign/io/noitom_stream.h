@@ -14,7 +14,8 @@ namespace kinalign {
 
 /// Why a thing that was recognised gave no frame.
 enum class NoitomRefusal : std::uint8_t {
-  wrong_count,       // count and flags fit neither layout, or a text of another number of words
+  wrong_count,       // a frame by its beginning and its length, of another number of values
+  garbage,           // a frame's marks about what is none
   torn,              // another frame begins before this one is complete
   compressed,        // Axis Studio's compressed port, or the old header's compressed mode
   calculation,       // the calculation stream
@@ -79,10 +80,12 @@ class NoitomDecoder {
   Step step(std::vector<NoitomArrival>& out);
   Step marked(std::vector<NoitomArrival>& out);
   Step binary(std::vector<NoitomArrival>& out);
+  Step misfit();
   Step other_header(std::uint8_t last_byte, NoitomRefusal meaning);
   Step zipped();
   Step text(std::vector<NoitomArrival>& out);
   void text_frame(std::size_t size, std::vector<NoitomArrival>& out);
+  void refuse_text(std::string_view text);
   void give(NoitomFrame frame, std::vector<NoitomArrival>& out);
   void refuse(NoitomRefusal refusal) { ++counts_.refused[static_cast<std::size_t>(refusal)]; }
   void skip(std::size_t bytes);
@@ -91,7 +94,7 @@ class NoitomDecoder {
   NoitomParts parts_;
   std::vector<std::uint8_t> held_;
   std::size_t at_ = 0;        // of `held_`: what is before is done
-  std::size_t searched_ = 0;  // bytes of a text that hold no end
+  std::size_t searched_ = 0;  // bytes of a text that hold no end, of a misfit that begin no header
   bool behind_text_ = false;
   NoitomCounts counts_;
   std::map<std::uint32_t, NoitomAvatar> avatars_;

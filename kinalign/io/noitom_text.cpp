@@ -67,4 +67,17 @@ std::optional<NoitomFrame> parse_noitom_text(std::string_view text) {
   return std::nullopt;
 }
 
+NoitomNoFrame judge_noitom_text(std::string_view text) {
+  const auto words = words_of(text);
+  float number = 0.0F;
+  const auto name = std::find_if(words.rbegin(), words.rend(),
+                                 [&](std::string_view word) { return !read(word, number); });
+  if (name == words.rend()) return NoitomNoFrame::numbers;
+  const auto values = static_cast<std::size_t>(name - words.rbegin());
+  // Places and rotations have three values each.
+  if (values == 0 || values % 3 != 0 || values + 2 > words.size()) return NoitomNoFrame::other;
+  const bool begins = frame_of(std::span(words).last(values + 2)).has_value();
+  return begins ? NoitomNoFrame::other_count : NoitomNoFrame::other;
+}
+
 }  // namespace kinalign

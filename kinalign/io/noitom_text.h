@@ -13,4 +13,12 @@ namespace kinalign {
 /// there.
 std::optional<NoitomFrame> parse_noitom_text(std::string_view text);
 
+/// What a text is that is no frame.
+enum class NoitomNoFrame : std::uint8_t {
+  other_count,  // ends as a frame does, `<index> <name> v v ...`, of another number of values
+  numbers,      // nothing but numbers: the end of a frame, its beginning is not there
+  other         // any other words
+};
+NoitomNoFrame judge_noitom_text(std::string_view text);
+
 }  // namespace kinalign

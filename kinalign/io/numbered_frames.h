@@ -127,6 +127,7 @@ class NumberedRows : public DeviceRows<Frames> {
           {Severity::warning, *misfit_,
            std::to_string(misfits_) + " " + frames + " of that kind were left out", ""});
     }
+    this->tell_too_late(waiting_, frames);
     this->tell(unknown_, frames + " whose clock is known", "others", "they were left out");
     return {};
   }

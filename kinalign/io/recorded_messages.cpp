@@ -13,7 +13,12 @@ namespace {
 constexpr std::size_t most_names = 32;  // of streams and nodes in messages
 
 void remember(std::set<std::string>& names, const std::string& name) {
-  if (names.size() < most_names) names.insert(shown(name));
+  if (names.size() < most_names) names.insert(name);
+}
+
+/// "12 (waist)": a node is asked for by its id or by its place.
+std::string node_name(const RawChannel& raw) {
+  return shown(raw.node) + (raw.place.empty() ? "" : " (" + shown(raw.place) + ")");
 }
 
 }  // namespace
@@ -136,10 +141,10 @@ void RecordedMessages::add(const McapChannel& channel) {
 }
 
 bool RecordedMessages::is_wanted(const RawChannel& raw) {
-  remember(streams_, raw.stream);
+  remember(streams_, shown(raw.stream));
   if (raw.stream != choice_.stream) return false;
   if (!raw.node.empty()) {  // a node may come from another address after a while
-    remember(nodes_, raw.node);
+    remember(nodes_, node_name(raw));
     if (choice_.node.empty()) choice_.node = raw.node;
     return raw.node == choice_.node || (!raw.place.empty() && raw.place == choice_.node);
   }

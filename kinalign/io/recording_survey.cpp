@@ -2,6 +2,7 @@
 #include "kinalign/io/recording_survey.h"
 
 #include "kinalign/io/crc.h"
+#include "kinalign/io/lab_toml.h"
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/slimevr_packet.h"
 
@@ -68,7 +69,11 @@ class Surveyor {
   }
 
  private:
-  void add(const McapChannel& channel) { channels_[channel.id].channel = channel; }
+  void add(const McapChannel& channel) {
+    channels_[channel.id].channel = channel;
+    const auto raw = to_raw(channel);
+    if (raw && !raw->place.empty()) survey_.places[raw->stream + "/" + raw->node] = raw->place;
+  }
   void add(const McapMetadata& metadata) {
     if (auto devices = to_expected_devices(metadata)) survey_.expected = *std::move(devices);
     if (const auto end = to_end(metadata)) survey_.end = end;
@@ -76,7 +81,18 @@ class Surveyor {
     survey_.facts = to_facts(metadata);
     if (survey_.facts) clock_.push_back(survey_.facts->anchor);
   }
-  void add(const McapAttachment& attachment) { survey_.attachments.push_back(attachment.name); }
+  void add(const McapAttachment& attachment) {
+    survey_.attachments.push_back(attachment.name);
+    if (attachment.name == "lab.toml") add_places(attachment.data);
+  }
+  /// Of nodes that were never heard, too. What is no lab.toml of ours says nothing.
+  void add_places(std::string_view lab_toml) {
+    const auto devices = read_devices(lab_toml, "lab.toml");
+    if (!devices) return;
+    for (const DeviceOptions& device : *devices) {
+      for (const auto& [id, place] : device.nodes) survey_.places[device.name + "/" + id] = place;
+    }
+  }
   void add(const McapMessage& message) {
     ++survey_.messages;
     survey_.contents = add_to(survey_.contents, message);

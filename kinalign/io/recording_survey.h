@@ -39,9 +39,10 @@ struct RecordingSurvey {
   std::vector<std::string> attachments;  // names
   std::vector<WallClockStep> steps;      // of the recording machine's wall clock
   ExpectedDevices expected;
-  std::optional<RecordingEnd> end;     // absent: torn, or it goes on in another file
-  std::vector<CountedSender> senders;  // the last counts of each, …
-  std::vector<CountedPort> ports;      // … and of each device's port
+  std::map<std::string, std::string> places;  // of nodes, as far as the lab says them: "imu/7"
+  std::optional<RecordingEnd> end;            // absent: torn, or it goes on in another file
+  std::vector<CountedSender> senders;         // the last counts of each, …
+  std::vector<CountedPort> ports;             // … and of each device's port
   std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times
   std::uint64_t more_marks = 0;                               // than are looked at
   std::uint64_t bytes = 0;                                    // of the file

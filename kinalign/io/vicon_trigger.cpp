@@ -262,6 +262,18 @@ const char* name_of(ViconRefusal refusal) {
   return names[static_cast<std::size_t>(refusal)];
 }
 
+const char* expected_of(ViconRefusal refusal) {
+  static constexpr std::array<const char*, vicon_refusals> texts{
+      "a broadcast of Vicon's",
+      "a broadcast of Vicon's of at most 1500 bytes",
+      "a broadcast of Vicon's, one document of XML",
+      "a CaptureStart or CaptureStop",
+      "a Delay from 0 to 60000 ms and a whole PacketID",
+      "texts in UTF-8 without control characters",
+      "each element once"};
+  return texts[static_cast<std::size_t>(refusal)];
+}
+
 ViconRefusal decode_vicon_trigger(std::string_view datagram, ViconTrigger& trigger) {
   trigger = {};
   if (datagram.size() > most_vicon_trigger) return Refusal::too_long;

@@ -24,6 +24,9 @@ inline constexpr std::size_t vicon_refusals = 7;
 /// As in --json: "bad_xml".
 const char* name_of(ViconRefusal refusal);
 
+/// What was expected instead, for who is told: "a CaptureStart or CaptureStop".
+const char* expected_of(ViconRefusal refusal);
+
 /// After a refusal `trigger` is as new.
 ViconRefusal decode_vicon_trigger(std::string_view datagram, ViconTrigger& trigger);
 

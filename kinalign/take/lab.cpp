@@ -4,6 +4,8 @@
 #include "kinalign/core/nearest_name.h"
 #include "kinalign/take/manifest.h"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -34,14 +36,27 @@ Failure wrong(const DeviceOptions& device, std::string expected, std::string fou
   return Failure(Error{device.name, 0, std::move(expected), std::move(found)});
 }
 
+/// IPv4 or IPv6. Which interface is meant may stand behind a '%': whether it is there, the system
+/// says when the port is opened.
+bool is_ip_address(const std::string& text) {
+  in6_addr room{};
+  return ::inet_pton(AF_INET, text.c_str(), &room) == 1 ||
+         ::inet_pton(AF_INET6, text.substr(0, text.find('%')).c_str(), &room) == 1;
+}
+
 /// Whether a device can be reached, or reach us.
 Result<void> check_place(const DeviceOptions& device) {
+  const bool datagrams = device.protocol == "nodes" || device.protocol == "slimevr";
+  if (datagrams && device.transport != "udp") {
+    return wrong(device, "transport udp, the only one of protocol " + device.protocol,
+                 device.transport);
+  }
   if (device.transport == "tcp" && (device.address.empty() || device.port <= 0)) {
     return wrong(device, "an address and a port to connect to", "none");
   }
-  const bool datagrams = device.protocol == "nodes" || device.protocol == "slimevr";
-  if (datagrams && device.transport != "udp") {
-    return wrong(device, device.protocol + " by udp", device.transport);
+  if (!device.address.empty() && !is_ip_address(device.address)) {
+    return wrong(device, "an IP address (getent hosts NAME says that of a host)",
+                 shown(device.address));
   }
   if (device.port < 0) return wrong(device, "port, where it is heard (0: any free one)", "none");
   return {};
@@ -55,8 +70,11 @@ Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other)
   if (device.protocol == "nodes" && other.protocol == "nodes") {
     return wrong(device, "one device for all nodes", other.name + " beside it");
   }
+  const bool serves = device.transport != "tcp";  // an address that is left out is then every one
+  const bool same_place = other.address == device.address ||
+                          (serves && (device.address.empty() || other.address.empty()));
   const bool same_port = device.port != 0 && other.port == device.port &&
-                         other.transport == device.transport && other.address == device.address;
+                         other.transport == device.transport && same_place;
   if (!same_port) return {};
   return wrong(device, "a port of its own", std::to_string(device.port) + ", as " + other.name);
 }

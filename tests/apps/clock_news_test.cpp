@@ -82,6 +82,17 @@ TEST_CASE("a clock that steps thrice in ten seconds has one line more, and a min
   CHECK(news.lines(at(260)) == Lines{stepped, withdrawn("0.2")});
 }
 
+TEST_CASE("each line has the node's name in its lab") {
+  ClockNews news(NodeNames{"imu", {{"7", "wrist"}}});
+  for (const double s : {20.0, 21.0, 22.0}) step(news, s);
+  news.hear(1, 8, event(Kind::settled, 22, 22), at(22));
+  const auto lines = news.lines(at(30));
+  REQUIRE(lines.size() == 4);
+  CHECK(lines[0] == "imu wrist: warning: its counter stepped by at least 500.000 ms");
+  CHECK(lines[2].starts_with("imu wrist: warning: its clock keeps contradicting"));
+  CHECK(lines[3] == "imu 8: its counter runs evenly again");
+}
+
 TEST_CASE("steps of a node a long time apart, and those of others, are told each") {
   ClockNews news;
   for (const double s : {20.0, 26.0, 32.0, 38.0}) {

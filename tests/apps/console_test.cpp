@@ -6,10 +6,12 @@
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 
 using namespace kinalign;
@@ -31,6 +33,39 @@ Result<int> fail(Mix& /*options*/, Call& call) {
   });
   return Failure(Error{"walk.bvh", 142, "354 values in the frame", "353"});
 }
+
+/// A terminal whose size can be changed, and what was shown on it.
+class Pty {
+ public:
+  Pty() : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+    REQUIRE(::grantpt(master_) == 0);
+    REQUIRE(::unlockpt(master_) == 0);
+    std::array<char, 64> name{};
+    REQUIRE(::ptsname_r(master_, name.data(), name.size()) == 0);
+    slave_ = ::open(name.data(), O_RDWR | O_NOCTTY);
+    REQUIRE(slave_ >= 0);
+  }
+  Pty(const Pty&) = delete;
+  Pty& operator=(const Pty&) = delete;
+  ~Pty() {
+    ::close(slave_);
+    ::close(master_);
+  }
+  int slave() const { return slave_; }
+  void resize(std::uint16_t columns) const {
+    const winsize size{24, columns, 0, 0};
+    REQUIRE(::ioctl(master_, TIOCSWINSZ, &size) == 0);
+  }
+  /// Since it was asked last.
+  std::string shown() const {
+    std::array<char, 4096> text{};
+    const ssize_t got = ::read(master_, text.data(), text.size());
+    return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))};
+  }
+
+ private:
+  int master_, slave_ = -1;
+};
 
 }  // namespace
 
@@ -126,9 +161,68 @@ TEST_CASE(
   CHECK(terminal.run(job, {"mix", "a"}).err ==
         "one\n\x1b[31mtwo\x1b[0m\nthree"
         "\r\x1b[2A\x1b[Jfour\nfive"
-        "\r\x1b[1A\x1b[Ja note\n\a" +
+        "\r\x1b[1A\x1b[Ja note\nfour\nfive\a"
+        "\r\x1b[1A\x1b[J" +
             std::string(79, 'x') + "\r\x1b[K");
   CHECK(terminal.run(job, {"mix", "a", "-q"}).err.empty());
+}
+
+TEST_CASE("what is said while lines are shown stands above them, from stdout too") {
+  const auto job = [](Mix&, Call& call) -> Result<int> {
+    call.console.show({{"a line", Colour::plain}});
+    call.console.note("a note");
+    call.console.complain("trouble");
+    call.console.print("a result\n");
+    call.console.flush();
+    call.console.print("another\n");
+    call.console.note("a note");
+    return Failure(Error{"", 0, "an end", "none"});
+  };
+  const std::string again = "a line\r\x1b[K";
+  const Machine terminal{.out_is_terminal = true, .err_is_terminal = true};
+  const Outcome outcome = terminal.run(job, {"mix", "a"});
+  CHECK(outcome.out == "a result\nanother\n");
+  CHECK(outcome.err == again + "a note\n" + again + "\x1b[31mtrouble\x1b[0m\n" + again + again +
+                           "a note\n" + again +
+                           "\x1b[31mkinalign mix: expected an end, found none\x1b[0m\n" + again);
+  CHECK(Machine{.err_is_terminal = true}.run(job, {"mix", "a", "--color=never"}).err ==
+        again + "a note\n" + again + "trouble\n" + again + "a note\n" + again +
+            "kinalign mix: expected an end, found none\n" + again);  // no results stand there
+}
+
+TEST_CASE("lines that a narrower terminal has broken anew are erased all the same") {
+  Pty pty;
+  pty.resize(80);
+  PosixFiles files;
+  const Surroundings surroundings{.variable = [](const std::string&) { return std::string(); },
+                                  .folder = "/",
+                                  .out = pty.slave(),
+                                  .err = pty.slave(),
+                                  .out_is_terminal = true,
+                                  .err_is_terminal = true,
+                                  .files = files};
+  Common common;
+  common.color = "always";
+  Console console(surroundings, common, "mix");
+  console.show(
+      {{std::string(41, 'x'), Colour::bad}, {"", Colour::plain}, {"three", Colour::plain}});
+  CHECK(pty.shown() == "\x1b[31m" + std::string(41, 'x') + "\x1b[0m\r\n\r\nthree");
+  pty.resize(20);
+  console.note("a note");
+  const std::string narrow = "\x1b[31m" + std::string(19, 'x') + "\x1b[0m\r\n\r\nthree";
+  CHECK(pty.shown() == "\r\x1b[4A\x1b[Ja note\r\n" + narrow);  // three rows, one and one
+  console.show(
+      {{std::string(19, 'x'), Colour::bad}, {"", Colour::plain}, {"three", Colour::plain}});
+  CHECK(pty.shown() == "\r\x1b[2A\x1b[J" + narrow);
+  go_on(console.progress(), "reading so much of so many files", 1, 4);
+  CHECK(pty.shown() == "\r\x1b[2A\x1b[Jreading so much of ");
+  pty.resize(10);
+  console.print("a result\n");
+  CHECK(console.finish());
+  CHECK(pty.shown() == "\r\x1b[1A\x1b[Ja result\r\n");
+  CHECK(rows_of(0, 20) == 1);
+  CHECK(rows_of(20, 20) == 1);
+  CHECK(rows_of(21, 20) == 2);
 }
 
 TEST_CASE("no more lines are shown than a terminal has room for, nor half a character") {

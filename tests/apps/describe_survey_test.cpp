@@ -84,6 +84,25 @@ TEST_CASE("a stream of which no rows can be made is told") {
   CHECK(judged(survey).empty());
 }
 
+TEST_CASE("a node is told by its place, where the lab says one, else by its id") {
+  RecordingSurvey survey = kinect_survey(1, 1, 0);
+  survey.expected = {{"imu/3", true}, {"imu/7", true}, {"mocap", true}};
+  survey.places = {{"imu/7", "wrist"}};
+  CHECK(judged(survey) ==
+        "messages of imu 3: none\nmessages of imu wrist: none\nmessages of mocap: none\n");
+  survey.expected.clear();
+  CountedSender& sender = survey.senders[0];
+  sender.stream = "imu";
+  sender.node = "7";
+  sender.sender = "10.0.0.3:4000";
+  sender.counts.order.lost = 3;
+  CHECK(judged(survey) == "every frame that imu wrist from 10.0.0.3:4000 sent: 3 lost of 4\n");
+  const std::string text = describe_survey("a.mcap", survey, {}).text;
+  CHECK(text.find("  sender      imu wrist from 10.0.0.3:4000: 1 messages") != std::string::npos);
+  survey.places.clear();
+  CHECK(judged(survey) == "every frame that imu 7 from 10.0.0.3:4000 sent: 3 lost of 4\n");
+}
+
 TEST_CASE("a later part by itself, which counts from the recording's beginning, lacks nothing") {
   RecordingSurvey part = kinect_survey(1000, 10, 0);
   part.facts->part = 2;

@@ -75,4 +75,25 @@ TEST_CASE("a node that is refused for its key is told with what mends it") {
         "no --lab-key (from 192.168.7.20:4000); --lab-key FILE, the lab's, lets it in");
 }
 
+TEST_CASE("a node of a lab has the device's name and its place, else its id") {
+  const NodeNames names{"imu", {{"7", "wrist"}}};
+  NodeEvent event;
+  event.node_id = 7;
+  event.address = {mapped_ipv4(std::array<std::uint8_t, 4>{192, 168, 7, 20}), 4000};
+  CHECK(event_text(event) == "node 7: joined (192.168.7.20:4000)");
+  CHECK(event_text(event, names) == "imu wrist: joined (192.168.7.20:4000)");
+  event.kind = NodeEvent::Kind::renamed;
+  event.other_id = 3;
+  CHECK(event_text(event, names) == "imu wrist: seems to be what imu 3 was (192.168.7.20:4000)");
+  event.kind = NodeEvent::Kind::wrong_key;
+  event.refusal = NodeRefusal::wrong_mac;
+  CHECK(event_text(event, names) ==
+        "warning: something that says it is imu wrist is not heard: it sends with another key "
+        "(from 192.168.7.20:4000); if it is that node, flash what kinalign node-key --lab-key LAB "
+        "--node 7 prints");
+  ClockEvent settled;
+  settled.kind = ClockEvent::Kind::settled;
+  CHECK(event_text(settled, 7, names) == "imu wrist: its counter runs evenly again");
+}
+
 }  // namespace kinalign

@@ -116,6 +116,8 @@ TEST_CASE("who was refused for a key is listed by what he says he is") {
   refused.take(NodeRefusal::wrong_mac, 99, {});  // one more than there is room for
   CHECK(claims_text(refused, counts)[1] ==
         "wrong mac: from what says it is node 11, 12, 13 and others (6 frames)");
+  CHECK(claims_text(refused, counts, {"imu", {{"12", "wrist"}}})[1] ==
+        "wrong mac: from what says it is imu 11, wrist, 13 and others (6 frames)");
 }
 
 }  // namespace kinalign

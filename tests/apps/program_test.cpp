@@ -86,8 +86,14 @@ TEST_CASE("--config takes the place of the project's file") {
   const Machine machine = machine_in(folder);
   CHECK(machine.run(show, {"mix", "a", "--jobs=1", "--config", other}).out == "50 6 1");
   const Outcome missing = machine.run(show, {"mix", "a", "--config=/no/such"});
-  CHECK(missing.code == 2);
-  CHECK(missing.err.starts_with("kinalign mix: /no/such: expected a readable file, found No such"));
+  CHECK(missing.code == 3);
+  CHECK(missing.err ==
+        "kinalign mix: /no/such: expected a readable file, found No such file or directory\n");
+  Machine named = machine;
+  named.variables["KINALIGN_CONFIG"] = "/no/such";
+  const Outcome by_variable = named.run(show, {"mix", "a"});
+  CHECK(by_variable.code == 3);
+  CHECK(by_variable.err.ends_with("such file or directory\n  KINALIGN_CONFIG names it\n"));
 }
 
 TEST_CASE("a fault in a file of settings is told with its line") {
@@ -96,8 +102,13 @@ TEST_CASE("a fault in a file of settings is told with its line") {
   const std::string path = folder / "project/kinalign.toml";
   const auto message = [&](const std::string& text) {
     folder.write("project/kinalign.toml", text);
-    const std::string err = machine.run(show, {"mix", "a"}).err;
-    return err.substr(0, err.find('\n'));
+    const Outcome outcome = machine.run(show, {"mix", "a"});
+    CHECK(outcome.code == 2);
+    const auto end = outcome.err.find('\n');
+    CHECK(outcome.err.substr(end) ==
+          "\n  docs/commands.md says what a file of settings has, docs/recording.md what one of a "
+          "lab\n");
+    return outcome.err.substr(0, end);
   };
   CHECK(message("[mix]\nrwos = 2\n") ==
         "kinalign mix: " + path + ":2: expected a setting of mix (did you mean rows?), found rwos");
@@ -111,6 +122,14 @@ TEST_CASE("a fault in a file of settings is told with its line") {
         "kinalign mix: " + path + ":2: expected one value for rows, found 2");
   CHECK(message("[mix]\nrows = {a = 1}\n").find(":2: expected a number, a text or true or false") !=
         std::string::npos);
+  CHECK(message("[mix]\n[devices.mocap]\nport = 1\n") ==
+        "kinalign mix: " + path +
+            ":2: expected settings, or a lab's device as [device.mocap], found [devices.mocap]");
+  CHECK(message("[[device]]\nport = 1\n") ==
+        "kinalign mix: " + path +
+            ":1: expected settings, or a lab's device as [device.NAME], found [[device]]");
+  CHECK(message("[devices]\nport = 1\n") ==
+        "kinalign mix: " + path + ":2: expected a verb (did you mean device?), found devices");
   CHECK(message("[mix\n").find(":1: expected TOML, found ") != std::string::npos);
 }
 

@@ -6,7 +6,6 @@ import json
 import os
 import pathlib
 import pty
-import random
 import re
 import select
 import socket
@@ -19,7 +18,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
 from cases import case, in_time, kinalign, main
 from mcap_walk import Walk
-from recording_program import Recording, Sender, free_port, numbers, send, sender_to
+from node_runs import ended, start_node
+from recording_program import Recording, Sender, frame, free_port, mark, numbers, send, sender_to
 
 
 @case
@@ -67,7 +67,7 @@ def a_port_that_cannot_be_used_is_told_of_while_it_is_recorded(folder):
         status = recording.until("status")[-1]
     assert status["ports"]["mocap"]["dropped"] == 0, status
     code, events, err = recording.end()
-    assert code == 0, err
+    assert code == 1, err
     assert not any(event["event"] == "finding" for event in events), "told again"
     assert err.count("switch the capture program") == 1 and "\n\n" not in err, err
 
@@ -165,7 +165,7 @@ def with_wait_a_take_begins_with_a_start_and_what_came_before_and_ends_with_a_st
     recording = Recording(folder / "takes", "--wait", "--trigger-port", "0", "--marks-port", "0", first="waiting")
     ports = recording.started["ports"]
     mocap = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    mocap.sendto(b"0000000000 before", ("127.0.0.1", recording.port))
+    mocap.sendto(frame(0), ("127.0.0.1", recording.port))
     time.sleep(0.3)
     assert not (folder / "takes").exists() or not list((folder / "takes").iterdir()), "nothing before the start"
     send(ports["marks"], '{"schema":"kinalign.mark/1","kind":"text","id":"1","text":"a word"}')
@@ -174,7 +174,7 @@ def with_wait_a_take_begins_with_a_start_and_what_came_before_and_ends_with_a_st
     path = pathlib.Path(said[-1]["file"])
     marks = [event for event in said if event["event"] == "mark"]
     assert [mark["kind"] for mark in marks] == ["text", "start"], marks
-    mocap.sendto(b"0000000001 during", ("127.0.0.1", recording.port))
+    mocap.sendto(frame(1), ("127.0.0.1", recording.port))
     time.sleep(0.3)
     send(ports["trigger"], '<CaptureStop RESULT="SUCCESS"><PacketID VALUE="2"/></CaptureStop>')
     last = recording.until("stopped")[-1]
@@ -195,8 +195,7 @@ def with_wait_a_take_begins_with_a_start_and_what_came_before_and_ends_with_a_st
 def a_start_and_a_stop_that_come_together_are_a_take(folder):
     recording = Recording(folder / "takes", "--wait", "--marks-port", "0", first="waiting")
     for kind in ("stop", "start", "stop", "start"):
-        send(recording.started["ports"]["marks"],
-             json.dumps({"schema": "kinalign.mark/1", "kind": kind, "id": str(random.random())}))
+        mark(recording.started["ports"], kind)
     said = recording.until("stopped")
     assert recording.program.wait(30) == 1, "mocap sent nothing"
     recording.program.communicate()
@@ -209,22 +208,19 @@ def a_start_and_a_stop_that_come_together_are_a_take(folder):
 def with_repeat_each_start_begins_a_take_of_its_own_until_ctrl_c(folder):
     recording = Recording(folder / "takes", "--wait", "--repeat", "--marks-port", "0", "--pre-roll-s", "0",
                           first="waiting")
-    marks, files = recording.started["ports"]["marks"], []
-
-    def mark(kind):
-        send(marks, json.dumps({"schema": "kinalign.mark/1", "kind": kind, "id": str(random.random())}))
+    ports, files = recording.started["ports"], []
 
     with sender_to(recording.port) as device:
         for take in range(2):
             if take > 0:
                 recording.until("waiting")
-                device(f"{9:010}")  # between takes
+                device(frame(9))  # between takes
                 time.sleep(1)  # longer than a chunk of the pre-roll
-            mark("start")
+            mark(ports, "start")
             recording.until("started")
-            device(f"{take:010}")
+            device(frame(take))
             time.sleep(0.2)
-            mark("stop")
+            mark(ports, "stop")
             files += recording.until("stopped")[-1]["files"]
     recording.until("waiting")
     code, _, err = recording.end()
@@ -246,12 +242,12 @@ def ctrl_c_before_the_start_records_nothing_and_says_so(folder):
 def who_falls_silent_and_comes_back_is_told_once(folder):
     recording = Recording(folder / "takes", "--device", "kinect=kinect:udp:127.0.0.1:0")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
-        one.sendto(b"0000000000", ("127.0.0.1", recording.port))
+        one.sendto(frame(0), ("127.0.0.1", recording.port))
         said = recording.until("silent")
         assert said[-1]["stream"] == "mocap", said[-1]
         status = recording.until("status")[-1]
         assert status["missing"] == ["mocap", "kinect"], status
-        one.sendto(b"0000000001", ("127.0.0.1", recording.port))
+        one.sendto(frame(1), ("127.0.0.1", recording.port))
         recording.until("returned")
         status = recording.until("status")[-1]
         in_time("mocap" not in status["missing"], status)
@@ -282,12 +278,16 @@ def a_node_that_is_not_heard_is_told_with_its_reason(folder):
 @case
 def what_is_no_mark_is_counted_on_the_screen_and_in_the_file(folder):
     recording = Recording(folder / "takes", "--marks-port", "0")
-    send(recording.port, b"0000000000")
+    send(recording.port, frame(0))
     send(recording.started["ports"]["marks"], "no mark")
     send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"text","id":"1","text":"a word"}')
-    recording.until("mark")
+    said = recording.until("mark")
+    while not any(event["event"] == "finding" for event in said):
+        said += recording.until("finding")
+    found = next(event for event in said if event["event"] == "finding")
+    assert "no mark" in found["what"] and found["severity"] == "warning", found
     code, events, err = recording.end()
-    assert code == 0, err
+    assert code == 1, err
     assert events[-1]["ports"]["marks"]["refused"] == 1, events[-1]
     assert events[-1]["ports"]["marks"]["refused_for"] == {"bad_json": 1}, events[-1]
     told = json.loads(kinalign("info", recording.path, "--json").stdout)
@@ -299,6 +299,28 @@ def what_is_no_mark_is_counted_on_the_screen_and_in_the_file(folder):
     assert re.search(r"^  mark +text \S*a word\S* at \d+\.\d{3} s, by call$", text, re.M), text
 
 
+@case
+def a_node_has_one_name_while_it_is_recorded_and_afterwards(folder):
+    (folder / "lab.toml").write_text('[device.imu]\nprotocol = "nodes"\nport = 0\naddress = "127.0.0.1"\n'
+                                     'nodes = { "7" = "wrist", "9" = "waist" }\n')
+    recording = Recording(folder / "takes", "--config", folder / "lab.toml", device=None)
+    nodes = [start_node(cases.BUILD, recording.started["ports"]["imu"], i, "--seconds", 4) for i in (7, 3)]
+    for node in nodes:
+        ended(node)
+    recording.until("silent")
+    code, events, err = recording.end()
+    assert code == 1 and events[-1]["missing"] == ["imu waist"], (code, events[-1])
+    for said in (r"imu wrist: joined \(", r"imu 3: joined \(", "imu (wrist|3) from 127.* fell silent",
+                 "imu waist: nothing has come to port"):
+        assert re.search(f"^{said}", err, re.M), (said, err)
+    info, check = (kinalign(verb, recording.path).stdout.decode() for verb in ("info", "check"))
+    for said in ("imu wrist from 127", "imu 3 from 127"):
+        assert re.search(f"^  sender +{said}", info, re.M), info
+    assert "expected messages of imu waist, found none" in check, check
+    for text in (err, re.sub(r"^  channel .*\n", "", info, flags=re.M), check):
+        assert not re.search(r"node \d|imu/\d", text), text
+
+
 class Terminal:
     """The program on a terminal of its own: what it shows, and keys for it."""
 
@@ -306,8 +328,11 @@ class Terminal:
         self.pid, self.fd = pty.fork()
         if self.pid == 0:
             os.execv(str(cases.PROGRAM), ["kinalign", "record", "-o", str(folder), "--compression", "none", *words])
-        fcntl.ioctl(self.fd, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 160, 0, 0))
+        self.resize(160)
         self.shown = b""
+
+    def resize(self, columns):
+        fcntl.ioctl(self.fd, termios.TIOCSWINSZ, struct.pack("HHHH", 30, columns, 0, 0))
 
     def until(self, text):
         end = time.monotonic() + 60
@@ -327,8 +352,8 @@ class Terminal:
         self.press(b"\x03")
         self.until(b"messages" if b"from" in self.shown else b".mcap\r\n")
         try:
-            while os.read(self.fd, 65536):
-                pass
+            while more := os.read(self.fd, 65536):
+                self.shown += more
         except OSError:
             pass
         return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
@@ -340,7 +365,7 @@ def on_a_terminal_a_table_stands_keys_make_marks_and_a_bell_rings_for_who_falls_
     screen = Terminal(folder / "takes", "--device", f"mocap=noitom:udp:127.0.0.1:{port}",
                       "--device", "kinect=kinect:udp:127.0.0.1:0")
     screen.until(b"recording to")
-    send(port, b"0000000000")
+    send(port, frame(0))
     screen.until(b"127.0.0.1:")
     screen.until(b"\x1b[31mkinect missing: nothing yet")
     screen.until(b"Enter a text")
@@ -358,6 +383,46 @@ def on_a_terminal_a_table_stands_keys_make_marks_and_a_bell_rings_for_who_falls_
     marks = [(json.loads(payload)["kind"], json.loads(payload).get("text"))
              for topic, *_, payload in walk.messages if topic == "/marks"]
     assert marks == [("start", None), ("t_pose", None), ("text", "grüß"), ("stop", None)], marks
+
+
+ERASED = re.compile(rb"\r\x1b\[(\d+)A\x1b\[J")
+
+
+def rows(shown, columns):
+    """That lines take on a terminal so wide which breaks them anew."""
+    lines = re.sub(r"\x1b\[\d+m", "", shown.decode()).split("\r\n")
+    return sum(max(1, -(-len(line) // columns)) for line in lines)
+
+
+@case
+def the_table_stands_again_behind_each_message(folder):
+    port = free_port()
+    screen = Terminal(folder / "takes", "--device", f"mocap=noitom:udp:127.0.0.1:{port}")
+    screen.until(b"Ctrl-C ends")
+    send(port, frame(0))
+    screen.press(b"ste")
+    screen.until(b"mark: stop, by keyboard")
+    screen.until(b"silent 2 s")  # the table behind it: Ctrl-C throws away what the terminal holds
+    assert screen.end() == 0
+    for message in (b"mark: start", b"mark: t_pose", b"mark: stop", b"fell silent"):
+        behind = re.split(rb"\r\n", screen.shown.partition(message)[2])[1:]
+        assert behind[0].startswith(b"device") and b"Ctrl-C ends" in behind[3], behind
+    assert re.search(rb"A\x1b\[J[^\r]*/take_01\.mcap\r\n  mocap from ", screen.shown), screen.shown[-1000:]
+    assert b"device" not in ERASED.split(screen.shown)[-1], screen.shown[-1000:]
+
+
+@case
+def a_table_that_a_narrower_window_has_broken_anew_is_erased_whole(folder):
+    screen = Terminal(folder / "takes", "--device", f"mocap=noitom:udp:127.0.0.1:{free_port()}")
+    screen.until(b"Ctrl-C ends")
+    screen.resize(30)
+    screen.until(b"  t T-pose  En\r")  # what has room of the last line
+    screen.resize(160)
+    assert screen.end() == 1
+    shown = ERASED.split(screen.shown)  # and how far up each time
+    tables = [re.search(rb"device[ \r].*|\Z", piece, re.S)[0] for piece in shown[:-1:2]]
+    erased = [(rows(table, 160), rows(table, 30), int(up) + 1) for table, up in zip(tables, shown[1::2])]
+    assert any(wide < broken == up for wide, broken, up in erased), erased
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from cases import LONG, SANITIZED, Skip, case, kinalign, main
 from mcap_walk import Walk
-from recording_program import Recording, Sender, numbers, send, sender_to
+from recording_program import Recording, Sender, frame, mark, numbers, sender_to
 
 KILLS = 200 if LONG else 20
 
@@ -64,7 +64,7 @@ def a_disk_with_64_mib_left_ends_the_take_in_order(folder):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
             sent, end = 0, time.monotonic() + 60
             while recording.program.poll() is None and time.monotonic() < end:
-                one.sendto(f"{sent:010}".encode() + bytes(30000), ("127.0.0.1", recording.port))
+                one.sendto(frame(sent) + bytes(30000), ("127.0.0.1", recording.port))
                 sent += 1
                 time.sleep(0.01)
         out, err = recording.program.communicate(timeout=60)
@@ -89,13 +89,13 @@ def recording_on_a_full(disk):
     """One message is on it, 28 have reached the machine, and the program knows that it can't write them."""
     recording = Recording(disk / "takes", "--marks-port", "0")
     with sender_to(recording.port) as device:
-        device(f"{0:010}")
+        device(frame(0))
         recording.until("status")
         time.sleep(1)  # what came stands in the file
         recording.program.send_signal(signal.SIGSTOP)  # else it ended in order before the last byte
         fill(disk)
         for number in range(1, 29):
-            device(f"{number:010}".encode() + bytes(30000))
+            device(frame(number) + bytes(30000))
         recording.program.send_signal(signal.SIGCONT)
     recording.until("end_refused")
     return recording
@@ -211,7 +211,7 @@ def a_disk_that_stands_still_for_a_while_loses_nothing(folder):
 
 def start_take(recording):
     """By a call to one that waits for it."""
-    send(recording.started["ports"]["marks"], '{"schema":"kinalign.mark/1","kind":"start","id":"1"}')
+    mark(recording.started["ports"], "start")
 
 
 @case
@@ -249,6 +249,61 @@ def a_take_whose_folder_is_gone_when_it_begins_waits_for_one_and_has_all_that_ca
     code, events, err = recording.end()
     assert code == 0 and events[-1]["dropped"] == 0, err
     assert numbers(Walk(path)) == list(range(len(sender.sent)))
+
+
+@case
+def trials_that_begin_and_end_while_the_disk_stands_still_have_files_of_their_own_in_their_order(folder):
+    with standing_still() as (still, env):
+        recording = Recording(folder / "takes", "--wait", "--repeat", "--marks-port", "0", "--pre-roll-s", "0",
+                              first="waiting", env=env)
+        ports = recording.started["ports"]
+        still.touch()
+        with sender_to(recording.port) as device:
+            for trial in range(3):
+                mark(ports, "start")
+                recording.until("mark")
+                device(frame(trial))
+                time.sleep(0.3)
+                mark(ports, "stop")
+                recording.until("mark")
+        time.sleep(2)
+        still.unlink()
+        files = [recording.until("stopped")[-1]["files"] for _ in range(3)]
+        code, _, err = recording.end()
+    assert code == 0, err
+    assert [[pathlib.Path(file).name for file in each] for each in files] == [
+        ["take_01.mcap"], ["take_02.mcap"], ["take_03.mcap"]], files
+    assert [numbers(Walk(pathlib.Path(file))) for [file] in files] == [[0], [1], [2]]
+
+
+@case
+def ctrl_c_ends_the_trial_that_goes_on_while_the_disk_still_writes_the_one_before(folder):
+    with standing_still() as (still, env):
+        recording = Recording(folder / "takes", "--wait", "--repeat", "--marks-port", "0", first="waiting", env=env)
+        ports = recording.started["ports"]
+        with sender_to(recording.port) as device:
+            mark(ports, "start")
+            recording.until("started")
+            device(frame(0))
+            time.sleep(0.3)
+            still.touch()
+            mark(ports, "stop")
+            recording.until("end_waits")
+            mark(ports, "start")
+            recording.until("mark")
+            device(frame(1))
+            time.sleep(0.3)
+            recording.program.send_signal(signal.SIGINT)
+            time.sleep(0.5)
+            device(frame(2))  # when all is over
+            time.sleep(0.3)
+        assert recording.program.poll() is None, "it left by itself"
+        still.unlink()
+        stopped = [recording.until("stopped")[-1]["files"] for _ in range(2)]
+        out, err = recording.program.communicate(timeout=30)
+    assert recording.program.returncode == 0 and "Ctrl-C pressed twice loses" in err, (out, err)
+    found = [numbers(Walk(pathlib.Path(file))) for [file] in stopped]
+    assert found[0][0] == 0 and found[1][-1] == 1, found
 
 
 @case

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record_text.h"
 
+#include "apps/kinalign/node_names.h"
 #include "tests/apps/lab_scene.h"
 
 #include <doctest/doctest.h>
@@ -51,6 +52,15 @@ TEST_CASE("missing are required devices that are silent or were never heard, and
   scene.status.streams.clear();
   CHECK(missing(scene.lab, scene.status) ==
         std::vector<std::string>{"mocap", "kinect", "imu wrist", "imu waist"});
+}
+
+TEST_CASE("a lab's nodes are called by its device's name and their places") {
+  Scene scene;
+  CHECK(node_names(scene.lab).name(7) == name_of(scene.status.streams[2]));
+  CHECK(node_names(scene.lab).name(7) == "imu waist");
+  CHECK(node_names(scene.lab).name(8) == "imu 8");
+  scene.lab.devices.pop_back();
+  CHECK(node_names(scene.lab).name(8) == "node 8");
 }
 
 TEST_CASE("a stream's JSON has its counts and its node's clock") {

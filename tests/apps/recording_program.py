@@ -4,8 +4,10 @@ import contextlib
 import json
 import os
 import pathlib
+import random
 import signal
 import socket
+import struct
 import subprocess
 import threading
 import time
@@ -44,8 +46,13 @@ class Recording:
         return self.program.returncode, [json.loads(line) for line in out.splitlines()], err
 
 
+def frame(number):
+    """A suit's with the new header: its index, 354 values."""
+    return struct.pack("<H4BHBBI32sI12sH", 0xDDFF, 0, 0, 1, 1, 354, 1, 0, 1, b"Char01", number, b"", 0xEEFF) + bytes(1416)
+
+
 class Sender(threading.Thread):
-    """Numbered datagrams, 200 a second, as long as those of 354 floats; when each was sent."""
+    """Frames of a suit, 200 a second; when each was sent."""
 
     def __init__(self, port):
         super().__init__()
@@ -54,7 +61,7 @@ class Sender(threading.Thread):
     def run(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
             while self.going:
-                one.sendto(f"{len(self.sent):010}".encode() + bytes(1470), self.to)
+                one.sendto(frame(len(self.sent)), self.to)
                 self.sent.append(time.monotonic())
                 time.sleep(0.005)
 
@@ -68,7 +75,8 @@ class Sender(threading.Thread):
 
 
 def numbers(walk):
-    return [int(payload[:10]) for topic, *_, payload in walk.messages if topic == "/mocap/raw"]
+    """Of the frames, in their order."""
+    return [struct.unpack_from("<I", payload, 46)[0] for topic, *_, payload in walk.messages if topic == "/mocap/raw"]
 
 
 def free_port():
@@ -87,3 +95,8 @@ def sender_to(port):
 def send(port, data):
     with sender_to(port) as to:
         to(data)
+
+
+def mark(ports, kind):
+    """A mark by a call, which no other repeats."""
+    send(ports["marks"], json.dumps({"schema": "kinalign.mark/1", "kind": kind, "id": str(random.random())}))

@@ -25,14 +25,14 @@ def a_port_that_is_taken_is_named_with_what_to_do(_):
     assert done.returncode == 3 and done.stdout == b"", done
     assert done.stderr.decode() == (
         f"kinalign time-server: 0.0.0.0:{server.port}: expected a UDP port to serve on, found another program on it\n"
-        f"  ss -ulpn 'sport = :{server.port}' shows which one; --port takes another port\n"), done.stderr
+        f"  ss -ulpn 'sport = :{server.port}' shows which one, another kinalign perhaps; --port takes another port\n"), done.stderr
 
 
 @case
 def advice_names_the_flag_of_the_port_that_failed(folder):
     with Server(*ALL_ADDRESSES) as server:
         done = kinalign("time-server", "--port", 0, "--node-port", server.port)
-    advice = f"ss -ulpn 'sport = :{server.port}' shows which one; --node-port takes another port\n"
+    advice = f"ss -ulpn 'sport = :{server.port}' shows which one, another kinalign perhaps; --node-port takes another port\n"
     assert done.returncode == 3 and done.stderr.decode().endswith(advice), done
     done = kinalign("time-server", "--port", 0, "--listen", "192.0.2.77")
     assert done.returncode == 3 and b"found no interface that has it" in done.stderr, done

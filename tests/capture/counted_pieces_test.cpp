@@ -7,6 +7,7 @@
 
 #include "kinalign/capture/recording_session.h"
 #include "kinalign/io/kinect_binary.h"
+#include "kinalign/io/kinect_frames.h"
 #include "kinalign/io/kinect_stream.h"
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/noitom_stream.h"
@@ -184,6 +185,59 @@ TEST_CASE(
   by_udp.finish();
   CHECK(lost(by_tcp) == 3);
   CHECK(lost(by_udp) == 3);
+}
+
+TEST_CASE("a Kinect's sender that is started anew is a restart, in the counts as by the frames") {
+  const auto frame = [](std::uint32_t session, std::uint32_t sequence) {
+    KinectFrame one;
+    one.origin = {2, session, sequence};
+    return encode_kinect_binary(one);
+  };
+  const std::array<std::uint32_t, 3> sessions{11, 12, 13};
+  for (const std::string way : {"one port", "ports", "connections"}) {
+    CAPTURE(way);
+    const bool by_tcp = way == "connections";
+    LiveSession live(
+        {std::string("kinect=kinect:") + (by_tcp ? "tcp-listen" : "udp") + ":127.0.0.1:0"});
+    const Client same;
+    std::uint64_t sent = 0;
+    for (const std::uint32_t session : sessions) {
+      const Client fresh;
+      std::optional<Connection> connection;
+      if (by_tcp) connection.emplace(live.port());
+      for (const std::uint32_t sequence : {0U, 1U}) {
+        const auto bytes = frame(session, sequence);
+        if (by_tcp) {
+          connection->send(std::string(text_of(bytes)));
+        } else {
+          (way == "ports" ? fresh : same).send("127.0.0.1", live.port(), bytes);
+        }
+        live.serve_until([&, n = ++sent] { return live.pieces() == n; });
+      }
+    }
+    const auto payloads = live.finish();
+    std::map<std::string, std::uint64_t> told;  // the last count by topic
+    for (const std::string& json : payloads.at("/counts")) {
+      const auto counted = to_counted_sender(json);
+      REQUIRE(counted);
+      told[counted->topic] = counted->counts.order.restarts;
+    }
+    std::uint64_t restarts = 0;
+    for (const auto& [topic, count] : told) restarts += count;
+    KinectFrameJoiner joiner;
+    std::vector<JoinedKinectFrame> frames;
+    for (const auto& [topic, messages] : payloads) {
+      if (!topic.starts_with("/kinect/raw")) continue;
+      for (const std::string& message : messages) {
+        KinectMessage decoded;
+        REQUIRE(decode_kinect_datagram(octets(message), decoded) == KinectRefusal::none);
+        joiner.take(std::get<KinectFrame>(decoded), frames);
+      }
+    }
+    CHECK(restarts == 2);
+    CHECK(joiner.counts().frames.restarts == restarts);
+    CHECK(told.size() == (way == "one port" ? 1 : 3));
+  }
 }
 
 TEST_CASE("a device that sends to another one's port is told of while recording, once") {

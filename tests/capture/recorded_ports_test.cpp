@@ -231,6 +231,67 @@ TEST_CASE("marks from calls and broadcasts stand in the file once, and calls are
   CHECK(to_mark(payloads[2])->source == "keyboard");
 }
 
+TEST_CASE("what a port for marks refuses is told by its cause, the first of each, and answered") {
+  MarkPort call = *MarkPort::open(MarkPort::Form::call, 0);
+  MarkPort trigger = *MarkPort::open(MarkPort::Form::trigger, 0);
+  SystemClocks clocks;
+  HostAxis axis(clocks);
+  const Client caller;
+  const auto refused = [&](MarkPort& port, const std::string& text) {
+    caller.send("127.0.0.1", port.port(), bytes_of(text));
+    const std::uint64_t before = port.port_counts().refused;
+    while (port.port_counts().refused == before) port.drain(axis, [](const auto&, HostTime) {});
+    const Findings found = port.take_findings();
+    return found.empty() ? "" : to_string(found.front().what);
+  };
+  const std::string pause = R"({"schema":"kinalign.mark/1","kind":"pause","id":"7"})";
+  const std::string said = refused(call, pause);
+  CHECK(
+      said.starts_with("port of marks: expected a kind: start, stop, t_pose or text, found "
+                       "{\"schema\":\"kinalign.mark/1\",\"kind\":\"paus... from 127.0.0.1:"));
+  CHECK(said.ends_with(": wrong_kind"));
+  const auto came = caller.receive();
+  REQUIRE(came);
+  CHECK(std::string(came->bytes.begin(), came->bytes.end()) == R"({"mark":"7","is":"wrong_kind"})");
+  CHECK(refused(call, pause).empty());  // told already
+  CHECK(caller.receive());              // and answered again
+  CHECK(
+      refused(call, "no mark").starts_with("port of marks: expected a JSON object, found no mark"));
+  CHECK(!caller.receive());
+  CHECK(
+      refused(trigger, "<Pause></Pause>")
+          .starts_with("port of trigger: expected a CaptureStart or CaptureStop, found <Pause></"));
+  CHECK(!caller.receive());
+  CHECK(call.counts().refused ==
+        std::map<std::string, std::uint64_t>{{"bad_json", 1}, {"wrong_kind", 2}});
+}
+
+TEST_CASE("a port that can't be opened is told by whose it is") {
+  const UdpSocket taken = *UdpSocket::open("127.0.0.1", 0);
+  const std::string port = std::to_string(taken.port());
+  RecordingMachine machine;
+  const auto error_of = [&](const std::string& device, std::optional<std::uint16_t> marks) {
+    RecordingSession::Options options;
+    options.lab.devices = {*parse_device(device)};
+    options.marks_port = marks;
+    const auto session = RecordingSession::open(options, machine.parts());
+    REQUIRE(!session);
+    return to_string(session.error());
+  };
+  const std::string why =
+      ": expected a UDP port to serve on at 127.0.0.1:" + port + ", found another program on it";
+  CHECK(error_of("mocap=noitom:udp:127.0.0.1:" + port, std::nullopt) == "mocap" + why);
+  CHECK(error_of("imu=nodes:udp:127.0.0.1:" + port, std::nullopt) == "imu" + why);
+  CHECK(error_of("mocap=noitom:udp:127.0.0.1:0", taken.port()) ==
+        "marks: expected a UDP port to serve on at 0.0.0.0:" + port +
+            ", found another program on it");
+  const TcpPieces listening = *TcpPieces::listen("127.0.0.1", 0);
+  const std::string tcp = std::to_string(listening.port());
+  CHECK(error_of("mocap=noitom:tcp-listen:127.0.0.1:" + tcp, std::nullopt) ==
+        "mocap: expected a TCP port to serve on at 127.0.0.1:" + tcp +
+            ", found another program on it");
+}
+
 TEST_CASE("a mark before a take stands in its pre-roll") {
   const FreshFolder folder;
   RecordingMachine machine;

@@ -178,20 +178,3 @@ TEST_CASE("what came while nobody ticked is in the pre-roll as far as it reaches
   REQUIRE(!texts.empty());
   CHECK(texts.back() == "20");
 }
-
-TEST_CASE("a start that is expected keeps its pre-roll, however late the take begins") {
-  Recorder recorder({.pre_roll = 1s});
-  Taken taken;
-  const auto channel = recorder.add_channel({0, 0, "/imu/raw", "x", {}});
-  for (int s = 0; s <= 20; ++s) {
-    recorder.record(channel, at_ms(1000 * s), std::to_string(s));
-    recorder.tick(at_ms(1000 * s + 500));
-    if (s == 5) recorder.keep_since(at_ms(4000));
-  }
-  recorder.start(at_ms(20'600), taken.take());
-  recorder.stop();
-  const auto texts = taken.texts();
-  REQUIRE(texts.size() == 16);
-  CHECK(texts.front() == "5");  // 4 had been forgotten when the start was heard of
-  CHECK(texts.back() == "20");
-}

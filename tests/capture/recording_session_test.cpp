@@ -9,6 +9,7 @@
 #include "kinalign/io/recording_survey.h"
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 #include <poll.h>
 
 #include <algorithm>
@@ -160,15 +161,14 @@ TEST_CASE("a name that another recorder takes first is left to it") {
   REQUIRE(session);
   folder.write("a.mcap", "another's");
   std::vector<std::string> names{"b.mcap", "a.mcap"};  // as they seem to be free, the last first
-  (*session)->start(
-      [&] {
-        const std::string name = names.back();
-        if (names.size() > 1) names.pop_back();
-        return folder / name;
-      },
-      "", "");
+  (*session)->start({[&] {
+    const std::string name = names.back();
+    if (names.size() > 1) names.pop_back();
+    return folder / name;
+  }});
   finish(**session);
-  CHECK((*session)->disk()->paths == std::vector<std::string>{folder / "b.mcap"});
+  CHECK((*session)->newest_take()->disk.status().paths ==
+        std::vector<std::string>{folder / "b.mcap"});
   CHECK(folder.read("a.mcap") == "another's");
 }
 
@@ -196,12 +196,145 @@ TEST_CASE("while a disk takes its time to begin a take's file, what comes is rec
     one.send("127.0.0.1", port, noitom_frame(index));
     serve_until(**session, [&] { return came() == index; });
   }
-  serve_until(**session, [&] { return (*session)->disk()->waiting_bytes > 0; });  // a chunk
-  CHECK((*session)->disk()->paths.empty());
+  serve_until(**session, [&] {
+    return (*session)->newest_take()->disk.status().waiting_bytes > 0;
+  });  // a chunk
+  CHECK((*session)->newest_take()->disk.status().paths.empty());
   files.slow = false;
   finish(**session);
-  CHECK((*session)->disk()->dropped == 0);
+  CHECK((*session)->newest_take()->disk.status().dropped == 0);
   CHECK(payloads_in(folder.read("a.mcap")).at("/mocap/raw").size() == 20);
+}
+
+namespace {
+
+std::string call(Mark::Kind kind, int id) {
+  return encode_mark_call({kind, "", std::nullopt, std::to_string(id)});
+}
+
+/// Of the marks in a file, "start 1".
+std::vector<std::string> marks_in(const std::map<std::string, std::vector<std::string>>& payloads) {
+  std::vector<std::string> found;
+  const auto marks = payloads.find("/marks");
+  if (marks == payloads.end()) return found;
+  for (const std::string& text : marks->second) {
+    const auto json = nlohmann::json::parse(text);
+    found.push_back(json.at("kind").get<std::string>() + " " + json.at("id").get<std::string>());
+  }
+  return found;
+}
+
+/// Takes by marks on one port and a suit on another; files a0.mcap, a1.mcap, ...
+class ByMarks {
+ public:
+  explicit ByMarks(FileSystem& files) {
+    RecordingSession::Options options;
+    options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
+    options.lab.record.pre_roll_s = 0.0;
+    options.marks_port = 0;
+    auto session = RecordingSession::open(options, {files, ports_clock_, nodes_clock_});
+    REQUIRE(session);
+    session_ = *std::move(session);
+    session_->obey_marks({[this] { return folder_ / "a" + std::to_string(named_++) + ".mcap"; }},
+                         true);
+  }
+  RecordingSession& session() { return *session_; }
+  void say(const std::vector<std::uint8_t>& frame) {
+    client_.send("127.0.0.1", session_->ports().front().second, frame);
+    const std::uint64_t before = session_->streams().empty() ? 0 : frames();
+    serve_until(*session_, [&] { return !session_->streams().empty() && frames() > before; });
+  }
+  void call_all(const std::vector<std::string>& calls) {
+    for (const std::string& text : calls) {
+      client_.send("127.0.0.1", session_->ports().back().second, bytes_of(text));
+    }
+  }
+  void mark(Mark::Kind kind, int id) {
+    call_all({call(kind, id)});
+    serve_until(*session_, [&] { return !session_->take_marks().empty(); });
+  }
+  /// Of all takes, in their order.
+  std::vector<std::map<std::string, std::vector<std::string>>> payloads() {
+    std::vector<std::map<std::string, std::vector<std::string>>> all;
+    while (const auto take = session_->next_take()) {
+      serve_until(*session_, [&] { return take->disk.status().finished; });
+      const auto paths = take->disk.status().paths;
+      REQUIRE(paths == std::vector{folder_ / "a" + std::to_string(all.size()) + ".mcap"});
+      all.push_back(payloads_in(folder_.read("a" + std::to_string(all.size()) + ".mcap")));
+    }
+    return all;
+  }
+
+ private:
+  std::uint64_t frames() { return session_->streams().at(0).counts.messages; }
+
+  FreshFolder folder_;
+  int named_ = 0;
+  SystemClocks ports_clock_, nodes_clock_;
+  Client client_;
+  std::unique_ptr<RecordingSession> session_;
+};
+
+}  // namespace
+
+TEST_CASE("marks that come while a disk stands still begin and end takes of their own") {
+  struct StandsStill : PosixFiles {
+    std::atomic<bool> still{true};
+    int open(const char* path, int flags, mode_t mode) override {
+      for (int ms = 0; still && ms < 5000; ++ms) std::this_thread::sleep_for(1ms);
+      return PosixFiles::open(path, flags, mode);
+    }
+  };
+  StandsStill files;
+  ByMarks lab(files);
+  for (int take = 0; take < 3; ++take) {
+    lab.mark(Mark::Kind::start, 2 * take);
+    lab.say(noitom_frame(static_cast<std::uint32_t>(take)));
+    lab.mark(Mark::Kind::stop, 2 * take + 1);
+    lab.say(noitom_frame(100));  // between takes
+  }
+  files.still = false;
+  const auto payloads = lab.payloads();
+  REQUIRE(payloads.size() == 3);
+  for (std::size_t take = 0; take < 3; ++take) {
+    const auto frame = noitom_frame(static_cast<std::uint32_t>(take));
+    const std::string id = std::to_string(2 * take), next = std::to_string(2 * take + 1);
+    CHECK(marks_in(payloads[take]) == std::vector{"start " + id, "stop " + next});
+    REQUIRE(!payloads[take].at("/mocap/raw").empty());
+    CHECK(payloads[take].at("/mocap/raw").back() == std::string(frame.begin(), frame.end()));
+  }
+}
+
+TEST_CASE("of marks that come at once each stands in the take that it begins or ends") {
+  PosixFiles files;
+  ByMarks lab(files);
+  using Kind = Mark::Kind;
+  lab.call_all({call(Kind::start, 1), call(Kind::stop, 2), call(Kind::start, 3),
+                call(Kind::start, 4), call(Kind::stop, 5)});
+  std::size_t heard = 0;
+  serve_until(lab.session(), [&] { return (heard += lab.session().take_marks().size()) == 5; });
+  const auto payloads = lab.payloads();
+  REQUIRE(payloads.size() == 2);
+  CHECK(marks_in(payloads[0]) == std::vector<std::string>{"start 1", "stop 2"});
+  CHECK(marks_in(payloads[1]) == std::vector<std::string>{"start 3", "start 4", "stop 5"});
+}
+
+TEST_CASE("after a take that began by a mark no start begins another one unless it was asked for") {
+  LiveSession live({"mocap=noitom:udp:127.0.0.1:0"});
+  RecordingSession& session = live.session();
+  const auto mark = [&](Mark::Kind kind) {
+    session.mark({Mark{kind, "", std::nullopt, ""}, "keyboard", ""}, session.now());
+  };
+  mark(Mark::Kind::stop);
+  CHECK(session.recording());  // that one was not begun by a mark
+  live.finish();
+  session.obey_marks({[] { return std::string("/none/a.mcap"); }}, false);
+  mark(Mark::Kind::start);
+  CHECK(session.recording());
+  mark(Mark::Kind::stop);
+  CHECK(!session.recording());
+  mark(Mark::Kind::start);
+  CHECK(!session.recording());
 }
 
 TEST_CASE("what had reached the machine when a take is ended stands in the file") {
@@ -307,10 +440,10 @@ TEST_CASE("a second take needs a name of its own, and has its own file") {
   start(**session, folder / "a.mcap");
   finish(**session);
   start(**session, folder / "a.mcap");
-  (*session)->give_up();
+  (*session)->newest_take()->disk.give_up();
   finish(**session);
-  CHECK((*session)->disk()->refused->file == folder / "a.mcap");
-  CHECK((*session)->disk()->paths.empty());
+  CHECK((*session)->newest_take()->disk.status().refused->file == folder / "a.mcap");
+  CHECK((*session)->newest_take()->disk.status().paths.empty());
   start(**session, folder / "b.mcap");
   finish(**session);
   CHECK(read_mcap(folder.read("a.mcap")).closed);

@@ -153,9 +153,24 @@ TEST_CASE("a sender that begins anew counts anew, and what comes of the session 
       join({of_session(1, 500), of_session(2, 0), of_session(1, 501), of_session(2, 1)});
   CHECK(joined.frames.size() == 3);
   CHECK(joined.counts.sessions == 2);
+  CHECK(joined.counts.frames.restarts == 1);
   CHECK(joined.counts.stale == 1);
   CHECK(joined.counts.frames.lost == 0);
   CHECK(joined.counts.frames.received == 3);
+}
+
+TEST_CASE("who comes another way goes on with the count, or restarts it by another session") {
+  std::vector<JoinedKinectFrame> frames;
+  for (const std::uint32_t session : {1U, 2U}) {
+    KinectFrameJoiner joiner;
+    joiner.follow({2, 1, 500});
+    joiner.take(of_session(session, 503), frames);
+    const bool same = session == 1;
+    CHECK(joiner.counts().frames.lost == (same ? 2 : 0));
+    CHECK(joiner.counts().frames.restarts == (same ? 0 : 1));
+  }
+  CHECK(frames.size() == 2);
+  CHECK(KinectFrameJoiner().counts().frames.restarts == 0);
 }
 
 TEST_CASE("sessions for ever: seven are remembered, and no more") {

@@ -83,8 +83,48 @@ TEST_CASE("what is wrong with a device is told with its line and the nearest kno
         "labs/lab.toml:1: expected skeleton of noitom alone, found of kinect");
   CHECK(error_of("[device.a]\nprotocol = \"xsens\"\nskeleton = \"a.bvh\"\n") ==
         "labs/lab.toml:1: expected skeleton of noitom alone, found of xsens");
+  CHECK(error_of("[device]\nport = 7012\n") ==
+        "labs/lab.toml:2: expected [device.NAME], a table of its own for each, found port, a "
+        "number");
   CHECK(error_of("device = 3\n") == "labs/lab.toml:1: expected device as a table, found a number");
   CHECK(error_of("[device.a\n").starts_with("labs/lab.toml:1: expected TOML, found a fault in it"));
+}
+
+TEST_CASE("a device is found by an IP address, never by a host's name") {
+  const auto at = [](const std::string& address) {
+    return error_of("[record]\n" + mocap + "transport = \"tcp\"\naddress = \"" + address + "\"\n");
+  };
+  for (const char* good : {"192.168.7.5", "fd00::1", "fe80::1%eth0"}) CHECK(at(good) == "none");
+  for (const std::string bad : {"mocap-pc", "localhost", "192.168.7", "1.2.3.4%eth0", "[::1]"}) {
+    CHECK(
+        at(bad) ==
+        "labs/lab.toml:2: expected an IP address (getent hosts NAME says that of a host), found " +
+            bad);
+  }
+}
+
+TEST_CASE("what comes in datagrams alone is told so before an address is asked for") {
+  for (const std::string protocol : {"nodes", "slimevr"}) {
+    for (const std::string transport : {"tcp", "tcp-listen"}) {
+      const Lab lab{{*parse_device("imu=" + protocol + ":" + transport + ":5005")}, {}};
+      REQUIRE(!validate(lab));
+      CHECK(to_string(validate(lab).error()) ==
+            "imu: expected transport udp, the only one of protocol " + protocol + ", found " +
+                transport);
+    }
+  }
+}
+
+TEST_CASE("two devices share a port at addresses of their own alone") {
+  const auto fits = [](const std::string& a, const std::string& b) {
+    return validate({{*parse_device("a=" + a), *parse_device("b=" + b)}, {}}).has_value();
+  };
+  CHECK(fits("noitom:udp:127.0.0.1:7012", "xsens:udp:127.0.0.2:7012"));
+  CHECK(!fits("noitom:udp:127.0.0.1:7012", "xsens:udp:127.0.0.1:7012"));
+  CHECK(!fits("noitom:udp:127.0.0.1:7012", "xsens:udp:7012"));  // which is heard on all of them
+  CHECK(!fits("noitom:tcp-listen:7012", "kinect:tcp-listen:127.0.0.1:7012"));
+  CHECK(fits("noitom:udp:7012", "kinect:tcp-listen:7012"));
+  CHECK(fits("noitom:tcp:127.0.0.1:7012", "kinect:tcp:127.0.0.2:7012"));
 }
 
 TEST_CASE("what a flag says of a device's port wins, and leaves what else is known of it") {

@@ -72,6 +72,12 @@ translation = [0, 0.5, -2]
   CHECK(space.translation == std::vector<double>{0, 0.5, -2});
 }
 
+TEST_CASE("a lab.toml in a manifest's place is told as what it is") {
+  CHECK(error_of("[record]\npre_roll_s = 3\n\n[device.mocap]\nport = 7012\n") ==
+        "recording.toml:4: expected a manifest, recording.toml, with [stream.NAME], found "
+        "[device], of a lab.toml: kinalign record takes it as --config");
+}
+
 TEST_CASE("an unknown key is refused with its line and the nearest known one") {
   CHECK(error_of("subjekt = \"03\"\n") ==
         "recording.toml:1: expected a known key (nearest: subject), found \"subjekt\"");

@@ -21,7 +21,7 @@ Mark read(const std::string& call) {
 Refusal refusal_of(const std::string& call) {
   Mark mark;
   const Refusal refusal = decode_mark_call(call, mark);
-  if (refusal != Refusal::none) CHECK(mark == Mark{});
+  if (refusal != Refusal::none) CHECK(mark == Mark{Mark::Kind::text, "", {}, mark.id});
   return refusal;
 }
 
@@ -58,6 +58,38 @@ TEST_CASE("an answer is never longer than its call") {
   CHECK(answer.size() <= text.size());
   CHECK(answer_to_mark_call(mark, MarkAnswer::repeat, answer.size()) == answer);
   CHECK(answer_to_mark_call(mark, MarkAnswer::repeat, answer.size() - 1).empty());
+}
+
+TEST_CASE("a call that is refused is answered with the cause, and its id as far as it has one") {
+  const auto answer = [](const std::string& text) {
+    Mark mark;
+    const Refusal refusal = decode_mark_call(text, mark);
+    REQUIRE(refusal != Refusal::none);
+    const std::string said = answer_to_refused_call(mark, refusal, text.size());
+    CHECK(said.size() <= text.size());
+    if (!said.empty()) CHECK(answer_to_refused_call(mark, refusal, said.size() - 1).empty());
+    return said;
+  };
+  CHECK(answer(of_page(2)) == of_page(3));
+  CHECK(answer(R"({"schema":"kinalign.mark/1","id":"7"})") == R"({"mark":"7","is":"wrong_kind"})");
+  CHECK(answer(R"({"schema":"kinalign.mark/1","kind":"stop"})") == R"({"is":"wrong_id"})");
+  CHECK(answer(call(R"(,"latency_ms":-1)")) == R"({"mark":"7","is":"wrong_latency"})");
+  CHECK(answer(call(R"(,"text":5)")) == R"({"mark":"7","is":"wrong_text"})");
+}
+
+TEST_CASE("what is no call of ours has no answer: two ports would answer each other for ever") {
+  const auto answer = [](const std::string& text) {
+    Mark mark;
+    const Refusal refusal = decode_mark_call(text, mark);
+    return answer_to_refused_call(mark, refusal, 1200);
+  };
+  for (const std::string text : {"", "no mark", "{}", R"({"mark":"b3f1-1","is":"new"})",
+                                 R"({"mark":"7","is":"wrong_kind"})", R"({"is":"wrong_id"})"}) {
+    CAPTURE(text);
+    CHECK(answer(text).empty());
+  }
+  CHECK(answer(std::string(1201, ' ')).empty());
+  CHECK(answer(call("")).empty());  // nothing is refused
 }
 
 TEST_CASE("a call may say little, and more than we know") {

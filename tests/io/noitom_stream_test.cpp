@@ -92,6 +92,7 @@ TEST_CASE("noitom: where bytes are cut changes nothing") {
     for (int k = 0; k < 12; ++k) {
       Bytes part = bytes_of(variants[random() % variants.size()]);
       if (random() % 3 == 0) part[random() % part.size()] = static_cast<std::uint8_t>(random());
+      if (random() % 4 == 0) part[6] = static_cast<std::uint8_t>(random());  // a count
       if (random() % 4 == 0) part.resize(random() % part.size());
       bytes += part;
       for (std::uint64_t n = random() % 40; n > 0; --n) {
@@ -145,6 +146,7 @@ TEST_CASE("noitom: a version that speaks is believed") {
   Bytes bytes = bytes_of(noitom_frame(NoitomForm::old_header, false, false));
   bytes[4] = 1;  // 1.1: the old layout under the new one's version
   bytes[8] = 1;  // no count of the new one's
+  bytes += Bytes(bytes);
   CHECK(read_noitom(bytes).counts[NoitomRefusal::wrong_count] == 1);
   CHECK(read_noitom(bytes).frames.empty());
 }
@@ -192,7 +194,8 @@ TEST_CASE("noitom: a wrong count swallows nothing behind it") {
     bytes += bytes_of(frame);
     const auto read = read_noitom(bytes);
     CHECK(read.frames == std::vector{frame});
-    CHECK(read.counts[NoitomRefusal::wrong_count] == 1);
+    CHECK(read.counts[NoitomRefusal::wrong_count] == 0);
+    CHECK(read.counts[NoitomRefusal::garbage] == 1);  // where it ends no other one begins
   }
   Bytes bytes = bytes_of(frame);  // a count that its flag confirms, above fewer values
   bytes[6] = 354 & 0xff;
@@ -214,7 +217,66 @@ TEST_CASE("noitom: a refused header swallows no header that begins within it") {
   bytes += bytes_of(frame);
   const auto read = read_noitom(bytes);
   CHECK(read.frames == std::vector{frame});
-  CHECK(read.counts[NoitomRefusal::wrong_count] == 1);
+  CHECK(read.counts[NoitomRefusal::garbage] == 1);
+}
+
+TEST_CASE("noitom: frames of another skeleton are of a wrong count, with what to do") {
+  for (const std::size_t values : {66U, 126U, 366U, 1206U}) {
+    for (const auto form : {NoitomForm::old_header, NoitomForm::new_header}) {
+      CAPTURE(values);
+      Bytes frame = bytes_of(noitom_frame(form, false, false));
+      frame.resize(64 + 4 * values, 0x7c);  // the floats are of bytes that end a text
+      frame[6] = static_cast<std::uint8_t>(values);
+      frame[7] = static_cast<std::uint8_t>(values >> 8);
+      Bytes bytes;
+      for (int k = 0; k < 5; ++k) bytes += frame;
+      const auto good = noitom_frame(form, false, false);
+      bytes += bytes_of(good);
+      for (const std::size_t most : {bytes.size(), std::size_t{100}}) {
+        const auto read = read_noitom(bytes, most);
+        CHECK(read.counts[NoitomRefusal::wrong_count] == 5);
+        CHECK(read.counts[NoitomRefusal::garbage] == 0);
+        CHECK(read.frames == std::vector{good});
+        REQUIRE(read.findings.size() == 1);
+        CHECK(to_string(read.findings[0].what) ==
+              "axis: expected 180, 186, 354 or 360 values in a frame, found wrong_count (5 times)");
+        CHECK(read.findings[0].repair == "broadcast the 59 joints of Axis Neuron or Axis Studio");
+      }
+    }
+  }
+}
+
+TEST_CASE("noitom: in rubbish no frame has a wrong count") {
+  for (const auto seed : fresh_seeds(20)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    Bytes bytes;
+    for (int k = 0; k < 100'000; ++k) bytes.push_back(static_cast<std::uint8_t>(random()));
+    for (std::size_t at = 100; at < bytes.size() - 64;
+         at += 1001) {  // tokens, never behind whole floats
+      bytes[at] = bytes[at + 62] = 0xff;
+      bytes[at + 1] = 0xdd;
+      bytes[at + 63] = 0xee;
+    }
+    const auto read = read_noitom(bytes, 5000, seed);
+    CHECK(read.counts[NoitomRefusal::wrong_count] == 0);
+    CHECK(read.counts[NoitomRefusal::garbage] >= 90);
+    REQUIRE(!read.findings.empty());
+    const auto of_garbage = std::find_if(
+        read.findings.begin(), read.findings.end(),
+        [](const Finding& f) { return f.what.expected == "frames of the BVH broadcast"; });
+    REQUIRE(of_garbage != read.findings.end());
+    CHECK(of_garbage->repair == "see that nothing but the BVH broadcast is sent to this port");
+  }
+}
+
+TEST_CASE("noitom: a header of rubbish holds no frame back") {
+  const auto frame = noitom_frame(NoitomForm::new_header, false, false);
+  Bytes bytes = bytes_of(frame);
+  bytes[6] = 1200 & 0xff;
+  bytes[7] = 1200 >> 8;
+  bytes += bytes_of(frame);
+  CHECK(read_noitom(bytes).frames == std::vector{frame});
 }
 
 TEST_CASE("noitom: a header without its end token is none") {
@@ -314,7 +376,8 @@ TEST_CASE("noitom: text of another length, without numbers or without an end is 
   CHECK(read_noitom(bytes_of("0 Char00 1 2 3 ||")).counts[NoitomRefusal::wrong_count] == 1);
   std::string words = "0 Char00";
   for (int k = 0; k < 180; ++k) words += k == 90 ? " x" : " 1.5";
-  CHECK(read_noitom(bytes_of(words + " ||")).counts[NoitomRefusal::wrong_count] == 1);
+  CHECK(read_noitom(bytes_of(words + " ||")).counts[NoitomRefusal::wrong_count] == 0);
+  CHECK(read_noitom(bytes_of(words + " ||")).counts[NoitomRefusal::garbage] == 1);
   Bytes endless = bytes_of("0 Char00");
   for (int k = 0; k < 20'000; ++k) endless += bytes_of(" 1");
   endless += bytes_of(" || ");
@@ -323,6 +386,27 @@ TEST_CASE("noitom: text of another length, without numbers or without an end is 
   const auto read = read_noitom(endless);
   CHECK(read.counts[NoitomRefusal::too_long] == 2);
   CHECK(read.frames == std::vector{good});
+}
+
+TEST_CASE("noitom: words that are no frame's are garbage, of whatever number they are") {
+  for (const char* const words :
+       {"17 and 4 ||", "0.5 Char00 1 2 3 ||", "0 Char00 ||", "0 Char00 1 2 ||", "0 1 Char00 ||",
+        "7 a 1 b 2 c 3 ||", "0 Char|00 1 2 3 ||", "0 Char00 1 2 inf ||"}) {
+    CAPTURE(words);
+    const auto read = read_noitom(bytes_of(words));
+    CHECK(read.counts[NoitomRefusal::wrong_count] == 0);
+    CHECK(read.counts[NoitomRefusal::garbage] == 1);
+  }
+}
+
+TEST_CASE("noitom: the end of a frame is nothing where a stream is come into, garbage within it") {
+  const auto good = noitom_frame(NoitomForm::text, false, false);
+  Bytes bytes = bytes_of("1.5 2.5 ||");
+  bytes += bytes_of(good);
+  CHECK(read_noitom(bytes).findings.empty());
+  CHECK(read_noitom(bytes).frames == std::vector{good});
+  bytes += bytes_of("1.5 2.5 ||");
+  CHECK(read_noitom(bytes).counts[NoitomRefusal::garbage] == 1);
 }
 
 TEST_CASE("noitom: a text that lost its end passes over to the next") {

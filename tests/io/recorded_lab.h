@@ -303,9 +303,12 @@ class RecordedLab {
     }
   }
 
-  /// Each `each`th message arrives `by_s` later than it was to, overtaken by those behind it.
-  void hold_back(std::size_t each, double by_s) {
-    for (std::size_t i = each - 1; i < messages_.size(); i += each) messages_[i].arrival += by_s;
+  /// Each `each`th message, and the `before` before it, arrives `by_s` later than it was to,
+  /// overtaken by those behind it.
+  void hold_back(std::size_t each, double by_s, std::size_t before = 0) {
+    for (std::size_t i = 0; i < messages_.size(); ++i) {
+      if (i % each + before >= each - 1) messages_[i].arrival += by_s;
+    }
   }
 
   /// Messages come by twos in one, when the later one was to come.

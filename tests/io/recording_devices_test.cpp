@@ -47,7 +47,7 @@ TEST_CASE("what is not in a recording is refused by the names of what is") {
   const FreshFolder folder;
   RecordedLab lab(20261123);
   lab.add_node(12, 1, {3.0, -35.0}, 0.0, 2.0);
-  lab.add_node(13, 1, {4.0, 10.0}, 0.0, 2.0);
+  lab.add_node(13, 1, {4.0, 10.0}, 0.0, 2.0, "waist");
   const std::string path = folder.write("take.mcap", lab.file());
   PosixFiles files;
   const auto refusal = [&](const StreamOptions& options) {
@@ -57,8 +57,9 @@ TEST_CASE("what is not in a recording is refused by the names of what is") {
   };
   CHECK(refusal(stream_named("mocap", path)) ==
         "select.stream, or a stream's name, of imu; 'mocap'");
-  CHECK(refusal(stream_named("imu", path)) == "one node of stream imu: select.node; 12, 13");
-  CHECK(refusal(stream_named("imu", path, "14")) == "of stream imu node 12, 13; '14'");
+  CHECK(refusal(stream_named("imu", path)) ==
+        "one node of stream imu: select.node; 12, 13 (waist)");
+  CHECK(refusal(stream_named("imu", path, "14")) == "of stream imu node 12, 13 (waist); '14'");
   StreamOptions options = stream_named("imu", path, "12");
   options.select["colour"] = "red";
   CHECK(refusal(options) ==

@@ -155,6 +155,38 @@ TEST_CASE("frames of a Kinect that were overtaken in the network stand where the
   CHECK(errors.most < 31.5);
 }
 
+TEST_CASE("rows that too many have overtaken are left out, never out of order, and that is told") {
+  const FreshFolder folder;
+  PosixFiles files;
+  struct Held {
+    std::string stream, expected;
+    std::uint64_t rows;
+  };
+  for (const Held& held : {Held{"kinect", "frames that at most 16 others overtake", 1200},
+                           Held{"mocap", "frames that at most 16 others overtake", 2500},
+                           Held{"imu", "samples that at most 64 others overtake", 1200}}) {
+    CAPTURE(held.stream);
+    RecordedLab lab(20261123);
+    if (held.stream == "kinect") lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 40.0);
+    if (held.stream == "mocap") lab.add_mocap(NoitomForm::new_header, "udp", 20.0);
+    if (held.stream == "imu") lab.add_node(12, 1, {3.0, -35.0}, 0.0, 40.0);
+    lab.hold_back(300, 3.0, held.stream == "imu" ? 1 : 0);  // a node's exchange with its frame
+    const RecordedStream stream =
+        opened(files, stream_named(held.stream, folder.write("take.mcap", lab.file())));
+    CHECK(stream.survey.backward == 0);
+    const std::uint64_t lacks = held.rows - stream.survey.samples;
+    CHECK(lacks > 0);
+    CHECK(lacks <= 16);
+    const auto told = std::find_if(
+        stream.findings.begin(), stream.findings.end(),
+        [&](const Finding& finding) { return finding.what.expected == held.expected; });
+    REQUIRE(told != stream.findings.end());
+    CHECK(told->severity == Severity::warning);
+    CHECK(told->what.found == std::to_string(lacks) + " that came later still");
+    CHECK(told->meaning == "they were left out");
+  }
+}
+
 TEST_CASE("a file that breaks off anywhere is read up to there, and that is said") {
   const FreshFolder folder;
   RecordedLab lab(20261123);

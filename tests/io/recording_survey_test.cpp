@@ -22,6 +22,14 @@ class Told {
     REQUIRE(writer_.write(to_metadata(facts)));
     REQUIRE(writer_.write(to_metadata(ExpectedDevices{{"mocap", true}, {"imu/7", false}})));
   }
+  void attach(const std::string& name, const std::string& text) {
+    REQUIRE(writer_.write(McapAttachment{at_, at_, name, "application/toml", text}));
+  }
+  void add(const McapChannel& channel) {
+    McapChunkContent chunk;
+    chunk.add(channel);
+    REQUIRE(writer_.write(store(chunk, McapCompression::none)));
+  }
   void add(std::uint16_t id, std::string_view topic, const std::string& json) {
     McapChunkContent chunk;
     chunk.add(McapChannel{id, 0, std::string(topic), "json", {}});
@@ -59,6 +67,21 @@ SenderCounts counts(std::uint64_t messages) {
 }
 
 }  // namespace
+
+TEST_CASE("where nodes are worn is what their channels say, or the lab's file") {
+  Told told;
+  told.attach("lab.toml",
+              "[device.imu]\nprotocol = \"nodes\"\nport = 5005\n"
+              "nodes = { \"7\" = \"waist\", \"12\" = \"wrist\" }\n");
+  McapChannel channel = to_channel("/imu/8/raw", {"imu", "kinalign-node", "udp", "", "8", "head"});
+  channel.id = 3;
+  told.add(channel);
+  CHECK(told.survey().places == std::map<std::string, std::string>{
+                                    {"imu/7", "waist"}, {"imu/8", "head"}, {"imu/12", "wrist"}});
+  Told another;
+  another.attach("lab.toml", "[device.imu\n");
+  CHECK(another.survey().places.empty());
+}
 
 TEST_CASE("of each sender and each port the last counts are found, whatever they are called") {
   Told told;
