@@ -74,11 +74,13 @@ std::string progress_line(std::string_view what, std::uint64_t done, std::uint64
   return line.substr(0, width);
 }
 
-void take_signals() {
+namespace {
+
+void note_signals(unsigned flags) {
   ctrl_c = false;
   struct sigaction action {};
   action.sa_handler = [](int) { ctrl_c = true; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_flags = static_cast<int>(flags);
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
   struct sigaction hang_up {};
@@ -87,6 +89,11 @@ void take_signals() {
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);  // a limit on files' sizes is then a full disk like any other
 }
+
+}  // namespace
+
+void take_signals() { note_signals(SA_RESETHAND | SA_RESTART); }
+void take_every_signal() { note_signals(SA_RESTART); }
 
 bool interrupted() { return ctrl_c; }
 

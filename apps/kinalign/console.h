@@ -131,6 +131,9 @@ std::string progress_line(std::string_view what, std::uint64_t done, std::uint64
 /// From here on the first Ctrl-C, SIGTERM or SIGHUP is only noted, and a reader of stdout that goes
 /// away is no signal. Who started the program with SIGHUP ignored (nohup) wants it to go on.
 void take_signals();
+/// As take_signals(), but all of them are only noted, however soon one follows another: a terminal
+/// that is closed and its shell send SIGHUP both. Who asks for it has to end by itself.
+void take_every_signal();
 /// Ctrl-C was pressed, or SIGTERM or SIGHUP came, since take_signals().
 bool interrupted();
 

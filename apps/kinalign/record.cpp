@@ -210,32 +210,22 @@ Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
 
 /// Of a disk that stands still, and with which somebody has lost patience. Its threads work on with
 /// what main() has made, so nothing of that may end before the process does.
-[[noreturn]] void leave(Console& console, Stage& stage, const Error& why) {
-  console.report(why);
-  (void)console.finish();
+[[noreturn]] void leave(Call& call, RecordingSession& session, Stage& stage,
+                        std::shared_ptr<SessionTake> take) {
+  for (; take; take = session.next_take()) {
+    const auto paths = take->disk.status().paths;
+    call.console.report(Error{paths.empty() ? call.common.out : paths.front(), 0,
+                              paths.empty() ? "a disk that begins the take's file"
+                                            : "a disk that takes the end of the take",
+                              "one that stands still"});
+  }
+  (void)call.console.finish();
   stage.leave();
   std::_Exit(failed);
 }
 
-/// A take: whether nothing of it is amiss, as an exit code.
-int record_take(const Record& o, Call& call, SessionTake& take, Stage& stage) {
-  RecordHerald& herald = stage.herald();
-  if (!stage.begin(take, o.wait)) {
-    leave(call.console, stage,
-          Error{call.common.out, 0, "a disk that begins a file", "one that stands still"});
-  }
-  const DiskStatus begun = take.disk.status();
-  if (begun.paths.empty()) {
-    call.console.report(*begun.refused);
-    return failed;
-  }
-  const std::string& path = begun.paths.front();
-  herald.tell_start(path);
-  if (!stage.record(take, !o.repeat)) {
-    leave(call.console, stage,
-          Error{path, 0, "a disk that takes the end of the take", "one that stands still"});
-  }
-  herald.tell_end();
+/// Whether the disk has all of a take, as an exit code.
+int written(const SessionTake& take, Call& call, RecordHerald& herald) {
   const DiskStatus disk = take.disk.status();
   if (disk.refused) {
     call.console.report(*disk.refused);
@@ -243,6 +233,31 @@ int record_take(const Record& o, Call& call, SessionTake& take, Stage& stage) {
   }
   const bool whole = disk.dropped == 0 && disk.paths.size() == 1 && !herald.disk_full();
   return whole && herald.unheard_required().empty() && !herald.warned() ? 0 : 1;
+}
+
+/// A take: whether nothing of it is amiss, as an exit code.
+int record_take(const Record& o, Call& call, RecordingSession& session, Stage& stage,
+                const std::shared_ptr<SessionTake>& take) {
+  RecordHerald& herald = stage.herald();
+  stage.begin(*take, o.wait);
+  const auto tell_start = [&] {
+    const auto paths = take->disk.status().paths;
+    if (!paths.empty()) herald.tell_start(paths.front());
+    return !paths.empty();
+  };
+  bool begun = tell_start();
+  if (begun || !take->disk.status().finished) {
+    stage.record(*take);
+    if (!o.repeat) stage.end();
+    if (!stage.write_rest(*take)) leave(call, session, stage, take);
+    if (!begun) begun = tell_start();
+  }
+  if (begun) {
+    herald.tell_end();
+  } else {
+    herald.tell_never_begun(take->disk.status());
+  }
+  return written(*take, call, herald);
 }
 
 /// One take, or with --repeat one after another. The worst exit code of all.
@@ -253,13 +268,14 @@ int record_takes(const Record& o, Call& call, RecordingSession& session, Stage& 
   };
   const TakePlan plan{free_path, o.subject, o.action};
   if (o.wait) {
-    session.obey_marks(plan, o.repeat);
+    session.obey_marks(plan,
+                       o.repeat ? RecordingSession::Starts::each : RecordingSession::Starts::next);
   } else {
     session.start(plan);
   }
   std::optional<int> worst;
   while (const auto take = stage.next_take()) {
-    worst = std::max(worst.value_or(0), record_take(o, call, *take, stage));
+    worst = std::max(worst.value_or(0), record_take(o, call, session, stage, take));
     if (!o.repeat) return *worst;
   }
   if (worst) return *worst;
@@ -270,7 +286,7 @@ int record_takes(const Record& o, Call& call, RecordingSession& session, Stage& 
 Result<int> run(Record& o, Call& call) {
   Console& console = call.console;
   console.never_wait();
-  take_signals();
+  take_every_signal();
   keep_memory(waiting_room);
   RecordingSession::Options options = KA_TRY(session_options(o, call));
   KA_TRY(make_folder(call.common.out));
@@ -282,7 +298,9 @@ Result<int> run(Record& o, Call& call) {
   console.if_it_fails({});
   RecordHerald herald(*session, console);
   Stage stage(*session, herald, o.seconds);
-  return record_takes(o, call, *session, stage);
+  const int code = record_takes(o, call, *session, stage);
+  take_signals();  // nothing has to be closed in order any more
+  return code;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <set>
 #include <utility>
 
 namespace kinalign {
@@ -66,14 +67,11 @@ LabStatus RecordHerald::status_at_end() const {
   status.now = take_->end->at;
   status.streams = take_->end->streams;
   status.ports = take_->end->ports;
+  status.nodes = take_->end->nodes;
   return status;
 }
 
-void RecordHerald::follow(std::shared_ptr<SessionTake> take) {
-  take_ = std::move(take);
-  forecast_ = {};
-  dropped_told_ = 0;
-}
+void RecordHerald::follow(std::shared_ptr<SessionTake> take) { take_ = std::move(take); }
 
 void RecordHerald::tell_waiting() {
   ports_told_ = true;
@@ -124,8 +122,10 @@ void RecordHerald::look(const std::optional<std::string>& typed) {
 
 /// Each as soon as it is there, once.
 void RecordHerald::tell_news() {
-  if (take_) {
-    for (const PartFailure& failure : take_->disk.take_failures()) tell(failure);
+  const std::set<std::shared_ptr<SessionTake>> takes{take_, session_.newest_take()};
+  for (const auto& take : takes) {
+    if (!take) continue;
+    for (const PartFailure& failure : take->disk.take_failures()) tell(failure);
   }
   for (const Finding& finding : session_.take_findings()) tell(finding);
   for (const HostClockEvent& event : session_.take_clock_events()) tell(event);
@@ -160,11 +160,18 @@ void RecordHerald::tell_dropped(std::uint64_t dropped) {
 }
 
 void RecordHerald::look_at_disk(HostTime now) {
-  const DiskStatus disk = session_.newest_take()->disk.status();
+  const SessionTake& newest = *session_.newest_take();
+  if (std::exchange(watched_, &newest) != &newest) {
+    forecast_ = {};
+    dropped_told_ = 0;
+  }
+  const DiskStatus disk = newest.disk.status();
   tell_dropped(disk.dropped);
   if (!disk.free_bytes) return;
-  const std::uint64_t still_to_write = std::min(disk.waiting_bytes, *disk.free_bytes);
-  forecast_.look(now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - still_to_write);
+  const std::uint64_t of_last =
+      take_ && take_.get() != &newest ? take_->disk.status().waiting_bytes : 0;
+  const std::uint64_t to_write = std::min(disk.waiting_bytes + of_last, *disk.free_bytes);
+  forecast_.look(now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - to_write);
   if (forecast_.full() && !std::exchange(disk_full_, true)) {
     console_.complain(
         fmt::format("kinalign record: the disk has {} MiB left; the take ends here, in order",
@@ -245,12 +252,19 @@ void RecordHerald::tell_slow(std::uint64_t waiting_bytes, bool ends) {
   console_.flush();
 }
 
-/// On stderr alone: for programs the first line is that it has begun.
 void RecordHerald::tell_slow_begin() {
   console_.complain(
-      "kinalign record: the disk has not begun the take's file yet; what comes waits in memory. "
-      "Ctrl-C ends the take, another one loses it");
+      "kinalign record: the disk has not begun the take's file yet; what comes waits in memory");
+  console_.print_json(json_text(Json{{"event", "begin_waits"}}));
   console_.flush();
+}
+
+void RecordHerald::tell_never_begun(const DiskStatus& disk) {
+  if (disk.dropped > 0) {
+    console_.complain(fmt::format("kinalign record: {} messages lost: the take never had a file",
+                                  grouped(disk.dropped)));
+  }
+  console_.print_json(json_text(Json{{"event", "never_begun"}, {"dropped", disk.dropped}}));
 }
 
 void RecordHerald::tell_status(const LabStatus& status) {

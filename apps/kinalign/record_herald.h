@@ -43,6 +43,8 @@ class RecordHerald {
   void tell_slow(std::uint64_t waiting_bytes, bool ends);
   /// Nor does it begin its file.
   void tell_slow_begin();
+  /// A take is given up before it had a file.
+  void tell_never_begun(const DiskStatus& disk);
   /// The take is over and written.
   void tell_end();
 
@@ -70,7 +72,8 @@ class RecordHerald {
 
   RecordingSession& session_;
   Console& console_;
-  std::shared_ptr<SessionTake> take_;  // nullptr: none has begun
+  std::shared_ptr<SessionTake> take_;     // nullptr: none has begun
+  const SessionTake* watched_ = nullptr;  // the newest, for which both that follow are
   std::uint64_t dropped_told_ = 0;
   DiskForecast forecast_;
   ClockNews clock_news_;

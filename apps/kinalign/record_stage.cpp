@@ -25,8 +25,8 @@ bool Stage::turn(Duration patience) {
   for (const HeardMark& heard : session_.take_marks()) herald_.tell(heard);
   herald_.look(keys_.typed());
   if (interrupted()) {
-    take_signals();  // a Ctrl-C that is pressed twice ends nothing out of order
-    pressed_again_ = ends_;
+    take_every_signal();
+    pressed_again_ = ends();
     ends_ = true;
   }
   end_what_is_over();
@@ -49,33 +49,32 @@ std::shared_ptr<SessionTake> Stage::next_take() {
   return take;
 }
 
-bool Stage::begin(SessionTake& take, bool tries_again) {
+void Stage::begin(SessionTake& take, bool tries_again) {
   const HostTime begun = session_.now();
   bool slow = false, refused = false;
-  for (DiskStatus disk = take.disk.status(); disk.paths.empty() && !disk.finished;
+  for (DiskStatus disk = take.disk.status(); disk.paths.empty() && !disk.finished && !take.end;
        disk = take.disk.status()) {
     turn(waiting_turn);
-    if (std::exchange(pressed_again_, false)) return false;
-    if (disk.refused && !std::exchange(refused, true) && tries_again) {
-      herald_.tell(PartFailure{*disk.refused, ""});
+    if (disk.refused && !std::exchange(refused, true)) {
+      if (tries_again) {
+        herald_.tell(PartFailure{*disk.refused, ""});
+      } else {
+        take.disk.give_up();
+      }
     }
-    if (refused && (!tries_again || ends())) take.disk.give_up();
     if (!refused && session_.now() - begun > 2s && !std::exchange(slow, true)) {
       herald_.tell_slow_begin();
     }
   }
-  return true;
 }
 
-bool Stage::record(SessionTake& take, bool last) {
+void Stage::record(SessionTake& take) {
   while (!take.end) turn(one_turn);
-  ends_ = ends_ || last;
-  return write_rest(take);
 }
 
 /// What the disk refuses is tried again for half a minute: somebody may make room. Devices go on
 /// meanwhile, and so do keys, what is told, and the next take. False: it does not even refuse, and
-/// somebody has lost patience.
+/// somebody has lost patience: with another Ctrl-C after that was told.
 bool Stage::write_rest(SessionTake& take) {
   const HostTime begun = session_.now();
   std::optional<HostTime> refused;
@@ -84,7 +83,7 @@ bool Stage::write_rest(SessionTake& take) {
     const HostTime now = session_.now();
     if (disk.refused && !refused) {
       refused = now;
-      pressed_again_ = false;  // before anybody knew of it
+      pressed_again_ = false;
       herald_.tell_refused(*disk.refused, ends());
     } else if (!refused && now - begun > 2s && !std::exchange(slow, true)) {
       pressed_again_ = false;

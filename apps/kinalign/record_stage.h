@@ -20,15 +20,19 @@ class Stage {
   /// Waits for a take to begin; nullptr: somebody ended it first.
   std::shared_ptr<SessionTake> next_take();
 
-  /// Until its file is begun or refused; what comes meanwhile is in it. `tries_again`: what the
-  /// disk refuses is told, and tried until somebody ends it. False: the disk stands still, as of
-  /// record().
-  bool begin(SessionTake& take, bool tries_again);
+  /// Until its file is begun or given up, or the take has ended without one; what comes meanwhile
+  /// is in it. `tries_again`: what the disk refuses is told, and tried until somebody ends it.
+  void begin(SessionTake& take, bool tries_again);
 
-  /// Until a mark, its length, somebody or a full disk has ended it, and all is written. `last`:
-  /// then no other is to begin. False: the disk stands still, and somebody has lost patience with
-  /// it; then nothing may wait for it.
-  bool record(SessionTake& take, bool last);
+  /// Until a mark, its length, somebody or a full disk has ended it.
+  void record(SessionTake& take);
+
+  /// Until all of one that has ended is written or given up. False: the disk stands still, and
+  /// somebody has lost patience with it; then nothing may wait for it.
+  bool write_rest(SessionTake& take);
+
+  /// No take is to begin any more.
+  void end() { ends_ = true; }
 
   RecordHerald& herald() { return herald_; }
   /// Its program ends without ending it: the terminal is as it was before.
@@ -37,7 +41,6 @@ class Stage {
  private:
   bool turn(Duration patience);
   void end_what_is_over();
-  bool write_rest(SessionTake& take);
   bool ends() const { return ends_ || herald_.disk_full(); }
 
   RecordingSession& session_;
@@ -46,7 +49,7 @@ class Stage {
   Keyboard keyboard_;
   MarkKeys keys_;
   bool ends_ = false;
-  bool pressed_again_ = false;  // Ctrl-C, where ends_ was said before
+  bool pressed_again_ = false;  // Ctrl-C, where it had ended before
 };
 
 }  // namespace kinalign

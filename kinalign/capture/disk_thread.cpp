@@ -20,6 +20,12 @@ std::optional<std::uint64_t> free_bytes(const std::string& path) {
   return std::uint64_t{status.f_bavail} * status.f_frsize;
 }
 
+std::uint64_t messages_in(const McapChunkContent& chunk) {
+  std::uint64_t count = 0;
+  for (const auto& [channel, entries] : chunk.messages()) count += entries.size();
+  return count;
+}
+
 }  // namespace
 
 DiskThread::DiskThread(Open open, McapCompression compression,
@@ -36,11 +42,11 @@ DiskThread::~DiskThread() {
   syncer_.join();
 }
 
-void DiskThread::push(McapChunkContent chunk) {
+void DiskThread::push(McapChunkContent chunk, std::uint64_t room) {
   {
     const std::lock_guard lock(mutex_);
-    if (status_.waiting_bytes + queue_bytes_ + chunk.size() > most_waiting) {
-      for (const auto& [channel, entries] : chunk.messages()) status_.dropped += entries.size();
+    if (status_.waiting_bytes + queue_bytes_ + chunk.size() > room) {
+      status_.dropped += messages_in(chunk);
       return;
     }
     queue_bytes_ += chunk.size();
@@ -93,7 +99,7 @@ void DiskThread::wait_for_turn() {
   };
   while (behind_ && !has_turn()) {
     std::unique_lock lock(mutex_);
-    if (written_.wait_for(lock, std::chrono::milliseconds(20), [this] { return giving_up_; }))
+    if (written_.wait_for(lock, std::chrono::milliseconds(100), [this] { return giving_up_; }))
       break;
   }
   behind_.reset();
@@ -113,6 +119,11 @@ bool DiskThread::begin() {
     }
     status_.refused = opened.error();
     done_ = status_.finished = giving_up_;
+    if (done_) {
+      for (const McapChunkContent& chunk : queue_) status_.dropped += messages_in(chunk);
+      queue_.clear();
+      queue_bytes_ = 0;
+    }
     if (!done_) written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
   }
   open_ = nullptr;

@@ -45,8 +45,8 @@ class DiskThread {
   DiskThread(const DiskThread&) = delete;
   DiskThread& operator=(const DiskThread&) = delete;
 
-  /// Waits for nothing.
-  void push(McapChunkContent chunk);
+  /// Waits for nothing. `room`: bytes that may wait; where that has no room, it is dropped.
+  void push(McapChunkContent chunk, std::uint64_t room = most_waiting);
   /// No more will be pushed. Returns at once: status().finished says when all is done. What the
   /// disk refuses is tried again each second: somebody may make room.
   void finish();

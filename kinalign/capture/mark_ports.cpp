@@ -18,6 +18,19 @@ const char* port_name(MarkPort::Form form) {
   return form == MarkPort::Form::call ? "marks" : "trigger";
 }
 
+/// What does not say that it is a mark may be anybody's: no warning.
+Severity severity_of(MarkCallRefusal refusal) {
+  using enum MarkCallRefusal;
+  const bool anybodys = refusal == too_long || refusal == bad_json || refusal == wrong_schema;
+  return anybodys ? Severity::note : Severity::warning;
+}
+
+Severity severity_of(ViconRefusal refusal) {
+  using enum ViconRefusal;
+  const bool anybodys = refusal == too_long || refusal == bad_xml || refusal == not_capture;
+  return anybodys ? Severity::note : Severity::warning;
+}
+
 }  // namespace
 
 Result<MarkPort> MarkPort::open(Form form, std::uint16_t port) {
@@ -40,10 +53,14 @@ std::string MarkPort::sender_of(const Piece& piece) const {
   return endpoint_text(to_string(sender.host), sender.port);
 }
 
-/// Counted by its cause, which is told once: whoever sends one sends many.
-void MarkPort::refuse(const Piece& piece, const std::string& cause, const char* expected) {
-  if (counts_.refused[cause]++ > 0) return;
-  findings_.push_back({Severity::warning,
+/// Counted by its cause, which is told once of each host: whoever sends one sends many.
+void MarkPort::refuse(const Piece& piece, Severity severity, const std::string& cause,
+                      const char* expected) {
+  constexpr std::size_t most_told = 256;
+  ++counts_.refused[cause];
+  const std::string host = to_string(pieces_.senders().at(piece.sender).host);
+  if (told_.size() == most_told || !told_.insert(cause + " " + host).second) return;
+  findings_.push_back({severity,
                        {"port of " + name(), 0, expected,
                         shown(piece.bytes) + " from " + sender_of(piece) + ": " + cause},
                        "it is no mark: nothing begins, ends or is written down with it",
@@ -55,7 +72,7 @@ bool MarkPort::decode(const Piece& piece, Mark& mark) {
   if (form_ == Form::call) {
     const MarkCallRefusal refusal = decode_mark_call(piece.bytes, mark);
     if (refusal == MarkCallRefusal::none) return true;
-    refuse(piece, kinalign::name_of(refusal), expected_of(refusal));
+    refuse(piece, severity_of(refusal), kinalign::name_of(refusal), expected_of(refusal));
     const std::string text = answer_to_refused_call(mark, refusal, piece.bytes.size());
     if (!text.empty()) pieces_.send(piece.sender, octets(text));
     return false;
@@ -63,7 +80,7 @@ bool MarkPort::decode(const Piece& piece, Mark& mark) {
   ViconTrigger trigger;
   const ViconRefusal refusal = decode_vicon_trigger(piece.bytes, trigger);
   if (refusal != ViconRefusal::none) {
-    refuse(piece, kinalign::name_of(refusal), expected_of(refusal));
+    refuse(piece, severity_of(refusal), kinalign::name_of(refusal), expected_of(refusal));
     return false;
   }
   mark = mark_of(trigger);

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,13 +41,14 @@ class MarkPort {
   std::uint16_t port() const { return pieces_.port(); }
   PortCounts port_counts() const;
   const MarkPortCounts& counts() const { return counts_; }
-  /// Of what was refused since this was asked last: the first of each cause, once.
+  /// Of what was refused since this was asked last: the first of each cause and host, once.
   Findings take_findings() { return std::exchange(findings_, {}); }
 
  private:
   MarkPort(Form form, UdpPieces pieces);
   bool decode(const Piece& piece, Mark& mark);
-  void refuse(const Piece& piece, const std::string& cause, const char* expected);
+  void refuse(const Piece& piece, Severity severity, const std::string& cause,
+              const char* expected);
   std::string sender_of(const Piece& piece) const;
   void take_piece(const Piece& piece, const TakeMark& take);
 
@@ -55,6 +57,7 @@ class MarkPort {
   MarkRepeats repeats_;
   MarkPortCounts counts_;
   Findings findings_;
+  std::set<std::string> told_;  // causes, each with its host
 };
 
 }  // namespace kinalign

@@ -149,7 +149,7 @@ bool RecordingSession::turn(Duration patience, std::optional<int> also) {
   }
   for (std::size_t i = 0; i < mark_ports_.size(); ++i) {
     if (!next_is_ready(ports_.size() + i)) continue;
-    mark_ports_[i].drain(axis_, [this](const RecordedMark& m, HostTime at) { mark(m, at); });
+    drain_marks();
   }
   tick(now);
   return some;
@@ -179,17 +179,20 @@ bool RecordingSession::wait(Duration patience, std::optional<int> also) {
 void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
   using Kind = Mark::Kind;
   const Kind kind = mark.mark.kind;
-  if (kind == Kind::start && by_marks_ && by_marks_->begins && !recording()) {
-    by_marks_->begins = by_marks_->again;
+  if (kind == Kind::start && by_marks_ && by_marks_->starts != Starts::none && !recording()) {
+    if (by_marks_->starts == Starts::next) by_marks_->starts = Starts::none;
     start(by_marks_->plan, at);
   }
   recorder_->record(mark_channel_, at, to_json(mark));
-  if (kind == Kind::stop && by_marks_ && recording()) end_take();
+  if (kind == Kind::stop && by_marks_ && recording()) {
+    drain_devices();
+    end_take();
+  }
   if (marks_.size() < most_untaken) marks_.emplace_back(mark, at);
 }
 
 void RecordingSession::obey_no_start() {
-  if (by_marks_) by_marks_->begins = by_marks_->again = false;
+  if (by_marks_) by_marks_->starts = Starts::none;
 }
 
 void RecordingSession::tick(HostTime now) {
@@ -231,11 +234,22 @@ void RecordingSession::start(const TakePlan& plan, HostTime at) {
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
   TakeHead head{facts_, expected_of(options_.lab), attachments_of(options_, facts_.anchor.utc)};
+  std::erase_if(earlier_, [](const auto& take) { return take.expired(); });
+  if (newest_) earlier_.emplace_back(newest_);
   newest_ = begin_take(machine_.files, plan, std::move(head), compression, newest_);
   newest_->begun = at;
   begun_.push_back(newest_);
   begin_counts(recorder_->start(
-      at, [disk = &newest_->disk](McapChunkContent chunk) { disk->push(std::move(chunk)); }));
+      at, [this](McapChunkContent chunk) { newest_->disk.push(std::move(chunk), room()); }));
+}
+
+/// Bytes that may wait for the disk in the newest take, beside those of the takes before it.
+std::uint64_t RecordingSession::room() const {
+  std::uint64_t waiting = 0;
+  for (const auto& earlier : earlier_) {
+    if (const auto take = earlier.lock()) waiting += take->disk.status().waiting_bytes;
+  }
+  return DiskThread::most_waiting - std::min(waiting, DiskThread::most_waiting);
 }
 
 std::shared_ptr<SessionTake> RecordingSession::next_take() {
@@ -245,25 +259,44 @@ std::shared_ptr<SessionTake> RecordingSession::next_take() {
   return next;
 }
 
-/// What lies in the kernel's buffers; no longer than a flood may hold up the end.
-void RecordingSession::drain_all() {
+/// What of devices lies in the kernel's buffers, which a turn may not have emptied; no longer than
+/// a flood may hold up the end.
+void RecordingSession::drain_devices() {
   constexpr Duration longest = std::chrono::milliseconds(200);
   const HostTime begun = axis_.now();
-  while (turn(Duration::zero()) && axis_.now() - begun < longest) {
+  std::uint64_t before = 0;
+  do {
+    before = heard();
+    if (nodes_) nodes_->receiver().drain();
+    for (RecordedPort& port : ports_) port.drain(axis_, *recorder_);
+  } while (heard() != before && axis_.now() - begun < longest);
+}
+
+/// Of all ports in the order of their arrival: a start may come to one and the stop to another.
+void RecordingSession::drain_marks() {
+  std::vector<HeardMark> came;
+  for (MarkPort& port : mark_ports_) {
+    port.drain(axis_, [&](const RecordedMark& m, HostTime at) { came.emplace_back(m, at); });
   }
+  std::stable_sort(came.begin(), came.end(),
+                   [](const HeardMark& a, const HeardMark& b) { return a.second < b.second; });
+  for (const auto& [heard, at] : came) mark(heard, at);
 }
 
 void RecordingSession::stop() {
   if (!recording()) return;
-  drain_all();
-  if (recording()) end_take();  // a mark may have done so meanwhile
+  const std::shared_ptr<SessionTake> ending = newest_;
+  drain_devices();
+  drain_marks();
+  if (recording() && newest_ == ending) end_take();
 }
 
 void RecordingSession::end_take() {
   const HostTime now = axis_.now();
   tell(now);
   recorder_->stop();
-  newest_->end = TakeEnd{now, streams(), port_counts()};
+  newest_->end = TakeEnd{now, streams(), port_counts(), {}};
+  if (nodes_) newest_->end->nodes = nodes_->receiver().status();
   newest_->disk.finish();
 }
 

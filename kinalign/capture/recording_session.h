@@ -55,12 +55,14 @@ class RecordingSession {
   /// A take begins: the pre-roll and all that comes from now on is in it. Its file is begun on the
   /// disk's thread; the take's disk.status() says once it is done, or why it can't be.
   void start(const TakePlan& plan) { start(plan, axis_.now()); }
-  /// From now on a start mark begins a take, where none goes on, and a stop mark ends it, each in
-  /// the turn in which it comes, whatever the disk is doing. `again`: the next start, too.
-  void obey_marks(TakePlan plan, bool again) { by_marks_ = ByMarks{std::move(plan), again}; }
+  enum class Starts : std::uint8_t { none, next, each };
+  /// From now on start marks begin takes, where none goes on, and a stop mark ends it, each in the
+  /// turn in which it comes, whatever the disk is doing.
+  void obey_marks(TakePlan plan, Starts starts) { by_marks_ = ByMarks{std::move(plan), starts}; }
   /// A mark begins no take any more; one that goes on is still ended by one.
   void obey_no_start();
-  /// Ends it: what has come to the machine goes to the disk, see the take's disk.
+  /// Ends the take that goes on: what has come to the machine goes to the disk, see the take's
+  /// disk. Marks that came meanwhile may have begun another one.
   void stop();
   bool recording() const { return recorder_->started(); }
   /// Those that began, in their order, each once; nullptr: none more.
@@ -94,7 +96,9 @@ class RecordingSession {
   void rest(Duration patience);
   std::uint64_t heard() const;
   bool wait(Duration patience, std::optional<int> also);
-  void drain_all();
+  void drain_devices();
+  void drain_marks();
+  std::uint64_t room() const;
   void tick(HostTime now);
   void tell(HostTime now);
   void remember_counts(std::uint64_t chunk, std::uint64_t first);
@@ -110,7 +114,7 @@ class RecordingSession {
 
   struct ByMarks {
     TakePlan plan;
-    bool again = false, begins = true;  // begins: the next start does
+    Starts starts = Starts::none;
   };
 
   Options options_;
@@ -132,7 +136,8 @@ class RecordingSession {
   HostTime awake_until_ = HostTime::min();
   std::optional<ByMarks> by_marks_;
   std::shared_ptr<SessionTake> newest_;
-  std::deque<std::shared_ptr<SessionTake>> begun_;  // since next_take() was asked
+  std::vector<std::weak_ptr<const SessionTake>> earlier_;  // whose end may not be written yet
+  std::deque<std::shared_ptr<SessionTake>> begun_;         // since next_take() was asked
 };
 
 }  // namespace kinalign

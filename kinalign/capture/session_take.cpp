@@ -5,6 +5,8 @@ namespace kinalign {
 
 namespace {
 
+constexpr int most_tries = 100;  // a disk may make names and no files
+
 /// Begins a take's file, on the disk's thread: it owns all that it needs for it.
 struct TakeFiles {
   FileSystem* files;
@@ -12,10 +14,11 @@ struct TakeFiles {
   TakeHead head;
 
   Result<RecordingDisk> operator()() {
-    for (std::string path = free_path();;) {
+    std::string path = free_path();
+    for (int tries = 1;; ++tries) {
       Result<RecordingDisk> opened = open(path);
       const std::string next = opened ? path : free_path();
-      if (next == path) return opened;
+      if (next == path || tries == most_tries) return opened;
       path = next;  // another recorder has taken the name meanwhile
     }
   }

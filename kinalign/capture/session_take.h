@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/capture/disk_thread.h"
+#include "kinalign/capture/node_receiver.h"
 #include "kinalign/capture/recorded_source.h"
 #include "kinalign/io/recording_counts.h"
 #include "kinalign/io/recording_format.h"
@@ -30,6 +31,7 @@ struct TakeEnd {
   HostTime at{};
   std::vector<StreamStatus> streams;
   std::vector<std::pair<std::string, PortCounts>> ports;  // by the device's name
+  std::vector<NodeStatus> nodes;
 };
 
 struct SessionTake {

@@ -62,6 +62,10 @@ Result<void> check_place(const DeviceOptions& device) {
   return {};
 }
 
+bool is_every(const std::string& address) {
+  return address.empty() || address == "0.0.0.0" || address == "::";
+}
+
 /// Whether two devices leave each other room.
 Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other) {
   if (other.name == device.name) {
@@ -72,7 +76,7 @@ Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other)
   }
   const bool serves = device.transport != "tcp";  // an address that is left out is then every one
   const bool same_place = other.address == device.address ||
-                          (serves && (device.address.empty() || other.address.empty()));
+                          (serves && (is_every(device.address) || is_every(other.address)));
   const bool same_port = device.port != 0 && other.port == device.port &&
                          other.transport == device.transport && same_place;
   if (!same_port) return {};

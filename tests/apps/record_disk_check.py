@@ -315,8 +315,7 @@ def a_disk_that_stands_still_when_a_take_begins_can_be_left(folder):
         while "bytes" not in recording.until("status")[-1]:  # the take has begun
             pass
         recording.program.send_signal(signal.SIGINT)
-        recording.until("status")
-        recording.until("status")
+        recording.until("end_waits")
         assert recording.program.poll() is None, "it left by itself"
         recording.program.send_signal(signal.SIGINT)
         err = recording.program.communicate(timeout=10)[1]

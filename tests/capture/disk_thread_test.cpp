@@ -203,6 +203,58 @@ TEST_CASE("a take that begins with a full pre-roll loses nothing while its file 
   CHECK(status.waiting_bytes > options.pre_roll_bytes);
 }
 
+TEST_CASE("a take's file is begun behind that of the take before") {
+  const FreshFolder folder;
+  PosixFiles files;
+  std::promise<void> stands_still;
+  const std::shared_future<void> goes_on = stands_still.get_future().share();
+  const auto first = std::make_shared<DiskThread>(
+      [&, goes_on] {
+        goes_on.wait();
+        return opening(files, folder / "a.mcap")();
+      },
+      McapCompression::none);
+  DiskThread second(opening(files, folder / "b.mcap"), McapCompression::none, first);
+  second.push(chunk(0, 10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  CHECK(folder.names().empty());
+  stands_still.set_value();
+  wait_until([&] { return !second.status().paths.empty(); });
+  CHECK(!first->status().paths.empty());
+}
+
+TEST_CASE("a take that is given up waits for no other") {
+  const FreshFolder folder;
+  PosixFiles files;
+  std::promise<void> stands_still;
+  const std::shared_future<void> goes_on = stands_still.get_future().share();
+  const auto first = std::make_shared<DiskThread>(
+      [goes_on]() -> Result<RecordingDisk> {
+        goes_on.wait();
+        return Failure(Error{"a.mcap", 0, "a disk", "none"});
+      },
+      McapCompression::none);
+  DiskThread second(opening(files, folder / "none/b.mcap"), McapCompression::none, first);
+  second.push(chunk(0, 10));
+  second.give_up();
+  wait_until([&] { return second.status().finished; });
+  CHECK(second.status().dropped == 10);
+  CHECK(second.status().waiting_bytes == 0);
+  stands_still.set_value();
+}
+
+TEST_CASE("what has no room beside other takes is dropped and counted") {
+  const FreshFolder folder;
+  PosixFiles files;
+  DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  thread.push(chunk(0, 10), 10);
+  CHECK(thread.status().dropped == 10);
+  thread.push(chunk(10, 20));
+  thread.finish();
+  wait_until([&] { return thread.status().finished; });
+  CHECK(read_mcap(folder.read("a.mcap")).messages.size() == 10);
+}
+
 TEST_CASE("what memory had no room for is counted, in the file too") {
   const FreshFolder folder;
   PosixFiles files;

@@ -219,7 +219,7 @@ std::vector<std::string> marks_in(const std::map<std::string, std::vector<std::s
   if (marks == payloads.end()) return found;
   for (const std::string& text : marks->second) {
     const auto json = nlohmann::json::parse(text);
-    found.push_back(json.at("kind").get<std::string>() + " " + json.at("id").get<std::string>());
+    found.push_back(json.at("kind").get<std::string>() + " " + json.value("id", ""));
   }
   return found;
 }
@@ -231,12 +231,12 @@ class ByMarks {
     RecordingSession::Options options;
     options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
     options.lab.record.pre_roll_s = 0.0;
-    options.marks_port = 0;
+    options.marks_port = options.trigger_port = 0;
     auto session = RecordingSession::open(options, {files, ports_clock_, nodes_clock_});
     REQUIRE(session);
     session_ = *std::move(session);
     session_->obey_marks({[this] { return folder_ / "a" + std::to_string(named_++) + ".mcap"; }},
-                         true);
+                         RecordingSession::Starts::each);
   }
   RecordingSession& session() { return *session_; }
   void say(const std::vector<std::uint8_t>& frame) {
@@ -246,7 +246,16 @@ class ByMarks {
   }
   void call_all(const std::vector<std::string>& calls) {
     for (const std::string& text : calls) {
-      client_.send("127.0.0.1", session_->ports().back().second, bytes_of(text));
+      client_.send("127.0.0.1", session_->ports().at(1).second, bytes_of(text));
+    }
+  }
+  void trigger(const std::string& text) {
+    client_.send("127.0.0.1", session_->ports().at(2).second, bytes_of(text));
+  }
+  /// Frames that nobody waits for.
+  void flood(std::uint32_t count) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      client_.send("127.0.0.1", session_->ports().front().second, noitom_frame(i));
     }
   }
   void mark(Mark::Kind kind, int id) {
@@ -319,6 +328,32 @@ TEST_CASE("of marks that come at once each stands in the take that it begins or 
   CHECK(marks_in(payloads[1]) == std::vector<std::string>{"start 3", "start 4", "stop 5"});
 }
 
+TEST_CASE("marks of several ports are obeyed in the order of their arrival") {
+  PosixFiles files;
+  ByMarks lab(files);
+  lab.mark(Mark::Kind::start, 1);
+  lab.trigger(R"(<CaptureStop RESULT="SUCCESS"><PacketID VALUE="2"/></CaptureStop>)");
+  lab.mark(Mark::Kind::start, 3);
+  lab.mark(Mark::Kind::stop, 4);
+  const auto payloads = lab.payloads();
+  REQUIRE(payloads.size() == 2);
+  CHECK(marks_in(payloads[1]) == std::vector<std::string>{"start 3", "stop 4"});
+}
+
+TEST_CASE("what had reached the machine when a mark ends a take stands in its file") {
+  PosixFiles files;
+  ByMarks lab(files);
+  lab.mark(Mark::Kind::start, 1);
+  constexpr std::uint32_t sent = 150;  // more than a turn reads
+  lab.flood(sent);
+  lab.mark(Mark::Kind::stop, 2);
+  const auto payloads = lab.payloads();
+  REQUIRE(payloads.size() == 1);
+  const std::uint64_t dropped = lab.session().port_counts().front().second.dropped;
+  CHECK(payloads[0].at("/mocap/raw").size() + dropped == sent);
+  CHECK(payloads[0].at("/mocap/raw").size() > 128);
+}
+
 TEST_CASE("after a take that began by a mark no start begins another one unless it was asked for") {
   LiveSession live({"mocap=noitom:udp:127.0.0.1:0"});
   RecordingSession& session = live.session();
@@ -328,7 +363,7 @@ TEST_CASE("after a take that began by a mark no start begins another one unless 
   mark(Mark::Kind::stop);
   CHECK(session.recording());  // that one was not begun by a mark
   live.finish();
-  session.obey_marks({[] { return std::string("/none/a.mcap"); }}, false);
+  session.obey_marks({[] { return std::string("/none/a.mcap"); }}, RecordingSession::Starts::next);
   mark(Mark::Kind::start);
   CHECK(session.recording());
   mark(Mark::Kind::stop);
