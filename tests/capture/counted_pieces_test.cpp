@@ -14,6 +14,9 @@
 
 #include <doctest/doctest.h>
 
+#include <memory>
+#include <numeric>
+
 using namespace kinalign;
 using namespace std::chrono_literals;
 
@@ -187,57 +190,88 @@ TEST_CASE(
   CHECK(lost(by_udp) == 3);
 }
 
-TEST_CASE("a Kinect's sender that is started anew is a restart, in the counts as by the frames") {
-  const auto frame = [](std::uint32_t session, std::uint32_t sequence) {
+namespace {
+
+using Payloads = std::map<std::string, std::vector<std::string>>;
+
+/// Of each Kinect's sender in /counts the last.
+std::vector<std::uint64_t> restarts_told(const Payloads& payloads) {
+  std::map<std::string, std::uint64_t> by_topic;
+  for (const std::string& json : payloads.at("/counts")) {
+    const auto counted = to_counted_sender(json);
+    REQUIRE(counted);
+    by_topic[counted->topic] = counted->counts.order.restarts;
+  }
+  std::vector<std::uint64_t> told;
+  for (const auto& [topic, count] : by_topic) told.push_back(count);
+  return told;
+}
+
+std::uint64_t restarts_by_frames(const Payloads& payloads) {
+  KinectFrameJoiner joiner;
+  std::vector<JoinedKinectFrame> frames;
+  for (const auto& [topic, messages] : payloads) {
+    if (!topic.starts_with("/kinect/raw")) continue;
+    for (const std::string& message : messages) {
+      KinectMessage decoded;
+      REQUIRE(decode_kinect_datagram(octets(message), decoded) == KinectRefusal::none);
+      joiner.take(std::get<KinectFrame>(decoded), frames);
+    }
+  }
+  return joiner.counts().frames.restarts;
+}
+
+/// Two frames of a session.
+std::array<std::vector<std::uint8_t>, 2> kinect_session(std::uint32_t session) {
+  std::array<std::vector<std::uint8_t>, 2> frames;
+  for (std::uint32_t sequence = 0; sequence < 2; ++sequence) {
     KinectFrame one;
     one.origin = {2, session, sequence};
-    return encode_kinect_binary(one);
-  };
-  const std::array<std::uint32_t, 3> sessions{11, 12, 13};
-  for (const std::string way : {"one port", "ports", "connections"}) {
-    CAPTURE(way);
-    const bool by_tcp = way == "connections";
-    LiveSession live(
-        {std::string("kinect=kinect:") + (by_tcp ? "tcp-listen" : "udp") + ":127.0.0.1:0"});
-    const Client same;
-    std::uint64_t sent = 0;
-    for (const std::uint32_t session : sessions) {
-      const Client fresh;
-      std::optional<Connection> connection;
-      if (by_tcp) connection.emplace(live.port());
-      for (const std::uint32_t sequence : {0U, 1U}) {
-        const auto bytes = frame(session, sequence);
-        if (by_tcp) {
-          connection->send(std::string(text_of(bytes)));
-        } else {
-          (way == "ports" ? fresh : same).send("127.0.0.1", live.port(), bytes);
-        }
-        live.serve_until([&, n = ++sent] { return live.pieces() == n; });
-      }
-    }
-    const auto payloads = live.finish();
-    std::map<std::string, std::uint64_t> told;  // the last count by topic
-    for (const std::string& json : payloads.at("/counts")) {
-      const auto counted = to_counted_sender(json);
-      REQUIRE(counted);
-      told[counted->topic] = counted->counts.order.restarts;
-    }
-    std::uint64_t restarts = 0;
-    for (const auto& [topic, count] : told) restarts += count;
-    KinectFrameJoiner joiner;
-    std::vector<JoinedKinectFrame> frames;
-    for (const auto& [topic, messages] : payloads) {
-      if (!topic.starts_with("/kinect/raw")) continue;
-      for (const std::string& message : messages) {
-        KinectMessage decoded;
-        REQUIRE(decode_kinect_datagram(octets(message), decoded) == KinectRefusal::none);
-        joiner.take(std::get<KinectFrame>(decoded), frames);
-      }
-    }
-    CHECK(restarts == 2);
-    CHECK(joiner.counts().frames.restarts == restarts);
-    CHECK(told.size() == (way == "one port" ? 1 : 3));
+    frames[sequence] = encode_kinect_binary(one);
   }
+  return frames;
+}
+
+/// Three sessions; `sender` gives for each what sends.
+template <class Sender>
+void check_restarts(LiveSession& live, std::size_t senders, const Sender& sender) {
+  std::uint64_t sent = 0;
+  for (const std::uint32_t session : {11U, 12U, 13U}) {
+    const auto send = sender();
+    for (const auto& bytes : kinect_session(session)) {
+      send(bytes);
+      live.serve_until([&, n = sent + 1] { return live.pieces() == n; });
+      ++sent;
+    }
+  }
+  const auto payloads = live.finish();
+  const auto told = restarts_told(payloads);
+  CHECK(told.size() == senders);
+  CHECK(std::accumulate(told.begin(), told.end(), std::uint64_t{0}) == 2);
+  CHECK(restarts_by_frames(payloads) == 2);
+}
+
+}  // namespace
+
+TEST_CASE("a Kinect's sender that is started anew is a restart, in the counts as by the frames") {
+  using Bytes = std::vector<std::uint8_t>;
+  LiveSession one_port({"kinect=kinect:udp:127.0.0.1:0"});
+  const Client same;
+  check_restarts(one_port, 1, [&] {
+    return [&](const Bytes& bytes) { same.send("127.0.0.1", one_port.port(), bytes); };
+  });
+  LiveSession ports({"kinect=kinect:udp:127.0.0.1:0"});
+  check_restarts(ports, 3, [&] {
+    return [&, fresh = std::make_shared<Client>()](const Bytes& bytes) {
+      fresh->send("127.0.0.1", ports.port(), bytes);
+    };
+  });
+  LiveSession connections({"kinect=kinect:tcp-listen:127.0.0.1:0"});
+  check_restarts(connections, 3, [&] {
+    return [fresh = std::make_shared<Connection>(connections.port())](const Bytes& bytes) {
+      fresh->send(std::string(text_of(bytes)));
+    };
+  });
 }
 
 TEST_CASE("a device that sends to another one's port is told of while recording, once") {

@@ -65,7 +65,7 @@ TEST_CASE("a call that is refused is answered with the cause, and its id as far 
     Mark mark;
     const Refusal refusal = decode_mark_call(text, mark);
     REQUIRE(refusal != Refusal::none);
-    const std::string said = answer_to_refused_call(mark, refusal, text.size());
+    std::string said = answer_to_refused_call(mark, refusal, text.size());
     CHECK(said.size() <= text.size());
     if (!said.empty()) CHECK(answer_to_refused_call(mark, refusal, said.size() - 1).empty());
     return said;

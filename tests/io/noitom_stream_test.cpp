@@ -83,22 +83,32 @@ TEST_CASE("noitom: every variant is read as it was sent") {
   CHECK(bytes_of(noitom_frame(NoitomForm::new_header, true, false)).size() == 1480);
 }
 
+namespace {
+
+/// A dozen frames, some of them damaged, with rubbish between.
+Bytes damaged_frames(std::mt19937_64& random) {
+  Bytes bytes;
+  const auto variants = every_variant();
+  for (int k = 0; k < 12; ++k) {
+    Bytes part = bytes_of(variants[random() % variants.size()]);
+    if (random() % 3 == 0) part[random() % part.size()] = static_cast<std::uint8_t>(random());
+    if (random() % 4 == 0) part[6] = static_cast<std::uint8_t>(random());  // a count
+    if (random() % 4 == 0) part.resize(random() % part.size());
+    bytes += part;
+    for (std::uint64_t n = random() % 40; n > 0; --n) {
+      bytes.push_back(random() % 4 == 0 ? 0xff : static_cast<std::uint8_t>(random()));
+    }
+  }
+  return bytes;
+}
+
+}  // namespace
+
 TEST_CASE("noitom: where bytes are cut changes nothing") {
   for (const auto seed : fresh_seeds(60)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
-    Bytes bytes;
-    const auto variants = every_variant();
-    for (int k = 0; k < 12; ++k) {
-      Bytes part = bytes_of(variants[random() % variants.size()]);
-      if (random() % 3 == 0) part[random() % part.size()] = static_cast<std::uint8_t>(random());
-      if (random() % 4 == 0) part[6] = static_cast<std::uint8_t>(random());  // a count
-      if (random() % 4 == 0) part.resize(random() % part.size());
-      bytes += part;
-      for (std::uint64_t n = random() % 40; n > 0; --n) {
-        bytes.push_back(random() % 4 == 0 ? 0xff : static_cast<std::uint8_t>(random()));
-      }
-    }
+    const Bytes bytes = damaged_frames(random);
     const auto whole = read_noitom(bytes);
     for (const std::size_t most : {1, 7, 100, 2000}) {
       const auto cut = read_noitom(bytes, most, seed);
