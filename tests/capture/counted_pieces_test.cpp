@@ -203,6 +203,7 @@ std::vector<std::uint64_t> restarts_told(const Payloads& payloads) {
     by_topic[counted->topic] = counted->counts.order.restarts;
   }
   std::vector<std::uint64_t> told;
+  told.reserve(by_topic.size());
   for (const auto& [topic, count] : by_topic) told.push_back(count);
   return told;
 }
