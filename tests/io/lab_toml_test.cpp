@@ -2,6 +2,7 @@
 #include "kinalign/io/lab_toml.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <string>
 
@@ -106,11 +107,11 @@ TEST_CASE("a device is found by an IP address, never by a host's name") {
 TEST_CASE("what comes in datagrams alone is told so before an address is asked for") {
   for (const std::string protocol : {"nodes", "slimevr"}) {
     for (const std::string transport : {"tcp", "tcp-listen"}) {
-      const Lab lab{{*parse_device("imu=" + protocol + ":" + transport + ":5005")}, {}};
+      const Lab lab{{*parse_device(fmt::format("imu={}:{}:5005", protocol, transport))}, {}};
       REQUIRE(!validate(lab));
       CHECK(to_string(validate(lab).error()) ==
-            "imu: expected transport udp, the only one of protocol " + protocol + ", found " +
-                transport);
+            fmt::format("imu: expected transport udp, the only one of protocol {}, found {}",
+                        protocol, transport));
     }
   }
 }
