@@ -59,23 +59,6 @@ std::string time_text(double s) {
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
-}  // namespace
-
-std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
-                          double elapsed_s, std::size_t width) {
-  std::string line(what);
-  const auto doing = static_cast<double>(done);
-  const auto all = static_cast<double>(total);
-  if (total > 0) line += fmt::format("  {:.0f} %", 100 * std::min(1.0, doing / all));
-  if (done > 0 && elapsed_s > 0.5) {
-    line += "  " + rate_text(what, doing / elapsed_s);
-    if (total > done) line += fmt::format("  {} left", time_text(elapsed_s * (all / doing - 1)));
-  }
-  return line.substr(0, width);
-}
-
-namespace {
-
 void note_signals(unsigned flags) {
   ctrl_c = false;
   struct sigaction action {};
@@ -91,6 +74,19 @@ void note_signals(unsigned flags) {
 }
 
 }  // namespace
+
+std::string progress_line(std::string_view what, std::uint64_t done, std::uint64_t total,
+                          double elapsed_s, std::size_t width) {
+  std::string line(what);
+  const auto doing = static_cast<double>(done);
+  const auto all = static_cast<double>(total);
+  if (total > 0) line += fmt::format("  {:.0f} %", 100 * std::min(1.0, doing / all));
+  if (done > 0 && elapsed_s > 0.5) {
+    line += "  " + rate_text(what, doing / elapsed_s);
+    if (total > done) line += fmt::format("  {} left", time_text(elapsed_s * (all / doing - 1)));
+  }
+  return line.substr(0, width);
+}
 
 void take_signals() { note_signals(SA_RESETHAND | SA_RESTART); }
 void take_every_signal() { note_signals(SA_RESTART); }

@@ -316,9 +316,8 @@ Verb record_verb() {
            "slimevr; transports: udp, tcp (to the device's address), tcp-listen. On a terminal "
            "keys make marks: s start, e stop, t T-pose, Enter begins and ends a text. Exit code "
            "1 where the disk failed and the recording went on in another file, or was nearly "
-           "full and ended it, where a required device sent nothing, or anything nothing that can "
-           "be "
-           "used, or with --wait no start came.",
+           "full and ended it, where a required device sent nothing, where something was sent that "
+           "nobody can use, or with --wait no start came.",
        .examples =
            {{"kinalign record -o takes --device imu=nodes:5005 --device mocap=xsens:udp:9763",
              "inertial nodes, and Xsens MVN sending to this machine"},

@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <set>
 #include <utility>
 
 namespace kinalign {
@@ -63,12 +62,8 @@ LabStatus RecordHerald::lab_status() const {
 
 /// Of the take: what came while its rest was written is the next one's.
 LabStatus RecordHerald::status_at_end() const {
-  LabStatus status = lab_status();
-  status.now = take_->end->at;
-  status.streams = take_->end->streams;
-  status.ports = take_->end->ports;
-  status.nodes = take_->end->nodes;
-  return status;
+  const TakeEnd& end = *take_->end;
+  return {end.at, begun_, end.streams, end.nodes, end.ports};
 }
 
 void RecordHerald::follow(std::shared_ptr<SessionTake> take) { take_ = std::move(take); }
@@ -122,9 +117,8 @@ void RecordHerald::look(const std::optional<std::string>& typed) {
 
 /// Each as soon as it is there, once.
 void RecordHerald::tell_news() {
-  const std::set<std::shared_ptr<SessionTake>> takes{take_, session_.newest_take()};
-  for (const auto& take : takes) {
-    if (!take) continue;
+  for (SessionTake* take : {take_.get(), session_.newest_take().get()}) {
+    if (take == nullptr) continue;
     for (const PartFailure& failure : take->disk.take_failures()) tell(failure);
   }
   for (const Finding& finding : session_.take_findings()) tell(finding);
@@ -137,7 +131,7 @@ void RecordHerald::tell_news_of(NodeReceiver& nodes) {
   using Kind = NodeEvent::Kind;
   for (const NodeEvent& event : nodes.take_node_events()) {
     const bool told = event.kind == Kind::left || event.kind == Kind::returned;
-    if (!told) console_.note(harmless(event_text(event, node_names(session_.lab()))));
+    if (!told) console_.note(harmless(event_text(event, names_)));
     console_.print_json(event_json(event));
   }
   const HostTime now = session_.now();
@@ -160,16 +154,16 @@ void RecordHerald::tell_dropped(std::uint64_t dropped) {
 }
 
 void RecordHerald::look_at_disk(HostTime now) {
-  const SessionTake& newest = *session_.newest_take();
-  if (std::exchange(watched_, &newest) != &newest) {
+  const auto& newest = session_.newest_take();
+  if (watched_.lock() != newest) {
+    watched_ = newest;
     forecast_ = {};
     dropped_told_ = 0;
   }
-  const DiskStatus disk = newest.disk.status();
+  const DiskStatus disk = newest->disk.status();
   tell_dropped(disk.dropped);
   if (!disk.free_bytes) return;
-  const std::uint64_t of_last =
-      take_ && take_.get() != &newest ? take_->disk.status().waiting_bytes : 0;
+  const std::uint64_t of_last = take_ && take_ != newest ? take_->disk.status().waiting_bytes : 0;
   const std::uint64_t to_write = std::min(disk.waiting_bytes + of_last, *disk.free_bytes);
   forecast_.look(now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - to_write);
   if (forecast_.full() && !std::exchange(disk_full_, true)) {
@@ -349,8 +343,7 @@ void RecordHerald::tell_end() {
                                             {"repeats", port.counts().repeats},
                                             {"refused_for", port.counts().refused}});
   }
-  if (const NodeReceiver* nodes = session_.nodes())
-    lines += refused_lines(*nodes, node_names(session_.lab()));
+  if (const NodeReceiver* nodes = session_.nodes()) lines += refused_lines(*nodes, names_);
   console_.print(harmless(lines));
   console_.print_json(json_text(event));
 }

@@ -22,7 +22,8 @@ class RecordHerald {
   RecordHerald(RecordingSession& session, Console& console)
       : session_(session),
         console_(console),
-        clock_news_(node_names(session.lab())),
+        names_(node_names(session.lab())),
+        clock_news_(names_),
         begun_(session.now()) {}
 
   /// Ports are open, and a start is waited for.
@@ -72,8 +73,9 @@ class RecordHerald {
 
   RecordingSession& session_;
   Console& console_;
-  std::shared_ptr<SessionTake> take_;     // nullptr: none has begun
-  const SessionTake* watched_ = nullptr;  // the newest, for which both that follow are
+  NodeNames names_;
+  std::shared_ptr<SessionTake> take_;         // nullptr: none has begun
+  std::weak_ptr<const SessionTake> watched_;  // the newest, for which both that follow are
   std::uint64_t dropped_told_ = 0;
   DiskForecast forecast_;
   ClockNews clock_news_;

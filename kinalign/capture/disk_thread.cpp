@@ -119,12 +119,13 @@ bool DiskThread::begin() {
     }
     status_.refused = opened.error();
     done_ = status_.finished = giving_up_;
-    if (done_) {
-      for (const McapChunkContent& chunk : queue_) status_.dropped += messages_in(chunk);
-      queue_.clear();
-      queue_bytes_ = 0;
+    if (!done_) {
+      written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
+      continue;
     }
-    if (!done_) written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
+    for (const McapChunkContent& chunk : queue_) status_.dropped += messages_in(chunk);
+    queue_.clear();
+    queue_bytes_ = 0;
   }
   open_ = nullptr;
   asked_.notify_one();

@@ -53,18 +53,16 @@ std::string MarkPort::sender_of(const Piece& piece) const {
   return endpoint_text(to_string(sender.host), sender.port);
 }
 
-/// Counted by its cause, which is told once of each host: whoever sends one sends many.
+/// Counted by its cause.
 void MarkPort::refuse(const Piece& piece, Severity severity, const std::string& cause,
                       const char* expected) {
-  constexpr std::size_t most_told = 256;
   ++counts_.refused[cause];
-  const std::string host = to_string(pieces_.senders().at(piece.sender).host);
-  if (told_.size() == most_told || !told_.insert(cause + " " + host).second) return;
-  findings_.push_back({severity,
-                       {"port of " + name(), 0, expected,
-                        shown(piece.bytes) + " from " + sender_of(piece) + ": " + cause},
-                       "it is no mark: nothing begins, ends or is written down with it",
-                       "docs/formats/marks.md shows what this port understands"});
+  findings_.add(to_string(pieces_.senders().at(piece.sender).host),
+                {severity,
+                 {"port of " + name(), 0, expected,
+                  shown(piece.bytes) + " from " + sender_of(piece) + ": " + cause},
+                 "it is no mark: nothing begins, ends or is written down with it",
+                 "docs/formats/marks.md shows what this port understands"});
 }
 
 /// A call that is none is answered with the cause, as far as that may be.

@@ -2,6 +2,7 @@
 // Ports for marks from outside: docs/formats/marks.md.
 #pragma once
 
+#include "kinalign/capture/findings_once.h"
 #include "kinalign/capture/pieces.h"
 #include "kinalign/core/error.h"
 #include "kinalign/io/mark.h"
@@ -11,9 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -42,7 +41,7 @@ class MarkPort {
   PortCounts port_counts() const;
   const MarkPortCounts& counts() const { return counts_; }
   /// Of what was refused since this was asked last: the first of each cause and host, once.
-  Findings take_findings() { return std::exchange(findings_, {}); }
+  Findings take_findings() { return findings_.take(); }
 
  private:
   MarkPort(Form form, UdpPieces pieces);
@@ -56,8 +55,7 @@ class MarkPort {
   UdpPieces pieces_;
   MarkRepeats repeats_;
   MarkPortCounts counts_;
-  Findings findings_;
-  std::set<std::string> told_;  // causes, each with its host
+  FindingsOnce findings_;
 };
 
 }  // namespace kinalign

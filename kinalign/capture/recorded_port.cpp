@@ -192,7 +192,6 @@ void RecordedPort::look_at(Source& source) const {
 /// Axis Studio's compressed port, say: who learns of it behind the take has no take. A host that
 /// comes back is not told of again.
 void RecordedPort::find_faults(const Source& source) {
-  constexpr std::size_t most_told = 256;
   const SenderCounts& counts = source.recorded.status.counts;
   const bool none = source.watch.decodes() && !source.exchanges && speaks_another_protocol(counts);
   if (counts.refused == 0 && !none) return;
@@ -207,11 +206,7 @@ void RecordedPort::find_faults(const Source& source) {
                         "all is recorded, but nothing of it can be aligned as " + device_.protocol,
                         "see which port and protocol the device sends to"});
   }
-  for (Finding& finding : findings) {
-    if (told_.size() >= most_told) return;
-    const bool fresh = told_.insert(host + finding.what.expected + finding.meaning).second;
-    if (fresh) findings_.push_back(std::move(finding));
-  }
+  for (Finding& finding : findings) findings_.add(host, std::move(finding));
 }
 
 std::uint16_t RecordedPort::port() const {

@@ -3,6 +3,7 @@
 // own numbers miss, and the desk that answers them where the protocol wants answers.
 #pragma once
 
+#include "kinalign/capture/findings_once.h"
 #include "kinalign/capture/kinect_desk.h"
 #include "kinalign/capture/pieces.h"
 #include "kinalign/capture/recorded_source.h"
@@ -13,7 +14,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -46,7 +46,7 @@ class RecordedPort {
   void add_streams(std::vector<StreamStatus>& all) const;
   /// What the user should know of what is sent, since this was asked last: each fault of a host
   /// once.
-  Findings take_findings() { return std::exchange(findings_, {}); }
+  Findings take_findings() { return findings_.take(); }
 
  private:
   using Pieces = std::variant<UdpPieces, TcpPieces>;
@@ -81,8 +81,7 @@ class RecordedPort {
   std::vector<std::optional<Source>> sources_;  // by the sender's number
   std::optional<Source> others_;                // strangers after too many lives share it
   NewestKinectFrames newest_frames_;
-  std::set<std::string> told_;  // faults, of whom
-  Findings findings_;
+  FindingsOnce findings_;
   std::unique_ptr<SlimeDesk> slimes_;
   std::unique_ptr<KinectDesk> kinects_;
 };

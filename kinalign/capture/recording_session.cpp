@@ -147,10 +147,11 @@ bool RecordingSession::turn(Duration patience, std::optional<int> also) {
     if (look_after) ports_[i].tick(now);
     if (look_after || ready) ports_[i].drain(axis_, *recorder_);
   }
+  bool marks = false;
   for (std::size_t i = 0; i < mark_ports_.size(); ++i) {
-    if (!next_is_ready(ports_.size() + i)) continue;
-    drain_marks();
+    marks = next_is_ready(ports_.size() + i) || marks;
   }
+  if (marks) drain_marks();
   tick(now);
   return some;
 }

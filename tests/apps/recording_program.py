@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """kinalign record as a program, and devices that send to it."""
+import atexit
 import contextlib
 import json
 import os
@@ -24,6 +25,7 @@ class Recording:
             [str(cases.PROGRAM), "record", "-o", str(folder), *device, "--compression", "none", "--json",
              *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
             env={**os.environ, **(env or {})})
+        atexit.register(self.program.kill)  # where a case fails in the middle
         line = self.program.stdout.readline()
         assert line, self.program.communicate()[1]
         self.started = json.loads(line)

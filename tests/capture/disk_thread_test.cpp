@@ -37,6 +37,12 @@ void wait_until(const Holds& holds) {
   while (!holds()) std::this_thread::yield();  // CTest's own limit ends a test that hangs
 }
 
+/// Where who begins a file waits, as often as it tries, until it is let go.
+struct Gate {
+  std::promise<void> stands_still;
+  std::shared_future<void> goes_on = stands_still.get_future().share();
+};
+
 /// Syncs that last until they are let go, or fail.
 struct SlowSync : PosixFiles {
   std::atomic<bool> slow{false}, fails{false};
@@ -186,10 +192,9 @@ TEST_CASE("a take that begins with a full pre-roll loses nothing while its file 
     }
   };
   record_bytes(options.pre_roll_bytes + (std::size_t{32} << 20));
-  std::promise<void> stands_still;
-  const std::shared_future<void> goes_on = stands_still.get_future().share();  // asked again
+  Gate gate;
   DiskThread thread(
-      [goes_on]() -> Result<RecordingDisk> {
+      [goes_on = gate.goes_on]() -> Result<RecordingDisk> {
         goes_on.wait();
         return Failure(Error{"a.mcap", 0, "a disk", "none"});
       },
@@ -198,7 +203,7 @@ TEST_CASE("a take that begins with a full pre-roll loses nothing while its file 
   record_bytes(std::size_t{32} << 20);
   recorder.stop();
   const DiskStatus status = thread.status();
-  stands_still.set_value();
+  gate.stands_still.set_value();
   CHECK(status.dropped == 0);
   CHECK(status.waiting_bytes > options.pre_roll_bytes);
 }
@@ -206,10 +211,9 @@ TEST_CASE("a take that begins with a full pre-roll loses nothing while its file 
 TEST_CASE("a take's file is begun behind that of the take before") {
   const FreshFolder folder;
   PosixFiles files;
-  std::promise<void> stands_still;
-  const std::shared_future<void> goes_on = stands_still.get_future().share();
+  Gate gate;
   const auto first = std::make_shared<DiskThread>(
-      [&, goes_on] {
+      [&, goes_on = gate.goes_on] {
         goes_on.wait();
         return opening(files, folder / "a.mcap")();
       },
@@ -218,7 +222,7 @@ TEST_CASE("a take's file is begun behind that of the take before") {
   second.push(chunk(0, 10));
   std::this_thread::sleep_for(std::chrono::milliseconds(250));
   CHECK(folder.names().empty());
-  stands_still.set_value();
+  gate.stands_still.set_value();
   wait_until([&] { return !second.status().paths.empty(); });
   CHECK(!first->status().paths.empty());
 }
@@ -226,10 +230,9 @@ TEST_CASE("a take's file is begun behind that of the take before") {
 TEST_CASE("a take that is given up waits for no other") {
   const FreshFolder folder;
   PosixFiles files;
-  std::promise<void> stands_still;
-  const std::shared_future<void> goes_on = stands_still.get_future().share();
+  Gate gate;
   const auto first = std::make_shared<DiskThread>(
-      [goes_on]() -> Result<RecordingDisk> {
+      [goes_on = gate.goes_on]() -> Result<RecordingDisk> {
         goes_on.wait();
         return Failure(Error{"a.mcap", 0, "a disk", "none"});
       },
@@ -240,7 +243,7 @@ TEST_CASE("a take that is given up waits for no other") {
   wait_until([&] { return second.status().finished; });
   CHECK(second.status().dropped == 10);
   CHECK(second.status().waiting_bytes == 0);
-  stands_still.set_value();
+  gate.stands_still.set_value();
 }
 
 TEST_CASE("what has no room beside other takes is dropped and counted") {

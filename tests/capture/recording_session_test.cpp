@@ -30,6 +30,15 @@ void serve_until(RecordingSession& session, const Holds& holds) {
   while (!holds()) session.turn(10ms);  // CTest's own limit ends a test that hangs
 }
 
+/// A disk that begins no file for some seconds, or until it is let go.
+struct StandsStill : PosixFiles {
+  std::atomic<bool> still{true};
+  int open(const char* path, int flags, mode_t mode) override {
+    for (int ms = 0; still && ms < 5000; ++ms) std::this_thread::sleep_for(1ms);
+    return PosixFiles::open(path, flags, mode);
+  }
+};
+
 std::vector<std::uint8_t> noitom_frame(std::uint32_t index) {
   NoitomFrame frame;
   frame.name = "Char00";
@@ -173,15 +182,8 @@ TEST_CASE("a name that another recorder takes first is left to it") {
 }
 
 TEST_CASE("while a disk takes its time to begin a take's file, what comes is received and kept") {
-  struct SlowOpen : PosixFiles {
-    std::atomic<bool> slow{true};
-    int open(const char* path, int flags, mode_t mode) override {
-      for (int ms = 0; slow && ms < 3000; ++ms) std::this_thread::sleep_for(1ms);
-      return PosixFiles::open(path, flags, mode);
-    }
-  };
   const FreshFolder folder;
-  SlowOpen files;
+  StandsStill files;
   SystemClocks ports_clock, nodes_clock;
   RecordingSession::Options options;
   options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
@@ -200,7 +202,7 @@ TEST_CASE("while a disk takes its time to begin a take's file, what comes is rec
     return (*session)->newest_take()->disk.status().waiting_bytes > 0;
   });  // a chunk
   CHECK((*session)->newest_take()->disk.status().paths.empty());
-  files.slow = false;
+  files.still = false;
   finish(**session);
   CHECK((*session)->newest_take()->disk.status().dropped == 0);
   CHECK(payloads_in(folder.read("a.mcap")).at("/mocap/raw").size() == 20);
@@ -287,13 +289,6 @@ class ByMarks {
 }  // namespace
 
 TEST_CASE("marks that come while a disk stands still begin and end takes of their own") {
-  struct StandsStill : PosixFiles {
-    std::atomic<bool> still{true};
-    int open(const char* path, int flags, mode_t mode) override {
-      for (int ms = 0; still && ms < 5000; ++ms) std::this_thread::sleep_for(1ms);
-      return PosixFiles::open(path, flags, mode);
-    }
-  };
   StandsStill files;
   ByMarks lab(files);
   for (int take = 0; take < 3; ++take) {
