@@ -11,7 +11,9 @@
 #include <cerrno>
 #include <cstring>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -31,6 +33,9 @@ class MemoryFiles final : public FileSystem {
   std::map<std::string, std::size_t> synced;
   /// A sync covers what was there when it began: how many changes that were. Reset by each.
   std::size_t sync_began = SIZE_MAX;
+  /// The next sync fails. What it was to cover the kernel may forget: no later sync of that file
+  /// proves it.
+  bool next_sync_fails = false;
 
   int open(const char* path, int flags, mode_t) override {
     const bool is_folder = (flags & O_DIRECTORY) != 0;
@@ -68,7 +73,12 @@ class MemoryFiles final : public FileSystem {
   }
   int sync(int fd) override {
     const std::size_t covered = std::min(std::exchange(sync_began, SIZE_MAX), changes.size());
-    if (!file(fd).path.empty()) synced[file(fd).path] = covered;
+    const std::string& path = file(fd).path;
+    if (std::exchange(next_sync_fails, false)) {
+      doubtful_.insert(path);
+      return fail(EIO);
+    }
+    if (!path.empty() && !doubtful_.contains(path)) synced[path] = covered;
     return 0;
   }
   int link(const char*, const char*) override { return fail(EPERM); }
@@ -102,6 +112,7 @@ class MemoryFiles final : public FileSystem {
 
   std::vector<Open> open_;
   std::map<std::string, std::string> contents_;
+  std::set<std::string> doubtful_;  // of which a sync failed
 };
 
 }  // namespace kinalign

@@ -7,6 +7,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <filesystem>
+
 using namespace kinalign;
 
 TEST_CASE("of a file that is cut anywhere recover makes a whole one with all that can be read") {
@@ -113,6 +116,34 @@ TEST_CASE("whichever call fails, recover leaves a whole file or none") {
     CHECK((written.empty() || read_mcap(written).closed));
     CHECK((!recovered || !written.empty()));
     if (!files.failed()) break;
+  }
+}
+
+TEST_CASE("a disk that alters what it was given is found out, and the new file gets no name") {
+  class AlteringFiles final : public PosixFiles {
+   public:
+    explicit AlteringFiles(std::uint64_t at) : at_(at) {}
+    ssize_t write(int fd, const void* data, std::size_t size) override {
+      std::string bytes(static_cast<const char*>(data), size);
+      if (at_ - written_ < size) bytes[at_ - written_] ^= 0x10;
+      const ssize_t taken = PosixFiles::write(fd, bytes.data(), size);
+      written_ += static_cast<std::uint64_t>(std::max<ssize_t>(taken, 0));
+      return taken;
+    }
+
+   private:
+    std::uint64_t at_, written_ = 0;
+  };
+  const FreshFolder folder;
+  const std::string path = folder.write("a.mcap", mcap_file(60, 10, McapCompression::none));
+  PosixFiles files;
+  REQUIRE(recover_recording(files, {path}, folder / "whole.mcap", Overwrite::no));
+  const std::uint64_t size = folder.read("whole.mcap").size();
+  for (std::uint64_t at = 0; at < size; ++at) {
+    CAPTURE(at);
+    AlteringFiles altering(at);
+    CHECK_FALSE(recover_recording(altering, {path}, folder / "b.mcap", Overwrite::no));
+    CHECK_FALSE(std::filesystem::exists(folder / "b.mcap"));
   }
 }
 
