@@ -99,7 +99,9 @@ class DeviceRows {
                               std::string(rows) + " that at most " +
                                   std::to_string(order.most_overtaking()) + " others overtake",
                               std::to_string(order.too_late()) + " that came later still"},
-                        "they were left out", "look at the network that they come by"});
+                        "they were left out",
+                        "look at the network that they come by, and whether the clock of their "
+                        "stamps stepped back"});
   }
 
  private:

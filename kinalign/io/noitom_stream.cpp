@@ -170,21 +170,24 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
 NoitomDecoder::Step NoitomDecoder::misfit() {
   const auto bytes = ahead();
   const std::size_t values = stated_noitom_values(bytes);
-  bool is_frame = values > 0 && values <= most_values;
+  const auto drop = [&](NoitomRefusal refusal, std::size_t dropped) {
+    refuse(refusal);
+    skip(dropped);
+    return Step::go_on;
+  };
+  if (values == 0 || values > most_values) return drop(NoitomRefusal::garbage, 2);
   const std::size_t size = noitom_header_size + 4 * values;
-  if (is_frame) {
-    const std::size_t end = std::min(size, bytes.size() - noitom_header_size + 1);
-    const std::size_t from = std::max<std::size_t>(searched_, 2);
-    is_frame = header_within(bytes, from, end, has_noitom_tokens) == end;
-    if (is_frame && bytes.size() < size + noitom_header_size) {
-      searched_ = end;
-      return Step::wait;
-    }
-    is_frame = is_frame && has_noitom_tokens(bytes.subspan(size));
+  const std::size_t end = std::min(size, bytes.size() - noitom_header_size + 1);
+  const std::size_t from = std::max<std::size_t>(searched_, 2);
+  if (header_within(bytes, from, end, has_noitom_tokens) < end) {
+    return drop(NoitomRefusal::garbage, 2);
   }
-  refuse(is_frame ? NoitomRefusal::wrong_count : NoitomRefusal::garbage);
-  skip(is_frame ? size : 2);
-  return Step::go_on;
+  if (bytes.size() < size + noitom_header_size) {
+    searched_ = end;
+    return Step::wait;
+  }
+  const bool is_frame = has_noitom_tokens(bytes.subspan(size));
+  return is_frame ? drop(NoitomRefusal::wrong_count, size) : drop(NoitomRefusal::garbage, 2);
 }
 
 // 64 bytes that end in FF and `last_byte`. What follows them is skipped as it comes: their own
@@ -279,7 +282,9 @@ Findings NoitomDecoder::findings(const std::string& name) const {
   for (const Advice& a : advice) {
     const std::uint64_t times = counts_[a.refusal];
     if (times == 0) continue;
-    findings.push_back({Severity::warning,
+    // A frame that lacked a piece is lost like others on the air, and no fault of the set-up.
+    const bool is_loss = a.refusal == NoitomRefusal::torn;
+    findings.push_back({is_loss ? Severity::note : Severity::warning,
                         Error{name, 0, std::string(a.expected),
                               fmt::format("{} ({} times)", to_string(a.refusal), times)},
                         std::string(a.meaning), std::string(a.repair)});
