@@ -97,8 +97,10 @@ void RecordHerald::tell(const HeardMark& heard) {
 }
 
 void RecordHerald::look(const std::optional<std::string>& typed) {
+  if (!ports_told_) return;
+  for (const HeardMark& heard : session_.take_marks()) tell(heard);
   const HostTime now = session_.now();
-  if (!ports_told_ || now < next_look_) return;
+  if (now < next_look_) return;
   next_look_ = now + 100ms;
   tell_news();
   const bool second = now >= next_second_;

@@ -31,9 +31,9 @@ class RecordHerald {
   /// The take that is told of from now on.
   void follow(std::shared_ptr<SessionTake> take);
   void tell_start(const std::string& path);
-  void tell(const HeardMark& mark);
-  /// Asked after each turn, it looks ten times a second, once it has told what it waits for or that
-  /// a take has begun. `typed`: a text that is being typed.
+  /// Asked after each turn, it tells of marks at once and looks ten times a second at all else, as
+  /// soon as it has told what it waits for or that a take has begun. `typed`: a text that is being
+  /// typed.
   void look(const std::optional<std::string>& typed);
   /// The disk failed, or does not begin a take's file.
   void tell(const PartFailure& failure);
@@ -59,6 +59,7 @@ class RecordHerald {
  private:
   void look_at_disk(HostTime now);
   void tell_dropped(std::uint64_t dropped);
+  void tell(const HeardMark& mark);
   void tell_news();
   void tell_news_of(NodeReceiver& nodes);
   void tell(const Finding& finding);

@@ -22,7 +22,6 @@ bool Stage::turn(Duration patience) {
       session_.mark({pressed->first, "keyboard", ""}, pressed->second);
     }
   }
-  for (const HeardMark& heard : session_.take_marks()) herald_.tell(heard);
   herald_.look(keys_.typed());
   if (interrupted()) {
     take_every_signal();

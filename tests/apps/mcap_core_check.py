@@ -14,6 +14,7 @@ import cases
 from cases import case, kinalign, main
 from mcap_core import core
 from mcap_walk import whole_chunks
+from recording_program import first_event
 
 CUTS = 400
 
@@ -23,7 +24,7 @@ def recording(folder, *words):
     program = subprocess.Popen(
         [str(cases.PROGRAM), "record", "-o", str(folder), "--json", "--device", "mocap=noitom:udp:127.0.0.1:0",
          "--device", "kinect=kinect:udp:127.0.0.1:0", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    started = json.loads(program.stdout.readline())
+    started = first_event(program)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
         for i in range(200):
             for name, size in (("mocap", 1480), ("kinect", 700)):

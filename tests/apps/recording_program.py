@@ -16,6 +16,17 @@ import time
 import cases
 
 
+def first_event(program, name="started"):
+    """The event that it begins with; a disk may need its time before."""
+    for line in program.stdout:
+        event = json.loads(line)
+        if event["event"] == "begin_waits":
+            continue
+        assert event["event"] == name, line
+        return event
+    raise AssertionError(program.communicate()[1])
+
+
 class Recording:
     """The real program with a mocap port, until it is told to end. `first`: the event that it begins with."""
 
@@ -26,10 +37,7 @@ class Recording:
              *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
             env={**os.environ, **(env or {})})
         atexit.register(self.program.kill)  # where a case fails in the middle
-        line = self.program.stdout.readline()
-        assert line, self.program.communicate()[1]
-        self.started = json.loads(line)
-        assert self.started["event"] == first, line
+        self.started = first_event(self.program, first)
         self.port = self.started["ports"].get("mocap")
         self.path = pathlib.Path(self.started.get("file", ""))
 

@@ -9,7 +9,7 @@ import time
 import cases
 from cases import BUILD, done_with, kinalign
 from mcap_walk import Walk
-from recording_program import free_port
+from recording_program import first_event, free_port
 
 NODES = ["waist", "wrist_left", "wrist_right", "ankle_left", "ankle_right"]
 
@@ -35,7 +35,7 @@ class Recorder:
             [str(cases.PROGRAM), "record", "-o", str(folder), "--compression", "none", "--json", "--device",
              "mocap=noitom:udp:127.0.0.1:0", "--device", "kinect=kinect:udp:127.0.0.1:0", "--config",
              str(folder / "lab.toml"), "--marks-port", "0"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.started = json.loads(self.program.stdout.readline())
+        self.started = first_event(self.program)
 
     def flags(self):
         ports = self.started["ports"]
