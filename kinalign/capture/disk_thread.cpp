@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <system_error>
 #include <utility>
 
 namespace kinalign {
@@ -28,18 +29,34 @@ std::uint64_t messages_in(const McapChunkContent& chunk) {
 
 }  // namespace
 
-DiskThread::DiskThread(Open open, McapCompression compression,
-                       std::shared_ptr<const DiskThread> behind)
-    : behind_(std::move(behind)), open_(std::move(open)), compression_(compression) {
-  writer_ = std::thread([this] { write(); });
-  syncer_ = std::thread([this] { sync(); });
-}
+DiskThread::DiskThread(Open open, McapCompression compression)
+    : open_(std::move(open)), compression_(compression) {}
 
 DiskThread::~DiskThread() {
   finish();
   give_up();
-  writer_.join();
-  syncer_.join();
+  if (writer_.joinable()) writer_.join();
+  if (syncer_.joinable()) syncer_.join();
+}
+
+Result<void> DiskThread::start() {
+  try {
+    syncer_ = std::thread([this] { sync(); });
+    writer_ = std::thread([this] { write(); });
+    return {};
+  } catch (const std::system_error& fault) {
+    Error why{"", 0, "a thread for the disk", fault.code().message()};
+    {
+      const std::lock_guard lock(mutex_);
+      done_ = true;  // for one that has no other beside it
+    }
+    asked_.notify_one();
+    if (syncer_.joinable()) syncer_.join();
+    const std::lock_guard lock(mutex_);
+    done_ = false;
+    status_.refused = why;
+    return Failure(std::move(why));
+  }
 }
 
 void DiskThread::push(McapChunkContent chunk, std::uint64_t room) {
@@ -67,6 +84,7 @@ void DiskThread::give_up() {
   {
     const std::lock_guard lock(mutex_);
     giving_up_ = true;
+    if (!writer_.joinable()) drop_all();
   }
   written_.notify_one();
 }
@@ -92,22 +110,16 @@ void DiskThread::publish(const Result<void>& result) {
   for (PartFailure& failure : disk_->take_failures()) failures_.push_back(std::move(failure));
 }
 
-void DiskThread::wait_for_turn() {
-  const auto has_turn = [this] {
-    const DiskStatus before = behind_->status();
-    return !before.paths.empty() || before.finished;
-  };
-  while (behind_ && !has_turn()) {
-    std::unique_lock lock(mutex_);
-    if (written_.wait_for(lock, std::chrono::milliseconds(100), [this] { return giving_up_; }))
-      break;
-  }
-  behind_.reset();
+/// Without a file nothing can be kept.
+void DiskThread::drop_all() {
+  for (const McapChunkContent& chunk : queue_) status_.dropped += messages_in(chunk);
+  queue_.clear();
+  queue_bytes_ = 0;
+  done_ = status_.finished = true;
 }
 
 /// Whether there is a file to write to: tried until give_up().
 bool DiskThread::begin() {
-  wait_for_turn();
   while (!disk_ && !done_) {
     Result<RecordingDisk> opened = open_();
     std::unique_lock lock(mutex_);
@@ -118,14 +130,11 @@ bool DiskThread::begin() {
       continue;
     }
     status_.refused = opened.error();
-    done_ = status_.finished = giving_up_;
-    if (!done_) {
+    if (giving_up_) {
+      drop_all();
+    } else {
       written_.wait_for(lock, std::chrono::seconds(1), [this] { return giving_up_; });
-      continue;
     }
-    for (const McapChunkContent& chunk : queue_) status_.dropped += messages_in(chunk);
-    queue_.clear();
-    queue_bytes_ = 0;
   }
   open_ = nullptr;
   asked_.notify_one();

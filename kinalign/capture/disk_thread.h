@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -37,13 +36,15 @@ class DiskThread {
   /// Asked on the writing thread, each second until it succeeds or nobody wants it any more: what
   /// is pushed meanwhile waits.
   using Open = std::function<Result<RecordingDisk>()>;
-  /// `behind`: whose file has to be begun, or given up, before this one's; nullptr: nobody's.
-  DiskThread(Open open, McapCompression compression,
-             std::shared_ptr<const DiskThread> behind = nullptr);
+  DiskThread(Open open, McapCompression compression);
   /// As finish() and give_up(), and waits.
   ~DiskThread();
   DiskThread(const DiskThread&) = delete;
   DiskThread& operator=(const DiskThread&) = delete;
+
+  /// The disk's work begins; until then what is pushed waits. Fails where the system has no thread
+  /// to give, and may be asked again.
+  Result<void> start();
 
   /// Waits for nothing. `room`: bytes that may wait; where that has no room, it is dropped.
   void push(McapChunkContent chunk, std::uint64_t room = most_waiting);
@@ -59,17 +60,16 @@ class DiskThread {
 
  private:
   void write();
-  void wait_for_turn();
   bool begin();
+  void drop_all();
   void sync();
   void look_at_room(std::unique_lock<std::mutex>& lock);
   void work_on(std::unique_lock<std::mutex>& lock);
   void work_on_end(std::unique_lock<std::mutex>& lock);
   void publish(const Result<void>& result);
 
-  std::shared_ptr<const DiskThread> behind_;
   Open open_;
-  std::optional<RecordingDisk> disk_;  // all three the writing thread's
+  std::optional<RecordingDisk> disk_;  // both the writing thread's
   McapCompression compression_;
 
   mutable std::mutex mutex_;  // of all below

@@ -94,6 +94,10 @@ HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time ste
   return behind.after - share(since, 1.0 - most_slew);
 }
 
+bool is_behind(const Moment& one, const Moment& other) {
+  return one.at > other.at && one.stamp.value_or(Time::max()) > other.stamp.value_or(Time::min());
+}
+
 HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep()) {
   static_cast<void>(reader_.wall_was_set());  // from now on
   bracket_ = read();

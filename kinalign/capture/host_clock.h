@@ -80,6 +80,15 @@ inline constexpr double most_slew = 1e-3;
 /// bracket where the stamp is from before that, or there is none.
 HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time steady);
 
+/// When something came: as arrival() has it, and as the kernel stamped it, where it did.
+struct Moment {
+  HostTime at{};
+  std::optional<Time> stamp{};
+};
+/// Surely later. Arrivals are moved over with a doubt of their own each; stamps have none, unless
+/// somebody sets the clock between the two.
+bool is_behind(const Moment& one, const Moment& other);
+
 struct HostClockEvent {
   enum class Kind : std::uint8_t {
     suspended,    // the host slept: nothing is known of nodes' clocks from before

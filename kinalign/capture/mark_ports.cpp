@@ -104,7 +104,7 @@ void MarkPort::take_piece(const Piece& piece, const TakeMark& take) {
   if (again) return;
   heard.source = form_ == Form::call ? "call" : "trigger";
   heard.sender = sender_of(piece);
-  take(heard, piece.arrival);
+  take(heard, {piece.arrival, piece.stamp});
 }
 
 }  // namespace kinalign

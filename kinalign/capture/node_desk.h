@@ -23,7 +23,8 @@ namespace kinalign {
 struct NodeArrival {
   std::span<const std::uint8_t> bytes;
   NodeAddress from;
-  HostTime h_rx{};  // T2 of RFC 5905; of a confirm T6
+  HostTime h_rx{};              // T2 of RFC 5905; of a confirm T6
+  std::optional<Time> stamp{};  // the kernel's
 };
 
 /// A sample, and the counter when it was taken; of a node without one the zero of NodeTime.

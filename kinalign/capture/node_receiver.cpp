@@ -61,8 +61,10 @@ void NodeReceiver::take(const UdpSocket& socket, std::size_t datagrams) {
   for (std::size_t i = 0; i < datagrams; ++i) {
     const Datagram datagram = batch_->at(i);
     if (!may_answer(datagram)) continue;
-    const NodeArrival arrival{
-        datagram.bytes, {datagram.from, datagram.from_port}, axis_.arrival(datagram.received)};
+    const NodeArrival arrival{datagram.bytes,
+                              {datagram.from, datagram.from_port},
+                              axis_.arrival(datagram.received),
+                              datagram.received};
     const NodeNews news = desk_->receive(arrival);
     const auto answer = desk_->answer(axis_.now(), batch_->answer_to(i));
     if (!answer.empty()) batch_->queue(i, datagram, answer.size());

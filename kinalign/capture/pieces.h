@@ -24,6 +24,7 @@ struct Piece {
   std::size_t sender = 0;
   std::string_view bytes;  // good during the call alone
   HostTime arrival{};
+  std::optional<Time> stamp{};  // the kernel's, of a datagram
 };
 using TakePiece = std::function<void(const Piece& piece)>;
 

@@ -42,8 +42,29 @@ RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver rece
       receiver_(std::move(receiver)),
       recorder_(recorder) {
   receiver_.watch([this](const NodeArrival& arrival, const NodeNews& news, LiveClock*) {
-    take(arrival, news);
+    if (until_ && is_behind({arrival.h_rx, arrival.stamp}, *until_)) {
+      held_.push_back({arrival,
+                       news,
+                       {arrival.bytes.begin(), arrival.bytes.end()},
+                       {news.readings.begin(), news.readings.end()}});
+    } else {
+      take(arrival, news);
+    }
   });
+}
+
+void RecordedNodes::drain(const std::optional<Moment>& until) {
+  until_ = until;
+  receiver_.drain();
+  until_.reset();
+}
+
+void RecordedNodes::release() {
+  for (Held& held : std::exchange(held_, {})) {
+    held.arrival.bytes = held.bytes;
+    held.news.readings = held.readings;
+    take(held.arrival, held.news);
+  }
 }
 
 void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace kinalign {
@@ -24,6 +25,10 @@ class RecordedNodes {
   RecordedNodes(const RecordedNodes&) = delete;
   RecordedNodes& operator=(const RecordedNodes&) = delete;
   ~RecordedNodes() = default;
+
+  /// Takes what has come, as RecordedPort does.
+  void drain(const std::optional<Moment>& until = std::nullopt);
+  void release();
 
   NodeReceiver& receiver() { return receiver_; }
   const NodeReceiver& receiver() const { return receiver_; }
@@ -51,6 +56,13 @@ class RecordedNodes {
     std::map<std::size_t, Lost> lost{};
   };
 
+  struct Held {
+    NodeArrival arrival;
+    NodeNews news;
+    std::vector<std::uint8_t> bytes;
+    std::vector<NodeReading> readings;
+  };
+
   RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver, Recorder& recorder);
   void take(const NodeArrival& arrival, const NodeNews& news);
   Node& node_of(std::uint32_t id, const NodeAddress& from);
@@ -62,6 +74,8 @@ class RecordedNodes {
   NodeReceiver receiver_;
   Recorder& recorder_;
   std::map<std::uint32_t, Node> nodes_;
+  std::optional<Moment> until_;  // what comes later is held back
+  std::vector<Held> held_;
   std::uint64_t bytes_ = 0;
   std::uint64_t crowded_ = 0;  // datagrams of nodes that got no channel
 };

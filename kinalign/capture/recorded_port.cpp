@@ -40,15 +40,29 @@ void RecordedPort::add_fds(std::vector<int>& fds) const {
   std::visit([&](const auto& pieces) { pieces.add_fds(fds); }, pieces_);
 }
 
-void RecordedPort::drain(HostAxis& axis, Recorder& recorder) {
-  const TakePiece to = [&](const Piece& piece) { take(piece, axis, recorder); };
+void RecordedPort::drain(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until) {
+  const bool may_hold = until && device_.transport == "udp";
+  const TakePiece to = [&](const Piece& piece) {
+    if (may_hold && is_behind({piece.arrival, piece.stamp}, *until)) {
+      held_.push_back({piece, std::string(piece.bytes)});
+    } else {
+      take(piece, axis, recorder);
+    }
+  };
   std::visit([&](auto& pieces) { pieces.drain(axis, to); }, pieces_);
+}
+
+void RecordedPort::release(HostAxis& axis, Recorder& recorder) {
+  for (Held& held : std::exchange(held_, {})) {
+    held.piece.bytes = held.bytes;
+    take(held.piece, axis, recorder);
+  }
 }
 
 /// Answers go out before anything is written: what is done in between delays one way alone.
 void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
   Source& source = source_of(piece.sender, recorder);
-  source.watch.feed(piece.bytes, newest_frames_);
+  source.watch.feed(piece.bytes, piece.arrival, newest_frames_);
   if (kinects_) answer_pings(source, piece, axis, recorder);
   if (slimes_) answer_trackers(source, piece);
   source.recorded.record(recorder, piece.arrival, piece.bytes);

@@ -27,8 +27,10 @@ class RecordedPort {
   static Result<RecordedPort> open(const DeviceOptions& device, const SipHashKey& secret);
 
   void add_fds(std::vector<int>& fds) const;
-  /// Takes, answers and records what has come.
-  void drain(HostAxis& axis, Recorder& recorder);
+  /// Takes, answers and records what has come. `until`: datagrams that came later are held back
+  /// for release(). A connection's pieces have no arrival but when they are read: none is held.
+  void drain(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until = std::nullopt);
+  void release(HostAxis& axis, Recorder& recorder);
   /// Ten times a second or so: what a desk says unasked.
   void tick(HostTime now);
   /// These for each of its senders, as RecordedSource has them; once a second faults are looked
@@ -65,6 +67,10 @@ class RecordedPort {
 
   RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret);
   static Result<Pieces> open_pieces(const DeviceOptions& device);
+  struct Held {
+    Piece piece;
+    std::string bytes;
+  };
   void take(const Piece& piece, HostAxis& axis, Recorder& recorder);
   Source& source_of(std::size_t sender, Recorder& recorder);
   std::string topic(const char* content, std::uint64_t life) const;
@@ -80,6 +86,7 @@ class RecordedPort {
   Pieces pieces_;
   std::vector<std::optional<Source>> sources_;  // by the sender's number
   std::optional<Source> others_;                // strangers after too many lives share it
+  std::vector<Held> held_;
   NewestKinectFrames newest_frames_;
   FindingsOnce findings_;
   std::unique_ptr<SlimeDesk> slimes_;

@@ -54,10 +54,6 @@ Duration pre_roll_of(const Lab& lab) {
   return Duration{static_cast<std::int64_t>(lab.record.pre_roll_s * 1e9)};
 }
 
-bool is_ready(std::span<const pollfd> fds) {
-  return std::any_of(fds.begin(), fds.end(), [](const pollfd& one) { return one.revents != 0; });
-}
-
 }  // namespace
 
 Result<std::unique_ptr<RecordingSession>> RecordingSession::open(Options options, Machine machine) {
@@ -128,32 +124,35 @@ void RecordingSession::rest(Duration patience) {
 }
 
 /// Only ports where something has come cost a call; connections are looked after with the clock.
+/// Marks first: what arrived behind a stop is not its take's.
 bool RecordingSession::turn(Duration patience, std::optional<int> also) {
   rest(patience);
   const bool some = wait(patience, also);
   const HostTime now = axis_.now();
   const bool look_after = now >= next_look_;
   if (look_after) next_look_ = now + between_looks;
-  if (look_after && nodes_) nodes_->receiver().tick();
-  if (nodes_ && some && waiting_.front().revents != 0) nodes_->receiver().drain();
-  std::size_t begin = nodes_ ? 1 : 0;
-  const auto next_is_ready = [&](std::size_t port) {
-    const auto of_port = std::span(waiting_).subspan(begin, fds_end_[port] - begin);
-    begin = fds_end_[port];
-    return some && is_ready(of_port);
-  };
-  for (std::size_t i = 0; i < ports_.size(); ++i) {
-    const bool ready = next_is_ready(i);
-    if (look_after) ports_[i].tick(now);
-    if (look_after || ready) ports_[i].drain(axis_, *recorder_);
-  }
   bool marks = false;
-  for (std::size_t i = 0; i < mark_ports_.size(); ++i) {
-    marks = next_is_ready(ports_.size() + i) || marks;
+  for (std::size_t i = 0; some && i < mark_ports_.size(); ++i) {
+    marks = is_ready(ports_.size() + i) || marks;
   }
   if (marks) drain_marks();
+  if (look_after && nodes_) nodes_->receiver().tick();
+  if (nodes_ && some && waiting_.front().revents != 0) nodes_->drain();
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    if (look_after) ports_[i].tick(now);
+    if (look_after || (some && is_ready(i))) ports_[i].drain(axis_, *recorder_);
+  }
   tick(now);
+  takes_.run();
   return some;
+}
+
+/// By ports_, then mark_ports_.
+bool RecordingSession::is_ready(std::size_t port) const {
+  const std::size_t begin = port > 0 ? fds_end_[port - 1] : nodes_ ? 1 : 0;
+  const auto of_port = std::span(waiting_).subspan(begin, fds_end_[port] - begin);
+  return std::any_of(of_port.begin(), of_port.end(),
+                     [](const pollfd& one) { return one.revents != 0; });
 }
 
 /// Whether something has come; waiting_ says where.
@@ -177,19 +176,16 @@ bool RecordingSession::wait(Duration patience, std::optional<int> also) {
 }
 
 /// A start stands in the take that it begins, a stop in the one that it ends.
-void RecordingSession::mark(const RecordedMark& mark, HostTime at) {
+void RecordingSession::mark(const RecordedMark& mark, const Moment& came) {
   using Kind = Mark::Kind;
   const Kind kind = mark.mark.kind;
   if (kind == Kind::start && by_marks_ && by_marks_->starts != Starts::none && !recording()) {
     if (by_marks_->starts == Starts::next) by_marks_->starts = Starts::none;
-    start(by_marks_->plan, at);
+    start(by_marks_->plan, came.at);
   }
-  recorder_->record(mark_channel_, at, to_json(mark));
-  if (kind == Kind::stop && by_marks_ && recording()) {
-    drain_devices();
-    end_take();
-  }
-  if (marks_.size() < most_untaken) marks_.emplace_back(mark, at);
+  recorder_->record(mark_channel_, came.at, to_json(mark));
+  if (kind == Kind::stop && by_marks_ && recording() && has_room_for_takes()) end_take(came);
+  if (marks_.size() < most_untaken) marks_.emplace_back(mark, came.at);
 }
 
 void RecordingSession::obey_no_start() {
@@ -235,70 +231,76 @@ void RecordingSession::start(const TakePlan& plan, HostTime at) {
   const auto compression =
       options_.lab.record.compression == "none" ? McapCompression::none : McapCompression::zstd;
   TakeHead head{facts_, expected_of(options_.lab), attachments_of(options_, facts_.anchor.utc)};
-  std::erase_if(earlier_, [](const auto& take) { return take.expired(); });
-  if (newest_) earlier_.emplace_back(newest_);
-  newest_ = begin_take(machine_.files, plan, std::move(head), compression, newest_);
+  newest_ = begin_take(machine_.files, plan, std::move(head), compression);
   newest_->begun = at;
-  begun_.push_back(newest_);
-  begin_counts(recorder_->start(
-      at, [this](McapChunkContent chunk) { newest_->disk.push(std::move(chunk), room()); }));
+  takes_.add(newest_);
+  begin_counts(recorder_->start(at, [this](McapChunkContent chunk) {
+    newest_->disk.push(std::move(chunk), takes_.room(*newest_));
+  }));
 }
 
-/// Bytes that may wait for the disk in the newest take, beside those of the takes before it.
-std::uint64_t RecordingSession::room() const {
-  std::uint64_t waiting = 0;
-  for (const auto& earlier : earlier_) {
-    if (const auto take = earlier.lock()) waiting += take->disk.status().waiting_bytes;
+/// Told once, until there is room again.
+bool RecordingSession::has_room_for_takes() {
+  const bool was_full = std::exchange(full_, takes_.is_full());
+  if (full_ && !was_full) {
+    findings_.push_back(
+        {Severity::warning,
+         Error{"marks", 0,
+               "at most " + std::to_string(TakeQueue::most) + " takes that wait for the disk",
+               "a mark that would end one more"},
+         "it ends none: what comes stands in the same file, with all marks",
+         "see what holds up the disk, or who sends so many marks"});
   }
-  return DiskThread::most_waiting - std::min(waiting, DiskThread::most_waiting);
-}
-
-std::shared_ptr<SessionTake> RecordingSession::next_take() {
-  if (begun_.empty()) return nullptr;
-  std::shared_ptr<SessionTake> next = std::move(begun_.front());
-  begun_.pop_front();
-  return next;
+  return !full_;
 }
 
 /// What of devices lies in the kernel's buffers, which a turn may not have emptied; no longer than
 /// a flood may hold up the end.
-void RecordingSession::drain_devices() {
+void RecordingSession::drain_devices(const Moment& until) {
   constexpr Duration longest = std::chrono::milliseconds(200);
   const HostTime begun = axis_.now();
   std::uint64_t before = 0;
   do {
     before = heard();
-    if (nodes_) nodes_->receiver().drain();
-    for (RecordedPort& port : ports_) port.drain(axis_, *recorder_);
+    if (nodes_) nodes_->drain(until);
+    for (RecordedPort& port : ports_) port.drain(axis_, *recorder_, until);
   } while (heard() != before && axis_.now() - begun < longest);
 }
 
 /// Of all ports in the order of their arrival: a start may come to one and the stop to another.
 void RecordingSession::drain_marks() {
-  std::vector<HeardMark> came;
+  std::vector<std::pair<RecordedMark, Moment>> all;
   for (MarkPort& port : mark_ports_) {
-    port.drain(axis_, [&](const RecordedMark& m, HostTime at) { came.emplace_back(m, at); });
+    port.drain(axis_,
+               [&](const RecordedMark& m, const Moment& came) { all.emplace_back(m, came); });
   }
-  std::stable_sort(came.begin(), came.end(),
-                   [](const HeardMark& a, const HeardMark& b) { return a.second < b.second; });
-  for (const auto& [heard, at] : came) mark(heard, at);
+  const bool stamped =
+      std::all_of(all.begin(), all.end(), [](const auto& one) { return one.second.stamp; });
+  std::stable_sort(all.begin(), all.end(), [stamped](const auto& a, const auto& b) {
+    return stamped ? a.second.stamp < b.second.stamp : a.second.at < b.second.at;
+  });
+  for (const auto& [heard, came] : all) mark(heard, came);
 }
 
 void RecordingSession::stop() {
   if (!recording()) return;
   const std::shared_ptr<SessionTake> ending = newest_;
-  drain_devices();
+  const Moment now{axis_.now()};
   drain_marks();
-  if (recording() && newest_ == ending) end_take();
+  if (recording() && newest_ == ending) end_take(now);
 }
 
-void RecordingSession::end_take() {
+/// What arrived later is the next one's, or nobody's.
+void RecordingSession::end_take(const Moment& came) {
+  drain_devices(came);
   const HostTime now = axis_.now();
   tell(now);
   recorder_->stop();
   newest_->end = TakeEnd{now, streams(), port_counts(), {}};
   if (nodes_) newest_->end->nodes = nodes_->receiver().status();
   newest_->disk.finish();
+  if (nodes_) nodes_->release();
+  for (RecordedPort& port : ports_) port.release(axis_, *recorder_);
 }
 
 std::vector<StreamStatus> RecordingSession::streams() const {
@@ -309,7 +311,7 @@ std::vector<StreamStatus> RecordingSession::streams() const {
 }
 
 Findings RecordingSession::take_findings() {
-  Findings all;
+  Findings all = std::exchange(findings_, {});
   for (RecordedPort& port : ports_) append(all, port.take_findings());
   for (MarkPort& port : mark_ports_) append(all, port.take_findings());
   return all;

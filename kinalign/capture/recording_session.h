@@ -15,7 +15,6 @@
 #include <poll.h>
 
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -57,21 +56,24 @@ class RecordingSession {
   void start(const TakePlan& plan) { start(plan, axis_.now()); }
   enum class Starts : std::uint8_t { none, next, each };
   /// From now on start marks begin takes, where none goes on, and a stop mark ends it, each in the
-  /// turn in which it comes, whatever the disk is doing.
+  /// turn in which it comes, whatever the disk is doing: but while takes_ is full none is ended,
+  /// and what comes stands in the same file.
   void obey_marks(TakePlan plan, Starts starts) { by_marks_ = ByMarks{std::move(plan), starts}; }
   /// A mark begins no take any more; one that goes on is still ended by one.
   void obey_no_start();
   /// Ends the take that goes on: what has come to the machine goes to the disk, see the take's
-  /// disk. Marks that came meanwhile may have begun another one.
+  /// disk; turn() looks after that. Marks that came meanwhile may have begun another one.
   void stop();
   bool recording() const { return recorder_->started(); }
   /// Those that began, in their order, each once; nullptr: none more.
-  std::shared_ptr<SessionTake> next_take();
+  std::shared_ptr<SessionTake> next_take() { return takes_.next(); }
   /// The present or last one; nullptr before the first.
   const std::shared_ptr<SessionTake>& newest_take() const { return newest_; }
+  /// Bytes of all takes that only memory has.
+  std::uint64_t waiting_bytes() const { return takes_.waiting_bytes(); }
 
   /// Onto the channel of marks; before a take into its pre-roll. It may begin or end one.
-  void mark(const RecordedMark& mark, HostTime at);
+  void mark(const RecordedMark& mark, HostTime at) { this->mark(mark, Moment{at}); }
   /// All marks since this was asked last, at most some hundred.
   std::vector<HeardMark> take_marks() { return std::exchange(marks_, {}); }
 
@@ -96,15 +98,17 @@ class RecordingSession {
   void rest(Duration patience);
   std::uint64_t heard() const;
   bool wait(Duration patience, std::optional<int> also);
-  void drain_devices();
+  bool is_ready(std::size_t port) const;
+  void mark(const RecordedMark& mark, const Moment& came);
+  void drain_devices(const Moment& until);
   void drain_marks();
-  std::uint64_t room() const;
+  bool has_room_for_takes();
   void tick(HostTime now);
   void tell(HostTime now);
   void remember_counts(std::uint64_t chunk, std::uint64_t first);
   void begin_counts(std::uint64_t chunk);
   void start(const TakePlan& plan, HostTime at);
-  void end_take();
+  void end_take(const Moment& came);
   std::vector<std::pair<std::string, PortCounts>> running_port_counts() const;
 
   struct PortPast {
@@ -136,8 +140,9 @@ class RecordingSession {
   HostTime awake_until_ = HostTime::min();
   std::optional<ByMarks> by_marks_;
   std::shared_ptr<SessionTake> newest_;
-  std::vector<std::weak_ptr<const SessionTake>> earlier_;  // whose end may not be written yet
-  std::deque<std::shared_ptr<SessionTake>> begun_;         // since next_take() was asked
+  TakeQueue takes_;
+  Findings findings_;
+  bool full_ = false;  // takes_; and told so
 };
 
 }  // namespace kinalign

@@ -10,6 +10,8 @@
 #include "kinalign/io/recording_format.h"
 #include "kinalign/wire/time.h"
 
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -47,10 +49,37 @@ struct TakeHead {
   std::vector<McapAttachment> attachments;
 };
 
-/// Its file is begun as soon as that of `before` is, which may be nullptr: so that they are
-/// numbered in their order.
+/// Its disk is not started yet.
 std::shared_ptr<SessionTake> begin_take(FileSystem& files, const TakePlan& plan, TakeHead head,
-                                        McapCompression compression,
-                                        const std::shared_ptr<SessionTake>& before);
+                                        McapCompression compression);
+
+/// A session's takes until the disk has all of them. Files are begun in the order of the takes, so
+/// that they are numbered so, and a few are written at a time: however many marks somebody sends,
+/// they make no more threads.
+class TakeQueue {
+ public:
+  static constexpr std::size_t most = 32;
+  static constexpr std::size_t most_writing = 8;  // at once: each has two threads
+
+  void add(std::shared_ptr<SessionTake> take);
+  /// Those that were added, in their order, each once; nullptr: none more.
+  std::shared_ptr<SessionTake> next();
+  /// Starts the disks that may; to be called again and again.
+  void run();
+  /// As many wait as may.
+  bool is_full() const { return queued_.size() + writing_.size() >= most; }
+  /// Bytes of all that only memory has.
+  std::uint64_t waiting_bytes() const { return waiting_beside(nullptr); }
+  /// Bytes that may wait of `take`, beside those of the others.
+  std::uint64_t room(const SessionTake& take) const;
+
+ private:
+  bool next_may() const;
+  std::uint64_t waiting_beside(const SessionTake* one) const;
+
+  std::deque<std::shared_ptr<SessionTake>> added_;   // since next() was asked
+  std::deque<std::shared_ptr<SessionTake>> queued_;  // whose disks are not started
+  std::vector<std::shared_ptr<SessionTake>> writing_;
+};
 
 }  // namespace kinalign

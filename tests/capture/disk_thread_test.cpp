@@ -67,6 +67,7 @@ TEST_CASE("all that was pushed stands in the file, in order") {
   PosixFiles files;
   {
     DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::zstd);
+    REQUIRE(thread.start());
     for (std::uint32_t i = 0; i < 100; ++i) thread.push(chunk(10 * i, 10 * i + 10));
     thread.finish();
     wait_until([&] { return thread.status().finished; });
@@ -84,6 +85,7 @@ TEST_CASE("while a sync lasts what comes is written all the same") {
   const FreshFolder folder;
   SlowSync files;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   wait_until([&] { return files.over == 2; });  // its head's and its folder's
   files.slow = true;
   thread.push(chunk(0, 10));
@@ -118,6 +120,7 @@ TEST_CASE("who begins a recording asks nothing of the disk, and its name is sync
   const FreshFolder folder;
   Watched files;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   wait_until([&] { return files.synced == 2; });  // the file's and the folder's, before any chunk
   CHECK(files.by_receiver == 0);
   wait_until([&] { return thread.status().free_bytes.has_value(); });
@@ -135,6 +138,7 @@ TEST_CASE("what was pushed is synced within half a second, without anything that
   const FreshFolder folder;
   CountedSyncs files;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   wait_until([&] { return files.begun == 2 && thread.status().waiting_bytes == 0; });
   int in_time = 0;
   for (std::uint32_t i = 0; i < 5; ++i) {
@@ -153,6 +157,7 @@ TEST_CASE("a file that can't be begun is begun as soon as it can, with all that 
   PosixFiles files;
   const std::string path = folder / "later/a.mcap";
   DiskThread thread(opening(files, path), McapCompression::none);
+  REQUIRE(thread.start());
   thread.push(chunk(0, 10));
   wait_until([&] { return thread.status().refused.has_value(); });
   CHECK(!thread.status().finished);
@@ -169,6 +174,7 @@ TEST_CASE("a file that can't be begun is told, and given up when nobody wants it
   const FreshFolder folder;
   PosixFiles files;
   DiskThread thread(opening(files, folder / "none/a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   thread.push(chunk(0, 10));
   wait_until([&] { return thread.status().refused.has_value(); });
   thread.give_up();
@@ -199,6 +205,7 @@ TEST_CASE("a take that begins with a full pre-roll loses nothing while its file 
         return Failure(Error{"a.mcap", 0, "a disk", "none"});
       },
       McapCompression::none);
+  REQUIRE(thread.start());
   recorder.start(HostTime{}, [&](McapChunkContent kept) { thread.push(std::move(kept)); });
   record_bytes(std::size_t{32} << 20);
   recorder.stop();
@@ -208,48 +215,32 @@ TEST_CASE("a take that begins with a full pre-roll loses nothing while its file 
   CHECK(status.waiting_bytes > options.pre_roll_bytes);
 }
 
-TEST_CASE("a take's file is begun behind that of the take before") {
+TEST_CASE("what is pushed before it is started waits, and is lost where it is given up") {
   const FreshFolder folder;
   PosixFiles files;
-  Gate gate;
-  const auto first = std::make_shared<DiskThread>(
-      [&, goes_on = gate.goes_on] {
-        goes_on.wait();
-        return opening(files, folder / "a.mcap")();
-      },
-      McapCompression::none);
-  DiskThread second(opening(files, folder / "b.mcap"), McapCompression::none, first);
-  second.push(chunk(0, 10));
-  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  thread.push(chunk(0, 10));
+  thread.finish();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
   CHECK(folder.names().empty());
-  gate.stands_still.set_value();
-  wait_until([&] { return !second.status().paths.empty(); });
-  CHECK(!first->status().paths.empty());
-}
+  CHECK_FALSE(thread.status().finished);
+  REQUIRE(thread.start());
+  wait_until([&] { return thread.status().finished; });
+  CHECK(read_mcap(folder.read("a.mcap")).messages.size() == 10);
 
-TEST_CASE("a take that is given up waits for no other") {
-  const FreshFolder folder;
-  PosixFiles files;
-  Gate gate;
-  const auto first = std::make_shared<DiskThread>(
-      [goes_on = gate.goes_on]() -> Result<RecordingDisk> {
-        goes_on.wait();
-        return Failure(Error{"a.mcap", 0, "a disk", "none"});
-      },
-      McapCompression::none);
-  DiskThread second(opening(files, folder / "none/b.mcap"), McapCompression::none, first);
-  second.push(chunk(0, 10));
-  second.give_up();
-  wait_until([&] { return second.status().finished; });
-  CHECK(second.status().dropped == 10);
-  CHECK(second.status().waiting_bytes == 0);
-  gate.stands_still.set_value();
+  DiskThread given_up(opening(files, folder / "b.mcap"), McapCompression::none);
+  given_up.push(chunk(0, 10));
+  given_up.give_up();
+  CHECK(given_up.status().finished);
+  CHECK(given_up.status().dropped == 10);
+  CHECK(given_up.status().waiting_bytes == 0);
 }
 
 TEST_CASE("what has no room beside other takes is dropped and counted") {
   const FreshFolder folder;
   PosixFiles files;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   thread.push(chunk(0, 10), 10);
   CHECK(thread.status().dropped == 10);
   thread.push(chunk(10, 20));
@@ -262,6 +253,7 @@ TEST_CASE("what memory had no room for is counted, in the file too") {
   const FreshFolder folder;
   PosixFiles files;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   thread.push(chunk(0, 10));
   McapChunkContent more_than_all;
   const std::string payload(DiskThread::most_waiting, 'x');
@@ -282,6 +274,7 @@ TEST_CASE("a failed sync is told, and the recording goes on in a new file") {
   const FreshFolder folder;
   SlowSync files;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   wait_until([&] { return files.over == 2; });
   files.fails = true;
   thread.push(chunk(0, 10));
@@ -301,6 +294,7 @@ TEST_CASE("a disk that fails every sync is not asked again at once") {
   FailingSyncs files;
   files.fails = true;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   wait_until([&] { return thread.status().paths.size() == 2; });
   for (std::uint32_t i = 0; i < 50; ++i) {
     thread.push(chunk(10 * i, 10 * i + 10));
@@ -320,6 +314,7 @@ TEST_CASE("what a full disk refuses at the end is written as soon as there is ro
   const FreshFolder folder;
   FullDisk files;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   wait_until([&] { return !thread.status().paths.empty(); });
   files.full = true;
   thread.push(chunk(0, 28));
@@ -339,6 +334,7 @@ TEST_CASE("what a full disk never takes is counted when it is given up") {
   const FreshFolder folder;
   FullDisk files;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   thread.push(chunk(0, 10));
   wait_until([&] { return thread.status().waiting_bytes == 0; });
   files.full = true;
@@ -356,6 +352,7 @@ TEST_CASE("a file that is removed is told, and the recording goes on in a new on
   const FreshFolder folder;
   PosixFiles files;
   DiskThread thread(opening(files, folder / "a.mcap"), McapCompression::none);
+  REQUIRE(thread.start());
   wait_until([&] { return thread.status().free_bytes.has_value(); });
   REQUIRE(files.remove((folder / "a.mcap").c_str()) == 0);
   thread.push(chunk(0, 10));

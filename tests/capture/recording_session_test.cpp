@@ -255,8 +255,8 @@ class ByMarks {
     client_.send("127.0.0.1", session_->ports().at(2).second, bytes_of(text));
   }
   /// Frames that nobody waits for.
-  void flood(std::uint32_t count) {
-    for (std::uint32_t i = 0; i < count; ++i) {
+  void flood(std::uint32_t from, std::uint32_t to) {
+    for (std::uint32_t i = from; i < to; ++i) {
       client_.send("127.0.0.1", session_->ports().front().second, noitom_frame(i));
     }
   }
@@ -340,13 +340,63 @@ TEST_CASE("what had reached the machine when a mark ends a take stands in its fi
   ByMarks lab(files);
   lab.mark(Mark::Kind::start, 1);
   constexpr std::uint32_t sent = 150;  // more than a turn reads
-  lab.flood(sent);
+  lab.flood(0, sent);
   lab.mark(Mark::Kind::stop, 2);
   const auto payloads = lab.payloads();
   REQUIRE(payloads.size() == 1);
   const std::uint64_t dropped = lab.session().port_counts().front().second.dropped;
   CHECK(payloads[0].at("/mocap/raw").size() + dropped == sent);
   CHECK(payloads[0].at("/mocap/raw").size() > 128);
+}
+
+TEST_CASE("what arrives behind a stop is the next take's, whenever it is read") {
+  PosixFiles files;
+  ByMarks lab(files);
+  const auto flood = [&](std::uint32_t from, std::uint32_t to) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    lab.flood(from, to);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  };
+  lab.mark(Mark::Kind::start, 1);
+  flood(0, 40);
+  lab.call_all({call(Mark::Kind::stop, 2)});
+  flood(40, 50);
+  lab.call_all({call(Mark::Kind::start, 3)});
+  flood(50, 80);
+  lab.mark(Mark::Kind::stop, 4);
+  const auto payloads = lab.payloads();
+  REQUIRE(payloads.size() == 2);
+  const auto frames = [&](std::size_t take) { return payloads[take].at("/mocap/raw"); };
+  CHECK(frames(0).size() == 40);
+  CHECK(frames(1).size() == 40);
+  const auto first = noitom_frame(40);
+  CHECK(frames(1).front() == std::string(first.begin(), first.end()));
+}
+
+TEST_CASE("more takes than may wait for the disk become one, and nothing is lost") {
+  StandsStill files;
+  ByMarks lab(files);
+  constexpr int rounds = 2 * TakeQueue::most;
+  for (int k = 0; k < rounds; ++k) {
+    lab.mark(Mark::Kind::start, 2 * k);
+    lab.say(noitom_frame(static_cast<std::uint32_t>(k)));
+    lab.mark(Mark::Kind::stop, 2 * k + 1);
+  }
+  const Findings findings = lab.session().take_findings();
+  REQUIRE(findings.size() == 1);
+  CHECK(findings.front().what.expected == "at most 32 takes that wait for the disk");
+  files.still = false;
+  int stops = 0;
+  for (; lab.session().recording(); ++stops) lab.mark(Mark::Kind::stop, 2 * rounds + stops);
+  const auto payloads = lab.payloads();
+  CHECK(payloads.size() == TakeQueue::most);
+  std::size_t frames = 0, marks = 0;
+  for (const auto& take : payloads) {
+    frames += take.at("/mocap/raw").size();
+    marks += take.at("/marks").size();
+  }
+  CHECK(frames == rounds);
+  CHECK(marks == static_cast<std::size_t>(2 * rounds + stops));
 }
 
 TEST_CASE("after a take that began by a mark no start begins another one unless it was asked for") {
