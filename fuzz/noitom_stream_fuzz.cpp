@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames do not depend on where bytes are cut, little waits, every byte is accounted for, and what
-// was read is sent and read again as the same.
-#include "kinalign/io/noitom_stream.h"
+// was read is sent and read again as the same. In datagrams little waits, no byte is counted twice,
+// and frames are no more than there is room for.
+#include "kinalign/io/noitom_receiver.h"
 
 #include <cstdlib>
 
@@ -27,10 +28,35 @@ Read read(std::span<const std::uint8_t> bytes, std::size_t piece) {
   return all;
 }
 
+/// Datagrams whose sizes and arrivals hang on their bytes.
+void read_datagrams(std::span<const std::uint8_t> bytes) {
+  NoitomReceiver receiver;
+  std::vector<NoitomArrival> arrivals;
+  const std::size_t size = bytes.size();
+  HostTime now{};
+  while (!bytes.empty()) {
+    const std::size_t wish = bytes[0] % 2 == 0 ? 740 : 1 + 8UL * bytes[0];
+    const auto part = bytes.first(std::min(wish, bytes.size()));
+    receiver.feed_datagram(part, now, arrivals);
+    now += std::chrono::milliseconds(part.back() % 8);
+    bytes = bytes.subspan(part.size());
+    if (receiver.waiting() > 24'576) std::abort();
+  }
+  receiver.finish(arrivals);
+  const NoitomCounts& counts = receiver.counts();
+  if (counts.frames != arrivals.size() || counts.bytes_skipped > size) std::abort();
+  std::size_t in_frames = 0;
+  for (const NoitomArrival& one : arrivals) {
+    if (one.frame.form != NoitomForm::text) in_frames += 64 + 4 * one.frame.values.size();
+  }
+  if (in_frames + counts.bytes_skipped > size) std::abort();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::uint8_t> bytes(data, size);
+  read_datagrams(bytes);
   const Read whole = read(bytes, size + 1);
   const Read cut = read(bytes, 1 + size % 61);
   if (!(whole.counts == cut.counts) || whole.counts.bytes_skipped > size) std::abort();

@@ -34,36 +34,48 @@ std::uint64_t trouble(const KinectStreamCounts& counts) {
 void note(const KinectOrigin& origin, NewestKinectFrames& newest) {
   const auto known = newest.find(origin.sensor);
   if (known == newest.end()) {
-    if (newest.size() < most_of_a_port) newest.emplace(origin.sensor, origin);
+    if (newest.size() < most_of_a_port) newest.emplace(origin.sensor, HeardKinect{origin});
     return;
   }
-  const auto ahead = static_cast<std::int32_t>(origin.sequence - known->second.sequence);
-  if (known->second.session != origin.session || ahead > 0) known->second = origin;
+  HeardKinect& heard = known->second;
+  const auto ahead = static_cast<std::int32_t>(origin.sequence - heard.newest.sequence);
+  const bool anew = heard.newest.session != origin.session;
+  if (anew) heard.over[heard.sessions_over++ % heard.over.size()] = heard.newest.session;
+  if (anew || ahead > 0) heard.newest = origin;
 }
 
 }  // namespace
 
+bool HeardKinect::is_over(std::uint32_t session) const {
+  const auto known = std::min<std::uint64_t>(sessions_over, over.size());
+  const auto end = over.begin() + static_cast<std::ptrdiff_t>(known);
+  return session != newest.session && std::find(over.begin(), end, session) != end;
+}
+
 StreamWatch::StreamWatch(const std::string& protocol, bool datagrams) {
-  if (protocol == "noitom") decoder_.emplace<Noitom>();
+  if (protocol == "noitom") decoder_.emplace<Noitom>().datagrams = datagrams;
   if (protocol == "xsens") decoder_.emplace<Xsens>();
   if (protocol == "kinect") decoder_.emplace<Kinect>().datagrams = datagrams;
 }
 
-void StreamWatch::feed(Noitom& noitom, std::span<const std::uint8_t> bytes, NewestKinectFrames&) {
+void StreamWatch::feed(Noitom& noitom, const Piece& piece, NewestKinectFrames&) {
   noitom.frames.clear();
-  noitom.decoder.feed(bytes, noitom.frames);
+  if (noitom.datagrams) {
+    noitom.decoder.feed_datagram(piece.bytes, piece.arrival, noitom.frames);
+  } else {
+    noitom.decoder.feed(piece.bytes, noitom.frames);
+  }
 }
 
-void StreamWatch::feed(Xsens& xsens, std::span<const std::uint8_t> bytes, NewestKinectFrames&) {
+void StreamWatch::feed(Xsens& xsens, const Piece& piece, NewestKinectFrames&) {
   xsens.samples.clear();
-  xsens.decoder.feed(bytes, xsens.samples);
+  xsens.decoder.feed(piece.bytes, xsens.samples);
 }
 
-void StreamWatch::feed(Kinect& kinect, std::span<const std::uint8_t> bytes,
-                       NewestKinectFrames& newest) {
+void StreamWatch::feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& newest) {
   kinect.messages.clear();
   kinect.pings.clear();
-  kinect.decoder.feed(bytes, kinect.messages);
+  kinect.decoder.feed(piece.bytes, kinect.messages);
   if (kinect.datagrams) kinect.decoder.finish(kinect.messages);
   for (KinectMessage& message : kinect.messages) {
     if (const auto* ping = std::get_if<KinectPing>(&message)) kinect.pings.push_back(*ping);
@@ -73,6 +85,11 @@ void StreamWatch::feed(Kinect& kinect, std::span<const std::uint8_t> bytes,
 
 void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest) {
   const KinectOrigin origin = frame.origin;
+  const auto before = newest.find(origin.sensor);
+  if (before != newest.end() && before->second.is_over(origin.session)) {
+    ++kinect.late;
+    return;
+  }
   auto found = kinect.sensors.find(origin.sensor);
   if (found == kinect.sensors.end()) {
     if (kinect.sensors.size() == most_sensors) {
@@ -80,8 +97,7 @@ void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& n
       return;
     }
     found = kinect.sensors.emplace(origin.sensor, KinectFrameJoiner()).first;
-    const auto before = newest.find(origin.sensor);
-    if (before != newest.end()) found->second.follow(before->second);
+    if (before != newest.end()) found->second.follow(before->second.newest);
   }
   note(origin, newest);
   kinect.frames.clear();
@@ -91,12 +107,12 @@ void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& n
                     [](const JoinedKinectFrame& one) { return one.whole; }));
 }
 
-void StreamWatch::feed(std::string_view piece, NewestKinectFrames& newest) {
+void StreamWatch::feed(std::string_view piece, HostTime arrival, NewestKinectFrames& newest) {
   std::visit(
       [&](auto& decoder) {
         if constexpr (!std::is_same_v<std::decay_t<decltype(decoder)>, std::monostate>) {
           const std::uint64_t before = trouble(decoder.decoder.counts());
-          feed(decoder, octets(piece), newest);
+          feed(decoder, {octets(piece), arrival}, newest);
           if (trouble(decoder.decoder.counts()) > before) ++refused_;
         }
       },
@@ -131,10 +147,12 @@ SenderCounts StreamWatch::counts(const Xsens& xsens) {
 
 SenderCounts StreamWatch::counts(const Kinect& kinect) {
   SenderCounts out{0, 0, kinect.whole, {}, kinect.further_sensors};
+  out.order.late = kinect.late;
   for (const auto& [sensor, joiner] : kinect.sensors) {
     const KinectFrameCounts joined = joiner.counts();
     out.order += joined.frames;
-    out.refused += joined.stale + joined.contradicting;
+    out.order.late += joined.stale;
+    out.refused += joined.contradicting;
   }
   return out;
 }

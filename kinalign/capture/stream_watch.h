@@ -6,10 +6,11 @@
 #include "kinalign/core/error.h"
 #include "kinalign/io/kinect_frames.h"
 #include "kinalign/io/kinect_stream.h"
-#include "kinalign/io/noitom_stream.h"
+#include "kinalign/io/noitom_receiver.h"
 #include "kinalign/io/recording_counts.h"
 #include "kinalign/io/xsens_stream.h"
 
+#include <array>
 #include <map>
 #include <span>
 #include <string>
@@ -19,8 +20,16 @@
 
 namespace kinalign {
 
-/// By sensor: a port's Kinects' newest frames, whichever sender brought them.
-using NewestKinectFrames = std::map<std::uint32_t, KinectOrigin>;
+/// A Kinect's newest frame, whichever of a port's senders brought it, and sessions that are over.
+struct HeardKinect {
+  KinectOrigin newest;
+  std::array<std::uint32_t, 16> over{};
+  std::uint64_t sessions_over = 0;
+
+  bool is_over(std::uint32_t session) const;
+};
+/// By sensor.
+using NewestKinectFrames = std::map<std::uint32_t, HeardKinect>;
 
 class StreamWatch {
  public:
@@ -30,7 +39,7 @@ class StreamWatch {
 
   /// `newest`: a Kinect that is heard on another way than before, in a connection made anew, goes
   /// on with its count, or has been started anew.
-  void feed(std::string_view piece, NewestKinectFrames& newest);
+  void feed(std::string_view piece, HostTime arrival, NewestKinectFrames& newest);
   /// Of a Kinect's sender: the pings that the last piece completed, and how pongs are to look.
   std::span<const KinectPing> pings() const;
   bool speaks_lines() const;
@@ -43,8 +52,9 @@ class StreamWatch {
 
  private:
   struct Noitom {
-    NoitomDecoder decoder{NoitomParts::heads};
+    NoitomReceiver decoder{NoitomParts::heads};
     std::vector<NoitomArrival> frames{};
+    bool datagrams = false;
   };
   struct Xsens {
     XsensDecoder decoder;
@@ -56,12 +66,17 @@ class StreamWatch {
     std::map<std::uint32_t, KinectFrameJoiner> sensors{};  // as many as most_sensors
     std::vector<JoinedKinectFrame> frames{};
     std::uint64_t whole = 0, further_sensors = 0;  // frames; messages of one sensor too many
+    std::uint64_t late = 0;                        // of a session that another sender's has ended
     std::vector<KinectPing> pings{};
     bool datagrams = false;
   };
-  static void feed(Noitom& noitom, std::span<const std::uint8_t> bytes, NewestKinectFrames& newest);
-  static void feed(Xsens& xsens, std::span<const std::uint8_t> bytes, NewestKinectFrames& newest);
-  static void feed(Kinect& kinect, std::span<const std::uint8_t> bytes, NewestKinectFrames& newest);
+  struct Piece {
+    std::span<const std::uint8_t> bytes;
+    HostTime arrival;
+  };
+  static void feed(Noitom& noitom, const Piece& piece, NewestKinectFrames& newest);
+  static void feed(Xsens& xsens, const Piece& piece, NewestKinectFrames& newest);
+  static void feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& newest);
   static void count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest);
   static SenderCounts counts(const Noitom& noitom);
   static SenderCounts counts(const Xsens& xsens);

@@ -33,17 +33,18 @@ Time device_stamp(const KinectFrame& frame) { return Time{duration_of(frame.devi
 
 }  // namespace
 
-bool KinectFrameJoiner::is_stale(std::uint32_t session) {
-  const auto known = std::min<std::uint64_t>(counts_.sessions, over_.size());
-  const auto end = over_.begin() + static_cast<std::ptrdiff_t>(known);
-  return session != session_ && std::find(over_.begin(), end, session) != end;
+bool KinectFrameJoiner::is_stale(std::uint32_t session) const {
+  const auto known = std::min<std::uint64_t>(counts_.sessions, heard_.size());
+  const auto end = heard_.begin() + static_cast<std::ptrdiff_t>(known);
+  return session != session_ && std::find(heard_.begin(), end, session) != end;
 }
 
 void KinectFrameJoiner::begin_session(std::uint32_t session) {
   counts_.frames += sequence_.counts();
   sequence_ = SequenceCount(32);
   session_ = session;
-  over_[counts_.sessions++ % over_.size()] = session;
+  device_ticks_ = sent_ticks_ = std::nullopt;
+  heard_[counts_.sessions++ % heard_.size()] = session;
 }
 
 void KinectFrameJoiner::follow(const KinectOrigin& last) {
@@ -70,12 +71,22 @@ void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>
   if (whole) close(out);
 }
 
+/// By the sensor's clock, or by the sender's where that one has begun anew.
+bool KinectFrameJoiner::is_newer(const KinectFrame& message) const {
+  return device_ticks_ &&
+         (message.device_ticks > *device_ticks_ || message.sent_ticks > *sent_ticks_);
+}
+
 void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame>& out) {
   const bool only = message.part == 0 && !message.more_parts;
-  const Order order = sequence_.push(message.origin.sequence);
+  const Order order = sequence_.push(message.origin.sequence, is_newer(message));
   if (order == Order::duplicate) {
     if (!only) ++counts_.parts_late;
     return;
+  }
+  if (order != Order::late) {
+    device_ticks_ = message.device_ticks;
+    sent_ticks_ = message.sent_ticks;
   }
   close(out);
   have_ = 1U << message.part;

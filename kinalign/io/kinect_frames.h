@@ -29,7 +29,9 @@ struct KinectFrameCounts {
   bool operator==(const KinectFrameCounts&) const = default;
 };
 
-/// Frames of one sensor, in the order of arrival.
+/// Frames of one sensor, in the order of arrival. Who is started anew has a new session; numbers
+/// that begin anew within one are believed of frames with newer ticks alone, else they are sent
+/// again.
 class KinectFrameJoiner {
  public:
   /// Before the first frame: the sensor's last one came another way. What lacks behind it is lost;
@@ -43,16 +45,19 @@ class KinectFrameJoiner {
   KinectFrameCounts counts() const;
 
  private:
-  bool is_stale(std::uint32_t session);
+  static constexpr std::size_t past_sessions = 16;
+  bool is_stale(std::uint32_t session) const;
   void begin_session(std::uint32_t session);
+  bool is_newer(const KinectFrame& message) const;
   void begin(KinectFrame message, std::vector<JoinedKinectFrame>& out);
   void join(KinectFrame message);
   void close(std::vector<JoinedKinectFrame>& out);
   std::optional<KinectFrame> open_;
-  std::uint32_t have_ = 0;               // parts of the open frame, a bit each
-  std::optional<std::uint8_t> last_;     // its last part
-  std::array<std::uint32_t, 8> over_{};  // sessions, as many as there were
+  std::uint32_t have_ = 0;                                // parts of the open frame, a bit each
+  std::optional<std::uint8_t> last_;                      // its last part
+  std::array<std::uint32_t, past_sessions + 1> heard_{};  // sessions, as many as there were
   std::optional<std::uint32_t> session_;
+  std::optional<std::int64_t> device_ticks_, sent_ticks_;  // of its newest frame
   SequenceCount sequence_{32};
   KinectFrameCounts counts_;
 };

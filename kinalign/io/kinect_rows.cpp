@@ -83,7 +83,7 @@ class KinectListener final : public DeviceListener {
   }
 
   Result<void> finish(HeardDevice& heard) override {
-    if (taken_.empty()) return Failure(Error{file_, 0, "frames of a Kinect", "none"});
+    if (taken_.empty()) return Failure(nothing_of("frames of a Kinect", file_, heard));
     for (Taken& one : taken_) {
       one.life = epochs_.life_at(one.life, one.sent, one.arrival);
       exchanges_.push_back({one.life, one.sent, one.arrival, std::nullopt});
@@ -140,6 +140,8 @@ class KinectRows final : public DeviceRows<PointFrames> {
     tell(counts.frames.lost, "each frame's number", "that never came",
          "they were lost on their way");
     tell_too_late(waiting_, "frames");
+    tell(counts.stale, "frames of the sender's newest run", "of earlier ones",
+         "they came too late and were left out");
     tell(counts.parts_lost, "all parts of a frame", "frames without some",
          "bodies may be missing in them");
     tell(frames_.of_other_sensors, "one sensor", "frames of others", "they were left out");

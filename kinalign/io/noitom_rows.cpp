@@ -4,7 +4,7 @@
 // datagrams without a number by arrival.
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/noitom_pose.h"
-#include "kinalign/io/noitom_stream.h"
+#include "kinalign/io/noitom_receiver.h"
 #include "kinalign/io/numbered_frames.h"
 
 namespace kinalign {
@@ -14,7 +14,7 @@ namespace {
 struct NoitomSource {
   static constexpr std::string_view what = "frames of Noitom's stream";
   static constexpr std::string_view frames = "frames";
-  using Decoder = NoitomDecoder;
+  using Decoder = NoitomReceiver;
   using Arrival = NoitomArrival;
   using Frame = NoitomFrame;
   static Frame* frame(Arrival& arrival) { return &arrival.frame; }
@@ -43,14 +43,17 @@ class NoitomListener final : public DeviceListener {
   void take(const RecordedMessage& message) override {
     placed_.clear();
     frames_.take(message, placed_);
-    for (const auto& one : placed_) {
-      if (one.place) counted_.push_back(*one.place);
-      unnumbered_ |= !one.place;
-    }
+    count_placed();
   }
 
   Result<void> finish(HeardDevice& heard) override {
+    placed_.clear();
+    frames_.finish(placed_);
+    count_placed();
     append(heard.findings, frames_.findings(wish_.file.path));
+    if (counted_.empty() && !unnumbered_) {
+      return Failure(nothing_of(NoitomSource::what, wish_.file.path, heard, frames_.others()));
+    }
     const BvhHierarchy hierarchy = KA_TRY(hierarchy_of(heard, wish_.file.path));
     heard.step_ns = 1e9 * hierarchy.frame_seconds;
     if (unnumbered_) {
@@ -62,6 +65,13 @@ class NoitomListener final : public DeviceListener {
   }
 
  private:
+  void count_placed() {
+    for (const auto& one : placed_) {
+      if (one.place) counted_.push_back(*one.place);
+      unnumbered_ |= !one.place;
+    }
+  }
+
   DeviceWish wish_;
   NoitomFrames frames_;
   std::vector<NoitomFrames::Placed> placed_;

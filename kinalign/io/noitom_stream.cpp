@@ -4,8 +4,6 @@
 #include "kinalign/io/little_endian.h"
 #include "kinalign/io/noitom_text.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -51,38 +49,7 @@ std::vector<float> values_of(std::span<const std::uint8_t> frame) {
   return values;
 }
 
-struct Advice {
-  NoitomRefusal refusal;
-  std::string_view expected, meaning, repair;
-};
-
-constexpr std::string_view plain =
-    "switch the capture program to plain BVH broadcast (binary or string, no compression)";
-constexpr std::array<Advice, 8> advice{{
-    {NoitomRefusal::compressed, "plain BVH frames", "compressed frames are not read", plain},
-    {NoitomRefusal::calculation, "BVH frames", "this is the calculation stream (0x88FF)",
-     "connect to the port of the BVH broadcast"},
-    {NoitomRefusal::command, "BVH frames", "replies of the command channel are not read", ""},
-    {NoitomRefusal::wrong_count, "180, 186, 354 or 360 values in a frame",
-     "frames of other sizes were dropped", "broadcast the 59 joints of Axis Neuron or Axis Studio"},
-    {NoitomRefusal::garbage, "frames of the BVH broadcast",
-     "bytes that have a frame's marks and are none were dropped",
-     "see that nothing but the BVH broadcast is sent to this port"},
-    {NoitomRefusal::torn, "whole frames", "frames that lacked a piece were dropped",
-     "prefer TCP, or a wired network: a UDP frame with displacement is sent in two pieces"},
-    {NoitomRefusal::too_long, "text whose frames end in ||", "it was dropped", ""},
-    {NoitomRefusal::too_many_avatars, "at most 64 avatars", "frames of further ones were dropped",
-     ""},
-}};
-
 }  // namespace
-
-std::string_view to_string(NoitomRefusal refusal) {
-  constexpr std::array<std::string_view, 8> names{"wrong_count", "garbage",         "torn",
-                                                  "compressed",  "calculation",     "command",
-                                                  "too_long",    "too_many_avatars"};
-  return names[static_cast<std::size_t>(refusal)];
-}
 
 void NoitomDecoder::feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out) {
   while (!bytes.empty()) {
@@ -98,6 +65,29 @@ void NoitomDecoder::feed(std::span<const std::uint8_t> bytes, std::vector<Noitom
 void NoitomDecoder::take_all(std::vector<NoitomArrival>& out) {
   while (at_ < held_.size() && step(out) == Step::go_on) {
   }
+}
+
+void NoitomDecoder::give_up(std::vector<NoitomArrival>& out) {
+  while (waiting() > 0) {
+    if (begins_noitom_header(ahead())) refuse(NoitomRefusal::torn);
+    skip(header_within(ahead(), 1, waiting(), begins_noitom_header));
+    take_all(out);
+  }
+  held_.clear();
+  at_ = 0;
+}
+
+std::optional<NoitomBeginning> NoitomDecoder::beginning() const {
+  const auto bytes = ahead();
+  if (bytes.size() < noitom_header_size || !has_noitom_tokens(bytes)) return std::nullopt;
+  const auto header = parse_noitom_header(bytes);
+  if (!header || header->compressed) return std::nullopt;
+  return NoitomBeginning{bytes.size(), noitom_header_size + 4 * header->values,
+                         header->frame.avatar, header->frame.frame_index};
+}
+
+bool NoitomDecoder::waits_within_header() const {
+  return waiting() > 0 && waiting() < noitom_header_size && ahead()[0] == 0xff;
 }
 
 void NoitomDecoder::take(std::size_t bytes) {
@@ -275,21 +265,6 @@ void NoitomDecoder::give(NoitomFrame frame, std::vector<NoitomArrival>& out) {
   ++counts_.frames;
   const Order order = frame.frame_index ? avatar.by_index.push(*frame.frame_index) : Order::newest;
   out.push_back({std::move(frame), order});
-}
-
-Findings NoitomDecoder::findings(const std::string& name) const {
-  Findings findings;
-  for (const Advice& a : advice) {
-    const std::uint64_t times = counts_[a.refusal];
-    if (times == 0) continue;
-    // A frame that lacked a piece is lost like others on the air, and no fault of the set-up.
-    const bool is_loss = a.refusal == NoitomRefusal::torn;
-    findings.push_back({is_loss ? Severity::note : Severity::warning,
-                        Error{name, 0, std::string(a.expected),
-                              fmt::format("{} ({} times)", to_string(a.refusal), times)},
-                        std::string(a.meaning), std::string(a.repair)});
-  }
-  return findings;
 }
 
 }  // namespace kinalign

@@ -5,6 +5,7 @@
 
 #include "kinalign/io/noitom_header.h"
 #include "kinalign/io/sequence_count.h"
+#include "kinalign/wire/time.h"
 
 #include <array>
 #include <map>
@@ -40,6 +41,8 @@ struct NoitomCounts {
 struct NoitomArrival {
   NoitomFrame frame;
   Order order = Order::newest;  // by the source's frame index; without one always newest
+  // Of the piece that completed it; absent: it came with the bytes that were fed last.
+  std::optional<HostTime> arrival{};
 };
 
 struct NoitomAvatar {
@@ -47,6 +50,13 @@ struct NoitomAvatar {
   std::string name;  // of its last frame
   std::uint64_t frames = 0;
   SequenceCount by_index;  // empty where the source gives no frame index
+};
+
+/// The beginning of a binary frame, its header at least.
+struct NoitomBeginning {
+  std::size_t held = 0, size = 0;  // bytes
+  std::uint32_t avatar = 0;
+  std::optional<std::uint32_t> index{};  // of the source
 };
 
 /// What of a frame is handed on.
@@ -63,6 +73,15 @@ class NoitomDecoder {
   /// Takes bytes cut anywhere and appends the frames that they complete, duplicates and late ones
   /// too. The frames don't depend on where the bytes were cut.
   void feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out);
+
+  /// What waits gets no rest: a frame's beginning is torn, the rest skipped, but for frames that
+  /// begin in it.
+  void give_up(std::vector<NoitomArrival>& out);
+  /// Counts bytes that are in no frame without looking at them.
+  void pass_over(std::size_t bytes) { counts_.bytes_skipped += bytes; }
+  /// The frame that waits for its rest.
+  std::optional<NoitomBeginning> beginning() const;
+  bool waits_within_header() const;
 
   const NoitomCounts& counts() const { return counts_; }
   const std::map<std::uint32_t, NoitomAvatar>& avatars() const { return avatars_; }

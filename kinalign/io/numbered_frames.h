@@ -38,25 +38,25 @@ class NumberedFrames {
 
   void take(const RecordedMessage& message, std::vector<Placed>& out) {
     Channel& from = channels_[message.channel_id];
-    const bool lossless = message.channel->transport != "udp";
+    from.id = message.channel_id;
+    from.lossless = message.channel->transport != "udp";
     arrivals_.clear();
-    from.decoder.feed(octets(message.payload), arrivals_);
-    for (typename Source::Arrival& one : arrivals_) {
-      auto* frame = Source::frame(one);
-      if (frame == nullptr) continue;
-      if (!body_) body_ = Source::body(one);
-      if (Source::body(one) != *body_ || one.order == Order::duplicate) continue;
-      auto number = Source::number(one);
-      if (!number && lossless) number = from.counted++;
-      Placed placed{std::move(*frame), {}, message.arrival};
-      if (number) {
-        placed.place = from.numbers.place(*number, message.arrival);
-        placed.place->life |= BootKey{message.channel_id} << 32U;
+    feed(from, message);
+    place(from, message.arrival, out);
+  }
+  /// Nothing follows: what a decoder has held back, if it ever does.
+  void finish(std::vector<Placed>& out) {
+    if constexpr (holds_back) {
+      for (auto& [id, from] : channels_) {
+        arrivals_.clear();
+        from.decoder.finish(arrivals_);
+        place(from, HostTime{}, out);  // each has its own arrival
       }
-      out.push_back(std::move(placed));
     }
   }
 
+  /// Of other types or bodies than are asked for.
+  std::uint64_t others() const { return others_; }
   /// What the user should know of the bytes; what several connections have alike, once.
   Findings findings(const std::string& file) const {
     Findings all;
@@ -70,14 +70,51 @@ class NumberedFrames {
   }
 
  private:
+  using Arrival = typename Source::Arrival;
+  /// Its decoder looks at datagrams, and a frame may be given later than it came.
+  static constexpr bool holds_back = requires(Arrival one) { one.arrival; };
   struct Channel {
     typename Source::Decoder decoder;
     FrameNumbers numbers;
     std::uint32_t counted = 0;
+    std::uint16_t id = 0;
+    bool lossless = false;
   };
+
+  void feed(Channel& from, const RecordedMessage& message) {
+    if constexpr (holds_back) {
+      if (!from.lossless) {
+        from.decoder.feed_datagram(octets(message.payload), message.arrival, arrivals_);
+        return;
+      }
+    }
+    from.decoder.feed(octets(message.payload), arrivals_);
+  }
+  void place(Channel& from, HostTime arrival, std::vector<Placed>& out) {
+    for (Arrival& one : arrivals_) {
+      auto* frame = Source::frame(one);
+      if (frame != nullptr && !body_) body_ = Source::body(one);
+      if (frame == nullptr || Source::body(one) != *body_) {
+        ++others_;
+        continue;
+      }
+      if (one.order == Order::duplicate) continue;
+      auto number = Source::number(one);
+      if (!number && from.lossless) number = from.counted++;
+      Placed placed{std::move(*frame), {}, arrival};
+      if constexpr (holds_back) placed.arrival = one.arrival.value_or(arrival);
+      if (number) {
+        placed.place = from.numbers.place(*number, placed.arrival);
+        placed.place->life |= BootKey{from.id} << 32U;
+      }
+      out.push_back(std::move(placed));
+    }
+  }
+
   std::optional<std::uint64_t> body_;
+  std::uint64_t others_ = 0;
   std::map<std::uint16_t, Channel> channels_;
-  std::vector<typename Source::Arrival> arrivals_;
+  std::vector<Arrival> arrivals_;
 };
 
 /// The stamp of a frame that has a number; absent where its clock is not known.
@@ -99,22 +136,14 @@ class NumberedRows : public DeviceRows<Frames> {
   Result<void> take(const RecordedMessage& message, Frames& out) final {
     placed_.clear();
     frames_.take(message, placed_);
-    if (heard_->by_arrival) {
-      put_arrived(Time{message.arrival.time_since_epoch() + heard_->utc_minus_host}, out);
-      return {};
-    }
-    for (auto& one : placed_) {
-      if (const auto stamp = stamp_of(*heard_, one)) {
-        waiting_.add(*stamp, std::move(one.frame));
-      } else {
-        ++unknown_;
-      }
-    }
-    put_waiting(out);
+    put_placed(out);
     return {};
   }
 
   Result<void> finish(Frames& out) final {
+    placed_.clear();
+    frames_.finish(placed_);
+    put_placed(out);
     waiting_.finish();
     put_waiting(out);
     if (appended_ == 0 && (misfit_ || this->header() == nullptr)) {
@@ -146,10 +175,24 @@ class NumberedRows : public DeviceRows<Frames> {
     if (!misfit_) misfit_ = std::move(appended).error();
     ++misfits_;
   }
+  void put_placed(Frames& out) {
+    if (placed_.empty()) return;
+    if (heard_->by_arrival) {
+      put_arrived(Time{placed_.back().arrival.time_since_epoch() + heard_->utc_minus_host}, out);
+      return;
+    }
+    for (auto& one : placed_) {
+      if (const auto stamp = stamp_of(*heard_, one)) {
+        waiting_.add(*stamp, std::move(one.frame));
+      } else {
+        ++unknown_;
+      }
+    }
+    put_waiting(out);
+  }
   /// Frames that came at once were not taken at once: the last one's stamp is the arrival, those
   /// before it are a step apart, or less where that would reach back to the message before.
   void put_arrived(Time arrival, Frames& out) {
-    if (placed_.empty()) return;
     auto behind = static_cast<Duration::rep>(placed_.size());
     Duration step{std::llround(heard_->step_ns)};
     if (arrived_) step = std::clamp((arrival - *arrived_) / behind, Duration{0}, step);

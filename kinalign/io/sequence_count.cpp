@@ -19,7 +19,7 @@ constexpr std::uint64_t near_first = 8;
 SequenceCount::SequenceCount(unsigned bits)
     : mask_(bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1) {}
 
-Order SequenceCount::push(std::uint64_t number) {
+Order SequenceCount::push(std::uint64_t number, bool may_restart) {
   number &= mask_;
   if (leapt_ && near(before_, number) && !near(now_, number)) {
     now_ = before_;
@@ -32,9 +32,9 @@ Order SequenceCount::push(std::uint64_t number) {
     begin(number);
     return Order::newest;
   }
-  if (!near(now_, number)) return leap(number);
+  if (!near(now_, number)) return leap(number, may_restart);
   const std::uint64_t forward = ahead(now_.newest, number);
-  if (forward == 0 || forward >= window) return look_back(number);
+  if (forward == 0 || forward >= window) return look_back(number, may_restart);
   now_.counts.lost += forward - 1;
   advance(number);
   return Order::newest;
@@ -72,12 +72,13 @@ void SequenceCount::advance(std::uint64_t number) {
   now_.old_run = 0;
 }
 
-Order SequenceCount::leap(std::uint64_t number) {
+Order SequenceCount::leap(std::uint64_t number, bool may_restart) {
+  const std::uint64_t forward = ahead(now_.newest, number);
+  if (!may_restart && forward > mask_ / 2) return old_number(number, may_restart);
   before_ = now_;
   --before_.counts.received;
   leapt_ = true;
-  const std::uint64_t forward = ahead(now_.newest, number);
-  if (forward <= longest_loss && forward <= mask_ / 2) {
+  if (!may_restart || (forward <= longest_loss && forward <= mask_ / 2)) {
     now_.counts.lost += forward - 1;
     advance(number);
     return Order::newest;
@@ -87,9 +88,9 @@ Order SequenceCount::leap(std::uint64_t number) {
   return Order::restart;
 }
 
-Order SequenceCount::look_back(std::uint64_t number) {
+Order SequenceCount::look_back(std::uint64_t number, bool may_restart) {
   const std::uint64_t back = ahead(number, now_.newest);
-  if (here(number) || back >= now_.known + near_first) return old_number(number);
+  if (here(number) || back >= now_.known + near_first) return old_number(number, may_restart);
   if (back >= now_.known) {
     now_.counts.lost += back - now_.known + 1;  // from this one on they are missed
     now_.known = back + 1;
@@ -103,8 +104,8 @@ Order SequenceCount::look_back(std::uint64_t number) {
 }
 
 // One that was not missed: it was here, or lies well before the count's first.
-Order SequenceCount::old_number(std::uint64_t number) {
-  const bool rises = number == ((now_.previous + 1) & mask_);
+Order SequenceCount::old_number(std::uint64_t number, bool may_restart) {
+  const bool rises = may_restart && number == ((now_.previous + 1) & mask_);
   now_.old_run = rises ? now_.old_run + 1 : 1;
   now_.previous = number;
   if (now_.old_run == restart_run) {

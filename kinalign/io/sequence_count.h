@@ -47,7 +47,9 @@ class SequenceCount {
  public:
   explicit SequenceCount(unsigned bits = 32);
 
-  Order push(std::uint64_t number);
+  /// `may_restart`: false where something else says that the sender has not begun anew, so that
+  /// what lies behind was here and what lies ahead is behind a loss.
+  Order push(std::uint64_t number, bool may_restart = true);
   const SequenceCounts& counts() const { return now_.counts; }
 
  private:
@@ -70,9 +72,9 @@ class SequenceCount {
   void mark(std::uint64_t number, bool here);
   void begin(std::uint64_t number);
   void advance(std::uint64_t number);
-  Order leap(std::uint64_t number);
-  Order look_back(std::uint64_t number);
-  Order old_number(std::uint64_t number);
+  Order leap(std::uint64_t number, bool may_restart);
+  Order look_back(std::uint64_t number, bool may_restart);
+  Order old_number(std::uint64_t number, bool may_restart);
 
   std::uint64_t mask_;
   State now_, before_;

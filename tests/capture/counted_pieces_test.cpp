@@ -154,7 +154,35 @@ TEST_CASE("what a Kinect's frames are dropped for is counted") {
   live.finish();
   const SenderCounts counts = live.session().streams().at(0).counts;
   CHECK(counts.frames == 2);
-  CHECK(counts.refused == 1);
+  CHECK(counts.order.late == 1);
+  CHECK(counts.refused == 0);
+}
+
+TEST_CASE("frames of a session that is over are late, whichever sender plays them back") {
+  LiveSession live({"kinect=kinect:udp:127.0.0.1:0"});
+  const Client first, second, stranger;
+  std::uint64_t sent = 0;
+  const auto send = [&](const Client& from, std::uint32_t session, std::uint32_t sequence) {
+    KinectFrame frame;
+    frame.origin = {2, session, sequence};
+    frame.device_ticks = frame.sent_ticks = 1000 * session + sequence;
+    from.send("127.0.0.1", live.port(), encode_kinect_binary(frame));
+    live.serve_until([&, n = ++sent] { return live.pieces() == n; });
+  };
+  for (std::uint32_t k = 0; k < 40; ++k) send(first, 1, k);
+  for (std::uint32_t k = 0; k < 10; ++k) send(second, 2, k);
+  for (std::uint32_t k = 0; k < 40; ++k) send(stranger, 1, k);
+  send(second, 2, 10);
+  live.finish();
+  SenderCounts sum;
+  for (const StreamStatus& stream : live.session().streams()) {
+    sum.frames += stream.counts.frames;
+    sum.order += stream.counts.order;
+  }
+  CHECK(sum.frames == 51);
+  CHECK(sum.order.late == 40);
+  CHECK(sum.order.restarts == 1);
+  CHECK(sum.order.lost == 0);
 }
 
 TEST_CASE(
@@ -273,6 +301,26 @@ TEST_CASE("a Kinect's sender that is started anew is a restart, in the counts as
       fresh->send(std::string(text_of(bytes)));
     };
   });
+}
+
+TEST_CASE("a suit's datagram that is cut short costs one frame") {
+  LiveSession live({"mocap=noitom:udp:127.0.0.1:0"});
+  const Client suit;
+  for (std::uint32_t k = 0; k < 6; ++k) {
+    NoitomFrame frame;
+    frame.frame_index = k;
+    frame.values.assign(noitom_values(false, false), 1.0F);
+    std::vector<std::uint8_t> bytes;
+    REQUIRE(append_noitom(frame, bytes));
+    if (k == 1 || k == 3) bytes.resize(bytes.size() - 3);
+    suit.send("127.0.0.1", live.port(), bytes);
+    live.serve_until([&] { return live.pieces() == k + 1; });
+  }
+  live.finish();
+  const SenderCounts counts = live.session().streams().at(0).counts;
+  CHECK(counts.frames == 4);
+  CHECK(counts.order.lost == 2);
+  CHECK(counts.refused == 2);
 }
 
 TEST_CASE("a device that sends to another one's port is told of while recording, once") {

@@ -173,14 +173,45 @@ TEST_CASE("who comes another way goes on with the count, or restarts it by anoth
   CHECK(KinectFrameJoiner().counts().frames.restarts == 0);
 }
 
-TEST_CASE("sessions for ever: seven are remembered, and no more") {
+TEST_CASE("frames that are sent again are duplicates, whoever brings them, and no restart") {
+  std::vector<KinectFrame> messages;
+  for (std::uint32_t i = 0; i < 350; ++i) messages.push_back(frame_of(i % 300, {1}));
+  const Joined joined = join(messages);
+  CHECK(joined.frames.size() == 300);
+  CHECK(joined.counts.frames == SequenceCounts{350, 0, 0, 50, 0, 0});
+  KinectFrameJoiner other;  // a further sender's, behind the first one's last frame
+  other.follow(messages[299].origin);
+  std::vector<JoinedKinectFrame> frames;
+  for (std::uint32_t i = 0; i < 50; ++i) other.take(frame_of(i, {1}), frames);
+  other.finish(frames);
+  CHECK(frames.empty());
+  CHECK(other.counts().frames == SequenceCounts{51, 0, 0, 50, 0, 0});
+}
+
+TEST_CASE(
+    "numbers that begin anew with newer ticks are a restart, though the session is the old one") {
+  for (const std::uint32_t before : {300U, 100'000U}) {
+    CAPTURE(before);
+    std::vector<KinectFrame> messages{frame_of(before, {1})};
+    for (std::uint32_t i = 0; i < 50; ++i) {
+      KinectFrame frame = frame_of(i, {1});
+      frame.device_ticks += 100'001 * std::int64_t{333'333};
+      messages.push_back(frame);
+    }
+    const Joined joined = join(messages);
+    CHECK(joined.counts.frames.restarts == 1);
+    CHECK(joined.frames.size() >= 51 - 15);
+  }
+}
+
+TEST_CASE("sessions for ever: sixteen are remembered, and no more") {
   std::vector<KinectFrame> messages;
   for (std::uint32_t session = 0; session < 1000; ++session) {
     messages.push_back(of_session(session, 0));
   }
-  messages.push_back(of_session(992, 1));
+  messages.push_back(of_session(983, 1));
   CHECK(join(messages).counts.stale == 1);
-  messages.back() = of_session(991, 1);
+  messages.back() = of_session(982, 1);
   CHECK(join(messages).counts.stale == 0);
 }
 

@@ -352,7 +352,7 @@ TEST_CASE("noitom: Axis Studio's compressed port is refused with what to do") {
   CHECK(read.counts[NoitomRefusal::compressed] == 1);
   REQUIRE(read.findings.size() == 1);
   CHECK(to_string(read.findings[0].what) ==
-        "axis: expected plain BVH frames, found compressed (1 times)");
+        "axis: expected plain BVH frames, found compressed (once)");
   CHECK(read.findings[0].repair ==
         "switch the capture program to plain BVH broadcast (binary or string, no compression)");
 }

@@ -321,6 +321,17 @@ class RecordedLab {
     messages_ = std::move(joined);
   }
 
+  /// Each message comes as two at once.
+  void cut_in_two() {
+    std::vector<Message> cut;
+    for (const Message& one : messages_) {
+      const std::size_t half = one.data.size() / 2;
+      cut.push_back({one.channel, one.arrival, one.data.substr(0, half)});
+      cut.push_back({one.channel, one.arrival, one.data.substr(half)});
+    }
+    messages_ = std::move(cut);
+  }
+
   static HostTime host(double t) { return HostTime{Duration{host_begin + std::llround(1e9 * t)}}; }
   /// When a moment of the recording was.
   static Time utc(double t) { return utc_time(utc_begin + std::llround(1e9 * t)); }

@@ -132,3 +132,17 @@ TEST_CASE("sequence: any loss, doubling and reordering is counted exactly") {
     CHECK(count.counts() == truth);
   }
 }
+
+TEST_CASE(
+    "sequence: where there is no restart, what lies behind was here and what lies ahead is lost") {
+  SequenceCount count;
+  for (const auto number : range(5'000, 100)) count.push(number, false);
+  for (const auto number : range(5'000, 50)) {
+    CHECK(count.push(number, false) == Order::duplicate);  // as the window has them
+  }
+  for (const auto number : range(10, 50)) {
+    CHECK(count.push(number, false) == Order::duplicate);  // from before the window
+  }
+  CHECK(count.push(1'005'100, false) == Order::newest);
+  CHECK(count.counts() == SequenceCounts{201, 1'000'000, 0, 100, 0, 0});
+}
