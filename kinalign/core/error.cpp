@@ -1,33 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/core/error.h"
 
+#include "kinalign/core/utf8.h"
+
 namespace kinalign {
 
 namespace {
 
-/// Bytes of the control character that `text` begins with; 0 where it begins with none. Those of
-/// one byte, U+0080 to U+009F, which terminals obey too, and the ones that turn the direction of
-/// writing (U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069).
-std::size_t control_size(std::string_view text) {
-  const auto byte = [text](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+/// What moves a terminal's cursor, and what turns the direction of writing. Terminals obey those of
+/// U+0080 to U+009F too.
+bool is_control(char32_t code) {
+  const auto within = [code](char32_t first, char32_t last) {
+    return code >= first && code <= last;
   };
-  if (byte(0) < 0x20 || byte(0) == 0x7f) return 1;
-  if (byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) <= 0x9f) return 2;
-  if (byte(0) != 0xe2) return 0;
-  const unsigned last = byte(2);
-  const bool marks = last == 0x8e || last == 0x8f || (last >= 0xaa && last <= 0xae);
-  const bool isolates = last >= 0xa6 && last <= 0xa9;
-  return (byte(1) == 0x80 && marks) || (byte(1) == 0x81 && isolates) ? 3 : 0;
+  const bool cursor = code < 0x20 || within(0x7f, 0x9f);
+  const bool marks = code == 0x61c || within(0x200e, 0x200f);
+  return cursor || marks || within(0x202a, 0x202e) || within(0x2066, 0x2069);
 }
 
 std::string without_controls(std::string_view text, std::string_view but = "") {
   std::string out;
   while (!text.empty()) {
-    const std::size_t control = control_size(text);
-    const bool kept = control == 0 || but.find(text.front()) != std::string_view::npos;
-    out += kept ? text.front() : '?';
-    text.remove_prefix(kept ? 1 : control);
+    const Character next = first_character(text);
+    const bool wanted = but.find(text.front()) != std::string_view::npos;
+    if (next.code && (wanted || !is_control(*next.code))) {
+      out += text.substr(0, next.bytes);
+    } else {
+      out += '?';
+    }
+    text.remove_prefix(next.bytes);
   }
   return out;
 }
@@ -38,8 +39,8 @@ std::string to_string(const Error& error) {
   std::string text = without_controls(error.file);  // a file's name may hold any byte
   if (error.line > 0) text += (text.empty() ? "line " : ":") + std::to_string(error.line);
   if (!text.empty()) text += ": ";
-  text += "expected " + error.expected;
-  if (!error.found.empty()) text += ", found " + error.found;
+  text += "expected " + harmless(error.expected);
+  if (!error.found.empty()) text += ", found " + harmless(error.found);
   return text;
 }
 

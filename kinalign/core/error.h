@@ -24,12 +24,13 @@ struct Error {
 /// "walk.bvh:12: expected 2 frames, found 1"
 std::string to_string(const Error& error);
 
-/// Text of a file as a message may show it: at most 40 bytes, control characters, also those of
-/// U+0080 to U+009F and of the direction of writing, replaced by '?'.
+/// Text of a file, or from a network, as a message may show it: at most 40 bytes, harmless, and no
+/// line ends in it.
 std::string shown(std::string_view text);
 
-/// Text that holds names of files or from files, for a terminal: control characters other than line
-/// ends replaced by '?'.
+/// Text that holds names of files or from files, for a terminal: UTF-8, with '?' for every byte
+/// that is none, and for every control character but line ends, those of U+0080 to U+009F and of
+/// the direction of writing among them.
 std::string harmless(std::string_view text);
 
 enum class Severity { note, warning, error };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of a BVH above its rows: joints, offsets, channels, number of frames, frame time.
 #include "kinalign/core/numbers.h"
+#include "kinalign/core/utf8.h"
 #include "kinalign/io/bvh.h"
 #include "kinalign/io/bvh_words.h"
-#include "kinalign/io/utf8.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/mark.h"
 
-#include "kinalign/io/utf8.h"
+#include "kinalign/core/utf8.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/npz.h"
 
+#include "kinalign/core/utf8.h"
 #include "kinalign/io/crc.h"
-#include "kinalign/io/utf8.h"
 
 #include <algorithm>
 #include <cassert>

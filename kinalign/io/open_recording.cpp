@@ -2,10 +2,10 @@
 #include "kinalign/io/open_recording.h"
 
 #include "kinalign/core/parallel.h"
+#include "kinalign/core/utf8.h"
 #include "kinalign/io/remembered_path.h"
 #include "kinalign/io/row_stamps.h"
 #include "kinalign/io/stream_survey.h"
-#include "kinalign/io/utf8.h"
 
 #include <algorithm>
 #include <cmath>

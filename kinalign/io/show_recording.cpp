@@ -3,21 +3,19 @@
 
 #include "kinalign/io/recording_survey.h"
 #include "kinalign/io/shown_file.h"
+#include "kinalign/io/shown_pace.h"
 #include "kinalign/io/shown_rows.h"
 
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
 namespace kinalign {
 
 namespace {
-
-// Viewers draw no faster, and 59 joints are 12 kB of text.
-constexpr Duration between_transforms = std::chrono::milliseconds(33);
 
 /// A stream in the middle of being shown.
 class Showing {
@@ -31,11 +29,14 @@ class Showing {
 /// Where a kind of stream goes.
 class ShowClip {
  public:
-  ShowClip(const std::string& stream, const ClipInput& input, ShownFile& out)
-      : stream_(stream),
-        input_(&input),
-        transforms_(out.add_channel("/" + stream + "/transforms", transforms_schema())),
-        poses_(out.add_channel("/" + stream + "/pose", pose_schema())) {}
+  static Result<ShowClip> begin(const std::string& stream, const ClipInput& input, ShownFile& out) {
+    ShowClip show;
+    show.stream_ = stream;
+    show.input_ = &input;
+    show.transforms_ = KA_TRY(out.add_channel("/" + stream + "/transforms", transforms_schema()));
+    show.poses_ = KA_TRY(out.add_channel("/" + stream + "/pose", pose_schema()));
+    return show;
+  }
   Result<void> operator()(const ClipFrames& frames, std::size_t t, const ShownTime& time, bool due,
                           ShownFile& out) const {
     const Time device = frames.stamps[t];
@@ -48,17 +49,21 @@ class ShowClip {
 
  private:
   std::string stream_;
-  const ClipInput* input_;
-  std::uint16_t transforms_, poses_;
+  const ClipInput* input_ = nullptr;
+  std::uint16_t transforms_ = 0, poses_ = 0;
 };
 
 class ShowPoints {
  public:
-  ShowPoints(const std::string& stream, const PointInput& input, ShownFile& out)
-      : stream_(stream),
-        input_(&input),
-        transforms_(out.add_channel("/" + stream + "/transforms", transforms_schema())),
-        points_(out.add_channel("/" + stream + "/points", points_schema())) {}
+  static Result<ShowPoints> begin(const std::string& stream, const PointInput& input,
+                                  ShownFile& out) {
+    ShowPoints show;
+    show.stream_ = stream;
+    show.input_ = &input;
+    show.transforms_ = KA_TRY(out.add_channel("/" + stream + "/transforms", transforms_schema()));
+    show.points_ = KA_TRY(out.add_channel("/" + stream + "/points", points_schema()));
+    return show;
+  }
   Result<void> operator()(const PointFrames& frames, std::size_t t, const ShownTime& time, bool due,
                           ShownFile& out) const {
     const Time device = frames.stamps[t];
@@ -71,18 +76,21 @@ class ShowPoints {
 
  private:
   std::string stream_;
-  const PointInput* input_;
-  std::uint16_t transforms_, points_;
+  const PointInput* input_ = nullptr;
+  std::uint16_t transforms_ = 0, points_ = 0;
 };
 
 class ShowImu {
  public:
-  ShowImu(const std::string& stream, const ImuInput& input, ShownFile& out) : input_(&input) {
+  static Result<ShowImu> begin(const std::string& stream, const ImuInput& input, ShownFile& out) {
+    ShowImu show;
+    show.input_ = &input;
     for (const std::string& node : input.node_names) {
       std::string topic = "/" + stream;
       topic += "/" + node;
-      nodes_.push_back(out.add_channel(std::move(topic), imu_schema()));
+      show.nodes_.push_back(KA_TRY(out.add_channel(std::move(topic), imu_schema())));
     }
+    return show;
   }
   Result<void> operator()(const ImuSamples& samples, std::size_t t, const ShownTime& time, bool,
                           ShownFile& out) const {
@@ -94,7 +102,7 @@ class ShowImu {
   }
 
  private:
-  const ImuInput* input_;
+  const ImuInput* input_ = nullptr;
   std::vector<std::uint16_t> nodes_;
 };
 
@@ -108,20 +116,12 @@ class StreamShowing final : public Showing {
   std::optional<Time> next() const override { return next_; }
   Result<void> show(ShownFile& out) override {
     const ShownTime time{*next_, half_width(*clock_, block_.stamps[row_])};
-    const bool due = is_due(time.at);
-    KA_TRY(show_(block_, row_, time, due, out));
+    KA_TRY(show_(block_, row_, time, pace_.shows(time.at), out));
     ++row_;
     return fill();
   }
 
  private:
-  /// By a grid that moves on with what was shown: frames of 30 Hz that jitter are all shown.
-  bool is_due(Time at) {
-    if (due_ && at < *due_ && *due_ - at <= between_transforms) return false;
-    const bool follows = due_ && at >= *due_ && at - *due_ < between_transforms;
-    due_ = (follows ? *due_ : at) + between_transforms;
-    return true;
-  }
   Result<void> fill() {
     while (!ended_ && row_ >= block_.size()) {
       ended_ = !KA_TRY(pass_(block_));
@@ -137,14 +137,16 @@ class StreamShowing final : public Showing {
   Frames block_;
   std::size_t row_ = 0;
   bool ended_ = false;
-  std::optional<Time> next_, due_;  // due_: the next transforms
+  std::optional<Time> next_;
+  ShownPace pace_;  // of transforms
 };
 
 template <class Frames, class Show, class Input>
 Result<std::unique_ptr<Showing>> showing_of(const RecordedStream& stream, const Input& input,
                                             ShownFile& out) {
+  Show show = KA_TRY(Show::begin(stream.name, input, out));
   auto showing = std::make_unique<StreamShowing<Frames, Show>>(stream, KA_TRY(input.passes()),
-                                                               Show(stream.name, input, out));
+                                                               std::move(show));
   KA_TRY(showing->begin());
   return std::unique_ptr<Showing>(std::move(showing));
 }
@@ -168,7 +170,7 @@ class JsonChannels {
     if (const auto* schema = std::get_if<McapSchema>(&record)) {
       schemas_[schema->id] = *schema;
     } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
-      add(*channel);
+      return add(*channel);
     } else if (const auto* message = std::get_if<McapMessage>(&record)) {
       const auto found = copied_.find(message->channel);
       if (found == copied_.end() || message->log_time > INT64_MAX) return {};
@@ -179,11 +181,12 @@ class JsonChannels {
   }
 
  private:
-  void add(const McapChannel& channel) {
+  Result<void> add(const McapChannel& channel) {
     const auto schema = schemas_.find(channel.schema_id);
-    if (channel.message_encoding != "json" || copied_.contains(channel.id)) return;
-    if (schema == schemas_.end()) return;
-    copied_[channel.id] = out_.add_channel(channel.topic, schema->second);
+    if (channel.message_encoding != "json" || copied_.contains(channel.id)) return {};
+    if (schema == schemas_.end()) return {};
+    copied_[channel.id] = KA_TRY(out_.add_channel(channel.topic, schema->second));
+    return {};
   }
 
   ShownFile& out_;
@@ -211,22 +214,25 @@ Result<void> copy_json(FileSystem& files, const RecordingParts& parts, const Pro
 Result<void> show_streams(const std::vector<RecordedStream>& recorded, ShownFile& shown,
                           const Progress& progress) {
   std::vector<std::unique_ptr<Showing>> streams;
+  std::set<std::pair<Time, std::size_t>> next;  // sample of which stream
   std::uint64_t rows = 0, done = 0;
+  const auto wait = [&](std::size_t i) {
+    if (const auto at = streams[i]->next()) next.emplace(*at, i);
+  };
   for (const RecordedStream& stream : recorded) {
     streams.push_back(KA_TRY(begin_stream(stream, shown)));
+    wait(streams.size() - 1);
     rows += stream.survey.samples;
   }
-  for (;;) {
-    const auto first =
-        std::min_element(streams.begin(), streams.end(), [](const auto& a, const auto& b) {
-          return a->next().value_or(Time::max()) < b->next().value_or(Time::max());
-        });
-    if (first == streams.end() || !(*first)->next()) return {};
-    KA_TRY((*first)->show(shown));
+  while (!next.empty()) {
+    const std::size_t first = next.extract(next.begin()).value().second;
+    KA_TRY(streams[first]->show(shown));
+    wait(first);
     if (++done % 1024 == 0 && !go_on(progress, "converting", done, rows)) {
       return Failure(interruption());
     }
   }
+  return {};
 }
 
 }  // namespace

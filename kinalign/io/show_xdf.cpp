@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace kinalign {
 
@@ -55,17 +56,13 @@ std::string sample_json(const XdfSamples& samples, std::size_t t) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// A channel's name: the stream's, with its id where two have one, and no slash or blank in it.
-std::string topic_of(const XdfSurvey& survey, const XdfStream& stream) {
+/// A channel's name: the stream's, with its id where it is not alone, and no slash or blank in it.
+std::string topic_of(const XdfStream& stream, bool alone) {
   std::string name = stream.name.empty() ? "stream" : stream.name;
   for (char& c : name) {
     if (static_cast<unsigned char>(c) <= ' ' || c == '/') c = '_';
   }
-  for (const XdfStreamSurvey& other : survey.streams) {
-    if (other.stream.id != stream.id && other.stream.name == stream.name)
-      return "/" + name + "/" + std::to_string(stream.id);
-  }
-  return "/" + name;
+  return alone ? "/" + name : "/" + name + "/" + std::to_string(stream.id);
 }
 
 struct Channel {
@@ -79,10 +76,12 @@ class Channels {
   Channels(const XdfSurvey& survey, ShownFile& out) : survey_(survey), out_(out) {}
 
   Result<void> begin() {
+    std::map<std::string, std::set<std::uint32_t>> ids;  // by name
+    for (const XdfStreamSurvey& one : survey_.streams) ids[one.stream.name].insert(one.stream.id);
     for (const XdfStreamSurvey& one : survey_.streams) {
-      const std::string topic = topic_of(survey_, one.stream);
+      const std::string topic = topic_of(one.stream, ids[one.stream.name].size() == 1);
       KA_TRY(out_.attach(topic.substr(1) + ".xml", one.stream.xml));
-      channels_[one.stream.id] = {out_.add_channel(topic, sample_schema()), one.clock};
+      channels_[one.stream.id] = {KA_TRY(out_.add_channel(topic, sample_schema())), one.clock};
     }
     return {};
   }

@@ -4,11 +4,12 @@
 #include "kinalign/io/mcap_store.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace kinalign {
 
-ShownFile::ShownFile(OutputFile& out) : writer_(mcap_store(out)) {}
+ShownFile::ShownFile(OutputFile& out) : path_(out.path()), writer_(mcap_store(out)) {}
 
 Result<void> ShownFile::begin() { return writer_.begin({"", "kinalign " KINALIGN_VERSION}); }
 
@@ -16,14 +17,17 @@ Result<void> ShownFile::attach(std::string name, std::string description) {
   return writer_.write(McapAttachment{0, 0, std::move(name), "text/plain", std::move(description)});
 }
 
-std::uint16_t ShownFile::add_channel(std::string topic, McapSchema schema) {
-  const auto known = std::find_if(schemas_.begin(), schemas_.end(), [&](const McapSchema& other) {
-    return other.name == schema.name;
-  });
-  schema.id = static_cast<std::uint16_t>(known - schemas_.begin() + 1);
+Result<std::uint16_t> ShownFile::add_channel(std::string topic, McapSchema schema) {
+  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();  // MCAP's numbers of them
+  if (channels_.size() == most) {
+    return Failure(Error{path_, 0, "at most " + std::to_string(most) + " channels", "more"});
+  }
+  const auto next = static_cast<std::uint16_t>(schemas_.size() + 1);
+  const auto [known, is_new] = schema_ids_.try_emplace(schema.name, next);
+  schema.id = known->second;
   channels_.push_back(
       {static_cast<std::uint16_t>(channels_.size() + 1), schema.id, std::move(topic), "json", {}});
-  if (known == schemas_.end()) schemas_.push_back(std::move(schema));
+  if (is_new) schemas_.push_back(std::move(schema));
   numbers_.push_back(0);
   return channels_.back().id;
 }

@@ -7,6 +7,7 @@
 #include "kinalign/wire/time.h"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,7 +27,8 @@ class ShownFile {
   Result<void> begin();
   /// Before the first message. `description` of a stream, as text.
   Result<void> attach(std::string name, std::string description);
-  std::uint16_t add_channel(std::string topic, McapSchema schema);
+  /// Schemas of one name are one, the first. Fails where MCAP has no number left for the channel.
+  Result<std::uint16_t> add_channel(std::string topic, McapSchema schema);
   /// `device`: on the device's own clock.
   Result<void> add(std::uint16_t channel, Time at, Time device, std::string_view json);
   Result<void> finish();
@@ -36,9 +38,11 @@ class ShownFile {
  private:
   Result<void> close_chunk();
 
+  std::string path_;
   McapWriter writer_;
-  std::vector<McapSchema> schemas_;    // [i] has the id i + 1
-  std::vector<McapChannel> channels_;  // likewise
+  std::vector<McapSchema> schemas_;                  // [i] has the id i + 1
+  std::vector<McapChannel> channels_;                // likewise
+  std::map<std::string, std::uint16_t> schema_ids_;  // by name
   std::vector<std::uint32_t> numbers_;
   McapChunkContent chunk_;
   Shown counts_;

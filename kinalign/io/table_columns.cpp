@@ -2,7 +2,7 @@
 #include "kinalign/io/table_columns.h"
 
 #include "kinalign/core/nearest_name.h"
-#include "kinalign/io/utf8.h"
+#include "kinalign/core/utf8.h"
 
 #include <algorithm>
 #include <charconv>

@@ -5,6 +5,7 @@
 #include "kinalign/core/error.h"
 #include "kinalign/core/lines.h"
 #include "kinalign/core/nearest_name.h"
+#include "kinalign/core/utf8.h"
 
 #include <doctest/doctest.h>
 
@@ -99,14 +100,14 @@ TEST_CASE("no text of a file, whole or cut, moves a terminal's cursor") {
     for (char& c : text) {
       c = static_cast<char>(random() % 3 == 0 ? random() : 0xc2 - random() % 0x40);
     }
+    const std::string said = harmless(text);
     CHECK_FALSE(moves_a_cursor(shown(text)));
     CHECK(shown(text).size() <= 43);
+    CHECK((is_utf8(shown(text)) && is_utf8(said)));
     CHECK_FALSE(moves_a_cursor(to_string(Error{text, 3, "a", "b"})));
-    const std::string said = harmless(text);
     CHECK(harmless(said) == said);
     CHECK(std::count(said.begin(), said.end(), '\n') == std::count(text.begin(), text.end(), '\n'));
     std::string without_lines = said;
-    // Two halves of a character on two lines are none.
     std::replace(without_lines.begin(), without_lines.end(), '\n', ' ');
     CHECK_FALSE(moves_a_cursor(without_lines));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Characters of UTF-8 (RFC 3629), as takes hold their texts.
+// Characters of UTF-8 (RFC 3629), as takes hold their texts and messages show them.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/utf8.h"
+#include "kinalign/core/utf8.h"
 
 namespace kinalign {
 
