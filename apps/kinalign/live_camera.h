@@ -31,7 +31,7 @@ class LiveCamera {
   HostTime next() const;
   int fd() const { return socket_.fd(); }
   std::uint64_t sent() const { return sent_; }  // frames
-  std::uint64_t refused() const { return refused_; }
+  LiveTraffic traffic() { return socket_.traffic(); }
   Duration worst_late() const { return worst_late_; }
 
  private:
@@ -54,7 +54,7 @@ class LiveCamera {
   std::size_t frame_ = 0;
   std::uint32_t hellos_ = 0, pings_ = 0;
   std::optional<KinectEcho> echo_;
-  std::uint64_t sent_ = 0, refused_ = 0;
+  std::uint64_t sent_ = 0;
   Duration worst_late_{0};
 };
 

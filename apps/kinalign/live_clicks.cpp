@@ -4,6 +4,7 @@
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/mark_call.h"
 
+#include <array>
 #include <utility>
 
 namespace kinalign {
@@ -31,6 +32,8 @@ void LiveClicks::add(Mark::Kind kind, const std::string& id, HostTime at) {
 }
 
 void LiveClicks::work(HostTime now) {
+  std::array<std::uint8_t, 64> room{};
+  while (socket_.receive(room) > 0) continue;
   for (; next() <= now; ++sent_) (void)socket_.send(octets(calls_[sent_].text));
 }
 

@@ -19,8 +19,9 @@ class LiveClicks {
   /// `run`: another in each run, so that its marks are not taken for an earlier one's.
   LiveClicks(const MocapRun& mocap, std::uint64_t run, HostTime start, LiveSocket socket);
 
-  /// Sends what is due. Whether anybody hears it is his own affair.
+  /// Sends what is due, and takes what is answered. Whether anybody hears it is his own affair.
   void work(HostTime now);
+  LiveTraffic traffic() { return socket_.traffic(); }
   HostTime next() const { return sent_ < calls_.size() ? calls_[sent_].at : HostTime::max(); }
 
  private:

@@ -51,9 +51,7 @@ void LiveNode::work() {
   sampling_ = false;
   if (counting != nullptr) counting->poll();
   if (clockless != nullptr) clockless->poll();
-  while (const auto datagram = up_.take(clock_.raw())) {
-    if (!socket_.send(*datagram)) ++refused_;
-  }
+  while (const auto datagram = up_.take(clock_.raw())) (void)socket_.send(*datagram);
 }
 
 HostTime LiveNode::next() const {
@@ -69,7 +67,7 @@ HostTime LiveNode::next() const {
 }
 
 LiveNodeCounts LiveNode::counts() {
-  LiveNodeCounts counts{.refused = refused_};
+  LiveNodeCounts counts;
   if (auto* counting = std::get_if<Node>(&node_)) {
     const NodeTally tally = counting->counts();
     counts.sent = tally.frames.sent;

@@ -29,7 +29,6 @@ struct LiveNodeOptions {
 struct LiveNodeCounts {
   std::uint64_t sent = 0, samples = 0;  // frames or requests, and what was in them
   std::uint64_t answered = 0;           // by the host, as far as it reached the node
-  std::uint64_t refused = 0;  // datagrams that this machine did not take: nobody listens there
 };
 
 class LiveNode final : public Board {
@@ -46,6 +45,7 @@ class LiveNode final : public Board {
   HostTime next() const;
   int fd() const { return socket_.fd(); }
   LiveNodeCounts counts();
+  LiveTraffic traffic() { return socket_.traffic(); }
 
   std::uint64_t counter_us() override;
   bool read_imu(NodeSample& sample) override;
@@ -73,7 +73,6 @@ class LiveNode final : public Board {
   std::variant<std::monostate, Node, ClocklessNode> node_;
   std::size_t next_sample_ = 0;
   bool sampling_ = false;
-  std::uint64_t refused_ = 0;
 };
 
 }  // namespace kinalign

@@ -27,30 +27,46 @@ ClockPair begin_after(ClockReader& clock, Duration wait) {
 
 }  // namespace
 
-Result<LiveRehearsal> LiveRehearsal::open(const Motion& motion, const Rehearsal& rehearsal,
-                                          const LiveOptions& options, ClockReader& clock) {
-  if (motion.skeleton.joints() != noitom_joints) {
-    return Failure(Error{"--live", 0, "a suit's skeleton of 59 joints, as Noitom's stream has it",
-                         std::to_string(motion.skeleton.joints()) + " joints"});
+LiveTraffic LiveCounts::all() const {
+  LiveTraffic all;
+  for (const LiveTraffic& one : {mocap, kinect, nodes, clicks}) all += one;
+  return all;
+}
+
+Result<LiveSockets> open_live(const LiveOptions& options, std::size_t nodes) {
+  LiveSockets sockets{KA_TRY(LiveSocket::connected_to(options.to, options.mocap_port)),
+                      KA_TRY(LiveSocket::connected_to(options.to, options.kinect_port)),
+                      KA_TRY(LiveSocket::connected_to(options.to, options.marks_port)),
+                      {}};
+  for (std::size_t n = 0; n < nodes; ++n) {
+    sockets.nodes.push_back(KA_TRY(LiveSocket::connected_to(options.to, options.node_port)));
   }
-  LiveSocket mocap = KA_TRY(LiveSocket::connected_to(options.to, options.mocap_port));
-  LiveSocket marks = KA_TRY(LiveSocket::connected_to(options.to, options.marks_port));
-  LiveSocket kinect = KA_TRY(LiveSocket::connected_to(options.to, options.kinect_port));
-  std::vector<LiveSocket> sockets;
-  for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
-    sockets.push_back(KA_TRY(LiveSocket::connected_to(options.to, options.node_port)));
-  }
-  LiveRehearsal live(clock, begin_after(clock, duration(options.begin_in_s)), motion.length_s);
-  const HostTime start = live.start_.raw;
+  return sockets;
+}
+
+Result<void> check_live(const Motion& motion, const std::string& name) {
+  const std::size_t joints = motion.skeleton.joints();
+  if (joints == noitom_joints) return {};
+  return Failure(Error{name, 0,
+                       "for --live a suit's skeleton of 59 joints, as Noitom's stream has it",
+                       std::to_string(joints) + " joints"});
+}
+
+LiveRehearsal::LiveRehearsal(const Motion& motion, const Rehearsal& rehearsal,
+                             const LiveOptions& options, ClockReader& clock, LiveSockets sockets)
+    : clock_(&clock),
+      start_(begin_after(clock, duration(options.begin_in_s))),
+      length_s_(motion.length_s) {
+  const HostTime start = start_.raw;
   // New in each run, as a device draws them at each start.
   const std::uint64_t run = mix64(static_cast<std::uint64_t>(start.time_since_epoch().count()));
-  live.suit_ =
-      std::make_unique<LiveSuit>(motion, rehearsal.mocap, options.seed, start, std::move(mocap));
-  live.camera_ = std::make_unique<LiveCamera>(
+  suit_ = std::make_unique<LiveSuit>(motion, rehearsal.mocap, options.seed, start,
+                                     std::move(sockets.mocap));
+  camera_ = std::make_unique<LiveCamera>(
       rehearsal,
       LiveCameraOptions{options.seed, static_cast<std::uint32_t>(run), start, motion.length_s},
-      clock, std::move(kinect));
-  live.clicks_ = std::make_unique<LiveClicks>(rehearsal.mocap, run, start, std::move(marks));
+      clock, std::move(sockets.kinect));
+  clicks_ = std::make_unique<LiveClicks>(rehearsal.mocap, run, start, std::move(sockets.clicks));
   for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
     LiveNodeOptions node{.id = static_cast<std::uint32_t>(n + 1),
                          .boot_id = static_cast<std::uint32_t>(mix64(run + n)),
@@ -58,21 +74,20 @@ Result<LiveRehearsal> LiveRehearsal::open(const Motion& motion, const Rehearsal&
                          .clockless = options.clockless,
                          .start = start,
                          .length_s = motion.length_s};
-    live.nodes_.push_back(
-        std::make_unique<LiveNode>(rehearsal.nodes[n], node, clock, std::move(sockets[n])));
+    nodes_.push_back(
+        std::make_unique<LiveNode>(rehearsal.nodes[n], node, clock, std::move(sockets.nodes[n])));
   }
-  return live;
 }
 
-void LiveRehearsal::run(const std::function<bool(double)>& go_on) {
+double LiveRehearsal::run(const std::function<bool()>& go_on) {
   ::prctl(PR_SET_TIMERSLACK, 1000UL);  // ns: the standard 50 us would make delays longer
   const HostTime end = start_.raw + duration(length_s_) + behind;
   while (clock_->raw() < start_.raw) {  // a node's counter says nothing before
-    if (!go_on(0.0)) return;
+    if (!go_on()) return 0.0;
     wait(std::min(start_.raw, clock_->raw() + longest_wait));
   }
   for (HostTime now = clock_->raw(); now < end; now = clock_->raw()) {
-    if (!go_on(seconds(now - start_.raw))) return;
+    if (!go_on()) return std::min(seconds(now - start_.raw), length_s_);
     suit_->work(now);
     camera_->work();
     clicks_->work(now);
@@ -82,6 +97,7 @@ void LiveRehearsal::run(const std::function<bool(double)>& go_on) {
     for (const auto& node : nodes_) next = std::min(next, node->next());
     wait(next);
   }
+  return length_s_;
 }
 
 /// Or until a datagram arrives.
@@ -98,14 +114,16 @@ LiveCounts LiveRehearsal::counts() const {
   LiveCounts counts;
   counts.mocap_frames = suit_->sent();
   counts.kinect_frames = camera_->sent();
-  counts.refused = suit_->refused() + camera_->refused();
+  counts.mocap = suit_->traffic();
+  counts.kinect = camera_->traffic();
+  counts.clicks = clicks_->traffic();
   counts.worst_late = std::max(suit_->worst_late(), camera_->worst_late());
   for (const auto& node : nodes_) {
     const LiveNodeCounts one = node->counts();
     counts.node_frames += one.sent;
     counts.node_samples += one.samples;
     counts.replies += one.answered;
-    counts.refused += one.refused;
+    counts.nodes += node->traffic();
   }
   return counts;
 }

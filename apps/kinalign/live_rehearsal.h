@@ -27,27 +27,39 @@ struct LiveOptions {
 
 struct LiveCounts {
   std::uint64_t mocap_frames = 0, kinect_frames = 0, node_frames = 0, node_samples = 0;
-  std::uint64_t replies = 0;  // of the host's to nodes that reached them
-  std::uint64_t refused = 0;  // datagrams that this machine did not take
-  Duration worst_late{};      // of a frame, by this machine
+  std::uint64_t replies = 0;                         // of the host's to nodes that reached them
+  LiveTraffic mocap{}, kinect{}, nodes{}, clicks{};  // on the host's port for each
+  Duration worst_late{};                             // of a frame, by this machine
+
+  LiveTraffic all() const;
 };
+
+/// A socket for each device, which has sent nothing yet.
+struct LiveSockets {
+  LiveSocket mocap, kinect, clicks;
+  std::vector<LiveSocket> nodes;
+};
+
+/// `nodes`: how many. Fails as LiveSocket::connected_to.
+Result<LiveSockets> open_live(const LiveOptions& options, std::size_t nodes);
+
+/// Fails where Noitom's stream has no room for such a motion's skeleton; `name`: the motion's.
+Result<void> check_live(const Motion& motion, const std::string& name);
 
 class LiveRehearsal {
  public:
   /// Begins options.begin_in_s from now. `motion` and `rehearsal` have to stay.
-  static Result<LiveRehearsal> open(const Motion& motion, const Rehearsal& rehearsal,
-                                    const LiveOptions& options, ClockReader& clock);
+  LiveRehearsal(const Motion& motion, const Rehearsal& rehearsal, const LiveOptions& options,
+                ClockReader& clock, LiveSockets sockets);
 
   /// Time 0 of the motion, on both of the host's clocks.
   const ClockPair& start() const { return start_; }
   /// Until all is sent, and half a second more for what is on its way, or until `go_on` says no,
-  /// which is asked at least ten times a second with the time of the motion, s.
-  void run(const std::function<bool(double)>& go_on);
+  /// which is asked at least ten times a second. How much of the motion was sent, s.
+  double run(const std::function<bool()>& go_on);
   LiveCounts counts() const;
 
  private:
-  LiveRehearsal(ClockReader& clock, ClockPair start, double length_s)
-      : clock_(&clock), start_(start), length_s_(length_s) {}
   void wait(HostTime until) const;
 
   ClockReader* clock_;

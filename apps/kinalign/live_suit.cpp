@@ -22,7 +22,7 @@ LiveSuit::LiveSuit(const Motion& motion, const MocapRun& run, std::uint64_t seed
 void LiveSuit::work(HostTime now) {
   while (next_ <= now) {
     worst_late_ = std::max(worst_late_, now - next_);
-    ++(socket_.send(datagram()) ? sent_ : refused_);
+    if (socket_.send(datagram())) ++sent_;
     ++frame_;
     plan();
   }
@@ -52,7 +52,7 @@ std::vector<std::uint8_t> LiveSuit::datagram() {
   frame.displacement = true;
   for (const double value : row) frame.values.push_back(static_cast<float>(value));
   std::vector<std::uint8_t> bytes;
-  // Fails for another number of joints alone, which open_live refuses first.
+  // Fails for another number of joints alone, which check_live refuses first.
   if (!append_noitom(frame, bytes)) bytes.clear();
   return bytes;
 }

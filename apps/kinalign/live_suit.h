@@ -25,7 +25,7 @@ class LiveSuit {
   void work(HostTime now);
   HostTime next() const { return next_; }
   std::uint64_t sent() const { return sent_; }
-  std::uint64_t refused() const { return refused_; }
+  LiveTraffic traffic() { return socket_.traffic(); }
   /// How late a frame left at the worst.
   Duration worst_late() const { return worst_late_; }
 
@@ -42,7 +42,7 @@ class LiveSuit {
   Pose pose_;
   std::size_t frame_ = 0;
   HostTime next_ = HostTime::max();
-  std::uint64_t sent_ = 0, refused_ = 0;
+  std::uint64_t sent_ = 0;
   Duration worst_late_{0};
 };
 

@@ -160,7 +160,7 @@ nodes = {{ {} }}
 
 Result<void> write_live_manifest(const RehearsalFolder& folder, const Rehearsal& rehearsal,
                                  std::optional<double> clockless_hz) {
-  const std::string take = "take_01.mcap";
+  const std::string take = live_take_name;
   Manifest manifest;
   manifest.streams = {stream_of("mocap", {{take, ""}}), stream_of("kinect", {{take, ""}}),
                       stream_of("imu", {})};

@@ -30,6 +30,9 @@ Result<void> write_suit_head(const RehearsalFolder& folder, const Motion& motion
 Result<void> write_lab(const RehearsalFolder& folder, const LiveOptions& options,
                        const Rehearsal& rehearsal);
 
+/// As `record` names the first take in a folder, where no flag says otherwise.
+inline constexpr const char* live_take_name = "take_01.mcap";
+
 /// recording.toml for `align`, of the first take that `record` makes in the folder. `clockless_hz`:
 /// the rate of nodes without a counter.
 Result<void> write_live_manifest(const RehearsalFolder& folder, const Rehearsal& rehearsal,

@@ -63,14 +63,25 @@ TrueTimes mocap_times(const TrueRecording& truth, Time first) {
   };
 }
 
+/// "imu waist", or "mocap" of what has no nodes.
+std::string device_name(const std::string& stream, const std::string& node) {
+  return node.empty() ? stream : stream + " " + node;
+}
+
+std::string true_devices(const TrueRecording& truth) {
+  std::string names = truth.mocap.stream + ", " + truth.kinect.stream;
+  for (const TrueNode& node : truth.nodes) names += ", " + device_name(node.stream, node.node);
+  return names;
+}
+
 Result<TrueTimes> true_times(const RecordedStream& stream, const TrueRecording& truth, Time first) {
   if (stream.name == truth.mocap.stream) return mocap_times(truth, first);
   const TrueClock* clock = nullptr;
   if (stream.name == truth.kinect.stream) clock = &truth.kinect.clock;
   if (const TrueNode* node = true_node(truth, stream.name, node_of(stream))) clock = &node->clock;
   if (clock == nullptr) {
-    return Failure(
-        Error{"", 0, "a device that the truth has", shown(stream.name + " " + node_of(stream))});
+    return Failure(Error{"", 0, "a device that the truth has (" + true_devices(truth) + ")",
+                         shown(device_name(stream.name, node_of(stream)))});
   }
   return TrueTimes([clock](Time stamp) { return true_time(*clock, stamp); });
 }

@@ -105,6 +105,16 @@ TEST_CASE("a node is known by its number too, a stranger is refused") {
   CHECK(judged.error().found == "imu hat");
 }
 
+TEST_CASE("of a device that the truth lacks it is said which ones it has") {
+  Rehearsed all;
+  all.recording.streams[0].name = "suit";
+  const auto judged = judge_time(all.recording.streams[0], all.truth, {});
+  REQUIRE(!judged);
+  CHECK(to_string(judged.error()) ==
+        "expected a device that the truth has (mocap, kinect, imu waist, imu wrist_left, imu "
+        "wrist_right, imu ankle_left, imu ankle_right), found suit");
+}
+
 TEST_CASE("points that are true have no error, those 1 cm beside have one of 1 cm") {
   const Rehearsed all;
   for (const double off : {0.0, 0.01}) {

@@ -60,19 +60,18 @@ std::string name_of(const std::string& stream, const std::string& node) {
   return node.empty() ? stream : stream + " " + node;
 }
 
-void print(const TimeJudgement& one) {
+std::string row(const TimeJudgement& one) {
   std::string interval = "none";
   if (one.half_width_s) {
     interval = fmt::format("± {:.3f}, {} of {} outside", 1e3 * *one.half_width_s, one.outside,
                            one.certified);
   }
-  std::printf("%s\n", fmt::format("| {} | {} | {:.3f} | {:.3f} | {:.3f} | {} |",
-                                  name_of(one.stream, one.node), one.samples, 1e3 * one.median_s,
-                                  1e3 * one.most_s, 1e3 * one.worst_s, interval)
-                          .c_str());
+  return fmt::format("| {} | {} | {:.3f} | {:.3f} | {:.3f} | {} |\n", name_of(one.stream, one.node),
+                     one.samples, 1e3 * one.median_s, 1e3 * one.most_s, 1e3 * one.worst_s,
+                     interval);
 }
 
-void print(const ValueJudgement& one) {
+std::string row(const ValueJudgement& one) {
   const auto text = [&](double value) {
     return one.node.empty() ? fmt::format("{:.2f} cm", 100.0 * value)
                             : fmt::format("{:.4f} rad/s", value);
@@ -82,9 +81,8 @@ void print(const ValueJudgement& one) {
   };
   std::string more = "–";
   if (one.alone) more = fmt::format("{:+.1f} %", 100.0 * (one.after / *one.alone - 1.0));
-  std::printf("%s\n", fmt::format("| {} | {} | {} | {} | {} |", name_of(one.stream, one.node),
-                                  or_none(one.before), text(one.after), or_none(one.alone), more)
-                          .c_str());
+  return fmt::format("| {} | {} | {} | {} | {} |\n", name_of(one.stream, one.node),
+                     or_none(one.before), text(one.after), or_none(one.alone), more);
 }
 
 Result<Motion> true_motion(FileSystem& files, const Names& names, const TrueRecording& truth) {
@@ -93,6 +91,13 @@ Result<Motion> true_motion(FileSystem& files, const Names& names, const TrueReco
   return motion_of(bvh.clip, {.smooth_s = 0.0});
 }
 
+/// An error of the recording's contents, which has no file of its own.
+Error of_recording(const Names& names, Error error) {
+  if (error.file.empty()) error.file = names.recording;
+  return error;
+}
+
+/// Prints nothing where anything fails.
 Result<int> run(const Names& names) {
   PosixFiles files;
   const TrueRecording truth =
@@ -102,17 +107,22 @@ Result<int> run(const Names& names) {
   const Take take = KA_TRY(read_take(files, names.take));
   const Duration shift = shift_of(opened, truth);
   std::uint64_t outside = 0;
-  std::puts("| device | samples | time error: median, ms | 95 % | worst | certified |");
-  std::puts("| --- | --- | --- | --- | --- | --- |");
+  std::string text =
+      "| device | samples | time error: median, ms | 95 % | worst | certified |\n"
+      "| --- | --- | --- | --- | --- | --- |\n";
   for (const RecordedStream& stream : opened.recording.streams) {
-    const TimeJudgement judged = KA_TRY(judge_time(stream, truth, shift));
-    outside += judged.outside;
-    print(judged);
+    const auto judged = judge_time(stream, truth, shift);
+    if (!judged) return Failure(of_recording(names, judged.error()));
+    outside += judged->outside;
+    text += row(*judged);
   }
-  std::puts("\n| values, rms | before | in the take | noise alone | more than that |");
-  std::puts("| --- | --- | --- | --- | --- |");
-  const auto values = KA_TRY(judge_values({take, opened.recording, truth, motion, shift}));
-  for (const ValueJudgement& one : values) print(one);
+  text +=
+      "\n| values, rms | before | in the take | noise alone | more than that |\n"
+      "| --- | --- | --- | --- | --- |\n";
+  const auto values = judge_values({take, opened.recording, truth, motion, shift});
+  if (!values) return Failure(of_recording(names, values.error()));
+  for (const ValueJudgement& one : *values) text += row(one);
+  std::fputs(text.c_str(), stdout);
   return outside == 0 ? 0 : 1;
 }
 
