@@ -11,8 +11,8 @@
 #include "kinalign/align/plan.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_parts.h"
-#include "kinalign/io/recording_reader.h"
 #include "kinalign/io/report_json.h"
+#include "kinalign/io/unknown_file.h"
 
 #include <fmt/format.h>
 
@@ -68,11 +68,27 @@ Usage describe_verb_options(AlignVerb& o) {
 }
 
 /// Of the recording that begins in `path`; knows no options.
-Result<Manifest> recorded_manifest(const std::string& path, const Call& call) {
+Result<Manifest> survey_for_manifest(const std::string& path, const Call& call) {
   FileSystem& files = call.surroundings.files;
   const Progress progress = call.console.progress();
   const RecordingParts parts = KA_TRY(parts_from(files, path, progress));
-  return manifest_of(KA_TRY(survey_parts(files, parts, progress)), std::string(file_name(path)));
+  return recorded_manifest(KA_TRY(survey_parts(files, parts, progress)), path);
+}
+
+/// What a file is instead that is neither a recording nor named as a manifest.
+Result<Error> no_recording(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  const std::string_view head = KA_TRY(file.next());
+  if (head.empty()) return unknown_file(path, head);
+  if (path.ends_with(".mcap")) {
+    return Error{path, 0,
+                 "an MCAP file, as its name says (a file of another kind goes behind --mocap, "
+                 "--kinect, ...)",
+                 beginning_of(head)};
+  }
+  return Error{path, 0,
+               "a recording or a recording.toml (a single file goes behind --mocap, --kinect, ...)",
+               "another ending"};
 }
 
 /// As it stands in a file or follows from flags, with the options of the call.
@@ -85,18 +101,12 @@ Result<Manifest> manifest_with_options(AlignVerb& o, const Call& call) {
   }
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.manifest.front();
-  KA_TRY(InputFile::open(files, path));  // what it is comes before what it is named
   if (KA_TRY(is_recording(files, path))) {
-    manifest = KA_TRY(recorded_manifest(path, call));
+    manifest = KA_TRY(survey_for_manifest(path, call));
     manifest.align = o.options;
     return manifest;
   }
-  if (!path.ends_with(".toml")) {
-    return Failure(Error{path, 0,
-                         "a recording or a recording.toml (a single file goes behind --mocap, "
-                         "--kinect, ...)",
-                         "another ending"});
-  }
+  if (!path.ends_with(".toml")) return Failure(KA_TRY(no_recording(files, path)));
   manifest = KA_TRY(load_manifest(files, path, o.options));
   copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
   return manifest;
@@ -156,7 +166,8 @@ std::string start_advice(const AlignVerb& o, const Recording& recording, const M
 /// `path`: of the manifest, if any.
 std::vector<std::string> advice(const std::string& path, const Error& error) {
   std::vector<std::string> lines{"nothing was written"};
-  const bool manifest = path.ends_with(".toml") && error.file == path;
+  const bool named = !path.empty() && error.file == path;
+  const bool manifest = path.ends_with(".toml") && named;
   if (error.file.empty() || manifest) {
     lines.push_back(manifest ? "docs/formats/recording_toml.md shows the keys"
                              : "kinalign align --help shows the flags");
@@ -166,6 +177,9 @@ std::vector<std::string> advice(const std::string& path, const Error& error) {
           "info FILE -v lists the names of both");
     }
     if (const std::string names = name_advice(error); !names.empty()) lines.push_back(names);
+  } else if (named && (error.expected.starts_with("of stream ") ||
+                       error.expected == "a recording of devices")) {
+    lines.push_back("kinalign check " + path + " says what is wrong with the recording");
   } else if (error.line > 0) {
     lines.push_back("kinalign check " + error.file + " says what else is odd in it, up to there");
   }

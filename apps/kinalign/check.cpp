@@ -114,6 +114,15 @@ Result<Checked> check_xdf(const Check& o, const std::string& path, Call& call) {
       judge_xdf(path, KA_TRY(survey_xdf(call.surroundings.files, path, call.console.progress())))};
 }
 
+/// A stream's file that is named as something else is.
+Findings judge_name(const std::string& path, const RecordedStream& stream) {
+  const bool misnamed = path.ends_with(".mcap") || path.ends_with(".xdf") || path.ends_with(".h5");
+  if (!misnamed) return {};
+  return {{Severity::note,
+           Error{path, 0, "what its ending says", stream.format + ": " + contents_line(stream)},
+           "it was read and checked as that", "give it the ending of what it is"}};
+}
+
 /// What is wrong with one stream's samples.
 Result<Findings> check_stream(const Check& o, const Input& input, const RecordedStream& stream,
                               const std::string& reference, Call& call) {
@@ -147,6 +156,7 @@ Result<Checked> check_input(const Check& o, const std::string& path, Call& call)
   if (input.manifest) {
     append(out.findings, check_plan(path, input));
   } else {
+    append(out.findings, judge_name(path, input.recording.streams.front()));
     name_as_typed(path, input.recording.streams.front(), out.findings);
   }
   return out;

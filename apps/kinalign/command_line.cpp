@@ -119,8 +119,12 @@ class Walk {
         return wrong("", place.name + " (" + place.meaning + ")", "nothing in its place");
       }
     }
-    if (next < plain_.size()) return wrong("", "no further word", shown(plain_[next]));
-    return {};
+    if (next == plain_.size()) return {};
+    const std::string& further = plain_[next];
+    const bool config = usage_.positionals.empty() && further.ends_with(".toml");
+    return wrong(
+        "", "no further word" + (config ? " (did you mean --config " + shown(further) + "?)" : ""),
+        shown(further));
   }
 
   static Result<void> place_word(const Positional& place, const std::string& word) {

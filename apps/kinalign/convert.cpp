@@ -10,7 +10,6 @@
 #include "kinalign/io/bvh_copy.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_parts.h"
-#include "kinalign/io/recording_reader.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/show_recording.h"
 #include "kinalign/io/show_xdf.h"
@@ -169,7 +168,7 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
   KA_TRY(check_flags(o, nullptr, call));
   const RecordingParts parts = KA_TRY(parts_from(job.files, job.from, progress));
   const RecordingSurvey survey = KA_TRY(survey_parts(job.files, parts, progress));
-  const Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(job.from))));
+  const Manifest manifest = KA_TRY(recorded_manifest(survey, job.from));
   const OpenedInPart opened = KA_TRY(
       open_what_can_be(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));
   KA_TRY(show_recording(job.files, opened.recording, {parts, job.to, job.overwrite}, progress));

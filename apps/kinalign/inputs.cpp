@@ -9,6 +9,7 @@
 #include "kinalign/core/files.h"
 #include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_reader.h"
 #include "kinalign/io/remembered_path.h"
 
 #include <algorithm>
@@ -38,6 +39,16 @@ Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
   constexpr std::size_t longest = std::size_t{1} << 20;
   const std::string text = KA_TRY(read_whole(files, path, longest));
   return read_manifest(text, path, unsaid);
+}
+
+Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::string& path) {
+  if (survey.messages == 0) {
+    return Failure(Error{path, 0, "a recording in which a message can be read", "none"});
+  }
+  return manifest_of(survey, std::string(file_name(path))).map_error([&path](Error error) {
+    error.file = path;
+    return error;
+  });
 }
 
 Fields StreamFlags::fields() {

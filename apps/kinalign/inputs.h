@@ -7,6 +7,7 @@
 
 #include "kinalign/core/progress.h"
 #include "kinalign/io/guarded.h"
+#include "kinalign/io/recording_survey.h"
 #include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"
 
@@ -43,6 +44,9 @@ struct StreamFlags {
 /// Reads a recording.toml; `unsaid`: what its [align] leaves open.
 Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
                                const AlignOptions& unsaid = {});
+
+/// Of the recording that begins in `path`, which it names as its folder has it.
+Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::string& path);
 
 /// A manifest's recording, or a single stream's file as one.
 struct Input {

@@ -5,6 +5,8 @@
 #include "apps/kinalign/field_text.h"
 #include "apps/kinalign/inputs.h"
 
+#include "kinalign/core/files.h"
+
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -144,6 +146,12 @@ Fields QuickFlags::fields() {
 Result<void> refuse_beside(const std::string& path, const Sources& given) {
   for (const Twin& twin : twins) {
     if (!is_given(twin.flag, given)) continue;
+    if (path.ends_with(".mcap")) {
+      return Failure(Error{flag_of(twin.flag), 0,
+                           std::string(twin.key) + " of a manifest, recording.toml, which mixes "
+                                                   "recordings with files",
+                           shown(file_name(path)) + ", a recording, which brings its own streams"});
+    }
     return Failure(Error{flag_of(twin.flag), 0, std::string(twin.key) + " of " + shown(path),
                          "a flag beside the manifest"});
   }

@@ -23,12 +23,30 @@ struct Recover {
 Usage describe_recover(Recover& o) {
   Usage usage;
   usage.positionals = {
-      {"FILE", "a recording's file, or all of them in any order", &o.files, 1, SIZE_MAX}};
+      {"FILE", "a recording's file, with those beside it that it went on in; or all in any order",
+       &o.files, 1, SIZE_MAX}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a new file's name", "none"});
     return {};
   };
   return usage;
+}
+
+/// What stands in the new file and, below, what was in the old ones and does not.
+std::string head_line(const std::string& out, const Recovered& done) {
+  const std::string of =
+      done.missing > 0 ? " of at least " + grouped(done.messages + done.missing) : "";
+  std::string text = fmt::format("{}: {}{} messages in {} channels, read again and whole\n", out,
+                                 grouped(done.messages), of, done.proof.channels.size());
+  if (done.missing > 0) {
+    text += fmt::format("  {} are lost, as the recording's own numbers and counts say\n",
+                        grouped(done.missing));
+  }
+  if (done.skipped > 0) {
+    text += fmt::format("  damage: {} bytes of what was there could not be read\n",
+                        grouped(done.skipped));
+  }
+  return text;
 }
 
 Result<int> run(Recover& o, Call& call) {
@@ -40,8 +58,7 @@ Result<int> run(Recover& o, Call& call) {
   const Recovered done = KA_TRY(recover_recording(
       call.surroundings.files, o.files, out, call.common.overwrite(), call.console.progress()));
   call.console.wrote(out);
-  std::string text = fmt::format("{}: {} messages in {} channels, read again and whole\n", out,
-                                 grouped(done.messages), done.proof.channels.size());
+  std::string text = head_line(out, done);
   if (done.unchecked > 0) {
     text +=
         fmt::format("  {} of them no checksum covers (a torn end, or messages outside of chunks)\n",
@@ -58,6 +75,8 @@ Result<int> run(Recover& o, Call& call) {
       {"unchecked", done.unchecked},
       {"twice", done.twice},
       {"nameless", done.nameless},
+      {"missing", done.missing},
+      {"skipped_bytes", done.skipped},
       {"findings", nlohmann::ordered_json::parse(findings_json(done.findings))}}));
   return code_of(done.findings);
 }

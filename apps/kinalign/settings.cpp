@@ -4,6 +4,8 @@
 #include "apps/kinalign/command_line.h"
 #include "apps/kinalign/field_text.h"
 
+#include "kinalign/io/toml_entries.h"
+
 #include <toml++/toml.h>
 #include <unistd.h>
 
@@ -157,8 +159,9 @@ Result<SettingsFile> parse_settings(const SettingsText& file) {
   try {
     return settings_of(toml::parse(file.text, file.path), SettingsFile{file.path, file.source, {}});
   } catch (const toml::parse_error& error) {
-    return Failure(Error{file.path, static_cast<std::int64_t>(error.source().begin.line), "TOML",
-                         std::string(error.description())});
+    const auto line = static_cast<std::int64_t>(error.source().begin.line);
+    return Failure(Error{file.path, line, "TOML" + quotes_advice(file.text, line),
+                         "a fault in it: " + std::string(error.description())});
   }
 }
 

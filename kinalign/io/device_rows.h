@@ -46,6 +46,20 @@ struct HeardDevice {
   Findings findings;
 };
 
+/// `what`: what rows would be made of. `others`: what came of the protocol and is something else.
+inline Error nothing_of(std::string_view what, const std::string& file, const HeardDevice& heard,
+                        std::uint64_t others = 0) {
+  const std::string expected = "of stream " + shown(heard.channel.stream) + " " + std::string(what);
+  if (others > 0) {
+    return {file, 0, expected, std::to_string(others) + " of other types or bodies alone"};
+  }
+  return {file, 0,
+          expected +
+              " (nothing in it is of that protocol: see which port and protocol the device "
+              "sends to)",
+          "none"};
+}
+
 /// Of a device whose packets say no time, and no number that could stand for it.
 inline void stamp_by_arrival(const std::string& file, HeardDevice& heard) {
   heard.by_arrival = true;

@@ -5,8 +5,10 @@
 #include "kinalign/core/error.h"
 #include "kinalign/take/manifest.h"
 
+#include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kinalign {
 
@@ -18,5 +20,10 @@ Result<Manifest> read_manifest(std::string_view toml, std::string_view name,
 
 /// The text that reads back as `manifest`: what differs from the defaults.
 std::string manifest_toml(const Manifest& manifest);
+
+/// Lines of one [stream.NAME] of such a text, without their ends: `file = ...` or `files = ...`,
+/// and `select = ...`.
+std::string files_toml(const std::vector<StreamFile>& files);
+std::string select_toml(const std::map<std::string, std::string>& select);
 
 }  // namespace kinalign

@@ -86,26 +86,11 @@ std::string fields_text(Options options) {
   return text;
 }
 
-/// `file` or `files`, as the reader has them.
-std::string files_text(const std::vector<StreamFile>& files) {
-  if (files.empty()) return "";
-  if (files.size() == 1 && files.front().node.empty()) {
-    return "file = " + toml_text(files.front().path) + "\n";
-  }
-  if (files.front().node.empty()) {
-    std::string list;
-    for (const StreamFile& file : files) list += (list.empty() ? "" : ", ") + toml_text(file.path);
-    return "files = [" + list + "]\n";
-  }
-  InlineTable table;
-  for (const StreamFile& file : files) table.add(file.node, toml_text(file.path));
-  return "files = " + table.text() + "\n";
-}
-
 std::string stream_text(const StreamOptions& stream) {
   std::string text = fmt::format("\n[stream.{}]\n", key_text(stream.name));
-  text += files_text(stream.files) + fields_text(stream);
-  if (!stream.select.empty()) text += "select = " + table_text(stream.select) + "\n";
+  if (!stream.files.empty()) text += files_toml(stream.files) + "\n";
+  text += fields_text(stream);
+  if (!stream.select.empty()) text += select_toml(stream.select) + "\n";
   if (stream.mounting.empty()) return text;
   text += fmt::format("\n[stream.{}.mounting]\n", key_text(stream.name));
   for (const auto& [node, rotation] : stream.mounting) {
@@ -123,6 +108,25 @@ std::string space_text(const std::string& stream, const SpaceOptions& space) {
 }
 
 }  // namespace
+
+std::string files_toml(const std::vector<StreamFile>& files) {
+  if (files.empty()) return "files = []";
+  if (files.size() == 1 && files.front().node.empty()) {
+    return "file = " + toml_text(files.front().path);
+  }
+  if (files.front().node.empty()) {
+    std::string list;
+    for (const StreamFile& file : files) list += (list.empty() ? "" : ", ") + toml_text(file.path);
+    return "files = [" + list + "]";
+  }
+  InlineTable table;
+  for (const StreamFile& file : files) table.add(file.node, toml_text(file.path));
+  return "files = " + table.text();
+}
+
+std::string select_toml(const std::map<std::string, std::string>& select) {
+  return "select = " + table_text(select);
+}
 
 std::string manifest_toml(const Manifest& manifest) {
   std::string text;

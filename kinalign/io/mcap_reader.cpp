@@ -40,6 +40,11 @@ void McapReader::consume(std::size_t size) {
   offset_ += size;
 }
 
+void McapReader::skip(std::size_t size) {
+  consume(size);
+  skipped_ += size;
+}
+
 void McapReader::say(Severity severity, std::string expected, std::string found,
                      std::string meaning) {
   if (findings_.size() >= most_findings) return;
@@ -54,7 +59,7 @@ void McapReader::lose(std::string expected, std::string found) {
       "what stands there is left out, up to the next whole chunk");
   state_ = State::lost;
   crc_counts_ = false;
-  consume(1);
+  skip(1);
 }
 
 std::optional<McapRecord> McapReader::next() {
@@ -198,6 +203,7 @@ bool McapReader::open_chunk(std::string_view content) {
   } else {
     say(Severity::error, records.error().expected, records.error().found,
         "the chunk's messages are left out");
+    skipped_ += content.size();
   }
   return true;
 }
@@ -206,7 +212,7 @@ bool McapReader::open_chunk(std::string_view content) {
 /// else the file was cut off.
 void McapReader::end_in_record() {
   const std::size_t taken = taken_;
-  const std::uint64_t offset = offset_;
+  const std::uint64_t offset = offset_, skipped_before = skipped_;
   consume(1);
   state_ = State::lost;
   find_chunk();
@@ -214,11 +220,12 @@ void McapReader::end_in_record() {
   const std::size_t skipped = taken_ - taken;
   taken_ = taken;
   offset_ = offset;
+  skipped_ = skipped_before;
   if (damaged) {
     say(Severity::error, "a record", "one that is longer than the file",
         "what stands there is left out, up to the next whole chunk");
     crc_counts_ = false;
-    consume(skipped);
+    skip(skipped);
     return;
   }
   const std::string_view bytes = rest();
@@ -245,7 +252,7 @@ void McapReader::find_chunk() {
   constexpr std::uint64_t most_tried = std::uint64_t{1} << 30;
   while (!rest().empty()) {
     const std::size_t candidate = rest().find(static_cast<char>(McapOp::chunk));
-    consume(std::min(candidate, rest().size()));
+    skip(std::min(candidate, rest().size()));
     const std::string_view bytes = rest();
     if (bytes.size() < longest_chunk_head && !ended_) return;
     const auto head = head_of(bytes);
@@ -258,7 +265,7 @@ void McapReader::find_chunk() {
       state_ = State::records;
       return;
     }
-    if (!bytes.empty()) consume(1);
+    if (!bytes.empty()) skip(1);
   }
 }
 

@@ -38,6 +38,9 @@ class McapReader {
   bool unchecked() const { return in_torn_chunk_ || in_no_chunk_; }
   /// The data section's checksum, read at its end, covers every message of the file.
   bool all_checked() const { return all_checked_; }
+  /// Bytes of the file that were left out: no record, or one whose checksum does not fit. What a
+  /// torn file lacks is not among them.
+  std::uint64_t skipped() const { return skipped_; }
   /// What was wrong, each with its place in `found`; no more than some hundred.
   const Findings& findings() const { return findings_; }
 
@@ -57,6 +60,7 @@ class McapReader {
   void find_magic();
   void check_crc(const McapRecord& record, std::string_view bytes);
   void consume(std::size_t size);
+  void skip(std::size_t size);
   void lose(std::string expected, std::string found);
   void say(Severity severity, std::string expected, std::string found, std::string meaning);
   std::string_view rest() const { return std::string_view(buffer_).substr(taken_); }
@@ -73,6 +77,7 @@ class McapReader {
   std::size_t chunk_taken_ = 0;
   bool in_torn_chunk_ = false, in_no_chunk_ = false;
   bool all_checked_ = false;
+  std::uint64_t skipped_ = 0;
   std::uint64_t tried_ = 0;  // bytes that were gone through in vain, looking for a chunk
   Findings findings_;
 };

@@ -210,8 +210,10 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     waiting_.finish();
     append_waiting(out);
     converter_.report(file(), findings);
-    tell(frames_.others, "datagrams that were accepted", "others: held, late, twice or damaged",
-         "they were passed over");
+    tell(frames_.others, "datagrams that were accepted",
+         frames_.others == 1 ? "other: held, late, twice or damaged"
+                             : "others, each held, late, twice or damaged",
+         frames_.others == 1 ? "it was passed over" : "they were passed over");
     tell_too_late(waiting_, "samples");
     tell(unknown_, "samples of a life of the node whose clock is known", "samples of others",
          "they were left out");

@@ -58,6 +58,12 @@ Result<void> RecordedMessages::finish(const TakeMessage& take) {
                          fmt::format("one node of stream {}: select.node", choice_.stream),
                          fmt::format("{}", fmt::join(nodes_, ", "))});
   }
+  if (meant_.size() > 1) {
+    return Failure(Error{
+        file(), 0,
+        fmt::format("one node of stream {} that is called {}", choice_.stream, shown(choice_.node)),
+        fmt::format("{}", fmt::join(meant_, ", "))});
+  }
   if (chosen_) return {};
   if (streams_.count(choice_.stream) == 0) {
     return Failure(
@@ -146,7 +152,10 @@ bool RecordedMessages::is_wanted(const RawChannel& raw) {
   if (!raw.node.empty()) {  // a node may come from another address after a while
     remember(nodes_, node_name(raw));
     if (choice_.node.empty()) choice_.node = raw.node;
-    return raw.node == choice_.node || (!raw.place.empty() && raw.place == choice_.node);
+    const bool is_meant =
+        raw.node == choice_.node || (!raw.place.empty() && raw.place == choice_.node);
+    if (is_meant) remember(meant_, node_name(raw));
+    return is_meant;
   }
   const std::string host = host_of(raw.sender);
   if (choice_.sender.empty()) choice_.sender = host;

@@ -92,7 +92,7 @@ class RecordedMessages {
   std::string skeleton_;
   std::optional<RawChannel> chosen_;
   std::map<std::uint16_t, Channel> channels_;
-  std::set<std::string> streams_, nodes_;  // that are there
+  std::set<std::string> streams_, nodes_, meant_;  // that are there; whom the choice's node names
   SenderRoll roll_;
   std::uint64_t missing_ = 0;
   std::set<std::uint16_t> mark_channels_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <set>
 #include <vector>
 
 namespace kinalign {
@@ -17,24 +18,40 @@ int rank_of(std::string_view protocol) {
   return protocol == "kinect" ? kinect_rank : 2;
 }
 
-/// By address: the sensors of SlimeVR's trackers.
-using Trackers = std::map<std::string, std::uint32_t>;
+/// What tells those of a stream apart.
+struct Nodes {
+  std::map<std::string, std::uint32_t> sensors;         // of SlimeVR's trackers, by address
+  std::map<std::string, std::set<std::string>> called;  // by stream and name: ids
+};
+/// How often nodes are called by anything: ids too are names.
+std::string called(const RawChannel& raw, const std::string& name) {
+  return raw.stream + "/" + name;
+}
 
-Trackers trackers_in(const RecordingSurvey& survey) {
-  Trackers trackers;
+Nodes nodes_in(const RecordingSurvey& survey) {
+  Nodes nodes;
   for (const ChannelSurvey& one : survey.channels) {
-    if (const auto raw = to_raw(one.channel)) trackers[host_of(raw->sender)] |= one.sensors;
+    const auto raw = to_raw(one.channel);
+    if (!raw) continue;
+    nodes.sensors[host_of(raw->sender)] |= one.sensors;
+    for (const std::string& name : {raw->node, raw->place}) {
+      if (!name.empty()) nodes.called[called(*raw, name)].insert(raw->node);
+    }
   }
-  return trackers;
+  return nodes;
 }
 
 /// What a manifest calls those of several that are a stream: trackers are told apart by their
-/// addresses, and their sensors by numbers behind these, where there are some; of mocap and Kinects
-/// listening finds the one.
-std::vector<std::string> node_names(const RawChannel& raw, const Trackers& trackers) {
-  if (raw.protocol != "slimevr") return {raw.place.empty() ? raw.node : raw.place};
+/// addresses, and their sensors by numbers behind these, where there are some; nodes by their
+/// places, where these name one alone; of mocap and Kinects listening finds the one.
+std::vector<std::string> node_names(const RawChannel& raw, const Nodes& nodes) {
+  if (raw.protocol != "slimevr") {
+    const bool has_place =
+        !raw.place.empty() && nodes.called.at(called(raw, raw.place)).size() == 1;
+    return {has_place ? raw.place : raw.node};
+  }
   const std::string host = host_of(raw.sender);
-  const std::uint32_t sensors = trackers.at(host);
+  const std::uint32_t sensors = nodes.sensors.at(host);
   if (std::popcount(sensors) < 2) return {host};
   std::vector<std::string> names;
   for (unsigned k = 0; k < 32; ++k) {
@@ -62,8 +79,8 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
     StreamOptions options;
   };
   std::vector<Device> devices;
-  const Trackers trackers = trackers_in(survey);
-  const bool some_rotate = std::any_of(trackers.begin(), trackers.end(),
+  const Nodes nodes = nodes_in(survey);
+  const bool some_rotate = std::any_of(nodes.sensors.begin(), nodes.sensors.end(),
                                        [](const auto& tracker) { return tracker.second != 0; });
   for (const ChannelSurvey& one : survey.channels) {
     const auto raw = to_raw(one.channel);
@@ -76,7 +93,7 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
       device->options.name = raw->stream;
       device->options.select = {{"stream", raw->stream}};
     }
-    add_nodes(path, node_names(*raw, trackers), device->options.files);
+    add_nodes(path, node_names(*raw, nodes), device->options.files);
   }
   if (devices.empty()) {
     return Failure(Error{path, 0, "a recording of devices", "one in which none was heard"});

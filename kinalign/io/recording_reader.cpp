@@ -236,7 +236,8 @@ Result<std::unique_ptr<Listening>> listen_once(FileSystem& files, const DeviceWi
       }
     }
   }
-  KA_TRY(listening->end());
+  KA_TRY(listening->end().map_error(
+      [&](Error error) { return with_nodes(files, wish, std::move(error), progress); }));
   return listening;
 }
 

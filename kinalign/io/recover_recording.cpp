@@ -3,6 +3,8 @@
 
 #include "kinalign/io/mcap_store.h"
 #include "kinalign/io/recording_parts.h"
+#include "kinalign/io/recording_reader.h"
+#include "kinalign/io/unknown_file.h"
 
 #include <algorithm>
 #include <map>
@@ -49,6 +51,8 @@ class Copier {
     return writer_.finish();
   }
   std::uint64_t size() const { return writer_.size(); }
+  /// Nothing but a header and definitions was there.
+  bool is_empty() const { return recovered.messages == 0 && names_.empty(); }
   /// Whether a survey of the new file found in it what was written.
   bool proved_by(const RecordingSurvey& proof) const {
     const auto known = [this](const ChannelSurvey& one) {
@@ -61,6 +65,7 @@ class Copier {
   }
 
   Recovered recovered;
+  std::uint64_t counted = 0;  // messages, by the files' own statistics
 
  private:
   Result<void> begin(const McapHeader& header) {
@@ -114,6 +119,10 @@ class Copier {
     names_.insert(std::move(name));
     return known;
   }
+  Result<void> add(const McapStatistics& statistics) {
+    counted += statistics.messages;
+    return {};
+  }
   template <class Other>
   Result<void> add(const Other&) {
     return {};  // the summary is made anew
@@ -145,6 +154,7 @@ Result<void> copy_part(FileSystem& files, const RecordingParts& parts, std::size
   KA_TRY(read_recording(
       files, path, reader,
       [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); }, progress));
+  recovered.skipped += reader.skipped();
   if (reader.all_checked()) recovered.unchecked = unchecked_before;
   for (Finding finding : reader.findings()) {
     finding.what.file = path;
@@ -153,22 +163,47 @@ Result<void> copy_part(FileSystem& files, const RecordingParts& parts, std::size
   return {};
 }
 
+/// Fails where the file does not begin as MCAP does.
+Result<void> check_beginning(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  const std::string_view head = KA_TRY(file.next());
+  if (head.empty()) return Failure(unknown_file(path, head));
+  if (looks_like_recording(head)) return {};
+  return Failure(Error{path, 0, "an MCAP file", beginning_of(head)});
+}
+
+/// Messages that were there and are not in the new file.
+std::uint64_t missing(const Copier& copier, std::size_t parts) {
+  const Recovered& recovered = copier.recovered;
+  std::uint64_t by_number = 0;
+  if (recovered.proof.facts) {  // programs of others number as they like
+    for (const ChannelSurvey& channel : recovered.proof.channels) by_number += channel.missing;
+  }
+  const bool counted = parts == 1 && copier.counted > recovered.messages;
+  return std::max(by_number, counted ? copier.counted - recovered.messages : 0);
+}
+
 }  // namespace
 
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress) {
-  RecordingParts parts{{paths.front(), {}}};
-  if (paths.size() > 1) parts = KA_TRY(read_parts(files, paths, progress));
+  for (const std::string& path : paths) KA_TRY(check_beginning(files, path));
+  const RecordingParts parts = paths.size() > 1
+                                   ? KA_TRY(read_parts(files, paths, progress))
+                                   : KA_TRY(parts_from(files, paths.front(), progress));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   Copier copier(file);
   for (std::size_t part = 0; part < parts.size(); ++part) {
     KA_TRY(copy_part(files, parts, part, copier, progress));
   }
+  Recovered& recovered = copier.recovered;
+  if (copier.is_empty()) {
+    return Failure(Error{paths.front(), 0, "a recording in which a message can be read", "none"});
+  }
   KA_TRY(copier.finish());
 
   std::string buffer;
-  Recovered& recovered = copier.recovered;
   recovered.proof = KA_TRY(survey_recording(pieces_of(file, copier.size(), buffer), progress));
   const RecordingSurvey& proof = recovered.proof;
   if (!copier.proved_by(proof)) {
@@ -177,6 +212,8 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
               std::to_string(proof.messages) +
                   (proof.torn.empty() ? ", not all as they were written" : " and no end")});
   }
+  recovered.missing = missing(copier, parts.size());
+  if (paths.size() == 1) append(recovered.findings, judge_parts(parts, PartsBehind::read));
   KA_TRY(file.commit());
   return std::move(recovered);
 }

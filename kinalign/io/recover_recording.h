@@ -19,12 +19,17 @@ struct Recovered {
   std::uint64_t unchecked = 0;
   std::uint64_t twice = 0;     // stood in two files; the later one's were taken
   std::uint64_t nameless = 0;  // left out: the definition of their channel is lost
-  RecordingSurvey proof;       // of the new file
-  Findings findings;           // of the old ones
+  std::uint64_t skipped = 0;   // bytes of the old files in which nothing could be read
+  /// Of which it is known that they were there: by their numbers or, of a single file, by its own
+  /// count.
+  std::uint64_t missing = 0;
+  RecordingSurvey proof;  // of the new file
+  Findings findings;      // of the old ones
 };
 
-/// `paths`: the recording's files in any order; fails where they are not all of one. Nothing stands
-/// at `out` before all is written and synced. It is read again before it gets its name: what is not
+/// `paths`: the recording's files in any order; one stands for itself and those in its folder that
+/// it went on in. Fails where they are not all of one, or nothing can be read. Nothing stands at
+/// `out` before all is written and synced. It is read again before it gets its name: what is not
 /// what was written never does.
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,
                                     const std::string& out, Overwrite overwrite,

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/sender_choice.h"
 
+#include "kinalign/io/manifest_toml.h"
+#include "kinalign/io/recording_reader.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -40,6 +43,25 @@ Error with_senders(Error error, const std::string& chosen, const SenderRoll& sen
   if (senders.hosts().size() < 2) return error;
   error.found +=
       fmt::format(" from {}; heard were {}: select.sender", chosen, some_of(senders.hosts()));
+  return error;
+}
+
+Error with_nodes(FileSystem& files, const DeviceWish& wish, Error error, const Progress& progress) {
+  if (!wish.choice.node.empty()) return error;
+  const auto survey = survey_parts(files, *wish.parts, progress);
+  if (!survey) return error;
+  std::string path = wish.file.path;
+  for (const StreamFile& file : wish.options.files) {  // as the manifest has it
+    if (wish.file.path.ends_with(file.path)) path = file.path;
+  }
+  auto manifest = manifest_of(*survey, path);
+  if (!manifest) return error;
+  for (const StreamOptions& stream : manifest->streams) {
+    if (stream.name != wish.choice.stream || stream.files.size() < 2) continue;
+    error.expected = "one node of stream " + shown(stream.name) + ": " +
+                     select_toml({{"node", stream.files.front().node}}) +
+                     "; or all of them, in place of file: " + files_toml(stream.files);
+  }
   return error;
 }
 

@@ -2,6 +2,8 @@
 // Which of several senders of a stream is the device, and what is said of the others.
 #pragma once
 
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/sender_roll.h"
 
@@ -16,6 +18,10 @@ std::vector<DeviceChoice> choices(const DeviceChoice& wished, const SenderRoll& 
 
 /// Of the chosen one no rows could be made: with the names of all.
 Error with_senders(Error error, const std::string& chosen, const SenderRoll& senders);
+
+/// A recording has several nodes of the stream and none was asked for: with lines of a manifest
+/// that ask for one, or for all. Any other error as it is.
+Error with_nodes(FileSystem& files, const DeviceWish& wish, Error error, const Progress& progress);
 
 /// That there are others than the ones that are read. `any_sender`: nobody asked for one.
 Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderRoll& senders);

@@ -96,7 +96,11 @@ class SlimeListener final : public DeviceListener {
   }
 
   Result<void> finish(HeardDevice& heard) override {
-    if (rotations_ == 0) return Failure(Error{file_, 0, "rotations of a SlimeVR tracker", "none"});
+    if (rotations_ == 0) {
+      return Failure(Error{
+          file_, 0, "of stream " + shown(heard.channel.stream) + " rotations of a SlimeVR tracker",
+          "none"});
+    }
     stamp_by_arrival(file_, heard);
     // Few of many have one where the tracker sends them now and then: then they are no stream's.
     heard.content = {true, 2 * accelerations_ > rotations_, false, false};

@@ -55,14 +55,32 @@ std::int64_t line_of(const toml::node& node) {
   return static_cast<std::int64_t>(node.source().begin.line);
 }
 
+std::string quotes_advice(std::string_view text, std::int64_t line) {
+  for (std::int64_t at = 1; at < line; ++at) {
+    const auto end = text.find('\n');
+    if (end == std::string_view::npos) return "";
+    text.remove_prefix(end + 1);
+  }
+  text = text.substr(0, text.find_first_of("\r\n"));
+  const auto begin = text.find_first_not_of(" \t["), end = text.find(']');
+  if (!text.starts_with('[') || end == std::string_view::npos || begin >= end) return "";
+  const std::string_view key = text.substr(begin, end - begin);
+  const auto dot = key.find('.');
+  const std::string_view name = dot == std::string_view::npos ? key : key.substr(dot + 1);
+  const bool blank = name.find(' ') != std::string_view::npos;
+  if (!blank || name.find_first_of(".\"'") != std::string_view::npos) return "";
+  const std::string_view table = key.substr(0, key.size() - name.size());
+  return " (a name with blanks stands in quotes: [" + shown(table) + "\"" + shown(name) + "\"])";
+}
+
 Result<void> TomlFile::parse(std::string_view text,
                              const std::function<Result<void>(const toml::table&)>& read) const {
   try {
     return read(toml::parse(text, name_));
   } catch (const toml::parse_error& error) {
     const auto line = static_cast<std::int64_t>(error.source().begin.line);
-    return Failure(
-        Error{name_, line, "TOML", "a fault in it: " + std::string(error.description())});
+    return Failure(Error{name_, line, "TOML" + quotes_advice(text, line),
+                         "a fault in it: " + std::string(error.description())});
   }
 }
 

@@ -39,6 +39,10 @@ std::string type_of(const toml::node& node);
 
 std::int64_t line_of(const toml::node& node);
 
+/// Of a line in which toml++ found a fault, such as [device.my suit], whose name has to stand in
+/// quotes: how; else empty. For the end of what was expected.
+std::string quotes_advice(std::string_view text, std::int64_t line);
+
 /// Reads entries; its name stands in the errors.
 class TomlFile {
  public:

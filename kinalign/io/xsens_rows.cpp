@@ -42,7 +42,7 @@ class XsensListener final : public DeviceListener {
   Result<void> finish(HeardDevice& heard) override {
     append(heard.findings, frames_.findings(wish_.file.path));
     if (counted_.empty()) {
-      return Failure(Error{wish_.file.path, 0, std::string(meaning<Items>), "none"});
+      return Failure(nothing_of(meaning<Items>, wish_.file.path, heard, frames_.others()));
     }
     count_clock(counted_, 0.0, wish_, heard);
     return {};

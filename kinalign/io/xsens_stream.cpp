@@ -182,10 +182,12 @@ std::map<XsensChannel, SequenceCounts> XsensDecoder::channels() const {
 Findings XsensDecoder::findings(const std::string& name) const {
   Findings findings;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (counts_.refused[k] == 0) continue;
+    const std::uint64_t times = counts_.refused[k];
+    if (times == 0) continue;
     findings.push_back({Severity::warning,
                         Error{name, 0, "whole datagrams of MVN, each once",
-                              fmt::format("{} ({} times)", names[k], counts_.refused[k])},
+                              fmt::format("{} ({})", names[k],
+                                          times == 1 ? "once" : fmt::format("{} times", times))},
                         std::string(meanings[k]), ""});
   }
   for (std::size_t type = 0; type < counts_.other_types.size(); ++type) {

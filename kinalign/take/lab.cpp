@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 
 namespace kinalign {
 
@@ -83,6 +84,22 @@ Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other)
   return wrong(device, "a port of its own", std::to_string(device.port) + ", as " + other.name);
 }
 
+/// Whether a place is one node's alone, and no other one's id: nodes are called by it.
+Result<void> check_places(const DeviceOptions& device) {
+  std::map<std::string, std::string> ids;  // by place
+  for (const auto& [id, place] : device.nodes) {
+    const auto [other, is_new] = ids.emplace(place, id);
+    if (!is_new) {
+      return wrong(device, "a place of its own for each node",
+                   shown(place) + " of nodes " + other->second + " and " + id);
+    }
+    if (place != id && device.nodes.contains(place)) {
+      return wrong(device, "a place that is no other node's id", shown(place) + " of node " + id);
+    }
+  }
+  return {};
+}
+
 /// Whether all that is said of a device is of use to its protocol.
 Result<void> check_use(const DeviceOptions& device) {
   if (!is_one_of(protocols, device.protocol)) {
@@ -105,7 +122,7 @@ Result<void> check_use(const DeviceOptions& device) {
     }
     if (place.empty()) return wrong(device, "where node " + id + " is worn", "nothing");
   }
-  return {};
+  return check_places(device);
 }
 
 /// It stands on the screen, and ports and topics are told by it.

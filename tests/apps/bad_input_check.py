@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of any content, places of any kind: the program ends by itself, says one clear line and
 leaves nothing behind (see law in cases.py). bad_input_check.py BUILD_FOLDER [CASE...]"""
+import json
 import os
 import pathlib
 import random
+import re
 import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
 import samples
-from cases import LONG, WRITES_ITSELF, Skip, case, demo, kinalign, law, main, refused
+from cases import LONG, WRITES_ITSELF, Skip, case, demo, done_with, kinalign, law, main, refused
 
 RUBBISH = bytes(random.Random(5).randrange(256) for _ in range(5000))
 
@@ -138,6 +140,55 @@ def an_empty_file_and_binary_rubbish_are_refused_by_name(folder):
         for words in (("check", folder / name), ("info", folder / name),
                       ("convert", folder / name, folder / "o.npz")):
             refused(*words, naming=folder / name, out=folder / "o.npz")
+
+
+@case
+def an_empty_recording_is_called_so_by_every_verb(folder):
+    path = folder / "empty.mcap"
+    path.write_bytes(b"")
+    for words in (("check", path), ("info", path), ("convert", path, folder / "o.mcap"),
+                  ("recover", path, "-o", folder / "o.mcap"), ("align", path, "-o", folder / "o.h5")):
+        first = refused(*words, naming=path)
+        assert first == f"kinalign {words[0]}: {path}: expected a recording's file, found an empty file", first
+    assert list(folder.iterdir()) == [path]
+
+
+@case
+def what_is_named_as_a_recording_and_is_none_is_called_what_it_is(folder):
+    path = folder / "fake.mcap"
+    path.write_text(samples.bvh())
+    first = refused("align", path, "-o", folder / "o.h5", naming=f"{path}: expected an MCAP file, as its name says")
+    assert first.endswith("found 'HIERARCHY'"), first
+    refused("recover", path, "-o", folder / "o.mcap", naming=f"{path}: expected an MCAP file, found 'HIERARCHY'")
+    out, _ = done_with(0, "check", path)
+    assert out.startswith(f"note     {path}: expected what its ending says, found bvh: clip, 2 joints"), out
+
+
+@case
+def a_recording_of_which_no_message_can_be_read_becomes_nothing(folder):
+    path = folder / "t/torn.mcap"
+    path.parent.mkdir()
+    path.write_bytes(b"\x89MCAP0\r\n\x01\x15\0\0\0\0\0\0\0" + b"\x08\0\0\0kinalign")
+    for words in (("recover", path, "-o", folder / "o.mcap"), ("align", path, "-o", folder / "o.h5"),
+                  ("convert", path, folder / "o.mcap")):
+        refused(*words, naming=f"{path}: expected a recording in which a message can be read, found none")
+    assert list(folder.iterdir()) == [path.parent]
+
+
+@case
+def recover_says_first_how_much_of_a_damaged_file_is_lost(folder):
+    demo(folder / "d", seconds=20)
+    shown, whole = folder / "shown.mcap", folder / "whole.mcap"
+    done_with(0, "convert", folder / "d/mocap.bvh", shown)
+    done_with(0, "recover", shown, "-o", whole)
+    bytes_ = bytearray(shown.read_bytes())
+    bytes_[len(bytes_) // 2] ^= 1
+    shown.write_bytes(bytes_)
+    lines = done_with(1, "recover", shown, "-o", whole, "--force")[0].splitlines()
+    assert re.match(rf"{whole}: [\d,]+ of at least [\d,]+ messages in 2 channels, read again and whole", lines[0]), lines
+    assert re.match(r"  [\d,]+ are lost, ", lines[1]) and re.match(r"  damage: [\d,]+ bytes ", lines[2]), lines
+    said = json.loads(done_with(1, "recover", shown, "-o", whole, "--force", "--json")[0])
+    assert said["missing"] > 0 and said["skipped_bytes"] > 0, said
 
 
 @case

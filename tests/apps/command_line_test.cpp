@@ -76,6 +76,14 @@ TEST_CASE("a word too many is refused by name") {
         "expected no further word, found 10");
 }
 
+TEST_CASE("a TOML file as a word too many is taken for what --config names") {
+  const auto parsed = parse_words({"lab.toml"}, {}, {});
+  REQUIRE_FALSE(parsed);
+  CHECK(to_string(parsed.error()) ==
+        "expected no further word (did you mean --config lab.toml?), found lab.toml");
+  CHECK(to_string(parse_words({"lab"}, {}, {}).error()) == "expected no further word, found lab");
+}
+
 TEST_CASE("an unknown flag is answered with the nearest known one") {
   CHECK(after({"a", "--gap-mss=3"}).message ==
         "expected a known flag (did you mean --gap-ms?), found --gap-mss");

@@ -69,6 +69,36 @@ TEST_CASE("losses are told of the frames where they are counted, else of the mes
   CHECK(judged(survey) == "every frame that kinect sent: 3 lost of 903\n");
 }
 
+TEST_CASE("a device that was started anew within a take is told of") {
+  RecordingSurvey survey = kinect_survey(900, 900, 0);
+  survey.senders[0].counts.order.restarts = 1;
+  CHECK(judged(survey) == "one life of kinect: 2: it was started anew\n");
+  const std::string text = describe_survey("a.mcap", survey, {}).text;
+  CHECK(text.find("kinect: 900 messages, 0.0 MB; started anew once\n") != std::string::npos);
+}
+
+TEST_CASE("what is no mark blames no machine, and a refused node is no silence") {
+  RecordingSurvey survey = kinect_survey(900, 900, 0);
+  const auto port = [](const char* name, std::uint64_t refused, std::uint64_t dropped) {
+    CountedPort one{name, {}};
+    one.counts.refused = refused;
+    one.counts.dropped = dropped;
+    return one;
+  };
+  survey.ports = {port("marks", 2, 0), port("trigger", 0, 3), port("kinect", 4, 0),
+                  port("imu", 118, 9)};
+  survey.ports.back().counts.sifted = true;
+  CHECK(judged(survey) ==
+        "marks alone at the port of marks: 2 datagrams that are none\n"
+        "everything that came to the port of trigger: 3 dropped by the kernel\n"
+        "everything that came to the port of kinect: 4 refused, not recorded\n"
+        "frames alone of the lab's nodes at the port of imu: 118 that are refused\n");
+  for (const Finding& finding : judge_survey("a.mcap", survey)) {
+    const bool harmless = finding.what.expected.find(" alone ") != std::string::npos;
+    CHECK(finding.severity == (harmless ? Severity::note : Severity::warning));
+  }
+}
+
 TEST_CASE("a stream of which no rows can be made is told") {
   RecordingSurvey survey = kinect_survey(1000, 1000, 0);
   survey.channels[0].channel.message_encoding = "kinect";

@@ -32,6 +32,22 @@ TEST_CASE("notes do not make an exit code of 1, warnings and errors do") {
   CHECK(code_of({{Severity::error, {}, "", ""}}) == 1);
 }
 
+TEST_CASE("what is wrong with a recording is said of it under the name that the user gave") {
+  RecordingSurvey survey;
+  const auto refusal = [&survey] {
+    const auto manifest = recorded_manifest(survey, "t/take.mcap");
+    REQUIRE_FALSE(manifest);
+    return to_string(manifest.error());
+  };
+  CHECK(refusal() ==
+        "t/take.mcap: expected a recording in which a message can be read, found none");
+  survey.messages = 1;
+  CHECK(refusal() == "t/take.mcap: expected a recording of kinalign's, found another MCAP file");
+  survey.facts.emplace();
+  CHECK(refusal() ==
+        "t/take.mcap: expected a recording of devices, found one in which none was heard");
+}
+
 TEST_CASE("paths are cut to what lies below their common folder, however they are spelt") {
   const auto cut = [](const std::vector<std::string>& paths) {
     Manifest manifest;

@@ -75,6 +75,9 @@ def a_recording_cut_anywhere_is_read_up_to_there_and_by_its_index_once_recovered
         torn, mended = folder / f"{cut}.mcap", folder / f"{cut}.whole.mcap"
         torn.write_bytes(data[:cut])
         done = kinalign("recover", torn, "-o", mended)
+        if done.returncode == 3:  # cut before its metadata
+            assert count == 0 and b"found none" in done.stderr and cut < chunks[0][0], (cut, done.stderr)
+            continue
         assert done.returncode in (0, 1), done.stderr
         indexed, = core("indexed", mended)
         assert "error" not in indexed, (cut, indexed["error"])

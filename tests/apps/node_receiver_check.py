@@ -94,8 +94,9 @@ def a_node_without_the_key_is_not_heard(folder):
     counts = server.said("node_counts")[-1]
     assert counts["no_mac"] > 0 and counts["wrong_mac"] > 0 and counts["accepted"] == 0, counts
     assert not server.said("node")
-    told = server.said("node_event")  # the second node would be told a second after the first
-    assert [line["kind"] for line in told] == ["wrong_key"] and told[0]["warning"], told
+    told = server.said("node_event")  # the second node is told a second after the first, if it is there so long
+    assert 1 <= len(told) <= 2, told
+    assert all(line["kind"] == "wrong_key" and line["warning"] for line in told), told
     key = " with another key" if told[0]["node_id"] == 2 else " without a MAC"
     assert key in server.err and "kinalign node-key --lab-key LAB --node" in server.err, server.err
 

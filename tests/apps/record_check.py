@@ -207,7 +207,7 @@ def a_start_and_a_stop_that_come_together_are_a_take(folder):
 
 @case
 def with_repeat_each_start_begins_a_take_of_its_own_until_ctrl_c(folder):
-    recording = Recording(folder / "takes", "--wait", "--repeat", "--marks-port", "0", "--pre-roll-s", "0",
+    recording = Recording(folder / "2026" / "takes", "--wait", "--repeat", "--marks-port", "0", "--pre-roll-s", "0",
                           first="waiting")
     ports, files = recording.started["ports"], []
 
@@ -226,9 +226,26 @@ def with_repeat_each_start_begins_a_take_of_its_own_until_ctrl_c(folder):
     recording.until("waiting")
     code, _, err = recording.end()
     assert code == 0, err
+    assert err.endswith("kinalign record: 2 takes\n"), err
     assert [pathlib.Path(file).name for file in files] == ["take_01.mcap", "take_02.mcap"], files
     found = [numbers(Walk(pathlib.Path(file))) for file in files]
     assert found == [[0], [1]], found
+
+
+@case
+def takes_by_marks_end_with_the_one_that_something_is_amiss_with(folder):
+    recording = Recording(folder, "--wait", "--repeat", "--marks-port", "0", first="waiting")
+    ports = recording.started["ports"]
+    mark(ports, "start")
+    recording.until("started")
+    send(ports["marks"], '{"kind":"t_pose","latency_ms":4}')
+    recording.until("finding")
+    mark(ports, "stop")
+    recording.until("waiting")
+    code, _, err = recording.end()
+    assert code == 1, err
+    said = f"kinalign record: 1 take; exit code 1 for what was told above while {folder}/take_01.mcap was recorded\n"
+    assert err.endswith(said), err
 
 
 @case

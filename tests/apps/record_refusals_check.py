@@ -9,7 +9,7 @@ import socket
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from cases import Skip, case, kinalign, main
+from cases import Skip, case, done_with, kinalign, main, wrong
 from recording_program import Recording
 
 PAGES = "docs/commands.md says what a file of settings has, docs/recording.md what one of a lab"
@@ -40,6 +40,15 @@ def a_file_of_settings_that_cannot_be_read_is_no_wrong_use(folder):
     for verb in (("check", "x.bvh"), ("align", "x.toml", "-o", "x.h5")):  # of every verb
         done = kinalign(*verb, "--config", none, cwd=folder)
         assert (done.returncode, done.stderr.decode()) == (3, f"kinalign {verb[0]}: {says}\n"), done
+
+
+@case
+def a_file_is_no_folder(folder):
+    wrong("record", "-o", folder / "take.mcap", "--device", "m=noitom:0",
+          says=f"--out: expected a folder for the files, whose names --subject and --action say, found {folder}/take.mcap")
+    (folder / "here").write_text("no folder")
+    _, err = done_with(3, "record", "-o", folder / "here" / "takes", "--device", "m=nodes:0")
+    assert f"{folder}/here/takes: expected a folder for the files, found Not a directory" in err, err
 
 
 @case

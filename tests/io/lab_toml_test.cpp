@@ -80,6 +80,11 @@ TEST_CASE("what is wrong with a device is told with its line and the nearest kno
         "labs/lab.toml:1: expected nodes of nodes alone, found of noitom");
   CHECK(error_of("[device.a]\nprotocol = \"nodes\"\nnodes = { waist = \"Hips\" }\n") ==
         "labs/lab.toml:1: expected a node's id, a whole number, as the key in nodes, found waist");
+  const std::string nodes = "[device.a]\nprotocol = \"nodes\"\nport = 1\nnodes = ";
+  CHECK(error_of(nodes + "{ \"1\" = \"Hips\", \"2\" = \"Hips\" }\n") ==
+        "labs/lab.toml:1: expected a place of its own for each node, found Hips of nodes 1 and 2");
+  CHECK(error_of(nodes + "{ \"1\" = \"2\", \"2\" = \"Hips\" }\n") ==
+        "labs/lab.toml:1: expected a place that is no other node's id, found 2 of node 1");
   CHECK(error_of("[device.a]\nprotocol = \"kinect\"\nskeleton = \"a.bvh\"\n") ==
         "labs/lab.toml:1: expected skeleton of noitom alone, found of kinect");
   CHECK(error_of("[device.a]\nprotocol = \"xsens\"\nskeleton = \"a.bvh\"\n") ==

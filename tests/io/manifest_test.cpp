@@ -157,6 +157,17 @@ TEST_CASE("what is no TOML is refused with its line") {
   CHECK(error_of(std::string("a\0b", 3)).starts_with("recording.toml:1: expected TOML"));
 }
 
+TEST_CASE("a table whose name has blanks is told how it is quoted") {
+  const std::string quoted = "TOML (a name with blanks stands in quotes: [stream.\"my suit\"])";
+  CHECK(error_of(mocap + "[stream.my suit]\r\nfile = \"a.bvh\"\n")
+            .starts_with("recording.toml:3: expected " + quoted + ", found a fault in it: "));
+  CHECK(error_of("[my suit]\n").find(": [\"my suit\"])") != std::string::npos);
+  for (const std::string other :
+       {"[stream.my suit", "[stream.\"my\" suit]", "[]", "[ ]", "[a b.c]"}) {
+    CHECK(error_of(other + "\n").starts_with("recording.toml:1: expected TOML, found "));
+  }
+}
+
 TEST_CASE("an empty manifest is one without streams") {
   const auto manifest = read_manifest("", "recording.toml");
   REQUIRE(manifest);

@@ -2,6 +2,7 @@
 // Which device of a recording is read, and what is said of the file.
 #include "tests/io/recorded_streams.h"
 
+#include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/recording_reader.h"
 
 #include <doctest/doctest.h>
@@ -58,7 +59,9 @@ TEST_CASE("what is not in a recording is refused by the names of what is") {
   CHECK(refusal(stream_named("mocap", path)) ==
         "select.stream, or a stream's name, of imu; 'mocap'");
   CHECK(refusal(stream_named("imu", path)) ==
-        "one node of stream imu: select.node; 12, 13 (waist)");
+        "one node of stream imu: select = { node = \"12\" }; or all of them, in place of file: "
+        "files = { 12 = \"" +
+            path + "\", waist = \"" + path + "\" }; 12, 13 (waist)");
   CHECK(refusal(stream_named("imu", path, "14")) == "of stream imu node 12, 13 (waist); '14'");
   StreamOptions options = stream_named("imu", path, "12");
   options.select["colour"] = "red";
@@ -149,8 +152,76 @@ TEST_CASE("where nobody is the device, its senders are named") {
   REQUIRE(!streams);
   CHECK(to_string(streams.error()) ==
         path +
-            ": expected frames of a Kinect, found none from 10.0.0.66; heard were 10.0.0.66, "
+            ": expected of stream kinect frames of a Kinect (nothing in it is of that protocol: "
+            "see which port and protocol the device sends to), found none from 10.0.0.66; heard "
+            "were 10.0.0.66, "
             "10.0.0.67: select.sender");
+}
+
+TEST_CASE("what has to stand in a manifest for several nodes names the file as the manifest does") {
+  const FreshFolder folder;
+  RecordedLab lab(20261125);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 2.0, "left hand");
+  lab.add_node(13, 1, {4.0, 10.0}, 0.0, 2.0, "waist");
+  folder.write("takes/take.mcap", lab.file());
+  PosixFiles files;
+  Manifest manifest;
+  manifest.streams = {stream_named("imu", "takes/take.mcap")};
+  const auto refused = open_recording(files, manifest, folder.path() + "/");
+  REQUIRE_FALSE(refused);
+  const std::string& said = refused.error().expected;
+  const std::string lines =
+      R"(files = { "left hand" = "takes/take.mcap", waist = "takes/take.mcap" })";
+  REQUIRE_MESSAGE(said.ends_with(lines), said);
+  CHECK(said.find("select = { node = \"left hand\" }") != std::string::npos);
+  const auto pasted = read_manifest("[stream.imu]\n" + lines, "recording.toml");
+  REQUIRE(pasted);
+  CHECK(open_recording(files, *pasted, folder.path() + "/").value().streams.size() == 2);
+}
+
+TEST_CASE("where nothing is of a stream's protocol the stream is named, and where to look") {
+  const FreshFolder folder;
+  RecordedLab lab(20261125);
+  for (const std::string protocol : {"noitom", "xsens", "kinect"}) {
+    lab.add_datagram({protocol, protocol, "udp", "10.0.0.66:40000", "", ""}, 0.0, "GET /");
+  }
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  for (const auto& [protocol, what] : {std::pair("noitom", "frames of Noitom's stream"),
+                                       std::pair("xsens", "poses (type 02) of Xsens MVN"),
+                                       std::pair("kinect", "frames of a Kinect")}) {
+    const auto streams = open_streams(files, {stream_named(protocol, path)});
+    REQUIRE_FALSE(streams);
+    CHECK(to_string(streams.error()) ==
+          path + ": expected of stream " + protocol + " " + what +
+              " (nothing in it is of that protocol: see which port and protocol the device sends "
+              "to), found none");
+  }
+}
+
+TEST_CASE("a body that does not speak is not taken for another protocol") {
+  const FreshFolder folder;
+  RecordedLab lab(20261125);
+  lab.add_xsens(1.0);
+  PosixFiles files;
+  StreamOptions options = stream_named("xsens", folder.write("take.mcap", lab.file()));
+  options.select = {{"body", "7"}};
+  const auto streams = open_streams(files, {options});
+  REQUIRE_FALSE(streams);
+  CHECK(streams.error().expected == "of stream xsens poses (type 02) of Xsens MVN");
+  CHECK(streams.error().found == "120 of other types or bodies alone");
+}
+
+TEST_CASE("one datagram that was passed over is one") {
+  const FreshFolder folder;
+  RecordedLab lab(20261125);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 4.0);
+  lab.add_datagram({"imu", "kinalign-node", "udp", "10.0.0.7:5005", "12", ""}, 2.0, "GET /");
+  PosixFiles files;
+  const RecordedStream stream =
+      opened(files, stream_named("imu", folder.write("take.mcap", lab.file())));
+  REQUIRE(stream.findings.size() == 1);
+  CHECK(stream.findings.front().what.found == "1 other: held, late, twice or damaged");
 }
 
 TEST_CASE("a stranger at the trackers' port is no node of the manifest") {
@@ -165,6 +236,27 @@ TEST_CASE("a stranger at the trackers' port is no node of the manifest") {
   REQUIRE(manifest->streams.size() == 1);
   REQUIRE(manifest->streams.front().files.size() == 1);
   CHECK(manifest->streams.front().files.front().node == "10.0.0.21");
+}
+
+TEST_CASE("of two nodes in one place each is a stream of its own, by its id") {
+  const FreshFolder folder;
+  RecordedLab lab(20261125);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 5.0, "waist");
+  lab.add_node(13, 1, {4.0, 20.0}, 0.0, 5.0, "waist");
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto manifest = manifest_of(*survey_recording(files, path), path);
+  REQUIRE(manifest);
+  std::vector<std::string> nodes;
+  for (const StreamFile& file : manifest->streams.front().files) nodes.push_back(file.node);
+  CHECK(nodes == std::vector<std::string>{"12", "13"});
+  CHECK(open_streams(files, manifest->streams));
+  StreamOptions both = manifest->streams.front();
+  both.files = {{path, "waist"}};
+  const auto mixed = open_streams(files, {both});
+  REQUIRE_FALSE(mixed);
+  CHECK(mixed.error().expected == "one node of stream imu that is called waist");
+  CHECK(mixed.error().found == "12 (waist), 13 (waist)");
 }
 
 TEST_CASE("each sensor of a tracker that has several is a node") {
@@ -223,6 +315,24 @@ TEST_CASE("of two sources on one host that speak in turn one is read, and either
     other.select["sender"] = "10.0.0.3:7012";
     CHECK(mocap_errors(opened(files, other)).samples == 5000 - 5000 / 9);
   }
+}
+
+TEST_CASE("mocap frames in two datagrams each are stamped as those in one, the last one too") {
+  const FreshFolder folder;
+  PosixFiles files;
+  std::vector<Errors> errors;
+  for (const bool is_cut : {false, true}) {
+    RecordedLab lab(20261125);
+    lab.add_mocap(NoitomForm::new_header, "udp", 20.0);
+    if (is_cut) lab.cut_in_two();
+    const RecordedStream stream =
+        opened(files, stream_named("mocap", folder.write("take.mcap", lab.file())));
+    errors.push_back(mocap_errors(stream));
+  }
+  CHECK(errors[0].samples == 2500);
+  CHECK(errors[1].samples == 2500);
+  CHECK(errors[1].least == doctest::Approx(errors[0].least));
+  CHECK(errors[1].most == doctest::Approx(errors[0].most));
 }
 
 TEST_CASE("of Xsens' stream the trackers are taken where they are asked for, else the poses") {

@@ -4,6 +4,7 @@
 #include "tests/faulty_files.h"
 #include "tests/folder.h"
 #include "tests/io/mcap_files.h"
+#include "tests/io/recorded_lab.h"
 
 #include <doctest/doctest.h>
 
@@ -22,8 +23,17 @@ TEST_CASE("of a file that is cut anywhere recover makes a whole one with all tha
       const std::string torn = whole.substr(0, cut);
       const std::string path = folder.write("a.mcap", torn);
       const auto recovered = recover_recording(files, {path}, folder / "b.mcap", Overwrite::no);
+      const ReadMcap before = read_mcap(torn);
+      if (!recovered) {  // cut in front of what stands before messages: metadata
+        CHECK(before.messages.empty());
+        CHECK(cut < 200);
+        CHECK(to_string(recovered.error()) ==
+              path + ": expected a recording in which a message can be read, found none");
+        CHECK_FALSE(std::filesystem::exists(folder / "b.mcap"));
+        continue;
+      }
       REQUIRE(recovered);
-      const ReadMcap read = read_mcap(folder.read("b.mcap")), before = read_mcap(torn);
+      const ReadMcap read = read_mcap(folder.read("b.mcap"));
       CHECK(read.closed);
       CHECK(read.findings.empty());
       REQUIRE(read.messages.size() == before.messages.size());
@@ -59,6 +69,14 @@ TEST_CASE("of two files of a recording recover takes what stands in both once") 
   const ReadMcap read = read_mcap(folder.read("b.mcap"));
   REQUIRE(read.messages.size() == 60);
   for (std::uint32_t k = 0; k < 60; ++k) CHECK(read.messages[k].message.sequence == k);
+
+  const auto named_one =
+      recover_recording(files, {folder / "a.mcap"}, folder / "c.mcap", Overwrite::no);
+  REQUIRE(named_one);  // what lies beside it belongs to it
+  CHECK(named_one->messages == 60);
+  REQUIRE(named_one->findings.size() == 1);
+  CHECK(named_one->findings.back().severity == Severity::note);
+  CHECK(named_one->findings.back().what.found == "a.part2.mcap");
 }
 
 TEST_CASE("recover keeps all records of one name, and once what each part repeats") {
@@ -76,6 +94,9 @@ TEST_CASE("recover keeps all records of one name, and once what each part repeat
       REQUIRE(writer.write(McapAttachment{0, 0, "photo.jpg", "", what}));
     }
     if (part == 2) REQUIRE(writer.write(to_metadata(RecordingEnd{})));
+    McapChunkContent content;
+    add(content, nth_message(static_cast<std::uint32_t>(part)));
+    REQUIRE(writer.write(store(content, McapCompression::none)));
     REQUIRE(writer.finish());
     paths.push_back(folder.write("a" + std::to_string(part) + ".mcap", file.bytes));
   }
@@ -100,6 +121,86 @@ TEST_CASE("recover keeps all records of one name, and once what each part repeat
   all.emplace_back(end_metadata);
   CHECK(said_by(paths) == all);
   CHECK(said_by({paths[1]}) == all);
+}
+
+TEST_CASE("of a damaged recording recover says how many bytes and messages are lost") {
+  std::vector<std::size_t> ends;
+  const std::string whole = mcap_file(60, 10, McapCompression::zstd, &ends);
+  for (const std::size_t chunk : {0U, 3U, 5U}) {
+    CAPTURE(chunk);
+    const FreshFolder folder;
+    PosixFiles files;
+    std::string damaged = whole;
+    damaged[ends[chunk] - 250] ^= 0x10;  // in front of its indexes, which are 214 bytes and less
+    const auto recovered = recover_recording(files, {folder.write("a.mcap", damaged)},
+                                             folder / "b.mcap", Overwrite::no);
+    REQUIRE(recovered);
+    CHECK(recovered->messages == 50);
+    CHECK(recovered->missing == 10);  // by the file's own count
+    CHECK(recovered->skipped > 50);
+    CHECK(recovered->skipped < whole.size() / 6);
+    CHECK_FALSE(recovered->findings.empty());
+  }
+}
+
+TEST_CASE("of a torn recording of ours, which has no count, the numbers say what is lost") {
+  RecordedLab lab(20261125);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 10.0);
+  std::string bytes = lab.file(false);
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto recovered = [&] {
+    return recover_recording(files, {folder.write("a.mcap", bytes)}, folder / "b.mcap",
+                             Overwrite::yes);
+  };
+  const auto whole = recovered();
+  REQUIRE(whole);
+  CHECK(whole->missing == 0);
+  bytes[bytes.size() / 2] ^= 0x10;
+  const auto damaged = recovered();
+  REQUIRE(damaged);
+  CHECK(damaged->missing > 0);
+  CHECK(damaged->messages + damaged->missing == whole->messages);
+}
+
+TEST_CASE("of a file that is only torn nothing is skipped, and nothing known to be missing") {
+  std::vector<std::size_t> ends;
+  const std::string whole = mcap_file(60, 10, McapCompression::zstd, &ends);
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string path = folder.write("a.mcap", whole.substr(0, ends[3] - 300));
+  const auto recovered = recover_recording(files, {path}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->skipped == 0);
+}
+
+TEST_CASE("rubbish between chunks is counted, byte by byte") {
+  std::vector<std::size_t> ends;
+  std::string bytes = mcap_file(60, 10, McapCompression::zstd, &ends);
+  bytes.insert(ends[2], std::string(1000, '\0'));
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto recovered =
+      recover_recording(files, {folder.write("a.mcap", bytes)}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->messages == 60);
+  CHECK(recovered->missing == 0);
+  CHECK(recovered->skipped == 1000);
+}
+
+TEST_CASE("recover says of a file that is none what it is instead") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto refusal = [&](std::string_view bytes) {
+    const std::string path = folder.write("a.mcap", bytes);
+    const auto recovered = recover_recording(files, {path}, folder / "b.mcap", Overwrite::no);
+    REQUIRE_FALSE(recovered);
+    CHECK(recovered.error().file == path);
+    return recovered.error().expected + "; " + recovered.error().found;
+  };
+  CHECK(refusal("") == "a recording's file; an empty file");
+  CHECK(refusal("HIERARCHY\nROOT a\n") == "an MCAP file; 'HIERARCHY'");
+  CHECK(refusal("\x1f\x8b rest") == "an MCAP file; a gzip archive: unpack it first");
 }
 
 TEST_CASE("whichever call fails, recover leaves a whole file or none") {

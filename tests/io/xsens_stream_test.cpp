@@ -124,6 +124,11 @@ TEST_CASE("xsens stream: a doubled datagram of several is dropped, a doubled sam
   auto read = read_xsens(bytes);
   CHECK(read.samples == std::vector{xsens_pose(30)});
   CHECK(read.counts[XsensRefusal::repeated] == 2);
+  CHECK(read.findings.at(0).what.found == "repeated (2 times)");
+  bytes = parts[0];
+  for (const auto& part : {parts[0], parts[1]}) bytes += part;
+  read = read_xsens(bytes);
+  CHECK(read.findings.at(0).what.found == "repeated (once)");
 
   bytes = bytes_of(xsens_pose());
   bytes += bytes_of(xsens_pose());
