@@ -11,6 +11,17 @@ std::string sender_name(const std::string& stream, const std::string& node,
   return stream + " " + (place.empty() ? node : place);
 }
 
+std::string sender_name(const std::string& stream, const std::string& node,
+                        const RecordingSurvey& survey) {
+  const auto place = survey.places.find(stream + "/" + node);
+  return sender_name(stream, node, place == survey.places.end() ? "" : place->second);
+}
+
+std::string name_of(const CountedSender& sender, const RecordingSurvey& survey) {
+  return sender_name(sender.stream, sender.node, survey) +
+         (sender.sender.empty() ? "" : " from " + sender.sender);
+}
+
 std::string NodeNames::short_name(std::uint32_t id) const {
   const std::string number = std::to_string(id);
   const auto place = places.find(number);

@@ -3,6 +3,7 @@
 // programs read, is the id, or "imu/7" as topics begin.
 #pragma once
 
+#include "kinalign/io/recording_survey.h"
 #include "kinalign/take/lab.h"
 
 #include <cstdint>
@@ -14,6 +15,12 @@ namespace kinalign {
 /// "imu waist", "imu 7"; of a sender that is no node "mocap".
 std::string sender_name(const std::string& stream, const std::string& node,
                         const std::string& place);
+
+/// Likewise, the place as a recording has it.
+std::string sender_name(const std::string& stream, const std::string& node,
+                        const RecordingSurvey& survey);
+/// "mocap from 192.168.7.5:51234", "imu waist from 192.168.7.21:4000"
+std::string name_of(const CountedSender& sender, const RecordingSurvey& survey);
 
 struct NodeNames {
   std::string device = "node";                  // where no lab says what they are

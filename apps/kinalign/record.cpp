@@ -15,15 +15,15 @@
 #include "kinalign/io/lab_toml.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
+#include <filesystem>
 #include <set>
+#include <system_error>
 #include <utility>
 
 namespace kinalign {
@@ -110,6 +110,11 @@ Usage describe_record(Record& o) {
   for (const Field& field : describe(o.options)) usage.settings.push_back(field);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a folder for the files", "none"});
+    if (common.out.ends_with(".mcap")) {
+      return Failure(Error{"--out", 0,
+                           "a folder for the files, whose names --subject and --action say",
+                           common.out});
+    }
     if (o.marks_port && o.marks_port == o.trigger_port && o.marks_port != 0) {
       return Failure(Error{"--trigger-port", 0, "another port than --marks-port",
                            std::to_string(*o.trigger_port)});
@@ -123,11 +128,13 @@ Usage describe_record(Record& o) {
   return usage;
 }
 
+/// With those that it is in.
 Result<void> make_folder(const std::string& folder) {
-  struct stat status {};
-  if (::mkdir(folder.c_str(), 0755) == 0) return {};
-  if (errno == EEXIST && ::stat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) return {};
-  return Failure(Error{folder, 0, "a folder for the files", std::strerror(errno)});
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (std::error_code none; std::filesystem::is_directory(folder, none)) return {};
+  const std::string why = failed ? failed.message() : "something else of that name";
+  return Failure(Error{folder, 0, "a folder for the files", why});
 }
 
 std::string host_name() {
@@ -260,6 +267,17 @@ int record_take(const Record& o, Call& call, RecordingSession& session, Stage& s
   return written(*take, call, herald);
 }
 
+/// What --repeat ends with: which of the takes have something amiss, as was told of each.
+void tell_takes(Console& console, std::size_t takes, const std::vector<std::string>& amiss,
+                int worst) {
+  std::string text = fmt::format("kinalign record: {} take{}", takes, takes == 1 ? "" : "s");
+  if (!amiss.empty()) {
+    text += fmt::format("; exit code {} for what was told above while {} {} recorded", worst,
+                        fmt::join(amiss, ", "), amiss.size() == 1 ? "was" : "were");
+  }
+  console.note(harmless(text));
+}
+
 /// One take, or with --repeat one after another. The worst exit code of all.
 int record_takes(const Record& o, Call& call, RecordingSession& session, Stage& stage) {
   const auto free_path = [folder = call.common.out, subject = o.subject, action = o.action] {
@@ -273,12 +291,21 @@ int record_takes(const Record& o, Call& call, RecordingSession& session, Stage& 
   } else {
     session.start(plan);
   }
-  std::optional<int> worst;
+  std::size_t takes = 0;
+  int worst = 0;
+  std::vector<std::string> amiss;
   while (const auto take = stage.next_take()) {
-    worst = std::max(worst.value_or(0), record_take(o, call, session, stage, take));
-    if (!o.repeat) return *worst;
+    ++takes;
+    const int code = record_take(o, call, session, stage, take);
+    worst = std::max(worst, code);
+    if (!o.repeat) return worst;
+    const auto paths = take->disk.status().paths;
+    if (code != 0) amiss.push_back(paths.empty() ? "one that never had a file" : paths.front());
   }
-  if (worst) return *worst;
+  if (takes > 0) {
+    tell_takes(call.console, takes, amiss, worst);
+    return worst;
+  }
   call.console.note("kinalign record: stopped before a start came; nothing was recorded");
   return 1;
 }

@@ -165,8 +165,7 @@ void RecordHerald::look_at_disk(HostTime now) {
   const DiskStatus disk = newest->disk.status();
   tell_dropped(disk.dropped);
   if (!disk.free_bytes) return;
-  const std::uint64_t of_last = take_ && take_ != newest ? take_->disk.status().waiting_bytes : 0;
-  const std::uint64_t to_write = std::min(disk.waiting_bytes + of_last, *disk.free_bytes);
+  const std::uint64_t to_write = std::min(session_.waiting_bytes(), *disk.free_bytes);
   forecast_.look(now, disk.bytes + disk.waiting_bytes, *disk.free_bytes - to_write);
   if (forecast_.full() && !std::exchange(disk_full_, true)) {
     console_.complain(
@@ -268,7 +267,7 @@ void RecordHerald::tell_status(const LabStatus& status) {
   if (const auto& take = session_.newest_take()) {
     const DiskStatus disk = take->disk.status();
     event["bytes"] = disk.bytes;
-    event["waiting_bytes"] = disk.waiting_bytes;
+    event["waiting_bytes"] = session_.waiting_bytes();
     event["dropped"] = disk.dropped;
     if (const auto free = forecast_.free()) event["free_bytes"] = *free;
     if (const auto left = forecast_.minutes_left()) event["minutes_left"] = *left;

@@ -158,6 +158,10 @@ std::string counts_text(const SenderCounts& counts) {
     text += fmt::format("{}{} {}", between, grouped(count), what);
     between = ", ";
   }
+  if (const std::uint64_t restarts = counts.order.restarts) {
+    text += fmt::format("{}started anew {}", between,
+                        restarts == 1 ? "once" : grouped(restarts) + " times");
+  }
   return text;
 }
 

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/describe_file.h"
+#include "apps/kinalign/describe_report.h"
+#include "apps/kinalign/node_names.h"
+#include "apps/kinalign/record_text.h"
+#include "apps/kinalign/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+/// "mocap", "imu waist", "imu 7" of what topics begin with: "mocap", "imu/7".
+std::string name_of(const std::string& beginning, const RecordingSurvey& survey) {
+  const std::size_t end = beginning.find('/');
+  if (end == std::string::npos) return beginning;
+  const std::string stream = beginning.substr(0, end), node = beginning.substr(end + 1);
+  return sender_name(stream, node, survey);
+}
+
+/// Those that the lab wanted, and that the file has nothing of.
+std::vector<std::string> unheard(const RecordingSurvey& survey) {
+  std::vector<std::string> names;
+  for (const auto& [name, required] : survey.expected) {
+    const std::string begins = "/" + name + "/";  // of nodes any one's
+    const bool heard =
+        std::any_of(survey.channels.begin(), survey.channels.end(), [&](const ChannelSurvey& one) {
+          return one.channel.topic.starts_with(begins) && one.messages > 0;
+        });
+    if (!heard && required) names.push_back(name_of(name, survey));
+  }
+  return names;
+}
+
+/// Of a topic: of what the recorder counted before it wrote the last counts, what is neither there
+/// nor between two that are. Counts of a later part begin with the recording, not with the file.
+std::uint64_t uncovered(const CountedSender& counted, const RecordingSurvey& survey) {
+  std::uint64_t known = 0;
+  for (const ChannelSurvey& channel : survey.channels) {
+    if (channel.channel.topic == counted.topic) known += channel.messages + channel.missing;
+  }
+  const bool whole = survey.facts && survey.facts->part == 1;
+  return whole && counted.counts.messages > known ? counted.counts.messages - known : 0;
+}
+
+/// What reached the recorder and is not in the file: its numbers are left out, or, at either end of
+/// a topic, its own counts say so.
+Findings gone(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  const auto tell = [&](std::string expected, std::uint64_t lacks) {
+    if (lacks == 0) return;
+    findings.push_back({Severity::error,
+                        {path, 0, std::move(expected), grouped(lacks) + " missing"},
+                        "these messages reached the recorder and are not in the file",
+                        "a further part of the recording may have them: recover takes all parts"});
+  };
+  for (const ChannelSurvey& channel : survey.channels) {
+    tell(channel.channel.topic + " without a number left out", channel.missing);
+  }
+  for (const CountedSender& one : survey.senders) {
+    tell(fmt::format("the {} messages on {} that were counted", grouped(one.counts.messages),
+                     one.topic),
+         uncovered(one, survey));
+  }
+  return findings;
+}
+
+/// By the devices' own numbers: what they sent and what never reached the recorder, and their
+/// lives.
+Findings numbered(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  for (const CountedSender& one : survey.senders) {
+    const SequenceCounts& order = one.counts.order;
+    if (order.lost > 0) {
+      const std::uint64_t came = frames_or_messages(one.counts);
+      findings.push_back(
+          {Severity::note,
+           {path, 0, "every frame that " + name_of(one, survey) + " sent",
+            fmt::format("{} lost of {}", grouped(order.lost), grouped(order.lost + came))},
+           "by the sender's own numbers; they did not reach the recorder",
+           ""});
+    }
+    if (order.restarts > 0) {
+      findings.push_back({Severity::note,
+                          {path, 0, "one life of " + name_of(one, survey),
+                           grouped(order.restarts + 1) + ": it was started anew"},
+                          "each has a clock of its own, and nothing is known of between",
+                          ""});
+    }
+  }
+  return findings;
+}
+
+/// What came to a port of devices and could not be recorded.
+Finding port_loss(const std::string& path, const CountedPort& port, const std::string& lost) {
+  return {Severity::warning,
+          {path, 0, "everything that came to the port of " + port.stream, lost},
+          "these reached the recording machine and are not in it",
+          "see what else it does while it records"};
+}
+
+/// Whoever finds a port of marks may send what is none, without harm; but a mark that somebody
+/// meant may be among it.
+Finding no_marks(const std::string& path, const CountedPort& port) {
+  return {Severity::note,
+          {path, 0, "marks alone at the port of " + port.stream,
+           grouped(port.counts.refused) + " datagrams that are none"},
+          "record said why, and answered so",
+          "docs/formats/marks.md says how a mark is sent"};
+}
+
+/// A node without the lab's key, say; the kernel keeps back, and counts, what is no frame at all.
+Finding no_nodes(const std::string& path, const CountedPort& port) {
+  return {Severity::note,
+          {path, 0, "frames alone of the lab's nodes at the port of " + port.stream,
+           grouped(port.counts.refused) + " that are refused"},
+          "a node that is missing may have sent them: without the lab's key, say",
+          "record said of which node, and why"};
+}
+
+/// The recorder's own ports; no device has such a name.
+bool is_of_marks(const CountedPort& port) {
+  return port.stream == "marks" || port.stream == "trigger";
+}
+
+/// What came and is not in it, by port.
+Findings not_recorded(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  for (const CountedPort& one : survey.ports) {
+    if (one.counts.sifted) {
+      if (one.counts.refused > 0) findings.push_back(no_nodes(path, one));
+      continue;
+    }
+    CountedPort of_device = one;
+    if (is_of_marks(one)) {
+      if (one.counts.refused > 0) findings.push_back(no_marks(path, one));
+      of_device.counts.refused = 0;
+    }
+    const std::string lost = loss_of(of_device.counts);
+    if (!lost.empty()) findings.push_back(port_loss(path, one, lost));
+  }
+  return findings;
+}
+
+Findings lacking(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  for (const std::string& name : unheard(survey)) {
+    findings.push_back({Severity::warning,
+                        {path, 0, "messages of " + name, "none"},
+                        "a device that the lab requires is not in it",
+                        "see that it sends to the recording machine; docs/recording.md"});
+  }
+  return findings;
+}
+
+/// Of what no rows can be made: the recorder saw none of the protocol's frames in it, or nothing
+/// says whose body moves.
+Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  std::set<std::string> without_skeleton;
+  for (const CountedSender& one : survey.senders) {
+    const auto channel =
+        std::find_if(survey.channels.begin(), survey.channels.end(),
+                     [&](const ChannelSurvey& known) { return known.channel.topic == one.topic; });
+    if (channel == survey.channels.end()) continue;
+    const std::string& protocol = channel->channel.message_encoding;
+    const bool counted = protocol == "noitom" || protocol == "xsens" || protocol == "kinect";
+    if (counted && speaks_another_protocol(one.counts)) {
+      findings.push_back(
+          {Severity::warning,
+           {path, 0, "frames of " + protocol + " in what " + name_of(one, survey) + " sent",
+            grouped(one.counts.messages) + " messages, none of them one"},
+           "nothing of it can be aligned as " + protocol,
+           "see which port and protocol the device sends to"});
+    }
+    const auto& names = survey.attachments;
+    const bool has_body = std::find(names.begin(), names.end(), one.stream + ".bvh") != names.end();
+    if (protocol == "noitom" && one.counts.frames > 0 && !has_body) {
+      without_skeleton.insert(one.stream);
+    }
+  }
+  for (const std::string& stream : without_skeleton) {
+    findings.push_back({Severity::note,
+                        {path, 0, "a skeleton for " + stream, "none"},
+                        "Noitom's stream does not say whose body it moves; alignment needs it",
+                        "skeleton = \"a.bvh\" in [stream." + stream + "] of a recording.toml"});
+  }
+  return findings;
+}
+
+}  // namespace
+
+Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings = survey.findings;
+  for (const std::string& torn : survey.torn) {
+    findings.push_back({Severity::warning,
+                        {torn, 0, "an index at the recording's end", "none"},
+                        "it was not closed: the program or the machine stopped, or the disk did",
+                        survey.messages == 0
+                            ? "nothing of it can be read"
+                            : "kinalign recover " + torn + " -o whole.mcap gives it one"});
+  }
+  if (!survey.steps.empty()) {
+    const WallClockStep& worst = *std::max_element(
+        survey.steps.begin(), survey.steps.end(), [](const auto& a, const auto& b) {
+          return std::chrono::abs(a.by) < std::chrono::abs(b.by);
+        });
+    findings.push_back({Severity::warning,
+                        {path, 0, "a wall clock that nobody sets while it records",
+                         fmt::format("set {} times, by {:+.3f} s at the most", survey.steps.size(),
+                                     seconds(worst.by))},
+                        "UTC in it is the clock's of the beginning; time differences are right",
+                        "let the machine's clock be set before recording: docs/time_server.md"});
+  }
+  if (survey.facts) append(findings, gone(path, survey));
+  if (survey.more_marks > 0) {
+    findings.push_back({Severity::note,
+                        {path, 0, fmt::format("at most {} marks", grouped(most_marks)),
+                         grouped(survey.more_marks) + " more"},
+                        "alignment leaves them out",
+                        ""});
+  }
+  if (survey.end && survey.end->dropped > 0) {
+    findings.push_back({Severity::error,
+                        {path, 0, "every message that reached the recorder",
+                         grouped(survey.end->dropped) + " fewer"},
+                        "the disk was too slow for too long, and memory full",
+                        "record to a disk of the machine itself"});
+  }
+  append(findings, lacking(path, survey));
+  append(findings, numbered(path, survey));
+  append(findings, not_recorded(path, survey));
+  append(findings, unreadable(path, survey));
+  return findings;
+}
+
+}  // namespace kinalign
