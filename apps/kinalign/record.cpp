@@ -268,9 +268,14 @@ int record_take(const Record& o, Call& call, RecordingSession& session, Stage& s
 }
 
 /// What --repeat ends with: which of the takes have something amiss, as was told of each.
-void tell_takes(Console& console, std::size_t takes, const std::vector<std::string>& amiss,
-                int worst) {
+void tell_takes(Console& console, std::size_t takes, std::vector<std::string> amiss, int worst) {
+  constexpr std::size_t most_named = 8;
   std::string text = fmt::format("kinalign record: {} take{}", takes, takes == 1 ? "" : "s");
+  if (amiss.size() > most_named) {
+    const std::size_t more = amiss.size() - most_named;
+    amiss.resize(most_named);
+    amiss.push_back(fmt::format("{} more", more));
+  }
   if (!amiss.empty()) {
     text += fmt::format("; exit code {} for what was told above while {} {} recorded", worst,
                         fmt::join(amiss, ", "), amiss.size() == 1 ? "was" : "were");

@@ -183,15 +183,33 @@ std::uint64_t missing(const Copier& copier, std::size_t parts) {
   return std::max(by_number, counted ? copier.counted - recovered.messages : 0);
 }
 
+Result<RecordingParts> parts_of(FileSystem& files, const std::vector<std::string>& paths,
+                                const Progress& progress) {
+  for (const std::string& path : paths) KA_TRY(check_beginning(files, path));
+  return paths.size() > 1 ? read_parts(files, paths, progress)
+                          : parts_from(files, paths.front(), progress);
+}
+
+/// Reads what was written, before it has its name.
+Result<void> prove(Copier& copier, const OutputFile& file, const std::string& out,
+                   const Progress& progress) {
+  std::string buffer;
+  Recovered& recovered = copier.recovered;
+  recovered.proof = KA_TRY(survey_recording(pieces_of(file, copier.size(), buffer), progress));
+  const RecordingSurvey& proof = recovered.proof;
+  if (copier.proved_by(proof)) return {};
+  return Failure(
+      Error{out, 0, std::to_string(recovered.messages) + " messages, read again",
+            std::to_string(proof.messages) +
+                (proof.torn.empty() ? ", not all as they were written" : " and no end")});
+}
+
 }  // namespace
 
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress) {
-  for (const std::string& path : paths) KA_TRY(check_beginning(files, path));
-  const RecordingParts parts = paths.size() > 1
-                                   ? KA_TRY(read_parts(files, paths, progress))
-                                   : KA_TRY(parts_from(files, paths.front(), progress));
+  const RecordingParts parts = KA_TRY(parts_of(files, paths, progress));
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   Copier copier(file);
   for (std::size_t part = 0; part < parts.size(); ++part) {
@@ -202,16 +220,7 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
     return Failure(Error{paths.front(), 0, "a recording in which a message can be read", "none"});
   }
   KA_TRY(copier.finish());
-
-  std::string buffer;
-  recovered.proof = KA_TRY(survey_recording(pieces_of(file, copier.size(), buffer), progress));
-  const RecordingSurvey& proof = recovered.proof;
-  if (!copier.proved_by(proof)) {
-    return Failure(
-        Error{out, 0, std::to_string(recovered.messages) + " messages, read again",
-              std::to_string(proof.messages) +
-                  (proof.torn.empty() ? ", not all as they were written" : " and no end")});
-  }
+  KA_TRY(prove(copier, file, out, progress));
   recovered.missing = missing(copier, parts.size());
   if (paths.size() == 1) append(recovered.findings, judge_parts(parts, PartsBehind::read));
   KA_TRY(file.commit());

@@ -220,7 +220,9 @@ Result<void> show_streams(const std::vector<RecordedStream>& recorded, ShownFile
     if (const auto at = streams[i]->next()) next.emplace(*at, i);
   };
   for (const RecordedStream& stream : recorded) {
-    streams.push_back(KA_TRY(begin_stream(stream, shown)));
+    auto begun = begin_stream(stream, shown);
+    if (!begun) return Failure(std::move(begun).error());
+    streams.push_back(*std::move(begun));
     wait(streams.size() - 1);
     rows += stream.survey.samples;
   }

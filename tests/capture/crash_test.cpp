@@ -44,6 +44,44 @@ std::string payload(std::uint64_t k) {
   return "message " + std::to_string(k) + std::string(k % 97, 'x');
 }
 
+/// A sync takes 3 to 102 ms. `fails`: when one fails, once.
+class SlowSyncs {
+ public:
+  SlowSyncs(Recorded& run, RecordingDisk& disk, std::optional<Duration> fails)
+      : run_(run), disk_(disk), fails_(fails) {}
+  void end(HostTime now) {
+    if (!sync_ || ends_ > now) return;
+    run_.files.sync_began = began_;
+    run_.files.next_sync_fails = fails_ && now >= at(*fails_);
+    if (run_.files.next_sync_fails) fails_.reset();
+    CHECK(disk_.synced(*sync_, sync_->file->sync()));
+    sync_.reset();
+  }
+  void begin(HostTime now, std::mt19937_64& random) {
+    if (sync_) return;
+    sync_ = disk_.unsynced();
+    if (!sync_) return;
+    began_ = run_.files.changes.size();
+    ends_ = now + milliseconds(3 + random() % 100);
+  }
+
+ private:
+  Recorded& run_;
+  RecordingDisk& disk_;
+  std::optional<Duration> fails_;
+  std::optional<RecordingDisk::Sync> sync_{};
+  std::size_t began_ = 0;
+  HostTime ends_{};
+};
+
+std::vector<std::uint16_t> three_channels(Recorder& recorder) {
+  std::vector<std::uint16_t> channels;
+  for (const std::string topic : {"/mocap/raw", "/kinect/raw", "/imu/raw"}) {
+    channels.push_back(recorder.add_channel(McapChannel{0, 0, topic, "test", {}}));
+  }
+  return channels;
+}
+
 /// `sync_fails`: when a sync fails, once.
 void record_ten_seconds(Recorded& run, std::uint64_t seed, McapCompression compression,
                         std::optional<Duration> sync_fails = std::nullopt) {
@@ -53,37 +91,20 @@ void record_ten_seconds(Recorded& run, std::uint64_t seed, McapCompression compr
   });
   REQUIRE(disk);
   Recorder recorder(RecorderOptions{});
-  std::vector<std::uint16_t> channels;
-  for (const std::string topic : {"/mocap/raw", "/kinect/raw", "/imu/raw"}) {
-    channels.push_back(recorder.add_channel(McapChannel{0, 0, topic, "test", {}}));
-  }
-  recorder.start(at(Duration{0}),
-                 [&](McapChunkContent chunk) { CHECK(disk->write(store(chunk, compression))); });
-  struct Syncing {
-    RecordingDisk::Sync sync;
-    std::size_t began = 0;
-    HostTime ends{};
-  };
-  std::optional<Syncing> syncing;
+  const auto channels = three_channels(recorder);
+  recorder.start(at(Duration{0}), [&](const McapChunkContent& chunk) {
+    CHECK(disk->write(store(chunk, compression)));
+  });
+  SlowSyncs syncs(run, *disk, sync_fails);
   for (Duration t{0}; t < 10s; t += 4ms) {
-    if (syncing && syncing->ends <= at(t)) {
-      run.files.sync_began = syncing->began;
-      run.files.next_sync_fails = sync_fails && t >= *sync_fails;
-      if (run.files.next_sync_fails) sync_fails.reset();
-      CHECK(disk->synced(syncing->sync, syncing->sync.file->sync()));
-      syncing.reset();
-    }
+    syncs.end(at(t));
     for (const std::uint16_t channel : channels) {
       if (random() % 3 != 0) continue;
       recorder.record(channel, at(t), payload(run.sent.size()));
       run.sent.push_back(at(t));
     }
     recorder.tick(at(t));
-    if (!syncing) {
-      if (const auto sync = disk->unsynced()) {
-        syncing = {*sync, run.files.changes.size(), at(t) + milliseconds(3 + random() % 100)};
-      }
-    }
+    syncs.begin(at(t), random);
     run.changed.resize(run.files.changes.size(), at(t));
     run.moments.push_back({at(t), run.files.changes.size(), run.files.synced});
   }

@@ -101,20 +101,29 @@ TEST_CASE("sequence: what is late behind a long loss is no duplicate of what was
   CHECK(count.counts() == SequenceCounts{1003, 3'999, 1, 0, 0, 0});
 }
 
+namespace {
+
+/// Numbers with places in a queue that are up to 30 later, some twice, some never.
+std::vector<std::pair<std::uint64_t, std::uint64_t>> on_the_air(std::uint64_t sent,
+                                                                std::mt19937_64& random) {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> queue;
+  for (std::uint64_t k = 0; k < sent; ++k) {
+    if (k > 0 && k + 1 < sent && random() % 10 == 0) continue;
+    const std::uint64_t copies = random() % 20 == 0 ? 2 : 1;
+    for (std::uint64_t c = 0; c < copies; ++c) queue.emplace_back(k + random() % 30, k);
+  }
+  std::stable_sort(queue.begin(), queue.end(), [](auto& a, auto& b) { return a.first < b.first; });
+  return queue;
+}
+
+}  // namespace
+
 TEST_CASE("sequence: any loss, doubling and reordering is counted exactly") {
   for (const auto seed : fresh_seeds(200)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);
-    const std::uint64_t first = random() & 0xffffffff, sent = 2000;
-    // Sent with places in the queue that are up to 30 later, some twice, some never.
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> queue;
-    for (std::uint64_t k = 0; k < sent; ++k) {
-      if (k > 0 && k + 1 < sent && random() % 10 == 0) continue;
-      const std::uint64_t copies = random() % 20 == 0 ? 2 : 1;
-      for (std::uint64_t c = 0; c < copies; ++c) queue.emplace_back(k + random() % 30, k);
-    }
-    std::stable_sort(queue.begin(), queue.end(),
-                     [](auto& a, auto& b) { return a.first < b.first; });
+    const std::uint64_t first = random() & 0xffffffff;
+    const auto queue = on_the_air(2000, random);
     SequenceCount count;
     std::set<std::uint64_t> here;
     SequenceCounts truth;

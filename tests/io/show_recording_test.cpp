@@ -52,17 +52,23 @@ double seconds_of(std::uint64_t log_time) {
   return 1e-9 * static_cast<double>(static_cast<std::int64_t>(log_time) - RecordedLab::utc_begin);
 }
 
+/// What a manifest would say of these files.
+Manifest manifest_of_parts(FileSystem& files, const RecordingParts& parts) {
+  const auto survey = survey_parts(files, parts, {});
+  REQUIRE(survey);
+  const auto manifest = manifest_of(*survey, "take.mcap");
+  REQUIRE(manifest);
+  return *manifest;
+}
+
 /// A recording, with the files that it went on in, as it is shown.
 std::map<std::string, std::vector<ShownMessage>> shown_recording(const FreshFolder& folder,
                                                                  const std::string& path) {
   PosixFiles files;
   const auto parts = parts_from(files, path, {});
   REQUIRE(parts);
-  const auto survey = survey_parts(files, *parts, {});
-  REQUIRE(survey);
-  const auto manifest = manifest_of(*survey, "take.mcap");
-  REQUIRE(manifest);
-  const auto recording = open_recording(files, *manifest, folder.path() + "/");
+  const auto recording =
+      open_recording(files, manifest_of_parts(files, *parts), folder.path() + "/");
   REQUIRE(recording);
   const std::string out = folder / "shown.mcap";
   const auto shown = show_recording(files, *recording, {*parts, out, Overwrite::no});

@@ -39,7 +39,7 @@ std::string mcap_of_all_channels() {
     chunk.add(McapChannel{channel, 1, "/" + std::to_string(id), "json", {}});
     chunk.add(McapMessage{channel, 0, 1000 + id, 1000 + id, "{}"});
   }
-  REQUIRE(writer.write(store(std::move(chunk), McapCompression::none)));
+  REQUIRE(writer.write(store(chunk, McapCompression::none)));
   REQUIRE(writer.finish());
   return file.bytes;
 }
