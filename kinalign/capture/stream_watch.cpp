@@ -40,17 +40,11 @@ void note(const KinectOrigin& origin, NewestKinectFrames& newest) {
   HeardKinect& heard = known->second;
   const auto ahead = static_cast<std::int32_t>(origin.sequence - heard.newest.sequence);
   const bool anew = heard.newest.session != origin.session;
-  if (anew) heard.over[heard.sessions_over++ % heard.over.size()] = heard.newest.session;
+  if (anew) heard.over.add(heard.newest.session);
   if (anew || ahead > 0) heard.newest = origin;
 }
 
 }  // namespace
-
-bool HeardKinect::is_over(std::uint32_t session) const {
-  const auto known = std::min<std::uint64_t>(sessions_over, over.size());
-  const auto end = over.begin() + static_cast<std::ptrdiff_t>(known);
-  return session != newest.session && std::find(over.begin(), end, session) != end;
-}
 
 StreamWatch::StreamWatch(const std::string& protocol, bool datagrams) {
   if (protocol == "noitom") decoder_.emplace<Noitom>().datagrams = datagrams;
@@ -86,7 +80,9 @@ void StreamWatch::feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& n
 void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest) {
   const KinectOrigin origin = frame.origin;
   const auto before = newest.find(origin.sensor);
-  if (before != newest.end() && before->second.is_over(origin.session)) {
+  const bool is_known = before != newest.end();
+  if (is_known && origin.session != before->second.newest.session &&
+      before->second.over.has(origin.session)) {
     ++kinect.late;
     return;
   }
@@ -97,7 +93,7 @@ void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& n
       return;
     }
     found = kinect.sensors.emplace(origin.sensor, KinectFrameJoiner()).first;
-    if (before != newest.end()) found->second.follow(before->second.newest);
+    if (is_known) found->second.follow(before->second.newest);
   }
   note(origin, newest);
   kinect.frames.clear();

@@ -10,7 +10,6 @@
 #include "kinalign/io/recording_counts.h"
 #include "kinalign/io/xsens_stream.h"
 
-#include <array>
 #include <map>
 #include <span>
 #include <string>
@@ -23,10 +22,7 @@ namespace kinalign {
 /// A Kinect's newest frame, whichever of a port's senders brought it, and sessions that are over.
 struct HeardKinect {
   KinectOrigin newest;
-  std::array<std::uint32_t, 16> over{};
-  std::uint64_t sessions_over = 0;
-
-  bool is_over(std::uint32_t session) const;
+  PastKinectSessions over{};
 };
 /// By sensor.
 using NewestKinectFrames = std::map<std::uint32_t, HeardKinect>;

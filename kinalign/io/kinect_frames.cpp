@@ -33,18 +33,27 @@ Time device_stamp(const KinectFrame& frame) { return Time{duration_of(frame.devi
 
 }  // namespace
 
+void PastKinectSessions::add(std::uint32_t session) {
+  sessions_[count_++ % sessions_.size()] = session;
+}
+
+bool PastKinectSessions::has(std::uint32_t session) const {
+  const auto known = std::min<std::uint64_t>(count_, sessions_.size());
+  const auto end = sessions_.begin() + static_cast<std::ptrdiff_t>(known);
+  return std::find(sessions_.begin(), end, session) != end;
+}
+
 bool KinectFrameJoiner::is_stale(std::uint32_t session) const {
-  const auto known = std::min<std::uint64_t>(counts_.sessions, heard_.size());
-  const auto end = heard_.begin() + static_cast<std::ptrdiff_t>(known);
-  return session != session_ && std::find(heard_.begin(), end, session) != end;
+  return session != session_ && past_.has(session);
 }
 
 void KinectFrameJoiner::begin_session(std::uint32_t session) {
   counts_.frames += sequence_.counts();
   sequence_ = SequenceCount(32);
+  if (session_) past_.add(*session_);
   session_ = session;
   device_ticks_ = sent_ticks_ = std::nullopt;
-  heard_[counts_.sessions++ % heard_.size()] = session;
+  ++counts_.sessions;
 }
 
 void KinectFrameJoiner::follow(const KinectOrigin& last) {

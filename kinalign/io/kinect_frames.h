@@ -29,6 +29,17 @@ struct KinectFrameCounts {
   bool operator==(const KinectFrameCounts&) const = default;
 };
 
+/// A sensor's sessions that are over: the last 16.
+class PastKinectSessions {
+ public:
+  void add(std::uint32_t session);
+  bool has(std::uint32_t session) const;
+
+ private:
+  std::array<std::uint32_t, 16> sessions_{};
+  std::uint64_t count_ = 0;  // of all that were added
+};
+
 /// Frames of one sensor, in the order of arrival. Who is started anew has a new session; numbers
 /// that begin anew within one are believed of frames with newer ticks alone, else they are sent
 /// again.
@@ -45,7 +56,6 @@ class KinectFrameJoiner {
   KinectFrameCounts counts() const;
 
  private:
-  static constexpr std::size_t past_sessions = 16;
   bool is_stale(std::uint32_t session) const;
   void begin_session(std::uint32_t session);
   bool is_newer(const KinectFrame& message) const;
@@ -53,9 +63,9 @@ class KinectFrameJoiner {
   void join(KinectFrame message);
   void close(std::vector<JoinedKinectFrame>& out);
   std::optional<KinectFrame> open_;
-  std::uint32_t have_ = 0;                                // parts of the open frame, a bit each
-  std::optional<std::uint8_t> last_;                      // its last part
-  std::array<std::uint32_t, past_sessions + 1> heard_{};  // sessions, as many as there were
+  std::uint32_t have_ = 0;            // parts of the open frame, a bit each
+  std::optional<std::uint8_t> last_;  // its last part
+  PastKinectSessions past_;
   std::optional<std::uint32_t> session_;
   std::optional<std::int64_t> device_ticks_, sent_ticks_;  // of its newest frame
   SequenceCount sequence_{32};
