@@ -1,28 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
-#include "apps/kinalign/key_advice.h"
-#include "apps/kinalign/lab_advice.h"
 #include "apps/kinalign/program.h"
+#include "apps/kinalign/record_job.h"
 #include "apps/kinalign/record_stage.h"
-#include "apps/kinalign/settings.h"
 #include "apps/kinalign/steady_memory.h"
 #include "apps/kinalign/take_path.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/capture/node_keys.h"
 #include "kinalign/capture/recording_session.h"
-#include "kinalign/io/bvh_head.h"
-#include "kinalign/io/lab_toml.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -33,66 +25,7 @@ namespace {
 // What waits for a slow disk, before the program grows.
 constexpr std::size_t waiting_room = std::size_t{16} << 20;
 
-struct Record {
-  std::string subject, action;
-  std::vector<std::string> devices;
-  std::string lab_key;
-  std::optional<double> seconds;
-  std::optional<std::int64_t> marks_port, trigger_port;
-  bool wait = false, repeat = false;
-  RecordOptions options;
-};
-
-/// What --device says, over the devices of a lab.toml.
-Result<Lab> lab_of(const Record& o, std::vector<DeviceOptions> in_file) {
-  Lab lab{std::move(in_file), o.options};
-  std::set<std::string> named;
-  for (const std::string& text : o.devices) {
-    const auto device = parse_device(text);
-    if (!device) {
-      return Failure(Error{"--device", 0, device.error().expected, device.error().found});
-    }
-    if (!named.insert(device->name).second) {
-      return Failure(
-          Error{"--device", 0, "devices of different names", shown(device->name) + " twice"});
-    }
-    come_from(lab, *device);
-  }
-  KA_TRY(validate(lab));
-  KA_TRY(check_mark_ports(lab, o.marks_port, o.trigger_port));
-  return lab;
-}
-
-/// A file of settings that says which devices there are; of others nothing.
-struct LabFile {
-  std::string text;
-  std::vector<DeviceOptions> devices;
-};
-Result<LabFile> read_lab_file(Call& call) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 20;
-  const std::string path = project_settings(call.surroundings, call.common.config);
-  if (path.empty()) return LabFile{};
-  LabFile lab{KA_TRY(read_whole(call.surroundings.files, path, most_bytes)), {}};
-  auto devices = read_devices(lab.text, path);
-  if (!devices) {
-    Failure refused = call.console.refuse(std::move(devices).error());
-    call.console.if_it_fails(
-        [](const Error&) { return std::vector<std::string>{std::string(settings_pages)}; });
-    return refused;
-  }
-  lab.devices = *std::move(devices);
-  if (lab.devices.empty()) lab.text.clear();
-  return lab;
-}
-
-/// Where the lab that is to be recorded is said.
-LabSources sources_of(const Record& o, const Call& call) {
-  LabSources sources{project_settings(call.surroundings, call.common.config), {}};
-  for (const std::string& text : o.devices) sources.by_flag.insert(text.substr(0, text.find('=')));
-  return sources;
-}
-
-Usage describe_record(Record& o) {
+Usage describe_record(RecordJob& o) {
   Usage usage;
   usage.flags = {
       {"device", "NAME=PROTOCOL[:TRANSPORT[:ADDRESS]]:PORT, as in imu=nodes:5005; may be repeated",
@@ -137,84 +70,6 @@ Result<void> make_folder(const std::string& folder) {
   return Failure(Error{folder, 0, "a folder for the files", why});
 }
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
-std::string without_skeleton(const std::string& device) {
-  return fmt::format(
-      "note: {0} has no skeleton: Noitom's stream does not say whose body it moves. Put skeleton = "
-      "\"a.bvh\" under [device.{0}] of a lab.toml now, or give it to align afterwards",
-      device);
-}
-
-/// Of the nodes' device, unless a flag or setting names another. `named`: what does, where that is
-/// the device.
-Result<void> read_key(Call& call, const std::string& path, const std::string& named,
-                      RecordingSession::Options& options) {
-  call.console.if_it_fails([named](const Error& error) {
-    std::vector<std::string> lines = key_advice(error);
-    if (!named.empty()) lines.insert(lines.begin(), named);
-    return lines;
-  });
-  options.desk.lab_key = KA_TRY(read_lab_key(call.surroundings.files, path));
-  call.console.if_it_fails({});
-  return {};
-}
-
-Result<void> read_skeleton(Call& call, const DeviceOptions& device, const std::string& named,
-                           RecordingSession::Options& options) {
-  call.console.if_it_fails([named](const Error&) { return std::vector<std::string>{named}; });
-  options.skeletons[device.name] = KA_TRY(read_bvh_head(call.surroundings.files, device.skeleton));
-  call.console.if_it_fails({});
-  return {};
-}
-
-/// The files that the devices need beside lab.toml.
-Result<void> read_files(const Record& o, Call& call, RecordingSession::Options& options) {
-  const LabSources sources = sources_of(o, call);
-  if (!o.lab_key.empty()) KA_TRY(read_key(call, o.lab_key, "", options));
-  for (const DeviceOptions& device : options.lab.devices) {
-    if (!device.lab_key.empty() && o.lab_key.empty()) {
-      KA_TRY(read_key(call, device.lab_key, named_by("lab_key", device, sources), options));
-    }
-    if (!device.skeleton.empty()) {
-      KA_TRY(read_skeleton(call, device, named_by("skeleton", device, sources), options));
-    } else if (device.protocol == "noitom") {
-      call.console.note(without_skeleton(device.name));
-    }
-  }
-  return {};
-}
-
-std::optional<std::uint16_t> port_of(const std::optional<std::int64_t>& port) {
-  return port ? std::optional(static_cast<std::uint16_t>(*port)) : std::nullopt;
-}
-
-Result<RecordingSession::Options> session_options(const Record& o, Call& call) {
-  LabFile file = KA_TRY(read_lab_file(call));
-  RecordingSession::Options options;
-  auto lab = lab_of(o, std::move(file.devices));
-  if (!lab) return call.console.refuse(std::move(lab).error());
-  options.lab = *std::move(lab);
-  if (options.lab.devices.empty()) {
-    return call.console.refuse(
-        Error{"--device", 0, "at least one device, or a lab.toml for --config", "none"});
-  }
-  if (o.wait && !o.marks_port && !o.trigger_port && ::isatty(STDIN_FILENO) == 0) {
-    return call.console.refuse(
-        Error{"--wait", 0, "--marks-port, --trigger-port or a keyboard for the start", "none"});
-  }
-  options.lab_toml = std::move(file.text);
-  options.marks_port = port_of(o.marks_port);
-  options.trigger_port = port_of(o.trigger_port);
-  options.host = host_name();
-  options.desk.secret = KA_TRY(new_secret());
-  KA_TRY(read_files(o, call, options));
-  return options;
-}
-
 /// Of a disk that stands still, and with which somebody has lost patience. Its threads work on with
 /// what main() has made, so nothing of that may end before the process does.
 [[noreturn]] void leave(Call& call, RecordingSession& session, Stage& stage,
@@ -243,7 +98,7 @@ int written(const SessionTake& take, Call& call, RecordHerald& herald) {
 }
 
 /// A take: whether nothing of it is amiss, as an exit code.
-int record_take(const Record& o, Call& call, RecordingSession& session, Stage& stage,
+int record_take(const RecordJob& o, Call& call, RecordingSession& session, Stage& stage,
                 const std::shared_ptr<SessionTake>& take) {
   RecordHerald& herald = stage.herald();
   stage.begin(*take, o.wait);
@@ -284,7 +139,7 @@ void tell_takes(Console& console, std::size_t takes, std::vector<std::string> am
 }
 
 /// One take, or with --repeat one after another. The worst exit code of all.
-int record_takes(const Record& o, Call& call, RecordingSession& session, Stage& stage) {
+int record_takes(const RecordJob& o, Call& call, RecordingSession& session, Stage& stage) {
   const auto free_path = [folder = call.common.out, subject = o.subject, action = o.action] {
     (void)make_folder(folder);  // somebody may have removed it; what it lacks, the file will say
     return free_take_path(folder, subject, action);
@@ -315,7 +170,7 @@ int record_takes(const Record& o, Call& call, RecordingSession& session, Stage& 
   return 1;
 }
 
-Result<int> run(Record& o, Call& call) {
+Result<int> run(RecordJob& o, Call& call) {
   Console& console = call.console;
   console.never_wait();
   take_every_signal();
@@ -338,7 +193,7 @@ Result<int> run(Record& o, Call& call) {
 }  // namespace
 
 Verb record_verb() {
-  return make_verb<Record>(
+  return make_verb<RecordJob>(
       {.name = "record",
        .summary = "devices into a recording, nothing lost",
        .text =
