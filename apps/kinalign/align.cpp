@@ -205,7 +205,7 @@ Result<int> run(AlignVerb& o, Call& call) {
       o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));
   const std::string out = call.common.dry_run ? "" : call.common.out;
   KA_TRY(keep_inputs(out, o.manifest));
-  KA_TRY(keep_inputs(out, files_named(manifest, base)));
+  KA_TRY(keep_inputs(out, with_parts(call.surroundings.files, files_named(manifest, base))));
   for (const auto& use : {check_take_name(out), check_reference(o, manifest, call.sources)}) {
     if (!use) return call.console.refuse(use.error());
   }

@@ -169,8 +169,7 @@ void Console::show(std::vector<std::pair<std::string, Colour>> lines) {
 
 /// With as much of it as has room now.
 void Console::draw_table() {
-  const std::size_t rows = size_of(surroundings_.err).rows;
-  const std::size_t count = std::min(table_.size(), rows - 1);
+  const std::size_t count = std::min(table_.size(), rows());
   for (std::size_t i = 0; i < count; ++i) {
     const auto& [text, colour] = table_[i];
     const std::string_view line = first_places(text, columns());
@@ -180,6 +179,7 @@ void Console::draw_table() {
 }
 
 std::size_t Console::columns() const { return size_of(surroundings_.err).columns - 1; }
+std::size_t Console::rows() const { return size_of(surroundings_.err).rows - 1; }
 
 void Console::ring() {
   if (!progress_) return;

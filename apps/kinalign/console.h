@@ -83,8 +83,9 @@ class Console {
   Failure refuse(Error error);
   bool refused() const { return refused_; }
 
-  /// Places in a line of what show() shows.
+  /// Places in a line of what show() shows, and lines that it has room for.
   std::size_t columns() const;
+  std::size_t rows() const;
 
   /// Says what went wrong and what was advised.
   void report(const Error& error);

@@ -93,10 +93,12 @@ std::string text_of(const std::string& path, const RecordingSurvey& survey,
                      static_cast<double>(channel.bytes) / 1e6));
   }
   for (const CountedSender& one : survey.senders) {
-    line("sender", name_of(one, survey) + ": " + counts_text(one.counts));
+    // the recorder tells its counts once a second, and the last time as it ends
+    line("sender", name_of(one, survey) + ": " + counts_text(one.counts) +
+                       (survey.facts && !survey.end ? "; counted up to 1 s before the end" : ""));
   }
   for (const CountedPort& one : survey.ports) {
-    const std::string lost = loss_of(one.counts);
+    const std::string lost = loss_of(one.counts, frames_lost(one.stream, survey.senders));
     if (!lost.empty()) line("port", one.stream + ": " + lost);
   }
   const std::uint64_t first = first_of(survey);

@@ -135,6 +135,20 @@ std::string name_advice(const Error& error) {
   return name ? "kinalign info FILE -v lists the names of joints and nodes" : "";
 }
 
+std::vector<std::string> folder_advice(const Error& error) {
+  if (error.expected != "a regular file" || error.found != "a directory") return {};
+  std::vector<std::string> recordings;
+  std::error_code fault;
+  for (std::filesystem::directory_iterator file(error.file, fault), end; !fault && file != end;
+       file.increment(fault)) {
+    const std::string name = file->path().string();
+    if (name.ends_with(".mcap")) recordings.push_back(name);
+  }
+  if (recordings.empty()) return {"name a file in it"};
+  return {"name a file in it, as " +
+          harmless(*std::min_element(recordings.begin(), recordings.end()))};
+}
+
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b) {
   InputFile one = KA_TRY(InputFile::open(files, a)), other = KA_TRY(InputFile::open(files, b));

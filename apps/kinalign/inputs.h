@@ -65,6 +65,9 @@ Result<void> check_take_name(const std::string& out);
 /// Where the names stand, for an error about a joint or a node that is not there; else empty.
 std::string name_advice(const Error& error);
 
+/// On a folder that was given for a file: the first recording in it, if there is one; else empty.
+std::vector<std::string> folder_advice(const Error& error);
+
 /// Byte of the first difference; nothing where two files are the same.
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b);

@@ -5,6 +5,8 @@
 #include "apps/kinalign/record_text.h"
 #include "apps/kinalign/summary.h"
 
+#include "kinalign/io/toml_entries.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +25,7 @@ std::string name_of(const std::string& beginning, const RecordingSurvey& survey)
   return sender_name(stream, node, survey);
 }
 
-/// Those that the lab wanted, and that the file has nothing of.
+/// Those that the lab wanted, and that the file has nothing of: as their topics begin.
 std::vector<std::string> unheard(const RecordingSurvey& survey) {
   std::vector<std::string> names;
   for (const auto& [name, required] : survey.expected) {
@@ -32,7 +34,7 @@ std::vector<std::string> unheard(const RecordingSurvey& survey) {
         std::any_of(survey.channels.begin(), survey.channels.end(), [&](const ChannelSurvey& one) {
           return one.channel.topic.starts_with(begins) && one.messages > 0;
         });
-    if (!heard && required) names.push_back(name_of(name, survey));
+    if (!heard && required) names.push_back(name);
   }
   return names;
 }
@@ -82,7 +84,7 @@ Findings numbered(const std::string& path, const RecordingSurvey& survey) {
           {Severity::note,
            {path, 0, "every frame that " + name_of(one, survey) + " sent",
             fmt::format("{} lost of {}", grouped(order.lost), grouped(order.lost + came))},
-           "by the sender's own numbers; they did not reach the recorder",
+           "by the sender's own numbers; they did not reach the recorder, or were never sent",
            ""});
     }
     if (order.restarts > 0) {
@@ -123,6 +125,16 @@ Finding no_nodes(const std::string& path, const CountedPort& port) {
           "record said of which node, and why"};
 }
 
+/// Another device that sent there, say: record warned of it from as many on.
+Finding strays_at(const std::string& path, const CountedPort& port, std::uint64_t strays) {
+  return {are_many(strays) ? Severity::warning : Severity::note,
+          {path, 0, "frames of nodes alone at the port of " + port.stream,
+           fmt::format("{}{} datagrams that are none",
+                       strays < port.counts.dropped ? "at least " : "", grouped(strays))},
+          "they were thrown away: nothing of them is in it",
+          "see which port and protocol each device sends to"};
+}
+
 /// The recorder's own ports; no device has such a name.
 bool is_of_marks(const CountedPort& port) {
   return port.stream == "marks" || port.stream == "trigger";
@@ -134,6 +146,8 @@ Findings not_recorded(const std::string& path, const RecordingSurvey& survey) {
   for (const CountedPort& one : survey.ports) {
     if (one.counts.sifted) {
       if (one.counts.refused > 0) findings.push_back(no_nodes(path, one));
+      const std::uint64_t came = strays(one.counts, frames_lost(one.stream, survey.senders));
+      if (came > 0) findings.push_back(strays_at(path, one, came));
       continue;
     }
     CountedPort of_device = one;
@@ -141,21 +155,45 @@ Findings not_recorded(const std::string& path, const RecordingSurvey& survey) {
       if (one.counts.refused > 0) findings.push_back(no_marks(path, one));
       of_device.counts.refused = 0;
     }
-    const std::string lost = loss_of(of_device.counts);
+    const std::string lost = loss_of(of_device.counts, 0);
     if (!lost.empty()) findings.push_back(port_loss(path, one, lost));
   }
   return findings;
 }
 
+/// What came to the port of a device of which nothing is there; empty: nothing did.
+std::string came_unheard(const std::string& device, const RecordingSurvey& survey) {
+  const bool heard = std::any_of(survey.senders.begin(), survey.senders.end(),
+                                 [&](const CountedSender& one) { return one.stream == device; });
+  const auto port = std::find_if(survey.ports.begin(), survey.ports.end(),
+                                 [&](const CountedPort& one) { return one.stream == device; });
+  if (heard || port == survey.ports.end()) return "";
+  return unheard_but_came(port->counts, "to its port");
+}
+
 Findings lacking(const std::string& path, const RecordingSurvey& survey) {
   Findings findings;
   for (const std::string& name : unheard(survey)) {
-    findings.push_back({Severity::warning,
-                        {path, 0, "messages of " + name, "none"},
-                        "a device that the lab requires is not in it",
-                        "see that it sends to the recording machine; docs/recording.md"});
+    const std::string came = came_unheard(name.substr(0, name.find('/')), survey);
+    findings.push_back(
+        {Severity::warning,
+         {path, 0, "messages of " + name_of(name, survey), came.empty() ? "none" : "none: " + came},
+         "a device that the lab requires is not in it",
+         came.empty() ? "see that it sends to the recording machine; "
+                        "docs/recording.md"
+                      : "see that it sends to this port, and other devices to "
+                        "theirs; docs/recording.md"});
   }
   return findings;
+}
+
+/// Of a suit over UDP whose pieces don't tell which frame they are of.
+Finding hardly_read(const std::string& path, const std::string& name, const SenderCounts& counts) {
+  return {Severity::warning,
+          {path, 0, "frames that can be read in what " + name + " sent",
+           fmt::format("{}; {} times none", grouped(counts.frames), grouped(counts.refused))},
+          "fewer than half of them can be aligned, though their bytes are all in the recording",
+          "prefer TCP, which loses and mixes no pieces of frames"};
 }
 
 /// Of what no rows can be made: the recorder saw none of the protocol's frames in it, or nothing
@@ -169,8 +207,7 @@ Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
                      [&](const ChannelSurvey& known) { return known.channel.topic == one.topic; });
     if (channel == survey.channels.end()) continue;
     const std::string& protocol = channel->channel.message_encoding;
-    const bool counted = protocol == "noitom" || protocol == "xsens" || protocol == "kinect";
-    if (counted && speaks_another_protocol(one.counts)) {
+    if (speaks_another_protocol(protocol, one.counts)) {
       findings.push_back(
           {Severity::warning,
            {path, 0, "frames of " + protocol + " in what " + name_of(one, survey) + " sent",
@@ -178,17 +215,20 @@ Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
            "nothing of it can be aligned as " + protocol,
            "see which port and protocol the device sends to"});
     }
+    const bool heard = protocol == "noitom" && one.counts.frames > 0;
+    if (heard && are_many(one.counts.refused) && one.counts.refused > one.counts.frames) {
+      findings.push_back(hardly_read(path, name_of(one, survey), one.counts));
+    }
     const auto& names = survey.attachments;
     const bool has_body = std::find(names.begin(), names.end(), one.stream + ".bvh") != names.end();
-    if (protocol == "noitom" && one.counts.frames > 0 && !has_body) {
-      without_skeleton.insert(one.stream);
-    }
+    if (heard && !has_body) without_skeleton.insert(one.stream);
   }
   for (const std::string& stream : without_skeleton) {
-    findings.push_back({Severity::note,
-                        {path, 0, "a skeleton for " + stream, "none"},
-                        "Noitom's stream does not say whose body it moves; alignment needs it",
-                        "skeleton = \"a.bvh\" in [stream." + stream + "] of a recording.toml"});
+    findings.push_back(
+        {Severity::note,
+         {path, 0, "a skeleton for " + stream, "none"},
+         "Noitom's stream does not say whose body it moves; alignment needs it",
+         "skeleton = \"a.bvh\" in [stream." + toml_key(stream) + "] of a recording.toml"});
   }
   return findings;
 }
@@ -203,8 +243,9 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
                         "it was not closed: the program or the machine stopped, or the disk did",
                         survey.messages == 0
                             ? "nothing of it can be read"
-                            : "kinalign recover " + torn + " -o whole.mcap gives it one"});
+                            : "kinalign recover " + path + " -o whole.mcap gives it one"});
   }
+  append(findings, judge_end(path, survey));
   if (!survey.steps.empty()) {
     const WallClockStep& worst = *std::max_element(
         survey.steps.begin(), survey.steps.end(), [](const auto& a, const auto& b) {

@@ -3,6 +3,8 @@
 
 #include "apps/kinalign/port_advice.h"
 
+#include "kinalign/io/toml_entries.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +36,7 @@ WantedPort wanted_by(const DeviceOptions& device, const LabSources& sources) {
     wanted.port_from = said + "PORT";
     wanted.address_from = said + "ADDRESS:PORT";
   } else {
-    const std::string said = fmt::format("[device.{}] in {}", device.name, sources.file);
+    const std::string said = fmt::format("[device.{}] in {}", toml_key(device.name), sources.file);
     wanted.port_from = "port of " + said;
     wanted.address_from = "address of " + said;
   }
@@ -70,7 +72,7 @@ Advice lab_port_advice(const Lab& lab, const LabSources& sources, const Port& ma
 
 std::string named_by(const std::string& key, const DeviceOptions& device,
                      const LabSources& sources) {
-  return fmt::format("{} of [device.{}] in {} names it", key, device.name, sources.file);
+  return fmt::format("{} of [device.{}] in {} names it", key, toml_key(device.name), sources.file);
 }
 
 }  // namespace kinalign

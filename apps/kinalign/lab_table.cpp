@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -102,7 +103,7 @@ Row note(std::string who, std::string text, bool bad) {
 
 void add_losses(const std::string& port, const LabStatus& status, std::vector<Row>& rows) {
   for (const auto& [name, counts] : status.ports) {
-    const std::string text = name == port ? loss_of(counts) : "";
+    const std::string text = name == port ? loss_of(counts, frames_lost(name, status.streams)) : "";
     if (!text.empty()) rows.push_back(note(name, text, true));
   }
 }
@@ -125,13 +126,20 @@ void add_device(const DeviceOptions& options, const LabStatus& status, std::vect
   add_losses(options.name, status, rows);
 }
 
-/// Of each column; 0: it is left out.
-std::array<std::size_t, columns> widths_of(const std::vector<Row>& rows, std::size_t width) {
-  std::array<std::size_t, columns> wide{};
+using Widths = std::array<std::size_t, columns>;  // of each column; 0: it is left out
+
+/// While nobody is heard; a head would say nothing.
+bool only_devices(const Widths& wide) {
+  return std::all_of(wide.begin() + 1, wide.end(), [](std::size_t places) { return places == 0; });
+}
+
+Widths widths_of(const std::vector<Row>& rows, std::size_t width) {
+  Widths wide{};
   for (const Row& row : rows) {
     if (&row == &rows.front()) continue;  // a head alone is no reason for a column
     for (std::size_t i = 0; i < columns; ++i) wide[i] = std::max(wide[i], places(row.cells[i]));
   }
+  if (only_devices(wide)) return wide;
   std::size_t all = 0;
   for (std::size_t i = 0; i < columns; ++i) {
     if (wide[i] > 0) wide[i] = std::max(wide[i], places(rows.front().cells[i]));
@@ -145,7 +153,7 @@ std::array<std::size_t, columns> widths_of(const std::vector<Row>& rows, std::si
   return wide;
 }
 
-std::string line_of(const Row& row, const std::array<std::size_t, columns>& wide) {
+std::string line_of(const Row& row, const Widths& wide) {
   std::string line;
   for (std::size_t i = 0; i < columns; ++i) {
     if (wide[i] == 0) continue;
@@ -158,6 +166,14 @@ std::string line_of(const Row& row, const std::array<std::size_t, columns>& wide
   return line;
 }
 
+/// The last line that is as bad as that, else none.
+std::vector<TableLine>::iterator last_of(std::vector<TableLine>& table, bool bad) {
+  const auto found = std::find_if(table.rbegin(), table.rend(), [bad](const TableLine& line) {
+    return !line.head && line.bad == bad;
+  });
+  return found == table.rend() ? table.end() : std::prev(found.base());
+}
+
 }  // namespace
 
 std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::size_t width) {
@@ -167,8 +183,32 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::s
   const auto wide = widths_of(rows, width);
   std::vector<TableLine> lines;
   lines.reserve(rows.size());
-  for (const Row& row : rows) lines.push_back({line_of(row, wide), row.bad});
+  for (const Row& row : rows) {
+    const bool is_head = &row == &rows.front();
+    if (!is_head || !only_devices(wide)) lines.push_back({line_of(row, wide), row.bad, is_head});
+  }
   return lines;
+}
+
+std::vector<TableLine> fitted(std::vector<TableLine> table, std::size_t rows) {
+  if (table.size() <= rows) return table;
+  if (rows < 2 && table.front().head) {  // of more worth than a head is what it stands above
+    table.erase(table.begin());
+    return fitted(std::move(table), rows);
+  }
+  if (rows == 0) return {};
+  std::size_t out = 0, amiss = 0;
+  while (table.size() + 1 > rows) {
+    auto last = last_of(table, false);
+    if (last == table.end()) last = last_of(table, true);
+    ++out;
+    amiss += last->bad ? 1 : 0;
+    table.erase(last);
+  }
+  table.push_back(
+      {fmt::format("… {} more{}", out, amiss > 0 ? fmt::format(", {} amiss", amiss) : ""),
+       amiss > 0});
+  return table;
 }
 
 }  // namespace kinalign

@@ -4,6 +4,7 @@
 #include "apps/kinalign/command_line.h"
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/help.h"
+#include "apps/kinalign/inputs.h"
 #include "apps/kinalign/settings.h"
 
 #include <algorithm>
@@ -93,7 +94,10 @@ class Run {
       console_->complain("kinalign " + verb_.page.name + ": stopped; no unfinished file is left");
       return stopped;
     }
-    if (!code) console_->report(code.error());
+    if (!code) {
+      console_->report(code.error());
+      for (const std::string& line : folder_advice(code.error())) console_->complain("  " + line);
+    }
     const Result<void> written = console_->finish();
     if (!written) console_->report(written.error());
     if (!code && console_->refused()) return wrong_use;

@@ -147,9 +147,10 @@ Result<void> refuse_beside(const std::string& path, const Sources& given) {
   for (const Twin& twin : twins) {
     if (!is_given(twin.flag, given)) continue;
     if (path.ends_with(".mcap")) {
+      const std::string key(twin.key.substr(0, twin.key.find('.')));
       return Failure(Error{flag_of(twin.flag), 0,
-                           std::string(twin.key) + " of a manifest, recording.toml, which mixes "
-                                                   "recordings with files",
+                           key + ".NAME] of a manifest, recording.toml, which mixes recordings "
+                                 "with files (NAME: a stream's own, see kinalign info)",
                            shown(file_name(path)) + ", a recording, which brings its own streams"});
     }
     return Failure(Error{flag_of(twin.flag), 0, std::string(twin.key) + " of " + shown(path),

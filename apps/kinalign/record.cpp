@@ -55,7 +55,10 @@ Usage describe_record(RecordJob& o) {
     if (o.repeat && !o.wait) {
       return Failure(Error{"--repeat", 0, "--wait beside it: takes need a start", "none"});
     }
-    KA_TRY(lab_of(o, {}));
+    RecordJob flags = o;  // ports of marks are looked at beside the file's devices, too
+    flags.marks_port.reset();
+    flags.trigger_port.reset();
+    KA_TRY(lab_of(flags, {}));
     return {};
   };
   return usage;
@@ -75,7 +78,9 @@ Result<void> make_folder(const std::string& folder) {
 [[noreturn]] void leave(Call& call, RecordingSession& session, Stage& stage,
                         std::shared_ptr<SessionTake> take) {
   for (; take; take = session.next_take()) {
-    const auto paths = take->disk.status().paths;
+    const DiskStatus disk = take->disk.status();
+    if (disk.finished && !disk.refused) continue;  // the disk has all of it
+    const auto& paths = disk.paths;
     call.console.report(Error{paths.empty() ? call.common.out : paths.front(), 0,
                               paths.empty() ? "a disk that begins the take's file"
                                             : "a disk that takes the end of the take",
@@ -89,12 +94,13 @@ Result<void> make_folder(const std::string& folder) {
 /// Whether the disk has all of a take, as an exit code.
 int written(const SessionTake& take, Call& call, RecordHerald& herald) {
   const DiskStatus disk = take.disk.status();
+  const bool warned = herald.take_warned();
   if (disk.refused) {
     call.console.report(*disk.refused);
     return failed;
   }
   const bool whole = disk.dropped == 0 && disk.paths.size() == 1 && !herald.disk_full();
-  return whole && herald.unheard_required().empty() && !herald.warned() ? 0 : 1;
+  return whole && herald.unheard_required().empty() && !warned ? 0 : 1;
 }
 
 /// A take: whether nothing of it is amiss, as an exit code.

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace kinalign {
@@ -38,13 +39,6 @@ std::string ports_text(const RecordingSession& session) {
 
 /// The first one ends recording, where it goes on.
 std::string_view to_give_up(bool ends) { return ends ? "another Ctrl-C" : "Ctrl-C pressed twice"; }
-
-/// "3 min", "2.5 h", "12 d": with as many digits as a forecast deserves.
-std::string minutes_text(double minutes) {
-  if (minutes < 120) return fmt::format("{:.0f} min", minutes);
-  if (minutes < 48 * 60) return fmt::format("{:.1f} h", minutes / 60);
-  return fmt::format("{:.0f} d", minutes / 60 / 24);
-}
 
 }  // namespace
 
@@ -283,7 +277,6 @@ void RecordHerald::tell_status(const LabStatus& status) {
   console_.print_json(json_text(event));
 }
 
-/// "disk  34.2 MB in takes/03_S1A02_01.mcap, 120.5 GB left: 12 h at this rate"
 std::string RecordHerald::disk_line() const {
   if (take_ && take_->end) {
     const DiskStatus ended = take_->disk.status();
@@ -294,17 +287,16 @@ std::string RecordHerald::disk_line() const {
   if (!session_.recording()) return "waiting for a start";
   const DiskStatus disk = session_.newest_take()->disk.status();
   if (disk.paths.empty()) return "disk  begins the take's file";
-  const auto left = forecast_.minutes_left();
-  const auto free = forecast_.free();
-  return fmt::format("disk  {:.1f} MB in {}{}{}", megabytes(disk.bytes), disk.paths.back(),
-                     free ? fmt::format(", {:.1f} GB left", megabytes(*free) / 1e3) : "",
-                     left ? ": " + minutes_text(*left) + " at this rate" : "");
+  return disk_text(forecast_, disk.bytes, disk.paths.back());
 }
 
 void RecordHerald::show(const LabStatus& status, const std::optional<std::string>& typed) {
   if (!console_.shows()) return;
+  constexpr std::size_t below = 2;  // the disk's line and the keys'
   std::vector<std::pair<std::string, Colour>> lines;
-  for (const TableLine& line : lab_table(session_.lab(), status, console_.columns())) {
+  const std::size_t rows = console_.rows() - std::min(below, console_.rows());
+  for (const TableLine& line :
+       fitted(lab_table(session_.lab(), status, console_.columns()), rows)) {
     lines.emplace_back(harmless(line.text), line.bad ? Colour::bad : Colour::plain);
   }
   const auto left = forecast_.minutes_left();
@@ -331,13 +323,15 @@ void RecordHerald::tell_end() {
     event["streams"].push_back(json_of(stream, status));
     lines += end_line(stream);
   }
-  for (const std::string& name : unheard_in_take(session_.lab(), status)) {
-    lines += "  " + name + ": nothing came\n";
+  const auto ports = session_.ports();
+  for (const std::string& line :
+       end_lines_of_unheard(session_.lab(), status, {ports.begin(), ports.end()})) {
+    lines += "  " + line + "\n";
   }
   event["missing"] = unheard_required();
   for (const auto& [name, counts] : status.ports) {
     event["ports"][name] = Json::parse(to_json(CountedPort{name, counts}));
-    lines += port_line(name, counts);
+    lines += port_line(name, counts, frames_lost(name, status.streams));
   }
   for (const MarkPort& port : session_.mark_ports()) {
     event["ports"][port.name()].update(Json{{"marks", port.counts().marks},

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
@@ -51,8 +52,8 @@ class RecordHerald {
 
   /// The disk has nothing left but its reserve: the take has to end.
   bool disk_full() const { return disk_full_; }
-  /// Something of what devices send can't be used, and was told.
-  bool warned() const { return warned_; }
+  /// Something of what devices send can't be used, and was told since this was asked last.
+  bool take_warned() { return std::exchange(warned_, false); }
   /// Required devices and nodes of which nothing came in the take that is over.
   std::vector<std::string> unheard_required() const;
 

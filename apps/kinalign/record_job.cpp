@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record_job.h"
 
+#include "apps/kinalign/field_text.h"
 #include "apps/kinalign/key_advice.h"
 #include "apps/kinalign/settings.h"
 #include "apps/kinalign/verb.h"
@@ -8,6 +9,7 @@
 #include "kinalign/capture/node_keys.h"
 #include "kinalign/io/bvh_head.h"
 #include "kinalign/io/lab_toml.h"
+#include "kinalign/io/toml_entries.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -20,6 +22,23 @@ namespace kinalign {
 
 namespace {
 
+/// Of a lab that can't be recorded as it is said. What a flag is blamed for may stand in a file.
+Failure refuse_lab(Error error, Call& call) {
+  for (const char* name : {"marks_port", "trigger_port"}) {
+    if (error.file != flag_of(name)) continue;
+    const SettingPlace place = setting_place("record", name, call);
+    if (!place.file.empty()) error.file = place.file;
+    error.line = place.line;
+  }
+  const bool in_file = error.line > 0;
+  Failure refused = call.console.refuse(std::move(error));
+  if (in_file) {
+    call.console.if_it_fails(
+        [](const Error&) { return std::vector<std::string>{std::string(settings_pages)}; });
+  }
+  return refused;
+}
+
 /// A file of settings that says which devices there are; of others nothing.
 struct LabFile {
   std::string text;
@@ -31,12 +50,7 @@ Result<LabFile> read_lab_file(Call& call) {
   if (path.empty()) return LabFile{};
   LabFile lab{KA_TRY(read_whole(call.surroundings.files, path, most_bytes)), {}};
   auto devices = read_devices(lab.text, path);
-  if (!devices) {
-    Failure refused = call.console.refuse(std::move(devices).error());
-    call.console.if_it_fails(
-        [](const Error&) { return std::vector<std::string>{std::string(settings_pages)}; });
-    return refused;
-  }
+  if (!devices) return refuse_lab(std::move(devices).error(), call);
   lab.devices = *std::move(devices);
   if (lab.devices.empty()) lab.text.clear();
   return lab;
@@ -50,8 +64,8 @@ std::string host_name() {
 std::string without_skeleton(const std::string& device) {
   return fmt::format(
       "note: {0} has no skeleton: Noitom's stream does not say whose body it moves. Put skeleton = "
-      "\"a.bvh\" under [device.{0}] of a lab.toml now, or give it to align afterwards",
-      device);
+      "\"a.bvh\" under [device.{1}] of a lab.toml now, or give it to align afterwards",
+      device, toml_key(device));
 }
 
 /// Of the nodes' device, unless a flag or setting names another. `named`: what does, where that is
@@ -129,7 +143,7 @@ Result<RecordingSession::Options> session_options(const RecordJob& job, Call& ca
   LabFile file = KA_TRY(read_lab_file(call));
   RecordingSession::Options options;
   auto lab = lab_of(job, std::move(file.devices));
-  if (!lab) return call.console.refuse(std::move(lab).error());
+  if (!lab) return refuse_lab(std::move(lab).error(), call);
   options.lab = *std::move(lab);
   if (options.lab.devices.empty()) {
     return call.console.refuse(

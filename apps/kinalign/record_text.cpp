@@ -35,6 +35,45 @@ bool is_heard(const DeviceOptions& device, const LabStatus& status) {
                      [&](const StreamStatus& stream) { return stream.stream == device.name; });
 }
 
+PortCounts counts_of(const DeviceOptions& device, const LabStatus& status) {
+  const auto found = std::find_if(status.ports.begin(), status.ports.end(),
+                                  [&](const auto& one) { return one.first == device.name; });
+  return found == status.ports.end() ? PortCounts() : found->second;
+}
+
+void forget_unheard(LabStatus& status) {
+  std::erase_if(status.streams,
+                [](const StreamStatus& stream) { return stream.counts.messages == 0; });
+}
+
+/// What a port of nodes, or the kernel before it, let nothing of in.
+std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
+  if (!counts.sifted) return "dropped by the kernel";
+  const std::uint64_t least = strays(counts, frames_lost);
+  if (least == counts.dropped) return "thrown away: no frames of nodes";
+  if (least == 0) return "thrown away: no frames of nodes, or no room for them";
+  return fmt::format("thrown away, {} of them or more no frames of nodes", grouped(least));
+}
+
+/// Of a device that nothing was heard of; empty: nothing has come to its port.
+std::string came_unheard(const DeviceOptions& device, const LabStatus& status, std::uint16_t port) {
+  if (is_heard(device, status)) return "";
+  return unheard_but_came(counts_of(device, status), fmt::format("to port {}", port));
+}
+
+/// Of a device of which nothing has come.
+std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, std::uint16_t port) {
+  const bool linked = counts.links > 0;
+  if (device.transport == "tcp") {
+    return fmt::format("{} {}:{} yet", linked ? "nothing has come from" : "no connection to",
+                       device.address, port);
+  }
+  if (device.transport == "tcp-listen" && !linked) {
+    return fmt::format("nobody has connected to port {} yet", port);
+  }
+  return fmt::format("nothing has come to port {} yet", port);
+}
+
 }  // namespace
 
 double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
@@ -64,16 +103,22 @@ std::vector<std::string> unheard_of(const DeviceOptions& device, const LabStatus
   return names;
 }
 
-std::string loss_of(const PortCounts& counts) {
+std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
   std::string text;
-  for (const auto& [count, what] :
-       {std::pair(counts.dropped, counts.sifted ? "thrown away: no frames of nodes, or no room"
-                                                : "dropped by the kernel"),
-        std::pair(counts.refused, "refused, not recorded"), std::pair(counts.cut, "cut"),
-        std::pair(counts.unsent, "answers not sent")}) {
+  for (const auto& [count, what] : {std::pair(counts.dropped, thrown_away(counts, frames_lost)),
+                                    std::pair(counts.refused, std::string("refused, not recorded")),
+                                    std::pair(counts.cut, std::string("cut")),
+                                    std::pair(counts.unsent, std::string("answers not sent"))}) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
   }
   return text;
+}
+
+std::string unheard_but_came(const PortCounts& counts, const std::string& to) {
+  const std::uint64_t came = counts.dropped + counts.refused;
+  if (!counts.sifted || came == 0) return "";
+  return fmt::format("{} datagrams came {}, none {}", grouped(came), to,
+                     counts.refused == 0 ? "a frame of nodes" : "was let in");
 }
 
 std::string name_of(const StreamStatus& stream) {
@@ -81,8 +126,7 @@ std::string name_of(const StreamStatus& stream) {
 }
 
 std::vector<std::string> unheard_in_take(const Lab& lab, LabStatus status) {
-  std::erase_if(status.streams,
-                [](const StreamStatus& stream) { return stream.counts.messages == 0; });
+  forget_unheard(status);
   std::vector<std::string> all;
   for (const DeviceOptions& device : lab.devices) {
     const auto of_one = unheard_of(device, status);
@@ -91,21 +135,26 @@ std::vector<std::string> unheard_in_take(const Lab& lab, LabStatus status) {
   return all;
 }
 
-std::vector<std::string> lines_of_unheard(const Lab& lab, const LabStatus& status,
-                                          const std::map<std::string, std::uint16_t>& ports) {
+std::vector<std::string> end_lines_of_unheard(const Lab& lab, LabStatus status,
+                                              const Ports& ports) {
+  forget_unheard(status);
   std::vector<std::string> lines;
   for (const DeviceOptions& device : lab.devices) {
-    const auto counts = std::find_if(status.ports.begin(), status.ports.end(),
-                                     [&](const auto& one) { return one.first == device.name; });
-    const bool linked = counts != status.ports.end() && counts->second.links > 0;
-    const std::uint16_t port = ports.at(device.name);
-    std::string what = fmt::format("nothing has come to port {} yet", port);
-    if (device.transport == "tcp") {
-      what = fmt::format("{} {}:{} yet", linked ? "nothing has come from" : "no connection to",
-                         device.address, port);
-    } else if (device.transport == "tcp-listen" && !linked) {
-      what = fmt::format("nobody has connected to port {} yet", port);
+    const std::string what = came_unheard(device, status, ports.at(device.name));
+    for (const std::string& name : unheard_of(device, status)) {
+      lines.push_back(fmt::format("{}: {}", name, what.empty() ? "nothing came" : what));
     }
+  }
+  return lines;
+}
+
+std::vector<std::string> lines_of_unheard(const Lab& lab, const LabStatus& status,
+                                          const Ports& ports) {
+  std::vector<std::string> lines;
+  for (const DeviceOptions& device : lab.devices) {
+    const std::uint16_t port = ports.at(device.name);
+    std::string what = came_unheard(device, status, port);
+    if (what.empty()) what = nothing_yet(device, counts_of(device, status), port);
     for (const std::string& name : unheard_of(device, status)) {
       lines.push_back(fmt::format("{}: {}", name, what));
     }
@@ -171,8 +220,9 @@ std::string end_line(const StreamStatus& stream) {
                      counts_text(stream.counts));
 }
 
-std::string port_line(const std::string& name, const PortCounts& counts) {
-  const std::string text = loss_of(counts);
+std::string port_line(const std::string& name, const PortCounts& counts,
+                      std::uint64_t frames_lost) {
+  const std::string text = loss_of(counts, frames_lost);
   return text.empty() ? "" : fmt::format("  port of {}: {}\n", name, text);
 }
 

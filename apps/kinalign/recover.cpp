@@ -6,11 +6,14 @@
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recover_recording.h"
 #include "kinalign/io/report_json.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace kinalign {
 
@@ -54,7 +57,7 @@ Result<int> run(Recover& o, Call& call) {
     return std::vector<std::string>{"nothing was written; the old files are as they were"};
   });
   const std::string& out = call.common.out;
-  KA_TRY(keep_inputs(out, o.files));
+  KA_TRY(keep_inputs(out, with_parts(call.surroundings.files, o.files)));
   const Recovered done = KA_TRY(recover_recording(
       call.surroundings.files, o.files, out, call.common.overwrite(), call.console.progress()));
   call.console.wrote(out);
@@ -78,7 +81,7 @@ Result<int> run(Recover& o, Call& call) {
       {"missing", done.missing},
       {"skipped_bytes", done.skipped},
       {"findings", nlohmann::ordered_json::parse(findings_json(done.findings))}}));
-  return code_of(done.findings);
+  return std::max(code_of(done.findings), done.missing > 0 ? 1 : 0);
 }
 
 }  // namespace
@@ -90,8 +93,8 @@ Verb recover_verb() {
        .text = "Copies every message that can be read, once, gives the new file its index, and "
                "reads it again before it gets its name: what stands there must be what was copied. "
                "The old files stay as they are. Exit code "
-               "1 where something was damaged or could not be read; a file that only lacks its "
-               "index and end is made whole with 0.",
+               "1 where something was damaged, could not be read or is not there; a file that only "
+               "lacks its index and end is made whole with 0.",
        .examples = {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
                     {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
                      "after a disk that failed: of what stands in both the later is taken"}},

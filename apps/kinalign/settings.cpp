@@ -52,8 +52,12 @@ Result<Setting> setting_of(const std::string& path, const toml::key& key, const 
   return setting;
 }
 
-/// Tables within tables are a lab's devices alone.
+/// Tables within tables are a lab's devices alone; but people confuse a lab's file with a manifest.
 Failure no_table(const std::string& path, const toml::node& node, const std::string& name) {
+  if (name.starts_with("stream.") || name.starts_with("space.")) {
+    return Failure(Error{path, line_of(node), "settings, or a lab's devices",
+                         "[" + name + "] of a manifest, which is for kinalign align"});
+  }
   const auto dot = name.find('.');
   const std::string device = dot == std::string::npos ? ".NAME" : name.substr(dot);
   return Failure(Error{path, line_of(node), "settings, or a lab's device as [device" + device + "]",
@@ -225,6 +229,23 @@ Result<void> apply_environment(const Surroundings& surroundings, const Settable&
         return error;
       }));
       sources[field.name] = Source::environment;
+    }
+  }
+  return {};
+}
+
+SettingPlace setting_place(const std::string& verb, const std::string& name, const Call& call) {
+  const auto source = call.sources.find(name);
+  if (source == call.sources.end() || source->second == Source::flag) return {};
+  if (source->second == Source::environment) return {variable_of(name)};
+  const auto texts = find_settings(call.surroundings, call.common.config);
+  if (!texts) return {};
+  const auto files = parse_settings(*texts);
+  if (!files) return {};
+  for (const SettingsFile& file : *files) {
+    if (file.source != source->second) continue;
+    for (const Setting& setting : file.settings) {
+      if (setting.verb == verb && setting.name == name) return {file.path, setting.line};
     }
   }
   return {};

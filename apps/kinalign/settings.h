@@ -64,4 +64,12 @@ Result<void> apply_settings(const SettingsFile& file, const Settable& settable,
 Result<void> apply_environment(const Surroundings& surroundings, const Settable& settable,
                                Sources& sources);
 
+/// Where an option of the verb stands that no flag gave: "lab.toml" with the line, or "KINALIGN_X";
+/// no file where a flag gave it, or nobody.
+struct SettingPlace {
+  std::string file;
+  std::int64_t line = 0;
+};
+SettingPlace setting_place(const std::string& verb, const std::string& name, const Call& call);
+
 }  // namespace kinalign

@@ -11,7 +11,10 @@
 
 #include <fcntl.h>
 
+#include <map>
 #include <optional>
+#include <string>
+#include <utility>
 
 namespace kinalign {
 
@@ -41,10 +44,25 @@ Result<void> refuse(const Sources& given, const char* name, const Error& error) 
   return given.contains(name) ? Result<void>(Failure(error)) : Result<void>{};
 }
 
+/// Two devices on one port can't be told apart, and no recorder opens one for both.
+Result<void> check_live_ports(const Simulate& o) {
+  std::map<std::int64_t, const char*> flags;
+  for (const auto& [port, flag] :
+       {std::pair(o.mocap_port, "--mocap-port"), std::pair(o.kinect_port, "--kinect-port"),
+        std::pair(o.node_port, "--node-port"), std::pair(o.marks_port, "--marks-port")}) {
+    const auto [other, is_free] = flags.emplace(port, flag);
+    if (is_free) continue;
+    return Failure(Error{flag, 0, std::string("another port than that of ") + other->second,
+                         std::to_string(port)});
+  }
+  return {};
+}
+
 Result<void> check_simulate(const Simulate& o, const Common& common, const Sources& given) {
   if (common.out.empty()) return Failure(Error{"--out", 0, "a new folder's name", "none"});
   if (o.live) {
     KA_TRY(check_live_address(o.to));
+    KA_TRY(check_live_ports(o));
     return refuse(given, "node_stamps",
                   {"--node-stamps", 0, "files", "--live, where nodes send their own"});
   }

@@ -131,8 +131,9 @@ SentText sent_text(const SentRehearsal& sent) {
   text.next = sent.recorded_there
                   ? align_line(sent.folder)
                   : fmt::format(
-                        "  next    kinalign align with what was recorded: {0}/{1}, which "
-                        "{0}/recording.toml is of, is not there\n",
+                        "  next    {0}/recording.toml names {0}/{1}, which is not there: put the "
+                        "name of what was recorded in its place\n"
+                        "          then: kinalign align {0}/recording.toml -o {0}/take.h5\n",
                         sent.folder, live_take_name);
   return text;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/terminal.h"
 
-#include <fmt/format.h>
 #include <sys/ioctl.h>
 
 #include <algorithm>
@@ -50,8 +49,9 @@ TerminalSize size_of(int fd) {
 }
 
 std::string start_of_lines(std::size_t lines) {
-  if (lines <= 1) return "\r\x1b[K";
-  return fmt::format("\r\x1b[{}A\x1b[J", lines - 1);
+  std::string erased = "\r\x1b[K";
+  for (std::size_t i = 1; i < lines; ++i) erased += "\x1b[A\x1b[K";
+  return erased;
 }
 
 std::size_t places(std::string_view text) {

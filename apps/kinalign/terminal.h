@@ -15,7 +15,8 @@ struct TerminalSize {
 TerminalSize size_of(int fd);
 
 /// To the beginning of a line, or of the first of so many, of which the last is not ended; all are
-/// erased.
+/// erased, each by itself: who erases all that is below the screen's first place makes tmux keep a
+/// copy of it.
 std::string start_of_lines(std::size_t lines);
 
 /// That a text takes: a character each, none for a colour.

@@ -20,6 +20,12 @@ bool is_limited(NodeVerdict verdict) {
          verdict == NodeVerdict::wrong_counter || verdict == NodeVerdict::unknown_answer;
 }
 
+/// What the kernel would have thrown away, if it could.
+std::uint64_t no_frames(const NodeCounts& counts) {
+  return counts.refusals[NodeRefusal::too_short] + counts.refusals[NodeRefusal::bad_magic] +
+         counts.refusals[NodeRefusal::wrong_length];
+}
+
 }  // namespace
 
 Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& device,
@@ -42,11 +48,13 @@ RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver rece
       receiver_(std::move(receiver)),
       recorder_(recorder) {
   receiver_.watch([this](const NodeArrival& arrival, const NodeNews& news, LiveClock*) {
-    if (until_ && is_behind({arrival.h_rx, arrival.stamp}, *until_)) {
-      held_.push_back({arrival,
-                       news,
-                       {arrival.bytes.begin(), arrival.bytes.end()},
-                       {news.readings.begin(), news.readings.end()}});
+    const Moment came{arrival.h_rx, arrival.stamp};
+    if (held_.must_hold(came, news.node_id, until_)) {
+      held_.hold(came, news.node_id,
+                 {arrival,
+                  news,
+                  {arrival.bytes.begin(), arrival.bytes.end()},
+                  {news.readings.begin(), news.readings.end()}});
     } else {
       take(arrival, news);
     }
@@ -59,12 +67,12 @@ void RecordedNodes::drain(const std::optional<Moment>& until) {
   until_.reset();
 }
 
-void RecordedNodes::release() {
-  for (Held& held : std::exchange(held_, {})) {
+void RecordedNodes::release(const std::optional<Moment>& until) {
+  held_.release(until, [&](Held& held) {
     held.arrival.bytes = held.bytes;
     held.news.readings = held.readings;
     take(held.arrival, held.news);
-  }
+  });
 }
 
 void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {
@@ -136,7 +144,26 @@ void RecordedNodes::judge(Node& node, const NodeNews& news) {
 
 void RecordedNodes::look(HostTime now) {
   count_lost();
+  find_strays();
   for (auto& [id, node] : nodes_) node.raw.take_rate(now);
+}
+
+/// Another device that sends here, say: nothing of it is in the take, and who learns of that behind
+/// it has no take. A node's frames that found no room are known as lost once the next one has come:
+/// so what was dropped until a second ago is looked at.
+void RecordedNodes::find_strays() {
+  PortCounts counts = this->counts();
+  counts.dropped = std::exchange(dropped_, counts.dropped);
+  std::uint64_t lost = 0;
+  for (const auto& [id, node] : nodes_) lost += node.raw.status.counts.order.lost;
+  const std::uint64_t came = strays(counts, lost);
+  if (!are_many(came)) return;
+  findings_.add("",
+                {Severity::warning,
+                 Error{device_.name, 0, "frames of nodes alone at port " + std::to_string(port()),
+                       std::to_string(came) + " datagrams that are none"},
+                 "they are thrown away: nothing of them is recorded",
+                 "see which port and protocol each device sends to"});
 }
 
 void RecordedNodes::remember(std::uint64_t chunk, std::uint64_t first) {
@@ -172,11 +199,11 @@ void RecordedNodes::tell(std::uint16_t counts, HostTime now) const {
 PortCounts RecordedNodes::counts() const {
   const NodeCounts& counts = receiver_.counts();
   PortCounts out;
-  out.pieces = counts.verdicts.total();
+  out.pieces = counts.verdicts.total() - held_.size();
   out.bytes = bytes_;
-  out.refused = counts.verdicts[NodeVerdict::refused] + receiver_.not_unicast() +
-                receiver_.from_port_0() + crowded_;
-  out.dropped = receiver_.dropped();
+  out.refused = counts.verdicts[NodeVerdict::refused] - no_frames(counts) +
+                receiver_.not_unicast() + receiver_.from_port_0() + crowded_;
+  out.dropped = receiver_.dropped() + no_frames(counts);
   out.sifted = true;
   return out;
 }

@@ -3,6 +3,8 @@
 // file as it came, whatever becomes of it; what an accepted one says of its node's clock, too.
 #pragma once
 
+#include "kinalign/capture/findings_once.h"
+#include "kinalign/capture/held_back.h"
 #include "kinalign/capture/node_receiver.h"
 #include "kinalign/capture/pieces.h"
 #include "kinalign/capture/recorded_source.h"
@@ -26,9 +28,11 @@ class RecordedNodes {
   RecordedNodes& operator=(const RecordedNodes&) = delete;
   ~RecordedNodes() = default;
 
-  /// Takes what has come, as RecordedPort does.
+  /// These as RecordedPort has them.
   void drain(const std::optional<Moment>& until = std::nullopt);
-  void release();
+  void release(const std::optional<Moment>& until = std::nullopt);
+
+  std::size_t held() const { return held_.size(); }
 
   NodeReceiver& receiver() { return receiver_; }
   const NodeReceiver& receiver() const { return receiver_; }
@@ -41,6 +45,8 @@ class RecordedNodes {
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const { return receiver_.sockets().front().port(); }
   PortCounts counts() const;
+  /// As RecordedPort has them.
+  Findings take_findings() { return findings_.take(); }
   void add_streams(std::vector<StreamStatus>& all) const;
 
  private:
@@ -68,6 +74,7 @@ class RecordedNodes {
   Node& node_of(std::uint32_t id, const NodeAddress& from);
   static void judge(Node& node, const NodeNews& news);
   void count_lost();
+  void find_strays();
 
   DeviceOptions device_;
   bool keyed_;
@@ -75,9 +82,11 @@ class RecordedNodes {
   Recorder& recorder_;
   std::map<std::uint32_t, Node> nodes_;
   std::optional<Moment> until_;  // what comes later is held back
-  std::vector<Held> held_;
+  HeldBack<Held> held_;
   std::uint64_t bytes_ = 0;
   std::uint64_t crowded_ = 0;  // datagrams of nodes that got no channel
+  std::uint64_t dropped_ = 0;  // when strays were looked for last
+  FindingsOnce findings_;
 };
 
 }  // namespace kinalign

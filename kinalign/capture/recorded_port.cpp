@@ -43,36 +43,45 @@ void RecordedPort::add_fds(std::vector<int>& fds) const {
 void RecordedPort::drain(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until) {
   const bool may_hold = until && device_.transport == "udp";
   const TakePiece to = [&](const Piece& piece) {
-    if (may_hold && is_behind({piece.arrival, piece.stamp}, *until)) {
-      held_.push_back({piece, std::string(piece.bytes)});
+    const Moment came{piece.arrival, piece.stamp};
+    if (may_hold && held_.must_hold(came, piece.sender, until)) {
+      held_.hold(came, piece.sender, {piece, sender_of(piece), std::string(piece.bytes)});
+      held_bytes_ += piece.bytes.size();
     } else {
-      take(piece, axis, recorder);
+      take(piece, sender_of(piece), axis, recorder);
     }
   };
   std::visit([&](auto& pieces) { pieces.drain(axis, to); }, pieces_);
 }
 
-void RecordedPort::release(HostAxis& axis, Recorder& recorder) {
-  for (Held& held : std::exchange(held_, {})) {
+void RecordedPort::release(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until) {
+  held_.release(until, [&](Held& held) {
     held.piece.bytes = held.bytes;
-    take(held.piece, axis, recorder);
-  }
+    held_bytes_ -= held.bytes.size();
+    take(held.piece, held.sender, axis, recorder);
+  });
 }
 
 /// Answers go out before anything is written: what is done in between delays one way alone.
-void RecordedPort::take(const Piece& piece, HostAxis& axis, Recorder& recorder) {
-  Source& source = source_of(piece.sender, recorder);
+void RecordedPort::take(const Piece& piece, const Senders::Sender& sender, HostAxis& axis,
+                        Recorder& recorder) {
+  Source& source = source_of(sender, piece.sender, recorder);
   source.watch.feed(piece.bytes, piece.arrival, newest_frames_);
   if (kinects_) answer_pings(source, piece, axis, recorder);
   if (slimes_) answer_trackers(source, piece);
   source.recorded.record(recorder, piece.arrival, piece.bytes);
 }
 
+const Senders::Sender& RecordedPort::sender_of(const Piece& piece) const {
+  const auto at = [&](const auto& pieces) -> const Senders::Sender& {
+    return pieces.senders().at(piece.sender);
+  };
+  return std::visit(at, pieces_);
+}
+
 /// A new sender, or another in the place of one that fell silent, gets a channel of its own.
-RecordedPort::Source& RecordedPort::source_of(std::size_t number, Recorder& recorder) {
-  const Senders::Sender& sender = std::visit(
-      [&](const auto& pieces) -> const Senders::Sender& { return pieces.senders().at(number); },
-      pieces_);
+RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std::size_t number,
+                                              Recorder& recorder) {
   const bool is_shared = sender.life > Senders::most_lives;
   if (sources_.size() <= number) sources_.resize(number + 1);
   if (is_shared) sources_[number].reset();
@@ -89,8 +98,8 @@ RecordedPort::Source& RecordedPort::source_of(std::size_t number, Recorder& reco
                        "",
                        ""};
   source.emplace(Source{RecordedSource(recorder, topic("raw", sender.life), raw), raw,
-                        StreamWatch(device_.protocol, device_.transport == "udp"), sender.life,
-                        address});
+                        StreamWatch(device_.protocol, device_.transport == "udp", raw.sender),
+                        sender.life, address});
   return *source;
 }
 
@@ -138,6 +147,7 @@ void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
   look_at(source);
   const SlimeNews news = slimes_->receive({octets(piece.bytes), source.address, piece.arrival});
   ++source.verdicts[news.verdict];
+  if (news.spoke) ++source.spoken;
   if (news.counts_anew) source.greeted = source.recorded.status.counts.order;
   send_answers();
 }
@@ -192,7 +202,7 @@ void RecordedPort::tell(Recorder& recorder, std::uint16_t counts, HostTime now) 
 void RecordedPort::look_at(Source& source) const {
   SenderCounts& counts = source.recorded.status.counts;
   const SenderCounts watched = source.watch.counts();
-  counts.frames = watched.frames;
+  counts.frames = watched.frames + source.spoken;
   if (!slimes_) counts.order = watched.order;
   counts.refused = watched.refused + refused(source.verdicts) + source.pings_refused;
   if (source.clock) source.recorded.status.clock = source.clock->now();
@@ -207,8 +217,8 @@ void RecordedPort::look_at(Source& source) const {
 /// comes back is not told of again.
 void RecordedPort::find_faults(const Source& source) {
   const SenderCounts& counts = source.recorded.status.counts;
-  const bool none = source.watch.decodes() && !source.exchanges && speaks_another_protocol(counts);
-  if (counts.refused == 0 && !none) return;
+  const bool none = !source.exchanges && speaks_another_protocol(device_.protocol, counts);
+  if (counts.refused == 0 && !none && !source.watch.has_twins()) return;
   const std::string host = to_string(source.address.host);
   const std::string name = device_.name + " from " + endpoint_text(host, source.address.port);
   Findings findings = source.watch.findings(name);
@@ -228,7 +238,10 @@ std::uint16_t RecordedPort::port() const {
 }
 
 PortCounts RecordedPort::counts() const {
-  return std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
+  PortCounts counts = std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
+  counts.pieces -= held_.size();
+  counts.bytes -= held_bytes_;
+  return counts;
 }
 
 std::uint64_t RecordedPort::heard() const {

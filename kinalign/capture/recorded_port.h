@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/capture/findings_once.h"
+#include "kinalign/capture/held_back.h"
 #include "kinalign/capture/kinect_desk.h"
 #include "kinalign/capture/pieces.h"
 #include "kinalign/capture/recorded_source.h"
@@ -28,9 +29,12 @@ class RecordedPort {
 
   void add_fds(std::vector<int>& fds) const;
   /// Takes, answers and records what has come. `until`: datagrams that came later are held back
-  /// for release(). A connection's pieces have no arrival but when they are read: none is held.
+  /// for release(), and count from then on. A connection's pieces have no arrival but when they are
+  /// read: none is held.
   void drain(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until = std::nullopt);
-  void release(HostAxis& axis, Recorder& recorder);
+  /// `until`: of what is held only that which is not later.
+  void release(HostAxis& axis, Recorder& recorder,
+               const std::optional<Moment>& until = std::nullopt);
   /// Ten times a second or so: what a desk says unasked.
   void tick(HostTime now);
   /// These for each of its senders, as RecordedSource has them; once a second faults are looked
@@ -45,6 +49,7 @@ class RecordedPort {
   PortCounts counts() const;
   /// Pieces since it was opened, also refused ones.
   std::uint64_t heard() const;
+  std::size_t held() const { return held_.size(); }
   void add_streams(std::vector<StreamStatus>& all) const;
   /// What the user should know of what is sent, since this was asked last: each fault of a host
   /// once.
@@ -61,7 +66,8 @@ class RecordedPort {
     std::optional<std::uint16_t> exchanges{};  // channel
     std::unique_ptr<FollowedClock> clock{};    // since it pinged
     SequenceCounts greeted{};                  // of its address, up to the newest handshake there
-    SlimeVerdicts verdicts{};                  // of a tracker's datagrams
+    SlimeVerdicts verdicts{};                  // of a tracker's datagrams, and those of them …
+    std::uint64_t spoken = 0;                  // … that spoke as trackers do
     std::uint64_t pings_refused = 0;
   };
 
@@ -69,10 +75,12 @@ class RecordedPort {
   static Result<Pieces> open_pieces(const DeviceOptions& device);
   struct Held {
     Piece piece;
+    Senders::Sender sender;  // its number may be another's meanwhile
     std::string bytes;
   };
-  void take(const Piece& piece, HostAxis& axis, Recorder& recorder);
-  Source& source_of(std::size_t sender, Recorder& recorder);
+  void take(const Piece& piece, const Senders::Sender& sender, HostAxis& axis, Recorder& recorder);
+  const Senders::Sender& sender_of(const Piece& piece) const;
+  Source& source_of(const Senders::Sender& sender, std::size_t number, Recorder& recorder);
   std::string topic(const char* content, std::uint64_t life) const;
   void answer_pings(Source& source, const Piece& piece, HostAxis& axis, Recorder& recorder);
   void answer_trackers(Source& source, const Piece& piece);
@@ -86,7 +94,8 @@ class RecordedPort {
   Pieces pieces_;
   std::vector<std::optional<Source>> sources_;  // by the sender's number
   std::optional<Source> others_;                // strangers after too many lives share it
-  std::vector<Held> held_;
+  HeldBack<Held> held_;
+  std::uint64_t held_bytes_ = 0;
   NewestKinectFrames newest_frames_;
   FindingsOnce findings_;
   std::unique_ptr<SlimeDesk> slimes_;

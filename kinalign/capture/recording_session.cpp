@@ -37,6 +37,20 @@ ExpectedDevices expected_of(const Lab& lab) {
   return expected;
 }
 
+/// Whether stamps of the kernel say in which order these came: all have one, and nobody set the
+/// clock between.
+bool have_like_stamps(const std::vector<std::pair<RecordedMark, Moment>>& marks) {
+  constexpr Duration doubt = std::chrono::milliseconds(50);
+  std::optional<Duration> first;
+  return std::all_of(marks.begin(), marks.end(), [&](const auto& one) {
+    const Moment& came = one.second;
+    if (!came.stamp) return false;
+    const Duration apart = came.at.time_since_epoch() - came.stamp->time_since_epoch();
+    if (!first) first = apart;
+    return std::chrono::abs(apart - *first) < doubt;
+  });
+}
+
 /// A key for each port, so that no two draw the same nonces.
 SipHashKey key_of_port(const SipHashKey& secret, std::uint8_t port) {
   SipHashKey key{};
@@ -108,6 +122,12 @@ std::uint64_t RecordingSession::heard() const {
   return heard;
 }
 
+std::uint64_t RecordingSession::held() const {
+  std::uint64_t held = nodes_ ? nodes_->held() : 0;
+  for (const RecordedPort& port : ports_) held += port.held();
+  return held;
+}
+
 /// A waking costs more than the messages that it is for. At a lab's speed those of 20 ms are taken
 /// together; while so many come that buffers fill, in a flood, nobody rests. No clock sees it:
 /// arrivals are the kernel's, and of an answer it is known when it was asked for and given.
@@ -123,24 +143,23 @@ void RecordingSession::rest(Duration patience) {
   }
 }
 
-/// Only ports where something has come cost a call; connections are looked after with the clock.
-/// Marks first: what arrived behind a stop is not its take's.
+/// Only devices' ports where something has come cost a call; connections are looked after with the
+/// clock. Marks first, all of them: what arrives behind a stop is not its take's. So what devices
+/// send while their ports are read waits until marks have been looked at again.
 bool RecordingSession::turn(Duration patience, std::optional<int> also) {
   rest(patience);
   const bool some = wait(patience, also);
   const HostTime now = axis_.now();
   const bool look_after = now >= next_look_;
   if (look_after) next_look_ = now + between_looks;
-  bool marks = false;
-  for (std::size_t i = 0; some && i < mark_ports_.size(); ++i) {
-    marks = is_ready(ports_.size() + i) || marks;
-  }
-  if (marks) drain_marks();
+  const auto until = mark_ports_.empty() ? std::nullopt : std::optional(Moment{now});
+  drain_marks();
+  release(until);
   if (look_after && nodes_) nodes_->receiver().tick();
-  if (nodes_ && some && waiting_.front().revents != 0) nodes_->drain();
+  if (nodes_ && some && waiting_.front().revents != 0) nodes_->drain(until);
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     if (look_after) ports_[i].tick(now);
-    if (look_after || (some && is_ready(i))) ports_[i].drain(axis_, *recorder_);
+    if (look_after || (some && is_ready(i))) ports_[i].drain(axis_, *recorder_, until);
   }
   tick(now);
   takes_.run();
@@ -254,32 +273,42 @@ bool RecordingSession::has_room_for_takes() {
   return !full_;
 }
 
-/// What of devices lies in the kernel's buffers, which a turn may not have emptied; no longer than
-/// a flood may hold up the end.
+/// What of devices lies in the kernel's buffers up to then, which a turn may not have emptied; no
+/// longer than a flood of connections may hold up the end.
 void RecordingSession::drain_devices(const Moment& until) {
   constexpr Duration longest = std::chrono::milliseconds(200);
   const HostTime begun = axis_.now();
   std::uint64_t before = 0;
+  release(until);
   do {
-    before = heard();
+    before = heard() - held();
     if (nodes_) nodes_->drain(until);
     for (RecordedPort& port : ports_) port.drain(axis_, *recorder_, until);
-  } while (heard() != before && axis_.now() - begun < longest);
+  } while (heard() - held() != before && axis_.now() - begun < longest);
 }
 
-/// Of all ports in the order of their arrival: a start may come to one and the stop to another.
+/// What was held back of devices and is not later, or all.
+void RecordingSession::release(const std::optional<Moment>& until) {
+  if (nodes_) nodes_->release(until);
+  for (RecordedPort& port : ports_) port.release(axis_, *recorder_, until);
+}
+
+/// Of all ports in the order of their arrival: a start may come to one and the stop to another, and
+/// what devices sent between two marks is recorded between them.
 void RecordingSession::drain_marks() {
   std::vector<std::pair<RecordedMark, Moment>> all;
   for (MarkPort& port : mark_ports_) {
     port.drain(axis_,
                [&](const RecordedMark& m, const Moment& came) { all.emplace_back(m, came); });
   }
-  const bool stamped =
-      std::all_of(all.begin(), all.end(), [](const auto& one) { return one.second.stamp; });
+  const bool stamped = have_like_stamps(all);
   std::stable_sort(all.begin(), all.end(), [stamped](const auto& a, const auto& b) {
     return stamped ? a.second.stamp < b.second.stamp : a.second.at < b.second.at;
   });
-  for (const auto& [heard, came] : all) mark(heard, came);
+  for (const auto& [heard, came] : all) {
+    release(came);
+    mark(heard, came);
+  }
 }
 
 void RecordingSession::stop() {
@@ -290,7 +319,7 @@ void RecordingSession::stop() {
   if (recording() && newest_ == ending) end_take(now);
 }
 
-/// What arrived later is the next one's, or nobody's.
+/// What arrived later is held back: the next take's, or nobody's.
 void RecordingSession::end_take(const Moment& came) {
   drain_devices(came);
   const HostTime now = axis_.now();
@@ -299,8 +328,6 @@ void RecordingSession::end_take(const Moment& came) {
   newest_->end = TakeEnd{now, streams(), port_counts(), {}};
   if (nodes_) newest_->end->nodes = nodes_->receiver().status();
   newest_->disk.finish();
-  if (nodes_) nodes_->release();
-  for (RecordedPort& port : ports_) port.release(axis_, *recorder_);
 }
 
 std::vector<StreamStatus> RecordingSession::streams() const {
@@ -313,6 +340,7 @@ std::vector<StreamStatus> RecordingSession::streams() const {
 Findings RecordingSession::take_findings() {
   Findings all = std::exchange(findings_, {});
   for (RecordedPort& port : ports_) append(all, port.take_findings());
+  if (nodes_) append(all, nodes_->take_findings());
   for (MarkPort& port : mark_ports_) append(all, port.take_findings());
   return all;
 }

@@ -97,10 +97,12 @@ class RecordingSession {
   Result<void> open_ports();
   void rest(Duration patience);
   std::uint64_t heard() const;
+  std::uint64_t held() const;
   bool wait(Duration patience, std::optional<int> also);
   bool is_ready(std::size_t port) const;
   void mark(const RecordedMark& mark, const Moment& came);
   void drain_devices(const Moment& until);
+  void release(const std::optional<Moment>& until);
   void drain_marks();
   bool has_room_for_takes();
   void tick(HostTime now);

@@ -10,6 +10,7 @@
 #include "kinalign/io/recording_format.h"
 #include "kinalign/wire/time.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -66,8 +67,8 @@ class TakeQueue {
   std::shared_ptr<SessionTake> next();
   /// Starts the disks that may; to be called again and again.
   void run();
-  /// As many wait as may.
-  bool is_full() const { return queued_.size() + writing_.size() >= most; }
+  /// As many wait as may, for the disk or to be asked for.
+  bool is_full() const { return std::max(queued_.size() + writing_.size(), added_.size()) >= most; }
   /// Bytes of all that only memory has.
   std::uint64_t waiting_bytes() const { return waiting_beside(nullptr); }
   /// Bytes that may wait of `take`, beside those of the others.

@@ -55,6 +55,7 @@ SlimeNews SlimeDesk::receive(const SlimeArrival& arrival) {
 
 SlimeVerdict SlimeDesk::judge(const SlimeArrival& arrival, SlimeNews& news) {
   if (!decode_slime(arrival.bytes, datagram_)) return SlimeVerdict::too_short;
+  news.spoke = !datagram_.packets.empty();
   // Of a bundle a handshake counts for nothing: trackers that have one are known already.
   const bool handshake = datagram_.type == handshake_type && !datagram_.packets.empty();
   if (handshake) {

@@ -47,6 +47,7 @@ struct SlimeNews {
   SlimeVerdict verdict = SlimeVerdict::too_short;
   std::size_t device = 0;    // if accepted
   bool counts_anew = false;  // it shook hands
+  bool spoke = false;        // as trackers do, let in or not
 };
 
 /// To be sent, in this order.

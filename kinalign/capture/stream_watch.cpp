@@ -11,8 +11,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_sensors = 8;     // of a sender
-constexpr std::size_t most_of_a_port = 64;  // that are remembered
+constexpr std::size_t most_sensors = 8;  // of a sender
+constexpr std::size_t most_of_a_port = 64;
 
 template <class Refused>
 std::uint64_t sum(const Refused& refused) {
@@ -30,26 +30,16 @@ std::uint64_t trouble(const KinectStreamCounts& counts) {
   return sum(counts.refused) + counts.skipped_bytes;
 }
 
-/// One that was overtaken is not the newest.
-void note(const KinectOrigin& origin, NewestKinectFrames& newest) {
-  const auto known = newest.find(origin.sensor);
-  if (known == newest.end()) {
-    if (newest.size() < most_of_a_port) newest.emplace(origin.sensor, HeardKinect{origin});
-    return;
-  }
-  HeardKinect& heard = known->second;
-  const auto ahead = static_cast<std::int32_t>(origin.sequence - heard.newest.sequence);
-  const bool anew = heard.newest.session != origin.session;
-  if (anew) heard.over.add(heard.newest.session);
-  if (anew || ahead > 0) heard.newest = origin;
-}
-
 }  // namespace
 
-StreamWatch::StreamWatch(const std::string& protocol, bool datagrams) {
+StreamWatch::StreamWatch(const std::string& protocol, bool datagrams, const std::string& sender) {
   if (protocol == "noitom") decoder_.emplace<Noitom>().datagrams = datagrams;
   if (protocol == "xsens") decoder_.emplace<Xsens>();
-  if (protocol == "kinect") decoder_.emplace<Kinect>().datagrams = datagrams;
+  if (protocol == "kinect") {
+    Kinect& kinect = decoder_.emplace<Kinect>();
+    kinect.datagrams = datagrams;
+    kinect.sender = sender;
+  }
 }
 
 void StreamWatch::feed(Noitom& noitom, const Piece& piece, NewestKinectFrames&) {
@@ -77,27 +67,47 @@ void StreamWatch::feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& n
   }
 }
 
+/// One that another sender brought before goes on with that session's count, or is started anew
+/// behind the newest.
+StreamWatch::KinectSensor StreamWatch::sensor_behind(const KinectSessions& sessions,
+                                                     std::uint32_t session) {
+  KinectSensor sensor;
+  const KinectMoment* last = sessions.stand(session);
+  if (last == nullptr) last = sessions.newest();
+  if (last == nullptr) return sensor;
+  sensor.joiner.follow(*last);
+  if (last->origin.session != session) sensor.restarted = last->origin.session;
+  return sensor;
+}
+
+/// Who speaks beside the newest session's sender goes on with a count of its own.
 void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest) {
   const KinectOrigin origin = frame.origin;
-  const auto before = newest.find(origin.sensor);
-  const bool is_known = before != newest.end();
-  if (is_known && origin.session != before->second.newest.session &&
-      before->second.over.has(origin.session)) {
+  const bool is_heard = kinect.sensors.contains(origin.sensor);
+  if (!is_heard && kinect.sensors.size() == most_sensors) {
+    ++kinect.further_sensors;
+    return;
+  }
+  KinectSessions alone;  // of one that has no room among the port's
+  const bool has_room = newest.contains(origin.sensor) || newest.size() < most_of_a_port;
+  KinectSessions& sessions = has_room ? newest[origin.sensor] : alone;
+  if (!is_heard) {
+    kinect.sensors.emplace(origin.sensor, sensor_behind(sessions, origin.session));
+  }
+  KinectSensor& sensor = kinect.sensors.at(origin.sensor);
+  const bool had_twins = sessions.twins().has_value();
+  const auto turn = sessions.hear(moment_of(frame), kinect.sender);
+  if (sessions.twins() && !had_twins) kinect.twins.push_back(*sessions.twins());
+  if (turn == KinectSessions::Turn::over) {
     ++kinect.late;
     return;
   }
-  auto found = kinect.sensors.find(origin.sensor);
-  if (found == kinect.sensors.end()) {
-    if (kinect.sensors.size() == most_sensors) {
-      ++kinect.further_sensors;
-      return;
-    }
-    found = kinect.sensors.emplace(origin.sensor, KinectFrameJoiner()).first;
-    if (is_known) found->second.follow(before->second.newest);
+  if (sensor.restarted && sessions.is_beside(*sensor.restarted)) {
+    sensor.joiner.begin_beside();
+    sensor.restarted.reset();
   }
-  note(origin, newest);
   kinect.frames.clear();
-  found->second.take(std::move(frame), kinect.frames);
+  sensor.joiner.take(std::move(frame), kinect.frames, kinect.sender);
   kinect.whole += static_cast<std::uint64_t>(
       std::count_if(kinect.frames.begin(), kinect.frames.end(),
                     [](const JoinedKinectFrame& one) { return one.whole; }));
@@ -125,9 +135,15 @@ bool StreamWatch::speaks_lines() const {
   return kinect != nullptr && kinect->decoder.speaks_lines();
 }
 
+bool StreamWatch::has_twins() const {
+  const auto* kinect = std::get_if<Kinect>(&decoder_);
+  return kinect != nullptr && !kinect->twins.empty();
+}
+
 SenderCounts StreamWatch::counts(const Noitom& noitom) {
   const NoitomCounts& counts = noitom.decoder.counts();
-  SenderCounts out{0, 0, counts.frames, {}, 0};
+  // The last one is whole as well, though no other has come behind it.
+  SenderCounts out{0, 0, counts.frames + (noitom.decoder.has_last() ? 1 : 0), {}, 0};
   for (const auto& [index, avatar] : noitom.decoder.avatars()) {
     out.order += avatar.by_index.counts();
   }
@@ -144,8 +160,8 @@ SenderCounts StreamWatch::counts(const Xsens& xsens) {
 SenderCounts StreamWatch::counts(const Kinect& kinect) {
   SenderCounts out{0, 0, kinect.whole, {}, kinect.further_sensors};
   out.order.late = kinect.late;
-  for (const auto& [sensor, joiner] : kinect.sensors) {
-    const KinectFrameCounts joined = joiner.counts();
+  for (const auto& [id, sensor] : kinect.sensors) {
+    const KinectFrameCounts joined = sensor.joiner.counts();
     out.order += joined.frames;
     out.order.late += joined.stale;
     out.refused += joined.contradicting;
@@ -170,7 +186,16 @@ SenderCounts StreamWatch::counts() const {
 Findings StreamWatch::findings(const std::string& name) const {
   if (const auto* noitom = std::get_if<Noitom>(&decoder_)) return noitom->decoder.findings(name);
   if (const auto* xsens = std::get_if<Xsens>(&decoder_)) return xsens->decoder.findings(name);
-  return {};
+  Findings findings;
+  if (const auto* kinect = std::get_if<Kinect>(&decoder_)) {
+    for (const KinectTwins& twins : kinect->twins) {
+      findings.push_back(
+          two_senders(name, twins,
+                      "all is recorded, each sender's by itself; alignment takes one "
+                      "of them"));
+    }
+  }
+  return findings;
 }
 
 }  // namespace kinalign

@@ -19,19 +19,16 @@
 
 namespace kinalign {
 
-/// A Kinect's newest frame, whichever of a port's senders brought it, and sessions that are over.
-struct HeardKinect {
-  KinectOrigin newest;
-  PastKinectSessions over{};
-};
-/// By sensor.
-using NewestKinectFrames = std::map<std::uint32_t, HeardKinect>;
+/// Of a port's Kinects, by sensor: their sessions, whichever of its senders brought them.
+using NewestKinectFrames = std::map<std::uint32_t, KinectSessions>;
 
 class StreamWatch {
  public:
   /// `protocol` as in take/lab.h. Of one that is not decoded here nothing is counted.
-  /// `datagrams`: a piece is one, with whole messages in it; else bytes cut anywhere.
-  explicit StreamWatch(const std::string& protocol = "", bool datagrams = false);
+  /// `datagrams`: a piece is one, with whole messages in it; else bytes cut anywhere. `sender`: as
+  /// findings name it.
+  explicit StreamWatch(const std::string& protocol = "", bool datagrams = false,
+                       const std::string& sender = "");
 
   /// `newest`: a Kinect that is heard on another way than before, in a connection made anew, goes
   /// on with its count, or has been started anew.
@@ -39,10 +36,10 @@ class StreamWatch {
   /// Of a Kinect's sender: the pings that the last piece completed, and how pongs are to look.
   std::span<const KinectPing> pings() const;
   bool speaks_lines() const;
+  /// Whether another sender speaks beside this one with its sensor's id.
+  bool has_twins() const;
   /// Of its frames: messages and bytes are the caller's.
   SenderCounts counts() const;
-  /// Whether frames are looked into.
-  bool decodes() const { return !std::holds_alternative<std::monostate>(decoder_); }
   /// What the user should know; `name` stands in the messages.
   Findings findings(const std::string& name) const;
 
@@ -56,15 +53,21 @@ class StreamWatch {
     XsensDecoder decoder;
     std::vector<XsensArrival> samples{};
   };
+  struct KinectSensor {
+    KinectFrameJoiner joiner{};
+    std::optional<std::uint32_t> restarted{};  // the session before this sender's first one
+  };
   struct Kinect {
     KinectStreamDecoder decoder;
     std::vector<KinectMessage> messages{};
-    std::map<std::uint32_t, KinectFrameJoiner> sensors{};  // as many as most_sensors
+    std::map<std::uint32_t, KinectSensor> sensors{};  // as many as most_sensors
     std::vector<JoinedKinectFrame> frames{};
     std::uint64_t whole = 0, further_sensors = 0;  // frames; messages of one sensor too many
     std::uint64_t late = 0;                        // of a session that another sender's has ended
+    std::vector<KinectTwins> twins{};              // that were found by this sender's frames
     std::vector<KinectPing> pings{};
     bool datagrams = false;
+    std::string sender{};
   };
   struct Piece {
     std::span<const std::uint8_t> bytes;
@@ -74,6 +77,7 @@ class StreamWatch {
   static void feed(Xsens& xsens, const Piece& piece, NewestKinectFrames& newest);
   static void feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& newest);
   static void count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest);
+  static KinectSensor sensor_behind(const KinectSessions& sessions, std::uint32_t session);
   static SenderCounts counts(const Noitom& noitom);
   static SenderCounts counts(const Xsens& xsens);
   static SenderCounts counts(const Kinect& kinect);

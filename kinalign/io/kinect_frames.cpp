@@ -33,37 +33,27 @@ Time device_stamp(const KinectFrame& frame) { return Time{duration_of(frame.devi
 
 }  // namespace
 
-void PastKinectSessions::add(std::uint32_t session) {
-  sessions_[count_++ % sessions_.size()] = session;
-}
-
-bool PastKinectSessions::has(std::uint32_t session) const {
-  const auto known = std::min<std::uint64_t>(count_, sessions_.size());
-  const auto end = sessions_.begin() + static_cast<std::ptrdiff_t>(known);
-  return std::find(sessions_.begin(), end, session) != end;
-}
-
-bool KinectFrameJoiner::is_stale(std::uint32_t session) const {
-  return session != session_ && past_.has(session);
-}
-
 void KinectFrameJoiner::begin_session(std::uint32_t session) {
   counts_.frames += sequence_.counts();
   sequence_ = SequenceCount(32);
-  if (session_) past_.add(*session_);
   session_ = session;
-  device_ticks_ = sent_ticks_ = std::nullopt;
+  newest_.reset();
   ++counts_.sessions;
 }
 
-void KinectFrameJoiner::follow(const KinectOrigin& last) {
-  begin_session(last.session);
-  sequence_.push(last.sequence);
+void KinectFrameJoiner::follow(const KinectMoment& last) {
+  begin_session(last.origin.session);
+  sessions_.hear(last);
+  newest_ = last;
+  sequence_.push(last.origin.sequence);
 }
 
-void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>& out) {
+void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>& out,
+                             std::string_view sender) {
+  using Turn = KinectSessions::Turn;
   const KinectOrigin origin = message.origin;
-  if (is_stale(origin.session)) {
+  const Turn turn = sessions_.hear(moment_of(message), sender);
+  if (turn == Turn::beside || turn == Turn::over) {
     ++counts_.stale;
     return;
   }
@@ -80,10 +70,8 @@ void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>
   if (whole) close(out);
 }
 
-/// By the sensor's clock, or by the sender's where that one has begun anew.
 bool KinectFrameJoiner::is_newer(const KinectFrame& message) const {
-  return device_ticks_ &&
-         (message.device_ticks > *device_ticks_ || message.sent_ticks > *sent_ticks_);
+  return newest_ && has_newer_ticks(moment_of(message), *newest_);
 }
 
 void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame>& out) {
@@ -93,10 +81,11 @@ void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame
     if (!only) ++counts_.parts_late;
     return;
   }
-  if (order != Order::late) {
-    device_ticks_ = message.device_ticks;
-    sent_ticks_ = message.sent_ticks;
+  if (order == Order::stray) {
+    ++counts_.stale;
+    return;
   }
+  if (order != Order::late) newest_ = moment_of(message);
   close(out);
   have_ = 1U << message.part;
   last_.reset();
@@ -141,7 +130,8 @@ void KinectFrameJoiner::finish(std::vector<JoinedKinectFrame>& out) { close(out)
 KinectFrameCounts KinectFrameJoiner::counts() const {
   KinectFrameCounts counts = counts_;
   counts.frames += sequence_.counts();
-  if (counts.sessions > 0) counts.frames.restarts += counts.sessions - 1;
+  const std::uint64_t no_restarts = 1 + sessions_.beside() + begun_beside_;
+  if (counts.sessions > no_restarts) counts.frames.restarts += counts.sessions - no_restarts;
   return counts;
 }
 

@@ -5,6 +5,7 @@
 
 #include "kinalign/clock/host_from_node.h"
 #include "kinalign/io/kinect_message.h"
+#include "kinalign/io/kinect_sessions.h"
 #include "kinalign/io/sequence_count.h"
 #include "kinalign/motion/streams.h"
 
@@ -18,26 +19,16 @@ struct JoinedKinectFrame {
 };
 
 struct KinectFrameCounts {
-  SequenceCounts frames;  // of all sessions so far; each but the first one is a restart
+  SequenceCounts frames;  // of all sessions so far; each but the first one is a restart, unless
+                          // the one before it speaks on
   std::uint64_t sessions = 0;
-  std::uint64_t stale = 0;       // messages of a session that is over
+  std::uint64_t stale = 0;       // messages of a session that is over, or numbered so
   std::uint64_t parts_lost = 0;  // frames that were not whole
   std::uint64_t parts_late = 0;  // came when their frame was handed on already
   std::uint64_t parts_doubled = 0;
   std::uint64_t contradicting = 0;  // parts that can't be of one frame: the later one is dropped
 
   bool operator==(const KinectFrameCounts&) const = default;
-};
-
-/// A sensor's sessions that are over: the last 16.
-class PastKinectSessions {
- public:
-  void add(std::uint32_t session);
-  bool has(std::uint32_t session) const;
-
- private:
-  std::array<std::uint32_t, 16> sessions_{};
-  std::uint64_t count_ = 0;  // of all that were added
 };
 
 /// Frames of one sensor, in the order of arrival. Who is started anew has a new session; numbers
@@ -47,16 +38,20 @@ class KinectFrameJoiner {
  public:
   /// Before the first frame: the sensor's last one came another way. What lacks behind it is lost;
   /// a frame of another session is a restart.
-  void follow(const KinectOrigin& last);
-  /// Appends what is done: frames that are whole, and the one before if it never will be.
-  void take(KinectFrame message, std::vector<JoinedKinectFrame>& out);
+  void follow(const KinectMoment& last);
+  /// The session that was followed speaks on: this sender's is no restart of it.
+  void begin_beside() { ++begun_beside_; }
+  /// Appends what is done: frames that are whole, and the one before if it never will be. `sender`:
+  /// where it came from, for twins().
+  void take(KinectFrame message, std::vector<JoinedKinectFrame>& out, std::string_view sender = {});
   /// What waits for its parts still.
   void finish(std::vector<JoinedKinectFrame>& out);
 
   KinectFrameCounts counts() const;
+  /// Two senders that spoke by turns: frames of the later session alone are joined.
+  const std::optional<KinectTwins>& twins() const { return sessions_.twins(); }
 
  private:
-  bool is_stale(std::uint32_t session) const;
   void begin_session(std::uint32_t session);
   bool is_newer(const KinectFrame& message) const;
   void begin(KinectFrame message, std::vector<JoinedKinectFrame>& out);
@@ -65,9 +60,10 @@ class KinectFrameJoiner {
   std::optional<KinectFrame> open_;
   std::uint32_t have_ = 0;            // parts of the open frame, a bit each
   std::optional<std::uint8_t> last_;  // its last part
-  PastKinectSessions past_;
+  KinectSessions sessions_;
   std::optional<std::uint32_t> session_;
-  std::optional<std::int64_t> device_ticks_, sent_ticks_;  // of its newest frame
+  std::optional<KinectMoment> newest_;  // of its frames that were joined
+  std::uint64_t begun_beside_ = 0;
   SequenceCount sequence_{32};
   KinectFrameCounts counts_;
 };

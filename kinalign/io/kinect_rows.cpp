@@ -9,6 +9,8 @@
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/rows_in_order.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -35,11 +37,12 @@ class KinectFrames {
         continue;
       }
       if (heard != nullptr) heard->push_back(*frame);
-      joiner_.take(std::move(*frame), out);
+      joiner_.take(std::move(*frame), out, message.channel->sender);
     }
   }
   void finish(std::vector<JoinedKinectFrame>& out) { joiner_.finish(out); }
   KinectFrameCounts counts() const { return joiner_.counts(); }
+  const std::optional<KinectTwins>& twins() const { return joiner_.twins(); }
 
   std::uint64_t of_other_sensors = 0;
 
@@ -140,8 +143,15 @@ class KinectRows final : public DeviceRows<PointFrames> {
     tell(counts.frames.lost, "each frame's number", "that never came",
          "they were lost on their way");
     tell_too_late(waiting_, "frames");
-    tell(counts.stale, "frames of the sender's newest run", "of earlier ones",
-         "they came too late and were left out");
+    if (frames_.twins()) {
+      findings.push_back(two_senders(
+          file(), *frames_.twins(),
+          fmt::format("the newest session's were read; {} frames of others were left out",
+                      counts.stale)));
+    } else {
+      tell(counts.stale, "frames of the sender's newest run", "of earlier ones",
+           "they came too late and were left out");
+    }
     tell(counts.parts_lost, "all parts of a frame", "frames without some",
          "bodies may be missing in them");
     tell(frames_.of_other_sensors, "one sensor", "frames of others", "they were left out");

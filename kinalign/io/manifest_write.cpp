@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Written by hand, value by value: toml++ sorts tables by name, and the order of streams counts.
 #include "kinalign/io/manifest_toml.h"
+#include "kinalign/io/toml_entries.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -24,14 +25,6 @@ std::string toml_text(const std::string& value) {
   return text.str();
 }
 
-std::string key_text(const std::string& key) {
-  const auto bare = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
-  };
-  return !key.empty() && std::all_of(key.begin(), key.end(), bare) ? key : toml_text(key);
-}
-
 std::string list_text(const std::vector<double>& numbers) {
   std::string text;
   for (const double x : numbers) text += (text.empty() ? "" : ", ") + toml_text(x);
@@ -42,7 +35,7 @@ std::string list_text(const std::vector<double>& numbers) {
 class InlineTable {
  public:
   void add(const std::string& key, const std::string& value) {
-    text_ += (text_.empty() ? "" : ", ") + key_text(key) + " = " + value;
+    text_ += (text_.empty() ? "" : ", ") + toml_key(key) + " = " + value;
   }
   std::string text() const { return "{ " + text_ + " }"; }
 
@@ -87,20 +80,20 @@ std::string fields_text(Options options) {
 }
 
 std::string stream_text(const StreamOptions& stream) {
-  std::string text = fmt::format("\n[stream.{}]\n", key_text(stream.name));
+  std::string text = fmt::format("\n[stream.{}]\n", toml_key(stream.name));
   if (!stream.files.empty()) text += files_toml(stream.files) + "\n";
   text += fields_text(stream);
   if (!stream.select.empty()) text += select_toml(stream.select) + "\n";
   if (stream.mounting.empty()) return text;
-  text += fmt::format("\n[stream.{}.mounting]\n", key_text(stream.name));
+  text += fmt::format("\n[stream.{}.mounting]\n", toml_key(stream.name));
   for (const auto& [node, rotation] : stream.mounting) {
-    text += key_text(node) + " = " + list_text(rotation) + "\n";
+    text += toml_key(node) + " = " + list_text(rotation) + "\n";
   }
   return text;
 }
 
 std::string space_text(const std::string& stream, const SpaceOptions& space) {
-  std::string text = fmt::format("\n[space.{}]\n", key_text(stream)) + fields_text(space);
+  std::string text = fmt::format("\n[space.{}]\n", toml_key(stream)) + fields_text(space);
   if (!space.joints.empty()) text += "joints = " + table_text(space.joints) + "\n";
   if (!space.rotation.empty()) text += "rotation = " + list_text(space.rotation) + "\n";
   if (!space.translation.empty()) text += "translation = " + list_text(space.translation) + "\n";

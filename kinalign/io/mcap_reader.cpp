@@ -169,7 +169,10 @@ std::optional<McapRecord> McapReader::read_record() {
   if (is_chunk) record = next_in_chunk();
   if (record) check_crc(*record, whole);
   crc_ = crc_of(whole, crc_);
-  if (head.op == McapOp::data_end) crc_ = 0;
+  if (head.op == McapOp::data_end) {
+    crc_ = 0;
+    crc_counts_ = true;  // of the summary, whatever was skipped before it
+  }
   if (head.op == McapOp::footer) state_ = State::behind_footer;
   consume(whole.size());
   return record;
@@ -186,6 +189,7 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
     constexpr std::size_t fields = mcap_record_head + 8 + 8;
     stated = footer->summary_crc;
     covered = crc_of(bytes.substr(0, fields), crc_);
+    summary_checked_ = stated != 0 && stated == covered;
   }
   if (stated != 0 && stated != covered) {
     say(Severity::error, "a checksum that fits what stands before it", "another one",

@@ -210,9 +210,8 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     waiting_.finish();
     append_waiting(out);
     converter_.report(file(), findings);
-    tell(frames_.others, "datagrams that were accepted",
-         frames_.others == 1 ? "other: held, late, twice or damaged"
-                             : "others, each held, late, twice or damaged",
+    tell(frames_.others, "datagrams that the recorder could use",
+         "of no use: damaged, too late or come twice, or of a start that was never confirmed",
          frames_.others == 1 ? "it was passed over" : "they were passed over");
     tell_too_late(waiting_, "samples");
     tell(unknown_, "samples of a life of the node whose clock is known", "samples of others",

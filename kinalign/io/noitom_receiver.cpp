@@ -10,11 +10,8 @@ namespace kinalign {
 
 namespace {
 
-// Pieces of one frame are sent back to back. The fastest suits send a frame each 8 ms: what comes
-// later than half of that may as well be the next one's.
-constexpr Duration longest_spread = std::chrono::milliseconds(4);
-constexpr std::size_t longest_piece = 2048;  // no frame is longer
 constexpr std::size_t most_avatars = 64;
+constexpr std::uint32_t longest_skip = 8;  // of numbers that a sender leaves out now and then
 // An end that did not come may be late, and come in the place of the next one's, which is then late
 // itself.
 constexpr int behind_a_lost_end = 2;
@@ -44,7 +41,12 @@ void NoitomReceiver::feed_datagram(Bytes datagram, Arrival arrival, Arrivals& ou
 }
 
 void NoitomReceiver::finish(Arrivals& out) {
-  if (!tail_.empty() && tail_arrival_) give(out);
+  take_back();
+  if (has_last()) give(out);
+}
+
+bool NoitomReceiver::has_last() const {
+  return !tail_.empty() && newest_ && newest_->spread && pace_.is_in_time(*newest_->spread);
 }
 
 // What comes twice at once was doubled on its way. In the midst of a frame it may be the next
@@ -56,20 +58,23 @@ bool NoitomReceiver::is_repeated(Bytes datagram) const {
 
 // What continues no frame.
 void NoitomReceiver::take_fresh(Bytes datagram, Arrival arrival, Arrivals& out) {
-  settle(datagram, out);
+  settle(datagram, arrival, out);
   const std::uint64_t before = trouble();
   const std::size_t given = out.size();
   decoder_.feed(datagram, out);
   if (decoder_.waits_within_header()) decoder_.give_up(out);  // no sender cuts there
   const bool is_odd = trouble() > before;
+  if (out.size() > given) release(out, given);  // the next one is whole in itself
+  if (!decoder_.beginning()) take_back();
   if (is_odd) {
     doubted_ = std::max(doubted_, 1);
+    quiet_ = 0;
   } else if (out.size() > given) {
     doubted_ = 0;
   }
   if (const auto head = decoder_.beginning()) {
-    newest_ = head;
-    pieced_ = Pieced{*head, {head->held}, arrival};
+    newest_ = Newest{*head, arrival};
+    pieced_ = Pieced{*head, {head->held}};
   }
 }
 
@@ -80,48 +85,90 @@ void NoitomReceiver::take_further(Bytes datagram, Arrival arrival, Arrivals& out
   const std::size_t lacks =
       head.size - std::accumulate(pieces.begin(), pieces.end(), std::size_t{0});
   if (begins_noitom_header(datagram)) {
+    take_back();
     drop(out);
     doubted_ = behind_a_lost_end;
+    quiet_ = 0;
     return take_fresh(datagram, arrival, out);
   }
   pieces.push_back(std::min(lacks, datagram.size()));
   if (datagram.size() < lacks) return decoder_.feed(datagram, out);
-  const Bytes rest = datagram.subspan(lacks);
-  const bool ends_well = rest.empty() || begins_noitom_header(rest);
-  const bool in_time = !arrival || !pieced_->began || *arrival - *pieced_->began <= longest_spread;
-  const bool is_usual = ends_well && in_time && cuts_[head.size].agrees(pieces);
-  tail_.assign(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(lacks));
-  tail_arrival_ = arrival;
+  const bool is_usual = complete(datagram, lacks, arrival);
+  if (newest_->ended) release(out, out.size());
   if (!is_usual || doubted_ > 0) {
     drop(out);
     doubted_ = is_usual ? doubted_ - 1 : 1;
   }
+  const Bytes rest = datagram.subspan(lacks);
   if (!rest.empty()) take_fresh(rest, arrival, out);
+}
+
+// Whether it may be its end. Of a numbered one the time is judged with the next number.
+bool NoitomReceiver::complete(Bytes datagram, std::size_t lacks, Arrival arrival) {
+  tail_.assign(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(lacks));
+  tail_arrival_ = arrival;
+  const Bytes rest = datagram.subspan(lacks);
+  newest_->ended = rest.empty() || begins_noitom_header(rest);
+  if (!newest_->ended) {
+    quiet_ = 0;
+    return false;
+  }
+  if (arrival && newest_->began) newest_->spread = *arrival - *newest_->began;
+  const bool in_time =
+      newest_->head.index || !newest_->spread || pace_.is_in_time(*newest_->spread);
+  return in_time && cuts_[pieced_->head.size].agrees(pieced_->pieces);
 }
 
 // Behind a frame in pieces. Where no frame is missing between its header and this one, it can't
 // have been completed with another one's piece.
-void NoitomReceiver::settle(Bytes next, Arrivals& out) {
+void NoitomReceiver::settle(Bytes next, Arrival arrival, Arrivals& out) {
   if (!newest_) return;
   const auto header = header_of(next);
-  const bool follows = header && is_next(*header);
-  if (!tail_.empty() && follows) {
-    give(out);
+  const Follows follows = header ? judge(header->frame) : Follows::no;
+  learn(header ? &header->frame : nullptr, arrival);
+  if (!tail_.empty() && follows != Follows::no) {
+    give(follows == Follows::yes ? out : open_);
   } else if (!tail_.empty()) {
     drop(out);
   }
-  if (!follows) doubted_ = std::max(doubted_, 1);
-  if (header) newest_.reset();
+  if (follows == Follows::no) doubted_ = std::max(doubted_, 1);
+  newest_.reset();
 }
 
-bool NoitomReceiver::is_next(const NoitomHeader& next) {
-  if (!newest_->index) return true;
-  if (!next.frame.frame_index) return false;
-  const std::uint32_t avatar = newest_->avatar;
-  if (steps_.size() == most_avatars && !steps_.contains(avatar)) return false;
-  const Step step{next.frame.avatar - avatar, *next.frame.frame_index - *newest_->index};
-  const auto known = steps_.try_emplace(avatar, steps_of_a_habit, Step()).first;
-  return known->second.agrees(step);
+// By the numbers and by the time. Where nothing was missing of late, the numbers alone will do, or
+// the time.
+NoitomReceiver::Follows NoitomReceiver::judge(const NoitomFrame& next) const {
+  const auto step = step_to(next);
+  if (!step) return newest_->head.index ? Follows::no : Follows::yes;
+  static const NoitomSteps unknown;
+  const auto found = steps_.find(newest_->head.avatar);
+  const NoitomSteps& steps = found == steps_.end() ? unknown : found->second;
+  const auto& spread = newest_->spread;
+  const bool is_quiet = quiet_ >= quiet_again;
+  if (steps.is_whole(*step)) {
+    if (!spread || pace_.is_in_time(*spread)) return Follows::yes;
+    return is_quiet ? Follows::open : Follows::no;
+  }
+  const bool is_skip = step->index <= longest_skip && !(step->avatar == 0 && step->index == 0);
+  const bool may_be = steps.is_usual(*step) || (is_skip && is_quiet);
+  return may_be && spread && pace_.is_in_time(*spread) ? Follows::yes : Follows::no;
+}
+
+std::optional<NoitomStep> NoitomReceiver::step_to(const NoitomFrame& next) const {
+  const NoitomBeginning& head = newest_->head;
+  if (!head.index || !next.frame_index) return std::nullopt;
+  return NoitomStep{next.avatar - head.avatar, *next.frame_index - *head.index};
+}
+
+// Also of what is dropped. `next`: the header behind the newest one; null: another piece is there.
+void NoitomReceiver::learn(const NoitomFrame* next, Arrival arrival) {
+  const bool is_plain = next != nullptr && newest_->ended;
+  if (is_plain && newest_->spread && arrival)
+    pace_.push(*newest_->spread, *arrival - *newest_->began);
+  if (next != nullptr && quiet_ < quiet_again) ++quiet_;
+  const std::uint32_t avatar = newest_->head.avatar;
+  if (!newest_->head.index || (steps_.size() == most_avatars && !steps_.contains(avatar))) return;
+  steps_[avatar].push(is_plain ? step_to(*next) : std::nullopt);
 }
 
 void NoitomReceiver::give(Arrivals& out) {
@@ -134,6 +181,21 @@ void NoitomReceiver::give(Arrivals& out) {
   if (out.size() > given) most_pieces_ = std::max(most_pieces_, pieced_->pieces.size());
   tail_.clear();
   pieced_.reset();
+}
+
+// The next one's end has come, behind its header.
+void NoitomReceiver::release(Arrivals& out, std::size_t at) {
+  out.insert(out.begin() + static_cast<std::ptrdiff_t>(at), open_.begin(), open_.end());
+  open_.clear();
+}
+
+// The next one's end has not come: it may be what was taken for the end of this one.
+void NoitomReceiver::take_back() {
+  for (const NoitomArrival& one : open_) {
+    decoder_.take_back(one.frame);
+    --in_pieces_;
+  }
+  open_.clear();
 }
 
 // It is torn, and what may be its end is nobody's.

@@ -5,33 +5,13 @@
 // datagrams".
 #pragma once
 
+#include "kinalign/io/noitom_habits.h"
 #include "kinalign/io/noitom_stream.h"
 
 #include <optional>
-#include <utility>
+#include <vector>
 
 namespace kinalign {
-
-/// What is always the same, until it is another way `times` running. The first one is as usual
-/// where none was known.
-template <class Value>
-class Habit {
- public:
-  explicit Habit(int times = 2, std::optional<Value> usual = std::nullopt)
-      : times_(times), usual_(std::move(usual)) {}
-
-  /// Whether it is as usual.
-  bool agrees(const Value& seen) {
-    running_ = lately_ == seen ? running_ + 1 : 1;
-    lately_ = seen;
-    if (!usual_ || running_ >= times_) usual_ = seen;
-    return usual_ == seen;
-  }
-
- private:
-  int times_, running_ = 0;
-  std::optional<Value> usual_, lately_;
-};
 
 class NoitomReceiver {
  public:
@@ -48,11 +28,15 @@ class NoitomReceiver {
   /// Nothing follows: a frame that waits for the next header is given, if its arrival speaks for
   /// it.
   void finish(std::vector<NoitomArrival>& out);
+  /// Whether `finish` would give one.
+  bool has_last() const;
 
   const NoitomCounts& counts() const { return decoder_.counts(); }
   const std::map<std::uint32_t, NoitomAvatar>& avatars() const { return decoder_.avatars(); }
-  /// Bytes that wait: never more than 20 kB, and of datagrams two of a frame's size.
-  std::size_t waiting() const { return decoder_.waiting() + tail_.size() + piece_.size(); }
+  /// Bytes that wait: never more than 20 kB, and of datagrams three of a frame's size.
+  std::size_t waiting() const {
+    return decoder_.waiting() + tail_.size() + piece_.size() + open_.size() * longest_piece;
+  }
   Findings findings(const std::string& name) const;
 
  private:
@@ -60,41 +44,56 @@ class NoitomReceiver {
   using Sizes = std::vector<std::size_t>;
   using Arrival = std::optional<HostTime>;
   using Arrivals = std::vector<NoitomArrival>;
-  /// From a header to the next one's.
-  struct Step {
-    std::uint32_t avatar = 0, index = 1;  // how much more
-    bool operator==(const Step&) const = default;
-  };
   /// A frame that began in a datagram and did not end there.
   struct Pieced {
     NoitomBeginning head;
     Sizes pieces{};
-    std::optional<HostTime> began{};
   };
 
-  // Two losses of a frame alike are nothing rare.
-  static constexpr int steps_of_a_habit = 4;
+  /// A header in pieces, until the next one has come.
+  struct Newest {
+    NoitomBeginning head;
+    std::optional<HostTime> began{};
+    bool ended = false;                // behind it came its end, or what may be its end
+    std::optional<Duration> spread{};  // from its first piece to its last
+  };
+
+  /// Whether two headers are of frames one behind the other: the end between them is then the
+  /// first one's. Open: it is, unless the second one's came before its header and gets lost here.
+  enum class Follows { no, open, yes };
+
+  static constexpr std::size_t longest_piece = 2048;  // no frame is longer
+  // About a second.
+  static constexpr int quiet_again = 100;
 
   bool is_repeated(Bytes datagram) const;
   void take_fresh(Bytes datagram, Arrival arrival, Arrivals& out);
   void take_further(Bytes datagram, Arrival arrival, Arrivals& out);
-  void settle(Bytes next, Arrivals& out);
-  bool is_next(const NoitomHeader& next);
+  bool complete(Bytes datagram, std::size_t lacks, Arrival arrival);
+  void settle(Bytes next, Arrival arrival, Arrivals& out);
+  Follows judge(const NoitomFrame& next) const;
+  std::optional<NoitomStep> step_to(const NoitomFrame& next) const;
+  void learn(const NoitomFrame* next, Arrival arrival);
   void give(Arrivals& out);
+  void release(Arrivals& out, std::size_t at);
+  void take_back();
   void drop(Arrivals& out);
   std::uint64_t trouble() const;
 
   NoitomDecoder decoder_;
   std::optional<Pieced> pieced_;
-  std::optional<NoitomBeginning> newest_;  // header, until the next one has come
-  std::vector<std::uint8_t> tail_;         // that completes it: it waits for the next header
+  std::optional<Newest> newest_;
+  std::vector<std::uint8_t> tail_;  // that completes it: it waits for the next header
   Arrival tail_arrival_;
+  Arrivals open_;                    // a frame that waits for the next one's end
   std::vector<std::uint8_t> piece_;  // the last datagram, if it was one
   int doubted_ = 0;  // frames in pieces that are dropped, since something odd stood before them
+  int quiet_ = quiet_again;                     // headers since a piece was missing
   std::map<std::size_t, Habit<Sizes>> cuts_;    // by a frame's size, of which there are four
-  std::map<std::uint32_t, Habit<Step>> steps_;  // by avatar
-  std::uint64_t in_pieces_ = 0;                 // frames that were given
-  std::size_t most_pieces_ = 0;                 // of one
+  std::map<std::uint32_t, NoitomSteps> steps_;  // by avatar
+  NoitomPace pace_;
+  std::uint64_t in_pieces_ = 0;  // frames that were given
+  std::size_t most_pieces_ = 0;  // of one
 };
 
 }  // namespace kinalign

@@ -69,12 +69,18 @@ void NoitomDecoder::take_all(std::vector<NoitomArrival>& out) {
 
 void NoitomDecoder::give_up(std::vector<NoitomArrival>& out) {
   while (waiting() > 0) {
-    if (begins_noitom_header(ahead())) refuse(NoitomRefusal::torn);
+    if (begins_noitom_header(ahead())) tear();
     skip(header_within(ahead(), 1, waiting(), begins_noitom_header));
     take_all(out);
   }
   held_.clear();
   at_ = 0;
+}
+
+void NoitomDecoder::take_back(const NoitomFrame& frame) {
+  --counts_.frames;
+  --avatars_[frame.avatar].frames;
+  refuse(NoitomRefusal::torn);
 }
 
 std::optional<NoitomBeginning> NoitomDecoder::beginning() const {
@@ -144,7 +150,7 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   const std::size_t next =
       header_within(bytes.first(size), noitom_header_size, size, begins_noitom_header);
   if (next < size) {
-    refuse(NoitomRefusal::torn);
+    tear();
     skip(next);
     return Step::go_on;
   }
@@ -152,6 +158,16 @@ NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
   take(size);
   give(std::move(header->frame), out);
   return Step::go_on;
+}
+
+// Its number has come, with its header: it is not lost. Of avatars that gave a frame alone, so that
+// what is no header counts as none.
+void NoitomDecoder::tear() {
+  refuse(NoitomRefusal::torn);
+  const auto head = beginning();
+  if (!head || !head->index) return;
+  const auto avatar = avatars_.find(head->avatar);
+  if (avatar != avatars_.end()) avatar->second.by_index.push(*head->index);
 }
 
 // A header whose count and flags fit no layout: of a frame of another count where the next header

@@ -49,7 +49,7 @@ struct NoitomAvatar {
   std::uint32_t index = 0;
   std::string name;  // of its last frame
   std::uint64_t frames = 0;
-  SequenceCount by_index;  // empty where the source gives no frame index
+  SequenceCount by_index;  // also of the torn; empty where the source gives no frame index
 };
 
 /// The beginning of a binary frame, its header at least.
@@ -77,6 +77,8 @@ class NoitomDecoder {
   /// What waits gets no rest: a frame's beginning is torn, the rest skipped, but for frames that
   /// begin in it.
   void give_up(std::vector<NoitomArrival>& out);
+  /// A frame that was given is doubtful: it is torn.
+  void take_back(const NoitomFrame& frame);
   /// Counts bytes that are in no frame without looking at them.
   void pass_over(std::size_t bytes) { counts_.bytes_skipped += bytes; }
   /// The frame that waits for its rest.
@@ -99,6 +101,7 @@ class NoitomDecoder {
   Step step(std::vector<NoitomArrival>& out);
   Step marked(std::vector<NoitomArrival>& out);
   Step binary(std::vector<NoitomArrival>& out);
+  void tear();
   Step misfit();
   Step other_header(std::uint8_t last_byte, NoitomRefusal meaning);
   Step zipped();

@@ -102,9 +102,14 @@ std::uint64_t frames_or_messages(const SenderCounts& counts) {
   return counts.frames > 0 ? counts.frames : counts.messages;
 }
 
-bool speaks_another_protocol(const SenderCounts& counts) {
-  constexpr std::uint64_t enough = 20;
-  return counts.frames == 0 && counts.messages >= enough;
+/// Of trackers older versions counted no frames, but what was refused.
+bool speaks_another_protocol(const std::string& protocol, const SenderCounts& counts) {
+  const bool trackers = protocol == "slimevr";
+  if (trackers && counts.refused < counts.messages) return false;
+  const bool decoded =
+      trackers || protocol == "noitom" || protocol == "xsens" || protocol == "kinect";
+  const bool had_frames = counts.frames + counts.order.late + counts.order.duplicates > 0;
+  return decoded && !had_frames && are_many(counts.messages);
 }
 
 std::string to_json(const CountedSender& counted) {
@@ -138,6 +143,10 @@ PortCounts since(const PortCounts& before, const PortCounts& now) {
   out.links = now.links;
   out.sifted = now.sifted;
   return out;
+}
+
+std::uint64_t strays(const PortCounts& counts, std::uint64_t lost) {
+  return counts.sifted && counts.dropped > lost ? counts.dropped - lost : 0;
 }
 
 std::string to_json(const CountedPort& counted) {

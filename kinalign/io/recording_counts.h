@@ -27,8 +27,11 @@ McapSchema sender_counts_schema();
 SenderCounts since(const SenderCounts& before, const SenderCounts& now);
 /// Of the frames, where its protocol is decoded, else of the messages.
 std::uint64_t frames_or_messages(const SenderCounts& counts);
-/// Of a protocol that is decoded: nothing of it was a frame. A datagram or two may be anybody's.
-bool speaks_another_protocol(const SenderCounts& counts);
+/// Whether so many are no stray ones: a datagram or two may be anybody's.
+constexpr bool are_many(std::uint64_t datagrams) { return datagrams >= 20; }
+/// Of a protocol that is decoded: many messages, and nothing of them was a frame, sent again or
+/// late either.
+bool speaks_another_protocol(const std::string& protocol, const SenderCounts& counts);
 struct CountedSender {
   std::string topic, stream, sender;  // topic: what it sent stands there
   std::string node;                   // of inertial nodes the id, else empty
@@ -51,6 +54,9 @@ struct PortCounts {
 McapSchema port_counts_schema();
 /// As of senders; links and sifted as they are now.
 PortCounts since(const PortCounts& before, const PortCounts& now);
+/// Of a sifted port: how many at least of what was dropped were no frames. The others may be the
+/// `lost` ones of its nodes, by their own numbers: for want of room, if not on the way.
+std::uint64_t strays(const PortCounts& counts, std::uint64_t lost);
 struct CountedPort {
   std::string stream;
   PortCounts counts;

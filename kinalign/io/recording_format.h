@@ -53,6 +53,10 @@ McapMetadata to_metadata(const RecordingEnd& end);
 /// Absent where the record is another, or says no number.
 std::optional<RecordingEnd> to_end(const McapMetadata& metadata);
 
+/// The metadata record of that name stands where the end would in what `recover` made of a
+/// recording that has none because it was torn.
+inline constexpr std::string_view torn_metadata = "kinalign.torn";
+
 /// What a channel of raw payloads is, as its metadata.
 struct RawChannel {
   std::string stream;     // "mocap"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recording_parts.h"
 
+#include "kinalign/core/file_version.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -106,6 +108,7 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
       [](const CountedPort& a, const CountedPort& b) { return a.stream == b.stream; },
       survey.ports);
   survey.end = more.end;
+  survey.was_torn = more.was_torn;
   survey.bytes += more.bytes;
   survey.unchecked += more.unchecked;
   survey.torn.insert(survey.torn.end(), more.torn.begin(), more.torn.end());
@@ -241,6 +244,19 @@ Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::stri
   }
   sort(parts);
   return parts;
+}
+
+std::vector<std::string> with_parts(FileSystem& files, std::vector<std::string> paths) {
+  for (std::size_t i = 0, named = paths.size(); i < named; ++i) {
+    const auto facts = read_facts(files, paths[i]);
+    if (!facts || !*facts) continue;
+    for (const std::string& one : files_behind(files, paths[i], **facts)) {
+      const bool known = std::any_of(paths.begin(), paths.end(),
+                                     [&](const auto& path) { return same_file(path, one); });
+      if (!known) paths.push_back(one);
+    }
+  }
+  return paths;
 }
 
 Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,

@@ -57,6 +57,9 @@ Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::s
 Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::string>& paths,
                                   const Progress& progress);
 
+/// These and the files beside each that its recording went on in.
+std::vector<std::string> with_parts(FileSystem& files, std::vector<std::string> paths);
+
 /// The file and, as they lie in the same folder, those that its recording went on in. A file that
 /// brings nothing new is left out: of one that `recover` has made all parts are.
 Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,

@@ -2,6 +2,7 @@
 #include "kinalign/io/recording_survey.h"
 
 #include "kinalign/io/crc.h"
+#include "kinalign/io/kinect_survey.h"
 #include "kinalign/io/lab_toml.h"
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/slimevr_packet.h"
@@ -56,7 +57,7 @@ class Surveyor {
     return {};
   }
 
-  RecordingSurvey finish() {
+  RecordingSurvey finish(const std::string& path) {
     for (auto& [id, channel] : channels_) survey_.channels.push_back(std::move(channel));
     std::stable_sort(
         survey_.channels.begin(), survey_.channels.end(),
@@ -65,18 +66,26 @@ class Surveyor {
     survey_.ports = all_of(ports_, to_counted_port);
     if (reader_.all_checked()) survey_.unchecked = 0;
     if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
+    survey_.findings = reader_.findings();
+    for (Finding& finding : survey_.findings) finding.what.file = path;
+    append(survey_.findings, kinects_.findings(path));
     return std::move(survey_);
   }
 
  private:
+  /// What a summary repeats and damage has changed is none the wiser.
   void add(const McapChannel& channel) {
-    channels_[channel.id].channel = channel;
+    const auto [known, is_new] = channels_.try_emplace(channel.id);
+    if (!is_new && !known->second.channel.topic.empty()) return;
+    known->second.channel = channel;
     const auto raw = to_raw(channel);
+    if (raw) kinects_.add(channel.id, *raw);
     if (raw && !raw->place.empty()) survey_.places[raw->stream + "/" + raw->node] = raw->place;
   }
   void add(const McapMetadata& metadata) {
     if (auto devices = to_expected_devices(metadata)) survey_.expected = *std::move(devices);
     if (const auto end = to_end(metadata)) survey_.end = end;
+    survey_.was_torn = survey_.was_torn || metadata.name == torn_metadata;
     if (survey_.facts) return;
     survey_.facts = to_facts(metadata);
     if (survey_.facts) clock_.push_back(survey_.facts->anchor);
@@ -112,6 +121,7 @@ class Surveyor {
     channel.bytes += message.data.size();
     const bool tracker = channel.channel.message_encoding == "slimevr";
     if (tracker) channel.sensors |= rotating_sensors(message.data);
+    kinects_.take(message.channel, message.data);
     if (survey_.facts && channel.channel.message_encoding == "json") {
       add_told(channel.channel.topic, message);
     }
@@ -149,6 +159,7 @@ class Surveyor {
   std::map<std::uint16_t, ChannelSurvey> channels_;
   std::vector<ClockPair> clock_;
   LastCounts senders_, ports_;
+  KinectSurvey kinects_;
   RecordingSurvey survey_;
 };
 
@@ -200,12 +211,18 @@ Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progre
   };
   KA_TRY(read_recording(
       source, reader, [&](const McapRecord& record) { return surveyor.take(record); }, count));
-  RecordingSurvey survey = surveyor.finish();
+  RecordingSurvey survey = surveyor.finish(source.path);
   survey.bytes = bytes;
   if (!reader.closed()) survey.torn.push_back(source.path);
-  survey.findings = reader.findings();
-  for (Finding& finding : survey.findings) finding.what.file = source.path;
   return survey;
+}
+
+Findings judge_end(const std::string& path, const RecordingSurvey& survey) {
+  if (!survey.facts || survey.end || survey.was_torn || !survey.torn.empty()) return {};
+  return {{Severity::warning,
+           Error{path, 0, "a recording up to its end", "one that went on in another file"},
+           "what came later stands there, and that file is not here",
+           "find it by its name, as in take.part2.mcap; kinalign recover joins all"}};
 }
 
 Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,

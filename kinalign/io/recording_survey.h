@@ -41,6 +41,7 @@ struct RecordingSurvey {
   ExpectedDevices expected;
   std::map<std::string, std::string> places;  // of nodes, as far as the lab says them: "imu/7"
   std::optional<RecordingEnd> end;            // absent: torn, or it goes on in another file
+  bool was_torn = false;                      // `recover` says so
   std::vector<CountedSender> senders;         // the last counts of each, …
   std::vector<CountedPort> ports;             // … and of each device's port
   std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times
@@ -51,6 +52,10 @@ struct RecordingSurvey {
 
 /// The CRC-32 of messages: channel, number, both times and payload of each, in their order.
 std::uint32_t add_to(std::uint32_t contents, const McapMessage& message);
+
+/// Of a recording of ours that was closed in order, but not because it ended: that the rest is
+/// missing.
+Findings judge_end(const std::string& path, const RecordingSurvey& survey);
 
 /// Fails where the file can't be read or is no MCAP file.
 Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,

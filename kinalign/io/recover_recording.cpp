@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recover_recording.h"
 
+#include "kinalign/core/file_version.h"
 #include "kinalign/io/mcap_store.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
@@ -48,6 +49,12 @@ class Copier {
   Result<void> finish() {
     KA_TRY(begin({}));
     KA_TRY(close_chunk());
+    const auto has = [this](std::string_view name) {
+      return names_.contains("metadata " + std::string(name));
+    };
+    if (torn && has(recording_metadata) && !has(end_metadata) && !has(torn_metadata)) {
+      KA_TRY(writer_.write(McapMetadata{std::string(torn_metadata), {}}));
+    }
     return writer_.finish();
   }
   std::uint64_t size() const { return writer_.size(); }
@@ -65,19 +72,23 @@ class Copier {
   }
 
   Recovered recovered;
-  std::uint64_t counted = 0;  // messages, by the files' own statistics
+  /// Messages, by the file's own statistics: as long as nothing says that they are damaged.
+  std::uint64_t counted = 0;
+  bool torn = false;  // the last part
 
  private:
   Result<void> begin(const McapHeader& header) {
     return writer_.size() == 0 ? writer_.begin(header) : Result<void>();
   }
   Result<void> add(const McapHeader& header) { return begin(header); }
+  /// MCAP: an id means one thing in a file, and parts of a recording share them. What a summary
+  /// repeats and damage has changed is none the wiser.
   Result<void> add(const McapSchema& schema) {
-    schemas_[schema.id] = schema;
+    schemas_.try_emplace(schema.id, schema);
     return {};
   }
   Result<void> add(const McapChannel& channel) {
-    channels_[channel.id] = channel;
+    channels_.try_emplace(channel.id, channel);
     return {};
   }
   Result<void> add(const McapMetadata& metadata) {
@@ -156,6 +167,8 @@ Result<void> copy_part(FileSystem& files, const RecordingParts& parts, std::size
       [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); }, progress));
   recovered.skipped += reader.skipped();
   if (reader.all_checked()) recovered.unchecked = unchecked_before;
+  if (!reader.summary_checked()) copier.counted = 0;
+  copier.torn = !reader.closed();
   for (Finding finding : reader.findings()) {
     finding.what.file = path;
     recovered.findings.push_back(std::move(finding));
@@ -186,8 +199,13 @@ std::uint64_t missing(const Copier& copier, std::size_t parts) {
 Result<RecordingParts> parts_of(FileSystem& files, const std::vector<std::string>& paths,
                                 const Progress& progress) {
   for (const std::string& path : paths) KA_TRY(check_beginning(files, path));
-  return paths.size() > 1 ? read_parts(files, paths, progress)
+  return paths.size() > 1 ? read_parts(files, with_parts(files, paths), progress)
                           : parts_from(files, paths.front(), progress);
+}
+
+Error is_input(const std::string& out, const std::string& part) {
+  return {out, 0, "another name than those of the recording's files",
+          "'" + shown(file_name(part)) + "', which is one of them"};
 }
 
 /// Reads what was written, before it has its name.
@@ -210,6 +228,9 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress) {
   const RecordingParts parts = KA_TRY(parts_of(files, paths, progress));
+  for (const RecordingPart& part : parts) {
+    if (same_file(out, part.path)) return Failure(is_input(out, part.path));
+  }
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   Copier copier(file);
   for (std::size_t part = 0; part < parts.size(); ++part) {
@@ -222,7 +243,8 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   KA_TRY(copier.finish());
   KA_TRY(prove(copier, file, out, progress));
   recovered.missing = missing(copier, parts.size());
-  if (paths.size() == 1) append(recovered.findings, judge_parts(parts, PartsBehind::read));
+  append(recovered.findings, judge_end(parts.back().path, recovered.proof));
+  append(recovered.findings, judge_parts(parts, PartsBehind::read));
   KA_TRY(file.commit());
   return std::move(recovered);
 }

@@ -27,8 +27,8 @@ struct Recovered {
   Findings findings;      // of the old ones
 };
 
-/// `paths`: the recording's files in any order; one stands for itself and those in its folder that
-/// it went on in. Fails where they are not all of one, or nothing can be read. Nothing stands at
+/// `paths`: files of the recording in any order, with those beside them that it went on in. Fails
+/// where they are not all of one, `out` is one of them, or nothing can be read. Nothing stands at
 /// `out` before all is written and synced. It is read again before it gets its name: what is not
 /// what was written never does.
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,

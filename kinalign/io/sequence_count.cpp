@@ -75,10 +75,14 @@ void SequenceCount::advance(std::uint64_t number) {
 Order SequenceCount::leap(std::uint64_t number, bool may_restart) {
   const std::uint64_t forward = ahead(now_.newest, number);
   if (!may_restart && forward > mask_ / 2) return old_number(number, may_restart);
+  if (!may_restart) {
+    ++now_.counts.strays;
+    return Order::stray;
+  }
   before_ = now_;
   --before_.counts.received;
   leapt_ = true;
-  if (!may_restart || (forward <= longest_loss && forward <= mask_ / 2)) {
+  if (forward <= longest_loss && forward <= mask_ / 2) {
     now_.counts.lost += forward - 1;
     advance(number);
     return Order::newest;

@@ -14,6 +14,7 @@ enum class Order {
   newest,     // the first of all, the next one, or a later one behind a gap: what lacks is lost
   late,       // overtaken by a newer one; where it was counted as lost, it no longer is
   duplicate,  // its number was here
+  stray,      // far ahead, of a sender that has not begun anew: nothing lacks before it
   restart     // the sender counts anew, or so it seems until the next packet: see `strays`
 };
 
@@ -23,7 +24,7 @@ struct SequenceCounts {
   std::uint64_t late = 0;
   std::uint64_t duplicates = 0;
   std::uint64_t restarts = 0;
-  std::uint64_t strays = 0;  // numbers far off, behind which the old count went on
+  std::uint64_t strays = 0;  // numbers far off that changed nothing
 
   bool operator==(const SequenceCounts&) const = default;
   /// With those of an earlier run of the sender.
@@ -43,12 +44,14 @@ struct SequenceCounts {
 /// one, it was a stray and is taken back. A new count that begins less than an hour of packets
 /// ahead is no restart but a loss. A restart less than 1024 numbers back looks like duplicates for
 /// 16 packets. One that lands ahead of the old count can't be told from a loss.
+/// Where the sender has not begun anew, a number 1024 and more away changes nothing, however many
+/// come: behind the newest it is a duplicate, ahead of it a stray, and nothing is lost before it.
 class SequenceCount {
  public:
   explicit SequenceCount(unsigned bits = 32);
 
-  /// `may_restart`: false where something else says that the sender has not begun anew, so that
-  /// what lies behind was here and what lies ahead is behind a loss.
+  /// `may_restart`: false where something else says that the packet is older than the newest, so
+  /// that the sender has not begun anew by it.
   Order push(std::uint64_t number, bool may_restart = true);
   const SequenceCounts& counts() const { return now_.counts; }
 

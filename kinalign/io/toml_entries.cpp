@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <sstream>
 
 namespace kinalign {
 
@@ -49,6 +50,17 @@ std::string type_of(const toml::node& node) {
   if (node.is_number()) return "a number";
   if (node.is_boolean()) return "true or false";
   return "a date or time";
+}
+
+std::string toml_key(const std::string& key) {
+  const auto bare = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  if (!key.empty() && std::all_of(key.begin(), key.end(), bare)) return key;
+  std::ostringstream text;
+  text << toml::toml_formatter(toml::value<std::string>(key), toml::format_flags::none);
+  return text.str();
 }
 
 std::int64_t line_of(const toml::node& node) {

@@ -39,6 +39,9 @@ std::string type_of(const toml::node& node);
 
 std::int64_t line_of(const toml::node& node);
 
+/// As it stands in [device.KEY]: in quotes where it needs them.
+std::string toml_key(const std::string& key);
+
 /// Of a line in which toml++ found a fault, such as [device.my suit], whose name has to stand in
 /// quotes: how; else empty. For the end of what was expected.
 std::string quotes_advice(std::string_view text, std::int64_t line);

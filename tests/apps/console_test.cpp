@@ -34,6 +34,9 @@ Result<int> fail(Mix& /*options*/, Call& call) {
   return Failure(Error{"walk.bvh", 142, "354 values in the frame", "353"});
 }
 
+/// To the line above, which is erased: that by itself, see start_of_lines().
+const std::string up = "\x1b[A\x1b[K";
+
 /// A terminal whose size can be changed, and what was shown on it.
 class Pty {
  public:
@@ -159,11 +162,8 @@ TEST_CASE(
   CHECK(Machine{}.run(job, {"mix", "a"}).err == "a note\n");
   const Machine terminal{.err_is_terminal = true};
   CHECK(terminal.run(job, {"mix", "a"}).err ==
-        "one\n\x1b[31mtwo\x1b[0m\nthree"
-        "\r\x1b[2A\x1b[Jfour\nfive"
-        "\r\x1b[1A\x1b[Ja note\nfour\nfive\a"
-        "\r\x1b[1A\x1b[J" +
-            std::string(79, 'x') + "\r\x1b[K");
+        "one\n\x1b[31mtwo\x1b[0m\nthree\r\x1b[K" + up + up + "four\nfive\r\x1b[K" + up +
+            "a note\nfour\nfive\a\r\x1b[K" + up + std::string(79, 'x') + "\r\x1b[K");
   CHECK(terminal.run(job, {"mix", "a", "-q"}).err.empty());
 }
 
@@ -210,16 +210,17 @@ TEST_CASE("lines that a narrower terminal has broken anew are erased all the sam
   pty.resize(20);
   console.note("a note");
   const std::string narrow = "\x1b[31m" + std::string(19, 'x') + "\x1b[0m\r\n\r\nthree";
-  CHECK(pty.shown() == "\r\x1b[4A\x1b[Ja note\r\n" + narrow);  // three rows, one and one
+  CHECK(pty.shown() ==
+        "\r\x1b[K" + up + up + up + up + "a note\r\n" + narrow);  // three rows, one and one
   console.show(
       {{std::string(19, 'x'), Colour::bad}, {"", Colour::plain}, {"three", Colour::plain}});
-  CHECK(pty.shown() == "\r\x1b[2A\x1b[J" + narrow);
+  CHECK(pty.shown() == "\r\x1b[K" + up + up + narrow);
   go_on(console.progress(), "reading so much of so many files", 1, 4);
-  CHECK(pty.shown() == "\r\x1b[2A\x1b[Jreading so much of ");
+  CHECK(pty.shown() == "\r\x1b[K" + up + up + "reading so much of ");
   pty.resize(10);
   console.print("a result\n");
   CHECK(console.finish());
-  CHECK(pty.shown() == "\r\x1b[1A\x1b[Ja result\r\n");
+  CHECK(pty.shown() == "\r\x1b[K" + up + "a result\r\n");
   CHECK(rows_of(0, 20) == 1);
   CHECK(rows_of(20, 20) == 1);
   CHECK(rows_of(21, 20) == 2);
@@ -229,11 +230,20 @@ TEST_CASE("no more lines are shown than a terminal has room for, nor half a char
   const auto job = [](Mix&, Call& call) -> Result<int> {
     const std::vector<std::pair<std::string, Colour>> lines(100, {"x", Colour::plain});
     call.console.show(lines);
+    CHECK(call.console.rows() == 23);
     return 0;
   };
   const std::string err = Machine{.err_is_terminal = true}.run(job, {"mix", "a"}).err;
   CHECK(std::count(err.begin(), err.end(), 'x') == 23);  // of 24 rows
   CHECK(first_places("a\u00b1b", 2) == "a\u00b1");
+}
+
+TEST_CASE(
+    "tmux keeps no copy of the screen for each table: nothing is erased to the screen's end") {
+  for (std::size_t lines = 1; lines < 50; ++lines) {
+    CHECK(start_of_lines(lines).find("\x1b[J") == std::string::npos);
+    CHECK(start_of_lines(lines).size() == 4 + 6 * (lines - 1));
+  }
 }
 
 TEST_CASE("the progress line gives rate and time left, cut to the terminal") {

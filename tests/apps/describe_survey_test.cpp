@@ -92,11 +92,44 @@ TEST_CASE("what is no mark blames no machine, and a refused node is no silence")
         "marks alone at the port of marks: 2 datagrams that are none\n"
         "everything that came to the port of trigger: 3 dropped by the kernel\n"
         "everything that came to the port of kinect: 4 refused, not recorded\n"
-        "frames alone of the lab's nodes at the port of imu: 118 that are refused\n");
+        "frames alone of the lab's nodes at the port of imu: 118 that are refused\n"
+        "frames of nodes alone at the port of imu: 9 datagrams that are none\n");
   for (const Finding& finding : judge_survey("a.mcap", survey)) {
     const bool harmless = finding.what.expected.find(" alone ") != std::string::npos;
     CHECK(finding.severity == (harmless ? Severity::note : Severity::warning));
   }
+}
+
+TEST_CASE("what came to the nodes' port and is no node's is a warning, unless it is a stray one") {
+  RecordingSurvey survey = kinect_survey(900, 900, 0);
+  survey.expected = {{"imu/7", true}};
+  survey.ports = {{"imu", {}}};
+  PortCounts& counts = survey.ports.front().counts;
+  counts.sifted = true;
+  CHECK(judged(survey) == "messages of imu 7: none\n");
+  counts.dropped = 19;
+  CHECK(judge_survey("a.mcap", survey).back().severity == Severity::note);
+  counts.dropped = 419;
+  CHECK(judged(survey) ==
+        "messages of imu 7: none: 419 datagrams came to its port, none a frame of nodes\n"
+        "frames of nodes alone at the port of imu: 419 datagrams that are none\n");
+  CHECK(judge_survey("a.mcap", survey).back().severity == Severity::warning);
+  survey.senders[0].stream = "imu";  // whose lost frames may be among what was thrown away
+  survey.senders[0].counts.order.lost = 400;
+  CHECK(judge_survey("a.mcap", survey).back().what.found == "at least 19 datagrams that are none");
+  survey.senders[0].counts.order.lost = 419;
+  CHECK(judge_survey("a.mcap", survey).back().what.expected.find("alone") == std::string::npos);
+}
+
+TEST_CASE("of trackers' datagrams it is told where all were refused, older counts too") {
+  RecordingSurvey survey = kinect_survey(79, 79, 0);
+  survey.channels[0].channel.message_encoding = "slimevr";
+  CHECK(judged(survey).empty());  // by a version that counted no frames of trackers
+  SenderCounts& counts = survey.senders[0].counts;
+  counts.refused = 79;
+  CHECK(judged(survey).starts_with("frames of slimevr in what kinect"));
+  counts.frames = 79;  // trackers that never shook hands
+  CHECK(judged(survey).empty());
 }
 
 TEST_CASE("a stream of which no rows can be made is told") {
@@ -111,6 +144,17 @@ TEST_CASE("a stream of which no rows can be made is told") {
   survey.channels[0].channel.message_encoding = "noitom";
   CHECK(judged(survey) == "a skeleton for kinect: none\n");
   survey.attachments = {"kinect.bvh"};
+  CHECK(judged(survey).empty());
+}
+
+TEST_CASE("a Kinect's frames that were sent again, or too late, are frames of a Kinect") {
+  RecordingSurvey survey = kinect_survey(50, 50, 0);
+  survey.channels[0].channel.message_encoding = "kinect";
+  CHECK(judged(survey).find("none of them one") != std::string::npos);
+  survey.senders[0].counts.order.duplicates = 50;
+  CHECK(judged(survey).empty());
+  survey.senders[0].counts.order = {};
+  survey.senders[0].counts.order.late = 50;
   CHECK(judged(survey).empty());
 }
 
@@ -137,4 +181,27 @@ TEST_CASE("a later part by itself, which counts from the recording's beginning, 
   RecordingSurvey part = kinect_survey(1000, 10, 0);
   part.facts->part = 2;
   CHECK(judged(part).empty());
+}
+
+TEST_CASE("the counts of a torn recording, which are told once a second, are told as such") {
+  RecordingSurvey survey = kinect_survey(314, 336, 0);
+  const auto has = [&survey](const std::string& line) {
+    return describe_survey("a.mcap", survey, {}).text.find(line) != std::string::npos;
+  };
+  CHECK(has("kinect: 314 messages, 0.0 MB\n"));
+  survey.end.reset();
+  survey.torn = {"a.mcap"};
+  CHECK(has("/kinect/raw: 336 messages"));
+  CHECK(has("kinect: 314 messages, 0.0 MB; counted up to 1 s before the end\n"));
+}
+
+TEST_CASE("of a suit whose frames can mostly not be read check says so") {
+  RecordingSurvey survey = kinect_survey(800, 800, 0);
+  survey.channels[0].channel.message_encoding = "noitom";
+  survey.attachments.emplace_back("kinect.bvh");
+  survey.senders[0].counts.frames = 134;
+  survey.senders[0].counts.refused = 134;
+  CHECK(judged(survey).empty());
+  survey.senders[0].counts.refused = 266;
+  CHECK(judged(survey) == "frames that can be read in what kinect sent: 134; 266 times none\n");
 }

@@ -36,8 +36,8 @@ def a_quick_flag_beside_a_manifest_is_refused_with_the_key_that_says_it(folder):
         assert err.startswith(f"kinalign align: {flag}: expected {key} of "), err
         assert "found a flag beside the manifest\n" in err, err
     _, err = done_with(2, "align", folder / "take.mcap", "--mocap", "a.bvh", "-o", folder / "t.h5")
-    assert err.startswith("kinalign align: --mocap: expected file in [stream.mocap] of a manifest, recording.toml, which "
-                          "mixes recordings with files, found take.mcap, a recording, which brings its own streams\n"), err
+    assert err.startswith("kinalign align: --mocap: expected file in [stream.NAME] of a manifest, recording.toml, which "
+                          "mixes recordings with files (NAME: a stream's own, see kinalign info), found take.mcap, a recording, which brings its own streams\n"), err
     done_with(0, *begin, "--gap-ms", "50", "--rotations", "slerp", "--double", "--reference", "mocap")
 
 

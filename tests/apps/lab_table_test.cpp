@@ -96,3 +96,34 @@ TEST_CASE("what is not required is missing without red") {
   CHECK(lines[4].text == "imu wrist nothing yet, 60 s");
   CHECK(missing(scene.lab, scene.status).empty());
 }
+
+TEST_CASE("while nobody is heard there is no head: it would be one word") {
+  Scene scene;
+  scene.status.streams.clear();
+  const auto lines = table(scene);
+  REQUIRE(lines.size() == 4);
+  CHECK(lines[0].text == "mocap     missing: nothing yet, 60 s");
+  CHECK(!lines[0].head);
+  CHECK(table(Scene())[0].head);
+}
+
+TEST_CASE("of a table that a window has no room for good lines give way first, from below") {
+  const std::vector<TableLine> lines{{"head", false, true}, {"a"}, {"b", true}, {"c"},
+                                     {"d", true},           {"e"}};
+  const auto text = [&](std::size_t rows) {
+    std::string all;
+    for (const TableLine& line : fitted(lines, rows)) all += line.text + (line.bad ? "! " : " ");
+    return all;
+  };
+  CHECK(text(7) == "head a b! c d! e ");
+  CHECK(text(6) == text(7));
+  CHECK(text(5) == "head a b! d! … 2 more ");
+  CHECK(text(4) == "head b! d! … 3 more ");
+  CHECK(text(3) == "head b! … 4 more, 1 amiss! ");
+  CHECK(text(2) == "head … 5 more, 2 amiss! ");
+  CHECK(text(1) == "… 5 more, 2 amiss! ");
+  CHECK(text(0).empty());
+  CHECK(fitted({{"head", false, true}, {"a"}}, 1).front().text == "a");
+  CHECK(fitted({{"a"}, {"b"}}, 0).empty());  // no head, no room
+  CHECK(fitted({}, 0).empty());
+}

@@ -70,6 +70,11 @@ def a_port_for_marks_that_is_a_devices_is_wrong_use(folder):
         says = [f"{flag}: expected another UDP port than that of device", "found 7201"]
         assert refusal(2, folder, "--device", "imu=nodes:7201", flag, 7201) == [f"{says[0]} imu, {says[1]}", HELP]
         assert refusal(2, folder, *config, flag, 7201) == [f"{says[0]} kinect, {says[1]}", HELP]
+    config = lab(folder, '[device.kinect]\nprotocol = "kinect"\nport = 7201\n[record]\nmarks_port = 7201\n')
+    says = "expected another UDP port than that of device kinect, found 7201"  # no flag is blamed that nobody gave
+    assert refusal(2, folder, *config) == [f"{config[1]}:5: {says}", PAGES]
+    assert refusal(2, folder, *config, env={"KINALIGN_MARKS_PORT": "7201"}) == [f"KINALIGN_MARKS_PORT: {says}", HELP]
+    assert refusal(2, folder, *config, "--marks-port", 7201) == [f"--marks-port: {says}", HELP]
     recording = Recording(folder / "takes", "--marks-port", "0", "--trigger-port", "0", "--seconds", "0")
     recording.program.communicate(timeout=60)
     assert recording.program.returncode == 1, "any free ones are others"
@@ -124,10 +129,22 @@ def what_is_wrong_in_a_lab_is_told_with_its_line_and_the_page_that_shows_the_key
     for text, says in (('[device.a]\nprotocol = "nodes"\n[devices.mocap]\nport = 1\n',
                         ":3: expected settings, or a lab's device as [device.mocap], found [devices.mocap]"),
                        ("[device.mocap]\nprt = 1\n", ":2: expected a key of [device.mocap] (nearest: port), found \"prt\""),
+                       ('[align]\ngap_ms = 50\n[space.kinect]\nmethod = "fit"\n',
+                        ":3: expected settings, or a lab's devices, found [space.kinect] of a manifest, which is for "
+                        "kinalign align"),
+                       ('[device.a]\nprotocol = "nodes"\nport = 0\nnodes = { "1" = "2" }\n',
+                        ":1: expected a place by name, as waist: a number is another node's id, found 2 of node 1"),
                        ("[device]\nport = 1\n",
                         ":2: expected [device.NAME], a table of its own for each, found port, a number")):
         config = lab(folder, text)
         assert refusal(2, folder, *config) == [f"{config[1]}{says}", PAGES]
+
+
+@case
+def a_devices_name_stands_in_advice_as_toml_wants_it(folder):
+    recording = Recording(folder / "takes", "--seconds", "0", device="a b=noitom:udp:127.0.0.1:0")
+    _, said = recording.program.communicate(timeout=60)
+    assert 'under [device."a b"] of a lab.toml' in said, said
 
 
 @case

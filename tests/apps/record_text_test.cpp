@@ -79,10 +79,41 @@ TEST_CASE("a stream's JSON has its counts and its node's clock") {
 }
 
 TEST_CASE("a port's line tells what was not recorded, and nothing else") {
-  CHECK(port_line("mocap", {}).empty());
+  CHECK(port_line("mocap", {}, 0).empty());
   PortCounts counts;
   counts.dropped = 1234;
   counts.refused = 3;
-  CHECK(port_line("mocap", counts) ==
+  CHECK(port_line("mocap", counts, 0) ==
         "  port of mocap: 1,234 dropped by the kernel, 3 refused, not recorded\n");
+}
+
+TEST_CASE("of what a port of nodes threw away it is told what it was, as far as that is known") {
+  PortCounts counts;
+  counts.sifted = true;
+  counts.dropped = 419;
+  CHECK(loss_of(counts, 0) == "419 thrown away: no frames of nodes");
+  CHECK(loss_of(counts, 7) == "419 thrown away, 412 of them or more no frames of nodes");
+  CHECK(loss_of(counts, 500) == "419 thrown away: no frames of nodes, or no room for them");
+}
+
+TEST_CASE(
+    "where something came to a port of nodes and no node was heard, it is not said to be nothing") {
+  Scene scene;
+  const std::map<std::string, std::uint16_t> ports{
+      {"mocap", 7012}, {"kinect", 7201}, {"imu", 5005}};
+  scene.lab.devices.erase(scene.lab.devices.begin(), scene.lab.devices.begin() + 2);
+  scene.status.streams.clear();
+  PortCounts counts;
+  counts.sifted = true;
+  scene.status.ports = {{"imu", counts}};
+  CHECK(lines_of_unheard(scene.lab, scene.status, ports)[0] ==
+        "imu wrist: nothing has come to port 5005 yet");
+  CHECK(end_lines_of_unheard(scene.lab, scene.status, ports)[0] == "imu wrist: nothing came");
+  scene.status.ports[0].second.dropped = 1181;
+  const std::string came = "imu wrist: 1,181 datagrams came to port 5005, none a frame of nodes";
+  CHECK(lines_of_unheard(scene.lab, scene.status, ports)[0] == came);
+  CHECK(end_lines_of_unheard(scene.lab, scene.status, ports)[0] == came);
+  scene.status.ports[0].second.refused = 4;  // of frames: without a key, say
+  CHECK(lines_of_unheard(scene.lab, scene.status, ports)[1] ==
+        "imu waist: 1,185 datagrams came to port 5005, none was let in");
 }

@@ -271,7 +271,7 @@ def frames_of_suit_and_camera_come_some_milliseconds_after_they_were_true(folder
 def ctrl_c_ends_a_live_one_in_order_and_nobody_listening_is_told(folder):
     with subprocess.Popen(
             [str(cases.PROGRAM), "simulate", "built-in", "-o", str(folder / "r"), "--live", "--json", "--mocap-port",
-             "9", "--kinect-port", "9", "--node-port", "9", "--marks-port", "9"], stdout=subprocess.PIPE,
+             "9", "--kinect-port", "10", "--node-port", "11", "--marks-port", "12"], stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, text=True) as one:
         assert json.loads(one.stdout.readline())["event"] == "sending"
         time.sleep(2)

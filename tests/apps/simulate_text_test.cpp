@@ -99,8 +99,9 @@ TEST_CASE("a recorder that comes late, or for some devices only, is told what it
 TEST_CASE("a recording of another name is not called by the one that recording.toml has") {
   SentRehearsal sent = well_sent();
   sent.recorded_there = false;
-  CHECK(
-      sent_text(sent).next ==
-      "  next    kinalign align with what was recorded: r/take_01.mcap, which r/recording.toml is "
-      "of, is not there\n");
+  CHECK(sent_text(sent).next ==
+        "  next    r/recording.toml names r/take_01.mcap, which is not there: put the name of what "
+        "was "
+        "recorded in its place\n"
+        "          then: kinalign align r/recording.toml -o r/take.h5\n");
 }

@@ -114,6 +114,15 @@ def where_nobody_listens_every_device_says_so_alike_and_it_ends_with_1(folder):
 
 
 @case
+def two_devices_on_one_port_are_refused_before_anything_is_made(folder):
+    out, err = done_with(2, "simulate", "built-in", "-o", folder / "r", "--live", "--mocap-port", 7012, "--kinect-port",
+                         7012)
+    assert err.startswith("kinalign simulate: --kinect-port: expected another port than that of --mocap-port, found "
+                          "7012\n"), err
+    assert not out and not (folder / "r").exists()
+
+
+@case
 def another_program_on_a_port_is_no_recorder(folder):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("127.0.0.1", 0))
@@ -126,11 +135,12 @@ def another_program_on_a_port_is_no_recorder(folder):
 
 @case
 def what_is_stopped_says_when_and_names_no_next_step_and_ends_with_130(folder):
-    recorder = Recorder(folder / "takes")
+    how = ((signal.SIGINT, ()), (signal.SIGTERM, ()), (signal.SIGHUP, ("--json",)))
+    recorders = [Recorder(folder / f"takes_{sign.name}") for sign, _ in how]
     running = [(sign, subprocess.Popen(
         [str(cases.PROGRAM), "simulate", "built-in", "-o", str(folder / sign.name), "--live", "--seconds", "30",
          *json_flag, *map(str, recorder.flags())], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
-               for sign, json_flag in ((signal.SIGINT, ()), (signal.SIGTERM, ()), (signal.SIGHUP, ("--json",)))]
+               for (sign, json_flag), recorder in zip(how, recorders)]
     for _, program in running:
         atexit.register(program.kill)  # where the case fails in the middle
         program.stdout.readline()
@@ -144,7 +154,8 @@ def what_is_stopped_says_when_and_names_no_next_step_and_ends_with_130(folder):
         else:
             sent = json.loads(out)
             assert sent["stopped"] and 0.1 < sent["sent_s"] < 10 and sent["length_s"] == 30, sent
-    recorder.end()
+    for recorder in recorders:
+        recorder.end()
 
 
 @case
@@ -164,9 +175,10 @@ def a_recording_elsewhere_or_of_another_name_is_not_called_by_that_one(folder):
     done = kinalign(*live(folder, *recorder.flags()))
     recorder.end()
     assert done.returncode == 0, done.stderr
-    assert done.stdout.decode().splitlines()[-1] == (
-        f"  next    kinalign align with what was recorded: {folder}/r/take_01.mcap, which {folder}/r/recording.toml is of, "
-        "is not there"), done.stdout
+    assert done.stdout.decode().splitlines()[-2:] == [
+        f"  next    {folder}/r/recording.toml names {folder}/r/take_01.mcap, which is not there: put the name of what was "
+        "recorded in its place",
+        f"          then: kinalign align {folder}/r/recording.toml -o {folder}/r/take.h5"], done.stdout
 
 
 # ---- against the truth

@@ -25,6 +25,22 @@ def with_warning(folder):
 
 
 @case
+def of_a_folder_a_file_in_it_is_named(folder):
+    takes = folder / "takes"
+    takes.mkdir()
+    for verb in (("align", takes, "-o", folder / "t.h5"), ("info", takes), ("check", takes),
+                 ("recover", takes, "-o", folder / "whole.mcap")):
+        _, err = done_with(3, *verb)
+        assert "found a directory\n" in err and err.endswith("\n  name a file in it\n"), err
+    for name in ("b.mcap", "a.mcap", "0.txt"):
+        (takes / name).write_text("")
+    for verb in (("align", takes, "-o", folder / "t.h5"), ("info", takes), ("check", takes),
+                 ("recover", takes, "-o", folder / "whole.mcap")):
+        _, err = done_with(3, *verb)
+        assert err.endswith(f"\n  name a file in it, as {takes}/a.mcap\n"), err
+
+
+@case
 def what_was_done_with_a_warning_is_done_with_exit_code_1(folder):
     manifest = with_warning(folder)
     take = folder / "t.h5"

@@ -156,6 +156,62 @@ TEST_CASE("a stranger gets no more from the trackers' port than the answer to a 
   CHECK(live.finish().at("/imu/raw").size() == 1);
 }
 
+TEST_CASE(
+    "who sends trackers' ports something else is told of once, and a tracker that is not let in is "
+    "not") {
+  LiveSession live({"imu=slimevr:udp:127.0.0.1:0"});
+  const Client other, another, tracker;
+  for (std::uint64_t i = 0; i < 25; ++i) {
+    other.send("127.0.0.1", live.port(), bytes_of("KNCT frames that are not a tracker's"));
+    another.send("127.0.0.1", live.port(), bytes_of("short"));
+    std::vector<std::uint8_t> heartbeat(12);  // of one whose handshake went elsewhere
+    heartbeat[11] = static_cast<std::uint8_t>(i);
+    tracker.send("127.0.0.1", live.port(), heartbeat);
+    live.serve_until([&] { return live.pieces() == 3 * (i + 1); });
+  }
+  live.finish();
+  const Findings findings = live.session().take_findings();
+  REQUIRE(findings.size() == 1);  // of the host
+  CHECK(findings[0].severity == Severity::warning);
+  CHECK(findings[0].what.expected == "frames of slimevr");
+  CHECK(findings[0].what.found == "25 messages, none of them one");
+  const auto streams = live.session().streams();
+  REQUIRE(streams.size() == 3);
+  CHECK(streams[0].counts.frames == 0);
+  CHECK(streams[2].counts.frames == 25);
+  CHECK(streams[2].counts.refused == 25);
+}
+
+TEST_CASE("what comes to the nodes' port and is no node's is told of once; stray ones are not") {
+  LiveSession live({"imu=nodes:udp:127.0.0.1:0"});
+  const Client suit;
+  const auto send = [&](int datagrams) {
+    for (int i = 0; i < datagrams; ++i) {
+      suit.send("127.0.0.1", live.port(), bytes_of(std::string(100, 's')));
+    }
+  };
+  const auto dropped = [&] { return live.session().port_counts().front().second.dropped; };
+  const auto seconds_on = [&] {
+    const auto begun = std::chrono::steady_clock::now();
+    live.serve_until([&] { return std::chrono::steady_clock::now() - begun > 2100ms; });
+  };
+  send(19);
+  seconds_on();
+  CHECK(dropped() == 19);
+  CHECK(live.session().take_findings().empty());
+  send(1);
+  seconds_on();
+  CHECK(dropped() == 20);
+  send(30);
+  seconds_on();
+  const Findings findings = live.session().take_findings();
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].severity == Severity::warning);
+  CHECK(to_string(findings[0].what) == "imu: expected frames of nodes alone at port " +
+                                           std::to_string(live.port()) +
+                                           ", found 20 datagrams that are none");
+}
+
 TEST_CASE("that the host's wall clock was set is told while recording") {
   struct SetClocks : SystemClocks {
     bool was_set = false;

@@ -226,6 +226,16 @@ std::vector<std::string> marks_in(const std::map<std::string, std::vector<std::s
   return found;
 }
 
+/// The newest that a file's counts say of the suit's port.
+std::uint64_t pieces_in(const std::map<std::string, std::vector<std::string>>& payloads) {
+  std::uint64_t pieces = 0;
+  for (const std::string& text : payloads.at("/counts/ports")) {
+    const auto json = nlohmann::json::parse(text);
+    if (json.at("stream") == "mocap") pieces = json.at("pieces");
+  }
+  return pieces;
+}
+
 /// Takes by marks on one port and a suit on another; files a0.mcap, a1.mcap, ...
 class ByMarks {
  public:
@@ -260,19 +270,35 @@ class ByMarks {
       client_.send("127.0.0.1", session_->ports().front().second, noitom_frame(i));
     }
   }
+  /// Surely earlier and later than all else.
+  template <class Send>
+  static void apart(Send send) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    send();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  /// Once, as soon as the session has found that something came.
+  void when_woken(std::function<void()> send) {
+    ports_clock_.when_asked = std::move(send);
+    ports_clock_.times = 0;
+  }
   void mark(Mark::Kind kind, int id) {
     call_all({call(kind, id)});
     serve_until(*session_, [&] { return !session_->take_marks().empty(); });
   }
-  /// Of all takes, in their order.
-  std::vector<std::map<std::string, std::vector<std::string>>> payloads() {
-    std::vector<std::map<std::string, std::vector<std::string>>> all;
-    while (const auto take = session_->next_take()) {
-      serve_until(*session_, [&] { return take->disk.status().finished; });
-      const auto paths = take->disk.status().paths;
-      REQUIRE(paths == std::vector{folder_ / "a" + std::to_string(all.size()) + ".mcap"});
-      all.push_back(payloads_in(folder_.read("a" + std::to_string(all.size()) + ".mcap")));
-    }
+  using Payloads = std::map<std::string, std::vector<std::string>>;
+  /// Of the next take, in their order.
+  std::optional<Payloads> next() {
+    const auto take = session_->next_take();
+    if (!take) return std::nullopt;
+    serve_until(*session_, [&] { return take->disk.status().finished; });
+    const std::string name = "a" + std::to_string(asked_++) + ".mcap";
+    REQUIRE(take->disk.status().paths == std::vector{folder_ / name});
+    return payloads_in(folder_.read(name));
+  }
+  std::vector<Payloads> payloads() {
+    std::vector<Payloads> all;
+    while (auto one = next()) all.push_back(*std::move(one));
     return all;
   }
 
@@ -280,8 +306,17 @@ class ByMarks {
   std::uint64_t frames() { return session_->streams().at(0).counts.messages; }
 
   FreshFolder folder_;
-  int named_ = 0;
-  SystemClocks ports_clock_, nodes_clock_;
+  int named_ = 0, asked_ = 0;
+  struct AskedClocks : SystemClocks {
+    HostTime raw() override {
+      if (when_asked && ++times == 2) std::exchange(when_asked, nullptr)();
+      return SystemClocks::raw();
+    }
+    std::function<void()> when_asked;  // a second time: a turn asks before it waits, too
+    int times = 0;
+  };
+  AskedClocks ports_clock_;
+  SystemClocks nodes_clock_;
   Client client_;
   std::unique_ptr<RecordingSession> session_;
 };
@@ -353,9 +388,7 @@ TEST_CASE("what arrives behind a stop is the next take's, whenever it is read") 
   PosixFiles files;
   ByMarks lab(files);
   const auto flood = [&](std::uint32_t from, std::uint32_t to) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    lab.flood(from, to);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    lab.apart([&] { lab.flood(from, to); });
   };
   lab.mark(Mark::Kind::start, 1);
   flood(0, 40);
@@ -373,6 +406,50 @@ TEST_CASE("what arrives behind a stop is the next take's, whenever it is read") 
   CHECK(frames(1).front() == std::string(first.begin(), first.end()));
 }
 
+TEST_CASE(
+    "what arrives behind each of several stops is no more the ended take's, read all at once") {
+  PosixFiles files;
+  ByMarks lab(files);
+  lab.mark(Mark::Kind::start, 0);
+  std::uint32_t sent = 0;
+  for (int take = 0; take < 3; ++take) {
+    lab.apart([&] { lab.flood(sent, sent + 10); });
+    lab.apart([&] { lab.call_all({call(Mark::Kind::stop, 3 * take + 1)}); });
+    lab.apart([&] { lab.flood(sent + 10, sent + 15); });
+    lab.apart([&] { lab.call_all({call(Mark::Kind::start, 3 * take + 2)}); });
+    sent += 15;
+  }
+  lab.mark(Mark::Kind::stop, 100);
+  const auto payloads = lab.payloads();
+  REQUIRE(payloads.size() == 4);
+  for (std::size_t take = 0; take < 4; ++take) {
+    const auto ended = payloads[take].find("/mocap/raw");
+    const std::vector<std::string> frames =
+        ended == payloads[take].end() ? std::vector<std::string>() : ended->second;
+    CAPTURE(take);
+    CHECK(frames.size() == (take == 0 ? 10U : take == 3 ? 5U : 15U));
+    CHECK(pieces_in(payloads[take]) == frames.size());
+  }
+}
+
+TEST_CASE("a stop that arrives between the look at the ports and their reading is obeyed first") {
+  PosixFiles files;
+  ByMarks lab(files);
+  lab.mark(Mark::Kind::start, 1);
+  lab.say(noitom_frame(0));
+  lab.flood(1, 2);
+  lab.when_woken([&] {
+    lab.apart([&] { lab.call_all({call(Mark::Kind::stop, 2)}); });
+    lab.apart([&] { lab.flood(2, 3); });
+  });
+  serve_until(lab.session(), [&] { return !lab.session().recording(); });
+  lab.mark(Mark::Kind::start, 3);
+  lab.mark(Mark::Kind::stop, 4);
+  const auto payloads = lab.payloads();
+  REQUIRE(payloads.size() == 2);
+  CHECK(payloads[0].at("/mocap/raw").size() == 2);
+}
+
 TEST_CASE("more takes than may wait for the disk become one, and nothing is lost") {
   StandsStill files;
   ByMarks lab(files);
@@ -386,9 +463,10 @@ TEST_CASE("more takes than may wait for the disk become one, and nothing is lost
   REQUIRE(findings.size() == 1);
   CHECK(findings.front().what.expected == "at most 32 takes that wait for the disk");
   files.still = false;
+  std::vector payloads{lab.next().value()};  // now another may wait
   int stops = 0;
   for (; lab.session().recording(); ++stops) lab.mark(Mark::Kind::stop, 2 * rounds + stops);
-  const auto payloads = lab.payloads();
+  for (auto& one : lab.payloads()) payloads.push_back(std::move(one));
   CHECK(payloads.size() == TakeQueue::most);
   std::size_t frames = 0, marks = 0;
   for (const auto& take : payloads) {

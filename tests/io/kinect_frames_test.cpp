@@ -163,7 +163,7 @@ TEST_CASE("who comes another way goes on with the count, or restarts it by anoth
   std::vector<JoinedKinectFrame> frames;
   for (const std::uint32_t session : {1U, 2U}) {
     KinectFrameJoiner joiner;
-    joiner.follow({2, 1, 500});
+    joiner.follow({{2, 1, 500}, 0, 0});
     joiner.take(of_session(session, 503), frames);
     const bool same = session == 1;
     CHECK(joiner.counts().frames.lost == (same ? 2 : 0));
@@ -180,7 +180,7 @@ TEST_CASE("frames that are sent again are duplicates, whoever brings them, and n
   CHECK(joined.frames.size() == 300);
   CHECK(joined.counts.frames == SequenceCounts{350, 0, 0, 50, 0, 0});
   KinectFrameJoiner other;  // a further sender's, behind the first one's last frame
-  other.follow(messages[299].origin);
+  other.follow(moment_of(messages[299]));
   std::vector<JoinedKinectFrame> frames;
   for (std::uint32_t i = 0; i < 50; ++i) other.take(frame_of(i, {1}), frames);
   other.finish(frames);
@@ -202,6 +202,63 @@ TEST_CASE(
     CHECK(joined.counts.frames.restarts == 1);
     CHECK(joined.frames.size() >= 51 - 15);
   }
+}
+
+TEST_CASE("who begins anew on another way with its old session is known by newer ticks there too") {
+  for (const std::uint32_t before : {300U, 100'000U}) {
+    CAPTURE(before);
+    KinectFrameJoiner joiner;
+    joiner.follow(moment_of(frame_of(before, {1})));
+    std::vector<JoinedKinectFrame> frames;
+    for (std::uint32_t i = 0; i < 50; ++i) {
+      KinectFrame frame = frame_of(i, {1});
+      frame.device_ticks += 100'001 * std::int64_t{333'333};
+      joiner.take(frame, frames);
+    }
+    joiner.finish(frames);
+    CHECK(joiner.counts().frames.restarts == 1);
+    CHECK(frames.size() >= 50 - 15);
+  }
+}
+
+TEST_CASE(
+    "two sessions by turns are two senders: the later one's frames are joined, and it is told") {
+  KinectFrameJoiner joiner;
+  std::vector<JoinedKinectFrame> frames;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    joiner.take(of_session(111, i), frames, "10.0.0.9:1");
+    joiner.take(of_session(222, i), frames, "10.0.0.9:1");
+  }
+  joiner.finish(frames);
+  CHECK(frames.size() == 101);
+  CHECK(joiner.counts().stale == 99);
+  CHECK(joiner.counts().frames.restarts == 0);
+  REQUIRE(joiner.twins());
+  CHECK(joiner.twins()->sessions == std::array<std::uint32_t, 2>{111, 222});
+}
+
+TEST_CASE("who began beside the session that was followed is no restart of it") {
+  KinectFrameJoiner joiner;
+  std::vector<JoinedKinectFrame> frames;
+  joiner.follow(moment_of(of_session(111, 5)));
+  joiner.take(of_session(222, 0), frames);
+  CHECK(joiner.counts().frames.restarts == 1);
+  joiner.begin_beside();
+  CHECK(joiner.counts().frames.restarts == 0);
+}
+
+TEST_CASE("wild numbers with older ticks make nothing lost, and are dropped") {
+  std::vector<KinectFrame> messages;
+  for (std::uint32_t i = 0; i < 20; ++i) messages.push_back(frame_of(i, {1}));
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    messages.push_back(frame_of(2'000'000'000 + i, {1}));
+    messages.back().device_ticks = i;
+  }
+  for (std::uint32_t i = 20; i < 30; ++i) messages.push_back(frame_of(i, {1}));
+  const Joined joined = join(messages);
+  CHECK(joined.frames.size() == 30);
+  CHECK(joined.counts.stale == 40);
+  CHECK(joined.counts.frames == SequenceCounts{70, 0, 0, 0, 0, 40});
 }
 
 TEST_CASE("sessions for ever: sixteen are remembered, and no more") {

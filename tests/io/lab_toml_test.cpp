@@ -84,7 +84,11 @@ TEST_CASE("what is wrong with a device is told with its line and the nearest kno
   CHECK(error_of(nodes + "{ \"1\" = \"Hips\", \"2\" = \"Hips\" }\n") ==
         "labs/lab.toml:1: expected a place of its own for each node, found Hips of nodes 1 and 2");
   CHECK(error_of(nodes + "{ \"1\" = \"2\", \"2\" = \"Hips\" }\n") ==
-        "labs/lab.toml:1: expected a place that is no other node's id, found 2 of node 1");
+        "labs/lab.toml:1: expected a place by name, as waist: a number is another node's id, found "
+        "2 of node 1");
+  CHECK(error_of(nodes + "{ \"1\" = \"02\" }\n")  // also of one that has no place
+            .ends_with("a number is another node's id, found 02 of node 1"));
+  CHECK(error_of(nodes + "{ \"1\" = \"1\", \"2\" = \"2nd\" }\n") == "none");
   CHECK(error_of("[device.a]\nprotocol = \"kinect\"\nskeleton = \"a.bvh\"\n") ==
         "labs/lab.toml:1: expected skeleton of noitom alone, found of kinect");
   CHECK(error_of("[device.a]\nprotocol = \"xsens\"\nskeleton = \"a.bvh\"\n") ==

@@ -79,6 +79,81 @@ TEST_CASE("of two files of a recording recover takes what stands in both once") 
   CHECK(named_one->findings.back().what.found == "a.part2.mcap");
 }
 
+namespace {
+
+Severity worst_of(const Findings& findings) {
+  Severity worst = Severity::note;
+  for (const Finding& one : findings) worst = std::max(worst, one.severity);
+  return worst;
+}
+
+/// Messages [from, to) of a recording, closed in order; `ends`: recording ended there.
+std::string part_of(int part, int from, int to, bool ends) {
+  MemoryFile file;
+  McapWriter writer(file.store());
+  CHECK(writer.begin({"kinalign", "test"}));
+  CHECK(writer.write(to_metadata({"", "", "lab", "a.mcap", part, {}})));
+  McapChunkContent content;
+  for (int k = from; k < to; ++k) {
+    OwnedMessage message = nth_message(static_cast<std::uint32_t>(k));
+    message.message.sequence /= 3;  // of its channel, as ours are
+    add(content, message);
+  }
+  CHECK(writer.write(store(std::move(content), McapCompression::none)));
+  if (ends) CHECK(writer.write(to_metadata(RecordingEnd{})));
+  CHECK(writer.finish());
+  return file.bytes;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "recover takes the parts beside those that it is given, and no part's name for its file") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("a.mcap", part_of(1, 0, 20, false));
+  const std::string b = folder.write("a.part2.mcap", part_of(2, 20, 40, false));
+  const std::string c = folder.write("a.part3.mcap", part_of(3, 40, 60, true));
+  for (const auto& given :
+       {std::vector{a, c}, std::vector{c, a}, std::vector{a}, std::vector{a, b}}) {
+    const auto recovered = recover_recording(files, given, folder / "b.mcap", Overwrite::yes);
+    REQUIRE(recovered);
+    CHECK(recovered->messages == 60);
+    CHECK(recovered->missing == 0);
+    CHECK(worst_of(recovered->findings) == Severity::note);
+  }
+  const auto later = recover_recording(files, {b, c}, folder / "b.mcap", Overwrite::yes);
+  REQUIRE(later);
+  CHECK(worst_of(later->findings) == Severity::warning);  // part 1 is not in it
+  const auto refused = recover_recording(files, {a}, c, Overwrite::yes);
+  REQUIRE_FALSE(refused);
+  CHECK(to_string(refused.error()) ==
+        c + ": expected another name than those of the recording's files, found 'a.part3.mcap', "
+            "which is one of them");
+}
+
+TEST_CASE(
+    "of a recording that goes on in a file that is not there recover says so, and check, too") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("a.mcap", part_of(1, 0, 20, false));
+  const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  REQUIRE(recovered->findings.size() == 1);
+  CHECK(to_string(recovered->findings.front().what) ==
+        a + ": expected a recording up to its end, found one that went on in another file");
+  for (const char* name : {"a.mcap", "b.mcap"}) {
+    const auto survey = survey_recording(files, folder / name);
+    CHECK(judge_end("x", *survey).size() == 1);
+  }
+  const std::string torn = part_of(1, 0, 20, false);
+  const std::string cut = folder.write("c.mcap", torn.substr(0, torn.size() - 20));
+  REQUIRE(recover_recording(files, {cut}, folder / "d.mcap", Overwrite::no));
+  const auto survey = survey_recording(files, folder / "d.mcap");
+  CHECK(survey->was_torn);
+  CHECK(judge_end("x", *survey).empty());
+}
+
 TEST_CASE("recover keeps all records of one name, and once what each part repeats") {
   const FreshFolder folder;
   PosixFiles files;
@@ -172,6 +247,33 @@ TEST_CASE("of a file that is only torn nothing is skipped, and nothing known to 
   const auto recovered = recover_recording(files, {path}, folder / "b.mcap", Overwrite::no);
   REQUIRE(recovered);
   CHECK(recovered->skipped == 0);
+}
+
+TEST_CASE("whatever byte of a summary is damaged, recover has all messages and invents no loss") {
+  std::vector<std::size_t> ends;
+  const std::string whole = mcap_file(60, 10, McapCompression::zstd, &ends);
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto undamaged = survey_recording(files, folder.write("whole.mcap", whole));
+  REQUIRE(undamaged);
+  for (std::size_t at = ends.back() + 13; at < whole.size() - mcap_magic.size(); ++at) {
+    CAPTURE(at);
+    std::string damaged = whole;
+    damaged[at] ^= 0x10;
+    const auto recovered = recover_recording(files, {folder.write("a.mcap", damaged)},
+                                             folder / "b.mcap", Overwrite::yes);
+    REQUIRE(recovered);
+    CHECK(recovered->messages == 60);
+    CHECK(recovered->missing == 0);
+    const auto survey = survey_recording(files, folder / "a.mcap");
+    REQUIRE(survey);
+    CHECK(survey->messages == 60);
+    for (const ChannelSurvey& known : undamaged->channels) {  // and one without messages, perhaps
+      CHECK(std::any_of(survey->channels.begin(), survey->channels.end(), [&](const auto& one) {
+        return one.channel == known.channel && one.messages == known.messages;
+      }));
+    }
+  }
 }
 
 TEST_CASE("rubbish between chunks is counted, byte by byte") {

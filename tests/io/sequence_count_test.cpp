@@ -143,7 +143,7 @@ TEST_CASE("sequence: any loss, doubling and reordering is counted exactly") {
 }
 
 TEST_CASE(
-    "sequence: where there is no restart, what lies behind was here and what lies ahead is lost") {
+    "sequence: where there is no restart, what lies far behind was here and far ahead is a stray") {
   SequenceCount count;
   for (const auto number : range(5'000, 100)) count.push(number, false);
   for (const auto number : range(5'000, 50)) {
@@ -152,6 +152,9 @@ TEST_CASE(
   for (const auto number : range(10, 50)) {
     CHECK(count.push(number, false) == Order::duplicate);  // from before the window
   }
-  CHECK(count.push(1'005'100, false) == Order::newest);
-  CHECK(count.counts() == SequenceCounts{201, 1'000'000, 0, 100, 0, 0});
+  for (const auto number : range(2'000'000'000, 50)) {
+    CHECK(count.push(number, false) == Order::stray);
+  }
+  CHECK(count.push(5'102, false) == Order::newest);
+  CHECK(count.counts() == SequenceCounts{251, 2, 0, 100, 0, 50});
 }
