@@ -34,12 +34,17 @@ void sort(RecordingParts& parts) {
   });
 }
 
-/// The recording's later files in the same folder.
-std::vector<std::string> files_behind(FileSystem& files, const std::string& path,
-                                      const RecordingFacts& facts) {
+struct Beside {
+  std::string path;
+  int part = 0;
+};
+
+/// The recording's files in the same folder, itself among them.
+std::vector<Beside> files_beside(FileSystem& files, const std::string& path,
+                                 const RecordingFacts& facts) {
   const std::string place(folder(path));
   const std::set<std::string_view> stems{stem_of(file_name(path)), stem_of(facts.first)};
-  std::vector<std::string> found;
+  std::vector<Beside> found;
   std::error_code failed;  // a folder that can't be listed has nothing beside
   for (std::filesystem::directory_iterator at(place.empty() ? "." : place, failed), end;
        !failed && at != end; at.increment(failed)) {
@@ -47,7 +52,7 @@ std::vector<std::string> files_behind(FileSystem& files, const std::string& path
     if (!name.ends_with(suffix) || !stems.contains(stem_of(name))) continue;
     const auto read = read_facts(files, place + name);
     if (!read || !*read || !is_same_recording(**read, facts)) continue;
-    if ((*read)->part > facts.part) found.push_back(place + name);
+    found.push_back({place + name, (*read)->part});
   }
   return found;
 }
@@ -250,10 +255,10 @@ std::vector<std::string> with_parts(FileSystem& files, std::vector<std::string> 
   for (std::size_t i = 0, named = paths.size(); i < named; ++i) {
     const auto facts = read_facts(files, paths[i]);
     if (!facts || !*facts) continue;
-    for (const std::string& one : files_behind(files, paths[i], **facts)) {
+    for (const Beside& one : files_beside(files, paths[i], **facts)) {
       const bool known = std::any_of(paths.begin(), paths.end(),
-                                     [&](const auto& path) { return same_file(path, one); });
-      if (!known) paths.push_back(one);
+                                     [&](const auto& path) { return same_file(path, one.path); });
+      if (!known) paths.push_back(one.path);
     }
   }
   return paths;
@@ -263,10 +268,11 @@ Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
                                   const Progress& progress) {
   const auto facts = KA_TRY(read_facts(files, path));
   if (!facts) return RecordingParts{{path, {}}};  // what it is instead shows when it is read
-  const std::vector<std::string> behind = files_behind(files, path, *facts);
-  if (behind.empty()) return RecordingParts{{path, *facts}};
   std::vector<std::string> paths{path};
-  paths.insert(paths.end(), behind.begin(), behind.end());
+  for (const Beside& one : files_beside(files, path, *facts)) {
+    if (one.part > facts->part) paths.push_back(one.path);
+  }
+  if (paths.size() == 1) return RecordingParts{{path, *facts}};
   RecordingParts parts = KA_TRY(read_parts(files, paths, progress));
   const MessageNumbers own = parts.front().numbers;
   parts.erase(std::remove_if(parts.begin() + 1, parts.end(),

@@ -57,7 +57,7 @@ Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::s
 Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::string>& paths,
                                   const Progress& progress);
 
-/// These and the files beside each that its recording went on in.
+/// These and, as they lie in the same folders, all other files of their recordings.
 std::vector<std::string> with_parts(FileSystem& files, std::vector<std::string> paths);
 
 /// The file and, as they lie in the same folder, those that its recording went on in. A file that

@@ -199,8 +199,10 @@ std::uint64_t missing(const Copier& copier, std::size_t parts) {
 Result<RecordingParts> parts_of(FileSystem& files, const std::vector<std::string>& paths,
                                 const Progress& progress) {
   for (const std::string& path : paths) KA_TRY(check_beginning(files, path));
-  return paths.size() > 1 ? read_parts(files, with_parts(files, paths), progress)
-                          : parts_from(files, paths.front(), progress);
+  const auto facts = KA_TRY(read_facts(files, paths.front()));
+  const bool is_first = !facts || facts->part == 1;  // or what recover made of all
+  return paths.size() > 1 || !is_first ? read_parts(files, with_parts(files, paths), progress)
+                                       : parts_from(files, paths.front(), progress);
 }
 
 Error is_input(const std::string& out, const std::string& part) {

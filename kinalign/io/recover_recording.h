@@ -27,10 +27,10 @@ struct Recovered {
   Findings findings;      // of the old ones
 };
 
-/// `paths`: files of the recording in any order, with those beside them that it went on in. Fails
-/// where they are not all of one, `out` is one of them, or nothing can be read. Nothing stands at
-/// `out` before all is written and synced. It is read again before it gets its name: what is not
-/// what was written never does.
+/// `paths`: files of the recording in any order, with those of its files that lie beside them.
+/// Fails where they are not all of one, `out` is one of them, or nothing can be read. Nothing
+/// stands at `out` before all is written and synced. It is read again before it gets its name: what
+/// is not what was written never does.
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress = {});
