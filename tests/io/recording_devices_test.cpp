@@ -7,6 +7,7 @@
 #include "kinalign/io/recording_survey.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 using namespace kinalign;
 using namespace std::chrono_literals;
@@ -160,22 +161,22 @@ void add_kinect_frame(RecordedLab& lab, const std::string& sender, std::uint32_t
 }  // namespace
 
 TEST_CASE("two Kinects with one id are told of by check, and by who reads one of them") {
-  for (const auto& [first, second, read, meaning] :
-       {std::array<std::string, 4>{"10.0.0.8:5", "10.0.0.9:5", "one sender of kinect",
-                                   "only 10.0.0.8 was read"},
-        std::array<std::string, 4>{"10.0.0.8:5", "10.0.0.8:6", "one sender of kinect at 10.0.0.8",
-                                   "of those that speak in turn only the one that said most was "
-                                   "read"},
-        std::array<std::string, 4>{"10.0.0.8:5", "10.0.0.8:5", "one sender of Kinect sensor 2",
-                                   "the newest session's were read; 100 frames of others were left "
-                                   "out"}}) {
-    CAPTURE(second);
+  struct Pair {
+    std::string first, second, read, meaning;
+  };
+  for (const Pair& pair :
+       {Pair{"10.0.0.8:5", "10.0.0.9:5", "one sender of kinect", "only 10.0.0.8 was read"},
+        Pair{"10.0.0.8:5", "10.0.0.8:6", "one sender of kinect at 10.0.0.8",
+             "of those that speak in turn only the one that said most was read"},
+        Pair{"10.0.0.8:5", "10.0.0.8:5", "one sender of Kinect sensor 2",
+             "the newest session's were read; 100 frames of others were left out"}}) {
+    CAPTURE(pair.second);
     const FreshFolder folder;
     RecordedLab lab(20261123);
     for (std::uint32_t k = 0; k < 101; ++k) {
       const double t = k / 30.0;
-      add_kinect_frame(lab, first, 111, k, t);
-      if (k < 100) add_kinect_frame(lab, second, 222, k, t + 0.01);
+      add_kinect_frame(lab, pair.first, 111, k, t);
+      if (k < 100) add_kinect_frame(lab, pair.second, 222, k, t + 0.01);
     }
     const std::string path = folder.write("take.mcap", lab.file());
     PosixFiles files;
@@ -183,13 +184,15 @@ TEST_CASE("two Kinects with one id are told of by check, and by who reads one of
     REQUIRE(survey);
     REQUIRE(survey->findings.size() == 1);
     CHECK(to_string(survey->findings[0].what) ==
-          path + ": expected one sender of Kinect sensor 2, found two at a time: " + first +
-              " in session 111, " + second + " in session 222");
+          fmt::format(
+              "{}: expected one sender of Kinect sensor 2, found two at a time: {} in session "
+              "111, {} in session 222",
+              path, pair.first, pair.second));
     const RecordedStream stream = opened(files, stream_named("kinect", path));
     const auto told = warnings(stream);
     CHECK(std::any_of(told.begin(), told.end(), [&](const std::string& one) {
-      return one.find("expected " + read + ", found") != std::string::npos &&
-             one.ends_with(meaning);
+      return one.find(fmt::format("expected {}, found", pair.read)) != std::string::npos &&
+             one.ends_with(pair.meaning);
     }));
   }
 }

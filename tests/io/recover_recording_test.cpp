@@ -87,21 +87,26 @@ Severity worst_of(const Findings& findings) {
   return worst;
 }
 
-/// Messages [from, to) of a recording, closed in order; `ends`: recording ended there.
-std::string part_of(int part, int from, int to, bool ends) {
-  MemoryFile file;
-  McapWriter writer(file.store());
-  CHECK(writer.begin({"kinalign", "test"}));
-  CHECK(writer.write(to_metadata({"", "", "lab", "a.mcap", part, {}})));
+/// Messages [from, to), numbered by channel, as ours are.
+McapChunkContent messages_of(int from, int to) {
   McapChunkContent content;
   for (int k = from; k < to; ++k) {
     OwnedMessage message = nth_message(static_cast<std::uint32_t>(k));
-    message.message.sequence /= 3;  // of its channel, as ours are
+    message.message.sequence /= 3;
     add(content, message);
   }
-  CHECK(writer.write(store(std::move(content), McapCompression::none)));
-  if (ends) CHECK(writer.write(to_metadata(RecordingEnd{})));
-  CHECK(writer.finish());
+  return content;
+}
+
+/// Part of a recording, closed in order; `ends`: recording ended there.
+std::string part_of(int part, int from, int to, bool ends) {
+  MemoryFile file;
+  McapWriter writer(file.store());
+  REQUIRE(writer.begin({"kinalign", "test"}));
+  REQUIRE(writer.write(to_metadata({"", "", "lab", "a.mcap", part, {}})));
+  REQUIRE(writer.write(store(messages_of(from, to), McapCompression::none)));
+  if (ends) REQUIRE(writer.write(to_metadata(RecordingEnd{})));
+  REQUIRE(writer.finish());
   return file.bytes;
 }
 
