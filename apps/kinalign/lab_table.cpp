@@ -192,7 +192,7 @@ std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::s
 
 std::vector<TableLine> fitted(std::vector<TableLine> table, std::size_t rows) {
   if (table.size() <= rows) return table;
-  if (rows < 2 && table.front().head) {  // of more worth than a head is what it stands above
+  if (rows < 3 && table.front().head) {  // of more worth than a head is what it stands above
     table.erase(table.begin());
     return fitted(std::move(table), rows);
   }

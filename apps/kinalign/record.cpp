@@ -138,8 +138,8 @@ void tell_takes(Console& console, std::size_t takes, std::vector<std::string> am
     amiss.push_back(fmt::format("{} more", more));
   }
   if (!amiss.empty()) {
-    text += fmt::format("; exit code {} for what was told above while {} {} recorded", worst,
-                        fmt::join(amiss, ", "), amiss.size() == 1 ? "was" : "were");
+    text += fmt::format("; exit code {} for what was told above before the end of {}", worst,
+                        fmt::join(amiss, ", "));
   }
   console.note(harmless(text));
 }

@@ -6,7 +6,6 @@
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recover_recording.h"
 #include "kinalign/io/report_json.h"
 
@@ -57,7 +56,7 @@ Result<int> run(Recover& o, Call& call) {
     return std::vector<std::string>{"nothing was written; the old files are as they were"};
   });
   const std::string& out = call.common.out;
-  KA_TRY(keep_inputs(out, with_parts(call.surroundings.files, o.files)));
+  KA_TRY(keep_inputs(out, o.files));
   const Recovered done = KA_TRY(recover_recording(
       call.surroundings.files, o.files, out, call.common.overwrite(), call.console.progress()));
   call.console.wrote(out);

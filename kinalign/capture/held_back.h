@@ -5,10 +5,10 @@
 
 #include "kinalign/capture/host_clock.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -20,9 +20,10 @@ class HeldBack {
   /// Whether what came then has to wait: behind `until`, or behind another of the same sender.
   bool must_hold(const Moment& came, std::uint64_t sender,
                  const std::optional<Moment>& until) const {
-    return until && (is_behind(came, *until) || waits(held_, sender));
+    return until && (is_behind(came, *until) || waiting_.contains(sender));
   }
   void hold(const Moment& came, std::uint64_t sender, Item item) {
+    waiting_.insert(sender);
     held_.push_back({came, sender, std::move(item)});
   }
   std::size_t size() const { return held_.size(); }
@@ -30,15 +31,14 @@ class HeldBack {
   /// Hands on what does not have to wait for `until`; without that all.
   template <class Take>
   void release(const std::optional<Moment>& until, Take take) {
-    std::vector<Held> later;
+    waiting_.clear();
     for (Held& held : std::exchange(held_, {})) {
-      if (until && (is_behind(held.came, *until) || waits(later, held.sender))) {
-        later.push_back(std::move(held));
+      if (must_hold(held.came, held.sender, until)) {
+        hold(held.came, held.sender, std::move(held.item));
       } else {
         take(held.item);
       }
     }
-    held_ = std::move(later);
   }
 
  private:
@@ -47,12 +47,8 @@ class HeldBack {
     std::uint64_t sender = 0;
     Item item;
   };
-  static bool waits(const std::vector<Held>& held, std::uint64_t sender) {
-    return std::any_of(held.begin(), held.end(),
-                       [sender](const Held& one) { return one.sender == sender; });
-  }
-
   std::vector<Held> held_;
+  std::set<std::uint64_t> waiting_;  // their senders
 };
 
 }  // namespace kinalign

@@ -144,7 +144,6 @@ void RecordedNodes::judge(Node& node, const NodeNews& news) {
 
 void RecordedNodes::look(HostTime now) {
   count_lost();
-  find_strays();
   for (auto& [id, node] : nodes_) node.raw.take_rate(now);
 }
 
@@ -199,7 +198,7 @@ void RecordedNodes::tell(std::uint16_t counts, HostTime now) const {
 PortCounts RecordedNodes::counts() const {
   const NodeCounts& counts = receiver_.counts();
   PortCounts out;
-  out.pieces = counts.verdicts.total() - held_.size();
+  out.pieces = counts.verdicts.total() - no_frames(counts) - held_.size();
   out.bytes = bytes_;
   out.refused = counts.verdicts[NodeVerdict::refused] - no_frames(counts) +
                 receiver_.not_unicast() + receiver_.from_port_0() + crowded_;

@@ -45,6 +45,8 @@ class RecordedNodes {
   const DeviceOptions& device() const { return device_; }
   std::uint16_t port() const { return receiver_.sockets().front().port(); }
   PortCounts counts() const;
+  /// Once a second: whether others than nodes send here.
+  void find_strays();
   /// As RecordedPort has them.
   Findings take_findings() { return findings_.take(); }
   void add_streams(std::vector<StreamStatus>& all) const;
@@ -74,7 +76,6 @@ class RecordedNodes {
   Node& node_of(std::uint32_t id, const NodeAddress& from);
   static void judge(Node& node, const NodeNews& news);
   void count_lost();
-  void find_strays();
 
   DeviceOptions device_;
   bool keyed_;

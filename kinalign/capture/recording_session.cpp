@@ -147,6 +147,7 @@ void RecordingSession::rest(Duration patience) {
 /// clock. Marks first, all of them: what arrives behind a stop is not its take's. So what devices
 /// send while their ports are read waits until marks have been looked at again.
 bool RecordingSession::turn(Duration patience, std::optional<int> also) {
+  if (held() > 0) patience = {};
   rest(patience);
   const bool some = wait(patience, also);
   const HostTime now = axis_.now();
@@ -216,6 +217,7 @@ void RecordingSession::tick(HostTime now) {
   if (now < next_second_) return;
   next_second_ = now + std::chrono::seconds(1);
   tell(now);
+  if (nodes_) nodes_->find_strays();
 }
 
 /// Both clocks of the host, and what has come: the latter once a take has begun.

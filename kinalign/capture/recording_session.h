@@ -73,7 +73,10 @@ class RecordingSession {
   std::uint64_t waiting_bytes() const { return takes_.waiting_bytes(); }
 
   /// Onto the channel of marks; before a take into its pre-roll. It may begin or end one.
-  void mark(const RecordedMark& mark, HostTime at) { this->mark(mark, Moment{at}); }
+  void mark(const RecordedMark& mark, HostTime at) {
+    drain_marks();  // that came before
+    this->mark(mark, Moment{at});
+  }
   /// All marks since this was asked last, at most some hundred.
   std::vector<HeardMark> take_marks() { return std::exchange(marks_, {}); }
 

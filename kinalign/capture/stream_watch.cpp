@@ -11,8 +11,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_sensors = 8;  // of a sender
-constexpr std::size_t most_of_a_port = 64;
+constexpr std::size_t most_sensors = 8;     // of a sender
+constexpr std::size_t most_of_a_port = 64;  // whose sessions are known
 
 template <class Refused>
 std::uint64_t sum(const Refused& refused) {

@@ -180,7 +180,10 @@ std::optional<McapRecord> McapReader::read_record() {
 
 /// `bytes`: of the whole record, behind those that crc_ covers.
 void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
-  if (!crc_counts_) return;
+  if (!crc_counts_) {
+    if (std::holds_alternative<McapFooter>(record)) summary_spoilt_ = true;
+    return;
+  }
   std::uint32_t stated = 0, covered = crc_;
   if (const auto* end = std::get_if<McapDataEnd>(&record)) {
     stated = end->data_crc;
@@ -189,7 +192,7 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
     constexpr std::size_t fields = mcap_record_head + 8 + 8;
     stated = footer->summary_crc;
     covered = crc_of(bytes.substr(0, fields), crc_);
-    summary_checked_ = stated != 0 && stated == covered;
+    summary_spoilt_ = stated != 0 && stated != covered;
   }
   if (stated != 0 && stated != covered) {
     say(Severity::error, "a checksum that fits what stands before it", "another one",

@@ -38,8 +38,8 @@ class McapReader {
   bool unchecked() const { return in_torn_chunk_ || in_no_chunk_; }
   /// The data section's checksum, read at its end, covers every message of the file.
   bool all_checked() const { return all_checked_; }
-  /// The summary's checksum, read at the file's end, fits.
-  bool summary_checked() const { return summary_checked_; }
+  /// The summary's checksum, read at the file's end, does not fit.
+  bool summary_spoilt() const { return summary_spoilt_; }
   /// Bytes of the file that were left out: no record, or one whose checksum does not fit. What a
   /// torn file lacks is not among them.
   std::uint64_t skipped() const { return skipped_; }
@@ -78,7 +78,7 @@ class McapReader {
   std::string chunk_;       // its records
   std::size_t chunk_taken_ = 0;
   bool in_torn_chunk_ = false, in_no_chunk_ = false;
-  bool all_checked_ = false, summary_checked_ = false;
+  bool all_checked_ = false, summary_spoilt_ = false;
   std::uint64_t skipped_ = 0;
   std::uint64_t tried_ = 0;  // bytes that were gone through in vain, looking for a chunk
   Findings findings_;

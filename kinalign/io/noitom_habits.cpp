@@ -75,4 +75,12 @@ bool NoitomPace::is_in_time(Duration spread) const {
   return spread < (latest + earliest) / 2;
 }
 
+// Where a network hands on several frames at once, an end is as near to an earlier header as to its
+// own.
+bool NoitomPace::tells_apart(Duration spread) const {
+  const bool bunched =
+      !periods_.empty() && 2 * spread >= *std::min_element(periods_.begin(), periods_.end());
+  return !bunched && is_in_time(spread);
+}
+
 }  // namespace kinalign

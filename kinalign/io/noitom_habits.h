@@ -60,6 +60,8 @@ class NoitomPace {
   void push(Duration spread, Duration to_next);
   /// What came so much later than a header belongs to it rather than to the next one.
   bool is_in_time(Duration spread) const;
+  /// It is surely not the next frame's end: frames do not come in bunches.
+  bool tells_apart(Duration spread) const;
 
  private:
   std::deque<Duration> spreads_, periods_;

@@ -135,13 +135,15 @@ Result<void> RecordedMessages::take_message(const McapMessage& message, const Ta
   return take({&from.raw, message.channel, arrival, message.data});
 }
 
-/// Each chunk names its channels again.
+/// Each chunk names its channels again, and so does a summary, which may be damaged.
 void RecordedMessages::add(const McapChannel& channel) {
-  if (channel.topic == marks_topic) mark_channels_.insert(channel.id);
   auto raw = to_raw(channel);
-  if (!raw) return;
+  if (channel.topic == marks_topic && !channels_.contains(channel.id)) {
+    mark_channels_.insert(channel.id);
+  }
+  if (!raw || mark_channels_.contains(channel.id)) return;
   const auto [at, fresh] = channels_.try_emplace(channel.id);
-  if (!fresh && at->second.raw == *raw) return;
+  if (!fresh) return;
   at->second = {*raw, is_wanted(*raw), place_on_roll(*raw), {}};
   if (at->second.wanted && !chosen_ && raw->protocol != exchange_encoding) chosen_ = *raw;
 }

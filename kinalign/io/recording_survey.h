@@ -53,8 +53,8 @@ struct RecordingSurvey {
 /// The CRC-32 of messages: channel, number, both times and payload of each, in their order.
 std::uint32_t add_to(std::uint32_t contents, const McapMessage& message);
 
-/// Of a recording of ours that was closed in order, but not because it ended: that the rest is
-/// missing.
+/// Of a recording of ours that was closed in order, but not because it ended: that the rest, if a
+/// disk took it, is missing.
 Findings judge_end(const std::string& path, const RecordingSurvey& survey);
 
 /// Fails where the file can't be read or is no MCAP file.

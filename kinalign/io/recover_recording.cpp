@@ -38,6 +38,7 @@ class Copier {
     parts_ = &parts;
     part_ = part;
     of_earlier_ = names_;
+    torn = false;
   }
 
   Result<void> take(const McapRecord& record, bool unchecked) {
@@ -52,7 +53,7 @@ class Copier {
     const auto has = [this](std::string_view name) {
       return names_.contains("metadata " + std::string(name));
     };
-    if (torn && has(recording_metadata) && !has(end_metadata) && !has(torn_metadata)) {
+    if (torn && has(recording_metadata) && !has(end_metadata)) {
       KA_TRY(writer_.write(McapMetadata{std::string(torn_metadata), {}}));
     }
     return writer_.finish();
@@ -92,6 +93,10 @@ class Copier {
     return {};
   }
   Result<void> add(const McapMetadata& metadata) {
+    if (metadata.name == torn_metadata) {  // of the last part alone, and at the end
+      torn = true;
+      return {};
+    }
     if (is_repeated("metadata " + metadata.name)) return {};
     KA_TRY(close_chunk());
     return writer_.write(metadata);
@@ -167,8 +172,8 @@ Result<void> copy_part(FileSystem& files, const RecordingParts& parts, std::size
       [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); }, progress));
   recovered.skipped += reader.skipped();
   if (reader.all_checked()) recovered.unchecked = unchecked_before;
-  if (!reader.summary_checked()) copier.counted = 0;
-  copier.torn = !reader.closed();
+  if (reader.summary_spoilt()) copier.counted = 0;
+  copier.torn = copier.torn || !reader.closed();
   for (Finding finding : reader.findings()) {
     finding.what.file = path;
     recovered.findings.push_back(std::move(finding));

@@ -241,7 +241,8 @@ class ByMarks {
  public:
   explicit ByMarks(FileSystem& files) {
     RecordingSession::Options options;
-    options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0")};
+    options.lab.devices = {device("mocap=noitom:udp:127.0.0.1:0"),
+                           device("other=noitom:udp:127.0.0.1:0")};
     options.lab.record.pre_roll_s = 0.0;
     options.marks_port = options.trigger_port = 0;
     auto session = RecordingSession::open(options, {files, ports_clock_, nodes_clock_});
@@ -258,17 +259,20 @@ class ByMarks {
   }
   void call_all(const std::vector<std::string>& calls) {
     for (const std::string& text : calls) {
-      client_.send("127.0.0.1", session_->ports().at(1).second, bytes_of(text));
+      client_.send("127.0.0.1", session_->ports().at(2).second, bytes_of(text));
     }
   }
   void trigger(const std::string& text) {
-    client_.send("127.0.0.1", session_->ports().at(2).second, bytes_of(text));
+    client_.send("127.0.0.1", session_->ports().at(3).second, bytes_of(text));
   }
   /// Frames that nobody waits for.
   void flood(std::uint32_t from, std::uint32_t to) {
     for (std::uint32_t i = from; i < to; ++i) {
       client_.send("127.0.0.1", session_->ports().front().second, noitom_frame(i));
     }
+  }
+  void say_other(std::uint32_t index) {
+    client_.send("127.0.0.1", session_->ports().at(1).second, noitom_frame(index));
   }
   /// Surely earlier and later than all else.
   template <class Send>
@@ -277,10 +281,11 @@ class ByMarks {
     send();
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  /// Once, as soon as the session has found that something came.
-  void when_woken(std::function<void()> send) {
+  /// Once, as soon as the session has asked for the time so often: before it waits for something to
+  /// come, behind that, and when it has read the first device's port.
+  void when_asked(int times, std::function<void()> send) {
     ports_clock_.when_asked = std::move(send);
-    ports_clock_.times = 0;
+    ports_clock_.still = times;
   }
   void mark(Mark::Kind kind, int id) {
     call_all({call(kind, id)});
@@ -309,11 +314,11 @@ class ByMarks {
   int named_ = 0, asked_ = 0;
   struct AskedClocks : SystemClocks {
     HostTime raw() override {
-      if (when_asked && ++times == 2) std::exchange(when_asked, nullptr)();
+      if (when_asked && --still == 0) std::exchange(when_asked, nullptr)();
       return SystemClocks::raw();
     }
-    std::function<void()> when_asked;  // a second time: a turn asks before it waits, too
-    int times = 0;
+    std::function<void()> when_asked;
+    int still = 0;
   };
   AskedClocks ports_clock_;
   SystemClocks nodes_clock_;
@@ -432,22 +437,27 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a stop that arrives between the look at the ports and their reading is obeyed first") {
-  PosixFiles files;
-  ByMarks lab(files);
-  lab.mark(Mark::Kind::start, 1);
-  lab.say(noitom_frame(0));
-  lab.flood(1, 2);
-  lab.when_woken([&] {
-    lab.apart([&] { lab.call_all({call(Mark::Kind::stop, 2)}); });
-    lab.apart([&] { lab.flood(2, 3); });
-  });
-  serve_until(lab.session(), [&] { return !lab.session().recording(); });
-  lab.mark(Mark::Kind::start, 3);
-  lab.mark(Mark::Kind::stop, 4);
-  const auto payloads = lab.payloads();
-  REQUIRE(payloads.size() == 2);
-  CHECK(payloads[0].at("/mocap/raw").size() == 2);
+TEST_CASE("a stop that arrives while devices are read parts what comes before it and behind") {
+  for (const int times : {2, 3}) {
+    CAPTURE(times);
+    PosixFiles files;
+    ByMarks lab(files);
+    lab.mark(Mark::Kind::start, 1);
+    lab.say(noitom_frame(0));
+    lab.flood(1, 2);
+    lab.say_other(1);
+    lab.when_asked(times, [&] {
+      lab.apart([&] { lab.call_all({call(Mark::Kind::stop, 2)}); });
+      lab.apart([&] { lab.say_other(2); });
+    });
+    serve_until(lab.session(), [&] { return !lab.session().recording(); });
+    lab.mark(Mark::Kind::start, 3);
+    lab.mark(Mark::Kind::stop, 4);
+    const auto payloads = lab.payloads();
+    REQUIRE(payloads.size() == 2);
+    CHECK(payloads[0].at("/mocap/raw").size() == 2);
+    CHECK(payloads[0].at("/other/raw").size() == 1);
+  }
 }
 
 TEST_CASE("more takes than may wait for the disk become one, and nothing is lost") {

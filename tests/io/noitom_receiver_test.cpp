@@ -389,6 +389,26 @@ TEST_CASE("noitom datagrams: where nothing is lost pieces may come a whole perio
   }
 }
 
+TEST_CASE("noitom datagrams: bunches that lose two pieces running mix next to no frames") {
+  for (const auto seed : fresh_seeds(20)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    for (const std::int64_t bunch : {50'000, 100'000}) {
+      int lost = 0;
+      Datagrams left;
+      for (const Datagram& one : sent(NoitomForm::new_header, 480, 2)) {
+        if (left.size() > 120 && random() % 20 == 0) lost = 2;
+        if (lost > 0 && lost-- > 0) continue;
+        left.push_back({one.bytes, std::max((one.at_us / bunch + 1) * bunch,
+                                            left.empty() ? 0 : left.back().at_us + 20)});
+      }
+      const Heard heard = hear(left);
+      CHECK(never_sent(heard) <= 2);  // where a step of two has become a habit
+      CHECK(heard.arrivals.size() > 200);
+    }
+  }
+}
+
 TEST_CASE("noitom datagrams: without numbers a longer gap is known after some frames") {
   for (const auto form : {NoitomForm::old_header}) {
     const auto gap = [] { return 6000; };

@@ -150,7 +150,7 @@ TEST_CASE(
   REQUIRE(recovered);
   REQUIRE(recovered->findings.size() == 1);
   CHECK(to_string(recovered->findings.front().what) ==
-        a + ": expected a recording up to its end, found one that went on in another file");
+        a + ": expected a recording up to its end, found one that ends before");
   for (const char* name : {"a.mcap", "b.mcap"}) {
     const auto survey = survey_recording(files, folder / name);
     CHECK(judge_end("x", *survey).size() == 1);
