@@ -25,7 +25,8 @@ struct Recover {
 Usage describe_recover(Recover& o) {
   Usage usage;
   usage.positionals = {
-      {"FILE", "a recording's file, with those beside it that it went on in; or all in any order",
+      {"FILE",
+       "a recording's file, with all of the same recording beside it; or several, in any order",
        &o.files, 1, SIZE_MAX}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a new file's name", "none"});

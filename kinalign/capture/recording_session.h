@@ -47,8 +47,8 @@ class RecordingSession {
   };
   static Result<std::unique_ptr<RecordingSession>> open(Options options, Machine machine);
 
-  /// Waits for something to come, but no longer than that, and takes it all. `also`: a descriptor
-  /// of the caller's to wake up for. Whether something came.
+  /// Waits for something to come, but no longer than that, and not while something is held back,
+  /// and takes it all. `also`: a descriptor of the caller's to wake up for. Whether something came.
   bool turn(Duration patience, std::optional<int> also = std::nullopt);
 
   /// A take begins: the pre-roll and all that comes from now on is in it. Its file is begun on the
@@ -74,7 +74,7 @@ class RecordingSession {
 
   /// Onto the channel of marks; before a take into its pre-roll. It may begin or end one.
   void mark(const RecordedMark& mark, HostTime at) {
-    drain_marks();  // that came before
+    drain_marks();  // all that came so far
     this->mark(mark, Moment{at});
   }
   /// All marks since this was asked last, at most some hundred.

@@ -34,7 +34,7 @@ bool NoitomSteps::is_usual(const NoitomStep& step) const {
 // of the others are not here: the step is theirs where it is nearly always so.
 bool NoitomSteps::is_whole(const NoitomStep& step) const {
   if (step.avatar == 0 && !changes_avatar()) {
-    return step == NoitomStep() || (is_usual(step) && !is_sum(step));
+    return step == NoitomStep() || (is_usual(step) && !is_sum(step)) || repeats_with(step);
   }
   const auto known = std::count_if(lately_.begin(), lately_.end(),
                                    [](const auto& one) { return one.has_value(); });
@@ -49,6 +49,21 @@ bool NoitomSteps::is_sum(const NoitomStep& step) const {
       sum += lately_[k]->index;
       if (k > first && sum == step.index) return true;
     }
+  }
+  return false;
+}
+
+// As of a sender that leaves out each sixth number. A frame that is missing breaks the row.
+bool NoitomSteps::repeats_with(const NoitomStep& step) const {
+  if (lately_.size() < remembered_steps) return false;
+  if (std::find(lately_.begin(), lately_.end(), std::nullopt) != lately_.end()) return false;
+  auto row = lately_;
+  row.push_back(step);
+  const auto repeats_after = [&row](std::size_t count) {
+    return std::equal(row.begin() + static_cast<std::ptrdiff_t>(count), row.end(), row.begin());
+  };
+  for (std::size_t count = 1; count <= remembered_steps / 2; ++count) {
+    if (repeats_after(count)) return true;
   }
   return false;
 }

@@ -124,6 +124,10 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
   add_marks(std::move(more), survey);
 }
 
+bool is_end(const McapMetadata& metadata) {
+  return metadata.name == end_metadata || metadata.name == torn_metadata;
+}
+
 }  // namespace
 
 /// Numbers that touch are one stretch.
@@ -239,10 +243,12 @@ Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::stri
                        : fmt::format("part {} of another run, {}", facts->part, facts->first)});
     }
     parts.push_back({path, *facts});
-    MessageNumbers& numbers = parts.back().numbers;
+    RecordingPart& part = parts.back();
     McapReader reader;
-    const auto take = [&numbers](const McapRecord& record) -> Result<void> {
-      if (const auto* message = std::get_if<McapMessage>(&record)) numbers.add(*message);
+    const auto take = [&part](const McapRecord& record) -> Result<void> {
+      if (const auto* message = std::get_if<McapMessage>(&record)) part.numbers.add(*message);
+      const auto* metadata = std::get_if<McapMetadata>(&record);
+      if (metadata != nullptr) part.has_end = part.has_end || is_end(*metadata);
       return {};
     };
     KA_TRY(read_recording(files, path, reader, take, progress));
@@ -274,10 +280,11 @@ Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
   }
   if (paths.size() == 1) return RecordingParts{{path, *facts}};
   RecordingParts parts = KA_TRY(read_parts(files, paths, progress));
-  const MessageNumbers own = parts.front().numbers;
-  parts.erase(std::remove_if(parts.begin() + 1, parts.end(),
-                             [&own](const RecordingPart& p) { return own.has_all(p.numbers); }),
-              parts.end());
+  const RecordingPart first = parts.front();
+  const auto brings_nothing = [&first](const RecordingPart& part) {
+    return first.numbers.has_all(part.numbers) && (first.has_end || !part.has_end);
+  };
+  parts.erase(std::remove_if(parts.begin() + 1, parts.end(), brings_nothing), parts.end());
   return parts;
 }
 

@@ -38,6 +38,7 @@ struct RecordingPart {
   std::string path;
   RecordingFacts facts;
   MessageNumbers numbers{};
+  bool has_end = false;  // it says that the recording ended here, or that it is torn for good
 };
 
 /// In their order.

@@ -172,7 +172,7 @@ Result<void> copy_part(FileSystem& files, const RecordingParts& parts, std::size
       [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); }, progress));
   recovered.skipped += reader.skipped();
   if (reader.all_checked()) recovered.unchecked = unchecked_before;
-  if (reader.summary_spoilt()) copier.counted = 0;
+  if (reader.summary_spoilt() || !reader.closed()) copier.counted = 0;
   copier.torn = copier.torn || !reader.closed();
   for (Finding finding : reader.findings()) {
     finding.what.file = path;
@@ -235,8 +235,8 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress) {
   const RecordingParts parts = KA_TRY(parts_of(files, paths, progress));
-  for (const RecordingPart& part : parts) {
-    if (same_file(out, part.path)) return Failure(is_input(out, part.path));
+  for (const std::string& path : with_parts(files, paths)) {  // also of those it did not need
+    if (same_file(out, path)) return Failure(is_input(out, path));
   }
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
   Copier copier(file);

@@ -363,6 +363,18 @@ TEST_CASE("of marks that come at once each stands in the take that it begins or 
   CHECK(marks_in(payloads[1]) == std::vector<std::string>{"start 3", "start 4", "stop 5"});
 }
 
+TEST_CASE("a mark of the keyboard stands behind those that came to a port before it") {
+  PosixFiles files;
+  ByMarks lab(files);
+  using Kind = Mark::Kind;
+  lab.mark(Kind::start, 1);
+  lab.apart([&] { lab.call_all({call(Kind::stop, 2), call(Kind::start, 3)}); });
+  lab.session().mark({{Kind::stop, "", std::nullopt, "4"}, "keyboard", ""}, lab.session().now());
+  const auto payloads = lab.payloads();
+  REQUIRE(payloads.size() == 2);
+  CHECK(marks_in(payloads[1]) == std::vector<std::string>{"start 3", "stop 4"});
+}
+
 TEST_CASE("marks of several ports are obeyed in the order of their arrival") {
   PosixFiles files;
   ByMarks lab(files);

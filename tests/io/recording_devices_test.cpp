@@ -46,6 +46,26 @@ TEST_CASE("what a recording does not have, and what of it is not looked at, is t
   CHECK(stream.by_file.findings[1].what.found == "5 fewer, of all devices");
 }
 
+TEST_CASE("whatever byte of a recording's summary is damaged, its streams are the same") {
+  const FreshFolder folder;
+  RecordedLab lab(20261125);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 1.0, "waist");
+  const std::string whole = lab.file();
+  PosixFiles files;
+  const auto samples = [&](const std::string& bytes) {
+    const std::string path = folder.write("take.mcap", bytes);
+    return node_errors(opened(files, stream_named("imu", path))).samples;
+  };
+  const std::size_t all = samples(whole);
+  const std::size_t summary = whole.rfind("/imu/12/raw");  // the last: the summary's
+  for (std::size_t at = summary - 20; at < summary + 200; ++at) {
+    CAPTURE(at);
+    std::string damaged = whole;
+    damaged[at] ^= 0x10;
+    CHECK(samples(damaged) == all);
+  }
+}
+
 TEST_CASE("what is not in a recording is refused by the names of what is") {
   const FreshFolder folder;
   RecordedLab lab(20261123);

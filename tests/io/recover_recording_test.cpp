@@ -6,6 +6,8 @@
 #include "tests/io/mcap_files.h"
 #include "tests/io/recorded_lab.h"
 
+#include "kinalign/io/recording_parts.h"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -163,6 +165,43 @@ TEST_CASE(
   CHECK(judge_end("x", *survey).empty());
 }
 
+TEST_CASE("of a recording that ends in a file with nothing else new the end is not lost") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("a.mcap", part_of(1, 0, 20, false));
+  const std::string b = folder.write("a.part2.mcap", part_of(2, 10, 20, true));
+  const std::string whole = folder / "whole.mcap";
+  const auto recovered = recover_recording(files, {a}, whole, Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->messages == 20);
+  CHECK(worst_of(recovered->findings) == Severity::note);
+  CHECK(survey_recording(files, whole)->end);
+  CHECK(parts_from(files, a, {})->size() == 2);
+  CHECK(parts_from(files, whole, {})->size() == 1);
+  // Nor is a file written over that was not needed.
+  for (const std::string& part : {a, b}) {
+    const std::string before = folder.read(std::filesystem::path(part).filename().string());
+    CHECK_FALSE(recover_recording(files, {whole}, part, Overwrite::yes));
+    CHECK(folder.read(std::filesystem::path(part).filename().string()) == before);
+  }
+}
+
+TEST_CASE("torn for good is what recover made of a recording whose last file is torn") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto cut = [](std::string bytes) { return bytes.substr(0, bytes.size() - 20); };
+  const auto was_torn = [&](const std::vector<std::string>& paths, const std::string& out) {
+    REQUIRE(recover_recording(files, paths, folder / out, Overwrite::no));
+    return survey_recording(files, folder / out)->was_torn;
+  };
+  const std::string a = folder.write("a.mcap", cut(part_of(1, 0, 20, false)));
+  CHECK(was_torn({a}, "torn.mcap"));
+  CHECK(was_torn({folder / "torn.mcap"}, "again.mcap"));
+  const std::string b = folder.write("a.part2.mcap", part_of(2, 20, 40, false));
+  CHECK_FALSE(was_torn({a, b}, "goes_on.mcap"));
+  CHECK_FALSE(was_torn({folder / "torn.mcap", b}, "goes_on_too.mcap"));
+}
+
 TEST_CASE("recover keeps all records of one name, and once what each part repeats") {
   const FreshFolder folder;
   PosixFiles files;
@@ -216,14 +255,18 @@ TEST_CASE("of a damaged recording recover says how many bytes and messages are l
     PosixFiles files;
     std::string damaged = whole;
     damaged[ends[chunk] - 250] ^= 0x10;  // in front of its indexes, which are 214 bytes and less
-    const auto recovered = recover_recording(files, {folder.write("a.mcap", damaged)},
-                                             folder / "b.mcap", Overwrite::no);
-    REQUIRE(recovered);
-    CHECK(recovered->messages == 50);
-    CHECK(recovered->missing == 10);  // by the file's own count
-    CHECK(recovered->skipped > 50);
-    CHECK(recovered->skipped < whole.size() / 6);
-    CHECK_FALSE(recovered->findings.empty());
+    std::string unchecked = damaged;     // as of a program that makes no checksum of the summary
+    unchecked.replace(unchecked.size() - mcap_magic.size() - 4, 4, 4, '\0');
+    for (const std::string& bytes : {damaged, unchecked}) {
+      const auto recovered = recover_recording(files, {folder.write("a.mcap", bytes)},
+                                               folder / "b.mcap", Overwrite::yes);
+      REQUIRE(recovered);
+      CHECK(recovered->messages == 50);
+      CHECK(recovered->missing == 10);  // by the file's own count
+      CHECK(recovered->skipped > 50);
+      CHECK(recovered->skipped < whole.size() / 6);
+      CHECK_FALSE(recovered->findings.empty());
+    }
   }
 }
 
