@@ -92,6 +92,7 @@ Result<void> RecordedMessages::take_one(const McapRecord& record, const TakeMess
   if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
     if (!facts_) facts_ = to_facts(*metadata);
     if (const auto end = to_end(*metadata)) end_ = end;
+    ended_ = ended_ || is_end(*metadata);
   } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
     if (attachment->name == choice_.stream + ".bvh") skeleton_ = attachment->data;
   } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
@@ -184,6 +185,7 @@ void RecordedMessages::judge_file() {
 
 void RecordedMessages::judge_end() {
   judge_file();
+  if (!ended_ && reader_.closed()) by_file_.findings.push_back(ends_before(file()));
   if (more_marks_ > 0) {
     by_file_.findings.push_back({Severity::warning,
                                  Error{file(), 0, fmt::format("at most {} marks", most_marks),

@@ -98,6 +98,7 @@ class RecordedMessages {
   std::set<std::uint16_t> mark_channels_;
   std::uint64_t more_marks_ = 0;  // than are looked at
   std::optional<RecordingEnd> end_;
+  bool ended_ = false;  // or torn for good
   SaidByFile by_file_;
   Findings findings_;
 };

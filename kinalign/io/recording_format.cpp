@@ -113,6 +113,10 @@ std::optional<RecordingEnd> to_end(const McapMetadata& metadata) {
   return RecordingEnd{static_cast<std::uint64_t>(*dropped)};
 }
 
+bool is_end(const McapMetadata& metadata) {
+  return metadata.name == end_metadata || metadata.name == torn_metadata;
+}
+
 McapChannel to_channel(std::string topic, const RawChannel& raw) {
   McapChannel channel{0, 0, std::move(topic), raw.protocol, {}};
   channel.metadata = {{"stream", raw.stream}, {"transport", raw.transport}, {"sender", raw.sender}};

@@ -124,10 +124,6 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
   add_marks(std::move(more), survey);
 }
 
-bool is_end(const McapMetadata& metadata) {
-  return metadata.name == end_metadata || metadata.name == torn_metadata;
-}
-
 }  // namespace
 
 /// Numbers that touch are one stretch.

@@ -217,11 +217,15 @@ Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progre
   return survey;
 }
 
+Finding ends_before(const std::string& path) {
+  return {Severity::warning, Error{path, 0, "a recording up to its end", "one that ends before"},
+          "the disk took no more: what came later is in another file, if it took one",
+          "see for one where it was recorded, as take.part2.mcap; kinalign recover joins all"};
+}
+
 Findings judge_end(const std::string& path, const RecordingSurvey& survey) {
   if (!survey.facts || survey.end || survey.was_torn || !survey.torn.empty()) return {};
-  return {{Severity::warning, Error{path, 0, "a recording up to its end", "one that ends before"},
-           "the disk took no more: what came later is in another file, if it took one",
-           "see for one where it was recorded, as take.part2.mcap; kinalign recover joins all"}};
+  return {ends_before(path)};
 }
 
 Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,

@@ -55,6 +55,8 @@ std::uint32_t add_to(std::uint32_t contents, const McapMessage& message);
 
 /// Of a recording of ours that was closed in order, but not because it ended: that the rest, if a
 /// disk took it, is missing.
+Finding ends_before(const std::string& path);
+/// That, where it is so.
 Findings judge_end(const std::string& path, const RecordingSurvey& survey);
 
 /// Fails where the file can't be read or is no MCAP file.

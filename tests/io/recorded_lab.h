@@ -279,7 +279,8 @@ class RecordedLab {
       }
       if (!content.empty()) REQUIRE(writer.write(store(content, McapCompression::zstd)));
     }
-    if (dropped > 0) REQUIRE(writer.write(to_metadata(RecordingEnd{dropped})));
+    const bool is_last = messages_.empty() || part.to > messages_.back().arrival;
+    if (closed && is_last) REQUIRE(writer.write(to_metadata(RecordingEnd{dropped})));
     if (closed) REQUIRE(writer.finish());
     return file.bytes;
   }

@@ -90,6 +90,24 @@ TEST_CASE("a recording is read on in the files that it went on in") {
   CHECK(recording->streams.front().files.back().name == "take.part10.mcap");
 }
 
+TEST_CASE("who reads a recording whose later file is not there is told that it ends before") {
+  const FreshFolder folder;
+  TornLab lab(folder);
+  PosixFiles files;
+  const std::string path = lab.first();
+  const auto said = [&](const std::string& file) {
+    StreamOptions options;
+    options.name = "imu";
+    options.files = {{file, "12"}};
+    return told(open_streams(files, {options})->front().by_file.findings);
+  };
+  CHECK(said(path) == "a recording up to its end, one that ends before\n");
+  CHECK(said(lab.whole()).empty());
+  lab.second();
+  lab.third();
+  CHECK(said(path).find("ends before") == std::string::npos);
+}
+
 TEST_CASE("of a recording's files it is said which are not there or were not read") {
   const FreshFolder folder;
   TornLab lab(folder);
