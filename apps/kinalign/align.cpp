@@ -10,6 +10,7 @@
 
 #include "kinalign/align/plan.h"
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/unknown_file.h"
@@ -205,7 +206,7 @@ Result<int> run(AlignVerb& o, Call& call) {
       o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));
   const std::string out = call.common.dry_run ? "" : call.common.out;
   KA_TRY(keep_inputs(out, o.manifest));
-  KA_TRY(keep_inputs(out, with_parts(call.surroundings.files, files_named(manifest, base))));
+  KA_TRY(keep_inputs(out, with_namesakes(call.surroundings.files, files_named(manifest, base))));
   for (const auto& use : {check_take_name(out), check_reference(o, manifest, call.sources)}) {
     if (!use) return call.console.refuse(use.error());
   }

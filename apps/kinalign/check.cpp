@@ -11,6 +11,7 @@
 #include "kinalign/align/judge.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
+#include "kinalign/io/recording_beside.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
 
@@ -105,6 +106,7 @@ Result<Checked> check_recording(const Check& o, const std::string& path, Call& c
   const RecordingParts parts = KA_TRY(parts_from(files, path, progress));
   Checked out{judge_survey(path, KA_TRY(survey_parts(files, parts, progress)))};
   append(out.findings, judge_parts(parts, PartsBehind::left));
+  append(out.findings, judge_namesakes(files, path));
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "kinalign/align/own_rows.h"
 #include "kinalign/io/bvh_copy.h"
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/show_recording.h"
@@ -224,7 +225,7 @@ Result<int> run(Convert& o, Call& call) {
       [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
   const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite(),
                 o.store_double};
-  KA_TRY(keep_inputs(job.to, with_parts(call.surroundings.files, {job.from})));
+  KA_TRY(keep_inputs(job.to, with_namesakes(call.surroundings.files, {job.from})));
   const Findings findings = KA_TRY(convert(job, o, call));
   call.console.wrote(job.to);
   call.console.print(harmless(job.to) + "\n" + finding_lines(findings, call.console));

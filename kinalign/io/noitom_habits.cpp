@@ -34,7 +34,7 @@ bool NoitomSteps::is_usual(const NoitomStep& step) const {
 // of the others are not here: the step is theirs where it is nearly always so.
 bool NoitomSteps::is_whole(const NoitomStep& step) const {
   if (step.avatar == 0 && !changes_avatar()) {
-    return step == NoitomStep() || (is_usual(step) && !is_sum(step)) || repeats_with(step);
+    return step == NoitomStep() || (is_usual(step) && !is_sum(step));
   }
   const auto known = std::count_if(lately_.begin(), lately_.end(),
                                    [](const auto& one) { return one.has_value(); });
@@ -53,8 +53,9 @@ bool NoitomSteps::is_sum(const NoitomStep& step) const {
   return false;
 }
 
-// As of a sender that leaves out each sixth number. A frame that is missing breaks the row.
-bool NoitomSteps::repeats_with(const NoitomStep& step) const {
+// As of a sender that leaves out each sixth number. A frame that is missing breaks the row, unless
+// frames go missing as regularly.
+bool NoitomSteps::repeat_with(const NoitomStep& step) const {
   if (lately_.size() < remembered_steps) return false;
   if (std::find(lately_.begin(), lately_.end(), std::nullopt) != lately_.end()) return false;
   auto row = lately_;

@@ -43,13 +43,13 @@ class NoitomSteps {
   void push(std::optional<NoitomStep> step);
   /// It comes often.
   bool is_usual(const NoitomStep& step) const;
-  /// Nothing is missing in it: it comes often and is no sum of others, or the steps repeat and it
-  /// is the next of them.
+  /// Nothing is missing in it: it comes often and is no sum of others.
   bool is_whole(const NoitomStep& step) const;
+  /// The steps repeat themselves, and it is the next of them.
+  bool repeat_with(const NoitomStep& step) const;
 
  private:
   bool is_sum(const NoitomStep& step) const;
-  bool repeats_with(const NoitomStep& step) const;
   bool changes_avatar() const;
 
   std::deque<std::optional<NoitomStep>> lately_;

@@ -149,9 +149,11 @@ NoitomReceiver::Follows NoitomReceiver::judge(const NoitomFrame& next) const {
     if (!spread || pace_.is_in_time(*spread)) return Follows::yes;
     return is_quiet ? Follows::open : Follows::no;
   }
+  if (!spread) return Follows::no;
+  if (steps.repeat_with(*step) && pace_.is_in_time(*spread)) return Follows::yes;
   const bool is_skip = step->index <= longest_skip && !(step->avatar == 0 && step->index == 0);
   const bool may_be = steps.is_usual(*step) || (is_skip && is_quiet);
-  return may_be && spread && pace_.tells_apart(*spread) ? Follows::yes : Follows::no;
+  return may_be && pace_.tells_apart(*spread) ? Follows::yes : Follows::no;
 }
 
 std::optional<NoitomStep> NoitomReceiver::step_to(const NoitomFrame& next) const {

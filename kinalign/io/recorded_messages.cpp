@@ -92,7 +92,7 @@ Result<void> RecordedMessages::take_one(const McapRecord& record, const TakeMess
   if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
     if (!facts_) facts_ = to_facts(*metadata);
     if (const auto end = to_end(*metadata)) end_ = end;
-    ended_ = ended_ || is_end(*metadata);
+    ended_ = ended_ || ending_of(*metadata) != Ending::none;
   } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
     if (attachment->name == choice_.stream + ".bvh") skeleton_ = attachment->data;
   } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
@@ -117,14 +117,14 @@ void RecordedMessages::take_mark(const McapMessage& message) {
 
 Result<void> RecordedMessages::take_message(const McapMessage& message, const TakeMessage& take) {
   if (mark_channels_.contains(message.channel)) {
-    if (message.log_time <= latest_log_time && !stands_later(*parts_, part_, message)) {
+    if (message.log_time <= latest_log_time && !stands_elsewhere(*parts_, part_, message)) {
       take_mark(message);
     }
     return {};
   }
   const auto found = channels_.find(message.channel);
   if (found == channels_.end() || !facts_ || message.log_time > latest_log_time) return {};
-  if (stands_later(*parts_, part_, message)) return {};
+  if (stands_elsewhere(*parts_, part_, message)) return {};
   Channel& from = found->second;
   const auto log = Duration{static_cast<std::int64_t>(message.log_time)};
   const HostTime arrival{log - utc_minus_host()};

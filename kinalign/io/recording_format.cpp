@@ -113,8 +113,9 @@ std::optional<RecordingEnd> to_end(const McapMetadata& metadata) {
   return RecordingEnd{static_cast<std::uint64_t>(*dropped)};
 }
 
-bool is_end(const McapMetadata& metadata) {
-  return metadata.name == end_metadata || metadata.name == torn_metadata;
+Ending ending_of(const McapMetadata& metadata) {
+  if (metadata.name == end_metadata) return Ending::ended;
+  return metadata.name == torn_metadata ? Ending::torn : Ending::none;
 }
 
 McapChannel to_channel(std::string topic, const RawChannel& raw) {

@@ -57,8 +57,9 @@ std::optional<RecordingEnd> to_end(const McapMetadata& metadata);
 /// recording that has none because it was torn.
 inline constexpr std::string_view torn_metadata = "kinalign.torn";
 
-/// Either of these: nothing of the recording stands in a later file.
-bool is_end(const McapMetadata& metadata);
+/// What a file's records say of the recording behind it.
+enum class Ending : std::uint8_t { none, torn, ended };
+Ending ending_of(const McapMetadata& metadata);
 
 /// What a channel of raw payloads is, as its metadata.
 struct RawChannel {

@@ -2,6 +2,7 @@
 #include "kinalign/io/recording_reader.h"
 
 #include "kinalign/io/bvh_head.h"
+#include "kinalign/io/recording_beside.h"
 #include "kinalign/io/sender_choice.h"
 
 #include <array>
@@ -255,6 +256,7 @@ RecordedDevice device_of(FileSystem& files, const DeviceWish& wish, const Listen
                          HeardDevice heard) {
   SaidByFile by_file = listening.by_file();
   append(by_file.findings, judge_parts(*wish.parts, PartsBehind::read));
+  append(by_file.findings, judge_namesakes(files, wish.parts->front().path));
   const auto shared = std::make_shared<const HeardDevice>(std::move(heard));
   std::vector<std::string> further;
   for (const RecordingPart& part : *wish.parts) further.push_back(part.path);

@@ -3,6 +3,7 @@
 
 #include "kinalign/core/file_version.h"
 #include "kinalign/io/mcap_store.h"
+#include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/unknown_file.h"
@@ -113,7 +114,7 @@ class Copier {
       ++recovered.nameless;
       return {};
     }
-    if (parts_ != nullptr && stands_later(*parts_, part_, message)) {
+    if (parts_ != nullptr && stands_elsewhere(*parts_, part_, message)) {
       ++recovered.twice;
       return {};
     }
@@ -191,23 +192,26 @@ Result<void> check_beginning(FileSystem& files, const std::string& path) {
 }
 
 /// Messages that were there and are not in the new file.
-std::uint64_t missing(const Copier& copier, std::size_t parts) {
+std::uint64_t missing(const Copier& copier, const RecordingParts& parts) {
   const Recovered& recovered = copier.recovered;
+  MessageNumbers numbers;  // of one file alone the order will do
+  for (const RecordingPart& part : parts) numbers.add_all(part.numbers);
   std::uint64_t by_number = 0;
   if (recovered.proof.facts) {  // programs of others number as they like
-    for (const ChannelSurvey& channel : recovered.proof.channels) by_number += channel.missing;
+    for (const ChannelSurvey& one : recovered.proof.channels) {
+      by_number += parts.size() == 1 ? one.missing : numbers.missing(one.channel.id);
+    }
   }
-  const bool counted = parts == 1 && copier.counted > recovered.messages;
+  const bool counted = parts.size() == 1 && copier.counted > recovered.messages;
   return std::max(by_number, counted ? copier.counted - recovered.messages : 0);
 }
 
 Result<RecordingParts> parts_of(FileSystem& files, const std::vector<std::string>& paths,
                                 const Progress& progress) {
   for (const std::string& path : paths) KA_TRY(check_beginning(files, path));
-  const auto facts = KA_TRY(read_facts(files, paths.front()));
-  const bool is_first = !facts || facts->part == 1;  // or what recover made of all
-  return paths.size() > 1 || !is_first ? read_parts(files, with_parts(files, paths), progress)
-                                       : parts_from(files, paths.front(), progress);
+  const std::vector<std::string> all = with_parts(files, paths);
+  return all.size() > 1 ? read_parts(files, all, progress)
+                        : parts_from(files, all.front(), progress);
 }
 
 Error is_input(const std::string& out, const std::string& part) {
@@ -235,7 +239,7 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
                                     const std::string& out, Overwrite overwrite,
                                     const Progress& progress) {
   const RecordingParts parts = KA_TRY(parts_of(files, paths, progress));
-  for (const std::string& path : with_parts(files, paths)) {  // also of those it did not need
+  for (const std::string& path : with_namesakes(files, paths)) {  // needed or not
     if (same_file(out, path)) return Failure(is_input(out, path));
   }
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
@@ -249,9 +253,10 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   }
   KA_TRY(copier.finish());
   KA_TRY(prove(copier, file, out, progress));
-  recovered.missing = missing(copier, parts.size());
+  recovered.missing = missing(copier, parts);
   append(recovered.findings, judge_end(parts.back().path, recovered.proof));
   append(recovered.findings, judge_parts(parts, PartsBehind::read));
+  append(recovered.findings, judge_namesakes(files, parts.front().path));
   KA_TRY(file.commit());
   return std::move(recovered);
 }

@@ -202,7 +202,7 @@ Result<void> copy_json(FileSystem& files, const RecordingParts& parts, const Pro
     McapReader reader;
     const auto take = [&](const McapRecord& record) -> Result<void> {
       const auto* message = std::get_if<McapMessage>(&record);
-      if (message != nullptr && stands_later(parts, part, *message)) return {};
+      if (message != nullptr && stands_elsewhere(parts, part, *message)) return {};
       return channels.take(record);
     };
     KA_TRY(read_recording(files, parts[part].path, reader, take, progress));

@@ -415,6 +415,26 @@ TEST_CASE("noitom datagrams: where nothing is lost they may come in bunches") {
   }
 }
 
+TEST_CASE("noitom datagrams: what interference takes from each sixth frame is no number left out") {
+  for (const auto seed : fresh_seeds(10)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    for (const std::int64_t every : {6, 7, 8}) {
+      for (const auto& [gap, burst] : {std::pair{100, 8050}, {2000, 8050}, {4000, 5000}}) {
+        CAPTURE(every);
+        CAPTURE(gap);
+        const std::int64_t period = 8000 * every + static_cast<std::int64_t>(random() % 81) - 40;
+        const auto phase = static_cast<std::int64_t>(random() % 8000);
+        Datagrams left = paced(numbers_by({1}, 2000), 8000, [gap = gap] { return gap; });
+        std::erase_if(left, [&, burst = burst](const Datagram& one) {
+          return one.at_us > 1'000'000 && (one.at_us + phase) % period < burst;
+        });
+        CHECK(never_sent(hear(left)) == 0);
+      }
+    }
+  }
+}
+
 TEST_CASE("noitom datagrams: bunches that lose two pieces running mix next to no frames") {
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);

@@ -5,6 +5,7 @@
 #include "tests/io/recorded_lab.h"
 
 #include "kinalign/io/open_recording.h"
+#include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/recover_recording.h"
 

@@ -189,7 +189,7 @@ TEST_CASE("of a recording that ends in a file with nothing else new the end is n
 TEST_CASE("torn for good is what recover made of a recording whose last file is torn") {
   const FreshFolder folder;
   PosixFiles files;
-  const auto cut = [](std::string bytes) { return bytes.substr(0, bytes.size() - 20); };
+  const auto cut = [](const std::string& bytes) { return bytes.substr(0, bytes.size() - 20); };
   const auto was_torn = [&](const std::vector<std::string>& paths, const std::string& out) {
     REQUIRE(recover_recording(files, paths, folder / out, Overwrite::no));
     return survey_recording(files, folder / out)->was_torn;
@@ -200,6 +200,95 @@ TEST_CASE("torn for good is what recover made of a recording whose last file is 
   const std::string b = folder.write("a.part2.mcap", part_of(2, 20, 40, false));
   CHECK_FALSE(was_torn({a, b}, "goes_on.mcap"));
   CHECK_FALSE(was_torn({folder / "torn.mcap", b}, "goes_on_too.mcap"));
+}
+
+TEST_CASE("a torn file that only repeats changes neither the order of messages nor their bytes") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("a.mcap", part_of(1, 0, 20, false));
+  std::string torn = part_of(2, 14, 20, false);
+  torn.resize(torn.find(nth_message(18).data));  // within its chunk: no checksum covers it
+  const std::string spoilt = nth_message(15).data;
+  torn.replace(torn.find(spoilt), spoilt.size(), spoilt.size(), '\0');
+  const std::string b = folder.write("a.part2.mcap", torn);
+  for (const auto& given : {std::vector{a}, std::vector{b}, std::vector{b, a}, std::vector{a, a}}) {
+    const auto recovered = recover_recording(files, given, folder / "b.mcap", Overwrite::yes);
+    REQUIRE(recovered);
+    CHECK(recovered->missing == 0);
+    for (const Finding& one : recovered->findings) CHECK(one.what.found != "one that ends before");
+    const auto survey = survey_recording(files, folder / "b.mcap");
+    CHECK(survey->was_torn);
+    for (const ChannelSurvey& channel : survey->channels) CHECK(channel.missing == 0);
+    const ReadMcap read = read_mcap(folder.read("b.mcap"));
+    REQUIRE(read.messages.size() == 20);
+    for (std::uint32_t k = 0; k < 20; ++k) CHECK(read.messages[k].data == nth_message(k).data);
+  }
+}
+
+TEST_CASE("what recover made of all needs no part, wherever it stands") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string whole = folder.write("whole.mcap", part_of(1, 0, 60, true));
+  const std::string b = folder.write("a.part2.mcap", part_of(2, 20, 40, false));
+  for (const auto& given : {std::vector{whole, b}, std::vector{b, whole}}) {
+    const auto recovered = recover_recording(files, given, folder / "b.mcap", Overwrite::yes);
+    REQUIRE(recovered);
+    CHECK(recovered->messages == 60);
+    CHECK(recovered->missing == 0);
+    CHECK(survey_recording(files, folder / "b.mcap")->channels.front().missing == 0);
+  }
+  // In a part's place.
+  const std::string torn = part_of(1, 0, 30, false);
+  const std::string a = folder.write("a.mcap", torn.substr(0, torn.size() - 20));
+  folder.write("a.part2.mcap", part_of(1, 0, 60, true));
+  CHECK(recover_recording(files, {a}, folder / "b.mcap", Overwrite::yes)->messages == 60);
+}
+
+TEST_CASE("a file with a part's name that does not say that it is one is told, and kept") {
+  const std::string one = part_of(1, 0, 20, false), other = part_of(2, 10, 40, true);
+  const auto cut = one.substr(0, one.size() - 20);
+  const auto damaged = [](std::string bytes) {
+    bytes[bytes.find("raw_ns") + 10] ^= 1;
+    return bytes;
+  };
+  const std::string another = "one of another run, or with a damaged beginning";
+  for (const auto& [first, second, found] :
+       {std::tuple(cut, damaged(other), another), std::tuple(damaged(cut), other, another),
+        std::tuple(cut, std::string(),
+                   std::string("a file that does not say of which recording it is"))}) {
+    const FreshFolder folder;
+    PosixFiles files;
+    const std::string a = folder.write("a.mcap", first);
+    const std::string b = folder.write("a.part2.mcap", second);
+    const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::no);
+    REQUIRE(recovered);
+    CHECK(recovered->messages == 20);
+    REQUIRE_FALSE(recovered->findings.empty());
+    CHECK(recovered->findings.back().severity == Severity::warning);
+    CHECK(to_string(recovered->findings.back().what) ==
+          b + ": expected a file of the recording a.mcap, found " + found);
+    CHECK_FALSE(recover_recording(files, {a}, b, Overwrite::yes));
+    CHECK(folder.read("a.part2.mcap") == second);
+  }
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("a.mcap", cut);
+  std::filesystem::create_directory(folder / "a.part2.mcap");
+  const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->findings.back().what.found.starts_with("one that can't be read: "));
+}
+
+TEST_CASE("of a link the parts beside the file are taken, and not written over") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("a.mcap", part_of(1, 0, 20, false));
+  const std::string b = folder.write("a.part2.mcap", part_of(2, 20, 40, true));
+  std::filesystem::create_directory(folder / "links");
+  std::filesystem::create_symlink(a, folder / "links/a.mcap");
+  const std::string link = folder / "links/a.mcap";
+  CHECK(recover_recording(files, {link}, folder / "b.mcap", Overwrite::no)->messages == 40);
+  CHECK_FALSE(recover_recording(files, {link}, b, Overwrite::yes));
 }
 
 TEST_CASE("recover keeps all records of one name, and once what each part repeats") {

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which messages of a recording are there: each channel numbers its own.
+#pragma once
+
+#include "kinalign/io/mcap_records.h"
+
+#include <cstdint>
+#include <map>
+
+namespace kinalign {
+
+/// The numbers of the messages in a file, by channel.
+class MessageNumbers {
+ public:
+  void add(const McapMessage& message);
+  bool has(const McapMessage& message) const;
+  bool has_all(const MessageNumbers& others) const;
+  bool empty() const { return channels_.empty(); }
+  void add_all(const MessageNumbers& others);
+  /// Of a channel, each once.
+  std::uint64_t present(std::uint16_t channel) const;
+  /// Left out between the first and the last of a channel.
+  std::uint64_t missing(std::uint16_t channel) const;
+
+ private:
+  using Stretches = std::map<std::uint32_t, std::uint64_t>;  // first number: behind the last one
+  static void add(Stretches& stretches, std::uint32_t begin, std::uint64_t end);
+  std::map<std::uint16_t, Stretches> channels_;
+};
+
+}  // namespace kinalign
