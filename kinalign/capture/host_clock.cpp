@@ -94,8 +94,11 @@ HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time ste
   return behind.after - share(since, 1.0 - most_slew);
 }
 
+// What most_slew leaves in doubt of arrivals that waited for five seconds.
 bool is_behind(const Moment& one, const Moment& other) {
-  return one.at > other.at && one.stamp.value_or(Time::max()) > other.stamp.value_or(Time::min());
+  constexpr Duration most_doubt = std::chrono::milliseconds(5);
+  if (!one.stamp || !other.stamp) return one.at > other.at;
+  return *one.stamp > *other.stamp && one.at - other.at > -most_doubt;
 }
 
 HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep()) {

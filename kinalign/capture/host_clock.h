@@ -85,8 +85,8 @@ struct Moment {
   HostTime at{};
   std::optional<Time> stamp{};
 };
-/// Surely later. Arrivals are moved over with a doubt of their own each; stamps have none, unless
-/// somebody sets the clock between the two.
+/// Later, as far as is known. Arrivals are moved over with a doubt of their own each; stamps have
+/// none, unless somebody sets the clock between the two: then neither is.
 bool is_behind(const Moment& one, const Moment& other);
 
 struct HostClockEvent {

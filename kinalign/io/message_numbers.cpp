@@ -30,42 +30,71 @@ void MessageNumbers::add_all(const MessageNumbers& others) {
   }
 }
 
+const MessageNumbers::Stretches& MessageNumbers::of(std::uint16_t channel) const {
+  static const Stretches none;
+  const auto found = channels_.find(channel);
+  return found == channels_.end() ? none : found->second;
+}
+
+std::vector<std::uint16_t> MessageNumbers::channels() const {
+  std::vector<std::uint16_t> ids;
+  for (const auto& [id, stretches] : channels_) ids.push_back(id);
+  return ids;
+}
+
 std::uint64_t MessageNumbers::present(std::uint16_t channel) const {
   std::uint64_t present = 0;
-  const auto found = channels_.find(channel);
-  if (found == channels_.end()) return present;
-  for (const auto& [begin, end] : found->second) present += end - begin;
+  for (const auto& [begin, end] : of(channel)) present += end - begin;
   return present;
 }
 
 std::uint64_t MessageNumbers::missing(std::uint16_t channel) const {
-  const auto found = channels_.find(channel);
-  if (found == channels_.end() || found->second.empty()) return 0;
-  std::uint64_t missing = 0, behind = found->second.begin()->first;
-  for (const auto& [begin, end] : found->second) {
+  const Stretches& stretches = of(channel);
+  if (stretches.empty()) return 0;
+  std::uint64_t missing = 0, behind = stretches.begin()->first;
+  for (const auto& [begin, end] : stretches) {
     missing += begin - behind;
     behind = end;
   }
   return missing;
 }
 
+bool MessageNumbers::has(const Stretches& stretches, std::uint32_t begin, std::uint64_t end) {
+  const auto next = stretches.upper_bound(begin);
+  return next != stretches.begin() && std::prev(next)->second >= end;
+}
+
 bool MessageNumbers::has(const McapMessage& message) const {
-  const auto channel = channels_.find(message.channel);
-  if (channel == channels_.end()) return false;
-  const auto next = channel->second.upper_bound(message.sequence);
-  return next != channel->second.begin() && message.sequence < std::prev(next)->second;
+  return has(of(message.channel), message.sequence, std::uint64_t{message.sequence} + 1);
 }
 
 bool MessageNumbers::has_all(const MessageNumbers& others) const {
   for (const auto& [id, stretches] : others.channels_) {
-    const auto channel = channels_.find(id);
-    if (channel == channels_.end()) return false;
     for (const auto& [begin, end] : stretches) {
-      const auto next = channel->second.upper_bound(begin);
-      if (next == channel->second.begin() || std::prev(next)->second < end) return false;
+      if (!has(of(id), begin, end)) return false;
     }
   }
   return true;
+}
+
+bool MessageNumbers::goes_on_with(const MessageNumbers& others, std::uint16_t channel) const {
+  const Stretches& own = of(channel);
+  if (own.empty()) return false;
+  const std::uint32_t first = own.begin()->first;
+  for (const auto& [begin, end] : others.of(channel)) {
+    if (end > first && !has(own, std::max(begin, first), end)) return false;
+  }
+  return true;
+}
+
+bool MessageNumbers::shares_with(const MessageNumbers& others, std::uint16_t channel) const {
+  const Stretches& theirs = others.of(channel);
+  for (const auto& [begin, end] : of(channel)) {
+    if (end > UINT32_MAX) return !theirs.empty() && std::prev(theirs.end())->second > begin;
+    const auto next = theirs.lower_bound(static_cast<std::uint32_t>(end));
+    if (next != theirs.begin() && std::prev(next)->second > begin) return true;
+  }
+  return false;
 }
 
 }  // namespace kinalign

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <vector>
 
 namespace kinalign {
 
@@ -16,6 +17,11 @@ class MessageNumbers {
   bool has(const McapMessage& message) const;
   bool has_all(const MessageNumbers& others) const;
   bool empty() const { return channels_.empty(); }
+  std::vector<std::uint16_t> channels() const;
+  /// Of a channel: that it has all of theirs from its own first one on, and some.
+  bool goes_on_with(const MessageNumbers& others, std::uint16_t channel) const;
+  /// Of a channel: that it has one of theirs.
+  bool shares_with(const MessageNumbers& others, std::uint16_t channel) const;
   void add_all(const MessageNumbers& others);
   /// Of a channel, each once.
   std::uint64_t present(std::uint16_t channel) const;
@@ -25,6 +31,8 @@ class MessageNumbers {
  private:
   using Stretches = std::map<std::uint32_t, std::uint64_t>;  // first number: behind the last one
   static void add(Stretches& stretches, std::uint32_t begin, std::uint64_t end);
+  static bool has(const Stretches& stretches, std::uint32_t begin, std::uint64_t end);
+  const Stretches& of(std::uint16_t channel) const;
   std::map<std::uint16_t, Stretches> channels_;
 };
 

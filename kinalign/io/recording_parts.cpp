@@ -22,17 +22,20 @@ void sort(RecordingParts& parts) {
 /// In their order.
 RecordingParts without_repeated(RecordingParts parts) {
   RecordingParts kept;
-  MessageNumbers before, unproved;
+  MessageNumbers before;
   Ending ending = Ending::none;
+  bool all_proved = true;
   for (RecordingPart& part : parts) {
-    const bool proves =
-        !unproved.empty() && part.unproved.empty() && part.numbers.has_all(unproved);
-    part.repeats = !kept.empty() && before.has_all(part.numbers) && !proves;
-    if (part.repeats && part.ending <= ending) continue;
-    if (proves) unproved = {};
+    const bool is_news = part.ending > ending || !all_proved || !before.has_all(part.numbers);
+    if (!kept.empty() && !is_news) continue;
+    for (const std::uint16_t channel : part.numbers.channels()) {
+      const bool takes_over =
+          part.numbers.goes_on_with(before, channel) && !part.unproved.shares_with(before, channel);
+      if (!takes_over) part.repeats.insert(channel);
+    }
     before.add_all(part.numbers);
-    unproved.add_all(part.unproved);
     ending = std::max(ending, part.ending);
+    all_proved = all_proved && part.unproved.empty();
     kept.push_back(std::move(part));
   }
   return kept;
@@ -108,9 +111,11 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
 }  // namespace
 
 bool stands_elsewhere(const RecordingParts& parts, std::size_t part, const McapMessage& message) {
-  if (parts[part].repeats) return true;
-  for (std::size_t later = part + 1; later < parts.size(); ++later) {
-    if (!parts[later].repeats && parts[later].numbers.has(message)) return true;
+  for (std::size_t other = 0; other < parts.size(); ++other) {
+    if (other == part) continue;
+    const RecordingPart& later = parts[std::max(part, other)];
+    const bool is_from_later = !later.repeats.contains(message.channel);
+    if (is_from_later == (other > part) && parts[other].numbers.has(message)) return true;
   }
   return false;
 }

@@ -9,6 +9,7 @@
 #include "kinalign/io/recording_format.h"
 #include "kinalign/io/recording_survey.h"
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,19 +19,19 @@ struct RecordingPart {
   std::string path;
   RecordingFacts facts;
   MessageNumbers numbers{};
-  MessageNumbers unproved{};     // those that no checksum covers
-  Ending ending = Ending::none;  // of a file that breaks off: torn
-  bool repeats = false;          // files before have all of these messages as surely
+  MessageNumbers unproved{};          // those that no checksum covers
+  Ending ending = Ending::none;       // of a file that breaks off: torn
+  std::set<std::uint16_t> repeats{};  // channels whose messages files before have as surely
 };
 
 /// In their order.
 using RecordingParts = std::vector<RecordingPart>;
 
 /// What stands twice is taken from the later file, of the earlier one the disk had not said that it
-/// is there; but from none that only repeats.
+/// is there; but not where the later one ends before the earlier or is less sure.
 bool stands_elsewhere(const RecordingParts& parts, std::size_t part, const McapMessage& message);
 
-/// Reads these files once. Those that repeat others and say nothing more of the end are left out:
+/// Reads these files once. Those that repeat others and say nothing more are left out:
 /// of one that `recover` has made all parts are. Fails where they are not all of one recording.
 Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::string>& paths,
                                   const Progress& progress);

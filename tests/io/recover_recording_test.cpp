@@ -225,6 +225,40 @@ TEST_CASE("a torn file that only repeats changes neither the order of messages n
   }
 }
 
+TEST_CASE("what a torn file brings of one channel does not disturb the others") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto file = [](int part, const McapChunkContent& content) {
+    MemoryFile memory;
+    McapWriter writer(memory.store());
+    REQUIRE(writer.begin({"kinalign", "test"}));
+    REQUIRE(writer.write(to_metadata({"", "", "lab", "a.mcap", part, {}})));
+    REQUIRE(writer.write(store(content, McapCompression::none)));
+    REQUIRE(writer.finish());
+    return memory.bytes;
+  };
+  const auto numbered = [](std::uint32_t k, std::uint32_t number) {
+    OwnedMessage message = nth_message(k);
+    message.message.sequence = number;
+    return message;
+  };
+  McapChunkContent first, second;  // nth_message(3k) are of one channel
+  for (std::uint32_t k = 0; k < 20; ++k) add(first, numbered(3 * k, k));
+  for (std::uint32_t k = 15; k < 18; ++k) add(second, numbered(3 * k, k));
+  for (std::uint32_t k = 0; k < 4; ++k) add(second, numbered(3 * k + 1, k));
+  const std::string a = folder.write("a.mcap", file(1, first));
+  std::string torn = file(2, second);
+  folder.write("a.part2.mcap", torn.substr(0, torn.size() - 20));
+  const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->messages == 24);
+  CHECK(recovered->twice == 3);
+  CHECK(recovered->missing == 0);
+  const auto survey = survey_recording(files, folder / "b.mcap");
+  REQUIRE(survey);
+  for (const ChannelSurvey& one : survey->channels) CHECK(one.missing == 0);
+}
+
 TEST_CASE("what recover made of all needs no part, wherever it stands") {
   const FreshFolder folder;
   PosixFiles files;
