@@ -95,9 +95,10 @@ Verb recover_verb() {
                "The old files stay as they are. Exit code "
                "1 where something was damaged, could not be read or is not there; a file that only "
                "lacks its index and end is made whole with 0.",
-       .examples = {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
-                    {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
-                     "after a disk that failed: of what stands in both the later is taken"}},
+       .examples =
+           {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
+            {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
+             "after a disk that failed: what stands in both is taken once, the surer copy"}},
        .common = {"out", "force", "json"}},
       describe_recover, run);
 }

@@ -166,7 +166,11 @@ Result<void> join(TakeGroup& group, const RecordedStream& s) {
     nodes->node_names.push_back(node);
   }
   group.interval_known = group.interval_known || any_known(s.clock);
-  const bool one_recording = s.format == "recording" && group.files == s.files;
+  const auto is_known = [&group](const InputFacts& facts) {
+    return std::find(group.files.begin(), group.files.end(), facts) != group.files.end();
+  };
+  const bool one_recording =
+      s.format == "recording" && std::all_of(s.files.begin(), s.files.end(), is_known);
   if (!one_recording) group.files.insert(group.files.end(), s.files.begin(), s.files.end());
   return {};
 }

@@ -86,7 +86,7 @@ struct Moment {
   std::optional<Time> stamp{};
 };
 /// Later, as far as is known. Arrivals are moved over with a doubt of their own each; stamps have
-/// none, unless somebody sets the clock between the two: then neither is.
+/// none, unless somebody sets the clock between the two: then both have to say so.
 bool is_behind(const Moment& one, const Moment& other);
 
 struct HostClockEvent {

@@ -42,6 +42,15 @@ std::vector<std::uint16_t> MessageNumbers::channels() const {
   return ids;
 }
 
+std::optional<std::uint32_t> MessageNumbers::next(std::uint16_t channel, std::uint64_t from) const {
+  if (from > UINT32_MAX) return std::nullopt;
+  const auto number = static_cast<std::uint32_t>(from);
+  const Stretches& stretches = of(channel);
+  const auto behind = stretches.upper_bound(number);
+  if (behind != stretches.begin() && std::prev(behind)->second > from) return number;
+  return behind == stretches.end() ? std::nullopt : std::optional(behind->first);
+}
+
 std::uint64_t MessageNumbers::present(std::uint16_t channel) const {
   std::uint64_t present = 0;
   for (const auto& [begin, end] : of(channel)) present += end - begin;

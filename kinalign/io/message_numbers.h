@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace kinalign {
@@ -23,6 +24,8 @@ class MessageNumbers {
   /// Of a channel: that it has one of theirs.
   bool shares_with(const MessageNumbers& others, std::uint16_t channel) const;
   void add_all(const MessageNumbers& others);
+  /// Of a channel the lowest one that is not below.
+  std::optional<std::uint32_t> next(std::uint16_t channel, std::uint64_t from) const;
   /// Of a channel, each once.
   std::uint64_t present(std::uint16_t channel) const;
   /// Left out between the first and the last of a channel.

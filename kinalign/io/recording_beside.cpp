@@ -38,13 +38,32 @@ std::set<std::string> folders_of(const std::string& path) {
   return places;
 }
 
+/// In the order in which they were added, each file once.
+class Paths {
+ public:
+  void add(const std::string& path) {
+    if (known_.insert(real(path)).second) all_.push_back(path);
+  }
+  bool has(const std::string& path) const { return known_.contains(real(path)); }
+  std::vector<std::string> take() { return std::move(all_); }
+
+ private:
+  static std::string real(const std::string& path) {
+    std::error_code failed;
+    const auto canonical = std::filesystem::weakly_canonical(path, failed);
+    return failed ? path : canonical.string();
+  }
+  std::vector<std::string> all_;
+  std::set<std::string> known_;
+};
+
 /// Files beside this one, itself among them, that are of the same recording by their names.
-std::vector<std::string> namesakes_of(const std::string& path,
+std::vector<std::string> namesakes_of(const std::string& file,
                                       const std::optional<RecordingFacts>& facts) {
-  std::set<std::string_view> stems{stem_of(file_name(path))};
+  std::set<std::string_view> stems{stem_of(file_name(file))};
   if (facts) stems.insert(stem_of(facts->first));
   std::vector<std::string> found;
-  for (const std::string& place : folders_of(path)) {
+  for (const std::string& place : folders_of(file)) {
     std::error_code failed;  // a folder that can't be listed has nothing beside
     for (std::filesystem::directory_iterator at(place.empty() ? "." : place, failed), end;
          !failed && at != end; at.increment(failed)) {
@@ -52,13 +71,10 @@ std::vector<std::string> namesakes_of(const std::string& path,
       if (name.ends_with(suffix) && stems.contains(stem_of(name))) found.push_back(place + name);
     }
   }
-  return found;
-}
-
-void add_new(const std::string& path, std::vector<std::string>& paths) {
-  const bool known = std::any_of(paths.begin(), paths.end(),
-                                 [&](const auto& one) { return same_file(one, path); });
-  if (!known) paths.push_back(path);
+  std::sort(found.begin(), found.end());  // folders have no order
+  Paths once;
+  for (const std::string& path : found) once.add(path);
+  return once.take();
 }
 
 }  // namespace
@@ -100,34 +116,47 @@ std::vector<FileBeside> files_beside(FileSystem& files, const std::string& path,
   return found;
 }
 
-std::vector<std::string> with_parts(FileSystem& files, std::vector<std::string> paths) {
-  for (std::size_t i = 0, named = paths.size(); i < named; ++i) {
-    const auto facts = read_facts(files, paths[i]);
+std::vector<std::string> with_parts(FileSystem& files, const std::vector<std::string>& named) {
+  Paths all, beside;
+  for (const std::string& path : named) all.add(path);
+  for (const std::string& path : named) {
+    if (beside.has(path)) continue;  // of a recording that was looked at
+    const auto facts = read_facts(files, path);
     if (!facts || !*facts) continue;
-    for (const FileBeside& one : files_beside(files, paths[i], **facts)) add_new(one.path, paths);
-  }
-  return paths;
-}
-
-std::vector<std::string> with_namesakes(FileSystem& files, std::vector<std::string> paths) {
-  for (std::size_t i = 0, named = paths.size(); i < named; ++i) {
-    const auto facts = read_facts(files, paths[i]);
-    for (const std::string& one : namesakes_of(paths[i], facts ? *facts : std::nullopt)) {
-      add_new(one, paths);
+    for (const FileBeside& one : files_beside(files, path, **facts)) {
+      beside.add(one.path);
+      all.add(one.path);
     }
   }
-  return paths;
+  return all.take();
+}
+
+std::vector<std::string> with_namesakes(FileSystem& files, const std::vector<std::string>& named) {
+  Paths all, beside;
+  for (const std::string& path : named) all.add(path);
+  for (const std::string& path : named) {
+    if (beside.has(path)) continue;
+    const auto facts = read_facts(files, path);
+    for (const std::string& one : namesakes_of(path, facts ? *facts : std::nullopt)) {
+      beside.add(one);
+      all.add(one);
+    }
+  }
+  return all.take();
 }
 
 Findings judge_namesakes(FileSystem& files, const std::string& path) {
-  const auto facts = read_facts(files, path);
-  if (!facts || !*facts) return {};  // it is no recording of ours itself
+  const auto own = read_facts(files, path);
+  const bool is_ours = own && *own;
   Findings findings;
-  for (const std::string& one : namesakes_of(path, *facts)) {
+  for (const std::string& one : namesakes_of(path, std::nullopt)) {
     const auto read = read_facts(files, one);
-    if (read && *read && is_same_recording(**read, **facts)) continue;
+    const bool says_one = read && *read;
+    if (is_ours ? says_one && is_same_recording(**read, **own) : !says_one) continue;
     std::string found = "one of another run, or with a damaged beginning";
-    if (!read) {
+    if (!is_ours) {
+      found = "a part of one, while the other does not say of which it is";
+    } else if (!read) {
       found = "one that can't be read: " + read.error().found;
     } else if (!*read) {
       found = "a file that does not say of which recording it is";

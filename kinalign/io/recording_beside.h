@@ -27,11 +27,11 @@ std::vector<FileBeside> files_beside(FileSystem& files, const std::string& path,
                                      const RecordingFacts& facts);
 
 /// These and, as they lie in the same folders, all other files of their recordings.
-std::vector<std::string> with_parts(FileSystem& files, std::vector<std::string> paths);
+std::vector<std::string> with_parts(FileSystem& files, const std::vector<std::string>& named);
 
 /// As they lie in the same folders all files whose names say that they are of these recordings,
 /// whatever is in them, and these.
-std::vector<std::string> with_namesakes(FileSystem& files, std::vector<std::string> paths);
+std::vector<std::string> with_namesakes(FileSystem& files, const std::vector<std::string>& named);
 
 /// Of those beside the file that they are of its recording by their names alone.
 Findings judge_namesakes(FileSystem& files, const std::string& path);

@@ -19,22 +19,29 @@ void sort(RecordingParts& parts) {
   });
 }
 
+/// The later file's, but for an end, which nothing comes behind.
+Ending behind(Ending before, Ending later) { return before == Ending::ended ? before : later; }
+
 /// In their order.
 RecordingParts without_repeated(RecordingParts parts) {
   RecordingParts kept;
   MessageNumbers before;
+  std::set<std::string> names;
   Ending ending = Ending::none;
   bool all_proved = true;
   for (RecordingPart& part : parts) {
-    const bool is_news = part.ending > ending || !all_proved || !before.has_all(part.numbers);
-    if (!kept.empty() && !is_news) continue;
+    const bool is_repeated =
+        part.ending <= ending && all_proved && before.has_all(part.numbers) &&
+        std::includes(names.begin(), names.end(), part.names.begin(), part.names.end());
+    if (!kept.empty() && is_repeated) continue;
     for (const std::uint16_t channel : part.numbers.channels()) {
       const bool takes_over =
           part.numbers.goes_on_with(before, channel) && !part.unproved.shares_with(before, channel);
       if (!takes_over) part.repeats.insert(channel);
     }
     before.add_all(part.numbers);
-    ending = std::max(ending, part.ending);
+    names.insert(part.names.begin(), part.names.end());
+    ending = behind(ending, part.ending);
     all_proved = all_proved && part.unproved.empty();
     kept.push_back(std::move(part));
   }
@@ -96,8 +103,8 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
       std::move(more.ports),
       [](const CountedPort& a, const CountedPort& b) { return a.stream == b.stream; },
       survey.ports);
-  survey.end = more.end;
-  survey.was_torn = more.was_torn;
+  if (more.end) survey.end = more.end;
+  survey.ending = behind(survey.ending, more.ending);
   survey.bytes += more.bytes;
   survey.unchecked += more.unchecked;
   survey.torn.insert(survey.torn.end(), more.torn.begin(), more.torn.end());
@@ -110,46 +117,82 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
 
 }  // namespace
 
+std::string name_of(const McapMetadata& metadata) { return "metadata " + metadata.name; }
+std::string name_of(const McapAttachment& attachment) { return "attachment " + attachment.name; }
+
+bool has_better(const RecordingParts& parts, std::size_t part, const McapMessage& message) {
+  const bool is_known = parts[part].numbers.has(message);  // its own file defines its channel
+  const bool is_proved = is_known && !parts[part].unproved.has(message);
+  for (std::size_t other = 0; other < parts.size(); ++other) {
+    if (other == part || !parts[other].numbers.has(message)) continue;
+    const bool other_is_proved = !parts[other].unproved.has(message);
+    const bool is_alike = is_known && other_is_proved == is_proved;
+    if (is_alike ? other > part : other_is_proved || !is_known) return true;
+  }
+  return false;
+}
+
 bool stands_elsewhere(const RecordingParts& parts, std::size_t part, const McapMessage& message) {
   for (std::size_t other = 0; other < parts.size(); ++other) {
     if (other == part) continue;
     const RecordingPart& later = parts[std::max(part, other)];
+    const bool is_known = parts[part].numbers.has(message);  // its own file defines its channel
+    if (!is_known && parts[other].numbers.has(message)) return true;
     const bool is_from_later = !later.repeats.contains(message.channel);
     if (is_from_later == (other > part) && parts[other].numbers.has(message)) return true;
   }
   return false;
 }
 
+namespace {
+
+Error is_no_part(const std::string& path, const RecordingParts& parts,
+                 const std::optional<RecordingFacts>& facts) {
+  return {path, 0,
+          parts.empty() ? "a part of a recording of kinalign's"
+                        : fmt::format("a part of {}, as {} is", parts.front().facts.first,
+                                      parts.front().path),
+          !facts ? "a file that does not say of which recording it is"
+                 : fmt::format("part {} of another run, {}", facts->part, facts->first)};
+}
+
+/// Which messages it has, and how it ends.
+Result<void> read_through(FileSystem& files, RecordingPart& part, const Progress& progress) {
+  McapReader reader;
+  std::set<std::uint16_t> defined;  // of other channels nobody knows what their messages are
+  const auto take = [&](const McapRecord& record) -> Result<void> {
+    if (const auto* message = std::get_if<McapMessage>(&record)) {
+      if (!defined.contains(message->channel)) return {};
+      part.numbers.add(*message);
+      if (reader.unchecked()) part.unproved.add(*message);
+    } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
+      defined.insert(channel->id);
+    } else if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
+      part.ending = std::max(part.ending, ending_of(*metadata));
+      part.names.insert(name_of(*metadata));
+    } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
+      part.names.insert(name_of(*attachment));
+    }
+    return {};
+  };
+  KA_TRY(read_recording(files, part.path, reader, take, progress));
+  if (!reader.closed()) part.ending = std::max(part.ending, Ending::torn);
+  if (reader.all_checked()) part.unproved = {};
+  return {};
+}
+
+}  // namespace
+
 Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::string>& paths,
                                   const Progress& progress) {
   RecordingParts parts;
   for (const std::string& path : paths) {
     const auto facts = KA_TRY(read_facts(files, path));
-    const bool same = facts && (parts.empty() || is_same_recording(parts.front().facts, *facts));
-    if (!same) {
-      return Failure(
-          Error{path, 0,
-                parts.empty() ? "a part of a recording of kinalign's"
-                              : fmt::format("a part of {}, as {} is", parts.front().facts.first,
-                                            parts.front().path),
-                !facts ? "a file that does not say of which recording it is"
-                       : fmt::format("part {} of another run, {}", facts->part, facts->first)});
+    if (!facts || !(parts.empty() || is_same_recording(parts.front().facts, *facts))) {
+      return Failure(is_no_part(path, parts, facts));
     }
     parts.push_back({path, *facts});
-    RecordingPart& part = parts.back();
-    McapReader reader;
-    const auto take = [&part, &reader](const McapRecord& record) -> Result<void> {
-      if (const auto* message = std::get_if<McapMessage>(&record)) {
-        part.numbers.add(*message);
-        if (reader.unchecked()) part.unproved.add(*message);
-      } else if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
-        part.ending = std::max(part.ending, ending_of(*metadata));
-      }
-      return {};
-    };
-    KA_TRY(read_recording(files, path, reader, take, progress));
-    if (!reader.closed()) part.ending = std::max(part.ending, Ending::torn);
-    if (reader.all_checked()) part.unproved = {};
+    KA_TRY(read_through(files, parts.back(), progress));
   }
   sort(parts);
   return without_repeated(std::move(parts));

@@ -20,15 +20,25 @@ struct RecordingPart {
   RecordingFacts facts;
   MessageNumbers numbers{};
   MessageNumbers unproved{};          // those that no checksum covers
+  std::set<std::string> names{};      // of metadata and attachments, as name_of() has them
   Ending ending = Ending::none;       // of a file that breaks off: torn
-  std::set<std::uint16_t> repeats{};  // channels whose messages files before have as surely
+  std::set<std::uint16_t> repeats{};  // channels of which what files before have counts, see below
 };
 
 /// In their order.
 using RecordingParts = std::vector<RecordingPart>;
 
-/// What stands twice is taken from the later file, of the earlier one the disk had not said that it
-/// is there; but not where the later one ends before the earlier or is less sure.
+/// What a record of the same name in a later file repeats.
+std::string name_of(const McapMetadata& metadata);
+std::string name_of(const McapAttachment& attachment);
+
+/// Whether a better copy of this part's message stands in another: one that a checksum covers, or
+/// as good a one of a later file. Of the earlier one the disk had not said that it is there.
+bool has_better(const RecordingParts& parts, std::size_t part, const McapMessage& message);
+
+/// For who reads one file behind the other. What stands twice is taken from the later file, of the
+/// earlier one the disk had not said that it is there; but not where the later one ends before the
+/// earlier or is less sure.
 bool stands_elsewhere(const RecordingParts& parts, std::size_t part, const McapMessage& message);
 
 /// Reads these files once. Those that repeat others and say nothing more are left out:

@@ -85,7 +85,7 @@ class Surveyor {
   void add(const McapMetadata& metadata) {
     if (auto devices = to_expected_devices(metadata)) survey_.expected = *std::move(devices);
     if (const auto end = to_end(metadata)) survey_.end = end;
-    survey_.was_torn = survey_.was_torn || metadata.name == torn_metadata;
+    survey_.ending = std::max(survey_.ending, ending_of(metadata));
     if (survey_.facts) return;
     survey_.facts = to_facts(metadata);
     if (survey_.facts) clock_.push_back(survey_.facts->anchor);
@@ -213,7 +213,10 @@ Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progre
       source, reader, [&](const McapRecord& record) { return surveyor.take(record); }, count));
   RecordingSurvey survey = surveyor.finish(source.path);
   survey.bytes = bytes;
-  if (!reader.closed()) survey.torn.push_back(source.path);
+  if (!reader.closed()) {
+    survey.torn.push_back(source.path);
+    survey.ending = std::max(survey.ending, Ending::torn);
+  }
   return survey;
 }
 
@@ -224,7 +227,7 @@ Finding ends_before(const std::string& path) {
 }
 
 Findings judge_end(const std::string& path, const RecordingSurvey& survey) {
-  if (!survey.facts || survey.end || survey.was_torn || !survey.torn.empty()) return {};
+  if (!survey.facts || survey.ending != Ending::none) return {};
   return {ends_before(path)};
 }
 

@@ -41,7 +41,7 @@ struct RecordingSurvey {
   ExpectedDevices expected;
   std::map<std::string, std::string> places;  // of nodes, as far as the lab says them: "imu/7"
   std::optional<RecordingEnd> end;            // absent: torn, or it goes on in another file
-  bool was_torn = false;                      // `recover` says so
+  Ending ending = Ending::none;               // of a file that breaks off: torn
   std::vector<CountedSender> senders;         // the last counts of each, …
   std::vector<CountedPort> ports;             // … and of each device's port
   std::vector<std::pair<RecordedMark, std::uint64_t>> marks;  // with their log times

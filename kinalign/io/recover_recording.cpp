@@ -3,6 +3,7 @@
 
 #include "kinalign/core/file_version.h"
 #include "kinalign/io/mcap_store.h"
+#include "kinalign/io/merged_parts.h"
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace kinalign {
@@ -29,21 +31,15 @@ PieceSource pieces_of(const OutputFile& file, std::uint64_t size, std::string& b
           }};
 }
 
-/// Takes the records of all files one after the other and writes them anew.
+/// Takes the records of all files and writes them anew.
 class Copier {
  public:
-  explicit Copier(OutputFile& out) : writer_(mcap_store(out)) {}
+  Copier(OutputFile& out, const RecordingParts& parts)
+      : writer_(mcap_store(out)), parts_(parts), unchecked_(parts.size()) {}
 
-  /// Of what may stand in a later file, too, that one's is taken.
-  void begin_part(const RecordingParts& parts, std::size_t part) {
-    parts_ = &parts;
+  Result<void> take(const McapRecord& record, std::size_t part, bool unchecked) {
     part_ = part;
-    of_earlier_ = names_;
-    torn = false;
-  }
-
-  Result<void> take(const McapRecord& record, bool unchecked) {
-    unchecked_ = unchecked;
+    is_unchecked_ = unchecked;
     if (!std::holds_alternative<McapHeader>(record)) KA_TRY(begin({}));
     return std::visit([this](const auto& one) { return add(one); }, record);
   }
@@ -77,6 +73,11 @@ class Copier {
   /// Messages, by the file's own statistics: as long as nothing says that they are damaged.
   std::uint64_t counted = 0;
   bool torn = false;  // the last part
+  /// Of this part a checksum covers everything after all.
+  void all_checked(std::size_t part) { unchecked_[part] = 0; }
+  std::uint64_t unchecked() const {
+    return std::accumulate(unchecked_.begin(), unchecked_.end(), std::uint64_t{0});
+  }
 
  private:
   Result<void> begin(const McapHeader& header) {
@@ -95,15 +96,15 @@ class Copier {
   }
   Result<void> add(const McapMetadata& metadata) {
     if (metadata.name == torn_metadata) {  // of the last part alone, and at the end
-      torn = true;
+      torn = torn || part_ + 1 == parts_.size();
       return {};
     }
-    if (is_repeated("metadata " + metadata.name)) return {};
+    if (is_repeated(name_of(metadata))) return {};
     KA_TRY(close_chunk());
     return writer_.write(metadata);
   }
   Result<void> add(const McapAttachment& attachment) {
-    if (is_repeated("attachment " + attachment.name)) return {};
+    if (is_repeated(name_of(attachment))) return {};
     KA_TRY(close_chunk());
     return writer_.write(attachment);
   }
@@ -114,7 +115,7 @@ class Copier {
       ++recovered.nameless;
       return {};
     }
-    if (parts_ != nullptr && stands_elsewhere(*parts_, part_, message)) {
+    if (has_better(parts_, part_, message)) {
       ++recovered.twice;
       return {};
     }
@@ -126,15 +127,15 @@ class Copier {
     chunk_.add(message);
     contents_ = add_to(contents_, message);
     ++recovered.messages;
-    if (unchecked_) ++recovered.unchecked;
+    if (is_unchecked_) ++unchecked_[part_];
     return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
   }
   /// Each file of a recording begins with what the first one says. Within a file records may share
   /// a name: programs of others write several.
-  bool is_repeated(std::string name) {
-    const bool known = of_earlier_.contains(name);
-    names_.insert(std::move(name));
-    return known;
+  bool is_repeated(const std::string& name) {
+    names_.insert(name);
+    return std::any_of(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(part_),
+                       [&name](const RecordingPart& part) { return part.names.contains(name); });
   }
   Result<void> add(const McapStatistics& statistics) {
     counted += statistics.messages;
@@ -151,34 +152,35 @@ class Copier {
   }
 
   McapWriter writer_;
-  bool unchecked_ = false;
+  const RecordingParts& parts_;
+  std::size_t part_ = 0;
+  bool is_unchecked_ = false;
+  std::vector<std::uint64_t> unchecked_;  // messages, by part
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
-  const RecordingParts* parts_ = nullptr;
-  std::size_t part_ = 0;
   std::uint32_t contents_ = 0;
-  std::set<std::string> names_, of_earlier_;  // of metadata and attachments; those of earlier files
+  std::set<std::string> names_;  // of metadata and attachments
   McapChunkContent chunk_;
 };
 
-Result<void> copy_part(FileSystem& files, const RecordingParts& parts, std::size_t part,
-                       Copier& copier, const Progress& progress) {
-  Recovered& recovered = copier.recovered;
-  const std::string& path = parts[part].path;
-  McapReader reader;
-  copier.begin_part(parts, part);
-  const std::uint64_t unchecked_before = recovered.unchecked;
-  KA_TRY(read_recording(
-      files, path, reader,
-      [&](const McapRecord& record) { return copier.take(record, reader.unchecked()); }, progress));
-  recovered.skipped += reader.skipped();
-  if (reader.all_checked()) recovered.unchecked = unchecked_before;
-  if (reader.summary_spoilt() || !reader.closed()) copier.counted = 0;
-  copier.torn = copier.torn || !reader.closed();
-  for (Finding finding : reader.findings()) {
-    finding.what.file = path;
-    recovered.findings.push_back(std::move(finding));
+Result<void> copy(FileSystem& files, const RecordingParts& parts, Copier& copier,
+                  const Progress& progress) {
+  MergedParts merged = KA_TRY(MergedParts::open(files, parts, progress));
+  while (const auto one = KA_TRY(merged.next())) {
+    KA_TRY(copier.take(*one->record, one->part, merged.reader(one->part).unchecked()));
   }
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    const McapReader& reader = merged.reader(part);
+    copier.recovered.skipped += reader.skipped();
+    if (reader.all_checked()) copier.all_checked(part);
+    if (reader.summary_spoilt() || !reader.closed()) copier.counted = 0;
+    for (Finding finding : reader.findings()) {
+      finding.what.file = parts[part].path;
+      copier.recovered.findings.push_back(std::move(finding));
+    }
+  }
+  copier.torn = copier.torn || !merged.reader(parts.size() - 1).closed();
+  copier.recovered.unchecked = copier.unchecked();
   return {};
 }
 
@@ -243,10 +245,8 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
     if (same_file(out, path)) return Failure(is_input(out, path));
   }
   OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
-  Copier copier(file);
-  for (std::size_t part = 0; part < parts.size(); ++part) {
-    KA_TRY(copy_part(files, parts, part, copier, progress));
-  }
+  Copier copier(file, parts);
+  KA_TRY(copy(files, parts, copier, progress));
   Recovered& recovered = copier.recovered;
   if (copier.is_empty()) {
     return Failure(Error{paths.front(), 0, "a recording in which a message can be read", "none"});

@@ -194,7 +194,7 @@ class JsonChannels {
   std::map<std::uint16_t, std::uint16_t> copied_;  // its id -> ours
 };
 
-/// Of what stands in two files the later one's.
+/// Of what stands in two files one copy, as stands_elsewhere() chooses.
 Result<void> copy_json(FileSystem& files, const RecordingParts& parts, const Progress& progress,
                        ShownFile& shown) {
   JsonChannels channels(shown);

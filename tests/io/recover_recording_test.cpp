@@ -161,7 +161,7 @@ TEST_CASE(
   const std::string cut = folder.write("c.mcap", torn.substr(0, torn.size() - 20));
   REQUIRE(recover_recording(files, {cut}, folder / "d.mcap", Overwrite::no));
   const auto survey = survey_recording(files, folder / "d.mcap");
-  CHECK(survey->was_torn);
+  CHECK(survey->ending == Ending::torn);
   CHECK(judge_end("x", *survey).empty());
 }
 
@@ -192,7 +192,7 @@ TEST_CASE("torn for good is what recover made of a recording whose last file is 
   const auto cut = [](const std::string& bytes) { return bytes.substr(0, bytes.size() - 20); };
   const auto was_torn = [&](const std::vector<std::string>& paths, const std::string& out) {
     REQUIRE(recover_recording(files, paths, folder / out, Overwrite::no));
-    return survey_recording(files, folder / out)->was_torn;
+    return survey_recording(files, folder / out)->ending == Ending::torn;
   };
   const std::string a = folder.write("a.mcap", cut(part_of(1, 0, 20, false)));
   CHECK(was_torn({a}, "torn.mcap"));
@@ -217,7 +217,7 @@ TEST_CASE("a torn file that only repeats changes neither the order of messages n
     CHECK(recovered->missing == 0);
     for (const Finding& one : recovered->findings) CHECK(one.what.found != "one that ends before");
     const auto survey = survey_recording(files, folder / "b.mcap");
-    CHECK(survey->was_torn);
+    CHECK(survey->ending == Ending::torn);
     for (const ChannelSurvey& channel : survey->channels) CHECK(channel.missing == 0);
     const ReadMcap read = read_mcap(folder.read("b.mcap"));
     REQUIRE(read.messages.size() == 20);
@@ -278,6 +278,66 @@ TEST_CASE("what recover made of all needs no part, wherever it stands") {
   CHECK(recover_recording(files, {a}, folder / "b.mcap", Overwrite::yes)->messages == 60);
 }
 
+TEST_CASE("what lies between others stands between them, also where recover had joined those") {
+  const FreshFolder folder;
+  PosixFiles files;
+  folder.write("a.mcap", part_of(1, 0, 30, false));
+  folder.write("a.part3.mcap", part_of(3, 57, 90, true));
+  const std::string whole = folder / "whole.mcap";
+  REQUIRE(recover_recording(files, {folder / "a.mcap"}, whole, Overwrite::no)->missing == 27);
+  const std::string b = folder.write("a.part2.mcap", part_of(2, 27, 60, false));
+  for (const auto& given : {std::vector{whole, b}, std::vector{b, whole}, std::vector{b}}) {
+    const auto recovered = recover_recording(files, given, folder / "b.mcap", Overwrite::yes);
+    REQUIRE(recovered);
+    CHECK(worst_of(recovered->findings) == Severity::note);
+    CHECK(recovered->missing == 0);
+    const ReadMcap read = read_mcap(folder.read("b.mcap"));
+    REQUIRE(read.messages.size() == 90);
+    for (std::uint32_t k = 0; k < 90; ++k) CHECK(read.messages[k].data == nth_message(k).data);
+  }
+}
+
+TEST_CASE("a copy that a checksum covers is taken, whichever file it stands in") {
+  const std::string spoilt = nth_message(17).data;
+  const auto torn = [&](std::string bytes) {
+    bytes.resize(bytes.find(nth_message(19).data));
+    return bytes.replace(bytes.find(spoilt), spoilt.size(), spoilt.size(), '\0');
+  };
+  for (const bool first_is_torn : {true, false}) {
+    const FreshFolder folder;
+    PosixFiles files;
+    const std::string first = part_of(1, 0, 20, false), second = part_of(2, 15, 24, false);
+    const std::string a = folder.write("a.mcap", first_is_torn ? torn(first) : first);
+    folder.write("a.part2.mcap", first_is_torn ? second : torn(second));
+    REQUIRE(recover_recording(files, {a}, folder / "b.mcap", Overwrite::no));
+    const ReadMcap read = read_mcap(folder.read("b.mcap"));
+    REQUIRE(read.messages.size() == (first_is_torn ? 24 : 20));
+    for (std::uint32_t k = 0; k < read.messages.size(); ++k) {
+      CHECK(read.messages[k].data == nth_message(k).data);
+    }
+  }
+}
+
+TEST_CASE("which file is the last one tells how a recording of several ends") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto cut = [](const std::string& bytes) { return bytes.substr(0, bytes.size() - 20); };
+  const std::string a = folder.write("a.mcap", cut(part_of(1, 0, 30, false)));
+  folder.write("a.part2.mcap", part_of(2, 27, 60, false));
+  const auto says_end = [&] {
+    const auto survey = survey_parts(files, *parts_from(files, a, {}), {});
+    REQUIRE(survey);
+    return judge_end(a, *survey).empty();
+  };
+  CHECK_FALSE(says_end());
+  folder.write("a.part3.mcap", cut(part_of(3, 54, 57, false)));
+  CHECK(says_end());
+  const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->messages == 60);
+  CHECK(survey_recording(files, folder / "b.mcap")->ending == Ending::torn);
+}
+
 TEST_CASE("a file with a part's name that does not say that it is one is told, and kept") {
   const std::string one = part_of(1, 0, 20, false), other = part_of(2, 10, 40, true);
   const auto cut = one.substr(0, one.size() - 20);
@@ -307,8 +367,17 @@ TEST_CASE("a file with a part's name that does not say that it is one is told, a
   const FreshFolder folder;
   PosixFiles files;
   const std::string a = folder.write("a.mcap", cut);
+  std::string nameless = cut;
+  nameless[nameless.find("raw_ns")] ^= 1;
+  folder.write("n.mcap", nameless);
+  folder.write("n.part2.mcap", other);
+  const auto alone =
+      recover_recording(files, {folder / "n.mcap"}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(alone);
+  CHECK(alone->findings.back().what.found ==
+        "a part of one, while the other does not say of which it is");
   std::filesystem::create_directory(folder / "a.part2.mcap");
-  const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::no);
+  const auto recovered = recover_recording(files, {a}, folder / "c.mcap", Overwrite::no);
   REQUIRE(recovered);
   CHECK(recovered->findings.back().what.found.starts_with("one that can't be read: "));
 }

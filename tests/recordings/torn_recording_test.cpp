@@ -16,20 +16,22 @@ using namespace kinalign;
 namespace {
 
 /// Two nodes, a Kinect and mocap for ten seconds.
-std::string four_streams() {
+RecordedLab four_streams() {
   RecordedLab lab(20261123);
   lab.add_node(12, 1, {3.0, -35.0}, 0.0, 10.0);
   lab.add_node(13, 1, {4.0, 10.0}, 0.0, 10.0);
   lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 10.0);
   lab.add_mocap(NoitomForm::new_header, "udp", 10.0);
-  return lab.file(false);
+  return lab;
 }
 
-/// What aligning all of it warns of.
-std::vector<std::string> warnings(const std::string& bytes) {
+/// What aligning all of it warns of. `further`: what it went on in.
+std::vector<std::string> warnings(const std::string& bytes, const std::string& further = "") {
   const FreshFolder folder;
   PosixFiles files;
-  const auto survey = survey_recording(files, folder.write("take.mcap", bytes));
+  const std::string path = folder.write("take.mcap", bytes);
+  if (!further.empty()) folder.write("take.part2.mcap", further);
+  const auto survey = survey_parts(files, *parts_from(files, path, {}), {});
   REQUIRE(survey);
   auto manifest = manifest_of(*survey, "take.mcap");
   REQUIRE(manifest);
@@ -51,7 +53,7 @@ std::vector<std::string> warnings(const std::string& bytes) {
 }  // namespace
 
 TEST_CASE("a recording that breaks off is said to once, however many streams are read from it") {
-  const std::string whole = four_streams();
+  const std::string whole = four_streams().file(false);
   const auto told = warnings(whole.substr(0, 7 * whole.size() / 10));
   const std::string torn = "take.mcap: expected a file that was closed, found one that breaks off";
   CHECK(std::count(told.begin(), told.end(), torn) == 1);
@@ -61,8 +63,14 @@ TEST_CASE("a recording that breaks off is said to once, however many streams are
   }
 }
 
+TEST_CASE("of a recording in two files nothing is amiss, however many nodes are in both") {
+  RecordedLab lab = four_streams();
+  const auto whole = warnings(lab.file());
+  CHECK(warnings(lab.file({1, -1e9, 6.0}), lab.file({2, 5.5, 1e9})) == whole);
+}
+
 TEST_CASE("damage is told once, and of each stream what it has lost by it") {
-  std::string bytes = four_streams();
+  std::string bytes = four_streams().file(false);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
   const auto told = warnings(bytes);
   for (const std::string stream : {"mocap", "kinect", "imu 12", "imu 13"}) {

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/io/message_numbers.h"
+
+#include "tests/seeds.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <iterator>
+#include <random>
+#include <set>
+
+using namespace kinalign;
+
+namespace {
+
+using Numbers = std::set<std::uint32_t>;
+
+McapMessage numbered(std::uint32_t number) { return {7, number, 0, 0, {}}; }
+
+/// Some of a few numbers, at the beginning and at the end of what 32 bits hold.
+Numbers some(std::mt19937_64& random) {
+  Numbers numbers;
+  const std::uint32_t base = random() % 2 == 0 ? 0 : UINT32_MAX - 20;
+  for (std::size_t k = random() % 15; k > 0; --k) {
+    numbers.insert(base + static_cast<std::uint32_t>(random() % 21));
+  }
+  return numbers;
+}
+
+MessageNumbers of(const Numbers& numbers, std::mt19937_64& random) {
+  std::vector<std::uint32_t> shuffled(numbers.begin(), numbers.end());
+  std::shuffle(shuffled.begin(), shuffled.end(), random);
+  MessageNumbers all;
+  for (const std::uint32_t number : shuffled) all.add(numbered(number));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("the numbers of messages are a set") {
+  for (const auto seed : fresh_seeds(300)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const Numbers a = some(random), b = some(random);
+    const MessageNumbers ours = of(a, random), theirs = of(b, random);
+    Numbers both, all;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::inserter(both, both.end()));
+    std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::inserter(all, all.end()));
+    CHECK(ours.present(7) == a.size());
+    CHECK(ours.missing(7) ==
+          (a.empty() ? 0 : std::uint64_t{*a.rbegin()} - *a.begin() + 1 - a.size()));
+    CHECK(ours.has_all(theirs) == std::includes(a.begin(), a.end(), b.begin(), b.end()));
+    CHECK(ours.shares_with(theirs, 7) == !both.empty());
+    const bool goes_on =
+        !a.empty() && std::includes(a.begin(), a.end(), b.lower_bound(*a.begin()), b.end());
+    CHECK(ours.goes_on_with(theirs, 7) == goes_on);
+    MessageNumbers joined = ours;
+    joined.add_all(theirs);
+    CHECK(joined.present(7) == all.size());
+    for (std::uint32_t k = 0; k < 22; ++k) {
+      for (const std::uint32_t number : {k, UINT32_MAX - k}) {
+        CHECK(ours.has(numbered(number)) == a.contains(number));
+        const auto next = a.lower_bound(number);
+        CHECK(ours.next(7, number) == (next == a.end() ? std::nullopt : std::optional(*next)));
+      }
+    }
+    CHECK_FALSE(ours.next(7, std::uint64_t{UINT32_MAX} + 1));
+    CHECK(ours.present(8) == 0);
+  }
+}
