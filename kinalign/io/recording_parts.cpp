@@ -31,7 +31,7 @@ RecordingParts without_repeated(RecordingParts parts) {
   bool all_proved = true;
   for (RecordingPart& part : parts) {
     const bool is_repeated =
-        part.ending <= ending && all_proved && before.has_all(part.numbers) &&
+        part.is_sound && part.ending <= ending && all_proved && before.has_all(part.numbers) &&
         std::includes(names.begin(), names.end(), part.names.begin(), part.names.end());
     if (!kept.empty() && is_repeated) continue;
     for (const std::uint16_t channel : part.numbers.channels()) {
@@ -162,7 +162,10 @@ Result<void> read_through(FileSystem& files, RecordingPart& part, const Progress
   std::set<std::uint16_t> defined;  // of other channels nobody knows what their messages are
   const auto take = [&](const McapRecord& record) -> Result<void> {
     if (const auto* message = std::get_if<McapMessage>(&record)) {
-      if (!defined.contains(message->channel)) return {};
+      if (!defined.contains(message->channel)) {
+        part.is_sound = false;
+        return {};
+      }
       part.numbers.add(*message);
       if (reader.unchecked()) part.unproved.add(*message);
     } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
@@ -178,6 +181,7 @@ Result<void> read_through(FileSystem& files, RecordingPart& part, const Progress
   KA_TRY(read_recording(files, part.path, reader, take, progress));
   if (!reader.closed()) part.ending = std::max(part.ending, Ending::torn);
   if (reader.all_checked()) part.unproved = {};
+  part.is_sound = part.is_sound && reader.findings().empty() && reader.skipped() == 0;
   return {};
 }
 

@@ -21,6 +21,7 @@ struct RecordingPart {
   MessageNumbers numbers{};
   MessageNumbers unproved{};          // those that no checksum covers
   std::set<std::string> names{};      // of metadata and attachments, as name_of() has them
+  bool is_sound = true;               // nothing in it was damaged or without a name
   Ending ending = Ending::none;       // of a file that breaks off: torn
   std::set<std::uint16_t> repeats{};  // channels of which what files before have counts, see below
 };

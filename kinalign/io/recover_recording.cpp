@@ -70,6 +70,7 @@ class Copier {
   }
 
   Recovered recovered;
+  MessageNumbers numbers;  // of those that were written
   /// Messages, by the file's own statistics: as long as nothing says that they are damaged.
   std::uint64_t counted = 0;
   bool torn = false;  // the last part
@@ -126,6 +127,7 @@ class Copier {
     }
     chunk_.add(message);
     contents_ = add_to(contents_, message);
+    numbers.add(message);
     ++recovered.messages;
     if (is_unchecked_) ++unchecked_[part_];
     return chunk_.size() < chunk_bytes ? Result<void>() : close_chunk();
@@ -193,18 +195,32 @@ Result<void> check_beginning(FileSystem& files, const std::string& path) {
   return Failure(Error{path, 0, "an MCAP file", beginning_of(head)});
 }
 
+/// Files that recover has made and that lack what is in others are the only ones to bring this
+/// about.
+Findings judge_order(const std::string& out, const Copier& copier) {
+  const RecordingSurvey& proof = copier.recovered.proof;
+  const auto is_disordered = [&copier](const ChannelSurvey& one) {
+    return one.missing > copier.numbers.missing(one.channel.id);
+  };
+  if (!proof.facts || std::none_of(proof.channels.begin(), proof.channels.end(), is_disordered)) {
+    return {};
+  }
+  return {{Severity::warning,
+           Error{out, 0, "each channel's messages in their order", "some behind later ones"},
+           "all are there, but check takes some for missing, and align leaves some out",
+           "recover the recording's own files together, without one that recover has made"}};
+}
+
 /// Messages that were there and are not in the new file.
-std::uint64_t missing(const Copier& copier, const RecordingParts& parts) {
+std::uint64_t missing(const Copier& copier, std::size_t parts) {
   const Recovered& recovered = copier.recovered;
-  MessageNumbers numbers;  // of one file alone the order will do
-  for (const RecordingPart& part : parts) numbers.add_all(part.numbers);
   std::uint64_t by_number = 0;
   if (recovered.proof.facts) {  // programs of others number as they like
     for (const ChannelSurvey& one : recovered.proof.channels) {
-      by_number += parts.size() == 1 ? one.missing : numbers.missing(one.channel.id);
+      by_number += copier.numbers.missing(one.channel.id);
     }
   }
-  const bool counted = parts.size() == 1 && copier.counted > recovered.messages;
+  const bool counted = parts == 1 && copier.counted > recovered.messages;
   return std::max(by_number, counted ? copier.counted - recovered.messages : 0);
 }
 
@@ -253,7 +269,8 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   }
   KA_TRY(copier.finish());
   KA_TRY(prove(copier, file, out, progress));
-  recovered.missing = missing(copier, parts);
+  recovered.missing = missing(copier, parts.size());
+  append(recovered.findings, judge_order(out, copier));
   append(recovered.findings, judge_end(parts.back().path, recovered.proof));
   append(recovered.findings, judge_parts(parts, PartsBehind::read));
   append(recovered.findings, judge_namesakes(files, parts.front().path));

@@ -259,6 +259,31 @@ TEST_CASE("what a torn file brings of one channel does not disturb the others") 
   for (const ChannelSurvey& one : survey->channels) CHECK(one.missing == 0);
 }
 
+TEST_CASE("no file is left out for what can't be read of it") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string one = part_of(1, 0, 20, false);
+  const std::string a = folder.write("a.mcap", one.substr(0, one.size() - 20));
+  std::string nameless = part_of(2, 14, 26, false);
+  nameless.resize(nameless.find(nth_message(25).data));  // torn in its chunk, whose channels …
+  for (auto at = nameless.find("/topic"); at != std::string::npos;
+       at = nameless.find("/topic", at + 1)) {
+    nameless[at - 17] = 0x7e;  // … are records of another kind now
+  }
+  folder.write("a.part2.mcap", nameless);
+  const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->messages == 25);
+  CHECK(recovered->missing == 0);
+  std::string damaged = part_of(2, 14, 26, false);
+  damaged[damaged.find(nth_message(25).data)] ^= 1;
+  folder.write("a.part2.mcap", damaged);
+  const auto told = recover_recording(files, {a}, folder / "c.mcap", Overwrite::no);
+  REQUIRE(told);
+  CHECK(told->messages == 20);
+  CHECK(worst_of(told->findings) == Severity::error);
+}
+
 TEST_CASE("what recover made of all needs no part, wherever it stands") {
   const FreshFolder folder;
   PosixFiles files;
