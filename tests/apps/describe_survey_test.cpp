@@ -16,6 +16,7 @@ RecordingSurvey kinect_survey(std::uint64_t counted, std::uint64_t present, std:
   survey.facts.emplace();
   survey.facts->part = 1;
   survey.end = RecordingEnd{};
+  survey.ending = Ending::ended;
   ChannelSurvey channel;
   channel.channel.topic = "/kinect/raw";
   channel.messages = present;
