@@ -123,6 +123,7 @@ def while_the_end_waits_for_the_disk_who_calls_is_answered(folder):
         assert json.loads(caller.recv(1000))["is"] == "new"
         recording.program.send_signal(signal.SIGINT)
         recording.until("stopped")
+        recording.program.communicate(timeout=60)  # while it runs the disk is in use
 
 
 @case
