@@ -4,6 +4,7 @@
 #pragma once
 
 #include <libdeflate.h>
+#include <zlib.h>
 
 #include <cstdint>
 #include <string_view>
@@ -14,6 +15,11 @@ namespace kinalign {
 inline std::uint32_t crc_of(std::string_view bytes, std::uint32_t before = 0) {
   if (bytes.empty()) return before;  // of nothing at no place it would begin anew
   return ::libdeflate_crc32(before, bytes.data(), bytes.size());
+}
+
+/// Of bytes whose checksum is `first` and, behind them, `size` bytes whose own is `second`.
+inline std::uint32_t joined_crc(std::uint32_t first, std::uint32_t second, std::size_t size) {
+  return static_cast<std::uint32_t>(crc32_combine(first, second, static_cast<z_off_t>(size)));
 }
 
 }  // namespace kinalign

@@ -69,6 +69,17 @@ void McapChunkContent::add(const McapMessage& message) {
   append_mcap(records_, message);
 }
 
+namespace {
+
+/// Of a chunk and its indexes: what it stores is summed up already.
+std::uint32_t crc_of_chunk(std::string_view bytes, std::size_t chunk_bytes, std::string_view stored,
+                           std::uint32_t of_stored) {
+  const std::string_view front = bytes.substr(0, chunk_bytes - stored.size());
+  return crc_of(bytes.substr(chunk_bytes), joined_crc(crc_of(front), of_stored, stored.size()));
+}
+
+}  // namespace
+
 McapStoredChunk store(const McapChunkContent& content, McapCompression compression) {
   const std::string_view records = content.records();
   const std::string packed =
@@ -83,6 +94,7 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
   constexpr std::size_t heads = 128;  // of the chunk and of an index, at most
   chunk.bytes.reserve(stored.size() + heads * (1 + content.messages().size()));
   append_mcap(chunk.bytes, head, stored);
+  const std::size_t chunk_bytes = chunk.bytes.size();
   chunk.index = {
       head.start,    head.end,      0, chunk.bytes.size(), {}, 0, std::string(head.compression),
       stored.size(), records.size()};
@@ -92,6 +104,8 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
     append_mcap_message_index(chunk.bytes, channel, entries);
   }
   chunk.index.message_index_length = chunk.bytes.size() - chunk.index.chunk_length;
+  chunk.crc = crc_of_chunk(chunk.bytes, chunk_bytes, stored,
+                           is_packed ? crc_of(stored) : head.uncompressed_crc);
   return chunk;
 }
 

@@ -52,6 +52,7 @@ class McapChunkContent {
 /// The chunk's record and, behind it, its message indexes.
 struct McapStoredChunk {
   std::string bytes;
+  std::uint32_t crc = 0;                                    // of these
   McapChunkIndex index;                                     // offsets count from the first byte
   std::map<std::uint16_t, std::uint64_t> channel_messages;  // how many
   McapDefinitions definitions;

@@ -38,7 +38,9 @@ Result<void> McapWriter::write(const McapStoredChunk& chunk) {
   McapChunkIndex index = chunk.index;
   index.chunk_offset += size_;
   for (auto& [channel, offset] : index.message_index_offsets) offset += size_;
-  KA_TRY(append(chunk.bytes));
+  KA_TRY(store_.append(chunk.bytes));
+  size_ += chunk.bytes.size();
+  crc_ = joined_crc(crc_, chunk.crc, chunk.bytes.size());
 
   append_mcap(chunk_indexes_, index);
   std::uint64_t messages = 0;
