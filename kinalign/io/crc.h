@@ -6,6 +6,7 @@
 #include <libdeflate.h>
 #include <zlib.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 

@@ -94,7 +94,6 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
   constexpr std::size_t heads = 128;  // of the chunk and of an index, at most
   chunk.bytes.reserve(stored.size() + heads * (1 + content.messages().size()));
   append_mcap(chunk.bytes, head, stored);
-  const std::size_t chunk_bytes = chunk.bytes.size();
   chunk.index = {
       head.start,    head.end,      0, chunk.bytes.size(), {}, 0, std::string(head.compression),
       stored.size(), records.size()};
@@ -104,7 +103,7 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
     append_mcap_message_index(chunk.bytes, channel, entries);
   }
   chunk.index.message_index_length = chunk.bytes.size() - chunk.index.chunk_length;
-  chunk.crc = crc_of_chunk(chunk.bytes, chunk_bytes, stored,
+  chunk.crc = crc_of_chunk(chunk.bytes, chunk.index.chunk_length, stored,
                            is_packed ? crc_of(stored) : head.uncompressed_crc);
   return chunk;
 }

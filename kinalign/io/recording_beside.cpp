@@ -77,6 +77,21 @@ std::vector<std::string> namesakes_of(const std::string& file,
   return once.take();
 }
 
+/// And what `beside` finds by each, once a recording.
+template <class Beside>
+std::vector<std::string> with_others(const std::vector<std::string>& named, Beside beside) {
+  Paths all, looked_at;
+  for (const std::string& path : named) all.add(path);
+  for (const std::string& path : named) {
+    if (looked_at.has(path)) continue;
+    for (const std::string& one : beside(path)) {
+      looked_at.add(one);
+      all.add(one);
+    }
+  }
+  return all.take();
+}
+
 }  // namespace
 
 bool is_same_recording(const RecordingFacts& a, const RecordingFacts& b) {
@@ -117,32 +132,20 @@ std::vector<FileBeside> files_beside(FileSystem& files, const std::string& path,
 }
 
 std::vector<std::string> with_parts(FileSystem& files, const std::vector<std::string>& named) {
-  Paths all, beside;
-  for (const std::string& path : named) all.add(path);
-  for (const std::string& path : named) {
-    if (beside.has(path)) continue;  // of a recording that was looked at
+  return with_others(named, [&files](const std::string& path) {
+    std::vector<std::string> found;
     const auto facts = read_facts(files, path);
-    if (!facts || !*facts) continue;
-    for (const FileBeside& one : files_beside(files, path, **facts)) {
-      beside.add(one.path);
-      all.add(one.path);
-    }
-  }
-  return all.take();
+    if (!facts || !*facts) return found;
+    for (FileBeside& one : files_beside(files, path, **facts)) found.push_back(std::move(one.path));
+    return found;
+  });
 }
 
 std::vector<std::string> with_namesakes(FileSystem& files, const std::vector<std::string>& named) {
-  Paths all, beside;
-  for (const std::string& path : named) all.add(path);
-  for (const std::string& path : named) {
-    if (beside.has(path)) continue;
+  return with_others(named, [&files](const std::string& path) {
     const auto facts = read_facts(files, path);
-    for (const std::string& one : namesakes_of(path, facts ? *facts : std::nullopt)) {
-      beside.add(one);
-      all.add(one);
-    }
-  }
-  return all.take();
+    return namesakes_of(path, facts ? *facts : std::nullopt);
+  });
 }
 
 Findings judge_namesakes(FileSystem& files, const std::string& path) {
