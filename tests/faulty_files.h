@@ -10,6 +10,9 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <set>
+#include <string>
+#include <utility>
 
 namespace kinalign {
 
@@ -71,6 +74,38 @@ class FaultyFiles final : public FileSystem {
   }
 
   PosixFiles files_;
+};
+
+/// The machine's, but one page of a file the disk can't give.
+class BadPage final : public PosixFiles {
+ public:
+  static constexpr off_t size = 4096;
+  BadPage(std::string path, off_t at) : path_(std::move(path)), at_(at / size * size) {}
+
+  int open(const char* path, int flags, mode_t mode) override {
+    const int fd = PosixFiles::open(path, flags, mode);
+    if (path == path_) bad_.insert(fd);
+    return fd;
+  }
+  int close(int fd) override {
+    bad_.erase(fd);
+    return PosixFiles::close(fd);
+  }
+  ssize_t read_at(int fd, void* data, std::size_t want, off_t at) override {
+    if (!bad_.contains(fd)) return PosixFiles::read_at(fd, data, want, at);
+    if (at >= at_ && at < at_ + size) return unreadable();
+    if (at < at_) want = std::min(want, static_cast<std::size_t>(at_ - at));
+    return PosixFiles::read_at(fd, data, want, at);
+  }
+
+ private:
+  static ssize_t unreadable() {
+    errno = EIO;
+    return -1;
+  }
+  std::string path_;
+  off_t at_;
+  std::set<int> bad_;
 };
 
 }  // namespace kinalign

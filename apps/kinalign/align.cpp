@@ -13,6 +13,7 @@
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/report_json.h"
+#include "kinalign/io/survey_parts.h"
 #include "kinalign/io/unknown_file.h"
 
 #include <fmt/format.h>

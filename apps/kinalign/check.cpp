@@ -13,6 +13,7 @@
 #include "kinalign/align/space.h"
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/report_json.h"
+#include "kinalign/io/survey_parts.h"
 #include "kinalign/io/take_hdf5.h"
 
 #include <fmt/format.h>

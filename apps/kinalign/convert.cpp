@@ -14,6 +14,7 @@
 #include "kinalign/io/report_json.h"
 #include "kinalign/io/show_recording.h"
 #include "kinalign/io/show_xdf.h"
+#include "kinalign/io/survey_parts.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_npz.h"
 #include "kinalign/io/xdf_survey.h"

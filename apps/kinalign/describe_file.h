@@ -5,6 +5,7 @@
 #include "apps/kinalign/verb.h"
 
 #include "kinalign/io/recording_parts.h"
+#include "kinalign/io/recording_survey.h"
 #include "kinalign/take/recording.h"
 
 #include <string>

@@ -233,6 +233,11 @@ Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
   return findings;
 }
 
+/// That recover may give what it makes of the file.
+std::string new_name(const std::string& path) {
+  return path == "whole.mcap" ? "recovered.mcap" : "whole.mcap";
+}
+
 }  // namespace
 
 Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
@@ -241,11 +246,12 @@ Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
     findings.push_back({Severity::warning,
                         {torn, 0, "an index at the recording's end", "none"},
                         "it was not closed: the program or the machine stopped, or the disk did",
-                        survey.messages == 0
-                            ? "nothing of it can be read"
-                            : "kinalign recover " + path + " -o whole.mcap gives it one"});
+                        survey.messages == 0 ? "nothing of it can be read"
+                                             : "kinalign recover " + torn + " -o " +
+                                                   new_name(torn) + " gives it one"});
   }
   append(findings, judge_end(path, survey));
+  append(findings, judge_order(path, survey));
   if (!survey.steps.empty()) {
     const WallClockStep& worst = *std::max_element(
         survey.steps.begin(), survey.steps.end(), [](const auto& a, const auto& b) {

@@ -8,12 +8,23 @@
 #include "apps/kinalign/settings.h"
 
 #include <algorithm>
+#include <new>
 #include <optional>
 #include <thread>
 
 namespace kinalign {
 
 namespace {
+
+/// A file of a few bytes may say that it needs gigabytes.
+template <class Work>
+Result<int> with_memory(const Work& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    return Failure(Error{"", 0, "as much memory as the files need", "no more of it"});
+  }
+}
 
 /// One call of one verb.
 class Run {
@@ -25,7 +36,7 @@ class Run {
   int operator()() {
     const auto fill = [&](Usage& usage) { return take_words(usage); };
     const auto call = [&] { return enter(); };
-    const Result<int> code = verb_.enter(fill, call);
+    const Result<int> code = with_memory([&] { return verb_.enter(fill, call); });
     if (!filled_) return early_;
     return leave(code);
   }

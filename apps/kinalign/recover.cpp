@@ -64,7 +64,7 @@ Result<int> run(Recover& o, Call& call) {
   std::string text = head_line(out, done);
   if (done.unchecked > 0) {
     text +=
-        fmt::format("  {} of them no checksum covers (a torn end, or messages outside of chunks)\n",
+        fmt::format("  {} of them no checksum covers (a torn end, or a writer that made none)\n",
                     grouped(done.unchecked));
   }
   if (done.twice > 0) text += fmt::format("  {} stood in two files\n", grouped(done.twice));
@@ -81,7 +81,7 @@ Result<int> run(Recover& o, Call& call) {
       {"missing", done.missing},
       {"skipped_bytes", done.skipped},
       {"findings", nlohmann::ordered_json::parse(findings_json(done.findings))}}));
-  return std::max(code_of(done.findings), done.missing > 0 ? 1 : 0);
+  return std::max(code_of(done.findings), done.missing + done.nameless > 0 ? 1 : 0);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -79,7 +80,9 @@ InputFile::InputFile(InputFile&& other) noexcept
       path_(std::move(other.path_)),
       fd_(std::exchange(other.fd_, -1)),
       size_(other.size_),
-      buffer_(std::move(other.buffer_)) {}
+      buffer_(std::move(other.buffer_)),
+      at_(other.at_),
+      unread_(other.unread_) {}
 
 InputFile& InputFile::operator=(InputFile&& other) noexcept {
   std::swap(files_, other.files_);
@@ -87,6 +90,8 @@ InputFile& InputFile::operator=(InputFile&& other) noexcept {
   std::swap(fd_, other.fd_);
   std::swap(size_, other.size_);
   std::swap(buffer_, other.buffer_);
+  std::swap(at_, other.at_);
+  std::swap(unread_, other.unread_);
   return *this;
 }
 
@@ -99,6 +104,24 @@ Result<std::string_view> InputFile::next() {
     const ssize_t got = files_->read(fd_, buffer_.data(), buffer_.size());
     if (got >= 0) return std::string_view(buffer_.data(), static_cast<std::size_t>(got));
     if (errno != EINTR) return failed(path_, "a readable file", errno);
+  }
+}
+
+Result<std::string_view> InputFile::next_or_zeros() {
+  constexpr std::uint64_t page = 4096;  // what the kernel reads at the least
+  for (;;) {
+    const ssize_t got =
+        files_->read_at(fd_, buffer_.data(), buffer_.size(), static_cast<off_t>(at_));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && errno != EIO) return failed(path_, "a readable file", errno);
+    auto size = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
+    if (got < 0 && at_ < size_) {
+      size = static_cast<std::size_t>(std::min(page - at_ % page, size_ - at_));
+      std::fill_n(buffer_.begin(), size, '\0');
+      unread_ += size;
+    }
+    at_ += size;
+    return std::string_view(buffer_.data(), size);
   }
 }
 

@@ -70,6 +70,11 @@ class InputFile {
   /// The next piece; empty at the end. Valid until the next call.
   Result<std::string_view> next();
 
+  /// The same of what a bad disk can still give (not to be mixed with next()): of a page where it
+  /// fails (EIO) the rest comes as zeros, a piece of its own.
+  Result<std::string_view> next_or_zeros();
+  std::uint64_t unread() const { return unread_; }  // bytes that are such zeros
+
   /// Fills `to` from byte `at` on, as far as the file reaches; returns how much that was. Does not
   /// move what next() reads.
   Result<std::size_t> read_at(std::uint64_t at, std::span<char> to) const;
@@ -85,6 +90,7 @@ class InputFile {
   int fd_;
   std::uint64_t size_;
   std::vector<char> buffer_;
+  std::uint64_t at_ = 0, unread_ = 0;  // of next_or_zeros()
 };
 
 /// All of a file at once: for small ones (manifests, layouts). Fails above `most` bytes.

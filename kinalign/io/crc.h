@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // CRC-32 of files' contents (the one of wire/crc32.h) by libdeflate, which is made for
-// megabytes: some ten times as fast as zlib where the processor multiplies without carry.
+// megabytes: some ten times as fast as zlib where the processor multiplies without carry. Two of
+// them joined: by zlib, as libdeflate has no such call.
 #pragma once
 
 #include <libdeflate.h>

@@ -71,6 +71,16 @@ void McapChunkContent::add(const McapMessage& message) {
 
 namespace {
 
+/// Bytes that a chunk and its indexes need, at most.
+std::size_t room_for(std::string_view stored, const McapChunkContent& content) {
+  constexpr std::size_t heads = 128;  // of the chunk, and of an index
+  std::size_t room = stored.size() + heads;
+  for (const auto& [channel, entries] : content.messages()) {
+    room += heads + entries.size() * sizeof(entries.front());
+  }
+  return room;
+}
+
 /// Of a chunk and its indexes: what it stores is summed up already.
 std::uint32_t crc_of_chunk(std::string_view bytes, std::size_t chunk_bytes, std::string_view stored,
                            std::uint32_t of_stored) {
@@ -91,8 +101,7 @@ McapStoredChunk store(const McapChunkContent& content, McapCompression compressi
 
   McapStoredChunk chunk;
   chunk.definitions = content.definitions();
-  constexpr std::size_t heads = 128;  // of the chunk and of an index, at most
-  chunk.bytes.reserve(stored.size() + heads * (1 + content.messages().size()));
+  chunk.bytes.reserve(room_for(stored, content));
   append_mcap(chunk.bytes, head, stored);
   chunk.index = {
       head.start,    head.end,      0, chunk.bytes.size(), {}, 0, std::string(head.compression),

@@ -165,7 +165,7 @@ std::optional<McapRecord> McapReader::read_record() {
     lose("a record whose fields and checksum fit", "another one");
     return std::nullopt;
   }
-  in_no_chunk_ = !is_chunk;
+  if (!is_chunk) uncovered_ = true;
   if (is_chunk) record = next_in_chunk();
   if (record) check_crc(*record, whole);
   crc_ = crc_of(whole, crc_);
@@ -204,6 +204,7 @@ void McapReader::check_crc(const McapRecord& record, std::string_view bytes) {
 bool McapReader::open_chunk(std::string_view content) {
   const auto chunk = decode_mcap_chunk(content);
   if (!chunk || content.size() != chunk->size()) return false;
+  uncovered_ = chunk->head.uncompressed_crc == 0;
   auto records = unpack(*chunk, most_record);
   if (records) {
     chunk_ = *std::move(records);

@@ -23,6 +23,7 @@ class McapReader {
   void feed(std::string_view piece);
   /// There are no more.
   void end() { ended_ = true; }
+  bool ended() const { return ended_; }
 
   /// The next record; absent: more bytes are needed, or, after end(), there is none. A message's
   /// data is good until the next call of anything.
@@ -33,9 +34,9 @@ class McapReader {
   /// Ends as a file does that was closed. Else it is torn, however much of it was read.
   bool closed() const { return state_ == State::closed; }
   bool is_mcap() const { return state_ != State::foreign; }
-  /// No checksum of a chunk covers the last message: it stands in the chunk at which the file
-  /// breaks off, or in none.
-  bool unchecked() const { return in_torn_chunk_ || in_no_chunk_; }
+  /// No checksum of a chunk covers the last record: it stands in the chunk at which the file breaks
+  /// off, in one without a checksum, or in none.
+  bool unchecked() const { return in_torn_chunk_ || uncovered_; }
   /// The data section's checksum, read at its end, covers every message of the file.
   bool all_checked() const { return all_checked_; }
   /// The summary's checksum, read at the file's end, does not fit.
@@ -77,11 +78,27 @@ class McapReader {
   bool crc_counts_ = true;  // nothing of that was skipped
   std::string chunk_;       // its records
   std::size_t chunk_taken_ = 0;
-  bool in_torn_chunk_ = false, in_no_chunk_ = false;
+  bool in_torn_chunk_ = false, uncovered_ = false;
   bool all_checked_ = false, summary_spoilt_ = false;
   std::uint64_t skipped_ = 0;
   std::uint64_t tried_ = 0;  // bytes that were gone through in vain, looking for a chunk
   Findings findings_;
 };
+
+/// The reader's next record, fed with pieces as it needs them: an empty one is the file's end.
+/// Absent behind the last one, and once it is no MCAP file. Fails as `next_piece` does.
+template <class NextPiece>
+Result<std::optional<McapRecord>> pull(McapReader& reader, const NextPiece& next_piece) {
+  for (;;) {
+    if (auto record = reader.next()) return record;
+    if (reader.ended() || !reader.is_mcap()) return std::optional<McapRecord>();
+    const std::string_view piece = KA_TRY(next_piece());
+    if (piece.empty()) {
+      reader.end();
+    } else {
+      reader.feed(piece);
+    }
+  }
+}
 
 }  // namespace kinalign

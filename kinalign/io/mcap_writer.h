@@ -34,7 +34,8 @@ class McapWriter {
   Result<void> write(const McapStoredChunk& chunk);
   Result<void> write(const McapAttachment& attachment);
   Result<void> write(const McapMetadata& metadata);
-  /// Summary and end. Where it fails, the file is to be cut back to the size before.
+  /// Summary and end. Where it fails the writer is of no more use, and the file is to be cut back
+  /// to the size before.
   Result<void> finish();
 
   std::uint64_t size() const { return size_; }

@@ -12,7 +12,7 @@ Result<MergedParts> MergedParts::open(FileSystem& files, const RecordingParts& p
   merged.progress_ = progress;
   for (const RecordingPart& part : parts) {
     merged.parts_.push_back(
-        std::make_unique<Part>(Part{KA_TRY(InputFile::open(files, part.path)), &part.numbers}));
+        std::make_unique<Part>(Part{KA_TRY(InputFile::open(files, part.path)), &part}));
     merged.total_ += merged.parts_.back()->file.size();
   }
   for (const auto& part : merged.parts_) KA_TRY(merged.advance(*part));
@@ -30,23 +30,32 @@ Result<void> MergedParts::advance(Part& part) {
   if (const auto* given = part.head ? std::get_if<McapMessage>(&*part.head) : nullptr) {
     part.given[given->channel] = std::uint64_t{given->sequence} + 1;
   }
-  for (;;) {
-    part.head = part.reader.next();
-    if (part.head || part.ended) break;
-    const std::string_view piece = KA_TRY(part.file.next());
-    part.ended = piece.empty();
-    if (part.ended) {
-      part.reader.end();
-    } else {
-      part.reader.feed(piece);
-    }
+  do part.head = KA_TRY(pull_from(part));
+  while (is_stray(part));
+  if (part.reader.is_mcap()) return {};
+  return Failure(Error{part.file.path(), 0, "an MCAP file", "another beginning"});
+}
+
+Result<std::optional<McapRecord>> MergedParts::pull_from(Part& part) {
+  const auto next_piece = [&]() -> Result<std::string_view> {
+    const std::string_view piece = KA_TRY(part.file.next_or_zeros());
     done_ += piece.size();
     if (!go_on(progress_, "reading", done_, total_)) {
       return Failure(interruption(part.file.path()));
     }
-  }
-  if (part.reader.is_mcap()) return {};
-  return Failure(Error{part.file.path(), 0, "an MCAP file", "another beginning"});
+    return piece;
+  };
+  return pull(part.reader, next_piece);
+}
+
+/// Programs of others number their messages as they like.
+bool MergedParts::is_stray(Part& part) {
+  const auto* message = part.head ? std::get_if<McapMessage>(&*part.head) : nullptr;
+  const bool is_ours = !part.told->facts.first.empty();
+  if (message == nullptr || !is_ours) return false;
+  const bool stray = !part.guard.believes(*message, part.reader.unchecked());
+  part.strays += stray ? 1 : 0;
+  return stray;
 }
 
 /// Where files wait for one another the earliest message goes on.
@@ -71,7 +80,7 @@ bool MergedParts::waits(std::size_t part, const McapMessage& message) const {
     if (i == part || !other.head) continue;
     const auto given = other.given.find(message.channel);
     const auto next =
-        other.numbers->next(message.channel, given == other.given.end() ? 0 : given->second);
+        other.told->numbers.next(message.channel, given == other.given.end() ? 0 : given->second);
     if (next && *next < message.sequence) return true;
   }
   return false;

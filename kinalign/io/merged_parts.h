@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The records of a recording's files, read side by side: a file may fill a hole of an earlier one.
-// Within a file log times do not rise: device after device is read.
+// Within a file log times do not rise: device after device is read. Each file stays open and holds
+// a piece and a chunk; each message looks at all files' next ones: for some tens of files at most.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -28,23 +29,31 @@ class MergedParts {
   static Result<MergedParts> open(FileSystem& files, const RecordingParts& parts,
                                   const Progress& progress);
 
-  /// A message once no other file has to give a lower one of its channel, of several such the
-  /// earliest; what else there is as soon as it stands first in its file. Absent: all were taken.
+  /// A message once no other file has to give a lower one of its channel (where files wait for one
+  /// another so that none could go on: before it), of several such the earliest; what else there is
+  /// as soon as it stands first in its file. Absent: all were taken.
   /// Fails where a file can't be read or is no MCAP file.
   Result<std::optional<PartRecord>> next();
 
   const McapReader& reader(std::size_t part) const { return parts_[part]->reader; }
+  /// Messages of the file's torn end that were left out, see NumberGuard.
+  std::uint64_t strays(std::size_t part) const { return parts_[part]->strays; }
+  /// Bytes that the disk did not give: they came as zeros.
+  std::uint64_t unread(std::size_t part) const { return parts_[part]->file.unread(); }
 
  private:
   struct Part {
     InputFile file;
-    const MessageNumbers* numbers = nullptr;
+    const RecordingPart* told = nullptr;
     McapReader reader{};
+    NumberGuard guard{};
+    std::uint64_t strays = 0;
     std::optional<McapRecord> head{};
-    bool ended = false;
     std::map<std::uint16_t, std::uint64_t> given{};  // by channel: behind the last one
   };
   Result<void> advance(Part& part);
+  Result<std::optional<McapRecord>> pull_from(Part& part);
+  static bool is_stray(Part& part);
   std::optional<std::size_t> first() const;
   bool waits(std::size_t part, const McapMessage& message) const;
 

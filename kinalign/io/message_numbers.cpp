@@ -25,9 +25,11 @@ void MessageNumbers::add(const McapMessage& message) {
 }
 
 void MessageNumbers::add_all(const MessageNumbers& others) {
-  for (const auto& [id, stretches] : others.channels_) {
-    for (const auto& [begin, end] : stretches) add(channels_[id], begin, end);
-  }
+  for (const std::uint16_t channel : others.channels()) add_all(others, channel);
+}
+
+void MessageNumbers::add_all(const MessageNumbers& others, std::uint16_t channel) {
+  for (const auto& [begin, end] : others.of(channel)) add(channels_[channel], begin, end);
 }
 
 const MessageNumbers::Stretches& MessageNumbers::of(std::uint16_t channel) const {
@@ -66,6 +68,18 @@ std::uint64_t MessageNumbers::missing(std::uint16_t channel) const {
     behind = end;
   }
   return missing;
+}
+
+bool NumberGuard::believes(const McapMessage& message, bool unchecked) {
+  constexpr std::uint32_t most_dropped = 1U << 20;  // a quarter of an hour of 1000 a second
+  const std::uint32_t number = message.sequence;
+  if (!unchecked) {
+    const auto [last, is_first] = proved_.try_emplace(message.channel, number);
+    last->second = std::max(last->second, number);
+    return true;
+  }
+  const auto last = proved_.find(message.channel);
+  return last == proved_.end() || (number > last->second && number - last->second <= most_dropped);
 }
 
 bool MessageNumbers::has(const Stretches& stretches, std::uint32_t begin, std::uint64_t end) {

@@ -24,6 +24,7 @@ class MessageNumbers {
   /// Of a channel: that it has one of theirs.
   bool shares_with(const MessageNumbers& others, std::uint16_t channel) const;
   void add_all(const MessageNumbers& others);
+  void add_all(const MessageNumbers& others, std::uint16_t channel);
   /// Of a channel the lowest one that is not below.
   std::optional<std::uint32_t> next(std::uint16_t channel, std::uint64_t from) const;
   /// Of a channel, each once.
@@ -37,6 +38,17 @@ class MessageNumbers {
   static bool has(const Stretches& stretches, std::uint32_t begin, std::uint64_t end);
   const Stretches& of(std::uint16_t channel) const;
   std::map<std::uint16_t, Stretches> channels_;
+};
+
+/// Of one file of a recording, whose channels number their messages from front to back: whether
+/// what no checksum covers can be a message of it.
+class NumberGuard {
+ public:
+  bool believes(const McapMessage& message, bool unchecked);
+
+ private:
+  std::map<std::uint16_t, std::uint32_t>
+      proved_;  // by channel: the last one that a checksum covers
 };
 
 }  // namespace kinalign

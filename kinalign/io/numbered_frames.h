@@ -8,6 +8,7 @@
 #include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/recorded_messages.h"
 #include "kinalign/io/rows_in_order.h"
+#include "kinalign/io/sequence_count.h"
 
 #include <algorithm>
 #include <cmath>

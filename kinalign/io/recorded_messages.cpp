@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recorded_messages.h"
 
+#include "kinalign/io/recording_survey.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -41,6 +43,8 @@ Result<void> RecordedMessages::next_part(const TakeMessage& take) {
   KA_TRY(take_records(take));
   judge_file();
   reader_ = {};
+  guard_ = {};
+  strays_ = 0;
   ++part_;
   return {};
 }
@@ -116,6 +120,10 @@ void RecordedMessages::take_mark(const McapMessage& message) {
 }
 
 Result<void> RecordedMessages::take_message(const McapMessage& message, const TakeMessage& take) {
+  if (!guard_.believes(message, reader_.unchecked())) {
+    ++strays_;
+    return {};
+  }
   if (mark_channels_.contains(message.channel)) {
     if (message.log_time <= latest_log_time && !stands_elsewhere(*parts_, part_, message)) {
       take_mark(message);
@@ -137,7 +145,9 @@ Result<void> RecordedMessages::take_message(const McapMessage& message, const Ta
 }
 
 /// Each chunk names its channels again, and so does a summary, which may be damaged.
-void RecordedMessages::add(const McapChannel& channel) {
+void RecordedMessages::add(const McapChannel& defined) {
+  const McapChannel* proved = proved_channel(*parts_, defined.id);
+  const McapChannel& channel = proved == nullptr ? defined : *proved;
   auto raw = to_raw(channel);
   if (channel.topic == marks_topic && !channels_.contains(channel.id)) {
     mark_channels_.insert(channel.id);
@@ -176,6 +186,7 @@ void RecordedMessages::judge_file() {
     finding.what.file = file();
     by_file_.findings.push_back(std::move(finding));
   }
+  if (strays_ > 0) by_file_.findings.push_back(strays(file(), strays_));
   if (!reader_.closed()) {
     by_file_.findings.push_back(
         {Severity::warning, Error{file(), 0, "a file that was closed", "one that breaks off"},

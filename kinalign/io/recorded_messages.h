@@ -76,7 +76,7 @@ class RecordedMessages {
   Result<void> take_one(const McapRecord& record, const TakeMessage& take);
   void take_mark(const McapMessage& message);
   Result<void> take_message(const McapMessage& message, const TakeMessage& take);
-  void add(const McapChannel& channel);
+  void add(const McapChannel& defined);
   bool is_wanted(const RawChannel& raw);
   std::optional<std::size_t> place_on_roll(const RawChannel& raw);
   void judge_file();
@@ -88,6 +88,8 @@ class RecordedMessages {
   std::shared_ptr<const RecordingParts> parts_;
   std::size_t part_ = 0;
   McapReader reader_;
+  NumberGuard guard_;
+  std::uint64_t strays_ = 0;
   std::optional<RecordingFacts> facts_;
   std::string skeleton_;
   std::optional<RawChannel> chosen_;

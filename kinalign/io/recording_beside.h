@@ -18,22 +18,22 @@ bool is_same_recording(const RecordingFacts& a, const RecordingFacts& b);
 /// What a file says of itself before its messages; absent where it is no recording of ours.
 Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path);
 
-struct FileBeside {
-  std::string path;
-  int part = 0;
-};
-/// Files of the same recording in the same folder, itself among them.
-std::vector<FileBeside> files_beside(FileSystem& files, const std::string& path,
-                                     const RecordingFacts& facts);
+/// 2 of "take.part2.mcap"; of another name 0.
+int part_number(const std::string& path);
 
-/// These and, as they lie in the same folders, all other files of their recordings.
+/// These and, as they lie in the same folders, all other files of their recordings. Where a file is
+/// a link both its folder and the one that it leads to count.
 std::vector<std::string> with_parts(FileSystem& files, const std::vector<std::string>& named);
 
 /// As they lie in the same folders all files whose names say that they are of these recordings,
 /// whatever is in them, and these.
 std::vector<std::string> with_namesakes(FileSystem& files, const std::vector<std::string>& named);
 
-/// Of those beside the file that they are of its recording by their names alone.
+/// Whether a file lies beside another and has a name of its recording's files.
+bool is_namesake(const std::string& path, const std::string& other);
+
+/// Of those beside the file that they are of its recording by their names alone, and of a folder
+/// that can't be listed.
 Findings judge_namesakes(FileSystem& files, const std::string& path);
 
 }  // namespace kinalign

@@ -50,6 +50,8 @@ std::optional<ClockPair> believable(HostTime raw, Time utc) {
   return ClockPair{raw, utc};
 }
 
+bool is_part(std::int64_t number) { return 1 <= number && number <= 1'000'000; }
+
 // What an exchange's flags say.
 constexpr std::uint32_t echoed = 1, clockless = 2;
 constexpr std::uint64_t most_frames = std::uint64_t{1} << 33U;  // nine years at 15 Hz
@@ -65,15 +67,17 @@ std::string exchange_head(BootKey boot, std::uint32_t epoch, std::uint32_t flags
 }  // namespace
 
 McapMetadata to_metadata(const RecordingFacts& facts) {
-  return {std::string(recording_metadata),
-          {{"format", std::string(format)},
-           {"subject", facts.subject},
-           {"action", facts.action},
-           {"host", facts.host},
-           {"first", facts.first},
-           {"part", std::to_string(facts.part)},
-           {"raw_ns", std::to_string(facts.anchor.raw.time_since_epoch().count())},
-           {"utc_ns", std::to_string(facts.anchor.utc.time_since_epoch().count())}}};
+  McapMetadata metadata{std::string(recording_metadata),
+                        {{"format", std::string(format)},
+                         {"subject", facts.subject},
+                         {"action", facts.action},
+                         {"host", facts.host},
+                         {"first", facts.first},
+                         {"part", std::to_string(facts.part)},
+                         {"raw_ns", std::to_string(facts.anchor.raw.time_since_epoch().count())},
+                         {"utc_ns", std::to_string(facts.anchor.utc.time_since_epoch().count())}}};
+  if (facts.until) metadata.texts["until"] = std::to_string(*facts.until);
+  return metadata;
 }
 
 std::optional<RecordingFacts> to_facts(const McapMetadata& metadata) {
@@ -81,11 +85,14 @@ std::optional<RecordingFacts> to_facts(const McapMetadata& metadata) {
   const auto part = number_of(texts, "part"), raw = number_of(texts, "raw_ns"),
              utc = number_of(texts, "utc_ns");
   const bool is_ours = metadata.name == recording_metadata && text_of(texts, "format") == format;
-  if (!is_ours || !part || !raw || !utc || *part < 1 || *part > 1'000'000) return std::nullopt;
+  if (!is_ours || !part || !raw || !utc || !is_part(*part)) return std::nullopt;
   const auto anchor = believable(HostTime{Duration{*raw}}, Time{Duration{*utc}});
   if (!anchor) return std::nullopt;
-  return RecordingFacts{text_of(texts, "subject"), text_of(texts, "action"), text_of(texts, "host"),
-                        text_of(texts, "first"),   static_cast<int>(*part),  *anchor};
+  RecordingFacts facts{text_of(texts, "subject"), text_of(texts, "action"), text_of(texts, "host"),
+                       text_of(texts, "first"),   static_cast<int>(*part),  *anchor};
+  const auto until = number_of(texts, "until");
+  if (until && is_part(*until)) facts.until = static_cast<int>(*until);
+  return facts;
 }
 
 McapMetadata to_metadata(const ExpectedDevices& devices) {

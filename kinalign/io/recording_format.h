@@ -28,6 +28,8 @@ struct RecordingFacts {
   std::string first;  // name of the recording's first file
   int part = 1;       // which file of the recording this is
   ClockPair anchor;   // log times are UTC = host time + (utc - raw), in all of the recording
+  std::optional<int> until{};  // the last file whose messages are in this one, which recover made
+  int last_part() const { return until.value_or(part); }
 };
 McapMetadata to_metadata(const RecordingFacts& facts);
 /// Absent where a field is missing or no number, or where a clock is further than its limit: the

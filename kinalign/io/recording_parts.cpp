@@ -8,30 +8,41 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace kinalign {
 
 namespace {
 
+/// Of those that begin with one part first what reaches furthest, so that what repeats it can be
+/// left out. Where every sync fails two files may say the same number, but their names don't.
 void sort(RecordingParts& parts) {
-  std::stable_sort(parts.begin(), parts.end(), [](const RecordingPart& a, const RecordingPart& b) {
-    return a.facts.part < b.facts.part;
-  });
+  const auto place = [](const RecordingPart& one) {
+    return std::tuple(one.facts.part, -one.facts.last_part(), part_number(one.path), one.path);
+  };
+  std::sort(parts.begin(), parts.end(),
+            [&](const RecordingPart& a, const RecordingPart& b) { return place(a) < place(b); });
 }
 
-/// The later file's, but for an end, which nothing comes behind.
-Ending behind(Ending before, Ending later) { return before == Ending::ended ? before : later; }
+/// What recover made of several is read with what it lacks, and not behind its own parts.
+bool stands_behind(const RecordingPart& other, const RecordingPart& part) {
+  const bool is_twin = other.facts.part == part.facts.part && !other.facts.until &&
+                       !part.facts.until && part_number(other.path) > part_number(part.path);
+  return other.facts.part > part.facts.part || is_twin;
+}
 
 /// In their order.
 RecordingParts without_repeated(RecordingParts parts) {
   RecordingParts kept;
   MessageNumbers before;
   std::set<std::string> names;
-  Ending ending = Ending::none;
+  EndTogether end;
   bool all_proved = true;
   for (RecordingPart& part : parts) {
+    const EndTogether with_it = end.with(part.ending, part.facts);
     const bool is_repeated =
-        part.is_sound && part.ending <= ending && all_proved && before.has_all(part.numbers) &&
+        part.is_sound && with_it.ending == end.ending && all_proved &&
+        before.has_all(part.numbers) &&
         std::includes(names.begin(), names.end(), part.names.begin(), part.names.end());
     if (!kept.empty() && is_repeated) continue;
     for (const std::uint16_t channel : part.numbers.channels()) {
@@ -41,93 +52,48 @@ RecordingParts without_repeated(RecordingParts parts) {
     }
     before.add_all(part.numbers);
     names.insert(part.names.begin(), part.names.end());
-    ending = behind(ending, part.ending);
+    end = with_it;
     all_proved = all_proved && part.unproved.empty();
     kept.push_back(std::move(part));
   }
   return kept;
 }
 
-/// What the same one says later, or what is new.
-template <class Counted, class Same>
-void replace(std::vector<Counted>&& later, const Same& same, std::vector<Counted>& all) {
-  for (Counted& one : later) {
-    const auto found = std::find_if(all.begin(), all.end(),
-                                    [&](const Counted& known) { return same(known, one); });
-    if (found == all.end()) {
-      all.push_back(std::move(one));
-    } else {
-      *found = std::move(one);
-    }
-  }
-}
-
-void add(const ChannelSurvey& more, ChannelSurvey& channel) {
-  channel.first = std::min(channel.first, more.first);
-  channel.last = std::max(channel.last, more.last);
-  channel.bytes += more.bytes;
-  channel.sensors |= more.sensors;
-}
-
-/// Marks that stand in both files are one.
-void add_marks(RecordingSurvey&& more, RecordingSurvey& survey) {
-  for (auto& [mark, log_time] : more.marks) {
-    const auto same = [time = log_time, &one = mark](const auto& known) {
-      return known.second == time && known.first == one;
-    };
-    if (std::any_of(survey.marks.begin(), survey.marks.end(), same)) continue;
-    survey.marks.emplace_back(std::move(mark), log_time);
-  }
-  survey.more_marks = std::max(survey.more_marks, more.more_marks);
-}
-
-/// What a file that goes on behind adds.
-void add(RecordingSurvey&& more, RecordingSurvey& survey) {
-  for (const ChannelSurvey& one : more.channels) {
-    const auto same = [&](const ChannelSurvey& c) { return c.channel == one.channel; };
-    const auto found = std::find_if(survey.channels.begin(), survey.channels.end(), same);
-    if (found == survey.channels.end()) {
-      survey.channels.push_back(one);
-    } else {
-      add(one, *found);
-    }
-  }
-  replace(
-      std::move(more.senders),
-      [](const CountedSender& a, const CountedSender& b) {
-        return a.topic == b.topic && a.stream == b.stream && a.sender == b.sender &&
-               a.node == b.node;
-      },
-      survey.senders);
-  replace(
-      std::move(more.ports),
-      [](const CountedPort& a, const CountedPort& b) { return a.stream == b.stream; },
-      survey.ports);
-  if (more.end) survey.end = more.end;
-  survey.ending = behind(survey.ending, more.ending);
-  survey.bytes += more.bytes;
-  survey.unchecked += more.unchecked;
-  survey.torn.insert(survey.torn.end(), more.torn.begin(), more.torn.end());
-  for (const WallClockStep& step : more.steps) {  // one may stand in both
-    if (survey.steps.empty() || step.at > survey.steps.back().at) survey.steps.push_back(step);
-  }
-  append(survey.findings, more.findings);
-  add_marks(std::move(more), survey);
-}
-
 }  // namespace
 
-std::string name_of(const McapMetadata& metadata) { return "metadata " + metadata.name; }
-std::string name_of(const McapAttachment& attachment) { return "attachment " + attachment.name; }
+const McapChannel* proved_channel(const RecordingParts& parts, std::uint16_t id) {
+  for (const RecordingPart& part : parts) {
+    const auto found = part.definitions.channels.find(id);
+    if (found != part.definitions.channels.end()) return &found->second;
+  }
+  return nullptr;
+}
+
+std::size_t source_of(const RecordingParts& parts, const std::string& name) {
+  std::size_t source = parts.size();
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (!parts[k].names.contains(name)) continue;
+    const bool is_end = name == name_of(McapMetadata{std::string(end_metadata), {}});
+    const bool is_surer = source < k && parts[k].all_checked && !parts[source].all_checked;
+    if (source == parts.size() || is_end || is_surer) source = k;
+  }
+  return source;
+}
+
+std::size_t furthest(const RecordingParts& parts) {
+  std::size_t found = 0;
+  for (std::size_t k = 1; k < parts.size(); ++k) {
+    if (parts[k].facts.last_part() >= parts[found].facts.last_part()) found = k;
+  }
+  return found;
+}
 
 bool has_better(const RecordingParts& parts, std::size_t part, const McapMessage& message) {
-  const bool is_known = parts[part].numbers.has(message);  // its own file defines its channel
-  const bool is_proved = is_known && !parts[part].unproved.has(message);
+  const bool is_proved = !parts[part].unproved.has(message);
   for (std::size_t other = 0; other < parts.size(); ++other) {
     if (other == part || !parts[other].numbers.has(message)) continue;
     const bool other_is_proved = !parts[other].unproved.has(message);
-    const bool is_alike = is_known && other_is_proved == is_proved;
-    if (is_alike ? other > part : other_is_proved || !is_known) return true;
+    if (other_is_proved == is_proved ? other > part : other_is_proved) return true;
   }
   return false;
 }
@@ -136,8 +102,6 @@ bool stands_elsewhere(const RecordingParts& parts, std::size_t part, const McapM
   for (std::size_t other = 0; other < parts.size(); ++other) {
     if (other == part) continue;
     const RecordingPart& later = parts[std::max(part, other)];
-    const bool is_known = parts[part].numbers.has(message);  // its own file defines its channel
-    if (!is_known && parts[other].numbers.has(message)) return true;
     const bool is_from_later = !later.repeats.contains(message.channel);
     if (is_from_later == (other > part) && parts[other].numbers.has(message)) return true;
   }
@@ -156,33 +120,21 @@ Error is_no_part(const std::string& path, const RecordingParts& parts,
                  : fmt::format("part {} of another run, {}", facts->part, facts->first)};
 }
 
-/// Which messages it has, and how it ends.
-Result<void> read_through(FileSystem& files, RecordingPart& part, const Progress& progress) {
-  McapReader reader;
-  std::set<std::uint16_t> defined;  // of other channels nobody knows what their messages are
-  const auto take = [&](const McapRecord& record) -> Result<void> {
-    if (const auto* message = std::get_if<McapMessage>(&record)) {
-      if (!defined.contains(message->channel)) {
-        part.is_sound = false;
-        return {};
-      }
-      part.numbers.add(*message);
-      if (reader.unchecked()) part.unproved.add(*message);
-    } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
-      defined.insert(channel->id);
-    } else if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
-      part.ending = std::max(part.ending, ending_of(*metadata));
-      part.names.insert(name_of(*metadata));
-    } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
-      part.names.insert(name_of(*attachment));
+bool defines(const RecordingPart& part, std::uint16_t channel) {
+  return part.definitions.channels.contains(channel) ||
+         part.unproved_definitions.channels.contains(channel);
+}
+
+/// A channel means one thing in all files: what one does not define another may.
+void name(RecordingParts& parts) {
+  for (RecordingPart& part : parts) {
+    for (const std::uint16_t channel : part.nameless.channels()) {
+      const bool is_defined =
+          std::any_of(parts.begin(), parts.end(),
+                      [channel](const RecordingPart& other) { return defines(other, channel); });
+      if (is_defined) part.numbers.add_all(part.nameless, channel);
     }
-    return {};
-  };
-  KA_TRY(read_recording(files, part.path, reader, take, progress));
-  if (!reader.closed()) part.ending = std::max(part.ending, Ending::torn);
-  if (reader.all_checked()) part.unproved = {};
-  part.is_sound = part.is_sound && reader.findings().empty() && reader.skipped() == 0;
-  return {};
+  }
 }
 
 }  // namespace
@@ -195,9 +147,9 @@ Result<RecordingParts> read_parts(FileSystem& files, const std::vector<std::stri
     if (!facts || !(parts.empty() || is_same_recording(parts.front().facts, *facts))) {
       return Failure(is_no_part(path, parts, facts));
     }
-    parts.push_back({path, *facts});
-    KA_TRY(read_through(files, parts.back(), progress));
+    parts.push_back(KA_TRY(read_part(files, path, *facts, progress)));
   }
+  name(parts);
   sort(parts);
   return without_repeated(std::move(parts));
 }
@@ -207,8 +159,9 @@ Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
   const auto facts = KA_TRY(read_facts(files, path));
   if (!facts) return RecordingParts{{path, {}}};  // what it is instead shows when it is read
   std::vector<std::string> paths{path};
-  for (const FileBeside& one : files_beside(files, path, *facts)) {
-    if (one.part > facts->part) paths.push_back(one.path);
+  for (const std::string& one : with_parts(files, {path})) {
+    const auto other = KA_TRY(read_facts(files, one));
+    if (other && stands_behind({one, *other}, {path, *facts})) paths.push_back(one);
   }
   if (paths.size() == 1) return RecordingParts{{path, *facts}};
   return read_parts(files, paths, progress);
@@ -235,23 +188,6 @@ Findings judge_parts(const RecordingParts& parts, PartsBehind behind) {
        read ? "what it went on in was read behind it" : "it went on there when the disk had failed",
        read ? "" : join});
   return findings;
-}
-
-Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& parts,
-                                     const Progress& progress) {
-  RecordingSurvey survey = KA_TRY(survey_recording(files, parts.front().path, progress));
-  if (parts.size() == 1) return survey;
-  MessageNumbers numbers;
-  for (const RecordingPart& part : parts) numbers.add_all(part.numbers);
-  for (auto part = parts.begin() + 1; part != parts.end(); ++part) {
-    add(KA_TRY(survey_recording(files, part->path, progress)), survey);
-  }
-  survey.messages = 0;
-  for (ChannelSurvey& one : survey.channels) {
-    survey.messages += one.messages = numbers.present(one.channel.id);
-    one.missing = numbers.missing(one.channel.id);
-  }
-  return survey;
 }
 
 }  // namespace kinalign

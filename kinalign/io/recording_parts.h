@@ -5,33 +5,29 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/message_numbers.h"
-#include "kinalign/io/recording_format.h"
-#include "kinalign/io/recording_survey.h"
+#include "kinalign/io/recording_part.h"
 
-#include <set>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace kinalign {
 
-struct RecordingPart {
-  std::string path;
-  RecordingFacts facts;
-  MessageNumbers numbers{};
-  MessageNumbers unproved{};          // those that no checksum covers
-  std::set<std::string> names{};      // of metadata and attachments, as name_of() has them
-  bool is_sound = true;               // nothing in it was damaged or without a name
-  Ending ending = Ending::none;       // of a file that breaks off: torn
-  std::set<std::uint16_t> repeats{};  // channels of which what files before have counts, see below
-};
-
 /// In their order.
 using RecordingParts = std::vector<RecordingPart>;
 
-/// What a record of the same name in a later file repeats.
-std::string name_of(const McapMetadata& metadata);
-std::string name_of(const McapAttachment& attachment);
+/// The definition of a channel that a checksum covers, in any of the files; where none does
+/// nullptr.
+const McapChannel* proved_channel(const RecordingParts& parts, std::uint16_t id);
+
+/// From which file metadata or an attachment of that name are taken: the end from the last that has
+/// it, all else from the first, of those that a checksum covers if there are any. parts.size()
+/// where none has it.
+std::size_t source_of(const RecordingParts& parts, const std::string& name);
+
+/// The one whose messages reach furthest, in parts of the recording; of several the last.
+std::size_t furthest(const RecordingParts& parts);
 
 /// Whether a better copy of this part's message stands in another: one that a checksum covers, or
 /// as good a one of a later file. Of the earlier one the disk had not said that it is there.
@@ -54,11 +50,5 @@ Result<RecordingParts> parts_from(FileSystem& files, const std::string& path,
 /// That the first of these is not all of its recording; the others were read with it or not.
 enum class PartsBehind { left, read };
 Findings judge_parts(const RecordingParts& parts, PartsBehind behind);
-
-/// A survey of the first of these with what those behind add to it: channels, their messages, each
-/// once (bytes as they stand in all), numbers that are missing in all of them, the last counts, the
-/// end, marks, steps of the wall clock, which are torn, and what is wrong with any.
-Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& parts,
-                                     const Progress& progress);
 
 }  // namespace kinalign

@@ -5,6 +5,7 @@
 #include "kinalign/io/kinect_survey.h"
 #include "kinalign/io/lab_toml.h"
 #include "kinalign/io/little_endian_reader.h"
+#include "kinalign/io/message_numbers.h"
 #include "kinalign/io/slimevr_packet.h"
 
 #include <algorithm>
@@ -67,7 +68,9 @@ class Surveyor {
     if (reader_.all_checked()) survey_.unchecked = 0;
     if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
     survey_.findings = reader_.findings();
+    survey_.damaged = !survey_.findings.empty();
     for (Finding& finding : survey_.findings) finding.what.file = path;
+    if (strays_ > 0) survey_.findings.push_back(strays(path, strays_));
     append(survey_.findings, kinects_.findings(path));
     return std::move(survey_);
   }
@@ -103,6 +106,10 @@ class Surveyor {
     }
   }
   void add(const McapMessage& message) {
+    if (survey_.facts && !guard_.believes(message, reader_.unchecked())) {
+      ++strays_;
+      return;
+    }
     ++survey_.messages;
     survey_.contents = add_to(survey_.contents, message);
     if (reader_.unchecked()) ++survey_.unchecked;
@@ -112,6 +119,7 @@ class Surveyor {
     } else {
       // Of a writer that does not number its messages nothing is missing.
       const std::uint32_t step = message.sequence - channel.last_number;
+      channel.in_order = channel.in_order && message.sequence > channel.last_number;
       if (step > 1 && step < 1U << 31U) channel.missing += step - 1;
     }
     channel.last_number = message.sequence;
@@ -160,6 +168,8 @@ class Surveyor {
   std::vector<ClockPair> clock_;
   LastCounts senders_, ports_;
   KinectSurvey kinects_;
+  NumberGuard guard_;
+  std::uint64_t strays_ = 0;
   RecordingSurvey survey_;
 };
 
@@ -178,18 +188,13 @@ std::uint32_t add_to(std::uint32_t contents, const McapMessage& message) {
 Result<void> read_recording(const PieceSource& source, McapReader& reader, const TakeRecord& take,
                             const Progress& progress) {
   std::uint64_t done = 0;
-  for (bool ended = false; !ended;) {
+  const auto next_piece = [&]() -> Result<std::string_view> {
     const std::string_view piece = KA_TRY(source.next());
-    ended = piece.empty();
-    if (ended) {
-      reader.end();
-    } else {
-      reader.feed(piece);
-    }
-    while (const auto record = reader.next()) KA_TRY(take(*record));
     done += piece.size();
     if (!go_on(progress, "reading", done, source.size)) return Failure(interruption(source.path));
-  }
+    return piece;
+  };
+  while (const auto record = KA_TRY(pull(reader, next_piece))) KA_TRY(take(*record));
   if (reader.is_mcap()) return {};
   return Failure(Error{source.path, 0, "an MCAP file", "another beginning"});
 }
@@ -220,6 +225,13 @@ Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progre
   return survey;
 }
 
+Finding strays(const std::string& path, std::uint64_t messages) {
+  return {Severity::error,
+          Error{path, 0, "messages whose numbers follow those before",
+                std::to_string(messages) + " of others, at the torn end"},
+          "no checksum covers them, and something there was altered: they are left out", ""};
+}
+
 Finding ends_before(const std::string& path) {
   return {Severity::warning, Error{path, 0, "a recording up to its end", "one that ends before"},
           "the disk took no more: what came later is in another file, if it took one",
@@ -229,6 +241,16 @@ Finding ends_before(const std::string& path) {
 Findings judge_end(const std::string& path, const RecordingSurvey& survey) {
   if (!survey.facts || survey.ending != Ending::none) return {};
   return {ends_before(path)};
+}
+
+Findings judge_order(const std::string& path, const RecordingSurvey& survey) {
+  const bool in_order = std::all_of(survey.channels.begin(), survey.channels.end(),
+                                    [](const ChannelSurvey& one) { return one.in_order; });
+  if (!survey.facts || in_order) return {};
+  return {{Severity::warning,
+           Error{path, 0, "each channel's messages in their order", "some behind later ones"},
+           "all are there, but check takes some for missing, and align leaves some out",
+           "recover the recording's own files together, without one that recover has made"}};
 }
 
 Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,

@@ -26,6 +26,7 @@ struct ChannelSurvey {
   std::uint64_t first = 0, last = 0;      // log time, the least and the greatest, ns
   std::uint64_t missing = 0;              // numbers left out between the first and the last
   std::uint32_t last_number = 0;
+  bool in_order = true;       // each number above the one before
   std::uint32_t sensors = 0;  // of a SlimeVR tracker, a bit each: rotations came of it
 };
 
@@ -48,16 +49,23 @@ struct RecordingSurvey {
   std::uint64_t more_marks = 0;                               // than are looked at
   std::uint64_t bytes = 0;                                    // of the file
   Findings findings;
+  bool damaged = false;  // some of these tell of damage
 };
 
 /// The CRC-32 of messages: channel, number, both times and payload of each, in their order.
 std::uint32_t add_to(std::uint32_t contents, const McapMessage& message);
+
+/// That so many messages of a recording's torn end were left out, see NumberGuard.
+Finding strays(const std::string& path, std::uint64_t messages);
 
 /// Of a recording of ours that was closed in order, but not because it ended: that the rest, if a
 /// disk took it, is missing.
 Finding ends_before(const std::string& path);
 /// That, where it is so.
 Findings judge_end(const std::string& path, const RecordingSurvey& survey);
+/// That messages of a channel of ours stand behind later ones, where it is so. Files that recover
+/// has made and that lack what is in others are the only ones to bring this about.
+Findings judge_order(const std::string& path, const RecordingSurvey& survey);
 
 /// Fails where the file can't be read or is no MCAP file.
 Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,

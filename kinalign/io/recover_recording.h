@@ -17,18 +17,19 @@ struct Recovered {
   std::uint64_t messages = 0;
   /// Of these no checksum covers: from a torn end, or outside of chunks.
   std::uint64_t unchecked = 0;
-  std::uint64_t twice = 0;     // stood in two files; the later one's were taken
+  std::uint64_t twice = 0;     // copies that stood in a further file: a better one was taken
   std::uint64_t nameless = 0;  // left out: the definition of their channel is lost
   std::uint64_t skipped = 0;   // bytes of the old files in which nothing could be read
   /// Of which it is known that they were there: by their numbers or, of a single file, by its own
   /// count.
   std::uint64_t missing = 0;
   RecordingSurvey proof;  // of the new file
-  Findings findings;      // of the old ones
+  Findings findings;      // of the old ones, and of the new one's order
 };
 
 /// `paths`: files of the recording in any order, with those of its files that lie beside them.
-/// Fails where they are not all of one, `out` is one of them, or nothing can be read. Nothing
+/// Where a disk can't give a page (EIO) the others are read. Fails where files are not all of one
+/// recording, `out` is one of them, or nothing can be read. Nothing
 /// stands at `out` before all is written and synced. It is read again before it gets its name: what
 /// is not what was written never does.
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,

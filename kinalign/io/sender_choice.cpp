@@ -3,6 +3,7 @@
 
 #include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/recording_reader.h"
+#include "kinalign/io/survey_parts.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of any content, places of any kind: the program ends by itself, says one clear line and
 leaves nothing behind (see law in cases.py). bad_input_check.py BUILD_FOLDER [CASE...]"""
+import ctypes
 import json
 import os
 import pathlib
 import random
 import re
+import struct
 import subprocess
 import sys
 
@@ -169,8 +171,9 @@ def a_recording_of_which_no_message_can_be_read_becomes_nothing(folder):
     path = folder / "t/torn.mcap"
     path.parent.mkdir()
     path.write_bytes(b"\x89MCAP0\r\n\x01\x15\0\0\0\0\0\0\0" + b"\x08\0\0\0kinalign")
-    for words in (("recover", path, "-o", folder / "o.mcap"), ("align", path, "-o", folder / "o.h5"),
-                  ("convert", path, folder / "o.mcap")):
+    refused("recover", path, "-o", folder / "o.mcap",
+            naming=f"{path}: expected a recording of which anything can be read, found nothing")
+    for words in (("align", path, "-o", folder / "o.h5"), ("convert", path, folder / "o.mcap")):
         refused(*words, naming=f"{path}: expected a recording in which a message can be read, found none")
     assert list(folder.iterdir()) == [path.parent]
 
@@ -199,6 +202,22 @@ def a_line_of_3_GB_is_refused_without_reading_it_into_memory(folder):
         path.write_bytes(head[:len(head) // 2])
         os.truncate(path, 3 << 30)  # zeros, and no room on the disk
         refused("check", path, naming=path, memory=300 << 20)
+
+
+@case
+def where_memory_does_not_suffice_for_a_chunk_it_is_said(folder):
+    zstd = ctypes.CDLL("libzstd.so.1")
+    zeros = bytes(250 << 20)
+    packed = ctypes.create_string_buffer(1 << 20)
+    size = zstd.ZSTD_compress(packed, ctypes.c_size_t(len(packed)), zeros, ctypes.c_size_t(len(zeros)), 1)
+    stored = packed.raw[:size]
+    head = struct.pack("<QQQII", 0, 0, len(zeros), 0, 4) + b"zstd" + struct.pack("<Q", size)
+    path = folder / "small.mcap"
+    path.write_bytes(b"\x89MCAP0\r\n" + b"\x01" + struct.pack("<QII", 8, 0, 0) +
+                     b"\x06" + struct.pack("<Q", len(head) + size) + head + stored)
+    for words in (("check", path), ("recover", path, "-o", folder / "o.mcap")):
+        refused(*words, naming="expected as much memory as the files need, found no more of it", memory=300 << 20)
+    assert list(folder.iterdir()) == [path]
 
 
 @case

@@ -173,6 +173,21 @@ TEST_CASE("a message outside of chunks is unchecked but by the checksum of all d
   }
 }
 
+TEST_CASE("messages of a chunk without a checksum are unchecked, those of the next one are not") {
+  McapChunkContent content;
+  add(content, nth_message(0));
+  std::string bytes(mcap_magic);
+  append_mcap(bytes, McapHeader{});
+  for (const std::uint32_t crc : {0U, crc_of(content.records())}) {
+    append_mcap(bytes, McapChunkHead{1000, 1000, content.records().size(), crc, ""},
+                content.records());
+  }
+  const ReadMcap read = read_mcap(bytes);
+  REQUIRE(read.messages.size() == 2);
+  CHECK(read.messages[0].unchecked);
+  CHECK_FALSE(read.messages[1].unchecked);
+}
+
 TEST_CASE("a chunk with a flipped bit is left out, those behind it are read") {
   std::vector<std::size_t> ends;
   const std::string whole = mcap_file(30, 10, McapCompression::none, &ends);

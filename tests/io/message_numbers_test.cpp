@@ -16,7 +16,9 @@ namespace {
 
 using Numbers = std::set<std::uint32_t>;
 
-McapMessage numbered(std::uint32_t number) { return {7, number, 0, 0, {}}; }
+McapMessage numbered(std::uint32_t number, std::uint16_t channel = 7) {
+  return {channel, number, 0, 0, {}};
+}
 
 /// Some of a few numbers, at the beginning and at the end of what 32 bits hold.
 Numbers some(std::mt19937_64& random) {
@@ -68,4 +70,35 @@ TEST_CASE("the numbers of messages are a set") {
     CHECK_FALSE(ours.next(7, std::uint64_t{UINT32_MAX} + 1));
     CHECK(ours.present(8) == 0);
   }
+}
+
+TEST_CASE("each channel has numbers of its own") {
+  MessageNumbers ours, theirs;
+  ours.add(numbered(3, 1));
+  ours.add(numbered(4, 2));
+  theirs.add(numbered(3, 1));
+  CHECK(ours.has_all(theirs));
+  CHECK_FALSE(theirs.has_all(ours));
+  CHECK_FALSE(ours.has(numbered(4, 1)));
+  theirs.add(numbered(4, 1));
+  CHECK_FALSE(ours.has_all(theirs));
+  CHECK_FALSE(theirs.shares_with(ours, 2));
+  ours.add_all(theirs);
+  CHECK(ours.channels() == std::vector<std::uint16_t>{1, 2});
+  CHECK(ours.present(1) == 2);
+  CHECK(ours.present(2) == 1);
+}
+
+TEST_CASE("behind what a checksum covers, numbers that none covers are believed if they follow") {
+  NumberGuard guard;
+  CHECK(guard.believes(numbered(1'000'000'000), true));  // nothing is known of the channel
+  for (const std::uint32_t number : {5U, 6U, 900U}) CHECK(guard.believes(numbered(number), false));
+  for (const std::uint32_t number : {901U, 950U, 902U, 900U + (1U << 20U)}) {
+    CHECK(guard.believes(numbered(number), true));  // each against the checked ones alone
+  }
+  for (const std::uint32_t number : {0U, 6U, 900U, 901U + (1U << 20U), UINT32_MAX}) {
+    CHECK_FALSE(guard.believes(numbered(number), true));
+  }
+  CHECK(guard.believes(numbered(0, 8), true));
+  CHECK(guard.believes(numbered(3), false));  // what is covered is there, whatever its number
 }

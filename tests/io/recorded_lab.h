@@ -252,6 +252,7 @@ class RecordedLab {
     int number = 1;
     double from = -1e9, to = 1e9;
     std::string first = "take.mcap";
+    McapCompression compression = McapCompression::zstd;
   };
   std::string file(bool closed = true) { return file(Part{}, closed); }
   /// The file, its messages in the order of arrival, half a second in a chunk.
@@ -277,7 +278,7 @@ class RecordedLab {
             static_cast<std::uint64_t>(utc_begin + std::llround(1e9 * message->arrival));
         content.add(McapMessage{id, number, log, log, message->data});
       }
-      if (!content.empty()) REQUIRE(writer.write(store(content, McapCompression::zstd)));
+      if (!content.empty()) REQUIRE(writer.write(store(content, part.compression)));
     }
     const bool is_last = messages_.empty() || part.to > messages_.back().arrival;
     if (closed && is_last) REQUIRE(writer.write(to_metadata(RecordingEnd{dropped})));

@@ -5,6 +5,7 @@
 #include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/recording_survey.h"
+#include "kinalign/io/recover_recording.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -214,6 +215,9 @@ TEST_CASE("two Kinects with one id are told of by check, and by who reads one of
       return one.find(fmt::format("expected {}, found", pair.read)) != std::string::npos &&
              one.ends_with(pair.meaning);
     }));
+    const auto recovered = recover_recording(files, {path}, folder / "whole.mcap", Overwrite::no);
+    REQUIRE(recovered);  // the file has no fault
+    CHECK(recovered->messages == 201);
   }
 }
 

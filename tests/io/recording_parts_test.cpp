@@ -8,6 +8,7 @@
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/recover_recording.h"
+#include "kinalign/io/survey_parts.h"
 
 #include <doctest/doctest.h>
 
@@ -225,4 +226,45 @@ TEST_CASE("what the disk spoilt in one file is taken from the next, which repeat
   REQUIRE(recovered);
   CHECK(recovered->messages == whole);
   CHECK(samples(files, path, "12") == samples(files, lab.whole(), "12"));
+}
+
+TEST_CASE("what a torn end says of a channel counts only where no checksum covers it elsewhere") {
+  const FreshFolder folder;
+  TornLab lab(folder);
+  PosixFiles files;
+  std::string first = lab.lab().file({1, -1e9, 30.4, "take.mcap", McapCompression::none});
+  const auto begin = first.rfind("kinalign-node");  // of node 13, in the last chunk
+  first.resize(begin + 500);
+  first[begin] ^= 1;
+  folder.write("take.mcap", first);
+  lab.write("take.part2.mcap", {2, 29.5, 1e9});
+  CHECK(samples(files, folder / "take.mcap", "13") == samples(files, lab.whole(), "13"));
+}
+
+TEST_CASE("a message of a torn end whose number can't be is left out, and told") {
+  const FreshFolder folder;
+  TornLab lab(folder);
+  PosixFiles files;
+  std::string bytes = lab.lab().file({1, -1e9, 25.0, "take.mcap", McapCompression::none});
+  // Channel 1 is node 12's; its last message but one, 0x05 and a length in front, in the torn
+  // chunk.
+  std::size_t last = 0, before = 0;
+  for (std::size_t at = 0; (at = bytes.find(std::string("\0\0\0\0\0\0\1\0", 8), at)) < bytes.size();
+       ++at) {
+    if (at < 3 || bytes[at - 3] != 0x05) continue;
+    before = last;
+    last = at;
+  }
+  REQUIRE(before > 0);
+  bytes.resize(last);
+  const std::uint64_t all = samples(files, folder.write("take.mcap", bytes), "12");
+  bytes[before + 11] = 0x7f;  // the number's highest byte
+  CHECK(samples(files, folder.write("take.mcap", bytes), "12") == all - 2);
+  StreamOptions options;
+  options.name = "imu";
+  options.files = {{folder / "take.mcap", "12"}};
+  const auto streams = open_streams(files, {options});
+  REQUIRE(streams);
+  CHECK(told(streams->front().by_file.findings).find("1 of others, at the torn end") !=
+        std::string::npos);
 }

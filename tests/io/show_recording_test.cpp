@@ -10,6 +10,7 @@
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/show_xdf.h"
 #include "kinalign/io/shown_rows.h"
+#include "kinalign/io/survey_parts.h"
 #include "kinalign/motion/kinect_joints.h"
 
 #include <doctest/doctest.h>

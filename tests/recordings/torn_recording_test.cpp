@@ -6,6 +6,7 @@
 #include "kinalign/align/align.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_reader.h"
+#include "kinalign/io/survey_parts.h"
 
 #include <doctest/doctest.h>
 

@@ -9,6 +9,7 @@
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
+#include "kinalign/io/survey_parts.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/truth_json.h"
 #include "kinalign/motion/clip_motion.h"
