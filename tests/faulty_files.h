@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
-#include <set>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -76,25 +76,40 @@ class FaultyFiles final : public FileSystem {
   PosixFiles files_;
 };
 
-/// The machine's, but one page of a file the disk can't give.
+/// The machine's, but one page of a file the disk can't give: at each reading, or at one.
 class BadPage final : public PosixFiles {
  public:
   static constexpr off_t size = 4096;
   BadPage(std::string path, off_t at) : path_(std::move(path)), at_(at / size * size) {}
 
+  int only_opening = 0;     // from 1: the one in which it fails; 0: each
+  bool comes_short = true;  // what is asked for up to the page; else that fails, too
+
   int open(const char* path, int flags, mode_t mode) override {
     const int fd = PosixFiles::open(path, flags, mode);
-    if (path == path_) bad_.insert(fd);
+    if (path != path_) return fd;
+    ++openings_;
+    if (only_opening == 0 || only_opening == openings_) bad_[fd] = 0;
     return fd;
   }
   int close(int fd) override {
     bad_.erase(fd);
     return PosixFiles::close(fd);
   }
+  int openings() const { return openings_; }
+  ssize_t read(int fd, void* data, std::size_t want) override {
+    const auto bad = bad_.find(fd);
+    if (bad == bad_.end()) return PosixFiles::read(fd, data, want);
+    const ssize_t got = read_at(fd, data, want, bad->second);
+    bad->second += std::max<ssize_t>(got, 0);
+    return got;
+  }
   ssize_t read_at(int fd, void* data, std::size_t want, off_t at) override {
     if (!bad_.contains(fd)) return PosixFiles::read_at(fd, data, want, at);
     if (at >= at_ && at < at_ + size) return unreadable();
-    if (at < at_) want = std::min(want, static_cast<std::size_t>(at_ - at));
+    const auto to_it = static_cast<std::size_t>(std::max<off_t>(at_ - at, 0));
+    if (at < at_ && want > to_it && !comes_short) return unreadable();
+    if (at < at_) want = std::min(want, to_it);
     return PosixFiles::read_at(fd, data, want, at);
   }
 
@@ -105,7 +120,8 @@ class BadPage final : public PosixFiles {
   }
   std::string path_;
   off_t at_;
-  std::set<int> bad_;
+  int openings_ = 0;
+  std::map<int, off_t> bad_;  // where read() goes on
 };
 
 }  // namespace kinalign

@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -135,7 +137,11 @@ std::string name_advice(const Error& error) {
   return name ? "kinalign info FILE -v lists the names of joints and nodes" : "";
 }
 
-std::vector<std::string> folder_advice(const Error& error) {
+std::vector<std::string> file_advice(const Error& error) {
+  if (error.found == std::strerror(EIO) && error.file.ends_with(".mcap")) {
+    return {"kinalign recover " + harmless(error.file) +
+            " -o whole.mcap makes a file of what the disk can give"};
+  }
   if (error.expected != "a regular file" || error.found != "a directory") return {};
   std::vector<std::string> recordings;
   std::error_code fault;

@@ -66,7 +66,7 @@ Result<void> check_take_name(const std::string& out);
 std::string name_advice(const Error& error);
 
 /// On a folder that was given for a file: the first recording in it, if there is one; else empty.
-std::vector<std::string> folder_advice(const Error& error);
+std::vector<std::string> file_advice(const Error& error);
 
 /// Byte of the first difference; nothing where two files are the same.
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,

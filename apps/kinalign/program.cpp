@@ -107,7 +107,7 @@ class Run {
     }
     if (!code) {
       console_->report(code.error());
-      for (const std::string& line : folder_advice(code.error())) console_->complain("  " + line);
+      for (const std::string& line : file_advice(code.error())) console_->complain("  " + line);
     }
     const Result<void> written = console_->finish();
     if (!written) console_->report(written.error());

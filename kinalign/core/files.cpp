@@ -109,10 +109,13 @@ Result<std::string_view> InputFile::next() {
 
 Result<std::string_view> InputFile::next_or_zeros() {
   constexpr std::uint64_t page = 4096;  // what the kernel reads at the least
-  for (;;) {
-    const ssize_t got =
-        files_->read_at(fd_, buffer_.data(), buffer_.size(), static_cast<off_t>(at_));
+  for (std::size_t want = buffer_.size();;) {
+    const ssize_t got = files_->read_at(fd_, buffer_.data(), want, static_cast<off_t>(at_));
     if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && errno == EIO && want > page) {  // not all of it need be bad
+      want = page - at_ % page;
+      continue;
+    }
     if (got < 0 && errno != EIO) return failed(path_, "a readable file", errno);
     auto size = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
     if (got < 0 && at_ < size_) {

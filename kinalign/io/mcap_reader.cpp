@@ -74,11 +74,13 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
     const bool whole = head && head->length <= bytes.size() - mcap_record_head;
     if (!whole && in_torn_chunk_) break;
     std::optional<McapRecord> record;
-    if (!whole || !take(head->op, bytes.substr(mcap_record_head, head->length), record)) {
+    const bool fits = whole && take(head->op, bytes.substr(mcap_record_head, head->length), record);
+    const bool ends = !whole || head->op == McapOp{};  // as zeros of a power cut have it
+    if (!fits) {
       say(Severity::error, "records in the chunk", "something else",
-          "the chunk's rest is left out");
-      break;
+          ends ? "the chunk's rest is left out" : "it is left out");
     }
+    if (!fits && ends) break;
     chunk_taken_ += mcap_record_head + head->length;
     if (record) return record;
   }

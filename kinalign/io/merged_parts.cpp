@@ -51,11 +51,8 @@ Result<std::optional<McapRecord>> MergedParts::pull_from(Part& part) {
 /// Programs of others number their messages as they like.
 bool MergedParts::is_stray(Part& part) {
   const auto* message = part.head ? std::get_if<McapMessage>(&*part.head) : nullptr;
-  const bool is_ours = !part.told->facts.first.empty();
-  if (message == nullptr || !is_ours) return false;
-  const bool stray = !part.guard.believes(*message, part.reader.unchecked());
-  part.strays += stray ? 1 : 0;
-  return stray;
+  return message != nullptr && part.told->is_ours() &&
+         !part.guard.believes(*message, part.reader.unchecked());
 }
 
 /// Where files wait for one another the earliest message goes on.

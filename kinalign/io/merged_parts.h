@@ -32,12 +32,13 @@ class MergedParts {
   /// A message once no other file has to give a lower one of its channel (where files wait for one
   /// another so that none could go on: before it), of several such the earliest; what else there is
   /// as soon as it stands first in its file. Absent: all were taken.
-  /// Fails where a file can't be read or is no MCAP file.
+  /// Fails where a file is no MCAP file or can't be read, but for pages of a bad disk: see
+  /// unread().
   Result<std::optional<PartRecord>> next();
 
   const McapReader& reader(std::size_t part) const { return parts_[part]->reader; }
-  /// Messages of the file's torn end that were left out, see NumberGuard.
-  std::uint64_t strays(std::size_t part) const { return parts_[part]->strays; }
+  /// What it did not believe of the file's torn end was left out.
+  const NumberGuard& guard(std::size_t part) const { return parts_[part]->guard; }
   /// Bytes that the disk did not give: they came as zeros.
   std::uint64_t unread(std::size_t part) const { return parts_[part]->file.unread(); }
 
@@ -47,7 +48,6 @@ class MergedParts {
     const RecordingPart* told = nullptr;
     McapReader reader{};
     NumberGuard guard{};
-    std::uint64_t strays = 0;
     std::optional<McapRecord> head{};
     std::map<std::uint16_t, std::uint64_t> given{};  // by channel: behind the last one
   };

@@ -71,15 +71,21 @@ std::uint64_t MessageNumbers::missing(std::uint16_t channel) const {
 }
 
 bool NumberGuard::believes(const McapMessage& message, bool unchecked) {
-  constexpr std::uint32_t most_dropped = 1U << 20;  // a quarter of an hour of 1000 a second
-  const std::uint32_t number = message.sequence;
+  const auto last = last_.find(message.channel);
   if (!unchecked) {
-    const auto [last, is_first] = proved_.try_emplace(message.channel, number);
-    last->second = std::max(last->second, number);
+    proved_.add(message);
+    const bool is_last = last == last_.end() || message.sequence > last->second.number;
+    if (is_last) last_[message.channel] = {message.sequence, message.log_time};
     return true;
   }
-  const auto last = proved_.find(message.channel);
-  return last == proved_.end() || (number > last->second && number - last->second <= most_dropped);
+  bool is_believed = !proved_.has(message);
+  if (last != last_.end() && message.sequence > last->second.number) {
+    const std::uint64_t since = message.log_time - std::min(message.log_time, last->second.at);
+    const std::uint64_t most = 1024 + (since >> 14U);  // some 61,000 a second
+    is_believed = message.sequence - last->second.number <= most;
+  }
+  strays_ += is_believed ? 0 : 1;
+  return is_believed;
 }
 
 bool MessageNumbers::has(const Stretches& stretches, std::uint32_t begin, std::uint64_t end) {

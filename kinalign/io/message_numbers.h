@@ -40,15 +40,24 @@ class MessageNumbers {
   std::map<std::uint16_t, Stretches> channels_;
 };
 
-/// Of one file of a recording, whose channels number their messages from front to back: whether
-/// what no checksum covers can be a message of it.
+/// Of one file of a recording: whether what no checksum covers can be a message of it. It can where
+/// its number is not there yet, and not further above its channel's last one that a checksum covers
+/// than any sender could have brought it in the time between.
 class NumberGuard {
  public:
+  /// Of what stands in front of all that one covers nothing is known: it is.
   bool believes(const McapMessage& message, bool unchecked);
+  /// Those that were not believed.
+  std::uint64_t strays() const { return strays_; }
 
  private:
-  std::map<std::uint16_t, std::uint32_t>
-      proved_;  // by channel: the last one that a checksum covers
+  MessageNumbers proved_;  // that a checksum covers
+  struct Last {
+    std::uint32_t number = 0;
+    std::uint64_t at = 0;  // its log time
+  };
+  std::map<std::uint16_t, Last> last_;  // by channel: the highest of these
+  std::uint64_t strays_ = 0;
 };
 
 }  // namespace kinalign

@@ -44,7 +44,6 @@ Result<void> RecordedMessages::next_part(const TakeMessage& take) {
   judge_file();
   reader_ = {};
   guard_ = {};
-  strays_ = 0;
   ++part_;
   return {};
 }
@@ -120,10 +119,7 @@ void RecordedMessages::take_mark(const McapMessage& message) {
 }
 
 Result<void> RecordedMessages::take_message(const McapMessage& message, const TakeMessage& take) {
-  if (!guard_.believes(message, reader_.unchecked())) {
-    ++strays_;
-    return {};
-  }
+  if (!guard_.believes(message, reader_.unchecked())) return {};
   if (mark_channels_.contains(message.channel)) {
     if (message.log_time <= latest_log_time && !stands_elsewhere(*parts_, part_, message)) {
       take_mark(message);
@@ -186,7 +182,7 @@ void RecordedMessages::judge_file() {
     finding.what.file = file();
     by_file_.findings.push_back(std::move(finding));
   }
-  if (strays_ > 0) by_file_.findings.push_back(strays(file(), strays_));
+  append(by_file_.findings, judge_strays(file(), guard_));
   if (!reader_.closed()) {
     by_file_.findings.push_back(
         {Severity::warning, Error{file(), 0, "a file that was closed", "one that breaks off"},

@@ -89,7 +89,6 @@ class RecordedMessages {
   std::size_t part_ = 0;
   McapReader reader_;
   NumberGuard guard_;
-  std::uint64_t strays_ = 0;
   std::optional<RecordingFacts> facts_;
   std::string skeleton_;
   std::optional<RawChannel> chosen_;

@@ -127,15 +127,21 @@ int part_number(const std::string& path) {
   return read.ec == std::errc() ? number : 0;
 }
 
+Error unreadable_beginning(const std::string& path) {
+  return {path, 0, "a file whose beginning the disk can read",
+          "one of which it can't: ddrescue copies a bad disk and tries more often"};
+}
+
 Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   McapReader reader;
-  while (const auto record = KA_TRY(pull(reader, [&file] { return file.next(); }))) {
-    if (std::holds_alternative<McapMessage>(*record)) return std::nullopt;
+  while (const auto record = KA_TRY(pull(reader, [&file] { return file.next_or_zeros(); }))) {
+    if (std::holds_alternative<McapMessage>(*record)) break;
     const auto* metadata = std::get_if<McapMetadata>(&*record);
     if (metadata == nullptr) continue;
     if (auto facts = to_facts(*metadata)) return facts;
   }
+  if (file.unread() > 0) return Failure(unreadable_beginning(path));
   return std::nullopt;
 }
 

@@ -15,7 +15,11 @@ namespace kinalign {
 /// Of the same run: parts of one recording.
 bool is_same_recording(const RecordingFacts& a, const RecordingFacts& b);
 
-/// What a file says of itself before its messages; absent where it is no recording of ours.
+/// Of a file on a bad disk.
+Error unreadable_beginning(const std::string& path);
+
+/// What a file says of itself before its messages; absent where it is no recording of ours. Fails
+/// where the disk can't give the beginning.
 Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path);
 
 /// 2 of "take.part2.mcap"; of another name 0.

@@ -23,13 +23,13 @@ Result<void> RecordingCopier::take(const McapRecord& record, std::size_t part, b
   return std::visit([this](const auto& one) { return add(one); }, record);
 }
 
-Result<void> RecordingCopier::finish() {
+Result<void> RecordingCopier::finish(bool torn) {
   KA_TRY(begin({}));
   KA_TRY(close_chunk());
   const auto has = [this](std::string_view name) {
     return names_.contains("metadata " + std::string(name));
   };
-  if (torn && has(recording_metadata) && !has(end_metadata)) {
+  if ((torn || torn_) && has(recording_metadata) && !has(end_metadata)) {
     KA_TRY(writer_.write(McapMetadata{std::string(torn_metadata), {}}));
   }
   return writer_.finish();
@@ -39,12 +39,21 @@ std::uint64_t RecordingCopier::unchecked() const {
   return std::accumulate(unchecked_.begin(), unchecked_.end(), std::uint64_t{0});
 }
 
+bool RecordingCopier::has_all() const {
+  if (parts_.size() == 1) return true;
+  std::uint64_t different = 0;
+  for (const std::uint16_t channel : numbers.channels()) different += numbers.present(channel);
+  return different == recovered.messages &&
+         std::all_of(parts_.begin(), parts_.end(),
+                     [this](const RecordingPart& part) { return numbers.has_all(part.numbers); });
+}
+
 bool RecordingCopier::proved_by(const RecordingSurvey& proof) const {
   const auto known = [this](const ChannelSurvey& one) {
     const auto channel = channels_.find(one.channel.id);
     return channel != channels_.end() && one.channel == channel->second;
   };
-  return proof.torn.empty() && !proof.damaged && proof.messages == recovered.messages &&
+  return proof.torn.empty() && !proof.flawed && proof.messages == recovered.messages &&
          proof.contents == contents_ &&
          std::all_of(proof.channels.begin(), proof.channels.end(), known);
 }
@@ -73,7 +82,7 @@ Result<void> RecordingCopier::add(const McapChannel& channel) {
 
 Result<void> RecordingCopier::add(const McapMetadata& metadata) {
   if (metadata.name == torn_metadata) {  // of the furthest part alone, and at the end
-    torn = torn || part_ == furthest(parts_);
+    torn_ = torn_ || part_ == furthest(parts_);
     return {};
   }
   if (is_repeated(name_of(metadata))) return {};
@@ -105,7 +114,7 @@ Result<void> RecordingCopier::add(const McapMessage& message) {
   }
   chunk_.add(message);
   contents_ = add_to(contents_, message);
-  if (is_ours()) numbers.add(message);
+  if (parts_.front().is_ours()) numbers.add(message);
   ++recovered.messages;
   if (is_unchecked_) ++unchecked_[part_];
   constexpr std::size_t chunk_bytes = std::size_t{1} << 20;

@@ -27,13 +27,16 @@ class RecordingCopier {
   Result<void> take(const McapRecord& record, std::size_t part, bool unchecked);
   /// Of this part a checksum covers everything after all.
   void all_checked(std::size_t part) { unchecked_[part] = 0; }
-  /// Index and end.
-  Result<void> finish();
+  /// Index and end; `torn`: the part that reaches furthest is.
+  Result<void> finish(bool torn);
 
   /// Nothing but a header and definitions was there, which says nothing.
   bool is_empty() const { return recovered.messages == 0 && names_.empty(); }
   std::uint64_t size() const { return writer_.size(); }
   std::uint64_t unchecked() const;
+  /// Whether it has all messages that a first reading found in the parts, and none twice: of a disk
+  /// that gives the same each time it has.
+  bool has_all() const;
   /// Whether a survey of the new file found in it what was written.
   bool proved_by(const RecordingSurvey& proof) const;
 
@@ -41,7 +44,6 @@ class RecordingCopier {
   MessageNumbers numbers;  // of those that were written, where the recording is ours
   /// Messages, by the file's own statistics: as long as nothing says that they are damaged.
   std::uint64_t counted = 0;
-  bool torn = false;  // the part that reaches furthest
 
  private:
   void learn(const McapDefinitions& definitions);
@@ -59,13 +61,13 @@ class RecordingCopier {
   }
   McapMetadata of_all(McapMetadata metadata) const;
   bool is_repeated(const std::string& name);
-  bool is_ours() const { return !parts_.front().facts.first.empty(); }
   Result<void> close_chunk();
 
   McapWriter writer_;
   const RecordingParts& parts_;
   std::size_t part_ = 0;
   bool is_unchecked_ = false;
+  bool torn_ = false;                     // the part that reaches furthest says so of itself
   std::vector<std::uint64_t> unchecked_;  // messages, by part
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;

@@ -15,8 +15,10 @@
 namespace kinalign {
 
 struct RecordingPart {
+  bool is_ours() const { return !facts.first.empty(); }
+
   std::string path;
-  RecordingFacts facts;
+  RecordingFacts facts;  // of a file that is none of ours, which stands alone: none
   MessageNumbers numbers{};
   MessageNumbers nameless{};      // of channels that this file does not define
   MessageNumbers unproved{};      // those that no checksum covers

@@ -40,8 +40,10 @@ RecordingParts without_repeated(RecordingParts parts) {
   bool all_proved = true;
   for (RecordingPart& part : parts) {
     const EndTogether with_it = end.with(part.ending, part.facts);
+    // What it made of this one, too, recover has looked at already.
+    const bool is_joined = !kept.empty() && kept.front().facts.until >= part.facts.last_part();
     const bool is_repeated =
-        part.is_sound && with_it.ending == end.ending && all_proved &&
+        (part.is_sound || is_joined) && with_it.ending == end.ending && all_proved &&
         before.has_all(part.numbers) &&
         std::includes(names.begin(), names.end(), part.names.begin(), part.names.end());
     if (!kept.empty() && is_repeated) continue;
@@ -98,12 +100,15 @@ bool has_better(const RecordingParts& parts, std::size_t part, const McapMessage
   return false;
 }
 
+/// Who reads one file behind the other may meet what it does not name before its definition.
 bool stands_elsewhere(const RecordingParts& parts, std::size_t part, const McapMessage& message) {
+  const bool is_named = !parts[part].nameless.has(message);
   for (std::size_t other = 0; other < parts.size(); ++other) {
-    if (other == part) continue;
+    if (other == part || !parts[other].numbers.has(message)) continue;
+    const bool other_is_named = !parts[other].nameless.has(message);
     const RecordingPart& later = parts[std::max(part, other)];
     const bool is_from_later = !later.repeats.contains(message.channel);
-    if (is_from_later == (other > part) && parts[other].numbers.has(message)) return true;
+    if (is_named == other_is_named ? is_from_later == (other > part) : other_is_named) return true;
   }
   return false;
 }

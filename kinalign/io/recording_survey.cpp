@@ -5,7 +5,6 @@
 #include "kinalign/io/kinect_survey.h"
 #include "kinalign/io/lab_toml.h"
 #include "kinalign/io/little_endian_reader.h"
-#include "kinalign/io/message_numbers.h"
 #include "kinalign/io/slimevr_packet.h"
 
 #include <algorithm>
@@ -68,9 +67,9 @@ class Surveyor {
     if (reader_.all_checked()) survey_.unchecked = 0;
     if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
     survey_.findings = reader_.findings();
-    survey_.damaged = !survey_.findings.empty();
+    survey_.flawed = !survey_.findings.empty();
     for (Finding& finding : survey_.findings) finding.what.file = path;
-    if (strays_ > 0) survey_.findings.push_back(strays(path, strays_));
+    append(survey_.findings, judge_strays(path, guard_));
     append(survey_.findings, kinects_.findings(path));
     return std::move(survey_);
   }
@@ -106,14 +105,12 @@ class Surveyor {
     }
   }
   void add(const McapMessage& message) {
-    if (survey_.facts && !guard_.believes(message, reader_.unchecked())) {
-      ++strays_;
-      return;
-    }
+    if (survey_.facts && !guard_.believes(message, reader_.unchecked())) return;
     ++survey_.messages;
     survey_.contents = add_to(survey_.contents, message);
     if (reader_.unchecked()) ++survey_.unchecked;
     ChannelSurvey& channel = channels_[message.channel];
+    channel.channel.id = message.channel;  // defined or not
     if (channel.messages == 0) {
       channel.first = channel.last = message.log_time;
     } else {
@@ -169,7 +166,6 @@ class Surveyor {
   LastCounts senders_, ports_;
   KinectSurvey kinects_;
   NumberGuard guard_;
-  std::uint64_t strays_ = 0;
   RecordingSurvey survey_;
 };
 
@@ -225,11 +221,12 @@ Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progre
   return survey;
 }
 
-Finding strays(const std::string& path, std::uint64_t messages) {
-  return {Severity::error,
-          Error{path, 0, "messages whose numbers follow those before",
-                std::to_string(messages) + " of others, at the torn end"},
-          "no checksum covers them, and something there was altered: they are left out", ""};
+Findings judge_strays(const std::string& path, const NumberGuard& guard) {
+  if (guard.strays() == 0) return {};
+  return {{Severity::error,
+           Error{path, 0, "messages with numbers that can be",
+                 std::to_string(guard.strays()) + " of others"},
+           "no checksum covers them, and something there was altered: they are left out", ""}};
 }
 
 Finding ends_before(const std::string& path) {

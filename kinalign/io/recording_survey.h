@@ -7,6 +7,7 @@
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
 #include "kinalign/io/mcap_reader.h"
+#include "kinalign/io/message_numbers.h"
 #include "kinalign/io/recording_counts.h"
 #include "kinalign/io/recording_format.h"
 
@@ -49,14 +50,14 @@ struct RecordingSurvey {
   std::uint64_t more_marks = 0;                               // than are looked at
   std::uint64_t bytes = 0;                                    // of the file
   Findings findings;
-  bool damaged = false;  // some of these tell of damage
+  bool flawed = false;  // the reader found something of these: damage, or a torn end
 };
 
 /// The CRC-32 of messages: channel, number, both times and payload of each, in their order.
 std::uint32_t add_to(std::uint32_t contents, const McapMessage& message);
 
-/// That so many messages of a recording's torn end were left out, see NumberGuard.
-Finding strays(const std::string& path, std::uint64_t messages);
+/// That messages of a recording's torn end were left out, where some were.
+Findings judge_strays(const std::string& path, const NumberGuard& guard);
 
 /// Of a recording of ours that was closed in order, but not because it ended: that the rest, if a
 /// disk took it, is missing.
@@ -64,7 +65,8 @@ Finding ends_before(const std::string& path);
 /// That, where it is so.
 Findings judge_end(const std::string& path, const RecordingSurvey& survey);
 /// That messages of a channel of ours stand behind later ones, where it is so. Files that recover
-/// has made and that lack what is in others are the only ones to bring this about.
+/// has made and that lack what is in others bring this about, and garbage numbers in a file of
+/// which no checksum covers anything.
 Findings judge_order(const std::string& path, const RecordingSurvey& survey);
 
 /// Fails where the file can't be read or is no MCAP file.

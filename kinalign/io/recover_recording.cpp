@@ -32,7 +32,7 @@ PieceSource pieces_of(const OutputFile& file, std::uint64_t size, std::string& b
 Findings judge(const MergedParts& merged, std::size_t part, const std::string& path) {
   Findings findings = merged.reader(part).findings();
   for (Finding& finding : findings) finding.what.file = path;
-  if (merged.strays(part) > 0) findings.push_back(strays(path, merged.strays(part)));
+  append(findings, judge_strays(path, merged.guard(part)));
   if (merged.unread(part) > 0) {
     findings.push_back({Severity::error,
                         Error{path, 0, "bytes that the disk can read",
@@ -43,6 +43,22 @@ Findings judge(const MergedParts& merged, std::size_t part, const std::string& p
   return findings;
 }
 
+/// With what lies beside: the beginning may be damaged, by which the others would be known.
+Error nothing_in(FileSystem& files, const std::string& path) {
+  std::string found = "nothing";
+  for (const std::string& one : with_namesakes(files, {path})) {
+    if (same_file(one, path)) continue;
+    found += (found == "nothing" ? "; beside it are " : ", ") + shown(file_name(one));
+  }
+  return {path, 0, "a recording of which anything can be read", found};
+}
+
+Error reads_differently(const std::string& path) {
+  return {path, 0, "files that a second reading finds as the first one did",
+          "others: copy them with ddrescue, and recover the copies"};
+}
+
+/// Everything, with index and end.
 Result<void> copy(FileSystem& files, const RecordingParts& parts, RecordingCopier& copier,
                   const Progress& progress) {
   MergedParts merged = KA_TRY(MergedParts::open(files, parts, progress));
@@ -56,15 +72,17 @@ Result<void> copy(FileSystem& files, const RecordingParts& parts, RecordingCopie
     if (reader.summary_spoilt() || !reader.closed()) copier.counted = 0;
     append(copier.recovered.findings, judge(merged, part, parts[part].path));
   }
-  copier.torn = copier.torn || !merged.reader(furthest(parts)).closed();
   copier.recovered.unchecked = copier.unchecked();
-  return {};
+  if (!copier.has_all()) return Failure(reads_differently(parts.front().path));
+  if (copier.is_empty()) return Failure(nothing_in(files, parts.front().path));
+  return copier.finish(!merged.reader(furthest(parts)).closed());
 }
 
 /// Fails where the file does not begin as MCAP does.
 Result<void> check_beginning(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
-  const std::string_view head = KA_TRY(file.next());
+  const std::string_view head = KA_TRY(file.next_or_zeros());
+  if (file.unread() > 0) return Failure(unreadable_beginning(path));
   if (head.empty()) return Failure(unknown_file(path, head));
   if (looks_like_recording(head)) return {};
   return Failure(Error{path, 0, "an MCAP file", beginning_of(head)});
@@ -88,16 +106,6 @@ Result<RecordingParts> parts_of(FileSystem& files, const std::vector<std::string
   const std::vector<std::string> all = with_parts(files, paths);
   return all.size() > 1 ? read_parts(files, all, progress)
                         : parts_from(files, all.front(), progress);
-}
-
-/// With what lies beside: the beginning may be damaged, by which the others would be known.
-Error nothing_in(FileSystem& files, const std::string& path) {
-  std::string found = "nothing";
-  for (const std::string& one : with_namesakes(files, {path})) {
-    if (same_file(one, path)) continue;
-    found += (found == "nothing" ? "; beside it are " : ", ") + shown(file_name(one));
-  }
-  return {path, 0, "a recording of which anything can be read", found};
 }
 
 Error is_input(const std::string& out, const std::string& part) {
@@ -143,8 +151,6 @@ Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::st
   RecordingCopier copier(file, parts);
   KA_TRY(copy(files, parts, copier, progress));
   Recovered& recovered = copier.recovered;
-  if (copier.is_empty()) return Failure(nothing_in(files, paths.front()));
-  KA_TRY(copier.finish());
   KA_TRY(prove(copier, file, out, progress));
   recovered.missing = missing(copier, parts.size());
   append(recovered.findings, judge_order(out, recovered.proof));

@@ -15,7 +15,7 @@ namespace kinalign {
 
 struct Recovered {
   std::uint64_t messages = 0;
-  /// Of these no checksum covers: from a torn end, or outside of chunks.
+  /// Of these no checksum covers: from a torn end, from chunks without one, or outside of chunks.
   std::uint64_t unchecked = 0;
   std::uint64_t twice = 0;     // copies that stood in a further file: a better one was taken
   std::uint64_t nameless = 0;  // left out: the definition of their channel is lost
@@ -28,8 +28,8 @@ struct Recovered {
 };
 
 /// `paths`: files of the recording in any order, with those of its files that lie beside them.
-/// Where a disk can't give a page (EIO) the others are read. Fails where files are not all of one
-/// recording, `out` is one of them, or nothing can be read. Nothing
+/// Where a disk can't give a page (EIO), but a file's first, the others are read. Fails where files
+/// are not all of one recording, `out` is one of them, or nothing can be read. Nothing
 /// stands at `out` before all is written and synced. It is read again before it gets its name: what
 /// is not what was written never does.
 Result<Recovered> recover_recording(FileSystem& files, const std::vector<std::string>& paths,

@@ -200,9 +200,14 @@ Result<void> copy_json(FileSystem& files, const RecordingParts& parts, const Pro
   JsonChannels channels(shown);
   for (std::size_t part = 0; part < parts.size(); ++part) {
     McapReader reader;
+    NumberGuard guard;
     const auto take = [&](const McapRecord& record) -> Result<void> {
       const auto* message = std::get_if<McapMessage>(&record);
-      if (message != nullptr && stands_elsewhere(parts, part, *message)) return {};
+      const bool is_out =
+          message != nullptr &&
+          ((parts[part].is_ours() && !guard.believes(*message, reader.unchecked())) ||
+           stands_elsewhere(parts, part, *message));
+      if (is_out) return {};
       return channels.take(record);
     };
     KA_TRY(read_recording(files, parts[part].path, reader, take, progress));

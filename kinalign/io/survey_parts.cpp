@@ -50,7 +50,7 @@ void add_marks(RecordingSurvey&& more, RecordingSurvey& survey) {
 /// What a file that goes on behind adds.
 void add(RecordingSurvey&& more, RecordingSurvey& survey) {
   for (const ChannelSurvey& one : more.channels) {
-    const auto same = [&](const ChannelSurvey& c) { return c.channel == one.channel; };
+    const auto same = [&](const ChannelSurvey& c) { return c.channel.id == one.channel.id; };
     const auto found = std::find_if(survey.channels.begin(), survey.channels.end(), same);
     if (found == survey.channels.end()) {
       survey.channels.push_back(one);
@@ -77,7 +77,7 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
     if (survey.steps.empty() || step.at > survey.steps.back().at) survey.steps.push_back(step);
   }
   append(survey.findings, more.findings);
-  survey.damaged = survey.damaged || more.damaged;
+  survey.flawed = survey.flawed || more.flawed;
   add_marks(std::move(more), survey);
 }
 
@@ -99,7 +99,13 @@ Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& pa
   for (ChannelSurvey& one : survey.channels) {
     survey.messages += one.messages = numbers.present(one.channel.id);
     one.missing = numbers.missing(one.channel.id);
+    const McapChannel* proved = proved_channel(parts, one.channel.id);
+    if (proved != nullptr) one.channel = *proved;
+    const auto raw = to_raw(one.channel);
+    if (raw && !raw->place.empty()) survey.places[raw->stream + "/" + raw->node] = raw->place;
   }
+  std::stable_sort(survey.channels.begin(), survey.channels.end(),
+                   [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
   survey.ending = end.ending;
   return survey;
 }

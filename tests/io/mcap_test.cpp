@@ -188,6 +188,21 @@ TEST_CASE("messages of a chunk without a checksum are unchecked, those of the ne
   CHECK_FALSE(read.messages[1].unchecked);
 }
 
+TEST_CASE("of a torn chunk in which a definition is damaged the messages behind it are read") {
+  McapChunkContent content;
+  for (std::uint32_t k = 0; k < 12; ++k) add(content, nth_message(k));
+  std::string bytes = mcap_file(6, 3, McapCompression::none, nullptr, false);
+  const std::size_t begin = bytes.size();
+  bytes += store(content, McapCompression::none).bytes;
+  const auto topic = bytes.find("/topic3", begin);
+  bytes[topic - 4] = '\x7f';  // the topic's length
+  bytes.resize(bytes.find(nth_message(10).data, begin));
+  const ReadMcap read = read_mcap(bytes);
+  CHECK(read.messages.size() == 6 + 10);
+  CHECK(std::any_of(read.findings.begin(), read.findings.end(),
+                    [](const Finding& one) { return one.meaning == "it is left out"; }));
+}
+
 TEST_CASE("a chunk with a flipped bit is left out, those behind it are read") {
   std::vector<std::size_t> ends;
   const std::string whole = mcap_file(30, 10, McapCompression::none, &ends);

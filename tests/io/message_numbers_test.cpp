@@ -89,16 +89,27 @@ TEST_CASE("each channel has numbers of its own") {
   CHECK(ours.present(2) == 1);
 }
 
-TEST_CASE("behind what a checksum covers, numbers that none covers are believed if they follow") {
+TEST_CASE("of what no checksum covers a number is believed that can be in the time between") {
   NumberGuard guard;
-  CHECK(guard.believes(numbered(1'000'000'000), true));  // nothing is known of the channel
-  for (const std::uint32_t number : {5U, 6U, 900U}) CHECK(guard.believes(numbered(number), false));
-  for (const std::uint32_t number : {901U, 950U, 902U, 900U + (1U << 20U)}) {
-    CHECK(guard.believes(numbered(number), true));  // each against the checked ones alone
+  const auto after = [](std::uint64_t seconds, std::uint32_t number) {
+    McapMessage message = numbered(number);
+    message.log_time = 1'000'000'000 * (1000 + seconds);
+    return message;
+  };
+  CHECK(guard.believes(after(0, 1'000'000'000), true));  // nothing is known of the channel
+  for (const std::uint32_t number : {5U, 6U, 900U}) CHECK(guard.believes(after(0, number), false));
+  for (const std::uint32_t number : {901U, 950U, 902U, 900U + 1024U, 0U, 7U, 899U}) {
+    CHECK(guard.believes(after(0, number), true));  // each against the checked ones alone
   }
-  for (const std::uint32_t number : {0U, 6U, 900U, 901U + (1U << 20U), UINT32_MAX}) {
-    CHECK_FALSE(guard.believes(numbered(number), true));
+  CHECK(guard.believes(after(1, 60'000), true));
+  CHECK(guard.believes(after(3600, 3600 * 60'000), true));  // the disk stood still for an hour
+  CHECK(guard.strays() == 0);
+  for (const std::uint32_t number : {5U, 6U, 900U, 901U + 1024U, UINT32_MAX}) {
+    CHECK_FALSE(guard.believes(after(0, number), true));
   }
+  CHECK_FALSE(guard.believes(after(1, 70'000), true));
+  CHECK_FALSE(guard.believes(numbered(70'000), true));  // its time is garbage, too
+  CHECK(guard.strays() == 7);
   CHECK(guard.believes(numbered(0, 8), true));
-  CHECK(guard.believes(numbered(3), false));  // what is covered is there, whatever its number
+  CHECK(guard.believes(numbered(5), false));  // what is covered is there, whatever its number
 }

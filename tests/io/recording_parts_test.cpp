@@ -265,6 +265,5 @@ TEST_CASE("a message of a torn end whose number can't be is left out, and told")
   options.files = {{folder / "take.mcap", "12"}};
   const auto streams = open_streams(files, {options});
   REQUIRE(streams);
-  CHECK(told(streams->front().by_file.findings).find("1 of others, at the torn end") !=
-        std::string::npos);
+  CHECK(told(streams->front().by_file.findings).find("1 of others") != std::string::npos);
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// A recording of several files made one: which copy counts, in what order, and what is told.
 #include "tests/faulty_files.h"
 #include "tests/folder.h"
 #include "tests/io/mcap_files.h"
@@ -441,13 +442,14 @@ TEST_CASE("metadata are of a file that a checksum covers, and the end is the las
   };
   const std::string a = folder.write("a.mcap", torn_at(part(1, "lefd", 0), 24));
   folder.write("a.part2.mcap", part(2, "left", 7));
+  folder.write("a.part3.mcap", part(3, "left", 9));  // ends, too
   REQUIRE(recover_recording(files, {a}, folder / "b.mcap", Overwrite::no));
   const auto survey = survey_recording(files, folder / "b.mcap");
   REQUIRE(survey->facts);
   CHECK(survey->facts->part == 1);
-  CHECK(survey->facts->last_part() == 2);
+  CHECK(survey->facts->last_part() == 3);
   REQUIRE(survey->end);
-  CHECK(survey->end->dropped == 7);
+  CHECK(survey->end->dropped == 9);
   std::vector<std::string> cameras;
   for (const McapRecord& record : read_mcap(folder.read("b.mcap")).records) {
     const auto* metadata = std::get_if<McapMetadata>(&record);
@@ -458,21 +460,27 @@ TEST_CASE("metadata are of a file that a checksum covers, and the end is the las
   CHECK(cameras == std::vector<std::string>{"left"});
 }
 
-TEST_CASE("of what recover made, old torn files that lie beside it say nothing") {
-  const FreshFolder folder;
-  PosixFiles files;
-  const std::string a = folder.write("a.mcap", part_of(1, 0, 30, false));
-  folder.write("a.part2.mcap", torn_at(part_of(2, 27, 60, true), 57));
-  const std::string whole = folder / "whole.mcap";
-  REQUIRE(recover_recording(files, {a}, whole, Overwrite::no));
-  const auto parts = parts_from(files, whole, {});
-  REQUIRE(parts);
-  CHECK(parts->size() == 1);
-  const auto survey = survey_parts(files, *parts, {});
-  REQUIRE(survey);
-  CHECK(survey->messages == 57);
-  CHECK(survey->torn.empty());
-  CHECK(judge_end(whole, *survey).empty());
+TEST_CASE("of what recover made, old files that lie beside it say nothing, however bad they are") {
+  const std::string torn = torn_at(part_of(2, 27, 60, true), 57);
+  std::string damaged = part_of(2, 27, 60, true);
+  damaged[damaged.find(nth_message(40).data)] ^= 1;
+  for (const std::string& second : {torn, damaged, part_of(2, 27, 500, true)}) {
+    const FreshFolder folder;
+    const std::string a = folder.write("a.mcap", part_of(1, 0, 30, false));
+    const std::string b = folder.write("a.part2.mcap", second);
+    BadPage files(second.size() > 2 * BadPage::size ? b : "", 2 * BadPage::size);
+    const std::string whole = folder / "whole.mcap";
+    const auto recovered = recover_recording(files, {a}, whole, Overwrite::no);
+    REQUIRE(recovered);
+    const auto parts = parts_from(files, whole, {});
+    REQUIRE(parts);
+    CHECK(parts->size() == 1);
+    const auto survey = survey_parts(files, *parts, {});
+    REQUIRE(survey);
+    CHECK(survey->messages == recovered->messages);
+    CHECK(survey->torn.empty());
+    CHECK(survey->findings.empty());
+  }
 }
 
 TEST_CASE("a closed file that only repeats a torn one says that a third one is missing") {
@@ -588,4 +596,76 @@ TEST_CASE("what two torn files have of a channel that only a third one defines i
   CHECK(recovered->missing == 0);
   const ReadMcap read = read_mcap(folder.read("b.mcap"));
   for (std::uint32_t k = 0; k < 80; ++k) CHECK(read.messages[k].data == nth_message(k).data);
+}
+
+TEST_CASE("where a disk gives a page at one reading and not at the other, recover makes nothing") {
+  const FreshFolder folder;
+  const std::string a = folder.write("a.mcap", part_of(1, 0, 500, false));
+  const std::string b = folder.write("a.part2.mcap", part_of(2, 200, 700, true));
+  int refusals = 0, openings = 0;
+  for (;;) {  // its beginning is read, too, more than once
+    BadPage files(b, 3 * BadPage::size);
+    files.only_opening = ++openings;
+    const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::yes);
+    if (!recovered) {
+      CHECK(recovered.error().expected == "files that a second reading finds as the first one did");
+      ++refusals;
+      continue;
+    }
+    CHECK(recovered->messages == 700);
+    if (files.openings() < openings) break;
+  }
+  CHECK(refusals == 2);
+}
+
+TEST_CASE("a survey of parts has each channel once, as a checksum covers it") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string first = torn_at(part_of(1, 0, 20, false), 18);
+  const std::string a = folder.write("a.mcap", replaced(first, "/topic2", "/topik2"));
+  folder.write("a.part2.mcap", part_of(2, 5, 40, true));
+  const auto survey = survey_parts(files, *parts_from(files, a, {}), {});
+  REQUIRE(survey);
+  REQUIRE(survey->channels.size() == 3);
+  CHECK(survey->channels[1].channel.topic == "/topic2");
+  CHECK(survey->messages == 40);
+}
+
+TEST_CASE(
+    "of a channel that one file does not name one copy is read, whichever reads them in turn") {
+  const FreshFolder folder;
+  PosixFiles files;
+  std::string first = torn_at(part_of(1, 0, 30, false), 28);
+  for (auto at = first.find("/topic"); at != std::string::npos; at = first.find("/topic", at + 1)) {
+    first[at - 17] = 0x7e;  // a record of another kind now
+  }
+  std::string second = torn_at(part_of(2, 10, 60, true), 50);
+  const std::string a = folder.write("a.mcap", first);
+  folder.write("a.part2.mcap", second);
+  const RecordingParts parts = *parts_from(files, a, {});
+  REQUIRE(parts.size() == 2);
+  for (std::uint32_t k = 10; k < 28; ++k) {
+    McapMessage message = nth_message(k).message;
+    message.sequence /= 3;
+    CHECK(stands_elsewhere(parts, 0, message));
+    CHECK_FALSE(stands_elsewhere(parts, 1, message));
+  }
+}
+
+TEST_CASE("a file whose beginning the disk can't give is told, and what to do") {
+  const FreshFolder folder;
+  const std::string a = folder.write("a.mcap", part_of(1, 0, 500, false));
+  const std::string b = folder.write("a.part2.mcap", part_of(2, 200, 700, true));
+  BadPage second(b, 0);
+  const auto recovered = recover_recording(second, {a}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->messages == 500);
+  const auto told = std::find_if(recovered->findings.begin(), recovered->findings.end(),
+                                 [&](const Finding& one) { return one.what.file == b; });
+  REQUIRE(told != recovered->findings.end());
+  CHECK(told->what.found.find("ddrescue") != std::string::npos);
+  BadPage first(a, 0);
+  const auto refused = recover_recording(first, {a}, folder / "c.mcap", Overwrite::no);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().expected == "a file whose beginning the disk can read");
 }

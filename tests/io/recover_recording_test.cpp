@@ -141,7 +141,7 @@ TEST_CASE("of a disk that can't give a page recover makes a file of the rest, an
 TEST_CASE("a number that a torn end's damage made is no message, and nothing is missing for it") {
   const FreshFolder folder;
   PosixFiles files;
-  for (const std::uint32_t number : {3U, 0x00200000U, 0xfffffff0U}) {
+  for (const std::uint32_t number : {3U, 0x00001000U, 0xfffffff0U}) {
     CAPTURE(number);
     MemoryFile file;
     McapWriter writer(file.store());
@@ -166,7 +166,7 @@ TEST_CASE("a number that a torn end's damage made is no message, and nothing is 
     for (const ChannelSurvey& one : survey->channels) CHECK(one.missing == 0);
     for (const Findings& findings : {recovered->findings, survey->findings}) {
       const auto told = std::find_if(findings.begin(), findings.end(), [](const Finding& one) {
-        return one.what.found == "1 of others, at the torn end";
+        return one.what.found == "1 of others";
       });
       REQUIRE(told != findings.end());
       CHECK(told->severity == Severity::error);
