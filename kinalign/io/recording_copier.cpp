@@ -40,11 +40,7 @@ std::uint64_t RecordingCopier::unchecked() const {
 }
 
 bool RecordingCopier::has_all() const {
-  if (parts_.size() == 1) return true;
-  std::uint64_t different = 0;
-  for (const std::uint16_t channel : numbers.channels()) different += numbers.present(channel);
-  return different == recovered.messages &&
-         std::all_of(parts_.begin(), parts_.end(),
+  return std::all_of(parts_.begin(), parts_.end(),
                      [this](const RecordingPart& part) { return numbers.has_all(part.numbers); });
 }
 
@@ -103,7 +99,8 @@ Result<void> RecordingCopier::add(const McapMessage& message) {
     ++recovered.nameless;
     return {};
   }
-  if (has_better(parts_, part_, message)) {
+  const bool is_ours = parts_.front().is_ours();
+  if (has_better(parts_, part_, message) || (is_ours && numbers.has(message))) {
     ++recovered.twice;
     return {};
   }
@@ -114,7 +111,7 @@ Result<void> RecordingCopier::add(const McapMessage& message) {
   }
   chunk_.add(message);
   contents_ = add_to(contents_, message);
-  if (parts_.front().is_ours()) numbers.add(message);
+  if (is_ours) numbers.add(message);
   ++recovered.messages;
   if (is_unchecked_) ++unchecked_[part_];
   constexpr std::size_t chunk_bytes = std::size_t{1} << 20;

@@ -23,7 +23,7 @@ class RecordingCopier {
   RecordingCopier(OutputFile& out, const RecordingParts& parts);
 
   /// A record of that part, in the order in which the new file is to have its messages: written,
-  /// unless another part has a better copy of it. `unchecked`: no checksum covers it.
+  /// unless another part has a better copy of it, or it was. `unchecked`: no checksum covers it.
   Result<void> take(const McapRecord& record, std::size_t part, bool unchecked);
   /// Of this part a checksum covers everything after all.
   void all_checked(std::size_t part) { unchecked_[part] = 0; }
@@ -34,8 +34,8 @@ class RecordingCopier {
   bool is_empty() const { return recovered.messages == 0 && names_.empty(); }
   std::uint64_t size() const { return writer_.size(); }
   std::uint64_t unchecked() const;
-  /// Whether it has all messages that a first reading found in the parts, and none twice: of a disk
-  /// that gives the same each time it has.
+  /// Whether it has all messages that a first reading found in the parts: of a disk that gives the
+  /// same each time it has.
   bool has_all() const;
   /// Whether a survey of the new file found in it what was written.
   bool proved_by(const RecordingSurvey& proof) const;

@@ -17,7 +17,8 @@ struct Recovered {
   std::uint64_t messages = 0;
   /// Of these no checksum covers: from a torn end, from chunks without one, or outside of chunks.
   std::uint64_t unchecked = 0;
-  std::uint64_t twice = 0;     // copies that stood in a further file: a better one was taken
+  std::uint64_t twice =
+      0;  // further copies: of those that stood in several files the best was taken
   std::uint64_t nameless = 0;  // left out: the definition of their channel is lost
   std::uint64_t skipped = 0;   // bytes of the old files in which nothing could be read
   /// Of which it is known that they were there: by their numbers or, of a single file, by its own

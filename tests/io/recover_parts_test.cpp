@@ -615,7 +615,7 @@ TEST_CASE("where a disk gives a page at one reading and not at the other, recove
     CHECK(recovered->messages == 700);
     if (files.openings() < openings) break;
   }
-  CHECK(refusals == 2);
+  CHECK(refusals == 1);  // what the first reading alone missed the second one has, once
 }
 
 TEST_CASE("a survey of parts has each channel once, as a checksum covers it") {
