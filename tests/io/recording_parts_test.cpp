@@ -232,7 +232,7 @@ TEST_CASE("what a torn end says of a channel counts only where no checksum cover
   const FreshFolder folder;
   TornLab lab(folder);
   PosixFiles files;
-  std::string first = lab.lab().file({1, -1e9, 30.4, "take.mcap", McapCompression::none});
+  std::string first = lab.lab().file({1, -1e9, 30.4, "take.mcap", McapCompression::none}, false);
   const auto begin = first.rfind("kinalign-node");  // of node 13, in the last chunk
   first.resize(begin + 500);
   first[begin] ^= 1;

@@ -594,6 +594,7 @@ TEST_CASE("what two torn files have of a channel that only a third one defines i
   CHECK(recovered->messages == 80);
   CHECK(recovered->nameless == 0);
   CHECK(recovered->missing == 0);
+  CHECK(survey_parts(files, *parts_from(files, a, {}), {})->messages == 80);
   const ReadMcap read = read_mcap(folder.read("b.mcap"));
   for (std::uint32_t k = 0; k < 80; ++k) CHECK(read.messages[k].data == nth_message(k).data);
 }
