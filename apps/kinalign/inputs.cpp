@@ -138,7 +138,8 @@ std::string name_advice(const Error& error) {
 }
 
 std::vector<std::string> file_advice(const Error& error) {
-  if (error.found == std::strerror(EIO) && error.file.ends_with(".mcap")) {
+  const bool is_bad_disk = error.expected == "a readable file" && error.found == std::strerror(EIO);
+  if (is_bad_disk && error.file.ends_with(".mcap")) {
     return {"kinalign recover " + harmless(error.file) +
             " -o whole.mcap makes a file of what the disk can give"};
   }

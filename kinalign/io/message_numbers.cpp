@@ -78,7 +78,8 @@ bool NumberGuard::believes(const McapMessage& message, bool unchecked) {
     if (is_last) last_[message.channel] = {message.sequence, message.log_time};
     return true;
   }
-  bool is_believed = !proved_.has(message);
+  const auto first = proved_.next(message.channel, 0);
+  bool is_believed = !first || (message.sequence > *first && !proved_.has(message));
   if (last != last_.end() && message.sequence > last->second.number) {
     const std::uint64_t since = message.log_time - std::min(message.log_time, last->second.at);
     const std::uint64_t most = 1024 + (since >> 14U);  // some 61,000 a second

@@ -41,8 +41,8 @@ class MessageNumbers {
 };
 
 /// Of one file of a recording: whether what no checksum covers can be a message of it. It can where
-/// its number is not there yet, and not further above its channel's last one that a checksum covers
-/// than any sender could have brought it in the time between.
+/// its number fills a hole between those of its channel that one covers, or is above them by no
+/// more than any sender could have brought in the time between.
 class NumberGuard {
  public:
   /// Of what stands in front of all that one covers nothing is known: it is.

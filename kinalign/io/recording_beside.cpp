@@ -129,7 +129,7 @@ int part_number(const std::string& path) {
 
 Error unreadable_beginning(const std::string& path) {
   return {path, 0, "a file whose beginning the disk can read",
-          "one of which it can't: ddrescue copies a bad disk and tries more often"};
+          "Input/output error (ddrescue copies a bad disk and tries more often)"};
 }
 
 Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path) {

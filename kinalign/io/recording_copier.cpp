@@ -3,6 +3,9 @@
 
 #include "kinalign/io/mcap_store.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -11,7 +14,7 @@
 namespace kinalign {
 
 RecordingCopier::RecordingCopier(OutputFile& out, const RecordingParts& parts)
-    : writer_(mcap_store(out)), parts_(parts), unchecked_(parts.size()) {
+    : writer_(mcap_store(out)), parts_(parts), unchecked_(parts.size()), written_(parts.size()) {
   for (const RecordingPart& part : parts) learn(part.definitions);
   for (const RecordingPart& part : parts) learn(part.unproved_definitions);
 }
@@ -100,7 +103,8 @@ Result<void> RecordingCopier::add(const McapMessage& message) {
     return {};
   }
   const bool is_ours = parts_.front().is_ours();
-  if (has_better(parts_, part_, message) || (is_ours && numbers.has(message))) {
+  const bool is_written = is_ours && numbers.has(message) && !written_[part_].has(message);
+  if (has_better(parts_, part_, message) || is_written) {
     ++recovered.twice;
     return {};
   }
@@ -111,7 +115,10 @@ Result<void> RecordingCopier::add(const McapMessage& message) {
   }
   chunk_.add(message);
   contents_ = add_to(contents_, message);
-  if (is_ours) numbers.add(message);
+  if (is_ours) {
+    numbers.add(message);
+    written_[part_].add(message);
+  }
   ++recovered.messages;
   if (is_unchecked_) ++unchecked_[part_];
   constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
@@ -126,9 +133,13 @@ Result<void> RecordingCopier::add(const McapStatistics& statistics) {
 /// What a part says of itself, said of all parts together.
 McapMetadata RecordingCopier::of_all(McapMetadata metadata) const {
   if (parts_.size() == 1) return metadata;
-  const int part = parts_.front().facts.part, until = parts_[furthest(parts_)].facts.last_part();
-  metadata.texts["part"] = std::to_string(part);
-  if (until > part) metadata.texts["until"] = std::to_string(until);
+  std::set<int> joined;
+  for (const RecordingPart& part : parts_) {
+    joined.insert(part.facts.part);
+    joined.insert(part.facts.joined.begin(), part.facts.joined.end());
+  }
+  metadata.texts["part"] = std::to_string(*joined.begin());
+  metadata.texts["joined"] = fmt::format("{}", fmt::join(joined, " "));
   return metadata;
 }
 

@@ -23,7 +23,8 @@ class RecordingCopier {
   RecordingCopier(OutputFile& out, const RecordingParts& parts);
 
   /// A record of that part, in the order in which the new file is to have its messages: written,
-  /// unless another part has a better copy of it, or it was. `unchecked`: no checksum covers it.
+  /// unless another part has a better copy of it, or one of another part was. `unchecked`: no
+  /// checksum covers it.
   Result<void> take(const McapRecord& record, std::size_t part, bool unchecked);
   /// Of this part a checksum covers everything after all.
   void all_checked(std::size_t part) { unchecked_[part] = 0; }
@@ -69,6 +70,7 @@ class RecordingCopier {
   bool is_unchecked_ = false;
   bool torn_ = false;                     // the part that reaches furthest says so of itself
   std::vector<std::uint64_t> unchecked_;  // messages, by part
+  std::vector<MessageNumbers> written_;   // of ours, by part
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
   std::uint32_t contents_ = 0;

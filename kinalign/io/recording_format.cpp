@@ -4,8 +4,10 @@
 #include "kinalign/io/little_endian_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -52,6 +54,19 @@ std::optional<ClockPair> believable(HostTime raw, Time utc) {
 
 bool is_part(std::int64_t number) { return 1 <= number && number <= 1'000'000; }
 
+/// "1 3 4"; what is none is left out.
+std::set<int> parts_in(std::string_view text) {
+  std::set<int> parts;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    int number = 0;
+    const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (fault == std::errc() && is_part(number)) parts.insert(number);
+  }
+  return parts;
+}
+
 // What an exchange's flags say.
 constexpr std::uint32_t echoed = 1, clockless = 2;
 constexpr std::uint64_t most_frames = std::uint64_t{1} << 33U;  // nine years at 15 Hz
@@ -76,7 +91,9 @@ McapMetadata to_metadata(const RecordingFacts& facts) {
                          {"part", std::to_string(facts.part)},
                          {"raw_ns", std::to_string(facts.anchor.raw.time_since_epoch().count())},
                          {"utc_ns", std::to_string(facts.anchor.utc.time_since_epoch().count())}}};
-  if (facts.until) metadata.texts["until"] = std::to_string(*facts.until);
+  if (!facts.joined.empty()) {
+    metadata.texts["joined"] = fmt::format("{}", fmt::join(facts.joined, " "));
+  }
   return metadata;
 }
 
@@ -90,8 +107,7 @@ std::optional<RecordingFacts> to_facts(const McapMetadata& metadata) {
   if (!anchor) return std::nullopt;
   RecordingFacts facts{text_of(texts, "subject"), text_of(texts, "action"), text_of(texts, "host"),
                        text_of(texts, "first"),   static_cast<int>(*part),  *anchor};
-  const auto until = number_of(texts, "until");
-  if (until && is_part(*until)) facts.until = static_cast<int>(*until);
+  facts.joined = parts_in(text_of(texts, "joined"));
   return facts;
 }
 

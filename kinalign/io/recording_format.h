@@ -9,9 +9,11 @@
 #include "kinalign/io/mark.h"
 #include "kinalign/io/mcap_records.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -24,12 +26,12 @@ inline constexpr std::int64_t latest_log_time = 4'000'000'000'000'000'000;  // n
 /// The metadata record of that name, which each file of a recording begins with.
 struct RecordingFacts {
   std::string subject, action;
-  std::string host;   // the machine's name
-  std::string first;  // name of the recording's first file
-  int part = 1;       // which file of the recording this is
-  ClockPair anchor;   // log times are UTC = host time + (utc - raw), in all of the recording
-  std::optional<int> until{};  // the last file whose messages are in this one, which recover made
-  int last_part() const { return until.value_or(part); }
+  std::string host;        // the machine's name
+  std::string first;       // name of the recording's first file
+  int part = 1;            // which file of the recording this is
+  ClockPair anchor;        // log times are UTC = host time + (utc - raw), in all of the recording
+  std::set<int> joined{};  // of what recover made of several: the files that went into it
+  int last_part() const { return joined.empty() ? part : std::max(part, *joined.rbegin()); }
 };
 McapMetadata to_metadata(const RecordingFacts& facts);
 /// Absent where a field is missing or no number, or where a clock is further than its limit: the

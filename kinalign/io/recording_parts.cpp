@@ -26,8 +26,9 @@ void sort(RecordingParts& parts) {
 
 /// What recover made of several is read with what it lacks, and not behind its own parts.
 bool stands_behind(const RecordingPart& other, const RecordingPart& part) {
-  const bool is_twin = other.facts.part == part.facts.part && !other.facts.until &&
-                       !part.facts.until && part_number(other.path) > part_number(part.path);
+  const bool is_twin = other.facts.part == part.facts.part && other.facts.joined.empty() &&
+                       part.facts.joined.empty() &&
+                       part_number(other.path) > part_number(part.path);
   return other.facts.part > part.facts.part || is_twin;
 }
 
@@ -41,7 +42,7 @@ RecordingParts without_repeated(RecordingParts parts) {
   for (RecordingPart& part : parts) {
     const EndTogether with_it = end.with(part.ending, part.facts);
     // What it made of this one, too, recover has looked at already.
-    const bool is_joined = !kept.empty() && kept.front().facts.until >= part.facts.last_part();
+    const bool is_joined = !kept.empty() && kept.front().facts.joined.contains(part.facts.part);
     const bool is_repeated =
         (part.is_sound || is_joined) && with_it.ending == end.ending && all_proved &&
         before.has_all(part.numbers) &&

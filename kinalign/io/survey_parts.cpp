@@ -55,6 +55,7 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
     if (found == survey.channels.end()) {
       survey.channels.push_back(one);
     } else {
+      if (found->channel.topic.empty()) found->channel = one.channel;  // not defined there
       add(one, *found);
     }
   }

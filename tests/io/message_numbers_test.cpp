@@ -98,18 +98,18 @@ TEST_CASE("of what no checksum covers a number is believed that can be in the ti
   };
   CHECK(guard.believes(after(0, 1'000'000'000), true));  // nothing is known of the channel
   for (const std::uint32_t number : {5U, 6U, 900U}) CHECK(guard.believes(after(0, number), false));
-  for (const std::uint32_t number : {901U, 950U, 902U, 900U + 1024U, 0U, 7U, 899U}) {
+  for (const std::uint32_t number : {901U, 950U, 902U, 900U + 1024U, 7U, 899U}) {
     CHECK(guard.believes(after(0, number), true));  // each against the checked ones alone
   }
   CHECK(guard.believes(after(1, 60'000), true));
   CHECK(guard.believes(after(3600, 3600 * 60'000), true));  // the disk stood still for an hour
   CHECK(guard.strays() == 0);
-  for (const std::uint32_t number : {5U, 6U, 900U, 901U + 1024U, UINT32_MAX}) {
+  for (const std::uint32_t number : {0U, 4U, 5U, 6U, 900U, 901U + 1024U, UINT32_MAX}) {
     CHECK_FALSE(guard.believes(after(0, number), true));
   }
   CHECK_FALSE(guard.believes(after(1, 70'000), true));
   CHECK_FALSE(guard.believes(numbered(70'000), true));  // its time is garbage, too
-  CHECK(guard.strays() == 7);
+  CHECK(guard.strays() == 9);
   CHECK(guard.believes(numbered(0, 8), true));
   CHECK(guard.believes(numbered(5), false));  // what is covered is there, whatever its number
 }

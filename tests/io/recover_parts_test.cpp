@@ -670,3 +670,50 @@ TEST_CASE("a file whose beginning the disk can't give is told, and what to do") 
   REQUIRE_FALSE(refused);
   CHECK(refused.error().expected == "a file whose beginning the disk can read");
 }
+
+TEST_CASE("a damaged part that recover had not seen is told beside what it made of others") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string a = folder.write("a.mcap", part_of(1, 0, 30, false));
+  const std::string c = folder.write("a.part3.mcap", part_of(3, 30, 90, true));
+  const std::string joined = folder / "joined.mcap";
+  REQUIRE(recover_recording(files, {a, c}, joined, Overwrite::no));
+  CHECK(survey_recording(files, joined)->facts->joined == std::set<int>{1, 3});
+  std::string second = part_of(2, 20, 40, false);
+  second[second.find(nth_message(25).data)] ^= 1;
+  folder.write("a.part2.mcap", second);
+  CHECK(parts_from(files, joined, {})->size() == 2);
+}
+
+TEST_CASE("of two messages with one number in a file recover keeps both") {
+  const FreshFolder folder;
+  PosixFiles files;
+  MemoryFile file;
+  McapWriter writer(file.store());
+  REQUIRE(writer.begin({"kinalign", "test"}));
+  REQUIRE(writer.write(to_metadata({"", "", "lab", "a.mcap", 1, {}})));
+  REQUIRE(writer.write(store(messages_of(0, 30), McapCompression::none)));
+  REQUIRE(writer.write(store(messages_of(27, 33), McapCompression::none)));
+  REQUIRE(writer.finish());
+  const std::string a = folder.write("a.mcap", file.bytes);
+  const auto recovered = recover_recording(files, {a}, folder / "b.mcap", Overwrite::no);
+  REQUIRE(recovered);
+  CHECK(recovered->messages == 36);
+  CHECK(recovered->twice == 0);
+}
+
+TEST_CASE("a channel that the first file does not define has in a survey the later one's name") {
+  const FreshFolder folder;
+  PosixFiles files;
+  std::string first = torn_at(part_of(1, 0, 30, false), 28);
+  for (auto at = first.find("/topic"); at != std::string::npos; at = first.find("/topic", at + 1)) {
+    first[at - 17] = 0x7e;  // a record of another kind now
+  }
+  const std::string a = folder.write("a.mcap", first);
+  folder.write("a.part2.mcap", torn_at(part_of(2, 10, 60, true), 50));
+  const auto survey = survey_parts(files, *parts_from(files, a, {}), {});
+  REQUIRE(survey);
+  REQUIRE(survey->channels.size() == 3);
+  CHECK(survey->channels.front().channel.topic == "/topic1");
+  CHECK(survey->messages == 50);
+}
