@@ -65,7 +65,8 @@ Result<void> check_take_name(const std::string& out);
 /// Where the names stand, for an error about a joint or a node that is not there; else empty.
 std::string name_advice(const Error& error);
 
-/// On a folder that was given for a file: the first recording in it, if there is one; else empty.
+/// On a folder that was given for a file: the first recording in it, if there is one. On a
+/// recording that a bad disk can't give: what can. Else empty.
 std::vector<std::string> file_advice(const Error& error);
 
 /// Byte of the first difference; nothing where two files are the same.

@@ -79,11 +79,13 @@ bool NumberGuard::believes(const McapMessage& message, bool unchecked) {
     return true;
   }
   const auto first = proved_.next(message.channel, 0);
-  bool is_believed = !first || (message.sequence > *first && !proved_.has(message));
-  if (last != last_.end() && message.sequence > last->second.number) {
+  bool is_believed = true;  // where nothing is covered
+  if (first && message.sequence > last->second.number) {
     const std::uint64_t since = message.log_time - std::min(message.log_time, last->second.at);
     const std::uint64_t most = 1024 + (since >> 14U);  // some 61,000 a second
     is_believed = message.sequence - last->second.number <= most;
+  } else if (first) {
+    is_believed = message.sequence > *first && !proved_.has(message);
   }
   strays_ += is_believed ? 0 : 1;
   return is_believed;

@@ -42,9 +42,16 @@ std::uint64_t RecordingCopier::unchecked() const {
   return std::accumulate(unchecked_.begin(), unchecked_.end(), std::uint64_t{0});
 }
 
+MessageNumbers RecordingCopier::numbers() const {
+  MessageNumbers all;
+  for (const MessageNumbers& one : written_) all.add_all(one);
+  return all;
+}
+
 bool RecordingCopier::has_all() const {
+  const MessageNumbers all = numbers();
   return std::all_of(parts_.begin(), parts_.end(),
-                     [this](const RecordingPart& part) { return numbers.has_all(part.numbers); });
+                     [&all](const RecordingPart& part) { return all.has_all(part.numbers); });
 }
 
 bool RecordingCopier::proved_by(const RecordingSurvey& proof) const {
@@ -102,9 +109,7 @@ Result<void> RecordingCopier::add(const McapMessage& message) {
     ++recovered.nameless;
     return {};
   }
-  const bool is_ours = parts_.front().is_ours();
-  const bool is_written = is_ours && numbers.has(message) && !written_[part_].has(message);
-  if (has_better(parts_, part_, message) || is_written) {
+  if (stands_in_another(message)) {
     ++recovered.twice;
     return {};
   }
@@ -115,10 +120,7 @@ Result<void> RecordingCopier::add(const McapMessage& message) {
   }
   chunk_.add(message);
   contents_ = add_to(contents_, message);
-  if (is_ours) {
-    numbers.add(message);
-    written_[part_].add(message);
-  }
+  if (parts_.front().is_ours()) written_[part_].add(message);
   ++recovered.messages;
   if (is_unchecked_) ++unchecked_[part_];
   constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
@@ -149,6 +151,16 @@ bool RecordingCopier::is_repeated(const std::string& name) {
   names_.insert(name);
   const std::size_t source = source_of(parts_, name);
   return source < parts_.size() && source != part_;
+}
+
+/// Or was written of another already, of which a first reading had not found it.
+bool RecordingCopier::stands_in_another(const McapMessage& message) const {
+  if (has_better(parts_, part_, message)) return true;
+  for (std::size_t other = 0; other < parts_.size(); ++other) {
+    if (other != part_ && written_[other].has(message) && !written_[part_].has(message))
+      return true;
+  }
+  return false;
 }
 
 Result<void> RecordingCopier::close_chunk() {

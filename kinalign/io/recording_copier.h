@@ -35,6 +35,8 @@ class RecordingCopier {
   bool is_empty() const { return recovered.messages == 0 && names_.empty(); }
   std::uint64_t size() const { return writer_.size(); }
   std::uint64_t unchecked() const;
+  /// Of those that were written, where the recording is ours.
+  MessageNumbers numbers() const;
   /// Whether it has all messages that a first reading found in the parts: of a disk that gives the
   /// same each time it has.
   bool has_all() const;
@@ -42,7 +44,6 @@ class RecordingCopier {
   bool proved_by(const RecordingSurvey& proof) const;
 
   Recovered recovered;
-  MessageNumbers numbers;  // of those that were written, where the recording is ours
   /// Messages, by the file's own statistics: as long as nothing says that they are damaged.
   std::uint64_t counted = 0;
 
@@ -62,6 +63,7 @@ class RecordingCopier {
   }
   McapMetadata of_all(McapMetadata metadata) const;
   bool is_repeated(const std::string& name);
+  bool stands_in_another(const McapMessage& message) const;
   Result<void> close_chunk();
 
   McapWriter writer_;
@@ -70,7 +72,7 @@ class RecordingCopier {
   bool is_unchecked_ = false;
   bool torn_ = false;                     // the part that reaches furthest says so of itself
   std::vector<std::uint64_t> unchecked_;  // messages, by part
-  std::vector<MessageNumbers> written_;   // of ours, by part
+  std::vector<MessageNumbers> written_;   // by part, where the recording is ours
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
   std::uint32_t contents_ = 0;

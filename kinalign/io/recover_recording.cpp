@@ -93,8 +93,9 @@ std::uint64_t missing(const RecordingCopier& copier, std::size_t parts) {
   const Recovered& recovered = copier.recovered;
   std::uint64_t by_number = 0;
   if (recovered.proof.facts) {  // programs of others number as they like
+    const MessageNumbers numbers = copier.numbers();
     for (const ChannelSurvey& one : recovered.proof.channels) {
-      by_number += copier.numbers.missing(one.channel.id);
+      by_number += numbers.missing(one.channel.id);
     }
   }
   const bool counted = parts == 1 && copier.counted > recovered.messages;

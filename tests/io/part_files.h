@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace kinalign {
 
@@ -40,16 +41,29 @@ inline std::string torn_at(const std::string& bytes, std::uint32_t k) {
   return bytes.substr(0, bytes.find(times));
 }
 
+/// Its definitions of channels are records of another kind then.
+inline std::string nameless(std::string bytes) {
+  for (auto at = bytes.find("/topic"); at != std::string::npos; at = bytes.find("/topic", at + 1)) {
+    bytes[at - 17] = 0x7e;
+  }
+  return bytes;
+}
+
 /// Part of a recording, closed in order; `ends`: recording ended there.
-inline std::string part_of(int part, int from, int to, bool ends) {
+inline std::string part_of(int part, const std::vector<McapChunkContent>& chunks, bool ends) {
   MemoryFile file;
   McapWriter writer(file.store());
   REQUIRE(writer.begin({"kinalign", "test"}));
   REQUIRE(writer.write(to_metadata({"", "", "lab", "a.mcap", part, {}})));
-  REQUIRE(writer.write(store(messages_of(from, to), McapCompression::none)));
+  for (const McapChunkContent& chunk : chunks) {
+    REQUIRE(writer.write(store(chunk, McapCompression::none)));
+  }
   if (ends) REQUIRE(writer.write(to_metadata(RecordingEnd{})));
   REQUIRE(writer.finish());
   return file.bytes;
+}
+inline std::string part_of(int part, int from, int to, bool ends) {
+  return part_of(part, {messages_of(from, to)}, ends);
 }
 
 }  // namespace kinalign
