@@ -6,7 +6,7 @@
 
 #include "apps/kinalign/node_names.h"
 
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/clock/clock_event.h"
 
 #include <array>
 #include <cstddef>

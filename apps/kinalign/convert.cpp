@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/console.h"
+#include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/describe_report.h"
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/json_text.h"

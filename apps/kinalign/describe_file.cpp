@@ -19,6 +19,8 @@
 
 namespace kinalign {
 
+Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can read", ""}; }
+
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -37,6 +37,9 @@ std::string read_as(const RecordedStream& stream);
 /// Opens the take in a child process.
 Result<Description> describe_take(FileSystem& files, const std::string& path, Names names);
 
+/// The file and the expectation of an error about a take that HDF5 can't read.
+Error blame(const std::string& path);
+
 /// "warning walk.bvh:12: expected ...": lines of what was found, worst first, harmless and in the
 /// console's colours.
 std::string finding_lines(Findings findings, const Console& console);

@@ -14,8 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -137,25 +135,6 @@ std::string name_advice(const Error& error) {
   return name ? "kinalign info FILE -v lists the names of joints and nodes" : "";
 }
 
-std::vector<std::string> file_advice(const Error& error) {
-  const bool is_bad_disk = error.expected == "a readable file" && error.found == std::strerror(EIO);
-  if (is_bad_disk && error.file.ends_with(".mcap")) {
-    return {"kinalign recover " + harmless(error.file) +
-            " -o whole.mcap makes a file of what the disk can give"};
-  }
-  if (error.expected != "a regular file" || error.found != "a directory") return {};
-  std::vector<std::string> recordings;
-  std::error_code fault;
-  for (std::filesystem::directory_iterator file(error.file, fault), end; !fault && file != end;
-       file.increment(fault)) {
-    const std::string name = file->path().string();
-    if (name.ends_with(".mcap")) recordings.push_back(name);
-  }
-  if (recordings.empty()) return {"name a file in it"};
-  return {"name a file in it, as " +
-          harmless(*std::min_element(recordings.begin(), recordings.end()))};
-}
-
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b) {
   InputFile one = KA_TRY(InputFile::open(files, a)), other = KA_TRY(InputFile::open(files, b));
@@ -242,7 +221,5 @@ std::vector<std::string> files_named(Manifest manifest, const std::string& folde
   for (const std::string* path : paths_in(manifest)) paths.push_back(path_in(folder, *path));
   return paths;
 }
-
-Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can read", ""}; }
 
 }  // namespace kinalign

@@ -65,10 +65,6 @@ Result<void> check_take_name(const std::string& out);
 /// Where the names stand, for an error about a joint or a node that is not there; else empty.
 std::string name_advice(const Error& error);
 
-/// On a folder that was given for a file: the first recording in it, if there is one. On a
-/// recording that a bad disk can't give: what can. Else empty.
-std::vector<std::string> file_advice(const Error& error);
-
 /// Byte of the first difference; nothing where two files are the same.
 Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
                                                       const std::string& b);
@@ -84,8 +80,5 @@ std::string cut_common_folder(Manifest& manifest);
 
 /// Every file that a manifest names; relative paths are relative to `folder`.
 std::vector<std::string> files_named(Manifest manifest, const std::string& folder);
-
-/// What a failed job on a take's file is blamed on, and how far it may go.
-Error blame(const std::string& path);
 
 }  // namespace kinalign

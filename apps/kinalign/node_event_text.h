@@ -7,7 +7,7 @@
 
 #include "kinalign/capture/host_clock.h"
 #include "kinalign/capture/node_event.h"
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/clock/clock_event.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,8 +3,8 @@
 
 #include "apps/kinalign/command_line.h"
 #include "apps/kinalign/console.h"
+#include "apps/kinalign/file_advice.h"
 #include "apps/kinalign/help.h"
-#include "apps/kinalign/inputs.h"
 #include "apps/kinalign/settings.h"
 
 #include <algorithm>

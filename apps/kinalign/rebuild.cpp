@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/align_job.h"
 #include "apps/kinalign/console.h"
+#include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/inputs.h"
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/summary.h"

@@ -10,6 +10,8 @@
 #include "apps/kinalign/node_text.h"
 #include "apps/kinalign/summary.h"
 
+#include "kinalign/capture/recording_session.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -41,6 +43,13 @@ std::string ports_text(const RecordingSession& session) {
 std::string_view to_give_up(bool ends) { return ends ? "another Ctrl-C" : "Ctrl-C pressed twice"; }
 
 }  // namespace
+
+RecordHerald::RecordHerald(RecordingSession& session, Console& console)
+    : session_(session),
+      console_(console),
+      names_(node_names(session.lab())),
+      clock_news_(names_),
+      begun_(session.now()) {}
 
 std::vector<std::string> RecordHerald::unheard_required() const {
   Lab lab = session_.lab();

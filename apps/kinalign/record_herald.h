@@ -8,7 +8,8 @@
 #include "apps/kinalign/record_text.h"
 #include "apps/kinalign/silence_news.h"
 
-#include "kinalign/capture/recording_session.h"
+#include "kinalign/capture/host_clock.h"
+#include "kinalign/capture/session_take.h"
 
 #include <memory>
 #include <optional>
@@ -18,14 +19,12 @@
 
 namespace kinalign {
 
+class NodeReceiver;
+class RecordingSession;
+
 class RecordHerald {
  public:
-  RecordHerald(RecordingSession& session, Console& console)
-      : session_(session),
-        console_(console),
-        names_(node_names(session.lab())),
-        clock_news_(names_),
-        begun_(session.now()) {}
+  RecordHerald(RecordingSession& session, Console& console);
 
   /// Ports are open, and a start is waited for.
   void tell_waiting();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record_stage.h"
 
+#include "kinalign/capture/recording_session.h"
+
 #include <utility>
 
 namespace kinalign {

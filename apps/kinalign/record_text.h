@@ -2,7 +2,9 @@
 // What `record` says of a lab: a table for people, members of JSON objects for programs. Pure.
 #pragma once
 
-#include "kinalign/capture/recording_session.h"
+#include "kinalign/capture/node_status.h"
+#include "kinalign/capture/stream_status.h"
+#include "kinalign/take/lab.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -104,12 +104,6 @@ Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPla
       reference.data);
 }
 
-/// A step as a whole number of which a few still fit into 64 bits: 30 years at most.
-std::int64_t step_of(double ns) {
-  constexpr double longest = 1e18;
-  return std::llround(std::min(ns, longest));
-}
-
 ResampleRule rule_of(const RecordedStream& s, const StreamOptions& stream,
                      const AlignOptions& options) {
   ResampleRule rule;
@@ -263,28 +257,6 @@ Result<void> check_streams(const Recording& recording) {
 std::string reference_name(const Recording& recording, const Manifest& manifest) {
   const bool said = !manifest.align.reference.empty() || recording.streams.empty();
   return said ? manifest.align.reference : recording.streams.front().name;
-}
-
-Time first_of(const RecordedStream& s) { return take_time(s.clock, s.survey.first); }
-Time last_of(const RecordedStream& s) { return take_time(s.clock, s.survey.last); }
-
-std::string stream_label(const RecordedStream& s) {
-  const auto* imu = std::get_if<ImuInput>(&s.data);
-  const bool one = imu != nullptr && imu->node_names.size() == 1;
-  return one ? s.name + " " + shown(imu->node_names.front()) : s.name;
-}
-
-std::int64_t usual_step_ns(const RecordedStream& s, const StreamOptions& options) {
-  if (options.rate_hz > 0.0) return step_of(1e9 / options.rate_hz);
-  return step_of(s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns)));
-}
-
-const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {
-  static const StreamOptions defaults;
-  for (const StreamOptions& s : manifest.streams) {
-    if (s.name == stream) return s;
-  }
-  return defaults;
 }
 
 Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& manifest) {

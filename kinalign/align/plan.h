@@ -31,18 +31,4 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
 /// The stream whose stamps are the grid: the one that is said, else the first.
 std::string reference_name(const Recording& recording, const Manifest& manifest);
 
-/// A stream's first and last stamp on the take's axis.
-Time first_of(const RecordedStream& stream);
-Time last_of(const RecordedStream& stream);
-
-/// "kinect", or of a single node, whose streams share a name, "imu waist".
-std::string stream_label(const RecordedStream& stream);
-
-/// The step between samples that alignment takes for the usual one, ns: the stated one, else the
-/// median.
-std::int64_t usual_step_ns(const RecordedStream& stream, const StreamOptions& options);
-
-/// The manifest's options of a stream; defaults where it has none.
-const StreamOptions& options_of(const Manifest& manifest, const std::string& stream);
-
 }  // namespace kinalign

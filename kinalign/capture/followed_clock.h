@@ -3,31 +3,35 @@
 // from all exchanges, afterwards (clock/device_clock.h).
 #pragma once
 
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/capture/sender_clock.h"
+#include "kinalign/clock/clock_stamp.h"
+#include "kinalign/clock/exchange.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 namespace kinalign {
 
-struct SenderClock {
-  Duration host_minus_sender{};
-  std::optional<Duration> half_interval;  // certified; absent: not (yet)
-  double drift = 0.0;                     // of the host's rate against the sender's, as estimated
-};
+class LiveClock;
 
 /// `n`: the sender's clock at that stamp.
 SenderClock sender_clock(const ClockStamp& stamp, NodeTime n, double drift);
 
 class FollowedClock {
  public:
+  FollowedClock();
+  FollowedClock(FollowedClock&&) noexcept;
+  FollowedClock& operator=(FollowedClock&&) noexcept;
+  ~FollowedClock();
+
   /// `epoch`: of the host's axis.
   void push(Exchange exchange, std::uint32_t epoch);
   /// As of the newest exchange; absent while too little is known.
   const std::optional<SenderClock>& now() const { return now_; }
 
  private:
-  LiveClock clock_;
+  std::unique_ptr<LiveClock> clock_;
   HostTime heard_ = HostTime::min();
   std::optional<SenderClock> now_;
 };

@@ -29,6 +29,14 @@ constexpr bool is_ipv4(const HostAddress& address) {
 /// "192.168.7.20", "fd00::1".
 std::string to_string(const HostAddress& address);
 
+/// A node's address and UDP port.
+struct NodeAddress {
+  HostAddress host{};
+  std::uint16_t port = 0;
+
+  bool operator==(const NodeAddress&) const = default;
+};
+
 /// What is counted as one stranger: an IPv4 address, an IPv6 network of 64 bits, which is what one
 /// customer has.
 constexpr std::span<const std::uint8_t, 8> stranger(const HostAddress& address) {

@@ -4,7 +4,7 @@
 // is an argument, and every fault is tested without either.
 #pragma once
 
-#include "kinalign/capture/key_ring.h"
+#include "kinalign/capture/node_keys.h"
 #include "kinalign/capture/node_table.h"
 #include "kinalign/capture/node_verdict.h"
 #include "kinalign/capture/rate_limit.h"

@@ -2,9 +2,11 @@
 // What happens among the nodes, for who watches.
 #pragma once
 
-#include "kinalign/capture/node_life.h"
+#include "kinalign/capture/host_address.h"
 #include "kinalign/wire/node_datagram.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 namespace kinalign {

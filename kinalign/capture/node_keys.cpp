@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace kinalign {
 
@@ -142,6 +143,22 @@ Result<void> write_key(FileSystem& files, const std::string& path,
   const std::string why = std::strerror(errno);
   files.remove(path.c_str());  // half a key is none
   return no_key(path, "room for a key", why);
+}
+
+const MacKey* KeyRing::Derived::key_of(std::uint32_t node_id) {
+  if (!lab) return nullptr;
+  Key& place = kept[node_id % most];
+  if (place.node_id != node_id) place = {node_id, node_key(*lab, node_id)};
+  return &place.key;
+}
+
+const MacKey* KeyRing::old_key_of(std::uint32_t node_id, HostTime now) {
+  return now < before_ends_ ? before_.key_of(node_id) : nullptr;
+}
+
+void KeyRing::replace(const LabKey& lab, HostTime now) {
+  before_ = std::exchange(now_, Derived(lab));
+  before_ends_ = now + old_key_lasts;
 }
 
 }  // namespace kinalign

@@ -7,19 +7,12 @@
 #include "kinalign/capture/host_address.h"
 #include "kinalign/capture/node_counter.h"
 #include "kinalign/capture/sequence_window.h"
-#include "kinalign/clock/host_from_node.h"
+#include "kinalign/clock/exchange.h"
 
 #include <cstddef>
 #include <cstdint>
 
 namespace kinalign {
-
-struct NodeAddress {
-  HostAddress host{};
-  std::uint16_t port = 0;
-
-  bool operator==(const NodeAddress&) const = default;
-};
 
 struct NodeLife {
   enum class State : std::uint8_t {

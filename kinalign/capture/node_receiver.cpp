@@ -15,6 +15,23 @@ constexpr int batches_in_turn = 16;  // of a socket, before others have theirs
 
 }  // namespace
 
+struct NodeReceiver::StreamClock {
+  std::uint32_t number = 0, epoch = 0;  // of which stream, since when
+  std::uint32_t node_id = 0;
+  LiveClock clock;
+  NodeTime n{};                     // of its newest frame, …
+  std::optional<ClockStamp> stamp;  // … and what that is on the host's axis
+  HostTime heard = HostTime::min();
+  bool counts = false;  // the node has a counter
+  std::optional<Duration> one_way;
+  Duration ways{0};
+  std::int64_t confirmed = 0;
+};
+
+NodeReceiver::NodeReceiver(NodeReceiver&&) noexcept = default;
+NodeReceiver& NodeReceiver::operator=(NodeReceiver&&) noexcept = default;
+NodeReceiver::~NodeReceiver() = default;
+
 Result<NodeReceiver> NodeReceiver::open(const NodeReceiverOptions& options, ClockReader& clocks) {
   std::vector<UdpSocket> sockets = KA_TRY(open_udp_sockets(options.addresses, options.port));
   for (const UdpSocket& socket : sockets)

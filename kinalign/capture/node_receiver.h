@@ -7,8 +7,9 @@
 #include "kinalign/capture/host_clock.h"
 #include "kinalign/capture/node_desk.h"
 #include "kinalign/capture/node_lines.h"
+#include "kinalign/capture/node_status.h"
 #include "kinalign/capture/udp_socket.h"
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/clock/clock_event.h"
 
 #include <functional>
 #include <memory>
@@ -18,32 +19,20 @@
 
 namespace kinalign {
 
+class LiveClock;
+
 struct NodeReceiverOptions {
   std::vector<std::string> addresses;  // empty: all, of IPv4 and IPv6
   std::uint16_t port = 0;              // 0: any free one, the same for all addresses
   NodeDeskOptions desk;
 };
 
-/// How a node does.
-struct NodeStatus {
-  std::size_t stream = 0;
-  std::uint32_t node_id = 0, boot_id = 0;
-  NodeAddress address;
-  bool silent = false, old_key = false;
-  std::uint64_t lives = 0, accepted = 0, lost = 0;  // frames, of this life
-  std::optional<double> rate_hz;            // absent before it is known, and of who is silent
-  HostTime heard{};                         // last
-  std::optional<std::uint16_t> battery_mv;  // where it says that
-  // of its clock, where it has one
-  std::optional<NodeTime> n;  // its newest counter, ...
-  std::optional<ClockStamp> stamp;
-  double drift = 0.0, drift_deviation = 0.0;  // host_from_node's rate less one, as estimated
-  std::optional<Duration> round_trip;         // the least of the last whole ten seconds
-  std::optional<Duration> one_way, mean_way;  // d of a node without a counter: the last, the mean
-};
-
 class NodeReceiver {
  public:
+  NodeReceiver(NodeReceiver&&) noexcept;
+  NodeReceiver& operator=(NodeReceiver&&) noexcept;
+  ~NodeReceiver();
+
   /// `clocks` has to stay.
   static Result<NodeReceiver> open(const NodeReceiverOptions& options, ClockReader& clocks);
 
@@ -93,18 +82,7 @@ class NodeReceiver {
  private:
   NodeReceiver(const NodeReceiverOptions& options, std::vector<UdpSocket> sockets,
                ClockReader& clocks);
-  struct StreamClock {
-    std::uint32_t number = 0, epoch = 0;  // of which stream, since when
-    std::uint32_t node_id = 0;
-    LiveClock clock;
-    NodeTime n{};                     // of its newest frame, …
-    std::optional<ClockStamp> stamp;  // … and what that is on the host's axis
-    HostTime heard = HostTime::min();
-    bool counts = false;  // the node has a counter
-    std::optional<Duration> one_way;
-    Duration ways{0};
-    std::int64_t confirmed = 0;
-  };
+  struct StreamClock;
   /// A datagram that waits until its batch is answered.
   struct Kept {
     NodeArrival arrival;

@@ -7,6 +7,7 @@
 
 #include "kinalign/capture/event_queue.h"
 #include "kinalign/capture/node_event.h"
+#include "kinalign/capture/node_life.h"
 
 #include <vector>
 

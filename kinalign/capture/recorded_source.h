@@ -2,10 +2,9 @@
 // One channel of raw payloads while it is recorded, and how it does.
 #pragma once
 
-#include "kinalign/capture/followed_clock.h"
 #include "kinalign/capture/past_counts.h"
 #include "kinalign/capture/recorder.h"
-#include "kinalign/io/recording_counts.h"
+#include "kinalign/capture/stream_status.h"
 #include "kinalign/io/recording_format.h"
 
 #include <cstdint>
@@ -14,18 +13,6 @@
 #include <string_view>
 
 namespace kinalign {
-
-/// How a stream does: one sender's, or one node's.
-struct StreamStatus {
-  std::string topic, stream, sender;
-  std::string node, place;    // of nodes: the id, and where the lab says that it is worn
-  SenderCounts counts;        // of the present or last take; else since it was first heard
-  std::uint64_t samples = 0;  // of nodes: a frame has several
-  double rate_hz = 0.0;       // of the last second: samples, else frames, else messages
-  HostTime heard{};           // last
-  std::optional<double> battery_volts;  // where the device says that
-  std::optional<SenderClock> clock;     // of a Kinect's sender
-};
 
 class RecordedSource {
  public:

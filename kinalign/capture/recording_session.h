@@ -24,9 +24,6 @@
 
 namespace kinalign {
 
-/// A mark and when it came.
-using HeardMark = std::pair<RecordedMark, HostTime>;
-
 class RecordingSession {
  public:
   struct Options {

@@ -4,9 +4,8 @@
 #pragma once
 
 #include "kinalign/capture/disk_thread.h"
-#include "kinalign/capture/node_receiver.h"
-#include "kinalign/capture/recorded_source.h"
-#include "kinalign/io/recording_counts.h"
+#include "kinalign/capture/node_status.h"
+#include "kinalign/capture/stream_status.h"
 #include "kinalign/io/recording_format.h"
 #include "kinalign/wire/time.h"
 
@@ -21,6 +20,9 @@
 #include <vector>
 
 namespace kinalign {
+
+/// A mark and when it came.
+using HeardMark = std::pair<RecordedMark, HostTime>;
 
 struct TakePlan {
   /// A path that ends in .mcap, under which there is no file yet. Asked for on the disk's thread,

@@ -6,7 +6,7 @@
 // costs.
 #pragma once
 
-#include "kinalign/clock/host_from_node.h"
+#include "kinalign/clock/exchange.h"
 
 #include <cstdint>
 #include <optional>

@@ -6,7 +6,7 @@
 #include "kinalign/io/mcap_writer.h"
 #include "kinalign/io/message_numbers.h"
 #include "kinalign/io/recording_parts.h"
-#include "kinalign/io/recover_recording.h"
+#include "kinalign/io/recovered.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -81,6 +81,8 @@ std::string exchange_head(BootKey boot, std::uint32_t epoch, std::uint32_t flags
 
 }  // namespace
 
+bool looks_like_recording(std::string_view head) { return head.starts_with(mcap_magic); }
+
 McapMetadata to_metadata(const RecordingFacts& facts) {
   McapMetadata metadata{std::string(recording_metadata),
                         {{"format", std::string(format)},

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinalign/clock/clockless.h"
-#include "kinalign/clock/host_from_node.h"
+#include "kinalign/clock/exchange.h"
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/io/mark.h"
 #include "kinalign/io/mcap_records.h"
@@ -18,6 +18,9 @@
 #include <string_view>
 
 namespace kinalign {
+
+/// Whether a file that begins with these bytes is an MCAP file.
+bool looks_like_recording(std::string_view head);
 
 inline constexpr std::string_view recording_profile = "kinalign";
 inline constexpr std::string_view recording_metadata = "kinalign.recording";

@@ -271,8 +271,6 @@ RecordedDevice device_of(FileSystem& files, const DeviceWish& wish, const Listen
 
 }  // namespace
 
-bool looks_like_recording(std::string_view head) { return head.starts_with(mcap_magic); }
-
 Result<RecordedDevice> listen(FileSystem& files, const StreamOptions& options,
                               const StreamFile& file, const Progress& progress) {
   DeviceWish wish = KA_TRY(whole_wish(files, options, file, progress));

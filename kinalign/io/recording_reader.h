@@ -13,8 +13,6 @@
 
 namespace kinalign {
 
-bool looks_like_recording(std::string_view head);
-
 /// A device that was listened to, and readers of its rows.
 struct RecordedDevice {
   std::shared_ptr<const HeardDevice> heard;

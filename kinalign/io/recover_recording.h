@@ -6,27 +6,12 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/recording_survey.h"
+#include "kinalign/io/recovered.h"
 
 #include <string>
 #include <vector>
 
 namespace kinalign {
-
-struct Recovered {
-  std::uint64_t messages = 0;
-  /// Of these no checksum covers: from a torn end, from chunks without one, or outside of chunks.
-  std::uint64_t unchecked = 0;
-  std::uint64_t twice =
-      0;  // further copies: of those that stood in several files the best was taken
-  std::uint64_t nameless = 0;  // left out: the definition of their channel is lost
-  std::uint64_t skipped = 0;   // bytes of the old files in which nothing could be read
-  /// Of which it is known that they were there: by their numbers or, of a single file, by its own
-  /// count.
-  std::uint64_t missing = 0;
-  RecordingSurvey proof;  // of the new file
-  Findings findings;      // of the old ones, and of the new one's order
-};
 
 /// `paths`: files of the recording in any order, with those of its files that lie beside them.
 /// Where a disk can't give a page (EIO), but a file's first, the others are read. Fails where files

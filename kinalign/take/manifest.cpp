@@ -16,6 +16,14 @@ std::int64_t line_of(const KeyLines& lines, const std::string& key) {
   return found == lines.end() ? 0 : found->second;
 }
 
+const StreamOptions& options_of(const Manifest& manifest, const std::string& stream) {
+  static const StreamOptions defaults;
+  for (const StreamOptions& s : manifest.streams) {
+    if (s.name == stream) return s;
+  }
+  return defaults;
+}
+
 Result<void> check_stream_name(const std::string& name) {
   constexpr std::array<std::string_view, 7> taken{
       "time_ns", "seconds", "t0_ns", "report_json", "parameters_json", ".", ".."};

@@ -84,6 +84,9 @@ struct Manifest {
   AlignOptions align;
 };
 
+/// The stream's options; the defaults where the manifest has none.
+const StreamOptions& options_of(const Manifest& manifest, const std::string& stream);
+
 /// Fails where a take could not have a group of that name.
 Result<void> check_stream_name(const std::string& name);
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/take/recording.h"
 
+#include "kinalign/take/manifest.h"
+
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -36,7 +40,27 @@ RecordedStream stream(std::string name, const StampSurvey& survey, Input input) 
   return out;
 }
 
+/// A whole number of which a few still fit into 64 bits.
+std::int64_t step_of(double ns) {
+  constexpr double longest = 1e18;
+  return std::llround(std::min(ns, longest));
+}
+
 }  // namespace
+
+Time first_of(const RecordedStream& s) { return take_time(s.clock, s.survey.first); }
+Time last_of(const RecordedStream& s) { return take_time(s.clock, s.survey.last); }
+
+std::string stream_label(const RecordedStream& s) {
+  const auto* imu = std::get_if<ImuInput>(&s.data);
+  const bool one = imu != nullptr && imu->node_names.size() == 1;
+  return one ? s.name + " " + shown(imu->node_names.front()) : s.name;
+}
+
+std::int64_t usual_step_ns(const RecordedStream& s, const StreamOptions& options) {
+  if (options.rate_hz > 0.0) return step_of(1e9 / options.rate_hz);
+  return step_of(s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns)));
+}
 
 RecordedStream recorded(std::string name, Clip clip) {
   const StampSurvey found = survey(clip.frames.stamps);

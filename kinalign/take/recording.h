@@ -18,6 +18,8 @@
 
 namespace kinalign {
 
+struct StreamOptions;
+
 /// One pass over a stream: each call fills the next block (replacing what it held); false at the
 /// end. Blocks are of the reader's size, never empty.
 template <class Frames>
@@ -82,6 +84,16 @@ struct RecordedStream {
   Findings findings;   // of the reader
   SaidByFile by_file;  // each stream that reads it has the same
 };
+
+/// The stream's first and last stamp on the take's axis.
+Time first_of(const RecordedStream& stream);
+Time last_of(const RecordedStream& stream);
+
+/// "kinect"; for a single node, whose streams share a name, "imu waist".
+std::string stream_label(const RecordedStream& stream);
+
+/// The usual step between samples in ns: the stated one, else the median. At most 30 years.
+std::int64_t usual_step_ns(const RecordedStream& stream, const StreamOptions& options);
 
 struct Recording {
   std::string subject, action;  // empty where nothing is known

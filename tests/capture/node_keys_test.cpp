@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/node_keys.h"
 
-#include "kinalign/capture/key_ring.h"
-
 #include <doctest/doctest.h>
 #include <pwd.h>
 #include <sys/stat.h>
