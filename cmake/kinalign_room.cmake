@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-# A room of the house (docs/architecture.md) in one call:
+# A room of the house (docs/architecture.md) in one call, in the CMakeLists.txt of its folder:
 #
-#   kinalign_room(motion
-#     SOURCES kinematics.cpp spline.cpp
-#     USES core                      rooms whose headers it may include; tools/check_includes.py holds it to that
-#     LIBRARIES Eigen3::Eigen        public; PRIVATE_LIBRARIES for what only its .cpp files need
-#     TESTS kinematics_test.cpp)     in tests/<room>/, one program of cases for the room
+#   kinalign_room(formats/bvh          its path below kinalign/; of a program's part its path: apps/cli
+#     SOURCES
+#       rows.cpp
+#       write.cpp
+#     USES formats take                rooms whose headers it may include, with all below them;
+#                                      tools/check_includes.py holds it to that
+#     LIBRARIES Eigen3::Eigen          public; PRIVATE_LIBRARIES: only its .cpp files need them
+#     TESTS reader_test.cpp            in tests/<path>/, one program of cases for the room
+#     TEST_USES simulate               further rooms that only its tests include
+#     TEST_LIBRARIES fmt::fmt)
+#
+# A room inside another one uses its parent without saying so.
 
 function(kinalign_flags target)
   # No contraction into fused multiply-add and no errno: a take has the same bytes on every processor.
@@ -17,9 +24,21 @@ function(kinalign_flags target)
   endif()
 endfunction()
 
-function(kinalign_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;LIBRARIES;PRIVATE_LIBRARIES;TESTS" ${ARGN})
-  set(target kinalign_${name})
+# "formats/bvh" is the target kinalign_formats_bvh.
+function(kinalign_targets out)
+  list(TRANSFORM ARGN REPLACE "/" "_")
+  list(TRANSFORM ARGN PREPEND kinalign_)
+  set(${out} ${ARGN} PARENT_SCOPE)
+endfunction()
+
+function(kinalign_room path)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_USES;TEST_LIBRARIES" ${ARGN})
+  cmake_path(GET path PARENT_PATH parent)
+  if(parent AND EXISTS ${CMAKE_SOURCE_DIR}/kinalign/${parent}/CMakeLists.txt)
+    list(APPEND ROOM_USES ${parent})
+  endif()
+  kinalign_targets(target ${path})
+  kinalign_targets(used ${ROOM_USES})
   if(ROOM_SOURCES)
     add_library(${target} STATIC ${ROOM_SOURCES})
     set(reach PUBLIC)
@@ -30,22 +49,26 @@ function(kinalign_room name)
     set(reach INTERFACE)
   endif()
   target_include_directories(${target} ${reach} ${CMAKE_SOURCE_DIR})
-  target_link_libraries(${target} ${reach} ${ROOM_LIBRARIES})
-  foreach(used IN LISTS ROOM_USES)
-    target_link_libraries(${target} ${reach} kinalign_${used})
-  endforeach()
+  target_link_libraries(${target} ${reach} ${ROOM_LIBRARIES} ${used})
   if(KINALIGN_TESTS AND ROOM_TESTS)
-    kinalign_tests(${name} SOURCES ${ROOM_TESTS} LIBRARIES ${target})
+    kinalign_targets(tested ${ROOM_TEST_USES})
+    kinalign_tests(${path} SOURCES ${ROOM_TESTS} LIBRARIES ${target} ${tested} ${ROOM_TEST_LIBRARIES})
   endif()
 endfunction()
 
-# A program of doctest cases from tests/<name>/, registered with CTest.
-function(kinalign_tests name)
+# A program of doctest cases from tests/<path>/, registered with CTest: formats_bvh_tests, and the test formats_bvh.
+function(kinalign_tests path)
   cmake_parse_arguments(TESTS "" "" "SOURCES;LIBRARIES" ${ARGN})
-  list(TRANSFORM TESTS_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/tests/${name}/)
-  add_executable(${name}_tests ${CMAKE_SOURCE_DIR}/tests/main.cpp ${TESTS_SOURCES})
+  list(TRANSFORM TESTS_SOURCES PREPEND ${CMAKE_SOURCE_DIR}/tests/${path}/)
+  string(REPLACE "/" "_" name ${path})
+  if(NOT TARGET kinalign_tests_main)
+    add_library(kinalign_tests_main OBJECT ${CMAKE_SOURCE_DIR}/tests/main.cpp)
+    target_link_libraries(kinalign_tests_main PUBLIC doctest::doctest)
+    kinalign_flags(kinalign_tests_main)
+  endif()
+  add_executable(${name}_tests ${TESTS_SOURCES})
   target_include_directories(${name}_tests PRIVATE ${CMAKE_SOURCE_DIR})
-  target_link_libraries(${name}_tests PRIVATE ${TESTS_LIBRARIES} doctest::doctest Threads::Threads)
+  target_link_libraries(${name}_tests PRIVATE kinalign_tests_main ${TESTS_LIBRARIES} Threads::Threads)
   target_compile_definitions(${name}_tests PRIVATE
     KINALIGN_SOURCE_DIR="${CMAKE_SOURCE_DIR}" KINALIGN_BINARY_DIR="${CMAKE_BINARY_DIR}")
   kinalign_flags(${name}_tests)
