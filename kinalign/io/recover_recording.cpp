@@ -6,7 +6,6 @@
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_copier.h"
 #include "kinalign/io/recording_parts.h"
-#include "kinalign/io/recording_reader.h"
 #include "kinalign/io/unknown_file.h"
 
 #include <fmt/format.h>
