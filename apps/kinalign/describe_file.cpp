@@ -3,7 +3,6 @@
 
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/describe_report.h"
-#include "apps/kinalign/inputs.h"
 #include "apps/kinalign/json_text.h"
 
 #include "kinalign/align/judge.h"

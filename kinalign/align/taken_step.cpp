@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/taken_step.h"
 
-
 #include <algorithm>
 #include <cmath>
 
