@@ -31,8 +31,9 @@ def folder_of(room):
 
 
 def cmake_text(folder):
-    path = ROOT / folder / "CMakeLists.txt"
-    return re.sub(r"#.*", "", path.read_text()) if path.exists() else ""
+    """The folder's CMake files without comments, CMakeLists.txt first."""
+    paths = [ROOT / folder / "CMakeLists.txt", *sorted((ROOT / folder).glob("*.cmake"))]
+    return "".join(re.sub(r"#.*", "", path.read_text()) for path in paths if path.exists())
 
 
 def rooms():
@@ -101,7 +102,7 @@ def faults(paths, own, allowed, uses):
             if quote == '"' and not is_there(name):
                 yield f"{place}: \"{name}\" is not there"
             if top == "kinalign" and folder not in homes:
-                yield f"{place}: {own} may not include {name}: it uses {', '.join(sorted(allowed))}"
+                yield f"{place}: {own.removeprefix('kinalign/')} may not include {name}: it uses {', '.join(sorted(allowed))}"
             if own.startswith("apps") and top == "apps" and folder not in homes | above | {own}:
                 yield f"{place}: {own} may not include {name}: a parent never includes its child, others by USES"
             if is_room and top in ("firmware", "tests", "tools") and not (own.startswith("apps") and top == "firmware"):

@@ -52,6 +52,44 @@ def a_room_may_not_include_what_stands_above(folder):
 
 
 @case
+def a_child_may_include_its_parent_and_not_the_other_way_round(folder):
+    house(folder)
+    put(folder, "kinalign/io/d.h", '#include "kinalign/core/b.h"\n')
+    put(folder, "kinalign/io/bvh/CMakeLists.txt", "kinalign_room(io/bvh SOURCES e.cpp)\n")
+    put(folder, "kinalign/io/bvh/e.h", '#include "kinalign/io/d.h"\n#include "kinalign/wire/a.h"\n')
+    assert includes(folder) == (0, "\n"), includes(folder)
+    put(folder, "kinalign/io/c.cpp", '#include "kinalign/io/bvh/e.h"\n')
+    code, text = includes(folder)
+    assert code == 1
+    assert text == "kinalign/io/c.cpp: io may not include kinalign/io/bvh/e.h: it uses core, io, wire\n", text
+
+
+@case
+def siblings_include_each_other_only_by_uses(folder):
+    house(folder)
+    put(folder, "kinalign/io/bvh/CMakeLists.txt", "kinalign_room(io/bvh)\n")
+    put(folder, "kinalign/io/bvh/e.h", "")
+    put(folder, "kinalign/io/xdf/CMakeLists.txt", "kinalign_room(io/xdf USES io/bvh)\n")
+    put(folder, "kinalign/io/xdf/f.h", '#include "kinalign/io/bvh/e.h"\n')
+    assert includes(folder) == (0, "\n"), includes(folder)
+    put(folder, "kinalign/io/xdf/CMakeLists.txt", "kinalign_room(io/xdf)\n")
+    assert includes(folder)[0] == 1
+
+
+@case
+def a_part_of_a_program_is_a_room_too(folder):
+    house(folder)
+    put(folder, "apps/cli/CMakeLists.txt", "kinalign_room(apps/cli USES core)\n")
+    put(folder, "apps/cli/verb.h", '#include "kinalign/core/b.h"\n')
+    put(folder, "apps/k/CMakeLists.txt", "target_link_libraries(k kinalign_apps_cli)\n")
+    put(folder, "apps/k/main.cpp", '#include "apps/cli/verb.h"\n')
+    assert includes(folder) == (0, "\n"), includes(folder)
+    put(folder, "apps/cli/verb.h", '#include "apps/k/main.h"\n')
+    put(folder, "apps/k/main.h", "")
+    assert includes(folder)[0] == 1
+
+
+@case
 def a_header_may_not_include_a_heavy_library(folder):
     house(folder)
     put(folder, "kinalign/io/d.h", "#include <nlohmann/json.hpp>\n#include <Eigen/Core>\n")
