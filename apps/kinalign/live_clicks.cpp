@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/live_clicks.h"
 
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/mark_call.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <array>
 #include <utility>

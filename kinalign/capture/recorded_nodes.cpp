@@ -2,7 +2,7 @@
 #include "kinalign/capture/recorded_nodes.h"
 
 #include "kinalign/capture/port_error.h"
-#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/stream_watch.h"
 
-#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/pieces.h"
-#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/bvh_copy.h"
 
+#include "kinalign/core/unchanged.h"
 #include "kinalign/io/bvh_values.h"
 #include "kinalign/io/bvh_write.h"
-#include "kinalign/io/unchanged.h"
 #include "kinalign/io/unknown_file.h"
 
 namespace kinalign {

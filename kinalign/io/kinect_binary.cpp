@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/kinect_binary.h"
 
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/wire/crc32.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
 #include <cassert>

@@ -6,8 +6,8 @@
 #include "kinalign/io/kinect_frames.h"
 #include "kinalign/io/kinect_person.h"
 #include "kinalign/io/kinect_stream.h"
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/rows_in_order.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_lines.h"
-#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/kinect_survey.h"
 
-#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 namespace kinalign {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/mcap_chunk.h"
 
-#include "kinalign/io/crc.h"
+#include "kinalign/core/crc.h"
 
 #include <zstd.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/mcap_writer.h"
 
-#include "kinalign/io/crc.h"
-#include "kinalign/io/little_endian_reader.h"
+#include "kinalign/core/crc.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
 

@@ -4,10 +4,10 @@
 // number of its request is the counter.
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/imu_converter.h"
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/numbered_frames.h"
 #include "kinalign/io/rows_in_order.h"
 #include "kinalign/wire/clockless.h"
+#include "kinalign/wire/little_endian_reader.h"
 #include "kinalign/wire/node_frame.h"
 
 #include <fmt/format.h>

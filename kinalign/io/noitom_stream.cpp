@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/noitom_stream.h"
 
-#include "kinalign/io/little_endian.h"
 #include "kinalign/io/noitom_text.h"
+#include "kinalign/wire/little_endian.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames as Axis Neuron and Axis Studio send them.
-#include "kinalign/io/little_endian.h"
 #include "kinalign/io/noitom_header.h"
+#include "kinalign/wire/little_endian.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/npz.h"
 
+#include "kinalign/core/crc.h"
 #include "kinalign/core/utf8.h"
-#include "kinalign/io/crc.h"
 
 #include <algorithm>
 #include <cassert>

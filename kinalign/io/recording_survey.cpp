@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recording_survey.h"
 
-#include "kinalign/io/crc.h"
+#include "kinalign/core/crc.h"
 #include "kinalign/io/kinect_survey.h"
 #include "kinalign/io/lab_toml.h"
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/slimevr_packet.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
 #include <array>

@@ -3,9 +3,9 @@
 // just before. Their packets carry no time: stamps are arrivals.
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/imu_converter.h"
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/sequence_count.h"
 #include "kinalign/io/slimevr_packet.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 #include "kinalign/io/stream_survey.h"
 
 #include "kinalign/core/hash.h"
+#include "kinalign/core/unchanged.h"
 #include "kinalign/core/utf8.h"
 #include "kinalign/io/formats.h"
-#include "kinalign/io/unchanged.h"
 #include "kinalign/io/value_survey.h"
 
 #include <fmt/format.h>

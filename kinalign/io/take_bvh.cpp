@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kinalign/core/unchanged.h"
 #include "kinalign/io/bvh_copy.h"
 #include "kinalign/io/bvh_write.h"
 #include "kinalign/io/take_hdf5.h"
-#include "kinalign/io/unchanged.h"
 
 #include <fmt/format.h>
 

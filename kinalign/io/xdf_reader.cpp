@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/xdf_header.h"
 #include "kinalign/io/xdf_samples.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/xdf_samples.h"
 
-#include "kinalign/io/little_endian.h"
+#include "kinalign/wire/little_endian.h"
 
 #include <fmt/format.h>
 

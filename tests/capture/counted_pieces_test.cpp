@@ -10,8 +10,8 @@
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_frames.h"
 #include "kinalign/io/kinect_stream.h"
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/noitom_stream.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <doctest/doctest.h>
 

@@ -2,10 +2,10 @@
 #include "tests/io/mcap_files.h"
 #include "tests/seeds.h"
 
-#include "kinalign/io/crc.h"
-#include "kinalign/io/little_endian.h"
+#include "kinalign/core/crc.h"
 #include "kinalign/io/mcap_reader.h"
 #include "kinalign/io/mcap_writer.h"
+#include "kinalign/wire/little_endian.h"
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 
 #include "tests/io/mcap_files.h"
 
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/recording_format.h"
+#include "kinalign/wire/little_endian_reader.h"
 
 #include <doctest/doctest.h>
 

@@ -9,10 +9,10 @@
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_frames.h"
 #include "kinalign/io/kinect_lines.h"
-#include "kinalign/io/little_endian_reader.h"
 #include "kinalign/io/noitom_stream.h"
 #include "kinalign/io/recording_format.h"
 #include "kinalign/wire/clockless.h"
+#include "kinalign/wire/little_endian_reader.h"
 #include "kinalign/wire/node_frame.h"
 
 #include <doctest/doctest.h>

@@ -2,8 +2,8 @@
 // XDF files for tests, written as docs/formats/xdf.md says.
 #pragma once
 
-#include "kinalign/io/little_endian.h"
 #include "kinalign/io/xdf.h"
+#include "kinalign/wire/little_endian.h"
 
 #include <doctest/doctest.h>
 

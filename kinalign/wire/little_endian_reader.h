@@ -3,7 +3,7 @@
 // that runs past its end keeps quiet until it is asked.
 #pragma once
 
-#include "kinalign/io/little_endian.h"
+#include "kinalign/wire/little_endian.h"
 
 #include <bit>
 #include <string_view>
