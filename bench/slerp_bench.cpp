@@ -2,8 +2,8 @@
 // Rotations at 30 Hz give or take 12 ms onto 60 Hz: slerp against Eigen's, and the spline with
 // continuous angular acceleration (its rates included) against slerp.
 #include "kinalign/motion/arrays.h"
-#include "kinalign/motion/rotation_spline.h"
-#include "kinalign/motion/slerp.h"
+#include "kinalign/motion/interpolation/rotation_spline.h"
+#include "kinalign/motion/interpolation/slerp.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // 75 channels at 30 Hz give or take 12 ms onto 60 Hz by natural splines, in windows of 1000 rows as
 // alignment does, against the same bytes moved, and against one channel after the other.
-#include "kinalign/motion/spline.h"
+#include "kinalign/motion/interpolation/spline.h"
 
 #include <benchmark/benchmark.h>
 

@@ -6,7 +6,7 @@
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/io/bvh.h"
-#include "kinalign/motion/clip_motion.h"
+#include "kinalign/motion/interpolation/clip_motion.h"
 #include "kinalign/simulate/built_in_motion.h"
 
 #include <fcntl.h>

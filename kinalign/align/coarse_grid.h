@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/motion/spline.h"
+#include "kinalign/motion/interpolation/spline.h"
 
 #include <array>
 #include <cstdint>

@@ -6,8 +6,8 @@
 
 #include "kinalign/align/coarse_grid.h"
 #include "kinalign/align/window.h"
-#include "kinalign/motion/rotation_spline.h"
-#include "kinalign/motion/spline.h"
+#include "kinalign/motion/interpolation/rotation_spline.h"
+#include "kinalign/motion/interpolation/spline.h"
 #include "kinalign/take/take.h"
 
 #include <algorithm>

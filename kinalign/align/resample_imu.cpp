@@ -2,7 +2,7 @@
 #include "kinalign/align/resample.h"
 #include "kinalign/align/rotation_rows.h"
 #include "kinalign/align/segments.h"
-#include "kinalign/motion/spline.h"
+#include "kinalign/motion/interpolation/spline.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/align/rotation_rows.h"
 
-#include "kinalign/motion/rotation_spline.h"
-#include "kinalign/motion/slerp.h"
+#include "kinalign/motion/interpolation/rotation_spline.h"
+#include "kinalign/motion/interpolation/slerp.h"
 
 namespace kinalign {
 

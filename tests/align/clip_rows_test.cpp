@@ -6,8 +6,8 @@
 #include "kinalign/align/align.h"
 #include "kinalign/align/own_rows.h"
 #include "kinalign/motion/arrays.h"
+#include "kinalign/motion/interpolation/slerp.h"
 #include "kinalign/motion/kinematics.h"
-#include "kinalign/motion/slerp.h"
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,7 @@
 
 #include "kinalign/align/align.h"
 #include "kinalign/align/resample.h"
-#include "kinalign/motion/rotation_spline.h"
+#include "kinalign/motion/interpolation/rotation_spline.h"
 
 #include <doctest/doctest.h>
 

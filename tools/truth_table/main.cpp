@@ -12,7 +12,7 @@
 #include "kinalign/io/survey_parts.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/truth_json.h"
-#include "kinalign/motion/clip_motion.h"
+#include "kinalign/motion/interpolation/clip_motion.h"
 #include "kinalign/simulate/judge_recording.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 // the sweep before, at most ten sweeps. Where knots are too far apart for these to settle, the
 // curve is what they leave; so this is the way for such knots.
 #include "kinalign/motion/arrays.h"
-#include "kinalign/motion/rotation_slopes.h"
+#include "kinalign/motion/interpolation/rotation_slopes.h"
 
 #include <algorithm>
 

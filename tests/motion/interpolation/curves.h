@@ -2,8 +2,8 @@
 // Curves through values and rotations as functions of plain arrays, for tests.
 #pragma once
 
-#include "kinalign/motion/rotation_spline.h"
-#include "kinalign/motion/slerp.h"
+#include "kinalign/motion/interpolation/rotation_spline.h"
+#include "kinalign/motion/interpolation/slerp.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/motion/rotation_slopes.h"
+#include "kinalign/motion/interpolation/rotation_slopes.h"
 
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What holds of both curves through rotations, slerp and spline, on any stamps.
-#include "tests/motion/curves.h"
+#include "tests/motion/interpolation/curves.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
 

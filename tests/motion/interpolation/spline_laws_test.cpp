@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What holds of natural cubic splines through any values at any stamps.
-#include "tests/motion/curves.h"
+#include "tests/motion/interpolation/curves.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
 
-#include "kinalign/motion/spline.h"
+#include "kinalign/motion/interpolation/spline.h"
 
 #include <doctest/doctest.h>
 

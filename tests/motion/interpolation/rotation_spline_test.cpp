@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/motion/rotation_spline.h"
+#include "kinalign/motion/interpolation/rotation_spline.h"
 
-#include "tests/motion/curves.h"
+#include "tests/motion/interpolation/curves.h"
 #include "tests/motion/rotations.h"
 #include "tests/seeds.h"
 #include "tests/witness.h"

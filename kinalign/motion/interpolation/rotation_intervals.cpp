@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/motion/rotation_intervals.h"
+#include "kinalign/motion/interpolation/rotation_intervals.h"
 
 #include "kinalign/motion/rotation.h"
 #include "kinalign/motion/targets.h"

@@ -2,7 +2,7 @@
 // The rotation spline between its knots, its slopes known.
 #pragma once
 
-#include "kinalign/motion/rotation_intervals.h"
+#include "kinalign/motion/interpolation/rotation_intervals.h"
 
 #include <span>
 

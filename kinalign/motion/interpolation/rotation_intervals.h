@@ -2,7 +2,7 @@
 // The intervals between neighbouring rotations, as the rotation spline sees them; its own header.
 #pragma once
 
-#include "kinalign/motion/rotation_spline.h"
+#include "kinalign/motion/interpolation/rotation_spline.h"
 #include "kinalign/motion/trigonometry.h"
 
 #include <array>

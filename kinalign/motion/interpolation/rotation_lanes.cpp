@@ -11,9 +11,9 @@
 // eight pieces, which are swept side by side as vector code. A piece begins from what the one
 // before it had found in the last sweep; what it should have begun from is known at the end of the
 // sweep, and the change fades within a few rows.
-#include "kinalign/motion/rotation_slopes.h"
+#include "kinalign/motion/interpolation/rotation_slopes.h"
+#include "kinalign/motion/interpolation/vector_lanes.h"
 #include "kinalign/motion/targets.h"
-#include "kinalign/motion/vector_lanes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 // and ends with W(r)^-1 w.
 #pragma once
 
-#include "kinalign/motion/rotation_intervals.h"
+#include "kinalign/motion/interpolation/rotation_intervals.h"
 
 namespace kinalign {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sixty-four samples at a time, four numbers of a sample side by side; the angles' polynomials,
 // eight samples side by side.
-#include "kinalign/motion/rotation_curve.h"
+#include "kinalign/motion/interpolation/rotation_curve.h"
 
+#include "kinalign/motion/interpolation/vector_lanes.h"
 #include "kinalign/motion/rotation.h"
 #include "kinalign/motion/targets.h"
-#include "kinalign/motion/vector_lanes.h"
 
 #include <algorithm>
 #include <array>

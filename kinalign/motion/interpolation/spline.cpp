@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/motion/spline.h"
+#include "kinalign/motion/interpolation/spline.h"
 
 #include "kinalign/motion/targets.h"
 

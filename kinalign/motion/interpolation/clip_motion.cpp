@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/motion/clip_motion.h"
+#include "kinalign/motion/interpolation/clip_motion.h"
 
+#include "kinalign/motion/interpolation/rotation_slopes.h"
+#include "kinalign/motion/interpolation/spline.h"
 #include "kinalign/motion/rotation.h"
-#include "kinalign/motion/rotation_slopes.h"
-#include "kinalign/motion/spline.h"
 
 #include <algorithm>
 #include <cmath>

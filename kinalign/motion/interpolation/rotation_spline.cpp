@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Window by window: what is known of its intervals stays in the second cache, and memory does not
 // grow with the knots.
-#include "kinalign/motion/rotation_spline.h"
+#include "kinalign/motion/interpolation/rotation_spline.h"
 
-#include "kinalign/motion/rotation_curve.h"
-#include "kinalign/motion/rotation_slopes.h"
+#include "kinalign/motion/interpolation/rotation_curve.h"
+#include "kinalign/motion/interpolation/rotation_slopes.h"
 
 #include <algorithm>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/motion/clip_motion.h"
+#include "kinalign/motion/interpolation/clip_motion.h"
 
 #include "tests/motion/chains.h"
 #include "tests/seeds.h"
 
+#include "kinalign/motion/interpolation/rotation_spline.h"
+#include "kinalign/motion/interpolation/spline.h"
 #include "kinalign/motion/rotation.h"
-#include "kinalign/motion/rotation_spline.h"
-#include "kinalign/motion/spline.h"
 
 #include <doctest/doctest.h>
 

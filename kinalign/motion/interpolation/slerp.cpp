@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The angle once an interval, two short polynomials a sample, no square root and no branch: 0.3 of
 // the time of Eigen's slerp (bench/slerp_bench.cpp).
-#include "kinalign/motion/slerp.h"
+#include "kinalign/motion/interpolation/slerp.h"
 
 #include "kinalign/motion/targets.h"
 #include "kinalign/motion/trigonometry.h"
