@@ -5,7 +5,7 @@
 // 60 s.
 #include "tools/clock_table/judge.h"
 
-#include "kinalign/clock/offline_clock.h"
+#include "kinalign/clock/offline/offline_clock.h"
 
 #include <benchmark/benchmark.h>
 

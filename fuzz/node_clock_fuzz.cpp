@@ -2,7 +2,7 @@
 // Whatever a node says, its clock answers with intervals that have their ends in order and the
 // likeliest between them, and the whole recording can be fitted. Each five bytes are a frame: how
 // the counter and the host went on, which life it is, what is echoed.
-#include "kinalign/clock/offline_clock.h"
+#include "kinalign/clock/offline/offline_clock.h"
 #include "kinalign/wire/bytes.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/followed_clock.h"
 
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/clock/live/live_clock.h"
 #include "kinalign/io/recording_format.h"
 
 #include <algorithm>

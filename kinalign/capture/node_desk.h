@@ -9,7 +9,7 @@
 #include "kinalign/capture/node_verdict.h"
 #include "kinalign/capture/rate_limit.h"
 #include "kinalign/capture/refused_nodes.h"
-#include "kinalign/clock/clockless.h"
+#include "kinalign/clock/offline/clockless.h"
 #include "kinalign/wire/clockless.h"
 #include "kinalign/wire/node_frame.h"
 

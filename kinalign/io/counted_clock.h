@@ -3,7 +3,7 @@
 // the part of a counter, the earliest arrivals tell the rest.
 #pragma once
 
-#include "kinalign/clock/device_clock.h"
+#include "kinalign/clock/offline/device_clock.h"
 #include "kinalign/core/error.h"
 
 #include <cstdint>

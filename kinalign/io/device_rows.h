@@ -3,7 +3,7 @@
 // device's clock, the other stamps its rows by that.
 #pragma once
 
-#include "kinalign/clock/device_clock.h"
+#include "kinalign/clock/offline/device_clock.h"
 #include "kinalign/io/host_epochs.h"
 #include "kinalign/io/reader.h"
 #include "kinalign/io/recorded_messages.h"

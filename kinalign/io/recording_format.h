@@ -3,8 +3,8 @@
 // written first.
 #pragma once
 
-#include "kinalign/clock/clockless.h"
 #include "kinalign/clock/exchange.h"
+#include "kinalign/clock/offline/clockless.h"
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/io/mark.h"
 #include "kinalign/io/mcap_records.h"

@@ -3,7 +3,7 @@
 
 #include "tests/seeds.h"
 
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/clock/live/live_clock.h"
 
 #include <doctest/doctest.h>
 

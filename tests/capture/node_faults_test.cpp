@@ -4,7 +4,7 @@
 #include "tests/capture/test_node.h"
 
 #include "kinalign/capture/node_desk.h"
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/clock/live/live_clock.h"
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,7 @@
 
 #include "kinalign/capture/node_desk.h"
 #include "kinalign/capture/node_table.h"
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/clock/live/live_clock.h"
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 #include "tests/io/kinect_messages.h"
 #include "tests/seeds.h"
 
-#include "kinalign/clock/live_clock.h"
+#include "kinalign/clock/live/live_clock.h"
 
 #include <doctest/doctest.h>
 

@@ -5,7 +5,7 @@
 #include "tools/clock_table/judge.h"
 
 #include "kinalign/clock/assumptions.h"
-#include "kinalign/clock/violators.h"
+#include "kinalign/clock/live/violators.h"
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 // A clock held against the truth of simulated exchanges.
 #pragma once
 
-#include "kinalign/clock/offline_clock.h"
+#include "kinalign/clock/offline/offline_clock.h"
 #include "kinalign/simulate/exchanges.h"
 
 #include <vector>

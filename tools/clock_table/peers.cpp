@@ -3,7 +3,7 @@
 
 #include "tools/clock_table/judge.h"
 
-#include "kinalign/clock/clockless.h"
+#include "kinalign/clock/offline/clockless.h"
 
 #include <algorithm>
 #include <cmath>

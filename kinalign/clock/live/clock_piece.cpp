@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/live/clock_piece.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double harmless_share = 0.4;  // of the round trip: half of it is the least delay
+constexpr Duration before_a_slip = Violators::wait;
+// Lifted, doubles keep 11 ns over a year of a clock that bends as crystals do, 1 us over three.
+constexpr double longest_piece_s = 1e8;
+constexpr Duration oldest_reading = std::chrono::seconds(10);
+constexpr int looked_back = 12;  // windows
+constexpr double stale_s = 0.5;
+constexpr std::uint32_t seldom = 4;
+
+Duration rounded_down(double s) { return Duration{static_cast<std::int64_t>(std::floor(s * 1e9))}; }
+Duration rounded_up(double s) { return Duration{static_cast<std::int64_t>(std::ceil(s * 1e9))}; }
+
+}  // namespace
+
+Bound ClockPiece::bound(const Crossing& crossing) const {
+  return bound_by(origin_, crossing.side, crossing.n, crossing.h);
+}
+
+HostTime ClockPiece::host_time(const Bound& e) const {
+  return origin_.host + rounded_down(e.s + e.x);
+}
+
+void ClockPiece::ask(double s) {
+  range_ = certificate_.at(s);
+  range_at_ = s;
+  unseen_ = 0;
+}
+
+/// By how much a bound excludes all that the certificate leaves, s; not positive: it does not. What
+/// was left a moment ago serves as well, until bounds have come that leave less.
+double ClockPiece::violation(const Bound& e) {
+  if (!certificate_.bounded()) return 0.0;
+  if (!range_ || e.s - range_at_ > stale_s || unseen_ >= seldom) ask(e.s);
+  if (!range_) {
+    contradicted_ = true;
+    return 0.0;
+  }
+  const double d = e.s - range_at_;
+  const double bent = assumptions().curvature * d * d / 2.0;
+  const double low =
+      range_->low + std::min(range_->least_slope * d, range_->greatest_slope * d) - bent;
+  const double high =
+      range_->high + std::max(range_->least_slope * d, range_->greatest_slope * d) + bent;
+  unseen_ += (e.side == Side::above ? e.x < high : e.x > low) ? 1 : 0;
+  return e.side == Side::above ? low - e.x : e.x - high;
+}
+
+void ClockPiece::add(const Bound& b) {
+  const SlopeBelief slope = estimate_.slope();
+  const std::uint32_t changes = estimate_.changes();
+  certificate_.add(b);
+  estimate_.add(b);
+  if (estimate_.changes() != changes) floors_.change_route(estimate_.last_change()->s);
+  floors_.add(b, slope);
+  journal_.add(b);
+}
+
+ClockPiece::Verdict ClockPiece::push(const Crossing& crossing) {
+  const Bound e = bound(crossing);
+  heard_ = crossing.heard;
+  ++crossings_;
+  if (std::abs(e.s) > longest_piece_s || std::abs(e.x) > longest_piece_s) {
+    amount_ = std::abs(e.x);
+    return Verdict::violator;  // no counter that begins to count says that
+  }
+  amount_ = violation(e);
+  if (amount_ > Violators::tolerated_s) {
+    violators_.add({crossing, e, amount_, crossings_});
+    return violators_.full() ? broken(End::violators) : Verdict::violator;
+  }
+  if (contradicted_) {
+    amount_ = 0.0;  // which of the bounds are wrong is not known
+    return broken(End::contradiction);
+  }
+  violators_.drop_excluded_by(e, assumptions().rate);
+  if (violators_.overdue(heard_, crossings_)) {
+    amount_ = violators_.pending().front().amount;
+    return broken(End::overdue_violator);
+  }
+  add(e);
+  return slipped().value_or(Verdict::taken);
+}
+
+ClockPiece::Verdict ClockPiece::broken(End why) {
+  end_ = why;
+  return Verdict::broken;
+}
+
+/// A step by less than the least delay leaves the truth within the certificate.
+std::optional<ClockPiece::Verdict> ClockPiece::slipped() {
+  if (floors_.windows() == windows_judged_ && estimate_.changes() == routes_judged_) return {};
+  if (const auto by = narrowed()) {
+    amount_ = *by;
+    end_ = End::narrowed;
+    return Verdict::slipped;
+  }
+  const auto with_route = stepped_with_route(), between_windows = stepped_between_windows();
+  if (!with_route && !between_windows) return std::nullopt;
+  amount_ = with_route ? *with_route : *between_windows;
+  if (std::abs(amount_) < harmless_share * estimate_.least_round_trip()) return Verdict::uneasy;
+  end_ = with_route ? End::slip_with_route : End::slip_between_windows;
+  return Verdict::slipped;
+}
+
+/// Bounds of before and after a slip leave less between them than the shortest round trip that
+/// there is: where that is seen best depends on when it was. Asked once a window.
+std::optional<double> ClockPiece::narrowed() {
+  if (floors_.windows() == windows_judged_ || !certificate_.bounded()) return std::nullopt;
+  const double least = floors_.least_width(), now = journal_.newest(0).s;
+  double left = std::numeric_limits<double>::infinity();
+  for (int window = 0; window < looked_back; ++window) {
+    const double back = (window + 0.5) * FloorLog::window_s;
+    const auto range = certificate_.at(std::max(now - back, 0.0));
+    if (!range) {
+      contradicted_ = true;  // which is more than a slip: told with the next bound
+      return std::nullopt;
+    }
+    left = std::min(left, range->high - range->low);
+  }
+  return left < least ? std::optional(least - left) : std::nullopt;
+}
+
+/// Told once a change of route.
+std::optional<double> ClockPiece::stepped_with_route() {
+  const auto& change = estimate_.last_change();
+  if (!change || !change->step || estimate_.changes() == routes_judged_) return std::nullopt;
+  routes_judged_ = estimate_.changes();
+  return change->step;
+}
+
+/// Asked once a window. Where routes are seen to change, windows of two of them are not alike.
+std::optional<double> ClockPiece::stepped_between_windows() {
+  if (floors_.windows() == windows_judged_) return std::nullopt;
+  windows_judged_ = floors_.windows();
+  const auto& change = estimate_.last_change();
+  const bool one_route =
+      !change || journal_.newest(0).s - change->s > FloorLog::longest_reach_s + FloorLog::window_s;
+  return one_route ? floors_.step() : std::nullopt;
+}
+
+std::optional<HostTime> ClockPiece::step_pending_since() const {
+  if (violators_.pending().empty()) return std::nullopt;
+  return std::max(begin_, doubt_of_violators());
+}
+
+/// Behind the last crossing that can't go with the violators: until then the counter had not
+/// stepped. At least five seconds before the first violator.
+HostTime ClockPiece::doubt_of_violators() const {
+  HostTime since = violators_.pending()[0].crossing.heard - Violators::wait;
+  for (std::size_t i = 0; i < journal_.size(); ++i) {
+    const Bound e = journal_.newest(i);
+    for (const Violator& v : violators_.pending()) {
+      if (contradict(e, v.bound, assumptions().rate)) return std::min(host_time(e), since);
+    }
+  }
+  return begin_;
+}
+
+HostTime ClockPiece::doubtful_since() const {
+  HostTime since = begin_;
+  if (end_ == End::violators || end_ == End::overdue_violator) since = doubt_of_violators();
+  if (end_ == End::slip_with_route) since = about(estimate_.last_change()->s) - before_a_slip;
+  if (end_ == End::slip_between_windows) since = heard_ - rounded_up(FloorLog::longest_reach_s);
+  return std::max(since, begin_);
+}
+
+HostTime ClockPiece::next_begins() const {
+  return end_ == End::violators ? violators_.pending()[0].crossing.heard : heard_;
+}
+
+/// When the host heard of what happened at s, but for delays.
+HostTime ClockPiece::about(double s) const {
+  std::size_t i = 0;
+  while (i + 1 < journal_.size() && journal_.newest(i).s > s) ++i;
+  return host_time({s, journal_.newest(i).x});
+}
+
+/// Whether what is known of now could be of a counter that bends, as far as crystals go, and never
+/// stepped. Which of the two it was can't be told then, and the next piece allows for both.
+bool ClockPiece::may_bend() const {
+  Certificate bent = certificate_.relaxed(most_curvature);
+  for (const Violator& v : violators_.pending()) bent.add(v.bound);
+  return bent.at(journal_.newest(0).s).has_value();
+}
+
+/// When just a counter stepped by little is not known well: nothing is certified by what came
+/// before now. The estimate has begun anew with its route, or does so with the last window.
+ClockPiece ClockPiece::next_after_slip(const Assumptions& assumed, const SlopeBelief& prior) const {
+  ClockPiece next = *this;
+  next.begin_ = heard_;
+  next.end_ = End::none;
+  next.certificate_ = Certificate(assumed, corners);
+  next.range_.reset();
+  next.contradicted_ = false;
+  next.violators_.clear();
+  next.floors_ = FloorLog(floors_.shortest());
+  next.windows_judged_ = 0;
+  if (end_ == End::slip_with_route) return next;
+  next.estimate_ = OffsetEstimate(prior);
+  next.routes_judged_ = 0;
+  const double now = journal_.newest(0).s;
+  for (std::size_t i = journal_.size(); i-- > 0;) {
+    const Bound b = journal_.newest(i);
+    if (b.s > now - FloorLog::window_s) next.estimate_.add(b);
+  }
+  return next;
+}
+
+/// By which the counter may have stepped back: beyond the certificate, and over all that it left.
+Duration ClockPiece::greatest_step_back() const {
+  if (end_ == End::none) return Duration{0};
+  const auto violators = violators_.pending();
+  if (!violators.empty() && violators[0].bound.side == Side::above) return Duration{0};  // ahead
+  const auto range = certificate_.at(journal_.newest(0).s);
+  const double width = range ? range->high - range->low : 2.0 * estimate_.least_round_trip();
+  return rounded_up(std::min(std::abs(amount_) + width, seconds(oldest_reading)));
+}
+
+ClockPiece ClockPiece::next_behind(const Assumptions& assumed, const SlopeBelief& prior) const {
+  if (end_ == End::slip_with_route || end_ == End::slip_between_windows) {
+    return next_after_slip(assumed, prior);
+  }
+  if (end_ == End::violators) {
+    const Crossing& first = violators_.pending()[0].crossing;
+    ClockPiece next({first.n, first.h}, assumed, prior, floors_.shortest());
+    for (const Violator& v : violators_.pending()) next.add(next.bound(v.crossing));
+    next.begin_ = next.heard_ = next_begins();
+    return next;
+  }
+  const Bound last = journal_.newest(0);
+  ClockPiece next({origin_.node + rounded_down(last.s), host_time(last)}, assumed, prior,
+                  floors_.shortest());
+  next.begin_ = next.heard_ = heard_;
+  return next;
+}
+
+/// What a counter that stepped ahead read before lies, by the new piece, before the step was seen;
+/// one that stepped back shows some readings twice.
+ClockPiece ClockPiece::next_piece() const {
+  Assumptions assumed = assumptions();
+  if (end_ != End::none && may_bend()) assumed.curvature = most_curvature;
+  ClockPiece next = next_behind(assumed, estimate_.slope().after_a_break());
+  next.certified_from_ = std::max(certified_from_, heard_ + greatest_step_back());
+  return next;
+}
+
+std::optional<ClockStamp> ClockPiece::at(NodeTime n) {
+  const double s = seconds(n - origin_.node);
+  if (std::abs(s) > longest_piece_s) return std::nullopt;
+  const auto middle = estimate_.at(s);
+  if (!middle) return std::nullopt;
+  ClockStamp stamp;
+  stamp.assumptions = assumptions();
+  double x = middle->value;
+  ask(s);
+  if (const auto& range = range_) {
+    x = std::clamp(x, range->low, range->high);
+    stamp.earliest = origin_.host + rounded_down(s + range->low);
+    stamp.latest = origin_.host + rounded_up(s + range->high + counter_resolution_s);
+    if (certificate_.bounded()) {
+      const bool stands =
+          violators_.pending().empty() && is_behind_step(*stamp.earliest, certified_from_, heard_);
+      stamp.certainty = stands ? Certainty::certified : Certainty::doubtful;
+    }
+  } else {
+    stamp.certainty = Certainty::doubtful;
+  }
+  stamp.time = origin_.host + Duration{std::llround((s + x + counter_resolution_s / 2.0) * 1e9)};
+  return stamp;
+}
+
+}  // namespace kinalign

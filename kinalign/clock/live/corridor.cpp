@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// g(b) = above(b) - below(b) is concave and piecewise linear in the slope b: its peak is found by
+// cutting it with tangents, the ends of g >= 0 by Newton's steps from outside. Both end after
+// finitely many steps, exactly.
+#include "kinalign/clock/live/corridor.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace kinalign {
+
+namespace {
+
+/// g with its derivative at a slope.
+struct Gap {
+  CorridorLine line;
+  double rise = 0.0;
+};
+
+Gap gap_at(const Corridor& corridor, double t, double slope) {
+  const auto up = corridor.above.at(t, slope);
+  const auto down = corridor.below.at(t, -slope);
+  return {{up.bound, -down.bound, slope}, down.tau - up.tau};
+}
+
+/// Where g falls to zero between a slope outside and the peak; as far outside as rounding goes.
+double edge_from(const Corridor& corridor, double t, double outside) {
+  for (;;) {
+    const Gap gap = gap_at(corridor, t, outside);
+    if (gap.line.width() >= 0.0 || gap.rise == 0.0) return outside;
+    const double next = outside - gap.line.width() / gap.rise;
+    if (next == outside) return outside;
+    if ((next > outside) != (gap.rise > 0.0)) return outside;
+    outside = next;
+  }
+}
+
+}  // namespace
+
+CorridorLine widest_line(const Corridor& corridor, double t, double beta) {
+  assert(!corridor.above.empty() && !corridor.below.empty());
+  Gap left = gap_at(corridor, t, -beta);
+  if (left.rise <= 0.0) return left.line;
+  Gap right = gap_at(corridor, t, beta);
+  if (right.rise >= 0.0) return right.line;
+  for (;;) {
+    // Where the two tangents meet; no point of g lies above it.
+    const double slope = (right.line.width() - left.line.width() + left.rise * left.line.slope -
+                          right.rise * right.line.slope) /
+                         (left.rise - right.rise);
+    if (slope <= left.line.slope) return left.line;
+    if (slope >= right.line.slope) return right.line;
+    const Gap gap = gap_at(corridor, t, slope);
+    if (gap.rise == 0.0 || gap.rise == left.rise || gap.rise == right.rise) return gap.line;
+    (gap.rise > 0.0 ? left : right) = gap;
+  }
+}
+
+std::optional<ValueRange> value_range(const Corridor& corridor, double t, double beta,
+                                      const CorridorLine& widest) {
+  if (widest.width() < 0.0) return std::nullopt;
+  ValueRange range;
+  range.least_slope = std::min(edge_from(corridor, t, -beta), widest.slope);
+  range.greatest_slope = std::max(edge_from(corridor, t, beta), widest.slope);
+  // The end that a slope leaves is concave in it: greatest at its own peak or at an edge.
+  const auto greatest = [&](const LiftedHull& hull, double least, double most) {
+    const auto peak = hull.peak(t);
+    return hull.at(t, std::clamp(peak.slope, least, most)).bound;
+  };
+  range.high = greatest(corridor.above, range.least_slope, range.greatest_slope);
+  range.low = -greatest(corridor.below, -range.greatest_slope, -range.least_slope);
+  return range;
+}
+
+}  // namespace kinalign

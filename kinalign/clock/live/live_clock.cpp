@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/live/live_clock.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_events = 64;
+constexpr Duration settling = Violators::wait;             // after several steps, …
+constexpr Duration late_frames = std::chrono::seconds(1);  // … and after one: some were sent before
+
+}  // namespace
+
+void LiveClock::tell(const ClockEvent& event) {
+  if (events_.size() < most_events) return events_.push_back(event);
+  ++missed_events_;
+  if (event.kind != ClockEvent::Kind::withdrawn) return;
+  const auto last = std::find_if(events_.rbegin(), events_.rend(), [](const ClockEvent& e) {
+    return e.kind == ClockEvent::Kind::withdrawn;
+  });
+  if (last == events_.rend()) {
+    events_.back() = event;
+  } else {
+    *last = {event.kind, event.boot, std::min(last->begin, event.begin),
+             std::max(last->end, event.end)};
+  }
+}
+
+std::vector<ClockEvent> LiveClock::take_events() { return std::exchange(events_, {}); }
+
+/// What is not decided yet when a piece is cut short is in doubt.
+void LiveClock::cut_short() {
+  if (const auto since = piece_->step_pending_since()) {
+    tell({ClockEvent::Kind::withdrawn, boot_, *since, newest_});
+  }
+  stepped_.reset();
+  settles_.reset();
+}
+
+void LiveClock::begin(BootKey boot, const Crossing& first) {
+  SlopeBelief prior;
+  if (piece_) {  // it is the same crystal
+    cut_short();
+    prior = piece_->estimate().slope().after_a_break();
+    earlier_[lives_++ % earlier_.size()] = boot_;
+  }
+  take_piece({ClockOrigin{first.n, first.h}, assumptions_, prior,
+              piece_ ? piece_->floors().shortest() : ShortestRoundTrips{}});
+  boot_ = boot;
+  tell({ClockEvent::Kind::new_boot, boot, first.h, first.h});
+}
+
+void LiveClock::take_piece(const ClockPiece& piece) {
+  piece_ = piece;
+  routes_told_ = piece_->estimate().changes();
+}
+
+void LiveClock::push(const Exchange& exchange) {
+  push_up(exchange.boot, exchange.n_tx, exchange.h_rx);
+  if (exchange.echo) push_down(exchange.boot, exchange.echo->n_rx, exchange.echo->h_tx);
+}
+
+void LiveClock::push_up(BootKey boot, NodeTime n_tx, HostTime h_rx) {
+  const Crossing crossing{Side::above, n_tx, h_rx, h_rx};
+  const auto lives =
+      earlier_.begin() + static_cast<std::ptrdiff_t>(std::min(lives_, earlier_.size()));
+  if (piece_ && boot != boot_ && std::find(earlier_.begin(), lives, boot) != lives) {
+    ++late_;
+    return;
+  }
+  if (!piece_ || boot != boot_) begin(boot, crossing);
+  if (h_rx < newest_) {
+    cut_short();
+    take_piece({ClockOrigin{n_tx, h_rx}, assumptions_, piece_->estimate().slope(),
+                piece_->floors().shortest()});
+    tell({ClockEvent::Kind::host_backwards, boot, h_rx, newest_});
+  }
+  newest_ = h_rx;
+  replaced_ = false;
+  answer(piece_->push(crossing), crossing);
+  if (settles_ && newest_ >= *settles_) settle(crossing);
+}
+
+void LiveClock::push_down(BootKey boot, NodeTime n_rx, HostTime h_tx) {
+  if (!piece_ || boot != boot_) {
+    ++late_;
+    return;
+  }
+  if (replaced_) return;  // the reply reached the node before what the frame has shown
+  const Crossing crossing{Side::below, n_rx, h_tx, newest_};
+  answer(piece_->push(crossing), crossing);
+}
+
+void LiveClock::answer(ClockPiece::Verdict verdict, const Crossing& crossing) {
+  using Verdict = ClockPiece::Verdict;
+  using Kind = ClockEvent::Kind;
+  if (piece_->estimate().changes() != routes_told_) {
+    routes_told_ = piece_->estimate().changes();
+    tell({Kind::route, boot_, crossing.heard, crossing.heard});
+  }
+  switch (verdict) {
+    case Verdict::taken:
+      return;
+    case Verdict::violator:
+      tell({Kind::violator, boot_, crossing.heard, crossing.heard, piece_->amount()});
+      // If it does not lie the counter has stepped, and may step back before three have shown that.
+      return tell({Kind::withdrawn, boot_,
+                   std::max(crossing.heard - Violators::wait, piece_->begins()), crossing.heard});
+    case Verdict::uneasy:
+      return tell({Kind::uneasy, boot_, crossing.heard, crossing.heard, piece_->amount()});
+    case Verdict::broken:
+      return take_step(crossing);
+    case Verdict::slipped:
+      replace_piece(Kind::slip, piece_->amount(), crossing);
+      return;
+  }
+}
+
+/// A counter that runs at another rate, asleep, is seen to step again and again, by as little as
+/// one that bends.
+void LiveClock::take_step(const Crossing& crossing) {
+  const bool relaxed = replace_piece(ClockEvent::Kind::step, piece_->amount(), crossing);
+  const bool again = stepped_ && newest_ - *stepped_ < settling;
+  settles_ = newest_ + (again || relaxed ? settling : late_frames);
+  stepped_ = newest_;
+}
+
+void LiveClock::settle(const Crossing& crossing) {
+  settles_.reset();
+  replace_piece(ClockEvent::Kind::settled, std::nullopt, crossing);
+}
+
+/// Whether the new piece allows for a clock that bends more.
+bool LiveClock::replace_piece(ClockEvent::Kind why, std::optional<double> by,
+                              const Crossing& crossing) {
+  replaced_ = true;
+  tell({why, boot_, piece_->next_begins(), crossing.heard, by});
+  tell({ClockEvent::Kind::withdrawn, boot_, piece_->doubtful_since(), newest_});
+  const double assumed = piece_->assumptions().curvature;
+  take_piece(piece_->next_piece());
+  const double curvature = piece_->assumptions().curvature;
+  if (curvature == assumed) return false;
+  tell({ClockEvent::Kind::relaxed, boot_, crossing.heard, crossing.heard, std::nullopt, curvature});
+  return true;
+}
+
+std::optional<ClockStamp> LiveClock::host_from_node(BootKey boot, NodeTime n) {
+  if (!piece_ || boot != boot_) return std::nullopt;
+  auto stamp = piece_->at(n);
+  if (stamp && settles_) stamp->certainty = Certainty::doubtful;
+  return stamp;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/offline/device_clock.h"
+
+#include "kinalign/clock/bound.h"
+#include "kinalign/clock/offline/offline_clock.h"
+#include "kinalign/clock/offline/one_way_clock.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+/// A sample is so much older than its frame at most; else it is told by the piece before.
+constexpr Duration oldest_sample = std::chrono::seconds(2);
+
+/// Chosen: twice what a stated rate may be off (io/counted_clock.h). A wild counter has any.
+constexpr double most_drift_ppm = 20'000.0;
+
+/// Pieces of which nothing answered, told by their arrivals.
+HostFromNode with_one_way(HostFromNode model, std::span<const Exchange> exchanges) {
+  HostFromNode out;
+  out.doubtful = std::move(model.doubtful);
+  std::unordered_map<BootKey, std::vector<Exchange>> lives;
+  for (const Exchange& e : exchanges) lives[e.boot].push_back(e);
+  for (ClockPieceModel& piece : model.pieces) {
+    if (!piece.knots.empty()) {
+      out.pieces.push_back(std::move(piece));
+      continue;
+    }
+    std::vector<Exchange> heard;
+    const std::vector<Exchange>& life = lives[piece.boot];
+    std::copy_if(life.begin(), life.end(), std::back_inserter(heard),
+                 [&](const Exchange& e) { return piece.first <= e.h_rx && e.h_rx <= piece.last; });
+    HostFromNode told = fit_one_way_clock(heard);
+    std::move(told.pieces.begin(), told.pieces.end(), std::back_inserter(out.pieces));
+  }
+  return out;
+}
+
+Time stamp_at(NodeTime n, Duration moved) { return Time{n.time_since_epoch() + moved}; }
+
+HostTime host_at(const ClockKnot& knot) {
+  return HostTime{knot.node.time_since_epoch() + knot.offset};
+}
+
+bool is_doubtful(const HostFromNode& model, const ClockPieceModel& piece, const ClockKnot& a,
+                 const ClockKnot& b) {
+  constexpr Duration around = std::chrono::seconds(1);
+  const HostTime begin = host_at(a) - around, end = host_at(b) + around;
+  if (!is_behind_step(host_at(a) - (a.offset - a.least), piece.certified_from, piece.last))
+    return true;
+  return std::any_of(model.doubtful.begin(), model.doubtful.end(), [&](const auto& stretch) {
+    return stretch.begin <= end && begin <= stretch.end;
+  });
+}
+
+/// So far the ends are from the middle of what lies between two knots.
+Duration half_width_of(const ClockKnot& a, const ClockKnot& b) {
+  return std::max({a.offset - a.least, a.greatest - a.offset, b.offset - b.least,
+                   b.greatest - b.offset}) +
+         counter_resolution;
+}
+
+/// A piece of a straight line for each two knots.
+void append_lines(const HostFromNode& model, const ClockPieceModel& piece, Duration moved,
+                  Duration utc_minus_host, TimeModel& time) {
+  for (std::size_t k = 0; k < piece.knots.size(); ++k) {
+    const ClockKnot& a = piece.knots[k];
+    const ClockKnot& b = k + 1 < piece.knots.size() ? piece.knots[k + 1] : a;
+    TimeModelPiece line;
+    line.begin = stamp_at(a.node, moved);
+    line.offset = a.offset - moved + utc_minus_host + counter_resolution / 2;
+    if (b.node > a.node) {
+      line.drift_ppm = 1e6 * seconds(b.offset - a.offset) / seconds(b.node - a.node);
+    } else if (k > 0) {
+      line.drift_ppm = time.pieces.back().drift_ppm;  // behind the last knot as before it
+    }
+    if (std::abs(line.drift_ppm) > most_drift_ppm) line.drift_ppm = 0.0;
+    if (piece.certified && !is_doubtful(model, piece, a, b)) line.half_width = half_width_of(a, b);
+    time.pieces.push_back(line);
+  }
+}
+
+/// Samples may be older than the first frame: the first line begins so much earlier, but not before
+/// what the last piece told.
+void reach_back(TimeModel& time, std::size_t first, std::optional<Time> told) {
+  TimeModelPiece& line = time.pieces[first];
+  Time begin = line.begin - oldest_sample;
+  if (told) begin = std::max(begin, *told + Duration{1});
+  if (begin >= line.begin) return;
+  line.offset -= nanoseconds(
+      std::round(line.drift_ppm * 1e-6 * static_cast<double>((line.begin - begin).count())));
+  line.begin = begin;
+}
+
+/// From line `first` on, that goes on in stamps where the one in front of it ends: a guessed line
+/// that begins before that one's end begins there, since later stamps are of later moments,
+/// whatever arrivals say.
+void keep_rising(TimeModel& time, std::size_t first) {
+  for (std::size_t i = std::max<std::size_t>(first, 1); i < time.pieces.size(); ++i) {
+    TimeModelPiece& line = time.pieces[i];
+    if (line.half_width) continue;
+    const TimeModelPiece& before = time.pieces[i - 1];
+    const double run = static_cast<double>((line.begin - before.begin).count());
+    const Duration end = before.offset + nanoseconds(std::round(before.drift_ppm * 1e-6 * run));
+    line.offset = std::max(line.offset, end);
+  }
+}
+
+/// The least move that keeps stamps rising: the last piece's, or on by what the host counted.
+Duration move_of(const ClockPieceModel& piece, const ClockPieceModel& before, Duration moved) {
+  const ClockKnot &end = before.knots.back(), &begin = piece.knots.front();
+  if (piece.boot == before.boot && begin.node > end.node) return moved;
+  const Duration between = std::max(host_at(begin) - host_at(end), 2 * oldest_sample);
+  return end.node.time_since_epoch() + moved + between - begin.node.time_since_epoch();
+}
+
+}  // namespace
+
+DeviceClock device_clock(std::span<const Exchange> exchanges, Duration utc_minus_host) {
+  DeviceClock out;
+  out.model = with_one_way(fit_offline_clock(exchanges).model, exchanges);
+  out.time.pieces.clear();
+  const ClockPieceModel* before = nullptr;
+  std::optional<Time> told;  // the last stamp of the piece before
+  for (const ClockPieceModel& piece : out.model.pieces) {
+    const Duration last_moved = out.moved.empty() ? Duration{0} : out.moved.back();
+    Duration moved = last_moved;
+    if (!piece.knots.empty()) {
+      if (before != nullptr) moved = move_of(piece, *before, moved);
+      const std::size_t first = out.time.pieces.size();
+      append_lines(out.model, piece, moved, utc_minus_host, out.time);
+      reach_back(out.time, first, told);
+      if (before != nullptr && moved == last_moved) keep_rising(out.time, first);
+      told = stamp_at(piece.knots.back().node, moved);
+      before = &piece;
+    }
+    out.moved.push_back(moved);
+  }
+  if (out.time.pieces.empty()) out.time = TimeModel{};
+  for (std::size_t p = 0; p < out.model.pieces.size(); ++p) {
+    const ClockPieceModel& piece = out.model.pieces[p];
+    if (!piece.knots.empty()) out.pieces_of[piece.boot].push_back(p);
+  }
+  return out;
+}
+
+std::optional<Time> stamp_of(const DeviceClock& clock, BootKey boot, NodeTime n, HostTime h_rx) {
+  const auto life = clock.pieces_of.find(boot);
+  if (life == clock.pieces_of.end()) return std::nullopt;
+  const auto& pieces = clock.model.pieces;
+  std::optional<std::size_t> found;
+  for (const std::size_t p : life->second) {
+    // What came late belongs to the last piece of its life, what was held at its start to the
+    // first.
+    if (found && h_rx < pieces[p].first) continue;
+    found = p;
+    if (h_rx <= pieces[p].last) break;
+  }
+  if (!found) return std::nullopt;
+  return stamp_at(n, clock.moved[*found]);
+}
+
+}  // namespace kinalign

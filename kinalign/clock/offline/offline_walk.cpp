@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/clock/offline/offline_walk.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+bool begins_piece(ClockEvent::Kind kind) {
+  using Kind = ClockEvent::Kind;
+  return kind == Kind::new_boot || kind == Kind::step || kind == Kind::slip ||
+         kind == Kind::settled || kind == Kind::host_backwards;
+}
+
+/// Arrivals of before the host's clock went back, with exchange i, and of behind that.
+void doubt_what_was_twice(OfflineWalk& walk, std::size_t i, const ClockEvent& event) {
+  HostTime newest = event.begin;
+  for (std::size_t k = i; k < walk.exchanges.size() && newest < event.end; ++k) {
+    if (walk.exchanges[k].h_rx < newest) break;  // it went back again
+    newest = walk.exchanges[k].h_rx;
+  }
+  const DoubtfulStretch twice{std::max(event.begin, walk.earliest), std::min(event.end, newest)};
+  if (twice.begin <= twice.end) walk.doubtful.push_back(twice);
+}
+
+/// What happened with exchange i: pieces that begin reach back to where they do.
+void note(OfflineWalk& walk, std::size_t i, const ClockEvent& event, Side of,
+          const ClockPiece& now) {
+  if (event.kind == ClockEvent::Kind::withdrawn) {
+    const ClockEvent& why = walk.events.back();  // told before, but for what a reboot cuts short
+    const HostTime end = begins_piece(why.kind) ? why.begin - Duration{1} : event.end;
+    if (event.begin <= end) walk.doubtful.push_back({event.begin, end});
+    return;
+  }
+  walk.events.push_back(event);
+  if (event.kind == ClockEvent::Kind::host_backwards) doubt_what_was_twice(walk, i, event);
+  if (event.kind == ClockEvent::Kind::violator)
+    (of == Side::below ? walk.echo_left_out : walk.up_left_out)[i] = true;
+  if (!begins_piece(event.kind)) return;
+  const std::size_t next = walk.pieces.size();
+  walk.pieces.push_back({now.assumptions(), now.certified_from()});
+  const auto is_of_it = [&](std::size_t k) {
+    const Exchange& e = walk.exchanges[k];
+    if (event.kind == ClockEvent::Kind::host_backwards) return k == i;  // what was is of that time
+    return e.h_rx >= event.begin && (walk.late[k] || e.boot == event.boot);
+  };
+  for (std::size_t k = i + 1; k-- > 0 && is_of_it(k);) walk.piece[k] = next;
+}
+
+/// A crossing that can't be may be the first of a step that a reboot or the end cut short, or that
+/// was undone: live the five seconds before it are withdrawn, those behind it are in doubt as well.
+void doubt_behind_violators(OfflineWalk& walk) {
+  for (std::size_t i = 0; i < walk.exchanges.size(); ++i) {
+    if (!walk.up_left_out[i] && !walk.echo_left_out[i]) continue;
+    const HostTime h = walk.exchanges[i].h_rx;
+    const Exchange& last = walk.exchanges[range_of(walk, walk.piece[i]).end - 1];
+    walk.doubtful.push_back({h, std::min(last.h_rx, h + Violators::wait)});
+  }
+}
+
+/// Rising, without those that others reach over.
+std::vector<DoubtfulStretch> merged(std::vector<DoubtfulStretch> all) {
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
+  std::vector<DoubtfulStretch> out;
+  for (const DoubtfulStretch& d : all) {
+    if (out.empty() || d.begin > out.back().end) {
+      out.push_back(d);
+    } else {
+      out.back().end = std::max(out.back().end, d.end);
+    }
+  }
+  return out;
+}
+
+/// What the clock says of exchange i, or of its echo.
+void hear(OfflineWalk& walk, std::size_t i, LiveClock& clock, Side of) {
+  for (const ClockEvent& event : clock.take_events()) note(walk, i, event, of, *clock.piece());
+}
+
+bool cuts_short(ClockEvent::Kind kind) {
+  return kind == ClockEvent::Kind::new_boot || kind == ClockEvent::Kind::host_backwards;
+}
+
+}  // namespace
+
+ExchangeRange range_of(const OfflineWalk& walk, std::size_t p) {
+  const auto [first, last] = std::equal_range(walk.piece.begin(), walk.piece.end(), p);  // rising
+  return {static_cast<std::size_t>(first - walk.piece.begin()),
+          static_cast<std::size_t>(last - walk.piece.begin())};
+}
+
+OfflineWalk walk_offline(std::span<const Exchange> exchanges, const Assumptions& assumptions) {
+  OfflineWalk walk;
+  walk.exchanges = exchanges;
+  walk.piece.resize(exchanges.size());
+  walk.up_left_out.resize(exchanges.size());
+  walk.echo_left_out.resize(exchanges.size());
+  walk.late.resize(exchanges.size());
+  LiveClock clock(assumptions);
+  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+    const Exchange& e = exchanges[i];
+    walk.piece[i] = walk.pieces.empty() ? 0 : walk.pieces.size() - 1;
+    const auto late = clock.late_crossings();
+    const auto unsettled = clock.unsettled_since();
+    clock.push_up(e.boot, e.n_tx, e.h_rx);
+    if (clock.late_crossings() > late) {
+      walk.late[i] = true;
+      continue;
+    }
+    hear(walk, i, clock, Side::above);
+    walk.earliest = std::min(walk.earliest, e.h_rx);
+    if (unsettled && cuts_short(walk.events.back().kind))  // it never will settle
+      walk.doubtful.push_back({*unsettled, exchanges[i - 1].h_rx});
+    if (e.echo) {
+      clock.push_down(e.boot, e.echo->n_rx, e.echo->h_tx);
+      hear(walk, i, clock, Side::below);
+    }
+    // Its estimate is refreshed when it is asked: this one sees what one in use does.
+    static_cast<void>(clock.host_from_node(e.boot, e.n_tx));
+  }
+  if (const ClockPiece* last = clock.piece()) {
+    walk.least_width = last->floors().least_width();
+    for (const auto& since : {last->step_pending_since(), clock.unsettled_since()}) {
+      if (since) walk.doubtful.push_back({*since, exchanges.back().h_rx});
+    }
+  }
+  doubt_behind_violators(walk);
+  walk.doubtful = merged(std::move(walk.doubtful));
+  return walk;
+}
+
+}  // namespace kinalign
