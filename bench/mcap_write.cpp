@@ -3,7 +3,7 @@
 // with checksums and index. Run by mcap_write.py beside the same in @mcap/core.
 //   mcap_write FILE MESSAGES          prints the seconds that it took
 #include "kinalign/core/growing_file.h"
-#include "kinalign/io/mcap_writer.h"
+#include "kinalign/mcap/writer.h"
 
 #include <algorithm>
 #include <chrono>

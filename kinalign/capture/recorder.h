@@ -4,7 +4,7 @@
 // no thread, clock or file: time is an argument, and chunks go where start() says.
 #pragma once
 
-#include "kinalign/io/mcap_chunk.h"
+#include "kinalign/mcap/chunk.h"
 #include "kinalign/wire/time.h"
 
 #include <cstdint>

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "kinalign/core/growing_file.h"
-#include "kinalign/io/mcap_writer.h"
+#include "kinalign/mcap/writer.h"
 
 #include <cstdint>
 #include <deque>

@@ -6,8 +6,8 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/mcap_reader.h"
 #include "kinalign/io/recording_parts.h"
+#include "kinalign/mcap/reader.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 // Which messages of a recording are there: each channel numbers its own.
 #pragma once
 
-#include "kinalign/io/mcap_records.h"
+#include "kinalign/mcap/records.h"
 
 #include <cstdint>
 #include <map>

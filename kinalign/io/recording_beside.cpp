@@ -2,7 +2,7 @@
 #include "kinalign/io/recording_beside.h"
 
 #include "kinalign/core/file_version.h"
-#include "kinalign/io/mcap_reader.h"
+#include "kinalign/mcap/reader.h"
 
 #include <algorithm>
 #include <charconv>

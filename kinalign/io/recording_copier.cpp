@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recording_copier.h"
 
-#include "kinalign/io/mcap_store.h"
+#include "kinalign/mcap/store.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

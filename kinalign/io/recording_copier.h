@@ -3,10 +3,10 @@
 #pragma once
 
 #include "kinalign/core/files.h"
-#include "kinalign/io/mcap_writer.h"
 #include "kinalign/io/message_numbers.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recovered.h"
+#include "kinalign/mcap/writer.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,8 +2,8 @@
 // What a recording counts while it is made: docs/formats/recording.md.
 #pragma once
 
-#include "kinalign/io/mcap_records.h"
 #include "kinalign/io/sequence_count.h"
+#include "kinalign/mcap/records.h"
 
 #include <cstdint>
 #include <optional>

@@ -7,7 +7,7 @@
 #include "kinalign/clock/offline/clockless.h"
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/io/mark.h"
-#include "kinalign/io/mcap_records.h"
+#include "kinalign/mcap/records.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -4,9 +4,9 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/mcap_chunk.h"
 #include "kinalign/io/message_numbers.h"
 #include "kinalign/io/recording_format.h"
+#include "kinalign/mcap/chunk.h"
 
 #include <cstdint>
 #include <set>

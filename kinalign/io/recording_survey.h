@@ -6,10 +6,10 @@
 #include "kinalign/clock/utc_anchor.h"
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/mcap_reader.h"
 #include "kinalign/io/message_numbers.h"
 #include "kinalign/io/recording_counts.h"
 #include "kinalign/io/recording_format.h"
+#include "kinalign/mcap/reader.h"
 
 #include <cstdint>
 #include <functional>

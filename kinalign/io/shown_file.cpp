@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/shown_file.h"
 
-#include "kinalign/io/mcap_store.h"
+#include "kinalign/mcap/store.h"
 
 #include <algorithm>
 #include <limits>

@@ -3,7 +3,7 @@
 // transforms, samples as numbers to plot. docs/formats/shown.md.
 #pragma once
 
-#include "kinalign/io/mcap_records.h"
+#include "kinalign/mcap/records.h"
 #include "kinalign/motion/clip.h"
 #include "kinalign/motion/streams.h"
 

@@ -2,7 +2,7 @@
 // What a kill and a power cut leave of a recording: never less than all but the last second. In
 // virtual time, on files in memory that remember every call.
 #include "tests/capture/memory_files.h"
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 #include "tests/seeds.h"
 
 #include "kinalign/capture/recorder.h"

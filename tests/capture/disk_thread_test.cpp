@@ -3,7 +3,7 @@
 
 #include "tests/capture/failing_disks.h"
 #include "tests/folder.h"
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 
 #include "kinalign/capture/recorder.h"
 #include "kinalign/io/recording_survey.h"

@@ -4,7 +4,7 @@
 
 #include "tests/capture/loopback.h"
 #include "tests/folder.h"
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 
 #include "kinalign/capture/recording_session.h"
 

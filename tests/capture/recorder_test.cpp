@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/recorder.h"
 
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 #include "tests/capture/failing_disks.h"
 #include "tests/faulty_files.h"
 #include "tests/folder.h"
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 
 #include "kinalign/io/recording_format.h"
 

@@ -2,7 +2,7 @@
 #include "kinalign/io/merged_parts.h"
 
 #include "tests/folder.h"
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>

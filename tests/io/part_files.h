@@ -2,7 +2,7 @@
 // Files of a recording that goes on in others, for tests.
 #pragma once
 
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 
 #include "kinalign/io/recording_format.h"
 #include "kinalign/wire/little_endian_reader.h"

@@ -3,8 +3,8 @@
 // was taken, seconds since the recording began, so that whatever reads it can be held against it.
 #pragma once
 
-#include "tests/io/mcap_files.h"
 #include "tests/io/xsens_cases.h"
+#include "tests/mcap/mcap_files.h"
 
 #include "kinalign/io/kinect_binary.h"
 #include "kinalign/io/kinect_frames.h"

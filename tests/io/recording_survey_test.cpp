@@ -3,7 +3,7 @@
 #include "kinalign/io/recording_survey.h"
 
 #include "tests/folder.h"
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 
 #include <doctest/doctest.h>
 

@@ -2,8 +2,8 @@
 // A recording of several files of which some are torn, damaged or on a bad disk, made one.
 #include "tests/faulty_files.h"
 #include "tests/folder.h"
-#include "tests/io/mcap_files.h"
 #include "tests/io/part_files.h"
+#include "tests/mcap/mcap_files.h"
 
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recover_recording.h"

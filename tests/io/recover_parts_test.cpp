@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording of several files made one: which copy counts, in what order, and what is told.
 #include "tests/folder.h"
-#include "tests/io/mcap_files.h"
 #include "tests/io/part_files.h"
+#include "tests/mcap/mcap_files.h"
 
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"

@@ -3,9 +3,9 @@
 
 #include "tests/faulty_files.h"
 #include "tests/folder.h"
-#include "tests/io/mcap_files.h"
 #include "tests/io/part_files.h"
 #include "tests/io/recorded_lab.h"
+#include "tests/mcap/mcap_files.h"
 
 #include <doctest/doctest.h>
 

@@ -2,8 +2,8 @@
 #include "kinalign/io/shown_file.h"
 
 #include "tests/folder.h"
-#include "tests/io/mcap_files.h"
 #include "tests/io/xdf_cases.h"
+#include "tests/mcap/mcap_files.h"
 
 #include "kinalign/io/show_recording.h"
 #include "kinalign/io/show_xdf.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/core/files.h"
-#include "kinalign/io/mcap_writer.h"
+#include "kinalign/mcap/writer.h"
 
 namespace kinalign {
 

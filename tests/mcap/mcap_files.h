@@ -2,8 +2,8 @@
 // MCAP files in memory, for tests: written message by message, read back in pieces.
 #pragma once
 
-#include "kinalign/io/mcap_reader.h"
-#include "kinalign/io/mcap_writer.h"
+#include "kinalign/mcap/reader.h"
+#include "kinalign/mcap/writer.h"
 
 #include <algorithm>
 #include <cstring>

@@ -5,8 +5,8 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/io/mcap_chunk.h"
-#include "kinalign/io/mcap_records.h"
+#include "kinalign/mcap/chunk.h"
+#include "kinalign/mcap/records.h"
 
 #include <cstdint>
 #include <optional>

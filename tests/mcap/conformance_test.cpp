@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The official conformance files: what a reader must see of each stands in a JSON beside it.
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 #include "tests/shared_data.h"
 
-#include "kinalign/io/mcap_reader.h"
+#include "kinalign/mcap/reader.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

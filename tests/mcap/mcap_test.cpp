@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/io/mcap_files.h"
+#include "tests/mcap/mcap_files.h"
 #include "tests/seeds.h"
 
 #include "kinalign/core/crc.h"
-#include "kinalign/io/mcap_reader.h"
-#include "kinalign/io/mcap_writer.h"
+#include "kinalign/mcap/reader.h"
+#include "kinalign/mcap/writer.h"
 #include "kinalign/wire/little_endian.h"
 
 #include <doctest/doctest.h>

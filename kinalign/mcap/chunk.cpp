@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/mcap_chunk.h"
+#include "kinalign/mcap/chunk.h"
 
 #include "kinalign/core/crc.h"
 

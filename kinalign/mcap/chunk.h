@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/io/mcap_records.h"
+#include "kinalign/mcap/records.h"
 
 #include <cstdint>
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/mcap_records.h"
+#include "kinalign/mcap/records.h"
 
 #include "kinalign/core/crc.h"
 #include "kinalign/wire/little_endian_reader.h"
