@@ -5,8 +5,8 @@
 //   record_load MOCAP_PORT KINECT_PORT NODE_PORT TIMES SECONDS
 // Prints as JSON how many of each it sent, and how long the nodes waited for replies: half of them,
 // 99 of 100, all.
-#include "kinalign/io/kinect_binary.h"
-#include "kinalign/io/noitom_frame.h"
+#include "kinalign/protocols/kinect/binary.h"
+#include "kinalign/protocols/noitom/frame.h"
 #include "kinalign/wire/node_frame.h"
 #include "kinalign/wire/node_reply.h"
 

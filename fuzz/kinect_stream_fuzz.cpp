@@ -2,10 +2,10 @@
 // What a Kinect's sender says: a datagram that is accepted encodes again to the same bytes, as a
 // line to the same content; a connection's messages do not depend on where it is cut, and joining
 // them ends. No fuzzer guesses a CRC, so an odd first byte has those of binary messages mended.
-#include "kinalign/io/kinect_binary.h"
-#include "kinalign/io/kinect_frames.h"
-#include "kinalign/io/kinect_lines.h"
-#include "kinalign/io/kinect_stream.h"
+#include "kinalign/protocols/kinect/binary.h"
+#include "kinalign/protocols/kinect/frames.h"
+#include "kinalign/protocols/kinect/lines.h"
+#include "kinalign/protocols/kinect/stream.h"
 #include "kinalign/wire/crc32.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Frames do not depend on where bytes are cut, little waits, every byte is accounted for, and what
 // was read is sent and read again as the same. In datagrams little waits, no byte is counted twice,
 // and frames are no more than there is room for.
-#include "kinalign/io/noitom_receiver.h"
+#include "kinalign/protocols/noitom/receiver.h"
 
 #include <cstdlib>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A bundle is its packets: each of them alone in a datagram is read as in the bundle, and nothing
 // else is. Rotations that are let through are unit, accelerations finite.
-#include "kinalign/io/slimevr_packet.h"
+#include "kinalign/protocols/slimevr/packet.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "fuzz/pieces.h"
 
 #include "kinalign/io/xsens_pose.h"
-#include "kinalign/io/xsens_stream.h"
+#include "kinalign/protocols/xsens/stream.h"
 
 #include <cstdlib>
 

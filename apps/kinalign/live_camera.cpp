@@ -5,8 +5,8 @@
 
 #include "apps/kinalign/live_suit.h"
 
-#include "kinalign/io/kinect_binary.h"
-#include "kinalign/io/kinect_stream.h"
+#include "kinalign/protocols/kinect/binary.h"
+#include "kinalign/protocols/kinect/stream.h"
 
 #include <algorithm>
 #include <array>

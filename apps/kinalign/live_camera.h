@@ -6,7 +6,7 @@
 #include "apps/kinalign/live_socket.h"
 
 #include "kinalign/capture/host_clock.h"
-#include "kinalign/io/kinect_message.h"
+#include "kinalign/protocols/kinect/message.h"
 #include "kinalign/simulate/random.h"
 #include "kinalign/simulate/rehearsal.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/live_clicks.h"
 
-#include "kinalign/io/mark_call.h"
+#include "kinalign/protocols/marks/mark_call.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <array>

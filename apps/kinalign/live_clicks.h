@@ -5,7 +5,7 @@
 
 #include "apps/kinalign/live_socket.h"
 
-#include "kinalign/io/mark.h"
+#include "kinalign/protocols/marks/mark.h"
 #include "kinalign/simulate/rehearsal.h"
 #include "kinalign/wire/time.h"
 

@@ -2,7 +2,7 @@
 // Stream 121 of the seed: by the frame's number, lane 0 how long the suit's program takes.
 #include "apps/kinalign/live_suit.h"
 
-#include "kinalign/io/noitom_frame.h"
+#include "kinalign/protocols/noitom/frame.h"
 
 #include <algorithm>
 

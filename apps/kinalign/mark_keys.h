@@ -3,7 +3,7 @@
 // and ends it, which is stamped when it was begun. Esc gives it up.
 #pragma once
 
-#include "kinalign/io/mark.h"
+#include "kinalign/protocols/marks/mark.h"
 
 #include <termios.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/kinect_desk.h"
 
-#include "kinalign/io/kinect_frames.h"
+#include "kinalign/protocols/kinect/frames.h"
 
 #include <algorithm>
 #include <cstring>

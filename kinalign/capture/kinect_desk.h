@@ -9,7 +9,7 @@
 #include "kinalign/capture/host_address.h"
 #include "kinalign/capture/rate_limit.h"
 #include "kinalign/clock/host_from_node.h"
-#include "kinalign/io/kinect_message.h"
+#include "kinalign/protocols/kinect/message.h"
 #include "kinalign/wire/siphash.h"
 
 #include <optional>

@@ -2,8 +2,8 @@
 #include "kinalign/capture/mark_ports.h"
 
 #include "kinalign/capture/port_error.h"
-#include "kinalign/io/mark_call.h"
-#include "kinalign/io/vicon_trigger.h"
+#include "kinalign/protocols/marks/mark_call.h"
+#include "kinalign/protocols/marks/vicon_trigger.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 namespace kinalign {

@@ -2,8 +2,8 @@
 #include "kinalign/capture/recorded_port.h"
 
 #include "kinalign/capture/port_error.h"
-#include "kinalign/io/kinect_binary.h"
-#include "kinalign/io/kinect_lines.h"
+#include "kinalign/protocols/kinect/binary.h"
+#include "kinalign/protocols/kinect/lines.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <utility>

@@ -8,8 +8,8 @@
 #include "kinalign/capture/node_life.h"
 #include "kinalign/capture/rate_limit.h"
 #include "kinalign/core/error.h"
-#include "kinalign/io/sequence_count.h"
-#include "kinalign/io/slimevr_packet.h"
+#include "kinalign/protocols/sequence_count.h"
+#include "kinalign/protocols/slimevr/packet.h"
 #include "kinalign/wire/siphash.h"
 
 #include <array>

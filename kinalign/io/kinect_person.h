@@ -4,8 +4,8 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/io/kinect_message.h"
 #include "kinalign/motion/arrays.h"
+#include "kinalign/protocols/kinect/message.h"
 
 #include <cstdint>
 #include <optional>

@@ -3,9 +3,9 @@
 // is in them.
 #pragma once
 
-#include "kinalign/io/kinect_sessions.h"
-#include "kinalign/io/kinect_stream.h"
 #include "kinalign/io/recording_format.h"
+#include "kinalign/protocols/kinect/sessions.h"
+#include "kinalign/protocols/kinect/stream.h"
 
 #include <map>
 #include <string>

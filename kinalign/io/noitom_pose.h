@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/io/bvh.h"
-#include "kinalign/io/noitom_frame.h"
+#include "kinalign/protocols/noitom/frame.h"
 
 namespace kinalign {
 

@@ -4,8 +4,8 @@
 // datagrams without a number by arrival.
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/noitom_pose.h"
-#include "kinalign/io/noitom_receiver.h"
 #include "kinalign/io/numbered_frames.h"
+#include "kinalign/protocols/noitom/receiver.h"
 
 namespace kinalign {
 

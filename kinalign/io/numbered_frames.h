@@ -7,7 +7,7 @@
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/recorded_messages.h"
 #include "kinalign/io/rows_in_order.h"
-#include "kinalign/io/sequence_count.h"
+#include "kinalign/protocols/sequence_count.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // What a recording counts while it is made: docs/formats/recording.md.
 #pragma once
 
-#include "kinalign/io/sequence_count.h"
 #include "kinalign/mcap/records.h"
+#include "kinalign/protocols/sequence_count.h"
 
 #include <cstdint>
 #include <optional>

@@ -6,8 +6,8 @@
 #include "kinalign/clock/exchange.h"
 #include "kinalign/clock/offline/clockless.h"
 #include "kinalign/clock/utc_anchor.h"
-#include "kinalign/io/mark.h"
 #include "kinalign/mcap/records.h"
+#include "kinalign/protocols/marks/mark.h"
 
 #include <algorithm>
 #include <cstdint>

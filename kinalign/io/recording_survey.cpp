@@ -4,7 +4,7 @@
 #include "kinalign/core/crc.h"
 #include "kinalign/io/kinect_survey.h"
 #include "kinalign/io/lab_toml.h"
-#include "kinalign/io/slimevr_packet.h"
+#include "kinalign/protocols/slimevr/packet.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>

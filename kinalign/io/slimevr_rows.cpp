@@ -3,8 +3,8 @@
 // just before. Their packets carry no time: stamps are arrivals.
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/imu_converter.h"
-#include "kinalign/io/sequence_count.h"
-#include "kinalign/io/slimevr_packet.h"
+#include "kinalign/protocols/sequence_count.h"
+#include "kinalign/protocols/slimevr/packet.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 // From the samples of Xsens MVN to poses of its 23 segments and to inertial samples, in our axes.
 #pragma once
 
-#include "kinalign/io/xsens_sample.h"
 #include "kinalign/motion/clip.h"
 #include "kinalign/motion/streams.h"
+#include "kinalign/protocols/xsens/sample.h"
 
 #include <optional>
 #include <span>

@@ -3,7 +3,7 @@
 #include "kinalign/io/device_rows.h"
 #include "kinalign/io/numbered_frames.h"
 #include "kinalign/io/xsens_pose.h"
-#include "kinalign/io/xsens_stream.h"
+#include "kinalign/protocols/xsens/stream.h"
 
 namespace kinalign {
 

@@ -3,14 +3,14 @@
 // told.
 #include "tests/capture/recorded.h"
 #include "tests/capture/test_node.h"
-#include "tests/io/slimevr_bytes.h"
+#include "tests/protocols/slimevr/slimevr_bytes.h"
 
 #include "kinalign/capture/recording_session.h"
 #include "kinalign/capture/stream_watch.h"
-#include "kinalign/io/kinect_binary.h"
-#include "kinalign/io/kinect_frames.h"
-#include "kinalign/io/kinect_stream.h"
-#include "kinalign/io/noitom_stream.h"
+#include "kinalign/protocols/kinect/binary.h"
+#include "kinalign/protocols/kinect/frames.h"
+#include "kinalign/protocols/kinect/stream.h"
+#include "kinalign/protocols/noitom/stream.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <doctest/doctest.h>

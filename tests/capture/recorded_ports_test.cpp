@@ -4,11 +4,11 @@
 #include "tests/capture/test_node.h"
 
 #include "kinalign/capture/recording_session.h"
-#include "kinalign/io/kinect_binary.h"
-#include "kinalign/io/kinect_lines.h"
-#include "kinalign/io/kinect_stream.h"
-#include "kinalign/io/mark_call.h"
-#include "kinalign/io/vicon_trigger.h"
+#include "kinalign/protocols/kinect/binary.h"
+#include "kinalign/protocols/kinect/lines.h"
+#include "kinalign/protocols/kinect/stream.h"
+#include "kinalign/protocols/marks/mark_call.h"
+#include "kinalign/protocols/marks/vicon_trigger.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/slimevr_desk.h"
 
-#include "tests/io/slimevr_bytes.h"
+#include "tests/protocols/slimevr/slimevr_bytes.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>

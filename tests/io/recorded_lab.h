@@ -3,14 +3,14 @@
 // was taken, seconds since the recording began, so that whatever reads it can be held against it.
 #pragma once
 
-#include "tests/io/xsens_cases.h"
 #include "tests/mcap/mcap_files.h"
+#include "tests/protocols/xsens/xsens_cases.h"
 
-#include "kinalign/io/kinect_binary.h"
-#include "kinalign/io/kinect_frames.h"
-#include "kinalign/io/kinect_lines.h"
-#include "kinalign/io/noitom_stream.h"
 #include "kinalign/io/recording_format.h"
+#include "kinalign/protocols/kinect/binary.h"
+#include "kinalign/protocols/kinect/frames.h"
+#include "kinalign/protocols/kinect/lines.h"
+#include "kinalign/protocols/noitom/stream.h"
 #include "kinalign/wire/clockless.h"
 #include "kinalign/wire/little_endian_reader.h"
 #include "kinalign/wire/node_frame.h"

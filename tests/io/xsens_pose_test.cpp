@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/xsens_pose.h"
 
-#include "tests/io/xsens_cases.h"
+#include "tests/protocols/xsens/xsens_cases.h"
 #include "tests/seeds.h"
 
 #include "kinalign/motion/kinematics.h"

@@ -10,7 +10,7 @@ using System.Text.RegularExpressions;
 
 namespace Kinalign
 {
-    /// The numbers of the layout; tests/io/kinect_sender_test.cpp holds them against the C++ side.
+    /// The numbers of the layout; tests/protocols/kinect/sender_test.cpp holds them against the C++ side.
     public static class Layout
     {
         public const uint Magic = 0x4b4e414b;  // the bytes "KANK"

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/protocols/kinect/binary.h"
+
+#include "kinalign/wire/crc32.h"
+#include "kinalign/wire/little_endian_reader.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace kinalign {
+
+namespace {
+
+using Refusal = KinectRefusal;
+
+constexpr std::uint8_t version = 1, kinect_v2 = 1;
+constexpr std::uint8_t hello_type = 1, frame_type = 2, ping_type = 3, pong_type = 4;
+constexpr std::uint8_t utc_flag = 1, floor_flag = 2, orientations_flag = 4, hands_flag = 8,
+                       more_parts_flag = 16, echo_flag = 1;
+
+/// What stands before a type's own fields, but for what is the same in all.
+struct Head {
+  std::uint8_t type = 0;
+  KinectOrigin origin;
+  std::uint8_t flags = 0, joint_set = 0, bodies = 0, part = 0;
+};
+
+// ---- reading
+
+Head take_head(LittleEndianReader& reader) {
+  Head head;
+  reader.take_bytes(kinect_magic.size() + 1);  // and the version
+  head.type = reader.take<std::uint8_t>();
+  reader.take<std::uint16_t>();
+  head.origin.sensor = reader.take<std::uint32_t>();
+  head.origin.session = reader.take<std::uint32_t>();
+  head.origin.sequence = reader.take<std::uint32_t>();
+  head.flags = reader.take<std::uint8_t>();
+  head.joint_set = reader.take<std::uint8_t>();
+  head.bodies = reader.take<std::uint8_t>();
+  head.part = reader.take<std::uint8_t>();
+  return head;
+}
+
+template <std::size_t n>
+void take_floats(LittleEndianReader& reader, std::array<float, n>& to) {
+  for (float& number : to) number = reader.take_float();
+}
+
+std::string take_short_text(LittleEndianReader& reader) {
+  const auto bytes = reader.take_bytes(reader.take<std::uint8_t>());
+  return {bytes.begin(), bytes.end()};
+}
+
+Refusal take_hello(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
+  if (head.flags != 0 || head.bodies != 0 || head.part != 0) return Refusal::stray_bits;
+  KinectHello hello{head.origin, {}, {}};
+  hello.serial = take_short_text(reader);
+  hello.sdk = take_short_text(reader);
+  message = std::move(hello);
+  return Refusal::none;
+}
+
+KinectBody take_body(LittleEndianReader& reader, bool has_orientations) {
+  KinectBody body;
+  body.id = reader.take<std::uint64_t>();
+  body.clipped_edges = reader.take<std::uint8_t>();
+  body.hand_left = reader.take<std::uint8_t>();
+  body.hand_right = reader.take<std::uint8_t>();
+  body.hand_confidence = reader.take<std::uint8_t>();
+  for (std::uint8_t& state : body.states) state = reader.take<std::uint8_t>();
+  take_floats(reader, body.positions);
+  if (has_orientations) take_floats(reader, body.orientations);
+  return body;
+}
+
+Refusal take_frame(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
+  if (head.flags > 31) return Refusal::stray_bits;
+  if (head.bodies > most_kinect_bodies) return Refusal::wrong_fields;
+  KinectFrame frame;
+  frame.origin = head.origin;
+  frame.part = head.part;
+  frame.more_parts = (head.flags & more_parts_flag) != 0;
+  frame.has_orientations = (head.flags & orientations_flag) != 0;
+  frame.has_hands = (head.flags & hands_flag) != 0;
+  frame.device_ticks = reader.take<std::int64_t>();
+  frame.taken_ticks = reader.take<std::int64_t>();
+  frame.sent_ticks = reader.take<std::int64_t>();
+  const auto utc_us = reader.take<std::int64_t>();
+  std::array<float, 4> floor{};
+  take_floats(reader, floor);
+  if ((head.flags & utc_flag) != 0) {
+    frame.utc_us = utc_us;
+  } else if (utc_us != 0) {
+    return Refusal::stray_bits;
+  }
+  if ((head.flags & floor_flag) != 0) {
+    frame.floor = floor;
+  } else if (std::any_of(floor.begin(), floor.end(),
+                         [](float x) { return std::bit_cast<std::uint32_t>(x) != 0; })) {
+    return Refusal::stray_bits;
+  }
+  for (std::uint8_t i = 0; i < head.bodies && reader.complete(); ++i) {
+    frame.bodies.push_back(take_body(reader, frame.has_orientations));
+  }
+  message = std::move(frame);
+  return Refusal::none;
+}
+
+Refusal take_ping(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
+  if (head.flags > echo_flag || head.joint_set != 0 || head.bodies != 0 || head.part != 0) {
+    return Refusal::stray_bits;
+  }
+  KinectPing ping{head.origin, reader.take<std::int64_t>(), std::nullopt};
+  KinectEcho echo;
+  echo.pong_sequence = reader.take<std::uint32_t>();
+  echo.nonce = reader.take<std::uint32_t>();
+  echo.received_ticks = reader.take<std::int64_t>();
+  if (head.flags == echo_flag) {
+    ping.echo = echo;
+  } else if (!(echo == KinectEcho{})) {
+    return Refusal::stray_bits;
+  }
+  message = ping;
+  return Refusal::none;
+}
+
+Refusal take_pong(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
+  if (head.flags != 0 || head.joint_set != 0 || head.bodies != 0 || head.part != 0) {
+    return Refusal::stray_bits;
+  }
+  KinectPong pong{head.origin, reader.take<std::uint32_t>(), 0};
+  pong.nonce = reader.take<std::uint32_t>();
+  message = pong;
+  return Refusal::none;
+}
+
+Refusal take_fields(const Head& head, LittleEndianReader& reader, KinectMessage& message) {
+  const bool has_joints = head.type == hello_type || head.type == frame_type;
+  if (has_joints && head.joint_set != kinect_v2) return Refusal::unknown_joint_set;
+  switch (head.type) {
+    case hello_type:
+      return take_hello(head, reader, message);
+    case frame_type:
+      return take_frame(head, reader, message);
+    case ping_type:
+      return take_ping(head, reader, message);
+    case pong_type:
+      return take_pong(head, reader, message);
+    default:
+      return Refusal::unknown_type;
+  }
+}
+
+Refusal open(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kinect_head_size + kinect_crc_size) return Refusal::too_short;
+  if (!std::equal(kinect_magic.begin(), kinect_magic.end(), bytes.begin())) {
+    return Refusal::no_message;
+  }
+  if (bytes[4] != version) return Refusal::unknown_version;
+  if (bytes.size() > most_kinect_bytes) return Refusal::too_long;
+  if (stated_kinect_length(bytes) != bytes.size()) return Refusal::wrong_length;
+  LittleEndianReader crc(bytes.last(kinect_crc_size));
+  const auto checked = bytes.first(bytes.size() - kinect_crc_size);
+  return crc.take<std::uint32_t>() == crc32(checked) ? Refusal::none : Refusal::bad_crc;
+}
+
+// ---- writing
+
+void put_head(std::vector<std::uint8_t>& out, const Head& head) {
+  for (const std::uint8_t byte : kinect_magic) append_little(byte, out);
+  append_little(version, out);
+  append_little(head.type, out);
+  append_little(std::uint16_t{0}, out);  // until it is known
+  append_little(head.origin.sensor, out);
+  append_little(head.origin.session, out);
+  append_little(head.origin.sequence, out);
+  append_little(head.flags, out);
+  append_little(head.joint_set, out);
+  append_little(head.bodies, out);
+  append_little(head.part, out);
+}
+
+template <std::size_t n>
+void put_floats(std::vector<std::uint8_t>& out, const std::array<float, n>& from) {
+  for (const float number : from) append_little(std::bit_cast<std::uint32_t>(number), out);
+}
+
+void put_short_text(std::vector<std::uint8_t>& out, const std::string& text) {
+  append_little(static_cast<std::uint8_t>(text.size()), out);
+  out.insert(out.end(), text.begin(), text.end());
+}
+
+void put_body(std::vector<std::uint8_t>& out, const KinectBody& body, bool has_orientations) {
+  append_little(body.id, out);
+  append_little(body.clipped_edges, out);
+  append_little(body.hand_left, out);
+  append_little(body.hand_right, out);
+  append_little(body.hand_confidence, out);
+  for (const std::uint8_t state : body.states) append_little(state, out);
+  put_floats(out, body.positions);
+  if (has_orientations) put_floats(out, body.orientations);
+}
+
+std::uint8_t flags_of(const KinectFrame& frame) {
+  return static_cast<std::uint8_t>((frame.utc_us ? utc_flag : 0) | (frame.floor ? floor_flag : 0) |
+                                   (frame.has_orientations ? orientations_flag : 0) |
+                                   (frame.has_hands ? hands_flag : 0) |
+                                   (frame.more_parts ? more_parts_flag : 0));
+}
+
+struct Put {
+  std::vector<std::uint8_t>& out;
+
+  void operator()(const KinectHello& hello) const {
+    put_head(out, {hello_type, hello.origin, 0, kinect_v2, 0, 0});
+    put_short_text(out, hello.serial);
+    put_short_text(out, hello.sdk);
+  }
+  void operator()(const KinectFrame& frame) const {
+    put_head(out, {frame_type, frame.origin, flags_of(frame), kinect_v2,
+                   static_cast<std::uint8_t>(frame.bodies.size()), frame.part});
+    append_little(static_cast<std::uint64_t>(frame.device_ticks), out);
+    append_little(static_cast<std::uint64_t>(frame.taken_ticks), out);
+    append_little(static_cast<std::uint64_t>(frame.sent_ticks), out);
+    append_little(static_cast<std::uint64_t>(frame.utc_us.value_or(0)), out);
+    put_floats(out, frame.floor.value_or(std::array<float, 4>{}));
+    for (const KinectBody& body : frame.bodies) put_body(out, body, frame.has_orientations);
+  }
+  void operator()(const KinectPing& ping) const {
+    const auto flags = static_cast<std::uint8_t>(ping.echo ? echo_flag : 0);
+    const KinectEcho echo = ping.echo.value_or(KinectEcho{});
+    put_head(out, {ping_type, ping.origin, flags, 0, 0, 0});
+    append_little(static_cast<std::uint64_t>(ping.sent_ticks), out);
+    append_little(echo.pong_sequence, out);
+    append_little(echo.nonce, out);
+    append_little(static_cast<std::uint64_t>(echo.received_ticks), out);
+  }
+  void operator()(const KinectPong& pong) const {
+    put_head(out, {pong_type, pong.origin, 0, 0, 0, 0});
+    append_little(pong.pong_sequence, out);
+    append_little(pong.nonce, out);
+  }
+};
+
+}  // namespace
+
+std::size_t stated_kinect_length(std::span<const std::uint8_t> head) {
+  return head[6] | static_cast<std::size_t>(head[7]) << 8;
+}
+
+KinectRefusal check_kinect_head(std::span<const std::uint8_t> head) {
+  if (head[4] != version) return Refusal::unknown_version;
+  const std::size_t length = stated_kinect_length(head);
+  const std::size_t fields = length - kinect_head_size;  // of no type where that is below 0
+  if (length > most_kinect_bytes) return Refusal::too_long;
+  const std::uint8_t type = head[5], bodies = head[22];
+  const bool oriented = (head[20] & orientations_flag) != 0;
+  const bool fits = (type == hello_type && fields >= 2 + kinect_crc_size &&
+                     fields <= 2 * (1 + 64) + kinect_crc_size) ||
+                    (type == frame_type && length == kinect_frame_size(bodies, oriented)) ||
+                    (type == ping_type && fields == 24 + kinect_crc_size) ||
+                    (type == pong_type && fields == 8 + kinect_crc_size);
+  if (type < hello_type || type > pong_type) return Refusal::unknown_type;
+  return fits ? Refusal::none : Refusal::wrong_length;
+}
+
+KinectRefusal decode_kinect_binary(std::span<const std::uint8_t> bytes, KinectMessage& message) {
+  message = {};
+  if (const auto refusal = open(bytes); refusal != Refusal::none) return refusal;
+  LittleEndianReader reader(bytes.first(bytes.size() - kinect_crc_size));
+  const Head head = take_head(reader);
+  Refusal refusal = take_fields(head, reader, message);
+  if (refusal == Refusal::none && (!reader.complete() || reader.left() != 0)) {
+    refusal = Refusal::wrong_length;
+  }
+  if (refusal == Refusal::none) refusal = check(message);
+  if (refusal != Refusal::none) message = {};
+  return refusal;
+}
+
+std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message) {
+  assert(check(message) == Refusal::none);
+  std::vector<std::uint8_t> out;
+  std::visit(Put{out}, message);
+  const std::size_t length = out.size() + kinect_crc_size;
+  out[6] = static_cast<std::uint8_t>(length & 0xff);
+  out[7] = static_cast<std::uint8_t>(length >> 8);
+  append_little(crc32(out), out);
+  return out;
+}
+
+std::vector<KinectFrame> kinect_parts(const KinectFrame& frame) {
+  std::size_t most = 1;  // bodies a part
+  while (kinect_frame_size(most + 1, frame.has_orientations) <= most_kinect_datagram) ++most;
+  std::vector<KinectFrame> parts;
+  std::size_t at = 0;
+  do {
+    const std::size_t end = std::min(at + most, frame.bodies.size());
+    KinectFrame part = frame;
+    part.bodies.assign(frame.bodies.begin() + static_cast<std::ptrdiff_t>(at),
+                       frame.bodies.begin() + static_cast<std::ptrdiff_t>(end));
+    part.part = static_cast<std::uint8_t>(parts.size());
+    part.more_parts = end < frame.bodies.size();
+    parts.push_back(std::move(part));
+    at = end;
+  } while (at < frame.bodies.size());
+  return parts;
+}
+
+}  // namespace kinalign

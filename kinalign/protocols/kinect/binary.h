@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The binary encoding of a Kinect's messages: docs/formats/kinect_stream.md.
+#pragma once
+
+#include "kinalign/protocols/kinect/message.h"
+
+#include <span>
+
+namespace kinalign {
+
+inline constexpr std::size_t kinect_head_size = 24, kinect_crc_size = 4;
+inline constexpr std::size_t most_kinect_bytes = 4498;  // 6 bodies with orientations
+/// What an Ethernet frame carries over IPv6, and over IPv4 too.
+inline constexpr std::size_t most_kinect_datagram = 1452;
+inline constexpr std::array<std::uint8_t, 4> kinect_magic{'K', 'A', 'N', 'K'};
+
+/// The length that a message states which begins with these 8 bytes and the magic.
+std::size_t stated_kinect_length(std::span<const std::uint8_t> head);
+
+/// Whether a message may begin with these 24 bytes, of which the first are the magic: of this
+/// version and of a length that fits type, flags and counts.
+KinectRefusal check_kinect_head(std::span<const std::uint8_t> head);
+
+/// One message, whole, and nothing behind it. After a refusal `message` is as new.
+KinectRefusal decode_kinect_binary(std::span<const std::uint8_t> bytes, KinectMessage& message);
+
+/// Of a message that `check` accepts.
+std::vector<std::uint8_t> encode_kinect_binary(const KinectMessage& message);
+
+/// Bytes of a frame of so many bodies, in one message.
+constexpr std::size_t kinect_frame_size(std::size_t bodies, bool orientations) {
+  return kinect_head_size + 48 + kinect_crc_size +
+         bodies * (12 + std::size_t{25} * (1 + 12 + (orientations ? 16 : 0)));
+}
+
+/// A frame divided so that no message is longer than most_kinect_datagram.
+std::vector<KinectFrame> kinect_parts(const KinectFrame& frame);
+
+}  // namespace kinalign

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/protocols/kinect/frames.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t joints = kinect_joints.size();
+
+Duration duration_of(std::int64_t ticks) { return Duration{ticks * 100}; }
+
+std::size_t append_body(const KinectBody& body, PointFrames& out) {
+  std::size_t wild = 0;
+  for (std::size_t j = 0; j < joints; ++j) {
+    const float* at = &body.positions[3 * j];
+    const bool finite = std::isfinite(at[0]) && std::isfinite(at[1]) && std::isfinite(at[2]);
+    const auto said = static_cast<Tracking>(body.states[j]);
+    const Tracking state = finite ? said : Tracking::missing;
+    if (!finite && said != Tracking::missing) ++wild;
+    out.state.push_back(state);
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.positions.push_back(state == Tracking::missing ? 0.0 : static_cast<double>(at[k]));
+    }
+  }
+  return wild;
+}
+
+Time device_stamp(const KinectFrame& frame) { return Time{duration_of(frame.device_ticks)}; }
+
+}  // namespace
+
+void KinectFrameJoiner::begin_session(std::uint32_t session) {
+  counts_.frames += sequence_.counts();
+  sequence_ = SequenceCount(32);
+  session_ = session;
+  newest_.reset();
+  ++counts_.sessions;
+}
+
+void KinectFrameJoiner::follow(const KinectMoment& last) {
+  begin_session(last.origin.session);
+  sessions_.hear(last);
+  newest_ = last;
+  sequence_.push(last.origin.sequence);
+}
+
+void KinectFrameJoiner::take(KinectFrame message, std::vector<JoinedKinectFrame>& out,
+                             std::string_view sender) {
+  using Turn = KinectSessions::Turn;
+  const KinectOrigin origin = message.origin;
+  const Turn turn = sessions_.hear(moment_of(message), sender);
+  if (turn == Turn::beside || turn == Turn::over) {
+    ++counts_.stale;
+    return;
+  }
+  if (session_ != origin.session) {
+    close(out);
+    begin_session(origin.session);
+  }
+  if (open_ && open_->origin.sequence == origin.sequence) {
+    join(std::move(message));
+  } else {
+    begin(std::move(message), out);
+  }
+  const bool whole = open_ && last_ && have_ == (2U << *last_) - 1;
+  if (whole) close(out);
+}
+
+bool KinectFrameJoiner::is_newer(const KinectFrame& message) const {
+  return newest_ && has_newer_ticks(moment_of(message), *newest_);
+}
+
+void KinectFrameJoiner::begin(KinectFrame message, std::vector<JoinedKinectFrame>& out) {
+  const bool only = message.part == 0 && !message.more_parts;
+  const Order order = sequence_.push(message.origin.sequence, is_newer(message));
+  if (order == Order::duplicate) {
+    if (!only) ++counts_.parts_late;
+    return;
+  }
+  if (order == Order::stray) {
+    ++counts_.stale;
+    return;
+  }
+  if (order != Order::late) newest_ = moment_of(message);
+  close(out);
+  have_ = 1U << message.part;
+  last_.reset();
+  if (!message.more_parts) last_ = message.part;
+  open_ = std::move(message);
+}
+
+void KinectFrameJoiner::join(KinectFrame message) {
+  KinectFrame& frame = *open_;
+  if ((have_ >> message.part & 1U) != 0) {
+    ++counts_.parts_doubled;
+    return;
+  }
+  const bool fits = message.device_ticks == frame.device_ticks &&
+                    frame.bodies.size() + message.bodies.size() <= most_kinect_bodies &&
+                    (message.more_parts || std::bit_width(have_) <= message.part) &&
+                    (!last_ || message.part < *last_);
+  if (!fits) {
+    ++counts_.contradicting;
+    return;
+  }
+  have_ |= 1U << message.part;
+  if (!message.more_parts) last_ = message.part;
+  frame.sent_ticks = std::min(frame.sent_ticks, message.sent_ticks);
+  frame.has_hands |= message.has_hands;
+  frame.has_orientations |= message.has_orientations;
+  frame.bodies.insert(frame.bodies.end(), message.bodies.begin(), message.bodies.end());
+}
+
+void KinectFrameJoiner::close(std::vector<JoinedKinectFrame>& out) {
+  if (!open_) return;
+  const bool whole = last_ && have_ == (2U << *last_) - 1;
+  if (!whole) ++counts_.parts_lost;
+  open_->part = 0;
+  open_->more_parts = false;
+  out.push_back({std::move(*open_), whole});
+  open_.reset();
+}
+
+void KinectFrameJoiner::finish(std::vector<JoinedKinectFrame>& out) { close(out); }
+
+KinectFrameCounts KinectFrameJoiner::counts() const {
+  KinectFrameCounts counts = counts_;
+  counts.frames += sequence_.counts();
+  const std::uint64_t no_restarts = 1 + sessions_.beside() + begun_beside_;
+  if (counts.sessions > no_restarts) counts.frames.restarts += counts.sessions - no_restarts;
+  return counts;
+}
+
+std::size_t append_kinect_row(const KinectFrame& frame, std::uint64_t body, PointFrames& out) {
+  out.stamps.push_back(device_stamp(frame));
+  const auto found = std::find_if(frame.bodies.begin(), frame.bodies.end(),
+                                  [body](const KinectBody& one) { return one.id == body; });
+  return append_body(found != frame.bodies.end() ? *found : KinectBody{}, out);
+}
+
+NodeTime kinect_sender_time(std::int64_t ticks) { return NodeTime{duration_of(ticks)}; }
+
+Exchange exchange_of(const KinectPing& ping, HostTime h_rx, std::optional<HostTime> h_tx) {
+  Exchange exchange{ping.origin.session, kinect_sender_time(ping.sent_ticks), h_rx, std::nullopt};
+  if (ping.echo && h_tx) {
+    exchange.echo = {kinect_sender_time(ping.echo->received_ticks), *h_tx};
+  }
+  return exchange;
+}
+
+Exchange exchange_of(const KinectFrame& frame, HostTime h_rx) {
+  return {frame.origin.session, kinect_sender_time(frame.sent_ticks), h_rx, std::nullopt};
+}
+
+}  // namespace kinalign

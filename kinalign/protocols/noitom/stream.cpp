@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/protocols/noitom/stream.h"
+
+#include "kinalign/protocols/noitom/text.h"
+#include "kinalign/wire/little_endian.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t slice = 4096;
+// 360 values of 40 characters and a name; what writes longer ones is no text of this kind.
+constexpr std::size_t longest_text = 16'384;
+constexpr std::size_t most_avatars = 64;
+constexpr std::size_t zipped_head = 10;  // CCCC, a length, gzip's 1F 8B
+// Of a frame with another count than ours: 200 joints with displacement and a reference.
+constexpr std::size_t most_values = 1206;
+
+bool is_digit(std::uint8_t b) { return b >= '0' && b <= '9'; }
+bool is_white(std::uint8_t b) { return b == ' ' || b == '\t' || b == '\r' || b == '\n'; }
+bool may_stand_in_text(std::uint8_t b) {
+  return is_white(b) || (b > ' ' && b != 0x7f && b != 0xff);
+}
+
+using Begins = bool (*)(std::span<const std::uint8_t> bytes);
+
+/// Where from `from` to `end` a header begins; `end` where none does.
+std::size_t header_within(std::span<const std::uint8_t> bytes, std::size_t from, std::size_t end,
+                          Begins begins) {
+  for (std::size_t at = from; at < end; ++at) {
+    const void* found = std::memchr(&bytes[at], 0xff, end - at);
+    if (found == nullptr) break;
+    at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes.data());
+    if (begins(bytes.subspan(at))) return at;
+  }
+  return end;
+}
+
+std::vector<float> values_of(std::span<const std::uint8_t> frame) {
+  std::vector<float> values;
+  values.reserve((frame.size() - noitom_header_size) / 4);
+  for (std::size_t at = noitom_header_size; at < frame.size(); at += 4) {
+    values.push_back(std::bit_cast<float>(little_at<std::uint32_t>(frame, at)));
+  }
+  return values;
+}
+
+}  // namespace
+
+void NoitomDecoder::feed(std::span<const std::uint8_t> bytes, std::vector<NoitomArrival>& out) {
+  while (!bytes.empty()) {
+    const auto piece = bytes.first(std::min(slice, bytes.size()));
+    bytes = bytes.subspan(piece.size());
+    held_.insert(held_.end(), piece.begin(), piece.end());
+    take_all(out);
+    held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(at_));
+    at_ = 0;
+  }
+}
+
+void NoitomDecoder::take_all(std::vector<NoitomArrival>& out) {
+  while (at_ < held_.size() && step(out) == Step::go_on) {
+  }
+}
+
+void NoitomDecoder::give_up(std::vector<NoitomArrival>& out) {
+  while (waiting() > 0) {
+    if (begins_noitom_header(ahead())) tear();
+    skip(header_within(ahead(), 1, waiting(), begins_noitom_header));
+    take_all(out);
+  }
+  held_.clear();
+  at_ = 0;
+}
+
+void NoitomDecoder::take_back(const NoitomFrame& frame) {
+  --counts_.frames;
+  --avatars_[frame.avatar].frames;
+  refuse(NoitomRefusal::torn);
+}
+
+std::optional<NoitomBeginning> NoitomDecoder::beginning() const {
+  const auto bytes = ahead();
+  if (bytes.size() < noitom_header_size || !has_noitom_tokens(bytes)) return std::nullopt;
+  const auto header = parse_noitom_header(bytes);
+  if (!header || header->compressed) return std::nullopt;
+  return NoitomBeginning{bytes.size(), noitom_header_size + 4 * header->values,
+                         header->frame.avatar, header->frame.frame_index};
+}
+
+bool NoitomDecoder::waits_within_header() const {
+  return waiting() > 0 && waiting() < noitom_header_size && ahead()[0] == 0xff;
+}
+
+void NoitomDecoder::take(std::size_t bytes) {
+  at_ += bytes;
+  searched_ = 0;
+  behind_text_ = false;
+}
+
+void NoitomDecoder::skip(std::size_t bytes) {
+  take(bytes);
+  counts_.bytes_skipped += bytes;
+}
+
+NoitomDecoder::Step NoitomDecoder::step(std::vector<NoitomArrival>& out) {
+  const std::uint8_t first = ahead()[0];
+  if (first == 0xff) return marked(out);
+  if (first == 'C') return zipped();
+  if (is_digit(first)) return text(out);
+  if (behind_text_ && is_white(first)) {
+    ++at_;
+    return Step::go_on;
+  }
+  skip(1);
+  return Step::go_on;
+}
+
+// FF and what may follow it: the tokens of Noitom's three kinds of header.
+NoitomDecoder::Step NoitomDecoder::marked(std::vector<NoitomArrival>& out) {
+  const auto bytes = ahead();
+  if (bytes.size() < 2) return Step::wait;
+  if (bytes[1] == 0xdd) return binary(out);
+  if (bytes[1] == 0x88) return other_header(0x99, NoitomRefusal::calculation);
+  if (bytes[1] == 0xaa) return other_header(0xbb, NoitomRefusal::command);
+  skip(1);
+  return Step::go_on;
+}
+
+NoitomDecoder::Step NoitomDecoder::binary(std::vector<NoitomArrival>& out) {
+  const auto bytes = ahead();
+  if (bytes.size() < noitom_header_size) return Step::wait;
+  if (!has_noitom_tokens(bytes)) {
+    skip(1);
+    return Step::go_on;
+  }
+  auto header = parse_noitom_header(bytes);
+  if (!header) return misfit();
+  if (header->compressed) {
+    refuse(NoitomRefusal::compressed);
+    take(noitom_header_size);
+    return Step::go_on;
+  }
+  const std::size_t size = noitom_header_size + 4 * header->values;
+  if (bytes.size() < size) return Step::wait;
+  const std::size_t next =
+      header_within(bytes.first(size), noitom_header_size, size, begins_noitom_header);
+  if (next < size) {
+    tear();
+    skip(next);
+    return Step::go_on;
+  }
+  if (parts_ == NoitomParts::all) header->frame.values = values_of(bytes.first(size));
+  take(size);
+  give(std::move(header->frame), out);
+  return Step::go_on;
+}
+
+// Its number has come, with its header: it is not lost. Of avatars that gave a frame alone, so that
+// what is no header counts as none.
+void NoitomDecoder::tear() {
+  refuse(NoitomRefusal::torn);
+  const auto head = beginning();
+  if (!head || !head->index) return;
+  const auto avatar = avatars_.find(head->avatar);
+  if (avatar != avatars_.end()) avatar->second.by_index.push(*head->index);
+}
+
+// A header whose count and flags fit no layout: of a frame of another count where the next header
+// stands behind as many values. Meanwhile no frame is held back that begins before: whole headers
+// alone are looked at, so that the cuts change nothing.
+NoitomDecoder::Step NoitomDecoder::misfit() {
+  const auto bytes = ahead();
+  const std::size_t values = stated_noitom_values(bytes);
+  const auto drop = [&](NoitomRefusal refusal, std::size_t dropped) {
+    refuse(refusal);
+    skip(dropped);
+    return Step::go_on;
+  };
+  if (values == 0 || values > most_values) return drop(NoitomRefusal::garbage, 2);
+  const std::size_t size = noitom_header_size + 4 * values;
+  const std::size_t end = std::min(size, bytes.size() - noitom_header_size + 1);
+  const std::size_t from = std::max<std::size_t>(searched_, 2);
+  if (header_within(bytes, from, end, has_noitom_tokens) < end) {
+    return drop(NoitomRefusal::garbage, 2);
+  }
+  if (bytes.size() < size + noitom_header_size) {
+    searched_ = end;
+    return Step::wait;
+  }
+  const bool is_frame = has_noitom_tokens(bytes.subspan(size));
+  return is_frame ? drop(NoitomRefusal::wrong_count, size) : drop(NoitomRefusal::garbage, 2);
+}
+
+// 64 bytes that end in FF and `last_byte`. What follows them is skipped as it comes: their own
+// length is no reason to swallow a frame.
+NoitomDecoder::Step NoitomDecoder::other_header(std::uint8_t last_byte, NoitomRefusal meaning) {
+  const auto bytes = ahead();
+  if (bytes.size() < noitom_header_size) return Step::wait;
+  if (bytes[62] != 0xff || bytes[63] != last_byte) {
+    skip(1);
+    return Step::go_on;
+  }
+  refuse(meaning);
+  take(noitom_header_size);
+  return Step::go_on;
+}
+
+NoitomDecoder::Step NoitomDecoder::zipped() {
+  const auto bytes = ahead();
+  const auto mark = bytes.first(std::min<std::size_t>(4, bytes.size()));
+  if (!std::all_of(mark.begin(), mark.end(), [](std::uint8_t b) { return b == 'C'; })) {
+    skip(1);
+    return Step::go_on;
+  }
+  if (bytes.size() < zipped_head) return Step::wait;
+  if (bytes[8] != 0x1f || bytes[9] != 0x8b) {
+    skip(1);
+    return Step::go_on;
+  }
+  refuse(NoitomRefusal::compressed);
+  take(zipped_head);
+  return Step::go_on;
+}
+
+// From a digit to "||". A byte that no text holds ends the attempt in front of it.
+NoitomDecoder::Step NoitomDecoder::text(std::vector<NoitomArrival>& out) {
+  const auto bytes = ahead();
+  for (std::size_t at = searched_; at < bytes.size(); ++at) {
+    if (!may_stand_in_text(bytes[at])) {
+      skip(at);
+      return Step::go_on;
+    }
+    if (bytes[at] == '|' && bytes[at - 1] == '|') {
+      text_frame(at + 1, out);
+      return Step::go_on;
+    }
+    if (at >= longest_text) {
+      refuse(NoitomRefusal::too_long);
+      skip(at);
+      return Step::go_on;
+    }
+  }
+  searched_ = bytes.size();
+  return Step::wait;
+}
+
+void NoitomDecoder::text_frame(std::size_t size, std::vector<NoitomArrival>& out) {
+  auto frame = parse_noitom_text({reinterpret_cast<const char*>(&held_[at_]), size - 2});
+  if (frame) {
+    take(size);
+    give(*std::move(frame), out);
+  } else {
+    refuse_text({reinterpret_cast<const char*>(&held_[at_]), size - 2});
+    skip(size);
+  }
+  behind_text_ = true;
+}
+
+void NoitomDecoder::refuse_text(std::string_view text) {
+  const NoitomNoFrame what = judge_noitom_text(text);
+  // Who comes within a frame sees its end: nothing is wrong with it.
+  const bool first = counts_.frames == 0 && counts_.refused == NoitomCounts{}.refused;
+  if (first && what == NoitomNoFrame::numbers) return;
+  refuse(what == NoitomNoFrame::other_count ? NoitomRefusal::wrong_count : NoitomRefusal::garbage);
+}
+
+void NoitomDecoder::give(NoitomFrame frame, std::vector<NoitomArrival>& out) {
+  if (avatars_.size() == most_avatars && !avatars_.contains(frame.avatar)) {
+    refuse(NoitomRefusal::too_many_avatars);
+    return;
+  }
+  NoitomAvatar& avatar = avatars_[frame.avatar];
+  avatar.index = frame.avatar;
+  avatar.name = frame.name;
+  ++avatar.frames;
+  ++counts_.frames;
+  const Order order = frame.frame_index ? avatar.by_index.push(*frame.frame_index) : Order::newest;
+  out.push_back({std::move(frame), order});
+}
+
+}  // namespace kinalign

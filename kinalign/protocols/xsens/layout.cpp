@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/protocols/xsens/layout.h"
+
+#include "kinalign/wire/bytes.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t pose_item = 32, tracker_item = 44, raw_tracker_item = 68, time_code = 12;
+
+bool is_digit(std::uint8_t b) { return b >= '0' && b <= '9'; }
+
+template <std::size_t n>
+void take(ByteReader& bytes, std::array<float, n>& values) {
+  for (float& value : values) value = bytes.take_float();
+}
+
+XsensPose pose_of(ByteReader bytes, std::size_t items) {
+  XsensPose pose;
+  for (std::size_t k = 0; k < items; ++k) {
+    XsensSegment segment;
+    segment.id = static_cast<std::int32_t>(bytes.take<std::uint32_t>());
+    take(bytes, segment.position);
+    take(bytes, segment.rotation);
+    pose.segments.push_back(segment);
+  }
+  return pose;
+}
+
+XsensTrackers trackers_of(ByteReader bytes, std::size_t items, bool raw) {
+  XsensTrackers all;
+  for (std::size_t k = 0; k < items; ++k) {
+    XsensTracker tracker;
+    tracker.id = static_cast<std::int32_t>(bytes.take<std::uint32_t>());
+    take(bytes, tracker.rotation);
+    take(bytes, tracker.free_acceleration);
+    if (raw) {
+      tracker.raw.emplace();
+      take(bytes, tracker.raw->acceleration);
+      take(bytes, tracker.raw->angular_velocity);
+    }
+    take(bytes, tracker.magnetic_field);
+    all.trackers.push_back(tracker);
+  }
+  return all;
+}
+
+/// "HH:MM:SS.mmm"
+std::optional<XsensTimeCode> time_code_of(std::span<const std::uint8_t> text) {
+  constexpr std::string_view form = "dd:dd:dd.ddd";
+  for (std::size_t k = 0; k < form.size(); ++k) {
+    if (form[k] == 'd' ? !is_digit(text[k]) : text[k] != static_cast<std::uint8_t>(form[k])) {
+      return std::nullopt;
+    }
+  }
+  const auto two = [&](std::size_t at) { return (text[at] - '0') * 10 + (text[at + 1] - '0'); };
+  const int hours = two(0), minutes = two(3), whole = two(6), ms = two(9) * 10 + (text[11] - '0');
+  if (hours > 23 || minutes > 59 || whole > 59) return std::nullopt;
+  return XsensTimeCode{std::chrono::hours(hours) + std::chrono::minutes(minutes) +
+                       std::chrono::seconds(whole) + std::chrono::milliseconds(ms)};
+}
+
+/// With its length in front or without.
+std::optional<XsensTimeCode> any_time_code(std::span<const std::uint8_t> payload) {
+  if (payload.size() == time_code) return time_code_of(payload);
+  if (payload.size() != time_code + 4) return std::nullopt;
+  if (ByteReader(payload).take<std::uint32_t>() != time_code) return std::nullopt;
+  return time_code_of(payload.subspan(4));
+}
+
+}  // namespace
+
+bool begins_xsens_header(std::span<const std::uint8_t> b) {
+  return b.size() >= 6 && b[0] == 'M' && b[1] == 'X' && b[2] == 'T' && b[3] == 'P' &&
+         is_digit(b[4]) && is_digit(b[5]);
+}
+
+std::size_t xsens_item_size(unsigned type) {
+  switch (type) {
+    case 1:
+      return 28;
+    case 2:
+      return pose_item;
+    case 3:
+      return 16;
+    case 5:
+      return 32;
+    case 20:
+      return 20;
+    case 21:
+      return 40;
+    case 22:
+      return 44;
+    case 23:
+      return tracker_item;
+    case 24:
+      return 12;
+    case 25:
+      return time_code;
+    default:
+      return 0;
+  }
+}
+
+XsensHeader parse_xsens_header(std::span<const std::uint8_t> bytes) {
+  XsensHeader h;
+  h.type = static_cast<unsigned>((bytes[4] - '0') * 10 + (bytes[5] - '0'));
+  ByteReader fields(bytes.subspan(6));
+  h.counter = fields.take<std::uint32_t>();
+  const auto datagram = fields.take<std::uint8_t>();
+  h.index = datagram & 0x7f;
+  h.last = (datagram & 0x80) != 0;
+  h.items = fields.take<std::uint8_t>();
+  h.time_code_ms = fields.take<std::uint32_t>();
+  h.character = fields.take<std::uint8_t>();
+  h.body_segments = fields.take<std::uint8_t>();
+  h.props = fields.take<std::uint8_t>();
+  h.finger_segments = fields.take<std::uint8_t>();
+  fields.take<std::uint16_t>();
+  h.payload = fields.take<std::uint16_t>();
+  if (h.payload == 0) h.payload = xsens_item_size(h.type) * h.items;
+  return h;
+}
+
+std::optional<XsensItems> parse_xsens_items(const XsensHeader& header,
+                                            std::span<const std::uint8_t> payload) {
+  const std::size_t items = header.items;
+  if (header.type == 25) return any_time_code(payload);
+  if (items == 0) return std::nullopt;
+  if (header.type == 2 && payload.size() == pose_item * items) {
+    return pose_of(ByteReader(payload), items);
+  }
+  const bool raw = payload.size() == raw_tracker_item * items;
+  if (header.type == 23 && (raw || payload.size() == tracker_item * items)) {
+    return trackers_of(ByteReader(payload), items, raw);
+  }
+  return std::nullopt;
+}
+
+}  // namespace kinalign

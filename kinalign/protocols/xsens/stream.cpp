@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/protocols/xsens/stream.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t slice = 4096;
+constexpr std::size_t marker = 6;          // "MXTP02"
+constexpr std::size_t most_channels = 48;  // 16 characters of three types
+constexpr std::size_t most_parts = 4;
+
+bool is_read(unsigned type) { return type == 2 || type == 23 || type == 25; }
+
+bool is_raw(const XsensSample& sample) {
+  const auto* trackers = std::get_if<XsensTrackers>(&sample.body);
+  return trackers != nullptr && trackers->trackers[0].raw.has_value();
+}
+
+/// Adds the items of `more` behind those of `all`.
+void append(XsensSample& all, XsensSample& more) {
+  const auto move_behind = [](auto& to, auto& from) {
+    to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  };
+  if (auto* pose = std::get_if<XsensPose>(&all.body)) {
+    move_behind(pose->segments, std::get<XsensPose>(more.body).segments);
+  } else if (auto* trackers = std::get_if<XsensTrackers>(&all.body)) {
+    move_behind(trackers->trackers, std::get<XsensTrackers>(more.body).trackers);
+  }
+}
+
+constexpr std::array<std::string_view, 6> names{
+    "wrong_size", "torn", "incomplete", "repeated", "too_many_items", "too_many_characters"};
+constexpr std::array<std::string_view, 6> meanings{
+    "datagrams of an unknown layout were dropped",
+    "datagrams that lacked a piece were dropped",
+    "samples that lacked a datagram were dropped",
+    "datagrams that came twice were dropped",
+    "samples with more items than a body has were dropped",
+    "samples of further characters were dropped"};
+
+}  // namespace
+
+std::string_view to_string(XsensRefusal refusal) {
+  return names[static_cast<std::size_t>(refusal)];
+}
+
+void XsensDecoder::feed(std::span<const std::uint8_t> bytes, std::vector<XsensArrival>& out) {
+  while (!bytes.empty()) {
+    const auto piece = bytes.first(std::min(slice, bytes.size()));
+    bytes = bytes.subspan(piece.size());
+    held_.insert(held_.end(), piece.begin(), piece.end());
+    while (step(out)) {
+    }
+    held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(at_));
+    at_ = 0;
+  }
+}
+
+void XsensDecoder::take(std::size_t bytes) {
+  at_ += bytes;
+  searched_ = 0;
+}
+
+// False: more bytes are needed.
+bool XsensDecoder::step(std::vector<XsensArrival>& out) {
+  const auto bytes = ahead();
+  if (bytes.size() < marker) return false;
+  if (!begins_xsens_header(bytes)) {
+    ++counts_.bytes_skipped;
+    take(1);
+    return true;
+  }
+  if (torn(xsens_header_size)) return true;
+  if (bytes.size() < xsens_header_size) return false;
+  const XsensHeader header = parse_xsens_header(bytes);
+  const std::size_t size = xsens_header_size + header.payload;
+  if (torn(size)) return true;
+  if (bytes.size() < size) return false;
+  if (is_read(header.type)) {
+    auto items = parse_xsens_items(header, bytes.subspan(xsens_header_size, header.payload));
+    if (!items) {  // its size is not believed either
+      refuse(XsensRefusal::wrong_size);
+      counts_.bytes_skipped += marker;
+      take(marker);
+      return true;
+    }
+    datagram(header, *std::move(items), out);
+  } else {
+    ++counts_.other_types[header.type];
+  }
+  take(size);
+  return true;
+}
+
+// Within the next `size` bytes, as far as they are there, another datagram begins: this one is
+// passed over.
+bool XsensDecoder::torn(std::size_t size) {
+  const auto bytes = ahead();
+  const std::size_t end = std::min(size, bytes.size());
+  for (std::size_t at = std::max(searched_, marker); at + marker <= end; ++at) {
+    if (begins_xsens_header(bytes.subspan(at))) {
+      refuse(XsensRefusal::torn);
+      counts_.bytes_skipped += at;
+      take(at);
+      return true;
+    }
+    searched_ = at + 1;
+  }
+  return false;
+}
+
+void XsensDecoder::datagram(const XsensHeader& header, XsensItems items,
+                            std::vector<XsensArrival>& out) {
+  Channel* channel = channel_of(header);
+  if (channel == nullptr) return refuse(XsensRefusal::too_many_characters);
+  XsensSample sample{header.counter, header.time_code_ms,    header.character, header.body_segments,
+                     header.props,   header.finger_segments, std::move(items)};
+  if (header.index == 0 && header.last) return give(*channel, std::move(sample), out);
+  join(*channel, header, std::move(sample), out);
+}
+
+XsensDecoder::Channel* XsensDecoder::channel_of(const XsensHeader& header) {
+  const XsensChannel key{header.character, header.type};
+  if (channels_.size() == most_channels && !channels_.contains(key)) return nullptr;
+  return &channels_[key];
+}
+
+void XsensDecoder::join(Channel& channel, const XsensHeader& header, XsensSample piece,
+                        std::vector<XsensArrival>& out) {
+  if (channel.joined == header.counter) return refuse(XsensRefusal::repeated);
+  Part& part = part_of(channel, header.counter);
+  if (part.pieces.contains(header.index)) return refuse(XsensRefusal::repeated);
+  if (part.items + header.items > most_xsens_items) return refuse(XsensRefusal::too_many_items);
+  if (!part.pieces.empty() && is_raw(part.pieces.begin()->second) != is_raw(piece)) {
+    return refuse(XsensRefusal::wrong_size);
+  }
+  part.items += header.items;
+  if (header.last) part.last = header.index;
+  part.pieces.emplace(header.index, std::move(piece));
+  // Indices are one of a kind, so as many as up to the last, the highest one being it, are all.
+  const bool whole = part.last && part.pieces.size() == *part.last + 1U &&
+                     part.pieces.rbegin()->first == *part.last;
+  if (!whole) return;
+  XsensSample sample = std::move(part.pieces.begin()->second);
+  for (auto more = std::next(part.pieces.begin()); more != part.pieces.end(); ++more) {
+    append(sample, more->second);
+  }
+  channel.joined = header.counter;
+  std::erase_if(channel.parts, [&](const auto& p) { return p.first == header.counter; });
+  give(channel, std::move(sample), out);
+}
+
+XsensDecoder::Part& XsensDecoder::part_of(Channel& channel, std::uint32_t counter) {
+  for (auto& [known, part] : channel.parts) {
+    if (known == counter) return part;
+  }
+  if (channel.parts.size() == most_parts) {
+    channel.parts.pop_front();
+    refuse(XsensRefusal::incomplete);
+  }
+  return channel.parts.emplace_back(counter, Part{}).second;
+}
+
+void XsensDecoder::give(Channel& channel, XsensSample sample, std::vector<XsensArrival>& out) {
+  const Order order = channel.by_counter.push(sample.counter);
+  ++counts_.samples;
+  out.push_back({std::move(sample), order});
+}
+
+std::map<XsensChannel, SequenceCounts> XsensDecoder::channels() const {
+  std::map<XsensChannel, SequenceCounts> all;
+  for (const auto& [key, channel] : channels_) all[key] = channel.by_counter.counts();
+  return all;
+}
+
+Findings XsensDecoder::findings(const std::string& name) const {
+  Findings findings;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::uint64_t times = counts_.refused[k];
+    if (times == 0) continue;
+    findings.push_back({Severity::warning,
+                        Error{name, 0, "whole datagrams of MVN, each once",
+                              fmt::format("{} ({})", names[k],
+                                          times == 1 ? "once" : fmt::format("{} times", times))},
+                        std::string(meanings[k]), ""});
+  }
+  for (std::size_t type = 0; type < counts_.other_types.size(); ++type) {
+    if (counts_.other_types[type] == 0) continue;
+    findings.push_back({Severity::note,
+                        Error{name, 0, "datagrams of types 02, 23 and 25",
+                              fmt::format("{} of type {:02}", counts_.other_types[type], type)},
+                        "they were passed over", ""});
+  }
+  return findings;
+}
+
+}  // namespace kinalign
