@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A manifest that is accepted survives the way into a take's parameters and back; a lab that is
 // accepted can be recorded.
-#include "kinalign/io/lab_toml.h"
-#include "kinalign/io/manifest_toml.h"
-#include "kinalign/io/parameters_json.h"
+#include "kinalign/documents/lab_toml.h"
+#include "kinalign/documents/manifest_toml.h"
+#include "kinalign/documents/parameters_json.h"
 
 #include <cstdint>
 #include <cstdlib>

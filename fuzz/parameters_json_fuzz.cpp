@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parameters that are accepted are written and read again to the same text.
-#include "kinalign/io/parameters_json.h"
+#include "kinalign/documents/parameters_json.h"
 
 #include <cstdint>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A truth that is accepted is written and read again to the same text, and its clocks tell times.
-#include "kinalign/io/truth_json.h"
+#include "kinalign/documents/truth_json.h"
 
 #include <cstdint>
 #include <cstdlib>

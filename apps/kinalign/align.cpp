@@ -9,10 +9,10 @@
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/align/plan.h"
+#include "kinalign/documents/report_json.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"
-#include "kinalign/io/report_json.h"
 #include "kinalign/io/survey_parts.h"
 #include "kinalign/io/unknown_file.h"
 

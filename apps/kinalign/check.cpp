@@ -11,8 +11,8 @@
 #include "kinalign/align/judge.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
+#include "kinalign/documents/report_json.h"
 #include "kinalign/io/recording_beside.h"
-#include "kinalign/io/report_json.h"
 #include "kinalign/io/survey_parts.h"
 #include "kinalign/io/take_hdf5.h"
 

@@ -7,10 +7,10 @@
 #include "kinalign/align/unused_options.h"
 #include "kinalign/core/file_version.h"
 #include "kinalign/core/files.h"
-#include "kinalign/io/manifest_toml.h"
+#include "kinalign/documents/manifest_toml.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_reader.h"
-#include "kinalign/io/remembered_path.h"
+#include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
 #include <array>

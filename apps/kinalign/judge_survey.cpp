@@ -5,7 +5,7 @@
 #include "apps/kinalign/record_text.h"
 #include "apps/kinalign/summary.h"
 
-#include "kinalign/io/toml_entries.h"
+#include "kinalign/documents/toml_entries.h"
 
 #include <fmt/format.h>
 

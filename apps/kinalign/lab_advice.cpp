@@ -3,7 +3,7 @@
 
 #include "apps/kinalign/port_advice.h"
 
-#include "kinalign/io/toml_entries.h"
+#include "kinalign/documents/toml_entries.h"
 
 #include <fmt/format.h>
 

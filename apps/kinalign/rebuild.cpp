@@ -7,8 +7,8 @@
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/documents/parameters_json.h"
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/parameters_json.h"
 #include "kinalign/io/take_hdf5.h"
 
 #include <fmt/format.h>

@@ -6,8 +6,8 @@
 #include "apps/kinalign/summary.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/documents/report_json.h"
 #include "kinalign/io/recover_recording.h"
-#include "kinalign/io/report_json.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

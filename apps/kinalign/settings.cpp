@@ -4,7 +4,7 @@
 #include "apps/kinalign/command_line.h"
 #include "apps/kinalign/field_text.h"
 
-#include "kinalign/io/toml_entries.h"
+#include "kinalign/documents/toml_entries.h"
 
 #include <toml++/toml.h>
 #include <unistd.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/simulate_folder.h"
 
+#include "kinalign/documents/manifest_toml.h"
+#include "kinalign/documents/truth_json.h"
 #include "kinalign/io/bvh_write.h"
-#include "kinalign/io/manifest_toml.h"
 #include "kinalign/io/stream_write.h"
-#include "kinalign/io/truth_json.h"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 
 #include "kinalign/core/parallel.h"
 #include "kinalign/core/utf8.h"
-#include "kinalign/io/remembered_path.h"
 #include "kinalign/io/row_stamps.h"
 #include "kinalign/io/stream_survey.h"
+#include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 #include "kinalign/io/recording_survey.h"
 
 #include "kinalign/core/crc.h"
+#include "kinalign/documents/lab_toml.h"
 #include "kinalign/io/kinect_survey.h"
-#include "kinalign/io/lab_toml.h"
 #include "kinalign/protocols/slimevr/packet.h"
 #include "kinalign/wire/little_endian_reader.h"
 

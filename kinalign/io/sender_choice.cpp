@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/sender_choice.h"
 
-#include "kinalign/io/manifest_toml.h"
+#include "kinalign/documents/manifest_toml.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/survey_parts.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every data set must lie whole inside the file before any memory is taken for it.
+#include "kinalign/documents/parameters_json.h"
 #include "kinalign/io/hdf5_checks.h"
 #include "kinalign/io/hdf5_file.h"
-#include "kinalign/io/parameters_json.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_layout.h"
 

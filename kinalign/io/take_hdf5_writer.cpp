@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // HDF5 lays out the file and writes its small parts; rows go straight to the places it gave them.
+#include "kinalign/documents/parameters_json.h"
+#include "kinalign/documents/report_json.h"
 #include "kinalign/io/hdf5_checks.h"
 #include "kinalign/io/hdf5_file.h"
-#include "kinalign/io/parameters_json.h"
-#include "kinalign/io/remembered_path.h"
-#include "kinalign/io/report_json.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_layout.h"
+#include "kinalign/take/remembered_path.h"
 
 #include <hdf5.h>
 

@@ -3,7 +3,7 @@
 
 #include "tests/seeds.h"
 
-#include "kinalign/io/report_json.h"
+#include "kinalign/documents/report_json.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

@@ -2,7 +2,7 @@
 // Which device of a recording is read, and what is said of the file.
 #include "tests/io/recorded_streams.h"
 
-#include "kinalign/io/manifest_toml.h"
+#include "kinalign/documents/manifest_toml.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/recording_survey.h"
 #include "kinalign/io/recover_recording.h"

@@ -6,8 +6,8 @@
 #include "tests/io/take_samples.h"
 #include "tests/witness.h"
 
+#include "kinalign/documents/parameters_json.h"
 #include "kinalign/io/guarded.h"
-#include "kinalign/io/parameters_json.h"
 #include "kinalign/io/take_layout.h"
 
 #include <doctest/doctest.h>

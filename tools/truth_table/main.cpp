@@ -5,13 +5,13 @@
 // lies outside its interval.
 #include "apps/kinalign/inputs.h"
 
+#include "kinalign/documents/truth_json.h"
 #include "kinalign/io/bvh.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/survey_parts.h"
 #include "kinalign/io/take_hdf5.h"
-#include "kinalign/io/truth_json.h"
 #include "kinalign/motion/interpolation/clip_motion.h"
 #include "kinalign/simulate/judge_recording.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/remembered_path.h"
+#include "kinalign/take/remembered_path.h"
 
 #include "kinalign/core/files.h"
 

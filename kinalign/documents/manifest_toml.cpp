@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/manifest_toml.h"
+#include "kinalign/documents/manifest_toml.h"
 
 #include "kinalign/core/nearest_name.h"
-#include "kinalign/io/option_values.h"
-#include "kinalign/io/toml_entries.h"
+#include "kinalign/documents/option_values.h"
+#include "kinalign/documents/toml_entries.h"
 
 #include <toml++/toml.h>
 

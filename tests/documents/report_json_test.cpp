@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A report as JSON, whole: what reads it elsewhere has nothing but these words.
-#include "kinalign/io/report_json.h"
+#include "kinalign/documents/report_json.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/parameters_json.h"
+#include "kinalign/documents/parameters_json.h"
 
-#include "kinalign/io/report_json.h"
+#include "kinalign/documents/report_json.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/option_values.h"
+#include "kinalign/documents/option_values.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/report_json.h"
+#include "kinalign/documents/report_json.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Written by hand, value by value: toml++ sorts tables by name, and the order of streams counts.
-#include "kinalign/io/manifest_toml.h"
-#include "kinalign/io/toml_entries.h"
+#include "kinalign/documents/manifest_toml.h"
+#include "kinalign/documents/toml_entries.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/parameters_json.h"
+#include "kinalign/documents/parameters_json.h"
 
 #include "kinalign/core/nearest_name.h"
-#include "kinalign/io/option_values.h"
-#include "kinalign/io/remembered_path.h"
+#include "kinalign/documents/option_values.h"
+#include "kinalign/take/remembered_path.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/toml_entries.h"
+#include "kinalign/documents/toml_entries.h"
 
 #include "kinalign/core/nearest_name.h"
-#include "kinalign/io/option_values.h"
+#include "kinalign/documents/option_values.h"
 
 #include <toml++/toml.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/lab_toml.h"
+#include "kinalign/documents/lab_toml.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/manifest_toml.h"
+#include "kinalign/documents/manifest_toml.h"
 
 #include <doctest/doctest.h>
 

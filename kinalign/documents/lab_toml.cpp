@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/lab_toml.h"
+#include "kinalign/documents/lab_toml.h"
 
 #include "kinalign/core/files.h"
-#include "kinalign/io/toml_entries.h"
+#include "kinalign/documents/toml_entries.h"
 
 #include <toml++/toml.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every option, as TOML says it and as JSON does: what one takes the other takes, what one refuses
 // the other refuses in the same words.
-#include "kinalign/io/option_values.h"
+#include "kinalign/documents/option_values.h"
 
-#include "kinalign/io/manifest_toml.h"
-#include "kinalign/io/parameters_json.h"
+#include "kinalign/documents/manifest_toml.h"
+#include "kinalign/documents/parameters_json.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
