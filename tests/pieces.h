@@ -2,7 +2,7 @@
 // Reading a whole text in pieces, for tests and fuzz targets of readers.
 #pragma once
 
-#include "kinalign/io/reader.h"
+#include "kinalign/formats/reader.h"
 
 #include <algorithm>
 #include <memory>

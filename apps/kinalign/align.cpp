@@ -10,11 +10,11 @@
 
 #include "kinalign/align/plan.h"
 #include "kinalign/documents/report_json.h"
+#include "kinalign/formats/unknown_file.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/survey_parts.h"
-#include "kinalign/io/unknown_file.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // Biovision BVH, read and written. Layout: docs/formats/bvh.md.
 #pragma once
 
-#include "kinalign/io/reader.h"
+#include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <cstdint>

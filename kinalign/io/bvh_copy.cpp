@@ -2,9 +2,9 @@
 #include "kinalign/io/bvh_copy.h"
 
 #include "kinalign/core/unchanged.h"
+#include "kinalign/formats/unknown_file.h"
 #include "kinalign/io/bvh_values.h"
 #include "kinalign/io/bvh_write.h"
-#include "kinalign/io/unknown_file.h"
 
 namespace kinalign {
 

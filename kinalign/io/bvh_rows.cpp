@@ -2,8 +2,8 @@
 #include "kinalign/io/bvh_rows.h"
 
 #include "kinalign/core/numbers.h"
+#include "kinalign/formats/named_lines.h"
 #include "kinalign/io/bvh_words.h"
-#include "kinalign/io/named_lines.h"
 
 #include <fmt/format.h>
 

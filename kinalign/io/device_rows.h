@@ -4,8 +4,8 @@
 #pragma once
 
 #include "kinalign/clock/offline/device_clock.h"
+#include "kinalign/formats/reader.h"
 #include "kinalign/io/host_epochs.h"
-#include "kinalign/io/reader.h"
 #include "kinalign/io/recorded_messages.h"
 #include "kinalign/io/rows_in_order.h"
 #include "kinalign/take/manifest.h"

@@ -2,6 +2,7 @@
 #include "kinalign/io/formats.h"
 
 #include "kinalign/core/unchanged.h"
+#include "kinalign/formats/unknown_file.h"
 #include "kinalign/io/bvh.h"
 #include "kinalign/io/bvh_survey.h"
 #include "kinalign/io/layout.h"
@@ -12,7 +13,6 @@
 #include "kinalign/io/trc.h"
 #include "kinalign/io/ui_prmd_files.h"
 #include "kinalign/io/ui_prmd_kinect.h"
-#include "kinalign/io/unknown_file.h"
 #include "kinalign/io/xsens_text.h"
 
 #include <algorithm>

@@ -4,8 +4,8 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/clip_survey.h"
-#include "kinalign/io/reader.h"
+#include "kinalign/formats/clip_survey.h"
+#include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <functional>

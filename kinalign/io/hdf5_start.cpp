@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/hdf5_start.h"
 
-#include "kinalign/io/unknown_file.h"
+#include "kinalign/formats/unknown_file.h"
 
 #include <optional>
 

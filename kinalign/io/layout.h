@@ -4,9 +4,9 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/io/axes.h"
-#include "kinalign/io/cells.h"
-#include "kinalign/io/row_stamps.h"
+#include "kinalign/formats/axes.h"
+#include "kinalign/formats/cells.h"
+#include "kinalign/formats/row_stamps.h"
 
 #include <cstddef>
 #include <map>

@@ -2,8 +2,8 @@
 // Frames of an inertial node of ours: the counter's reading of each sample, put on UTC by the
 // exchanges that the recorder made out of frames and replies. Of a node without a counter the
 // number of its request is the counter.
+#include "kinalign/formats/imu_converter.h"
 #include "kinalign/io/device_rows.h"
-#include "kinalign/io/imu_converter.h"
 #include "kinalign/io/numbered_frames.h"
 #include "kinalign/io/rows_in_order.h"
 #include "kinalign/wire/clockless.h"

@@ -2,10 +2,10 @@
 #include "kinalign/io/ntu_skeleton.h"
 
 #include "kinalign/core/numbers.h"
-#include "kinalign/io/cells.h"
-#include "kinalign/io/named_lines.h"
-#include "kinalign/io/point_rows.h"
-#include "kinalign/io/row_stamps.h"
+#include "kinalign/formats/cells.h"
+#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/point_rows.h"
+#include "kinalign/formats/row_stamps.h"
 #include "kinalign/motion/kinect_joints.h"
 
 #include <algorithm>

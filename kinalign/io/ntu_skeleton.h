@@ -3,7 +3,7 @@
 // Layout: docs/formats/kinect.md.
 #pragma once
 
-#include "kinalign/io/reader.h"
+#include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <memory>

@@ -3,7 +3,7 @@
 
 #include "kinalign/core/parallel.h"
 #include "kinalign/core/utf8.h"
-#include "kinalign/io/row_stamps.h"
+#include "kinalign/formats/row_stamps.h"
 #include "kinalign/io/stream_survey.h"
 #include "kinalign/take/remembered_path.h"
 

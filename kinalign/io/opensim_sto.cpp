@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/opensim_sto.h"
 
-#include "kinalign/io/cells.h"
-#include "kinalign/io/held_rows.h"
-#include "kinalign/io/imu_converter.h"
-#include "kinalign/io/named_lines.h"
+#include "kinalign/formats/cells.h"
+#include "kinalign/formats/held_rows.h"
+#include "kinalign/formats/imu_converter.h"
+#include "kinalign/formats/named_lines.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // OpenSim .sto of quaternions, one column a node. Layout: docs/formats/imu.md.
 #pragma once
 
-#include "kinalign/io/reader.h"
+#include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <memory>

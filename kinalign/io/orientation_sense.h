@@ -4,7 +4,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/io/reader.h"
+#include "kinalign/formats/reader.h"
 
 #include <cstdint>
 #include <optional>

@@ -2,11 +2,11 @@
 #include "kinalign/io/recover_recording.h"
 
 #include "kinalign/core/file_version.h"
+#include "kinalign/formats/unknown_file.h"
 #include "kinalign/io/merged_parts.h"
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_copier.h"
 #include "kinalign/io/recording_parts.h"
-#include "kinalign/io/unknown_file.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rotations of one sensor of a SlimeVR tracker, each with the acceleration that came with it or
 // just before. Their packets carry no time: stamps are arrivals.
+#include "kinalign/formats/imu_converter.h"
 #include "kinalign/io/device_rows.h"
-#include "kinalign/io/imu_converter.h"
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/protocols/slimevr/packet.h"
 #include "kinalign/wire/little_endian_reader.h"

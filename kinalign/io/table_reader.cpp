@@ -3,10 +3,10 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/numbers.h"
-#include "kinalign/io/held_rows.h"
-#include "kinalign/io/imu_converter.h"
-#include "kinalign/io/named_lines.h"
-#include "kinalign/io/point_rows.h"
+#include "kinalign/formats/held_rows.h"
+#include "kinalign/formats/imu_converter.h"
+#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/point_rows.h"
 #include "kinalign/io/table_columns.h"
 
 #include <fmt/format.h>

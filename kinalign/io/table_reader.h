@@ -2,8 +2,8 @@
 // Reads any table that a layout declares (io/layout.h, docs/formats/layouts.md).
 #pragma once
 
+#include "kinalign/formats/reader.h"
 #include "kinalign/io/layout.h"
-#include "kinalign/io/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <memory>

@@ -2,10 +2,10 @@
 #include "kinalign/io/trc.h"
 
 #include "kinalign/core/numbers.h"
-#include "kinalign/io/cells.h"
-#include "kinalign/io/held_rows.h"
-#include "kinalign/io/named_lines.h"
-#include "kinalign/io/point_rows.h"
+#include "kinalign/formats/cells.h"
+#include "kinalign/formats/held_rows.h"
+#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/point_rows.h"
 
 #include <fmt/format.h>
 

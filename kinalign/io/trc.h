@@ -2,7 +2,7 @@
 // TRC, tab-separated optical markers. Layout: docs/formats/points.md.
 #pragma once
 
-#include "kinalign/io/reader.h"
+#include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <memory>

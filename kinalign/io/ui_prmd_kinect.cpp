@@ -2,10 +2,10 @@
 #include "kinalign/io/ui_prmd_kinect.h"
 
 #include "kinalign/core/files.h"
-#include "kinalign/io/cells.h"
-#include "kinalign/io/named_lines.h"
-#include "kinalign/io/point_rows.h"
-#include "kinalign/io/row_stamps.h"
+#include "kinalign/formats/cells.h"
+#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/point_rows.h"
+#include "kinalign/formats/row_stamps.h"
 
 #include <algorithm>
 #include <cassert>

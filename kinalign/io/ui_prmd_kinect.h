@@ -2,7 +2,7 @@
 // UI-PRMD's Kinect v2: one text of joint offsets, one of angles. Layout: docs/formats/kinect.md.
 #pragma once
 
-#include "kinalign/io/reader.h"
+#include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <array>

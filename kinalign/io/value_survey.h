@@ -5,8 +5,8 @@
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/formats/reader.h"
 #include "kinalign/io/orientation_sense.h"
-#include "kinalign/io/reader.h"
 
 #include <cstdint>
 #include <span>

@@ -2,7 +2,7 @@
 // What the named columns of an Xsens text export hold and how an orientation is made of them.
 #pragma once
 
-#include "kinalign/io/cells.h"
+#include "kinalign/formats/cells.h"
 #include "kinalign/motion/arrays.h"
 
 #include <optional>

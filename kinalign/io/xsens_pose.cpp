@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/xsens_pose.h"
 
-#include "kinalign/io/axes.h"
+#include "kinalign/formats/axes.h"
 
 #include <fmt/format.h>
 

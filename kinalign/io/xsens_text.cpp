@@ -3,11 +3,11 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/numbers.h"
-#include "kinalign/io/imu_converter.h"
+#include "kinalign/formats/imu_converter.h"
+#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/row_stamps.h"
 #include "kinalign/io/late_quantities.h"
-#include "kinalign/io/named_lines.h"
 #include "kinalign/io/packet_count.h"
-#include "kinalign/io/row_stamps.h"
 #include "kinalign/io/xsens_columns.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Xsens MT Manager's text export, one file a sensor. Layout: docs/formats/imu.md.
 #pragma once
 
-#include "kinalign/io/reader.h"
+#include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <memory>

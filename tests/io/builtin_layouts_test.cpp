@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each layout that the program carries, told by a file that has just its columns.
-#include "tests/io/reading.h"
+#include "tests/formats/reading.h"
 
 #include "kinalign/io/formats.h"
 #include "kinalign/io/table_reader.h"

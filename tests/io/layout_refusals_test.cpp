@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a layout can't say, key by key; and which columns a file must have for one.
-#include "tests/io/reading.h"
+#include "tests/formats/reading.h"
 
 #include "kinalign/io/table_reader.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/ntu_skeleton.h"
 
-#include "tests/io/reading.h"
+#include "tests/formats/reading.h"
 
 #include <doctest/doctest.h>
 

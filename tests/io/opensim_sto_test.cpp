@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/opensim_sto.h"
 
-#include "tests/io/reading.h"
+#include "tests/formats/reading.h"
 #include "tests/shared_data.h"
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every number of real recordings against a plain reading of the same text in Python.
-#include "tests/io/reading.h"
+#include "tests/formats/reading.h"
 #include "tests/shared_data.h"
 #include "tests/witness.h"
 

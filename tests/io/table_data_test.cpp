@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The declared layouts on the recordings that they are for; numbers are those of the recordings'
 // own description.
-#include "tests/io/reading.h"
+#include "tests/formats/reading.h"
 #include "tests/shared_data.h"
 
 #include "kinalign/io/table_reader.h"

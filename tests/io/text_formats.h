@@ -2,7 +2,7 @@
 // A small sound file of every text format, for laws that hold for all of them.
 #pragma once
 
-#include "tests/io/reading.h"
+#include "tests/formats/reading.h"
 
 #include "kinalign/io/bvh.h"
 #include "kinalign/io/ntu_skeleton.h"

@@ -2,7 +2,7 @@
 // Frames and bytes of the Noitom stream, for tests.
 #pragma once
 
-#include "tests/io/joined_bytes.h"
+#include "tests/formats/joined_bytes.h"
 
 #include "kinalign/protocols/noitom/stream.h"
 

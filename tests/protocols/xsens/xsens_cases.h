@@ -2,7 +2,7 @@
 // Samples and bytes of the Xsens MVN stream, for tests.
 #pragma once
 
-#include "tests/io/joined_bytes.h"
+#include "tests/formats/joined_bytes.h"
 
 #include "kinalign/io/xsens_pose.h"
 #include "kinalign/protocols/xsens/stream.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/unknown_file.h"
+#include "kinalign/formats/unknown_file.h"
 
 #include <algorithm>
 #include <array>

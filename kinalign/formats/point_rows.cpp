@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/point_rows.h"
+#include "kinalign/formats/point_rows.h"
 
 #include <algorithm>
 #include <cstdlib>

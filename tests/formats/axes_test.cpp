@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/axes.h"
+#include "kinalign/formats/axes.h"
 
 #include "tests/seeds.h"
 
-#include "kinalign/io/imu_converter.h"
-#include "kinalign/io/point_rows.h"
+#include "kinalign/formats/imu_converter.h"
+#include "kinalign/formats/point_rows.h"
 #include "kinalign/motion/arrays.h"
 
 #include <doctest/doctest.h>

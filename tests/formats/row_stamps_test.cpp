@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/row_stamps.h"
+#include "kinalign/formats/row_stamps.h"
 
-#include "tests/io/reading.h"
+#include "tests/formats/reading.h"
 #include "tests/seeds.h"
 
-#include "kinalign/io/held_rows.h"
+#include "kinalign/formats/held_rows.h"
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/io/axes.h"
+#include "kinalign/formats/axes.h"
 #include "kinalign/motion/streams.h"
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/row_stamps.h"
+#include "kinalign/formats/row_stamps.h"
 
 #include "kinalign/core/numbers.h"
 

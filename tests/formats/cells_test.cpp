@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/cells.h"
+#include "kinalign/formats/cells.h"
 
 #include "tests/seeds.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/imu_converter.h"
+#include "kinalign/formats/imu_converter.h"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // Rows that wait until their stamps are settled (io/row_stamps.h).
 #pragma once
 
-#include "kinalign/io/row_stamps.h"
+#include "kinalign/formats/row_stamps.h"
 #include "kinalign/motion/frame_arrays.h"
 
 namespace kinalign {

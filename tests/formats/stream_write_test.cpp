@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/stream_write.h"
+#include "kinalign/formats/stream_write.h"
 
 #include "tests/folder.h"
 

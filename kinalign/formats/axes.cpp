@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/axes.h"
+#include "kinalign/formats/axes.h"
 
 #include <cassert>
 #include <cmath>
