@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole files: a BVH and a CSV read with all checks against a std::from_chars loop over the same
 // text in memory, and a take written against write() of the same bytes to a new file.
-#include "kinalign/io/bvh_head.h"
-#include "kinalign/io/bvh_rows.h"
+#include "kinalign/formats/bvh/head.h"
+#include "kinalign/formats/bvh/rows.h"
 #include "kinalign/io/layout.h"
 #include "kinalign/io/table_reader.h"
 #include "kinalign/io/take_hdf5.h"

@@ -2,7 +2,7 @@
 // Whatever is accepted is written and read again to the same text, and pieces cut anywhere give the
 // same frames.
 // Seeds: bvh/*.bvh bvh/edge/*.bvh
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 
 #include <cstdint>
 #include <cstdlib>

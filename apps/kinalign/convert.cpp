@@ -9,7 +9,7 @@
 #include "kinalign/align/judge.h"
 #include "kinalign/align/own_rows.h"
 #include "kinalign/documents/report_json.h"
-#include "kinalign/io/bvh_copy.h"
+#include "kinalign/formats/bvh/copy.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"

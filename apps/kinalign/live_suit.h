@@ -4,7 +4,7 @@
 
 #include "apps/kinalign/live_socket.h"
 
-#include "kinalign/io/bvh_write.h"
+#include "kinalign/formats/bvh/write.h"
 #include "kinalign/simulate/random.h"
 #include "kinalign/simulate/rehearsal.h"
 

@@ -9,7 +9,7 @@
 #include "kinalign/capture/node_keys.h"
 #include "kinalign/documents/lab_toml.h"
 #include "kinalign/documents/toml_entries.h"
-#include "kinalign/io/bvh_head.h"
+#include "kinalign/formats/bvh/head.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -5,7 +5,7 @@
 #include "apps/kinalign/simulate_text.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/interpolation/clip_motion.h"
 #include "kinalign/simulate/built_in_motion.h"
 

@@ -3,8 +3,8 @@
 
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/documents/truth_json.h"
+#include "kinalign/formats/bvh/write.h"
 #include "kinalign/formats/stream_write.h"
-#include "kinalign/io/bvh_write.h"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 #include "kinalign/io/formats.h"
 
 #include "kinalign/core/unchanged.h"
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/bvh/survey.h"
 #include "kinalign/formats/unknown_file.h"
-#include "kinalign/io/bvh.h"
-#include "kinalign/io/bvh_survey.h"
 #include "kinalign/io/layout.h"
 #include "kinalign/io/ntu_skeleton.h"
 #include "kinalign/io/opensim_sto.h"

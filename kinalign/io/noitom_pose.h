@@ -2,7 +2,7 @@
 // From frames of the Noitom stream, which carry no skeleton, to poses of the skeleton of a BVH.
 #pragma once
 
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/protocols/noitom/frame.h"
 
 namespace kinalign {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recording_reader.h"
 
-#include "kinalign/io/bvh_head.h"
+#include "kinalign/formats/bvh/head.h"
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/sender_choice.h"
 

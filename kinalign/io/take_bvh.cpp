@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/core/unchanged.h"
-#include "kinalign/io/bvh_copy.h"
-#include "kinalign/io/bvh_write.h"
+#include "kinalign/formats/bvh/copy.h"
+#include "kinalign/formats/bvh/write.h"
 #include "kinalign/io/take_hdf5.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 
 #include "tests/formats/reading.h"
 
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/io/ntu_skeleton.h"
 #include "kinalign/io/opensim_sto.h"
 #include "kinalign/io/table_reader.h"

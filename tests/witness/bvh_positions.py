@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Joint positions of BVH files by a plain forward kinematics in NumPy, for tests/io/bvh_files_test.cpp.
+"""Joint positions of BVH files by a plain forward kinematics in NumPy, for tests/formats/bvh/files_test.cpp.
 FOLDER/files.txt names one file a line; FOLDER/positions.csv gets file, frame, joint_index, joint, x, y, z of
 all joints at the first, the middle and the last frame, in the file's own unit."""
 import pathlib

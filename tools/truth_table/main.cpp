@@ -6,7 +6,7 @@
 #include "apps/kinalign/inputs.h"
 
 #include "kinalign/documents/truth_json.h"
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"

@@ -2,7 +2,7 @@
 // A BVH as text, for tests.
 #pragma once
 
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 
 #include <doctest/doctest.h>
 

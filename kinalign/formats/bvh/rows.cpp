@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/bvh_rows.h"
+#include "kinalign/formats/bvh/rows.h"
 
 #include "kinalign/core/numbers.h"
+#include "kinalign/formats/bvh/words.h"
 #include "kinalign/formats/named_lines.h"
-#include "kinalign/io/bvh_words.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/bvh_values.h"
+#include "kinalign/formats/bvh/values.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/core/numbers.h"
-#include "kinalign/io/bvh_write.h"
+#include "kinalign/formats/bvh/write.h"
 
 #include <algorithm>
 #include <array>

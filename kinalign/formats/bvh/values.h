@@ -2,8 +2,8 @@
 // A BVH's hierarchy and its rows as they are written, from pieces cut anywhere.
 #pragma once
 
-#include "kinalign/io/bvh_head.h"
-#include "kinalign/io/bvh_rows.h"
+#include "kinalign/formats/bvh/head.h"
+#include "kinalign/formats/bvh/rows.h"
 
 #include <functional>
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rig's header as a recording keeps it.
-#include "kinalign/io/bvh_head.h"
+#include "kinalign/formats/bvh/head.h"
 
 #include "tests/folder.h"
 #include "tests/shared_data.h"

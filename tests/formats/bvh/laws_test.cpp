@@ -2,11 +2,11 @@
 // Laws of BVH over random skeletons: any channels of any joint, several roots, wrapped rows, any
 // letters and blanks.
 #include "tests/folder.h"
-#include "tests/io/any_bvh.h"
-#include "tests/io/bvh_text.h"
+#include "tests/formats/bvh/any_bvh.h"
+#include "tests/formats/bvh/bvh_text.h"
 #include "tests/seeds.h"
 
-#include "kinalign/io/bvh_survey.h"
+#include "kinalign/formats/bvh/survey.h"
 #include "kinalign/motion/kinematics.h"
 
 #include <doctest/doctest.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/bvh_survey.h"
+#include "kinalign/formats/bvh/survey.h"
 
 #include "kinalign/core/hash.h"
-#include "kinalign/io/bvh_head.h"
-#include "kinalign/io/bvh_rows.h"
-#include "kinalign/io/bvh_words.h"
+#include "kinalign/formats/bvh/head.h"
+#include "kinalign/formats/bvh/rows.h"
+#include "kinalign/formats/bvh/words.h"
 #include "kinalign/motion/stamps.h"
 #include "kinalign/motion/targets.h"
 

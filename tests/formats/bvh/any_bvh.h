@@ -3,7 +3,7 @@
 // a plain computation of its own.
 #pragma once
 
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 
 #include <array>
 #include <cmath>

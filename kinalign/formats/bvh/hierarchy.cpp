@@ -2,8 +2,8 @@
 // The part of a BVH above its rows: joints, offsets, channels, number of frames, frame time.
 #include "kinalign/core/numbers.h"
 #include "kinalign/core/utf8.h"
-#include "kinalign/io/bvh.h"
-#include "kinalign/io/bvh_words.h"
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/bvh/words.h"
 
 #include <algorithm>
 #include <array>

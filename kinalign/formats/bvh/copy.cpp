@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/bvh_copy.h"
+#include "kinalign/formats/bvh/copy.h"
 
 #include "kinalign/core/unchanged.h"
+#include "kinalign/formats/bvh/values.h"
+#include "kinalign/formats/bvh/write.h"
 #include "kinalign/formats/unknown_file.h"
-#include "kinalign/io/bvh_values.h"
-#include "kinalign/io/bvh_write.h"
 
 namespace kinalign {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/core/files.h"
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 
 #include <cstdint>
 #include <string>

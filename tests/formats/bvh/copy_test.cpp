@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // From file to file in pieces.
-#include "kinalign/io/bvh_copy.h"
+#include "kinalign/formats/bvh/copy.h"
 
 #include "tests/folder.h"
 
-#include "kinalign/io/bvh_write.h"
+#include "kinalign/formats/bvh/write.h"
 #include "kinalign/io/take_hdf5.h"
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // No BVH says its unit or its up axis: whether the values assumed give a person who stands.
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/kinematics.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/bvh.h"
+#include "tests/formats/bvh/bvh_text.h"
 
-#include "tests/io/bvh_text.h"
-
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/kinematics.h"
 
 #include <doctest/doctest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From rows of BVH channels to local positions and rotations.
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/kinematics.h"
 #include "kinalign/motion/stamps.h"
 

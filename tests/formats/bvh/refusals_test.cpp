@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a BVH's head stops being one, and what is odd about one that can be read.
-#include "kinalign/io/bvh.h"
-#include "kinalign/io/bvh_head.h"
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/bvh/head.h"
 
 #include <doctest/doctest.h>
 

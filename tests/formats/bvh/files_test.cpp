@@ -3,7 +3,7 @@
 #include "tests/shared_data.h"
 #include "tests/witness.h"
 
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/kinematics.h"
 
 #include <doctest/doctest.h>

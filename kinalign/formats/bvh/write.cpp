@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/bvh_write.h"
+#include "kinalign/formats/bvh/write.h"
 
 #include "kinalign/core/numbers.h"
 

@@ -2,7 +2,7 @@
 // What nobody finds in a BVH: its unit and its up axis.
 #include "tests/folder.h"
 
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/io/open_recording.h"
 
 #include <doctest/doctest.h>

@@ -2,7 +2,7 @@
 // Writing a BVH block by block, its number of frames known before the first.
 #pragma once
 
-#include "kinalign/io/bvh.h"
+#include "kinalign/formats/bvh/bvh.h"
 
 #include <cstdint>
 #include <span>

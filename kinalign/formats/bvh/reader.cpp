@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A BVH in pieces: rows become poses.
-#include "kinalign/io/bvh_values.h"
+#include "kinalign/formats/bvh/values.h"
 
 #include <optional>
 

@@ -4,8 +4,8 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/clip_survey.h"
-#include "kinalign/io/bvh.h"
 
 #include <string>
 
