@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/pieces.h"
 
-#include "kinalign/io/ntu_skeleton.h"
+#include "kinalign/formats/points/ntu_skeleton.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace kinalign;

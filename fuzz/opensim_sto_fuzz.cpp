@@ -2,7 +2,7 @@
 // Seeds: imu_opensim/opensense/*.sto
 #include "fuzz/pieces.h"
 
-#include "kinalign/io/opensim_sto.h"
+#include "kinalign/formats/imu/opensim_sto.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace kinalign;

@@ -2,7 +2,7 @@
 // Seeds: points_trc/*.trc
 #include "fuzz/pieces.h"
 
-#include "kinalign/io/trc.h"
+#include "kinalign/formats/points/trc.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace kinalign;

@@ -4,7 +4,7 @@
 #include "fuzz/pieces.h"
 #include "fuzz/two_parts.h"
 
-#include "kinalign/io/ui_prmd_kinect.h"
+#include "kinalign/formats/points/ui_prmd_kinect.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace kinalign;

@@ -2,7 +2,7 @@
 // Seeds: imu_opensim/xsens/*.txt
 #include "fuzz/pieces.h"
 
-#include "kinalign/io/xsens_text.h"
+#include "kinalign/formats/imu/xsens_text.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace kinalign;

@@ -4,16 +4,16 @@
 #include "kinalign/core/unchanged.h"
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/bvh/survey.h"
+#include "kinalign/formats/imu/opensim_sto.h"
+#include "kinalign/formats/imu/xsens_text.h"
+#include "kinalign/formats/points/ntu_skeleton.h"
+#include "kinalign/formats/points/trc.h"
+#include "kinalign/formats/points/ui_prmd_files.h"
+#include "kinalign/formats/points/ui_prmd_kinect.h"
 #include "kinalign/formats/unknown_file.h"
 #include "kinalign/io/layout.h"
-#include "kinalign/io/ntu_skeleton.h"
-#include "kinalign/io/opensim_sto.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/table_reader.h"
-#include "kinalign/io/trc.h"
-#include "kinalign/io/ui_prmd_files.h"
-#include "kinalign/io/ui_prmd_kinect.h"
-#include "kinalign/io/xsens_text.h"
 
 #include <algorithm>
 #include <array>

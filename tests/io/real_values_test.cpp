@@ -4,10 +4,10 @@
 #include "tests/shared_data.h"
 #include "tests/witness.h"
 
-#include "kinalign/io/opensim_sto.h"
+#include "kinalign/formats/imu/opensim_sto.h"
+#include "kinalign/formats/imu/xsens_text.h"
+#include "kinalign/formats/points/trc.h"
 #include "kinalign/io/table_reader.h"
-#include "kinalign/io/trc.h"
-#include "kinalign/io/xsens_text.h"
 
 #include <doctest/doctest.h>
 

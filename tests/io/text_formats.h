@@ -5,13 +5,13 @@
 #include "tests/formats/reading.h"
 
 #include "kinalign/formats/bvh/bvh.h"
-#include "kinalign/io/ntu_skeleton.h"
-#include "kinalign/io/opensim_sto.h"
+#include "kinalign/formats/imu/opensim_sto.h"
+#include "kinalign/formats/imu/xsens_text.h"
+#include "kinalign/formats/points/ntu_skeleton.h"
+#include "kinalign/formats/points/trc.h"
+#include "kinalign/formats/points/ui_prmd_kinect.h"
 #include "kinalign/io/table_reader.h"
 #include "kinalign/io/take_layout.h"
-#include "kinalign/io/trc.h"
-#include "kinalign/io/ui_prmd_kinect.h"
-#include "kinalign/io/xsens_text.h"
 
 #include <cmath>
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/xsens_columns.h"
+#include "kinalign/formats/imu/xsens_columns.h"
 
 #include <algorithm>
 #include <numbers>

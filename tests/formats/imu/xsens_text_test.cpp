@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/xsens_text.h"
+#include "kinalign/formats/imu/xsens_text.h"
 
 #include "tests/formats/reading.h"
 #include "tests/shared_data.h"

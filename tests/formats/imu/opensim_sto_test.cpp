@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/opensim_sto.h"
+#include "kinalign/formats/imu/opensim_sto.h"
 
 #include "tests/formats/reading.h"
 #include "tests/shared_data.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/ntu_skeleton.h"
+#include "kinalign/formats/points/ntu_skeleton.h"
 
 #include "kinalign/core/numbers.h"
 #include "kinalign/formats/cells.h"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/xsens_text.h"
+#include "kinalign/formats/imu/xsens_text.h"
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/numbers.h"
+#include "kinalign/formats/imu/late_quantities.h"
+#include "kinalign/formats/imu/packet_count.h"
+#include "kinalign/formats/imu/xsens_columns.h"
 #include "kinalign/formats/imu_converter.h"
 #include "kinalign/formats/named_lines.h"
 #include "kinalign/formats/row_stamps.h"
-#include "kinalign/io/late_quantities.h"
-#include "kinalign/io/packet_count.h"
-#include "kinalign/io/xsens_columns.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/trc.h"
+#include "kinalign/formats/points/trc.h"
 
 #include "tests/formats/reading.h"
 #include "tests/shared_data.h"

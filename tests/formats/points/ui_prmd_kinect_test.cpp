@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/ui_prmd_kinect.h"
+#include "kinalign/formats/points/ui_prmd_kinect.h"
 
 #include "tests/formats/reading.h"
 #include "tests/shared_data.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/ui_prmd_files.h"
+#include "kinalign/formats/points/ui_prmd_files.h"
 
 #include <algorithm>
 #include <array>
