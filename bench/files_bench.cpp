@@ -3,8 +3,8 @@
 // text in memory, and a take written against write() of the same bytes to a new file.
 #include "kinalign/formats/bvh/head.h"
 #include "kinalign/formats/bvh/rows.h"
-#include "kinalign/io/layout.h"
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/layout.h"
+#include "kinalign/formats/table/table_reader.h"
 #include "kinalign/io/take_hdf5.h"
 #include "kinalign/io/take_layout.h"
 

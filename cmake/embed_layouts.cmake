@@ -9,7 +9,7 @@ foreach(path IN LISTS FILES)
   string(APPEND entries "    {\"${name}\", R\"layout(${text})layout\"},\n")
 endforeach()
 file(WRITE "${OUT}" "// Made from layouts/*.toml by cmake/embed_layouts.cmake.
-#include \"kinalign/io/layout.h\"
+#include \"kinalign/formats/table/layout.h\"
 
 #include <utility>
 

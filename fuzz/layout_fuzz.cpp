@@ -2,8 +2,8 @@
 // A layout that is accepted can read a table without harm.
 #include "fuzz/pieces.h"
 
-#include "kinalign/io/layout.h"
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/layout.h"
+#include "kinalign/formats/table/table_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace kinalign;

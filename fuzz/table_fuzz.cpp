@@ -4,7 +4,7 @@
 #include "fuzz/pieces.h"
 #include "fuzz/two_parts.h"
 
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/table_reader.h"
 
 #include <vector>
 

@@ -10,10 +10,10 @@
 #include "kinalign/formats/points/trc.h"
 #include "kinalign/formats/points/ui_prmd_files.h"
 #include "kinalign/formats/points/ui_prmd_kinect.h"
+#include "kinalign/formats/table/layout.h"
+#include "kinalign/formats/table/table_reader.h"
 #include "kinalign/formats/unknown_file.h"
-#include "kinalign/io/layout.h"
 #include "kinalign/io/recording_reader.h"
-#include "kinalign/io/table_reader.h"
 
 #include <algorithm>
 #include <array>

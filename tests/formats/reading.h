@@ -4,7 +4,7 @@
 
 #include "tests/pieces.h"
 
-#include "kinalign/io/layout.h"
+#include "kinalign/formats/table/layout.h"
 
 #include <doctest/doctest.h>
 

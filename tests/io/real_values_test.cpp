@@ -7,7 +7,7 @@
 #include "kinalign/formats/imu/opensim_sto.h"
 #include "kinalign/formats/imu/xsens_text.h"
 #include "kinalign/formats/points/trc.h"
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/table_reader.h"
 
 #include <doctest/doctest.h>
 

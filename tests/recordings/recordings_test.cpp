@@ -5,7 +5,7 @@
 #include "tests/shared_data.h"
 
 #include "kinalign/align/align.h"
-#include "kinalign/io/layout.h"
+#include "kinalign/formats/table/layout.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/motion/arrivals.h"
 

@@ -10,7 +10,7 @@
 #include "kinalign/formats/points/ntu_skeleton.h"
 #include "kinalign/formats/points/trc.h"
 #include "kinalign/formats/points/ui_prmd_kinect.h"
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/table_reader.h"
 #include "kinalign/io/take_layout.h"
 
 #include <cmath>

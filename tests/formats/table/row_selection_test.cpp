@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/row_selection.h"
+#include "kinalign/formats/table/row_selection.h"
 
 #include "tests/formats/reading.h"
 
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/table_reader.h"
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/formats/reader.h"
-#include "kinalign/io/layout.h"
+#include "kinalign/formats/table/layout.h"
 #include "kinalign/take/manifest.h"
 
 #include <memory>

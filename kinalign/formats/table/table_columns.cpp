@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/table_columns.h"
+#include "kinalign/formats/table/table_columns.h"
 
 #include "kinalign/core/nearest_name.h"
 #include "kinalign/core/utf8.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/layout_keys.h"
+#include "kinalign/formats/table/layout_keys.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

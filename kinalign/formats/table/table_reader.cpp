@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/table_reader.h"
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/numbers.h"
@@ -7,7 +7,7 @@
 #include "kinalign/formats/imu_converter.h"
 #include "kinalign/formats/named_lines.h"
 #include "kinalign/formats/point_rows.h"
-#include "kinalign/io/table_columns.h"
+#include "kinalign/formats/table/table_columns.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/layout.h"
+#include "kinalign/formats/table/layout.h"
 
 #include "tests/formats/reading.h"
 

@@ -4,7 +4,7 @@
 #include "tests/formats/reading.h"
 #include "tests/shared_data.h"
 
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/table_reader.h"
 #include "kinalign/motion/stamps.h"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/row_selection.h"
+#include "kinalign/formats/table/row_selection.h"
 
 #include "kinalign/core/numbers.h"
 

@@ -2,8 +2,8 @@
 // Each layout that the program carries, told by a file that has just its columns.
 #include "tests/formats/reading.h"
 
+#include "kinalign/formats/table/table_reader.h"
 #include "kinalign/io/formats.h"
-#include "kinalign/io/table_reader.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/layout.h"
+#include "kinalign/formats/table/layout.h"
 
-#include "kinalign/io/layout_keys.h"
+#include "kinalign/formats/table/layout_keys.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What holds for every reader of text: where a file is cut into pieces changes nothing, and what is
 // broken is read or refused, with the file's name, never worse.
-#include "tests/io/text_formats.h"
+#include "tests/formats/table/text_formats.h"
 #include "tests/seeds.h"
 
 #include <doctest/doctest.h>

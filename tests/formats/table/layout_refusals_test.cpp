@@ -2,7 +2,7 @@
 // What a layout can't say, key by key; and which columns a file must have for one.
 #include "tests/formats/reading.h"
 
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/table_reader.h"
 
 #include <doctest/doctest.h>
 

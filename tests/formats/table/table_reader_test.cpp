@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/table_reader.h"
+#include "kinalign/formats/table/table_reader.h"
 
 #include "tests/formats/reading.h"
 

@@ -2,8 +2,8 @@
 // Which column of a file holds what, found from a layout and the file's names of columns.
 #pragma once
 
-#include "kinalign/io/layout.h"
-#include "kinalign/io/row_selection.h"
+#include "kinalign/formats/table/layout.h"
+#include "kinalign/formats/table/row_selection.h"
 #include "kinalign/motion/streams.h"
 
 #include <map>
