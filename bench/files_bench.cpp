@@ -5,8 +5,8 @@
 #include "kinalign/formats/bvh/rows.h"
 #include "kinalign/formats/table/layout.h"
 #include "kinalign/formats/table/table_reader.h"
-#include "kinalign/io/take_hdf5.h"
-#include "kinalign/io/take_layout.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/formats/take/take_layout.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>

@@ -4,12 +4,12 @@
 // the byte that is to stand there. Read in a child, where HDF5's own crashes are ordinary errors; a
 // fault of ours that a sanitizer finds there ends the child by itself, and then this.
 #include "fuzz/pieces.h"
-#include "tests/io/take_samples.h"
+#include "tests/formats/take/take_samples.h"
 
 #include "kinalign/core/progress.h"
-#include "kinalign/io/guarded.h"
-#include "kinalign/io/take_hdf5.h"
-#include "kinalign/io/take_layout.h"
+#include "kinalign/formats/take/guarded.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/formats/take/take_layout.h"
 
 #include <sys/mman.h>
 #include <unistd.h>

@@ -4,7 +4,7 @@
 #include "apps/kinalign/console.h"
 
 #include "kinalign/align/align.h"
-#include "kinalign/io/take_hdf5.h"
+#include "kinalign/formats/take/take_hdf5.h"
 
 #include <optional>
 

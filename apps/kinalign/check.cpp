@@ -12,9 +12,9 @@
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
 #include "kinalign/documents/report_json.h"
+#include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/survey_parts.h"
-#include "kinalign/io/take_hdf5.h"
 
 #include <fmt/format.h>
 

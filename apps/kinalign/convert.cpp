@@ -10,15 +10,15 @@
 #include "kinalign/align/own_rows.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/bvh/copy.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/formats/take/take_npz.h"
+#include "kinalign/formats/xdf/survey.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_beside.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/show_recording.h"
 #include "kinalign/io/show_xdf.h"
 #include "kinalign/io/survey_parts.h"
-#include "kinalign/io/take_hdf5.h"
-#include "kinalign/io/take_npz.h"
-#include "kinalign/io/xdf_survey.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

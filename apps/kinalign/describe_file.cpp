@@ -8,7 +8,7 @@
 #include "kinalign/align/judge.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/documents/report_json.h"
-#include "kinalign/io/take_hdf5.h"
+#include "kinalign/formats/take/take_hdf5.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

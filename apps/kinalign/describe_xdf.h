@@ -4,7 +4,7 @@
 
 #include "apps/kinalign/describe_file.h"
 
-#include "kinalign/io/xdf_survey.h"
+#include "kinalign/formats/xdf/survey.h"
 
 namespace kinalign {
 

@@ -6,7 +6,7 @@
 #include "apps/kinalign/verb.h"
 
 #include "kinalign/core/progress.h"
-#include "kinalign/io/guarded.h"
+#include "kinalign/formats/take/guarded.h"
 #include "kinalign/io/recording_survey.h"
 #include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"

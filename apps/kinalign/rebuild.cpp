@@ -8,8 +8,8 @@
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/documents/parameters_json.h"
+#include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/take_hdf5.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

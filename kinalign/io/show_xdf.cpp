@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/show_xdf.h"
 
-#include "kinalign/io/xdf_survey.h"
+#include "kinalign/formats/xdf/survey.h"
 
 #include <nlohmann/json.hpp>
 

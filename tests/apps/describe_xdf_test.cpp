@@ -2,7 +2,7 @@
 #include "apps/kinalign/describe_xdf.h"
 
 #include "tests/folder.h"
-#include "tests/io/xdf_cases.h"
+#include "tests/formats/xdf/xdf_cases.h"
 
 #include <nlohmann/json.hpp>
 

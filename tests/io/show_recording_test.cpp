@@ -2,8 +2,8 @@
 #include "kinalign/io/show_recording.h"
 
 #include "tests/folder.h"
+#include "tests/formats/xdf/xdf_cases.h"
 #include "tests/io/recorded_lab.h"
-#include "tests/io/xdf_cases.h"
 
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_parts.h"

@@ -2,7 +2,7 @@
 #include "kinalign/io/shown_file.h"
 
 #include "tests/folder.h"
-#include "tests/io/xdf_cases.h"
+#include "tests/formats/xdf/xdf_cases.h"
 #include "tests/mcap/mcap_files.h"
 
 #include "kinalign/io/show_recording.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What holds of the rows of any take, and that no array of theirs is forgotten.
-#include "tests/io/take_samples.h"
+#include "tests/formats/take/take_samples.h"
 #include "tests/seeds.h"
 
 #include "kinalign/take/row_arrays.h"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """SciPy's line through `values` over `times` by the Huber loss, quadratic up to 0.1 ms: its value at the first time and
-its slope, for tests/io/xdf_clock_test.cpp."""
+its slope, for tests/formats/xdf/clock_test.cpp."""
 import numpy as np
 from scipy.optimize import least_squares
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copies of a take, each altered in one place, as another program could: take.h5 of a folder becomes a
-file for each alteration that tests/io/take_altered_test.cpp names."""
+file for each alteration that tests/formats/take/altered_test.cpp names."""
 import pathlib
 import shutil
 import sys

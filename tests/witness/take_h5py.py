@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Opens a take of tests/io/take_hdf5_test.cpp (50 frames) as a user would, and looks at all of it."""
+"""Opens a take of tests/formats/take/hdf5_test.cpp (50 frames) as a user would, and looks at all of it."""
 import json
 import sys
 

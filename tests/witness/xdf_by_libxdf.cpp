@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What libxdf (Debian's libxdf-dev) reads of an XDF file, for tests/io/xdf_libxdf_test.cpp: a line
-// for each stream, "stream NAME CHANNELS", and one for each of its samples, the corrected stamp and
-// the values, which it keeps as floats. It puts text aside, so streams of text have no samples.
+// What libxdf (Debian's libxdf-dev) reads of an XDF file, for tests/formats/xdf/libxdf_test.cpp: a
+// line for each stream, "stream NAME CHANNELS", and one for each of its samples, the corrected
+// stamp and the values, which it keeps as floats. It puts text aside, so streams of text have no
+// samples.
 #include <xdf.h>
 
 #include <cstdio>

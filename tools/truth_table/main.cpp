@@ -7,11 +7,11 @@
 
 #include "kinalign/documents/truth_json.h"
 #include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/survey_parts.h"
-#include "kinalign/io/take_hdf5.h"
 #include "kinalign/motion/interpolation/clip_motion.h"
 #include "kinalign/simulate/judge_recording.h"
 

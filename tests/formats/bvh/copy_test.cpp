@@ -5,7 +5,7 @@
 #include "tests/folder.h"
 
 #include "kinalign/formats/bvh/write.h"
-#include "kinalign/io/take_hdf5.h"
+#include "kinalign/formats/take/take_hdf5.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

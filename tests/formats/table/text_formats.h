@@ -11,7 +11,7 @@
 #include "kinalign/formats/points/trc.h"
 #include "kinalign/formats/points/ui_prmd_kinect.h"
 #include "kinalign/formats/table/table_reader.h"
-#include "kinalign/io/take_layout.h"
+#include "kinalign/formats/take/take_layout.h"
 
 #include <cmath>
 #include <functional>

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+// From child to parent goes a sequence of messages: one letter ('d' data, 'e' an error, '.' done),
+// four bytes of length, that many bytes. The parent believes no length above `message_most`.
+#include "kinalign/formats/take/guarded.h"
+
+#include "kinalign/core/progress.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t message_most = std::size_t{1} << 20;
+constexpr std::size_t head_size = 5;
+constexpr int no_memory_code = 77;
+
+// ---- the child
+
+bool write_all(int pipe, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t put = ::write(pipe, bytes.data(), bytes.size());
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(put));
+  }
+  return true;
+}
+
+bool send(int pipe, char kind, std::string_view bytes) {
+  char head[head_size] = {kind};
+  const auto size = static_cast<std::uint32_t>(bytes.size());
+  std::memcpy(head + 1, &size, sizeof size);
+  return write_all(pipe, {head, head_size}) && write_all(pipe, bytes);
+}
+
+std::string packed(const Error& error) {
+  std::string out = std::to_string(error.line);
+  for (const std::string* text : {&error.file, &error.expected, &error.found}) {
+    out += '\0' + text->substr(0, message_most / 8);
+  }
+  return out;
+}
+
+/// Bytes of address space in use.
+[[maybe_unused]] rlim_t mapped_bytes() {
+  unsigned long pages = 0;
+  std::FILE* file = std::fopen("/proc/self/statm", "re");
+  if (file == nullptr) return 0;
+  if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
+  std::fclose(file);
+  return static_cast<rlim_t>(pages) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
+  rlimit now{};
+  ::getrlimit(what, &now);
+  const rlimit wanted{std::min(soft, now.rlim_max), std::min(hard, now.rlim_max)};
+  ::setrlimit(what, &wanted);
+}
+
+void set_limits(const GuardLimits& limits) {
+  limit(RLIMIT_CORE, 0, 0);
+  limit(RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1);
+#ifndef KINALIGN_SANITIZED  // sanitizers reserve terabytes of addresses
+  const rlim_t memory = mapped_bytes() + limits.memory_bytes;
+  limit(RLIMIT_AS, memory, memory);
+#endif
+  std::set_new_handler([] { ::_exit(no_memory_code); });
+}
+
+/// A crash shall kill, and so shall Ctrl-C, whatever the parent does with these signals.
+void reset_signals() {
+  for (const int number : {SIGINT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) {
+    ::signal(number, SIG_DFL);
+  }
+  ::signal(SIGPIPE, SIG_IGN);
+}
+
+[[noreturn]] void run_child(int pipe, const GuardLimits& limits,
+                            const std::function<Result<void>(const GuardSend&)>& work) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  reset_signals();
+  set_limits(limits);
+  const GuardSend send_data = [pipe](std::string_view bytes) -> Result<void> {
+    for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), message_most))) {
+      if (!send(pipe, 'd', bytes.substr(0, message_most))) {
+        return Failure(Error{"", 0, "someone to read the result", "no one"});
+      }
+    }
+    return {};
+  };
+  const Result<void> done = work(send_data);
+  const bool told = done ? send(pipe, '.', "") : send(pipe, 'e', packed(done.error()));
+  ::_exit(told ? 0 : 1);  // no destructors or buffers of the parent's
+}
+
+// ---- the parent
+
+/// Ends the child where it still runs, and takes note of how it ended.
+class Child {
+ public:
+  Child(pid_t id, int pipe) : id_(id), pipe_(pipe) {}
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child() {
+    ::close(pipe_);
+    if (!ended_) end();
+  }
+
+  int pipe() const { return pipe_; }
+  /// Of one that has closed its end of the pipe, or is not to be listened to any more: how it
+  /// ended. One that ends by itself has done so when its pipe closes, and can't be killed then.
+  int end() {
+    ::kill(id_, SIGKILL);
+    return wait();
+  }
+
+ private:
+  int wait() {
+    int status = 0;
+    while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+    }
+    ended_ = true;
+    return status;
+  }
+
+  pid_t id_;
+  int pipe_;
+  bool ended_ = false;
+};
+
+Error unpacked(std::string_view bytes) {
+  Error error;
+  std::string line;
+  for (std::string* text : {&line, &error.file, &error.expected, &error.found}) {
+    const auto end = std::min(bytes.find('\0'), bytes.size());
+    *text = bytes.substr(0, end);
+    bytes.remove_prefix(std::min(end + 1, bytes.size()));
+  }
+  error.line = std::strtoll(line.c_str(), nullptr, 10);
+  return error;
+}
+
+Error blamed(const Error& blame, const std::string& found) {
+  return {blame.file, blame.line, blame.expected, found};
+}
+
+/// How a child ended that did not say so itself.
+std::string cause(int status, const GuardLimits& limits) {
+  if (WIFSIGNALED(status)) {
+    const int number = WTERMSIG(status);
+    if (number == SIGXCPU) {
+      return "one that took more than " + std::to_string(limits.cpu_seconds) +
+             " s of processor time";
+    }
+    return "one on which the library crashed (signal " + std::to_string(number) + ")";
+  }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == no_memory_code) {
+    return "one that needs more than " + std::to_string(limits.memory_bytes >> 20) +
+           " MiB of memory";
+  }
+  return "one that ended the program that read it";
+}
+
+/// Takes messages apart as their bytes arrive.
+class Inbox {
+ public:
+  explicit Inbox(const std::function<Result<void>(std::string_view)>& receive)
+      : receive_(receive) {}
+
+  /// False: a message that no child of ours sends.
+  Result<bool> take(std::string_view bytes) {
+    pending_ += bytes;
+    std::size_t at = 0;
+    while (pending_.size() - at >= head_size) {
+      std::uint32_t size = 0;
+      std::memcpy(&size, pending_.data() + at + 1, sizeof size);
+      if (size > message_most) {
+        strange_ = true;
+        return false;
+      }
+      if (pending_.size() - at < head_size + size) break;
+      const auto body = std::string_view(pending_).substr(at + head_size, size);
+      const char kind = pending_[at];
+      if (kind == 'd') KA_TRY(receive_(body));
+      if (kind == 'e') error_ = unpacked(body);
+      if (kind == '.') done_ = true;
+      at += head_size + size;
+    }
+    pending_.erase(0, at);
+    return true;
+  }
+
+  bool done() const { return done_; }
+  bool strange() const { return strange_; }
+  const std::optional<Error>& error() const { return error_; }
+
+ private:
+  const std::function<Result<void>(std::string_view)>& receive_;
+  std::string pending_;
+  std::optional<Error> error_;
+  bool done_ = false, strange_ = false;
+};
+
+/// Reads until the child closes its end or sends what no child of ours sends. False: its time is
+/// up. Fails where a signal came that the program handles, which is Ctrl-C.
+Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbox) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  std::string buffer(std::size_t{64} << 10, '\0');
+  for (;;) {
+    const double left = wall_seconds - std::chrono::duration<double>(Clock::now() - start).count();
+    if (left <= 0) return false;
+    pollfd waiting{child.pipe(), POLLIN, 0};
+    const int ready = ::poll(&waiting, 1, static_cast<int>(std::min(left, 1000.0) * 1000.0) + 1);
+    if (ready < 0 && errno == EINTR) return Failure(interruption());
+    if (ready <= 0) continue;
+    const ssize_t got = ::read(child.pipe(), buffer.data(), buffer.size());
+    if (got == 0) return true;
+    if (got < 0) continue;
+    const std::string_view bytes(buffer.data(), static_cast<std::size_t>(got));
+    if (!KA_TRY(inbox.take(bytes))) return true;
+  }
+}
+
+}  // namespace
+
+Result<void> run_guarded(const GuardLimits& limits, const Error& blame,
+                         const std::function<Result<void>(const GuardSend&)>& work,
+                         const std::function<Result<void>(std::string_view)>& receive) {
+  int ends[2] = {-1, -1};
+  if (::pipe2(ends, O_CLOEXEC) != 0) {
+    return Failure(Error{"", 0, "a pipe to a child process", std::strerror(errno)});
+  }
+  const pid_t id = ::fork();
+  if (id == 0) {
+    ::close(ends[0]);
+    run_child(ends[1], limits, work);
+  }
+  const int code = errno;
+  ::close(ends[1]);
+  if (id < 0) {
+    ::close(ends[0]);
+    return Failure(Error{"", 0, "a child process", std::strerror(code)});
+  }
+  Child child(id, ends[0]);
+  Inbox inbox(receive);
+  if (!KA_TRY(read_until_end(child, limits.wall_seconds, inbox))) {
+    const auto seconds = static_cast<std::int64_t>(limits.wall_seconds);
+    return Failure(blamed(blame, "one that took more than " + std::to_string(seconds) + " s"));
+  }
+  if (inbox.error()) return Failure(*inbox.error());
+  if (inbox.done()) return {};
+  const int status = child.end();
+  return Failure(blamed(blame, inbox.strange() ? "one that overran the program that read it"
+                                               : cause(status, limits)));
+}
+
+Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
+                                const std::function<Result<std::string>()>& work) {
+  std::string text;
+  const auto send_text = [&](const GuardSend& send_data) -> Result<void> {
+    const std::string result = KA_TRY(work());
+    return send_data(result);
+  };
+  const auto keep = [&](std::string_view bytes) -> Result<void> {
+    if (text.size() + bytes.size() > limits.output_bytes) {
+      return Failure(blamed(
+          blame, "one whose contents exceed " + std::to_string(limits.output_bytes) + " bytes"));
+    }
+    text += bytes;
+    return {};
+  };
+  KA_TRY(run_guarded(limits, blame, send_text, keep));
+  return text;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading from an HDF5 file that nobody vouches for: every data set must be of the type and shape
+// that is asked for, lie in one piece, uncompressed, inside the file; only then is memory taken.
+// That also keeps filters, plug-ins and links to other files out of it.
+#pragma once
+
+#include "kinalign/formats/take/hdf5_file.h"
+#include "kinalign/formats/take/take_layout.h"
+#include "kinalign/take/recording.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kinalign::hdf5 {
+
+/// Values at a known place of the file, row after row.
+struct Source {
+  Stored stored = Stored::uint8;
+  std::uint64_t at = 0;
+  std::uint64_t row_values = 1;
+};
+
+bool has(Id group, const char* name);
+
+/// The name of HDF5's type for what we store.
+Id type_of(Stored stored);
+
+/// Reads rows into values of their own type; floats into doubles.
+Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
+                       std::uint64_t count, void* to);
+Result<void> read_rows(const Bytes& bytes, const Source& source, std::uint64_t first,
+                       std::uint64_t count, double* to);
+
+template <class Value>
+constexpr Stored stored_as() {
+  if constexpr (std::is_same_v<Value, double>) return Stored::float64;
+  if constexpr (std::is_same_v<Value, std::int64_t>) return Stored::int64;
+  if constexpr (std::is_same_v<Value, int>) return Stored::int32;
+  return Stored::uint8;
+}
+
+class Checked {
+ public:
+  explicit Checked(const Bytes& bytes) : bytes_(bytes) {}
+  const Bytes& bytes() const { return bytes_; }
+
+  /// The first size of a data set.
+  Result<std::uint64_t> rows(Id group, const char* name) const;
+  Result<Source> find(Id group, const char* name, Stored stored,
+                      const std::vector<std::uint64_t>& sizes) const;
+
+  template <class Value>
+  Result<std::vector<Value>> all(Id group, const char* name,
+                                 const std::vector<std::uint64_t>& sizes) const {
+    const Source source = KA_TRY(find(group, name, stored_as<Value>(), sizes));
+    std::vector<Value> values(sizes.front() * source.row_values);
+    KA_TRY(read_rows(bytes_, source, 0, sizes.front(), values.data()));
+    return values;
+  }
+
+  /// A scalar text, and a list of texts.
+  Result<std::string> text(Id group, const char* name) const;
+  Result<std::vector<std::string>> texts(Id group, const char* name) const;
+  Result<std::string> text_attribute(Id object, const char* name) const;
+  Result<std::vector<std::string>> text_attributes(Id object, const char* name) const;
+  /// The files that a stream came from.
+  Result<std::vector<InputFacts>> inputs(Id group) const;
+
+ private:
+  struct Place;
+  Result<Place> place(Id group, const char* name) const;
+  Result<std::string> packed_texts(Id group, const char* name, std::uint64_t rank,
+                                   std::size_t& width) const;
+  Failure other(const char* name, const std::string& expected, const std::string& found) const;
+
+  const Bytes& bytes_;
+};
+
+}  // namespace kinalign::hdf5

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/core/unchanged.h"
+#include "kinalign/formats/bvh/copy.h"
+#include "kinalign/formats/bvh/write.h"
+#include "kinalign/formats/take/take_hdf5.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+/// Puts the last valid row's pose in the place of rows that are not valid.
+class PoseHolder {
+ public:
+  explicit PoseHolder(std::size_t joints) : positions_(3 * joints), rotations_(4 * joints) {}
+
+  /// The pose for rows before the first valid one: that one's, found on a pass before.
+  void begin_with(const ClipRows& rows, std::size_t i) {
+    if (!std::exchange(known_, true)) keep(rows, i);
+  }
+
+  void hold(ClipRows& rows, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (is_valid(rows, i)) {
+        keep(rows, i);
+      } else {
+        std::copy(positions_.begin(), positions_.end(),
+                  &rows.local_positions[i * positions_.size()]);
+        std::copy(rotations_.begin(), rotations_.end(),
+                  &rows.local_rotations[i * rotations_.size()]);
+      }
+    }
+  }
+
+  static bool is_valid(const ClipRows& rows, std::size_t i) {
+    return rows.valid.empty() || rows.valid[i] != 0;
+  }
+
+ private:
+  void keep(const ClipRows& rows, std::size_t i) {
+    std::copy_n(&rows.local_positions[i * positions_.size()], positions_.size(),
+                positions_.begin());
+    std::copy_n(&rows.local_rotations[i * rotations_.size()], rotations_.size(),
+                rotations_.begin());
+  }
+
+  std::vector<double> positions_, rotations_;
+  bool known_ = false;
+};
+
+/// What the first pass learns.
+struct ClipSurvey {
+  std::uint64_t rows = 0, invalid = 0;
+  Time first{}, last{};
+  Duration shortest = Duration::max(), longest = Duration::min();  // steps
+
+  void add(const std::vector<Time>& stamps, const ClipRows& clip) {
+    for (std::size_t i = 0; i < stamps.size(); ++i) {
+      if (rows++ == 0) {
+        first = stamps[i];
+      } else {
+        shortest = std::min(shortest, stamps[i] - last);
+        longest = std::max(longest, stamps[i] - last);
+      }
+      last = stamps[i];
+      invalid += PoseHolder::is_valid(clip, i) ? 0 : 1;
+    }
+  }
+
+  double step_s() const {
+    return rows > 1 ? seconds(last - first) / static_cast<double>(rows - 1) : 1.0 / 60.0;
+  }
+};
+
+/// The stream to write: the first skeleton's. `others` are further ones.
+struct Chosen {
+  std::size_t group = 0;
+  std::string name, others;
+};
+
+Result<Chosen> choose(const TakeHeader& header, const std::string& path) {
+  Chosen out;
+  for (std::size_t g = 0; g < header.groups.size(); ++g) {
+    const TakeGroup& group = header.groups[g];
+    if (!std::holds_alternative<ClipGroup>(group.kind)) continue;
+    if (out.name.empty()) {
+      out.group = g;
+      out.name = group.name;
+    } else {
+      out.others += (out.others.empty() ? "" : ", ") + group.name;
+    }
+  }
+  if (!out.name.empty()) return out;
+  return Failure(Error{path, 0, "a take with a skeleton's stream", "none"});
+}
+
+Findings lost(const std::string& path, const Chosen& chosen, const ClipSurvey& survey) {
+  Findings out;
+  if (!chosen.others.empty()) {
+    out.push_back({Severity::note,
+                   Error{path, 0, "one skeleton's stream", chosen.name + ", " + chosen.others},
+                   chosen.name + " was written", "convert to .npz holds them all"});
+  }
+  if (survey.invalid > 0) {
+    out.push_back({Severity::warning,
+                   Error{path, 0, "valid rows of " + chosen.name,
+                         fmt::format("{} of {} that are not", survey.invalid, survey.rows)},
+                   "they hold the pose of the last valid row: a BVH can't mark them", ""});
+  }
+  const double step = survey.step_s();
+  if (survey.rows > 2 && seconds(survey.longest - survey.shortest) > 0.01 * step) {
+    out.push_back({Severity::warning,
+                   Error{path, 0, "stamps of one step",
+                         fmt::format("steps of {:.4g} to {:.4g} ms", 1e3 * seconds(survey.shortest),
+                                     1e3 * seconds(survey.longest))},
+                   fmt::format("the frame time is their mean, {:.4g} ms", 1e3 * step), ""});
+  }
+  return out;
+}
+
+/// All slabs of a take: `use(stamps, rows of the group)`.
+template <class Use>
+Result<void> for_each_slab(TakeReader& reader, std::size_t group, Use&& use) {
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) KA_TRY(use(slab.stamps, std::get<ClipRows>(slab.rows[group])));
+  return {};
+}
+
+Result<void> check_size(const std::string& path, const ClipRows& rows) {
+  constexpr double largest = 1e12;  // m: in centimetres still a number that a BVH may hold
+  const auto small = [](double x) { return std::abs(x) < largest; };
+  const auto& values = rows.local_positions;
+  if (std::all_of(values.begin(), values.end(), small)) return {};
+  return Failure(Error{path, 0, "positions below 1e12 m", "larger ones"});
+}
+
+struct FirstPass {
+  FirstPass(Chosen stream, const Skeleton& skeleton)
+      : chosen(std::move(stream)),
+        channels(skeleton),
+        holder(skeleton.joints()),
+        row(3 * skeleton.joints()) {}
+
+  Chosen chosen;
+  BvhChannels channels;
+  PoseHolder holder;
+  ClipSurvey survey;
+  std::size_t row;  // values of a row's positions
+
+  void add(const std::vector<Time>& stamps, const ClipRows& rows) {
+    survey.add(stamps, rows);
+    for (std::size_t i = 0; i < stamps.size(); ++i) {
+      if (!PoseHolder::is_valid(rows, i)) continue;
+      holder.begin_with(rows, i);
+      channels.see(std::span(rows.local_positions).subspan(i * row, row));
+    }
+  }
+};
+
+Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  const Chosen chosen = KA_TRY(choose(reader.header(), path));
+  FirstPass pass(chosen, std::get<ClipGroup>(reader.header().groups[chosen.group].kind).skeleton);
+  KA_TRY(for_each_slab(reader, chosen.group, [&](const auto& stamps, const ClipRows& rows) {
+    pass.add(stamps, rows);
+    return check_size(path, rows);
+  }));
+  if (pass.survey.rows == 0 || pass.survey.invalid < pass.survey.rows) return pass;
+  return Failure(Error{path, 0, "a valid row of " + chosen.name, "none"});
+}
+
+}  // namespace
+
+Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const TextSink& sink) {
+  const auto version = version_of(from);
+  FirstPass pass = KA_TRY(look_through(files, from));
+  const ClipSurvey& survey = pass.survey;
+  BvhWriter writer(pass.channels.hierarchy(survey.rows, survey.step_s()), survey.rows, 6, sink);
+  TakeReader reader = KA_TRY(TakeReader::open(files, from));
+  KA_TRY(unchanged(from, version));
+  std::vector<double> values;
+  KA_TRY(for_each_slab(reader, pass.chosen.group, [&](const auto& stamps, ClipRows& rows) {
+    pass.holder.hold(rows, stamps.size());
+    values.clear();
+    pass.channels.append(rows.local_positions, rows.local_rotations, values);
+    return writer.append(values);
+  }));
+  KA_TRY(writer.finish());
+  return lost(from, pass.chosen, survey);
+}
+
+}  // namespace kinalign

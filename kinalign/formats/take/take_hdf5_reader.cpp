@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every data set must lie whole inside the file before any memory is taken for it.
+#include "kinalign/documents/parameters_json.h"
+#include "kinalign/formats/take/hdf5_checks.h"
+#include "kinalign/formats/take/hdf5_file.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/formats/take/take_layout.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+using hdf5::Bytes;
+using hdf5::Handle;
+using hdf5::Source;
+
+/// A column that has been found as the header says it must be.
+struct Found {
+  std::string name;
+  Source source;
+};
+
+Failure bad_value(const std::string& path, const std::string& expected, const std::string& where) {
+  return Failure(Error{path, 0, expected, "another one in " + where});
+}
+
+bool finite(std::span<const double> values) {
+  double sum = 0.0;  // NaN and infinity stay NaN through 0 * x
+  for (const double value : values) sum += 0.0 * value;
+  return sum == 0.0;
+}
+
+Result<std::vector<EndSite>> read_end_sites(const hdf5::Checked& file, hid_t group,
+                                            std::uint64_t joints) {
+  const Handle sites(H5Gopen2(group, "end_sites", H5P_DEFAULT), H5Gclose);
+  if (!sites.good()) return hdf5::failure(file.bytes(), "a group end_sites");
+  const std::uint64_t count = KA_TRY(file.rows(sites.id(), "parents"));
+  const auto parents = KA_TRY(file.all<int>(sites.id(), "parents", {count}));
+  const auto tips = KA_TRY(file.all<double>(sites.id(), "offsets", {count, 3}));
+  if (!finite(tips)) return bad_value(file.bytes().path(), "finite numbers", "end_sites");
+  std::vector<EndSite> out;
+  for (std::size_t e = 0; e < count; ++e) {
+    if (parents[e] < 0 || static_cast<std::uint64_t>(parents[e]) >= joints) {
+      return bad_value(file.bytes().path(), "an end site's joint", "end_sites");
+    }
+    out.push_back({parents[e], vec3(tips, e)});
+  }
+  return out;
+}
+
+Result<Skeleton> read_skeleton(const hdf5::Checked& file, hid_t group) {
+  Skeleton out;
+  out.joint_names = KA_TRY(file.texts(group, "joint_names"));
+  const std::uint64_t joints = out.joint_names.size();
+  out.parents = KA_TRY(file.all<int>(group, "parents", {joints}));
+  const auto offsets = KA_TRY(file.all<double>(group, "rest_offsets", {joints, 3}));
+  if (!finite(offsets)) return bad_value(file.bytes().path(), "finite numbers", "rest_offsets");
+  for (std::size_t j = 0; j < joints; ++j) out.rest_offsets.emplace_back(vec3(offsets, j));
+  out.end_sites = KA_TRY(read_end_sites(file, group, joints));
+  KA_TRY(validate(out));
+  return out;
+}
+
+Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
+  ImuGroup out;
+  out.node_names = KA_TRY(file.texts(group, "node_names"));
+  out.root_node = KA_TRY(file.text_attribute(group, "root_node"));
+  const auto gravity = KA_TRY(file.text_attributes(group, "gravity"));
+  out.content.gravity =
+      std::find(gravity.begin(), gravity.end(), gravity_included) != gravity.end();
+  out.content.orientation = hdf5::has(group, "orientation");
+  out.content.acceleration = hdf5::has(group, "acceleration");
+  out.content.angular_velocity = hdf5::has(group, "angular_velocity");
+  return out;
+}
+
+Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string name) {
+  TakeGroup out;
+  out.name = std::move(name);
+  out.resampled = hdf5::has(group, "nearest_raw_ns");
+  out.interval_known = hdf5::has(group, "time_interval_ns");
+  out.files = KA_TRY(file.inputs(group));
+  const std::string kind = KA_TRY(file.text_attribute(group, "kind"));
+  if (kind == "clip") {
+    out.kind = ClipGroup{KA_TRY(read_skeleton(file, group))};
+  } else if (kind == "points") {
+    out.kind = PointGroup{KA_TRY(file.texts(group, "joint_names"))};
+  } else if (kind == "imu") {
+    out.kind = KA_TRY(read_imu(file, group));
+  } else {
+    return Failure(Error{file.bytes().path(), 0, "a kind of stream: clip, points or imu",
+                         "\"" + shown(kind) + "\""});
+  }
+  return out;
+}
+
+}  // namespace
+
+struct TakeReader::State {
+  explicit State(InputFile opened) : input(std::move(opened)) {
+    bytes.input = &input;
+    bytes.size = input.size();
+  }
+
+  InputFile input;
+  Bytes bytes;
+  Handle file;
+  TakeHeader header;
+  std::string software;
+  Source time;
+  std::vector<std::vector<Found>> columns;
+  std::uint64_t rows = 0, slab_rows = 4096;
+  Time last = Time::min();
+
+  Result<void> read_words(const hdf5::Checked& checked);
+  Result<void> read_header();
+  Result<void> find_columns(hid_t group, const TakeGroup& what, std::uint64_t& row_bytes);
+  Result<void> read_stamps(std::uint64_t count, std::vector<Time>& stamps);
+
+  template <class Value>
+  Result<void> read(const Found& column, std::uint64_t count, std::vector<Value>& values) {
+    values.resize(count * column.source.row_values);
+    return hdf5::read_rows(bytes, column.source, rows, count, values.data());
+  }
+
+  Result<void> check(const Found& column, std::span<const double> values) const {
+    return finite(values) ? Result<void>() : bad_value(input.path(), "finite numbers", column.name);
+  }
+  Result<void> check(const Found& column, std::span<const std::int64_t> values) const {
+    const bool good = std::none_of(values.begin(), values.end(), [](auto v) { return v < 0; });
+    return good ? Result<void>() : bad_value(input.path(), "times from 0 on", column.name);
+  }
+  template <class Flag>
+  Result<void> check(const Found& column, std::span<const Flag> values) const {
+    constexpr int most = std::is_same_v<Flag, Tracking> ? 2 : 1;
+    const bool good = std::all_of(values.begin(), values.end(),
+                                  [](Flag v) { return static_cast<int>(v) <= most; });
+    return good ? Result<void>()
+                : bad_value(input.path(), "values up to " + std::to_string(most), column.name);
+  }
+};
+
+/// Attributes and parameters.
+Result<void> TakeReader::State::read_words(const hdf5::Checked& checked) {
+  const hid_t root = file.id();
+  software = KA_TRY(checked.text_attribute(root, "software"));
+  header.subject = KA_TRY(checked.text_attribute(root, "subject"));
+  header.action = KA_TRY(checked.text_attribute(root, "action"));
+  auto parameters = parse_parameters_json(KA_TRY(checked.text(root, "parameters_json")));
+  if (!parameters) {
+    parameters.error().file = input.path();
+    return Failure(std::move(parameters).error());
+  }
+  header.parameters = *std::move(parameters);
+  return {};
+}
+
+Result<void> TakeReader::State::read_header() {
+  const hdf5::Checked checked(bytes);
+  const hid_t root = file.id();
+  const auto format = checked.text_attributes(root, "format");
+  if (!format || format->size() != 1 || !format->front().starts_with("kinalign.take/")) {
+    return Failure(Error{input.path(), 0, "a take that kinalign wrote", "HDF5 of another kind"});
+  }
+  if (format->front() != "kinalign.take/1") {
+    return Failure(
+        Error{input.path(), 0, "format kinalign.take/1", "\"" + shown(format->front()) + "\""});
+  }
+  KA_TRY(read_words(checked));
+  header.frames = KA_TRY(checked.rows(root, "time_ns"));
+  time = KA_TRY(checked.find(root, "time_ns", Stored::int64, {header.frames}));
+  std::uint64_t row_bytes = 8;
+  for (const std::string& name : KA_TRY(checked.text_attributes(root, "streams"))) {
+    const Handle group(H5Gopen2(root, name.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!group.good()) return hdf5::failure(bytes, "a group for each stream");
+    header.groups.push_back(KA_TRY(read_group(checked, group.id(), name)));
+    KA_TRY(find_columns(group.id(), header.groups.back(), row_bytes));
+  }
+  constexpr std::uint64_t slab_bytes = std::uint64_t{16} << 20;
+  slab_rows = std::clamp<std::uint64_t>(slab_bytes / row_bytes, 1, 4096);
+  return validate(header);
+}
+
+Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
+                                             std::uint64_t& row_bytes) {
+  const hdf5::Checked checked(bytes);
+  const Precision precision =
+      header.parameters.align.store_double ? Precision::full : Precision::single;
+  auto& found = columns.emplace_back();
+  for (const TakeColumn& column : columns_of(what, precision)) {
+    std::vector<std::uint64_t> sizes{header.frames};
+    sizes.insert(sizes.end(), column.shape.begin(), column.shape.end());
+    found.push_back(
+        {column.name, KA_TRY(checked.find(group, column.name.c_str(), column.stored, sizes))});
+    row_bytes += column.row_values() * 8;
+  }
+  return {};
+}
+
+Result<void> TakeReader::State::read_stamps(std::uint64_t count, std::vector<Time>& stamps) {
+  stamps.resize(count);
+  KA_TRY(hdf5::read_rows(bytes, time, rows, count, stamps.data()));
+  for (const Time stamp : stamps) {
+    if (stamp <= last) return bad_value(input.path(), "stamps that rise", "time_ns");
+    last = stamp;
+  }
+  return {};
+}
+
+TakeReader::TakeReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
+TakeReader::TakeReader(TakeReader&& other) noexcept = default;
+TakeReader& TakeReader::operator=(TakeReader&& other) noexcept = default;
+TakeReader::~TakeReader() = default;
+
+Result<TakeReader> TakeReader::open(FileSystem& files, std::string path) {
+  auto state = std::make_unique<State>(KA_TRY(InputFile::open(files, std::move(path))));
+  state->file = KA_TRY(hdf5::open(state->bytes));
+  auto read = state->read_header();
+  if (!read && read.error().file.empty()) {
+    Error error = read.error();
+    error.file = state->input.path();
+    return Failure(error);
+  }
+  KA_TRY(std::move(read));
+  return TakeReader(std::move(state));
+}
+
+const TakeHeader& TakeReader::header() const { return state_->header; }
+const std::string& TakeReader::software() const { return state_->software; }
+
+Result<bool> TakeReader::next(TakeSlab& slab) {
+  State& s = *state_;
+  const std::uint64_t count = std::min(s.slab_rows, s.header.frames - s.rows);
+  if (count == 0) return false;
+  slab.first = s.rows;
+  slab.rows.resize(s.columns.size());
+  KA_TRY(s.read_stamps(count, slab.stamps));
+  for (std::size_t g = 0; g < s.columns.size(); ++g) {
+    AnyRows& rows = slab.rows[g];
+    AnyRows kind = rows_for(s.header.groups[g]);
+    if (rows.index() != kind.index()) rows = std::move(kind);
+    auto column = s.columns[g].cbegin();
+    const auto use = [&](std::string_view name, auto& values) -> Result<void> {
+      values.clear();
+      if (column == s.columns[g].cend() || column->name != name) return {};
+      KA_TRY(s.read(*column, count, values));
+      return s.check(*column++, std::span(std::as_const(values)));
+    };
+    KA_TRY(std::visit([&](auto& one) { return for_each_row_array(one, use); }, rows));
+  }
+  s.rows += count;
+  return true;
+}
+
+Result<std::string> TakeReader::report_json() const {
+  return hdf5::Checked(state_->bytes).text(state_->file.id(), "report_json");
+}
+
+Result<Take> read_take(FileSystem& files, const std::string& path) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  Take take;
+  take.header = reader.header();
+  for (const TakeGroup& group : take.header.groups) take.all.rows.push_back(rows_for(group));
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) append_rows(take.all, slab);
+  return take;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+// HDF5 lays out the file and writes its small parts; rows go straight to the places it gave them.
+#include "kinalign/documents/parameters_json.h"
+#include "kinalign/documents/report_json.h"
+#include "kinalign/formats/take/hdf5_checks.h"
+#include "kinalign/formats/take/hdf5_file.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/formats/take/take_layout.h"
+#include "kinalign/take/remembered_path.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace kinalign {
+
+namespace {
+
+using hdf5::Bytes;
+using hdf5::Handle;
+using hdf5::Shape;
+
+constexpr const char* can_hold = "a take that HDF5 can hold";
+
+/// A column whose place in the file is known.
+struct Placed {
+  std::string name;
+  Stored stored = Stored::uint8;
+  std::uint64_t row_bytes = 0;
+  std::uint64_t at = 0;
+};
+
+/// Makes groups and data sets.
+class Layout {
+ public:
+  explicit Layout(Bytes& bytes) : bytes_(bytes) {}
+
+  Result<Placed> column(hid_t parent, std::uint64_t frames, const TakeColumn& column) const {
+    std::vector<hsize_t> sizes{frames};
+    sizes.insert(sizes.end(), column.shape.begin(), column.shape.end());
+    const Handle made =
+        hdf5::create_dataset(parent, column.name, {hdf5::type_of(column.stored), sizes});
+    if (!made.good()) return hdf5::failure(bytes_, can_hold);
+    for (const auto& [name, text] : column.facts) {
+      if (!hdf5::put_text(made.id(), name.c_str(), text)) return hdf5::failure(bytes_, can_hold);
+    }
+    return Placed{column.name, column.stored, column.row_bytes(), H5Dget_offset(made.id())};
+  }
+
+  Result<void> whole(hid_t parent, const char* name, const Shape& shape, const void* data,
+                     const char* units = nullptr) const {
+    const Handle made = hdf5::create_dataset(parent, name, shape);
+    const bool empty = std::find(shape.sizes.begin(), shape.sizes.end(), 0U) != shape.sizes.end();
+    if (!made.good() ||
+        (!empty && H5Dwrite(made.id(), shape.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) ||
+        (units != nullptr && !hdf5::put_text(made.id(), "units", units))) {
+      return hdf5::failure(bytes_, can_hold);
+    }
+    return check();
+  }
+
+  Result<void> text(hid_t parent, const char* name, const std::string& text) const {
+    const Handle type = hdf5::text_type(text.size());
+    return whole(parent, name, {type.id(), {}}, text.c_str());
+  }
+
+  Result<void> texts(hid_t parent, const char* name, const std::vector<std::string>& texts) const {
+    const hdf5::PackedTexts packed = hdf5::pack(texts);
+    const Handle type = hdf5::text_type(packed.width);
+    return whole(parent, name, {type.id(), {texts.size()}}, packed.bytes.data());
+  }
+
+  Result<void> skeleton(hid_t group, const Skeleton& skeleton) const {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(int) == 4);
+    const std::size_t joints = skeleton.joints();
+    KA_TRY(texts(group, "joint_names", skeleton.joint_names));
+    KA_TRY(whole(group, "parents", {H5T_STD_I32LE, {joints}}, skeleton.parents.data()));
+    KA_TRY(whole(group, "rest_offsets", {H5T_IEEE_F64LE, {joints, 3}}, skeleton.rest_offsets.data(),
+                 "m"));
+    const EndSiteArrays sites = end_site_arrays(skeleton);
+    const std::size_t count = sites.parents.size();
+    const Handle made = hdf5::create_group(group, "end_sites");
+    if (!made.good()) return hdf5::failure(bytes_, can_hold);
+    KA_TRY(whole(made.id(), "parents", {H5T_STD_I32LE, {count}}, sites.parents.data()));
+    return whole(made.id(), "offsets", {H5T_IEEE_F64LE, {count, 3}}, sites.offsets.data(), "m");
+  }
+
+  /// A failed write, which HDF5 was not told of.
+  Result<void> check() const {
+    if (bytes_.failure) return Failure(*bytes_.failure);
+    return {};
+  }
+
+ private:
+  Bytes& bytes_;
+};
+
+bool put_inputs(hid_t group, const std::vector<InputFacts>& files) {
+  std::vector<std::string> names;
+  std::vector<std::string> hashes;
+  std::vector<std::uint64_t> sizes;
+  for (const InputFacts& file : files) {
+    names.push_back(remembered_path(file.name));
+    hashes.push_back(file.sha256);
+    sizes.push_back(file.bytes);
+  }
+  return hdf5::put_texts(group, "input_names", names) &&
+         hdf5::put_texts(group, "input_sha256", hashes) &&
+         (sizes.empty() ||
+          hdf5::put_attribute(group, "input_bytes", {H5T_STD_U64LE, {sizes.size()}}, sizes.data()));
+}
+
+bool put_root_attributes(hid_t root, const TakeHeader& header) {
+  std::vector<std::string> names;
+  for (const TakeGroup& group : header.groups) names.push_back(group.name);
+  const int reversed = 1;
+  return hdf5::put_text(root, "format", "kinalign.take/1") &&
+         hdf5::put_text(root, "software", "kinalign " KINALIGN_VERSION) &&
+         hdf5::put_text(root, "subject", header.subject) &&
+         hdf5::put_text(root, "action", header.action) &&
+         hdf5::put_text(root, "axes", "right-handed, y up") &&
+         hdf5::put_texts(root, "streams", names) &&
+         hdf5::put_attribute(root, "matlab_dims_reversed", {H5T_STD_I32LE, {}}, &reversed);
+}
+
+}  // namespace
+
+struct TakeWriter::State {
+  explicit State(OutputFile opened) : output(std::move(opened)) { bytes.output = &output; }
+
+  OutputFile output;
+  Bytes bytes;
+  Handle file;
+  Placed time, seconds, start;
+  std::vector<std::vector<Placed>> groups;
+  std::uint64_t frames = 0, rows = 0;
+  Time first{};
+  NumberStore numbers;
+  std::vector<double> since_start;
+
+  Result<void> lay_out(const TakeHeader& header);
+  Result<void> lay_out(const TakeGroup& group, Precision precision);
+  Result<void> reserve();
+  Result<void> write_stamps(std::span<const Time> stamps);
+
+  /// Writes an array of rows behind the rows that are there.
+  template <class Value>
+  Result<void> write(const Placed& column, std::span<const Value> values) {
+    std::uint64_t at = column.at + rows * column.row_bytes;
+    const auto put = [&](std::string_view piece) -> Result<void> {
+      KA_TRY(bytes.write(at, piece));
+      at += piece.size();
+      return {};
+    };
+    if constexpr (std::is_same_v<Value, double>) {
+      return numbers.store(values, column.stored, put);
+    } else {
+      return put(bytes_of(values));
+    }
+  }
+};
+
+Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
+  frames = header.frames;
+  const Layout layout(bytes);
+  const hid_t root = file.id();
+  if (!put_root_attributes(root, header)) return hdf5::failure(bytes, can_hold);
+  time = KA_TRY(layout.column(
+      root, frames,
+      {"time_ns", Stored::int64, {}, {{"units", "ns since 1970-01-01T00:00:00 UTC"}}}));
+  seconds = KA_TRY(
+      layout.column(root, frames, {"seconds", Stored::float64, {}, {{"units", "s since t0_ns"}}}));
+  const std::int64_t zero = 0;
+  KA_TRY(
+      layout.whole(root, "t0_ns", {H5T_STD_I64LE, {}}, &zero, "ns since 1970-01-01T00:00:00 UTC"));
+  const Handle t0(H5Dopen2(root, "t0_ns", H5P_DEFAULT), H5Dclose);
+  start = {"t0_ns", Stored::int64, 8, H5Dget_offset(t0.id())};
+  const Precision precision =
+      header.parameters.align.store_double ? Precision::full : Precision::single;
+  for (const TakeGroup& group : header.groups) KA_TRY(lay_out(group, precision));
+  KA_TRY(layout.text(root, "parameters_json", parameters_json(without_folders(header.parameters))));
+  KA_TRY(layout.check());
+  return reserve();
+}
+
+Result<void> TakeWriter::State::reserve() {
+  hsize_t size = 0;
+  if (H5Fget_filesize(file.id(), &size) < 0) return hdf5::failure(bytes, can_hold);
+  KA_TRY(output.reserve(size));
+  bytes.size = std::max<std::uint64_t>(bytes.size, size);
+  return {};
+}
+
+Result<void> TakeWriter::State::lay_out(const TakeGroup& group, Precision precision) {
+  const Layout layout(bytes);
+  const Handle made = hdf5::create_group(file.id(), group.name);
+  if (!made.good() || !hdf5::put_text(made.id(), "kind", kind_of(group)) ||
+      !put_inputs(made.id(), group.files)) {
+    return hdf5::failure(bytes, can_hold);
+  }
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
+    KA_TRY(layout.skeleton(made.id(), clip->skeleton));
+  } else if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
+    KA_TRY(layout.texts(made.id(), "joint_names", points->joint_names));
+  } else {
+    const auto& imu = std::get<ImuGroup>(group.kind);
+    KA_TRY(layout.texts(made.id(), "node_names", imu.node_names));
+    if (!hdf5::put_text(made.id(), "root_node", imu.root_node) ||
+        !hdf5::put_texts(made.id(), "gravity", gravity_texts(imu))) {
+      return hdf5::failure(bytes, can_hold);
+    }
+  }
+  std::vector<Placed>& placed = groups.emplace_back();
+  for (const TakeColumn& column : columns_of(group, precision)) {
+    placed.push_back(KA_TRY(layout.column(made.id(), frames, column)));
+  }
+  return layout.check();
+}
+
+Result<void> TakeWriter::State::write_stamps(std::span<const Time> stamps) {
+  if (stamps.empty()) return {};
+  if (rows == 0) {
+    first = stamps.front();
+    KA_TRY(write(start, stamps.first(1)));
+  }
+  since_start.clear();
+  for (const Time stamp : stamps) since_start.push_back(kinalign::seconds(stamp - first));
+  KA_TRY(write(time, stamps));
+  return write(seconds, std::span<const double>(since_start));
+}
+
+TakeWriter::TakeWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+TakeWriter::TakeWriter(TakeWriter&& other) noexcept = default;
+TakeWriter& TakeWriter::operator=(TakeWriter&& other) noexcept = default;
+TakeWriter::~TakeWriter() = default;
+
+Result<TakeWriter> TakeWriter::create(FileSystem& files, std::string path, Overwrite overwrite,
+                                      const TakeHeader& header) {
+  KA_TRY(validate(header));
+  auto state =
+      std::make_unique<State>(KA_TRY(OutputFile::create(files, std::move(path), overwrite)));
+  state->file = KA_TRY(hdf5::create(state->bytes));
+  KA_TRY(state->lay_out(header));
+  return TakeWriter(std::move(state));
+}
+
+Result<void> TakeWriter::append(const TakeSlab& slab) {
+  State& s = *state_;
+  assert(slab.first == s.rows && slab.rows.size() == s.groups.size());
+  assert(s.rows + slab.stamps.size() <= s.frames);
+  const std::uint64_t count = slab.stamps.size();
+  for (std::size_t g = 0; g < s.groups.size(); ++g) {
+    auto column = s.groups[g].cbegin();
+    const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
+      if (column == s.groups[g].cend() || column->name != name) return {};
+      const std::span given(values);
+      assert(given.size() * size_of(column->stored) == count * column->row_bytes);
+      return s.write(*column++, given);
+    };
+    KA_TRY(
+        std::visit([&](const auto& rows) { return for_each_row_array(rows, use); }, slab.rows[g]));
+    assert(column == s.groups[g].cend());
+  }
+  KA_TRY(s.write_stamps(slab.stamps));
+  s.rows += count;
+  return {};
+}
+
+Result<void> TakeWriter::finish(const AlignmentReport& report) {
+  State& s = *state_;
+  assert(s.rows == s.frames);
+  const Layout layout(s.bytes);
+  KA_TRY(layout.text(s.file.id(), "report_json", report_json(report)));
+  if (!s.file.reset()) return hdf5::failure(s.bytes, can_hold);
+  KA_TRY(layout.check());
+  return s.output.commit();
+}
+
+}  // namespace kinalign

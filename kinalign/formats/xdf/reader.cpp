@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/xdf/header.h"
+#include "kinalign/formats/xdf/samples.h"
+#include "kinalign/wire/little_endian_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::string_view magic = "XDF:";
+constexpr std::array<std::uint8_t, 16> boundary{0x43, 0xa5, 0x46, 0xdc, 0xcb, 0xf5, 0x41, 0x0f,
+                                                0xb3, 0x0e, 0xd5, 0x46, 0x73, 0x83, 0xcb, 0xe4};
+constexpr std::size_t tag_size = 2, id_size = 4;
+constexpr double largest = 1e15;  // s; nothing can be computed with more
+
+bool is_gzip(std::span<const std::uint8_t> bytes) {
+  return bytes.size() >= 2 && bytes[0] == 0x1f && bytes[1] == 0x8b;
+}
+
+}  // namespace
+
+bool looks_like_xdf(std::string_view head) { return head.starts_with(magic); }
+
+Result<void> XdfReader::feed(std::string_view piece, std::vector<XdfItem>& out) {
+  held_.insert(held_.end(), piece.begin(), piece.end());
+  if (KA_TRY(begun())) {
+    while (step(out)) {
+    }
+  }
+  held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(at_));
+  at_ = 0;
+  return {};
+}
+
+Result<bool> XdfReader::begun() {
+  if (begun_) return true;
+  if (is_gzip(held_)) {
+    return Failure(Error{name_, 0, "an XDF file, unpacked (gzip -d)", "one packed by gzip"});
+  }
+  const std::string_view head = text_of(held_).substr(0, magic.size());
+  if (head != magic.substr(0, head.size())) {
+    return Failure(Error{name_, 0, "XDF: at the beginning", "'" + shown(head) + "'"});
+  }
+  if (held_.size() < magic.size()) return false;
+  begun_ = true;
+  take(magic.size());
+  return true;
+}
+
+Result<void> XdfReader::finish(std::vector<XdfItem>& out) {
+  if (!begun_) {
+    return Failure(Error{name_, 0, "XDF: at the beginning", "the end of the file"});
+  }
+  while (step(out)) {
+  }
+  const std::size_t left = ahead().size();
+  if (left == 0) return {};
+  Chunk chunk;
+  const bool whole_head = !lost_ && find_chunk(chunk) == Found::chunk;
+  fault(whole_head ? fmt::format("a last chunk of {} bytes", chunk.size)
+                   : std::string("a whole chunk at the end of the file"),
+        fmt::format("{} bytes", whole_head ? held_.size() - chunk.content : left));
+  take(left);
+  return {};
+}
+
+void XdfReader::take(std::size_t bytes) {
+  at_ += bytes;
+  offset_ += bytes;
+  searched_ = 0;
+}
+
+// False: more bytes are needed.
+bool XdfReader::step(std::vector<XdfItem>& out) {
+  if (lost_) return resynchronise();
+  if (ahead().empty()) return false;
+  Chunk found;
+  const Found what = find_chunk(found);
+  if (what == Found::more) return false;
+  if (what == Found::damage) {
+    fault("the length of a chunk", "bytes that are none");
+    lost_ = true;
+    return true;
+  }
+  const std::size_t head = found.content - at_;
+  const std::size_t there = ahead().size() - head;
+  const bool whole = found.size <= there;
+  const std::size_t end = head + (whole ? static_cast<std::size_t>(found.size) : there);
+  const auto inside = boundary_before(end);
+  const bool is_boundary = inside == head + tag_size && found.size == tag_size + boundary.size() &&
+                           little_at<std::uint16_t>(held_, found.content) == 5;
+  if (inside && !is_boundary) {
+    fault("a chunk that ends before the next boundary", fmt::format("one of {} bytes", found.size));
+    lost_ = true;
+    return true;
+  }
+  if (!whole) return false;
+  chunk(ahead().subspan(head, static_cast<std::size_t>(found.size)), out);
+  take(end);
+  return true;
+}
+
+XdfReader::Found XdfReader::find_chunk(Chunk& chunk) const {
+  const auto bytes = ahead();
+  const std::size_t width = bytes[0];
+  if (width != 1 && width != 4 && width != 8) return Found::damage;
+  if (bytes.size() < 1 + width) return Found::more;
+  chunk.content = at_ + 1 + width;
+  if (width == 1) chunk.size = bytes[1];
+  if (width == 4) chunk.size = little_at<std::uint32_t>(bytes, 1);
+  if (width == 8) chunk.size = little_at<std::uint64_t>(bytes, 1);
+  return chunk.size < tag_size ? Found::damage : Found::chunk;
+}
+
+// Where the sixteen bytes of a boundary begin that end within the next `end` bytes.
+std::optional<std::size_t> XdfReader::boundary_before(std::size_t end) {
+  const auto bytes = ahead().first(end);
+  const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(std::min(searched_, end));
+  const auto found = std::search(from, bytes.end(), boundary.begin(), boundary.end());
+  if (found != bytes.end()) return static_cast<std::size_t>(found - bytes.begin());
+  if (end >= boundary.size()) searched_ = std::max(searched_, end - boundary.size() + 1);
+  return std::nullopt;
+}
+
+// Skips to behind the next boundary; what can't begin one is not kept.
+bool XdfReader::resynchronise() {
+  const auto found = boundary_before(ahead().size());
+  if (!found) {
+    take(searched_);
+    return false;
+  }
+  take(*found + boundary.size());
+  lost_ = false;
+  return true;
+}
+
+void XdfReader::chunk(std::span<const std::uint8_t> bytes, std::vector<XdfItem>& out) {
+  const auto tag = little_at<std::uint16_t>(bytes, 0);
+  const auto content = bytes.subspan(tag_size);
+  if (tag == 1 && text_of(content).find("<version>1.0</version>") == std::string_view::npos) {
+    fault("a file header that says version 1.0", "another one");
+  }
+  if (tag >= 2 && tag <= 4 && content.size() < id_size) {
+    fault("the id of a stream", "a chunk without one");
+    return;
+  }
+  if (tag == 2) stream_header(content, out);
+  if (tag == 3) samples(content, out);
+  if (tag == 4) clock_offset(content, out);
+  if (tag == 0 || tag > 6) fault("chunks of kinds 1 to 6", fmt::format("one of kind {}", tag));
+}
+
+void XdfReader::stream_header(std::span<const std::uint8_t> content, std::vector<XdfItem>& out) {
+  const auto id = little_at<std::uint32_t>(content, 0);
+  if (streams_.contains(id)) {
+    fault("one header for each stream", fmt::format("a second one for stream {}", id));
+    return;
+  }
+  std::vector<Error> notes;
+  auto header = parse_xdf_header(id, text_of(content.subspan(id_size)), notes);
+  for (const Error& note : notes) {
+    fault(fmt::format("{} in the header of stream {}", note.expected, id), note.found);
+  }
+  if (!header) {
+    fault(fmt::format("{} in the header of stream {}", header.error().expected, id),
+          header.error().found + ": its samples can't be read");
+    streams_[id] = std::nullopt;
+    return;
+  }
+  streams_[id] = Stream{*header};
+  out.emplace_back(*std::move(header));
+}
+
+void XdfReader::samples(std::span<const std::uint8_t> content, std::vector<XdfItem>& out) {
+  const auto id = little_at<std::uint32_t>(content, 0);
+  const auto known = streams_.find(id);
+  if (known == streams_.end()) {
+    fault("samples of streams with a header", fmt::format("some of stream {}", id));
+    return;
+  }
+  if (!known->second) return;  // its header was found fault with
+  std::optional<Error> wrong;
+  XdfSamples read = parse_xdf_samples(known->second->header, content.subspan(id_size),
+                                      known->second->last_stamp, wrong);
+  if (wrong) fault(wrong->expected, fmt::format("{} (stream {})", wrong->found, id));
+  if (read.size() > 0) out.emplace_back(std::move(read));
+}
+
+void XdfReader::clock_offset(std::span<const std::uint8_t> content, std::vector<XdfItem>& out) {
+  if (content.size() != id_size + 16) {
+    fault("a clock offset of 20 bytes", std::to_string(content.size()));
+    return;
+  }
+  const auto number = [&](std::size_t at) {
+    return std::bit_cast<double>(little_at<std::uint64_t>(content, at));
+  };
+  const XdfClockOffset offset{little_at<std::uint32_t>(content, 0), number(4), number(12)};
+  if (!(std::abs(offset.time) < largest) || !(std::abs(offset.offset) < largest)) {
+    fault("clock offsets that are numbers below 1e15", "others");
+    return;
+  }
+  out.emplace_back(offset);
+}
+
+void XdfReader::fault(const std::string& expected, const std::string& found) {
+  constexpr std::size_t most_kinds = 100;
+  for (Fault& known : faults_) {
+    const bool same = known.expected == expected;
+    if (same || (&known == &faults_.back() && faults_.size() == most_kinds)) {
+      ++known.times;
+      return;
+    }
+  }
+  faults_.push_back({1, offset_, expected, found});
+}
+
+Findings XdfReader::findings() const {
+  Findings findings;
+  for (const Fault& f : faults_) {
+    const std::string times = f.times > 1 ? fmt::format(", {} times", f.times) : "";
+    findings.push_back({Severity::warning,
+                        Error{name_, 0, f.expected,
+                              fmt::format("{} at byte {}{}", f.found, f.first_offset, times)},
+                        "what could be read was", ""});
+  }
+  return findings;
+}
+
+}  // namespace kinalign

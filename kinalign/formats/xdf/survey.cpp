@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/xdf/survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace kinalign {
+
+namespace {
+
+/// What a pass over the items has found.
+class Surveyor {
+ public:
+  void take(const XdfItem& item) {
+    if (const auto* stream = std::get_if<XdfStream>(&item)) {
+      places_[stream->id] = survey_.streams.size();
+      survey_.streams.emplace_back().stream = *stream;
+      last_.emplace_back();
+    } else if (const auto* samples = std::get_if<XdfSamples>(&item)) {
+      add(*samples);
+    } else {
+      const auto& offset = std::get<XdfClockOffset>(item);
+      offsets_[offset.stream].push_back(offset);
+    }
+  }
+
+  XdfSurvey finish() {
+    for (XdfStreamSurvey& one : survey_.streams) {
+      const std::vector<XdfClockOffset>& offsets = offsets_[one.stream.id];
+      one.clock_offsets = offsets.size();
+      one.clock = fit_xdf_clock(offsets);
+    }
+    return std::move(survey_);
+  }
+
+ private:
+  void add(const XdfSamples& samples) {
+    const std::size_t place = places_.at(samples.stream);
+    XdfStreamSurvey& one = survey_.streams[place];
+    one.samples += samples.size();
+    for (std::size_t t = 0; t < samples.size(); ++t) {
+      one.deduced += samples.deduced[t];
+      add_stamp(samples.stamps[t], one, last_[place]);
+    }
+    if (const auto* values = std::get_if<std::vector<double>>(&samples.values)) {
+      one.no_numbers += static_cast<std::uint64_t>(std::count_if(
+          values->begin(), values->end(), [](double v) { return !std::isfinite(v); }));
+    }
+  }
+
+  static void add_stamp(double stamp, XdfStreamSurvey& one, std::optional<double>& last) {
+    constexpr double largest = 1e15;  // s
+    if (!(std::abs(stamp) < largest)) {
+      ++one.timeless;
+      return;
+    }
+    if (last && stamp < *last) {
+      ++one.backward;
+      one.largest_step_back_s = std::max(one.largest_step_back_s, *last - stamp);
+    }
+    last = stamp;
+    one.first = std::min(one.first.value_or(stamp), stamp);
+    one.last = std::max(one.last.value_or(stamp), stamp);
+  }
+
+  XdfSurvey survey_;
+  std::map<std::uint32_t, std::size_t> places_;  // of streams' ids in the survey
+  std::vector<std::optional<double>> last_;      // stamps
+  std::map<std::uint32_t, std::vector<XdfClockOffset>> offsets_;
+};
+
+}  // namespace
+
+Result<bool> is_xdf(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  return looks_like_xdf(KA_TRY(file.next()));
+}
+
+Result<Findings> read_xdf(FileSystem& files, const std::string& path, const Progress& progress,
+                          const std::function<Result<void>(const XdfItem&)>& take) {
+  InputFile input = KA_TRY(InputFile::open(files, path));
+  XdfReader reader(path);
+  std::vector<XdfItem> items;
+  std::uint64_t done = 0;
+  for (bool ended = false; !ended;) {
+    const std::string_view piece = KA_TRY(input.next());
+    ended = piece.empty();
+    items.clear();
+    KA_TRY(ended ? reader.finish(items) : reader.feed(piece, items));
+    for (const XdfItem& item : items) KA_TRY(take(item));
+    done += piece.size();
+    if (!go_on(progress, "reading", done, input.size())) return Failure(interruption(path));
+  }
+  return reader.findings();
+}
+
+double XdfStreamSurvey::rate_hz() const {
+  const std::uint64_t stamped = samples - timeless;
+  if (!first || stamped < 2 || !(*last > *first)) return 0.0;
+  return static_cast<double>(stamped - 1) / (*last - *first);
+}
+
+Result<XdfSurvey> survey_xdf(FileSystem& files, const std::string& path, const Progress& progress) {
+  Surveyor surveyor;
+  const Findings findings =
+      KA_TRY(read_xdf(files, path, progress, [&surveyor](const XdfItem& item) -> Result<void> {
+        surveyor.take(item);
+        return {};
+      }));
+  XdfSurvey survey = surveyor.finish();
+  survey.bytes = KA_TRY(InputFile::open(files, path)).size();
+  survey.findings = findings;
+  return survey;
+}
+
+}  // namespace kinalign
