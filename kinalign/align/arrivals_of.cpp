@@ -2,7 +2,7 @@
 #include "kinalign/align/arrivals_of.h"
 
 #include "kinalign/align/plan.h"
-#include "kinalign/align/window.h"
+#include "kinalign/resample/window.h"
 
 namespace kinalign {
 

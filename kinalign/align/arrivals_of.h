@@ -2,9 +2,9 @@
 // Every sample of a stream, read and thrown away: what `check` tells of it.
 #pragma once
 
-#include "kinalign/align/window.h"
 #include "kinalign/core/progress.h"
 #include "kinalign/motion/arrivals.h"
+#include "kinalign/resample/window.h"
 #include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"
 

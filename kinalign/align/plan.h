@@ -3,7 +3,7 @@
 // the number of rows, how each stream is resampled and where it goes.
 #pragma once
 
-#include "kinalign/align/resample.h"
+#include "kinalign/resample/resample.h"
 #include "kinalign/take/take.h"
 
 #include <cstdint>

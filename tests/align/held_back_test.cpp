@@ -5,7 +5,7 @@
 #include "tests/seeds.h"
 
 #include "kinalign/align/align.h"
-#include "kinalign/align/window.h"
+#include "kinalign/resample/window.h"
 
 #include <doctest/doctest.h>
 

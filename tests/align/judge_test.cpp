@@ -5,7 +5,7 @@
 
 #include "tests/align/findings.h"
 
-#include "kinalign/align/resample.h"
+#include "kinalign/resample/resample.h"
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 #include "tests/align/streams.h"
 
 #include "kinalign/align/align.h"
-#include "kinalign/align/resample.h"
 #include "kinalign/motion/interpolation/rotation_spline.h"
+#include "kinalign/resample/resample.h"
 
 #include <doctest/doctest.h>
 

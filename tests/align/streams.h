@@ -2,7 +2,7 @@
 // Small recordings of closed formulas for the tests of alignment.
 #pragma once
 
-#include "kinalign/align/window.h"
+#include "kinalign/resample/window.h"
 #include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"
 

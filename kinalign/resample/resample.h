@@ -4,10 +4,10 @@
 // zero. Splines end at gaps and do not run through samples that were not seen.
 #pragma once
 
-#include "kinalign/align/coarse_grid.h"
-#include "kinalign/align/window.h"
 #include "kinalign/motion/interpolation/rotation_spline.h"
 #include "kinalign/motion/interpolation/spline.h"
+#include "kinalign/resample/coarse_grid.h"
+#include "kinalign/resample/window.h"
 #include "kinalign/take/take.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/align/arrival_lines.h"
+#include "kinalign/resample/arrival_lines.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/align/taken_step.h"
+#include "kinalign/resample/taken_step.h"
 
 #include <algorithm>
 #include <cmath>

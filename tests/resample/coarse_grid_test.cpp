@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/align/coarse_grid.h"
+#include "kinalign/resample/coarse_grid.h"
 
 #include "tests/align/streams.h"
 

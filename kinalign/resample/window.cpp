@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/align/window.h"
+#include "kinalign/resample/window.h"
 
 #include "kinalign/motion/frame_arrays.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rows of several nodes in one stream: each is judged by its own.
-#include "kinalign/align/arrival_lines.h"
+#include "kinalign/resample/arrival_lines.h"
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 // what lies behind is forgotten.
 #pragma once
 
-#include "kinalign/align/arrival_lines.h"
 #include "kinalign/motion/stamps.h"
+#include "kinalign/resample/arrival_lines.h"
 #include "kinalign/take/recording.h"
 
 #include <algorithm>

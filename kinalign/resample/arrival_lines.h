@@ -3,8 +3,8 @@
 // of their own into it.
 #pragma once
 
-#include "kinalign/align/taken_step.h"
 #include "kinalign/motion/arrivals.h"
+#include "kinalign/resample/taken_step.h"
 
 #include <array>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/align/rotation_rows.h"
+#include "kinalign/resample/rotation_rows.h"
 
 #include "kinalign/motion/interpolation/rotation_spline.h"
 #include "kinalign/motion/interpolation/slerp.h"

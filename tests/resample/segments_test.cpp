@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/align/segments.h"
+#include "kinalign/resample/segments.h"
 
 #include "tests/seeds.h"
 
-#include "kinalign/align/resample.h"
+#include "kinalign/resample/resample.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which step a device is said to have, and whether it is known well enough to tell late samples.
-#include "kinalign/align/taken_step.h"
+#include "kinalign/resample/taken_step.h"
 
 #include "tests/align/streams.h"
 

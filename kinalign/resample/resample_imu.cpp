@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/align/resample.h"
-#include "kinalign/align/rotation_rows.h"
-#include "kinalign/align/segments.h"
 #include "kinalign/motion/interpolation/spline.h"
+#include "kinalign/resample/resample.h"
+#include "kinalign/resample/rotation_rows.h"
+#include "kinalign/resample/segments.h"
 
 #include <algorithm>
 

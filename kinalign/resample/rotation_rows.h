@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinalign/align/resample.h"
+#include "kinalign/resample/resample.h"
 
 #include <span>
 #include <vector>

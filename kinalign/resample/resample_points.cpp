@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/align/resample.h"
-#include "kinalign/align/segments.h"
 #include "kinalign/motion/interpolation/spline.h"
+#include "kinalign/resample/resample.h"
+#include "kinalign/resample/segments.h"
 
 #include <algorithm>
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/align/segments.h"
+#include "kinalign/resample/segments.h"
 
 #include <algorithm>
 
