@@ -8,7 +8,7 @@
 #include "kinalign/capture/host_clock.h"
 #include "kinalign/protocols/kinect/message.h"
 #include "kinalign/simulate/random.h"
-#include "kinalign/simulate/rehearsal.h"
+#include "kinalign/simulate/rehearsal/rehearsal.h"
 
 #include <optional>
 

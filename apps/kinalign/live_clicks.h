@@ -6,7 +6,7 @@
 #include "apps/kinalign/live_socket.h"
 
 #include "kinalign/protocols/marks/mark.h"
-#include "kinalign/simulate/rehearsal.h"
+#include "kinalign/simulate/rehearsal/rehearsal.h"
 #include "kinalign/wire/time.h"
 
 #include <string>

@@ -2,7 +2,7 @@
 // One way of a simulated link: datagrams wait in it until they arrive, or are lost.
 #pragma once
 
-#include "kinalign/simulate/packet_fates.h"
+#include "kinalign/simulate/nodes/packet_fates.h"
 #include "kinalign/wire/time.h"
 
 #include <cstdint>

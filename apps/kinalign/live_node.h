@@ -11,7 +11,7 @@
 #include "firmware/node/node.h"
 
 #include "kinalign/capture/host_clock.h"
-#include "kinalign/simulate/inertial_nodes.h"
+#include "kinalign/simulate/nodes/inertial_nodes.h"
 
 #include <variant>
 

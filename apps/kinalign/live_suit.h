@@ -6,7 +6,7 @@
 
 #include "kinalign/formats/bvh/write.h"
 #include "kinalign/simulate/random.h"
-#include "kinalign/simulate/rehearsal.h"
+#include "kinalign/simulate/rehearsal/rehearsal.h"
 
 namespace kinalign {
 

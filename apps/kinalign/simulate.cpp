@@ -7,7 +7,7 @@
 
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/interpolation/clip_motion.h"
-#include "kinalign/simulate/built_in_motion.h"
+#include "kinalign/simulate/person/built_in_motion.h"
 
 #include <fcntl.h>
 

@@ -5,7 +5,7 @@
 #include "apps/kinalign/live_rehearsal.h"
 
 #include "kinalign/core/files.h"
-#include "kinalign/simulate/rehearsal.h"
+#include "kinalign/simulate/rehearsal/rehearsal.h"
 #include "kinalign/take/manifest.h"
 
 #include <string>

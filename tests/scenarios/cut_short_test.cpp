@@ -5,7 +5,7 @@
 #include "tests/seeds.h"
 #include "tools/clock_table/judge.h"
 
-#include "kinalign/simulate/node_clock.h"
+#include "kinalign/simulate/nodes/node_clock.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "kinalign/simulate/exchanges.h"
+#include "kinalign/simulate/nodes/exchanges.h"
 
 namespace kinalign {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/clock/offline/offline_clock.h"
-#include "kinalign/simulate/exchanges.h"
+#include "kinalign/simulate/nodes/exchanges.h"
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 // Every method on one link, on the same traces: what the tables print and the bars judge.
 #pragma once
 
-#include "kinalign/simulate/link.h"
+#include "kinalign/simulate/nodes/link.h"
 
 #include <array>
 #include <cstddef>

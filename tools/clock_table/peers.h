@@ -5,7 +5,7 @@
 // frames without a stamp are left out.
 #pragma once
 
-#include "kinalign/simulate/exchanges.h"
+#include "kinalign/simulate/nodes/exchanges.h"
 
 #include <string_view>
 #include <vector>

@@ -3,8 +3,8 @@
 // promises»), by the numbers of their sections. A promise is of many seeds.
 #pragma once
 
-#include "kinalign/simulate/link.h"
-#include "kinalign/simulate/node_clock.h"
+#include "kinalign/simulate/nodes/link.h"
+#include "kinalign/simulate/nodes/node_clock.h"
 
 #include <array>
 #include <cstddef>

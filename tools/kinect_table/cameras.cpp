@@ -3,8 +3,8 @@
 
 #include "kinalign/core/parallel.h"
 #include "kinalign/motion/kinect_map.h"
-#include "kinalign/simulate/built_in_motion.h"
-#include "kinalign/simulate/kinect_camera.h"
+#include "kinalign/simulate/kinect/kinect_camera.h"
+#include "kinalign/simulate/person/built_in_motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "tools/kinect_table/repetitions.h"
 
-#include "kinalign/simulate/kinect_camera.h"
+#include "kinalign/simulate/kinect/kinect_camera.h"
 
 namespace kinalign {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/simulate/kinect_body.h"
+#include "kinalign/simulate/kinect/kinect_body.h"
 
 #include <array>
 #include <cstdint>

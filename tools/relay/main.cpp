@@ -4,7 +4,7 @@
 // LINK is A to G. Prints its port, then a line for each sender: the port under which the host knows
 // it, and the least delays that it gets up and down, s.
 // Ends with its standard input. A late wake-up makes delays longer, never shorter.
-#include "kinalign/simulate/packet_fates.h"
+#include "kinalign/simulate/nodes/packet_fates.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

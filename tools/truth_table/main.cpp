@@ -13,7 +13,7 @@
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/survey_parts.h"
 #include "kinalign/motion/interpolation/clip_motion.h"
-#include "kinalign/simulate/judge_recording.h"
+#include "kinalign/simulate/rehearsal/judge_recording.h"
 
 #include <fmt/format.h>
 

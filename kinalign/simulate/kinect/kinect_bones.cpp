@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/simulate/kinect/kinect_coloured.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+// Of the deviation from a bone's mean length, what the tracker lets through: chosen so that the sd
+// of bones on UI-PRMD is the measured one.
+constexpr double let_through = 0.53;
+
+struct Bone {
+  KinectJoint from, to;
+};
+
+// From the trunk outwards.
+constexpr std::array<Bone, 17> limb_bones = [] {
+  return std::array<Bone, 17>{{{shoulder_left, elbow_left},
+                               {elbow_left, wrist_left},
+                               {wrist_left, hand_left},
+                               {hand_left, hand_tip_left},
+                               {hand_left, thumb_left},
+                               {shoulder_right, elbow_right},
+                               {elbow_right, wrist_right},
+                               {wrist_right, hand_right},
+                               {hand_right, hand_tip_right},
+                               {hand_right, thumb_right},
+                               {hip_left, knee_left},
+                               {knee_left, ankle_left},
+                               {ankle_left, foot_left},
+                               {hip_right, knee_right},
+                               {knee_right, ankle_right},
+                               {ankle_right, foot_right},
+                               {hip_left, hip_right}}};
+}();
+constexpr std::size_t hips = 16;  // place of the hips' width in the list
+
+using Lengths = std::array<double, limb_bones.size()>;
+
+Lengths lengths(std::span<const double> joints, std::size_t t) {
+  Lengths found{};
+  for (std::size_t b = 0; b < limb_bones.size(); ++b) {
+    const auto [from, to] = limb_bones[b];
+    found[b] =
+        (vec3(joints, t * kinect_joint_count + to) - vec3(joints, t * kinect_joint_count + from))
+            .norm();
+  }
+  return found;
+}
+
+/// How much too long bones are, mean over the take.
+Lengths mean_excess(const KinectScene& scene, std::span<const double> joints) {
+  Lengths means{};
+  for (std::size_t t = 0; t < scene.frames(); ++t) {
+    const Lengths now = lengths(joints, t), truth = lengths(scene.truth, t);
+    for (std::size_t b = 0; b < means.size(); ++b) {
+      means[b] += (now[b] - truth[b]) / static_cast<double>(scene.frames());
+    }
+  }
+  return means;
+}
+
+Lengths held_lengths(const Lengths& now, const Lengths& truth, const Lengths& excess) {
+  Lengths held{};
+  for (std::size_t b = 0; b < held.size(); ++b) {
+    const double mean = truth[b] + excess[b];
+    held[b] = std::max(0.0, mean + let_through * (now[b] - mean));
+  }
+  return held;
+}
+
+/// One frame [25,3].
+void hold_frame(const Lengths& held, std::span<double> joints) {
+  std::array<Vec3, kinect_joint_count> before;
+  for (std::size_t j = 0; j < kinect_joint_count; ++j) before[j] = vec3(joints, j);
+  const Vec3 across = before[hip_left] - before[hip_right];
+  if (const double width = across.norm(); width > 1e-6) {
+    const Vec3 half = across * (held[hips] / width / 2.0);
+    const Vec3 middle = 0.5 * (before[hip_left] + before[hip_right]);
+    vec3(joints, hip_left) = middle + half;
+    vec3(joints, hip_right) = middle - half;
+  }
+  for (std::size_t b = 0; b < hips; ++b) {
+    const auto [from, to] = limb_bones[b];
+    const Vec3 bone = before[to] - before[from];
+    const double length = bone.norm();
+    const double scale = length > 1e-6 ? held[b] / length : 1.0;
+    vec3(joints, to) = vec3(joints, from) + scale * bone;
+  }
+}
+
+}  // namespace
+
+void hold_bones(const KinectScene& scene, std::span<double> joints) {
+  const Lengths excess = mean_excess(scene, joints);
+  for (std::size_t t = 0; t < scene.frames(); ++t) {
+    const Lengths held = held_lengths(lengths(joints, t), lengths(scene.truth, t), excess);
+    hold_frame(held, joints.subspan(3 * kinect_joint_count * t, 3 * kinect_joint_count));
+  }
+}
+
+}  // namespace kinalign

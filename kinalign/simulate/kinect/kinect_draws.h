@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The streams of a simulated Kinect's random numbers: one for each thing that is drawn, and for
+// each of those that it belongs to.
+#pragma once
+
+#include "kinalign/simulate/kinect/kinect_camera.h"
+#include "kinalign/simulate/random.h"
+
+namespace kinalign {
+
+enum class KinectDraw : std::uint8_t {
+  stamps,
+  person_bias,
+  take_bias,
+  camera_bias,
+  yaw_bias,
+  body_noise,
+  camera_noise,
+  white,
+  twitches,
+  occlusion,
+  exchange,
+  pose_noise,
+  take_size
+};
+
+/// Of a person: the same in all takes and for all cameras.
+inline RandomStream kinect_person_stream(KinectDraw draw, const KinectIds& ids) {
+  return {ids.seed, mix64(mix64(0x4B32 + static_cast<std::uint64_t>(draw)) ^ ids.person)};
+}
+/// Of a take of that person: the same for all cameras.
+inline RandomStream kinect_take_stream(KinectDraw draw, const KinectIds& ids) {
+  const std::uint64_t person =
+      mix64(mix64(0x4B33 + 16 * static_cast<std::uint64_t>(draw)) ^ ids.person);
+  return {ids.seed, mix64(person ^ ids.take)};
+}
+/// Of a take as one camera sees it.
+inline RandomStream kinect_stream(KinectDraw draw, const KinectIds& ids) {
+  const std::uint64_t person =
+      mix64(mix64(0x4B34 + 256 * static_cast<std::uint64_t>(draw)) ^ ids.person);
+  return {ids.seed, mix64(mix64(person ^ ids.take) ^ mix64(ids.camera))};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stream 115 of a node's seed: number 0 lane 0 the phase of its timer; by the tick, lane 1 how late
+// it is served. Of the pass: poses every chip step, the last five of which give the true reading in
+// their middle.
+#include "kinalign/simulate/nodes/inertial_nodes.h"
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+namespace kinalign {
+
+namespace {
+
+// From the timer to the reading: estimated, a task of high priority on an idle core.
+constexpr double service_s = 15e-6;
+
+/// The timer's ticks on the node's counter, and when they are served.
+class NodeTimer {
+ public:
+  NodeTimer(const InertialNodeOptions& options, std::uint64_t seed, double length_s)
+      : clock_(seed, length_s, options.clock),
+        random_(seed, 115),
+        period_us_(1'000'000 / options.rate_hz) {  // whole microseconds, as the firmware's timer
+    const double phase = static_cast<double>(period_us_) * random_.uniform(0, 0);
+    next_us_ = static_cast<std::uint64_t>(clock_.reading(0.0) * 1e6 + phase) + 1;
+    plan();
+  }
+
+  double served_s() const { return served_s_; }
+  std::uint64_t counter_us() const {
+    return static_cast<std::uint64_t>(clock_.reading(served_s_) * 1e6);
+  }
+  double true_s(std::uint64_t counter_us) const {
+    return clock_.host(static_cast<double>(counter_us) * 1e-6);
+  }
+  void advance() {
+    next_us_ += period_us_;
+    ++tick_;
+    plan();
+  }
+
+ private:
+  void plan() { served_s_ = true_s(next_us_) + random_.exponential(tick_, 1, service_s); }
+
+  SimulatedClock clock_;
+  RandomStream random_;
+  std::uint64_t period_us_, next_us_ = 0, tick_ = 0;
+  double served_s_ = 0.0;
+};
+
+/// Mean rate of a sensor that lies still.
+Vec3 mean_rate_at_rest(SimulatedSensor& sensor, const Vec3& gravity, double rest_s) {
+  const auto steps = static_cast<std::size_t>(rest_s * chip_rate_hz);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < steps; ++i) {
+    sum += sensor.reading_of(sensor.step({Vec3::Zero(), gravity})).angular_velocity;
+  }
+  return steps == 0 ? sum : Vec3(sum / static_cast<double>(steps));
+}
+
+MahonyOptions calibrated(const InertialNodeOptions& options, SimulatedSensor& sensor) {
+  MahonyOptions filter = options.filter;
+  if (!(options.rest_s > 0.0)) return filter;
+  filter.gyroscope_bias = mean_rate_at_rest(sensor, Vec3(0, 0, standard_gravity), options.rest_s);
+  sensor.wait(options.worn_s);
+  return filter;
+}
+
+class NodeAtWork {
+ public:
+  NodeAtWork(const Mounting& mounting, const InertialNodeOptions& options, std::uint64_t seed,
+             double length_s)
+      : options_(options),
+        sensor_(options.sensor, seed),
+        filter_(calibrated(options, sensor_)),
+        timer_(options, seed, length_s) {
+    node_.mounting = mounting;
+    node_.seed = seed;
+  }
+
+  /// A chip step that ends at `t`, in the middle of the five last poses.
+  void chip_step(const std::array<const GlobalPose*, 5>& poses) {
+    std::array<SensorPlace, 5> places;
+    for (std::size_t k = 0; k < 5; ++k) places[k] = place_of(node_.mounting, *poses[k]);
+    registers_ = sensor_.step(true_reading(places, chip_step_s));
+    if (options_.orientation) filter_.update(chip_step_s, sensor_.reading_of(registers_));
+  }
+
+  /// Ticks that are served before `t`: until then the registers hold what they hold.
+  void serve(double t, const Motion& motion) {
+    for (; timer_.served_s() < t; timer_.advance()) {
+      SimulatedNodeSample taken{timer_.counter_us(), sensor_.sample_of(registers_)};
+      if (options_.orientation) {
+        const Quat& q = filter_.orientation();
+        taken.sample.has_orientation = true;
+        taken.sample.orientation = {static_cast<float>(q.w()), static_cast<float>(q.x()),
+                                    static_cast<float>(q.y()), static_cast<float>(q.z())};
+      }
+      const double true_s = timer_.true_s(taken.counter_us);
+      motion.pose_at(true_s, pose_);
+      forward_kinematics(motion.skeleton, pose_, global_);
+      node_.samples.push_back(taken);
+      node_.truth.times.push_back(true_s);
+      node_.truth.places.push_back(place_of(node_.mounting, global_));
+    }
+  }
+  void skip(double t) {
+    while (timer_.served_s() < t) timer_.advance();
+  }
+
+  SimulatedNode take() {
+    node_.errors = sensor_.errors();
+    return std::move(node_);
+  }
+
+ private:
+  const InertialNodeOptions& options_;
+  SimulatedSensor sensor_;
+  MahonyFilter filter_;
+  NodeTimer timer_;
+  SimulatedNode node_;
+  RawReading registers_;
+  Pose pose_;
+  GlobalPose global_;
+};
+
+Result<void> check(const Motion& motion, const std::vector<Mounting>& mountings,
+                   const InertialNodeOptions& options) {
+  if (options.rate_hz < 1 || options.rate_hz > 1000) {
+    return Failure(Error{"", 0, "a rate of 1 to 1000 Hz", std::to_string(options.rate_hz) + " Hz"});
+  }
+  for (const Mounting& mounting : mountings) {
+    if (mounting.joint < motion.skeleton.joints()) continue;
+    return Failure(Error{"", 0, "a joint of the skeleton for node " + mounting.node_name,
+                         "joint " + std::to_string(mounting.joint)});
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<SimulatedNode>> simulate_nodes(const Motion& motion,
+                                                  const std::vector<Mounting>& mountings,
+                                                  const InertialNodeOptions& options,
+                                                  std::uint64_t seed) {
+  KA_TRY(check(motion, mountings, options));
+  std::vector<std::unique_ptr<NodeAtWork>> nodes;
+  for (std::size_t n = 0; n < mountings.size(); ++n) {
+    nodes.push_back(
+        std::make_unique<NodeAtWork>(mountings[n], options, mix64(seed) + n, motion.length_s));
+    nodes.back()->skip(2.0 * chip_step_s);  // before the first reading there is none to take
+  }
+  std::array<GlobalPose, 5> poses;  // pose i of the motion in place i % 5
+  Pose pose;
+  const auto steps = static_cast<std::size_t>(motion.length_s * chip_rate_hz + 1e-6);
+  for (std::size_t i = 0; i <= steps; ++i) {
+    motion.pose_at(static_cast<double>(i) * chip_step_s, pose);
+    forward_kinematics(motion.skeleton, pose, poses[i % 5]);
+    if (i < 4) continue;
+    std::array<const GlobalPose*, 5> last{};
+    for (std::size_t k = 0; k < 5; ++k) last[k] = &poses[(i + 1 + k) % 5];
+    for (const auto& node : nodes) {
+      node->chip_step(last);
+      node->serve(static_cast<double>(i - 1) * chip_step_s, motion);
+    }
+  }
+  std::vector<SimulatedNode> done;
+  done.reserve(nodes.size());
+  for (const auto& node : nodes) done.push_back(node->take());
+  return done;
+}
+
+ImuStream imu_stream(const SimulatedNode& node, Time start) {
+  ImuStream stream;
+  stream.node_names = {node.mounting.node_name};
+  const bool oriented = !node.samples.empty() && node.samples.front().sample.has_orientation;
+  stream.content = {oriented, true, true, true};
+  ImuSamples& to = stream.samples;
+  for (const auto& [counter_us, sample] : node.samples) {
+    to.stamps.push_back(start + std::chrono::microseconds(counter_us));
+    if (oriented) {
+      to.orientation.insert(to.orientation.end(), sample.orientation.begin(),
+                            sample.orientation.end());
+    }
+    to.acceleration.insert(to.acceleration.end(), sample.acceleration.begin(),
+                           sample.acceleration.end());
+    to.angular_velocity.insert(to.angular_velocity.end(), sample.angular_velocity.begin(),
+                               sample.angular_velocity.end());
+  }
+  to.valid.assign(to.stamps.size(), 1);
+  return stream;
+}
+
+}  // namespace kinalign

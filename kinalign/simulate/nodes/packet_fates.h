@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a simulated link does to the packets of one way, one after the other, where it is not known
+// beforehand when they will be sent: for real sockets.
+#pragma once
+
+#include "kinalign/simulate/nodes/link.h"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace kinalign {
+
+/// Drawn beforehand for packets at a steady rate, which real ones have nearly.
+class PacketFates {
+ public:
+  using Delay = std::chrono::nanoseconds;
+  struct Fate {
+    std::optional<Delay> first, duplicate;  // absent: lost
+  };
+
+  PacketFates(const LinkOptions& options, std::uint64_t seed, Way way, double rate_hz) {
+    constexpr std::size_t packets = 1 << 16;  // then from the front again
+    std::vector<double> sent(packets);
+    for (std::size_t k = 0; k < packets; ++k) sent[k] = static_cast<double>(k) / rate_hz;
+    const auto arrivals = transmit(options, seed, way, sent);
+    for (std::size_t k = 0; k < packets; ++k) {
+      const auto after = [&](const std::optional<double>& at) {
+        return at ? std::optional(Delay{static_cast<std::int64_t>((*at - sent[k]) * 1e9)})
+                  : std::nullopt;
+      };
+      fates_.push_back({after(arrivals[k].first), after(arrivals[k].duplicate)});
+    }
+  }
+  const Fate& next() { return fates_[next_++ % fates_.size()]; }
+
+ private:
+  std::vector<Fate> fates_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace kinalign

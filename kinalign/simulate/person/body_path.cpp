@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// A point that walks from goal to goal with limited speed, acceleration and rate of turning; its
+// places every 0.2 s are the controls of the path. Stream 103 of a seed, by the goal's number in
+// all the motion: lane 0 direction, 1 distance, 2 how far to turn.
+#include "kinalign/simulate/person/body_path.h"
+
+#include "kinalign/simulate/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double control_s = 0.2;
+constexpr double tick_s = 0.05;         // four to a control
+constexpr double most_turn_rate = 1.2;  // rad/s, estimated: a quarter turn in 1.3 s and two steps
+constexpr double most_acceleration = 1.0;  // m/s2
+constexpr double arrival_m = 0.2;
+
+double wrapped(double angle) { return std::remainder(angle, 2.0 * pi); }
+
+class Walker {
+ public:
+  Walker(std::uint64_t seed, double scale) : random_(seed, 103), scale_(scale) {}
+
+  const FloorPlace& place() const { return place_; }
+
+  void begin(const Act& act) {
+    const StepTimes steps = step_times(act);
+    act_ = &act;
+    may_move_from_ = steps.first_s;
+    // The last two steps bring the feet under a body that has come to rest.
+    rest_from_ = steps.count < 4 ? steps.first_s : steps.leaves(steps.count - 2);
+    going_home_ = turning_ = false;
+    goal_number_ = 0;
+    choose();
+  }
+
+  void tick(double t) {
+    const bool moves = t >= may_move_from_ && t < rest_from_ && act_->piece != Piece::step;
+    if (!moves) {
+      approach(0.0);
+    } else if (act_->piece == Piece::turn) {
+      turn(t);
+    } else {
+      walk(t);
+    }
+    place_.x += speed_ * std::sin(place_.yaw) * tick_s;
+    place_.z += speed_ * std::cos(place_.yaw) * tick_s;
+  }
+
+ private:
+  double top_speed() const { return act_->speed * std::sqrt(scale_); }  // as pendulums go
+
+  void choose() {
+    const std::uint64_t n = goals_++;
+    ++goal_number_;
+    if (act_->piece == Piece::walk) {
+      const double end = goal_number_ % 2 == 1 ? 0.9 : -0.9;
+      goal_ = {0.3 * (random_.uniform(n, 1) - 0.5), end, 0.0};
+    } else {
+      const double direction = 2.0 * pi * random_.uniform(n, 0);
+      const double distance = std::sqrt(random_.uniform(n, 1));
+      goal_ = {distance * std::sin(direction), distance * std::cos(direction), 0.0};
+    }
+    const double turns = random_.chance(n, 2, 0.6) ? 0.5 * pi : pi;
+    goal_.yaw = place_.yaw + act_->side * turns;
+    hold_s_ = 0.5;
+  }
+
+  void approach(double speed) {
+    speed_ += std::clamp(speed - speed_, -most_acceleration * tick_s, most_acceleration * tick_s);
+  }
+  /// How far off the wanted yaw it was.
+  double steer(double yaw) {
+    const double off = yaw - place_.yaw;
+    place_.yaw += std::clamp(4.0 * off, -most_turn_rate, most_turn_rate) * tick_s;
+    return std::abs(off);
+  }
+  double home_yaw() const { return 2.0 * pi * std::round(place_.yaw / (2.0 * pi)); }
+
+  void turn(double t) {
+    approach(0.0);
+    const double needed = std::abs(home_yaw() - place_.yaw) / most_turn_rate + 1.0;
+    if (rest_from_ - t < needed) going_home_ = true;
+    if (going_home_) {
+      steer(home_yaw());
+    } else if (steer(goal_.yaw) < 0.05) {
+      hold_s_ -= tick_s;
+      if (hold_s_ < 0.0) choose();
+    }
+  }
+
+  void walk(double t) {
+    const double away = std::hypot(place_.x, place_.z);
+    const double needed = away / (0.7 * top_speed()) + (away > 0.15 ? pi / most_turn_rate : 0.0) +
+                          std::abs(wrapped(place_.yaw)) / most_turn_rate + 1.5;
+    if (rest_from_ - t < needed) going_home_ = true;
+    const FloorPlace target = going_home_ ? FloorPlace{} : goal_;
+    const double dx = target.x - place_.x, dz = target.z - place_.z;
+    const double distance = std::hypot(dx, dz);
+    if (going_home_ && (turning_ || distance < 0.08)) {
+      turning_ = true;  // is there: faces the front again
+      approach(0.0);
+      steer(home_yaw());
+      return;
+    }
+    if (!going_home_ && distance < arrival_m) choose();
+    const double off = wrapped(std::atan2(dx, dz) - place_.yaw);
+    steer(place_.yaw + off);
+    const double ahead = std::max(0.0, std::cos(off));
+    approach(std::min(top_speed() * ahead * ahead, std::sqrt(most_acceleration * distance)));
+  }
+
+  RandomStream random_;
+  double scale_;
+  FloorPlace place_, goal_;
+  const Act* act_ = nullptr;
+  double speed_ = 0.0, hold_s_ = 0.0;
+  double may_move_from_ = 0.0, rest_from_ = 0.0;
+  bool going_home_ = false, turning_ = false;
+  std::uint64_t goals_ = 0, goal_number_ = 0;
+};
+
+struct Controls {
+  std::vector<double> x, z, yaw;
+};
+
+Controls walked(const std::vector<Act>& acts, std::uint64_t seed, double scale) {
+  Controls controls;
+  Walker walker(seed, scale);
+  std::optional<std::uint64_t> current;
+  const auto count = static_cast<std::size_t>(acts.back().end_s / control_s) + 2;
+  const auto ticks = static_cast<std::size_t>(std::lround(control_s / tick_s));
+  for (std::size_t k = 0; k < count; ++k) {
+    controls.x.push_back(walker.place().x);
+    controls.z.push_back(walker.place().z);
+    controls.yaw.push_back(walker.place().yaw);
+    for (std::size_t i = 0; i < ticks; ++i) {
+      const double t = control_s * static_cast<double>(k) + tick_s * static_cast<double>(i);
+      const Act& act = act_at(acts, t);
+      if (current != act.number) walker.begin(act);
+      current = act.number;
+      walker.tick(t);
+    }
+  }
+  return controls;
+}
+
+}  // namespace
+
+StepTimes step_times(const Act& act) {
+  StepTimes steps;
+  if (!act.has_steps()) return steps;
+  steps.first_s = act.begin_s + 0.4;
+  steps.stride_s = act.tempo_s;
+  steps.swing_s = 0.4 * steps.stride_s;
+  const double room = act.end_s - 0.3 - steps.lands(0);
+  if (room < 0.5 * steps.stride_s) return steps;
+  steps.count = static_cast<std::size_t>(room / (0.5 * steps.stride_s)) + 1;
+  return steps;
+}
+
+BodyPath::BodyPath(const std::vector<Act>& acts, std::uint64_t seed, double scale)
+    : x_(control_s, {}), z_(control_s, {}), yaw_(control_s, {}) {
+  Controls controls = walked(acts, seed, scale);
+  x_ = ControlTrack(control_s, std::move(controls.x));
+  z_ = ControlTrack(control_s, std::move(controls.z));
+  yaw_ = ControlTrack(control_s, std::move(controls.yaw));
+}
+
+}  // namespace kinalign

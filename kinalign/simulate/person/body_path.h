@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the body of a simulated person is on the floor, and where it faces, and the times of its
+// steps.
+#pragma once
+
+#include "kinalign/simulate/person/programme.h"
+#include "kinalign/simulate/smooth.h"
+
+namespace kinalign {
+
+struct FloorPlace {
+  double x = 0.0, z = 0.0;  // m
+  double yaw = 0.0;         // rad about +y from facing +z, counted on over whole turns
+};
+
+/// The steps of an act: the k-th foot (in turn, the act's side first) leaves the floor at
+/// first_s + k stride_s / 2, and is in the air for swing_s.
+struct StepTimes {
+  double first_s = 0.0, stride_s = 1.0, swing_s = 0.4;
+  std::size_t count = 0;
+
+  double leaves(std::size_t k) const { return first_s + 0.5 * stride_s * static_cast<double>(k); }
+  double lands(std::size_t k) const { return leaves(k) + swing_s; }
+  double stance_s() const { return stride_s - swing_s; }
+};
+/// None of an act without steps, or too short for two.
+StepTimes step_times(const Act& act);
+
+/// Four times continuously differentiable. At rest outside the steps; home, where there was time to
+/// go, is 0, 0, facing +z (yaw a multiple of a turn).
+class BodyPath {
+ public:
+  /// `scale`: the person's size, 1 for 1.75 m.
+  BodyPath(const std::vector<Act>& acts, std::uint64_t seed, double scale);
+
+  FloorPlace at(double t) const { return {x_.at(t), z_.at(t), yaw_.at(t)}; }
+
+ private:
+  ControlTrack x_, z_, yaw_;
+};
+
+}  // namespace kinalign

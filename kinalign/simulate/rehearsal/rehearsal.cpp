@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stream 120 of the seed: number 0 lanes 0 to 3 where the camera stands, 4 and 5 how it leans, 6
+// its clock; number 1 lanes 0 and 2 the clicks' latencies, 4 the phase of the suit's frames.
+#include "kinalign/simulate/rehearsal/rehearsal.h"
+
+#include "kinalign/motion/kinect_joints.h"
+#include "kinalign/motion/kinect_map.h"
+#include "kinalign/simulate/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double before_click_s = 0.5, behind_click_s = 0.5;
+constexpr double degree = std::numbers::pi / 180.0;
+
+RandomStream draws(std::uint64_t seed) { return {seed, 120}; }
+
+/// The joints that a camera looks for, at any time.
+class JointsOf {
+ public:
+  JointsOf(const Motion& motion, const KinectMap& map) : motion_(motion), map_(map) {}
+
+  void operator()(double t, std::span<double> joints) {
+    motion_.pose_at(t, pose_);
+    forward_kinematics(motion_.skeleton, pose_, global_);
+    kinect_positions(map_, global_, joints);
+  }
+  const GlobalPose& global() const { return global_; }
+
+ private:
+  const Motion& motion_;
+  const KinectMap& map_;
+  Pose pose_;
+  GlobalPose global_;
+};
+
+/// The height of the lowest joint or end: on what a person stands, m.
+double lowest_of(const Skeleton& skeleton, const GlobalPose& pose) {
+  double lowest = pose.positions.front().y();
+  for (const Vec3& p : pose.positions) lowest = std::min(lowest, p.y());
+  for (const EndSite& end : skeleton.end_sites) {
+    const auto j = static_cast<std::size_t>(end.parent);
+    lowest = std::min(lowest, (pose.positions[j] + pose.rotations[j] * end.offset).y());
+  }
+  return lowest;
+}
+
+MocapRun mocap_run(double length_s, std::uint64_t seed) {
+  const RandomStream random = draws(seed);
+  MocapRun run;
+  const auto latency = [&](std::uint64_t lane) {
+    return std::max(0.0, 0.045 + 0.006 * random.normal(1, lane));
+  };
+  run.start_click_s = before_click_s;
+  run.stop_click_s = length_s - behind_click_s;
+  const double step = 1.0 / run.rate_hz, phase = step * random.uniform(1, 4);
+  const double from = run.start_click_s + latency(0), to = run.stop_click_s + latency(2);
+  run.first_frame_s = phase + step * std::ceil((from - phase) / step);
+  run.frames = static_cast<std::size_t>((to - run.first_frame_s) / step) + 1;
+  return run;
+}
+
+/// The pairs a second apart and more, the first and the last: a crystal is even enough in between.
+TrueClock thinned(const TrueClock& all) {
+  TrueClock clock;
+  const std::size_t count = all.stamps_ns.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool due =
+        clock.stamps_ns.empty() || all.stamps_ns[i] - clock.stamps_ns.back() >= 1'000'000'000;
+    if (!due && i + 1 < count) continue;
+    clock.stamps_ns.push_back(all.stamps_ns[i]);
+    clock.times_ns.push_back(all.times_ns[i]);
+  }
+  return clock;
+}
+
+/// The device's clock as stamps of a file: right at the first frame.
+TrueClock kinect_clock(const Rehearsal& rehearsal, Time zero) {
+  TrueClock clock;
+  const PointStream file = kinect_file(rehearsal, zero);
+  for (std::size_t i = 0; i < rehearsal.ticks.size(); ++i) {
+    clock.stamps_ns.push_back(to_ns(file.frames.stamps[i]));
+    clock.times_ns.push_back(to_ns(time_at(zero, rehearsal.ticks[i].seconds)));
+  }
+  return thinned(clock);
+}
+
+TrueNode true_node(const SimulatedNode& node, const Motion& motion, Time zero) {
+  TrueNode truth;
+  truth.stream = "imu";
+  truth.node = node.mounting.node_name;
+  truth.joint = motion.skeleton.joint_names[node.mounting.joint];
+  truth.offset = node.mounting.offset;
+  truth.bone_from_sensor = node.mounting.bone_from_sensor;
+  truth.sensor_delay_ms = 205.0 / InertialSensorModel{}.gyroscope_bandwidth_hz;
+  truth.gyroscope_zero = node.errors.gyroscope_zero;
+  truth.accelerometer_zero = node.errors.accelerometer_zero;
+  const ImuStream file = node_file(node, zero);
+  for (std::size_t i = 0; i < node.samples.size(); ++i) {
+    truth.clock.stamps_ns.push_back(to_ns(file.samples.stamps[i]));
+    truth.clock.times_ns.push_back(to_ns(time_at(zero, node.truth.times[i])));
+  }
+  truth.clock = thinned(truth.clock);
+  return truth;
+}
+
+}  // namespace
+
+Result<RigidTransform> camera_before(const Motion& motion, std::uint64_t seed) {
+  const KinectMap map = KA_TRY(kinect_map(motion.skeleton));
+  JointsOf joints_of(motion, map);
+  std::vector<double> joints(3 * kinect_joint_count);
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (; count <= motion.length_s; ++count) {  // once a second
+    joints_of(count, joints);
+    sum += vec3(joints, spine_base);
+  }
+  joints_of(0.0, joints);
+  const double floor = lowest_of(motion.skeleton, joints_of.global());
+  const Vec3 middle = sum / count;
+  Vec3 facing = (vec3(joints, hip_left) - vec3(joints, hip_right)).cross(Vec3::UnitY());
+  if (facing.norm() < 1e-3) facing = Vec3::UnitZ();  // hips above each other: no side is the front
+
+  const RandomStream random = draws(seed);
+  const auto near = [&](std::uint64_t lane) { return 2.0 * random.uniform(0, lane) - 1.0; };
+  const double yaw = std::atan2(facing.x(), facing.z()) + 15.0 * degree * near(0);
+  const double away = 2.85 + 0.15 * near(1);
+  RigidTransform camera;
+  camera.translation = Vec3(middle.x() + away * std::sin(yaw), floor + 1.05 + 0.15 * near(2),
+                            middle.z() + away * std::cos(yaw));
+  camera.rotation =
+      Quat(Eigen::AngleAxisd(yaw + std::numbers::pi + 3.0 * degree * near(3), Vec3::UnitY()) *
+           Eigen::AngleAxisd(3.0 * degree * near(4), Vec3::UnitX()) *
+           Eigen::AngleAxisd(1.0 * degree * near(5), Vec3::UnitZ()));
+  return camera;
+}
+
+Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options) {
+  if (!(motion.length_s >= least_rehearsal_s)) {
+    return Failure(
+        Error{"", 0, "a motion of 3 s at least", std::to_string(motion.length_s) + " s"});
+  }
+  const std::uint64_t seed = options.seed;
+  Rehearsal done;
+  done.mocap = mocap_run(motion.length_s, seed);
+
+  const KinectMap map = KA_TRY(kinect_map(motion.skeleton));
+  done.camera.world_from_kinect = KA_TRY(camera_before(motion, seed));
+  done.camera.drift_ppm = 40.0 * draws(seed).uniform(0, 6) - 20.0;
+  const KinectIds ids{.seed = seed, .person = seed};
+  done.ticks = kinect_ticks(done.camera, ids, 0.0, motion.length_s);
+  JointsOf joints_of(motion, map);
+  done.kinect = simulate_kinect(std::ref(joints_of), done.ticks, done.camera, ids);
+
+  InertialNodeOptions nodes;
+  nodes.rate_hz = options.node_rate_hz;
+  const auto mountings = KA_TRY(five_nodes(motion.skeleton, seed));
+  done.nodes = KA_TRY(simulate_nodes(motion, mountings, nodes, seed));
+  return done;
+}
+
+ClipFrames mocap_frames(const Motion& motion, const MocapRun& run, std::size_t begin,
+                        std::size_t end, Time zero) {
+  const std::size_t joints = motion.skeleton.joints();
+  ClipFrames frames;
+  frames.local_positions.resize(3 * joints * (end - begin));
+  frames.local_rotations.resize(4 * joints * (end - begin));
+  Pose pose;
+  for (std::size_t k = begin; k < end; ++k) {
+    motion.pose_at(run.frame_s(k), pose);
+    frames.stamps.push_back(time_at(zero, run.frame_s(k)));
+    for (std::size_t j = 0; j < joints; ++j) {
+      vec3(frames.local_positions, (k - begin) * joints + j) = pose.local_positions[j];
+      put_quat(frames.local_rotations, (k - begin) * joints + j, pose.local_rotations[j]);
+    }
+  }
+  return frames;
+}
+
+PointStream kinect_file(const Rehearsal& rehearsal, Time zero) {
+  PointStream stream{{kinect_joints.begin(), kinect_joints.end()}, rehearsal.kinect};
+  if (rehearsal.ticks.empty()) return stream;
+  const KinectTick& first = rehearsal.ticks.front();
+  for (std::size_t i = 0; i < rehearsal.ticks.size(); ++i) {
+    stream.frames.stamps[i] =
+        time_at(zero, first.seconds) +
+        std::chrono::nanoseconds(100 * (rehearsal.ticks[i].device - first.device));
+  }
+  return stream;
+}
+
+ImuStream node_file(const SimulatedNode& node, Time zero) {
+  return imu_stream(node, time_at(zero, -SimulatedClock(node.seed, 1.0).reading(0.0)));
+}
+
+ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
+  const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
+  std::vector<std::pair<double, std::size_t>> heard;  // at, which
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    if (arrivals[i].first) heard.emplace_back(*arrivals[i].first, i);
+  }
+  std::sort(heard.begin(), heard.end());
+  const ImuStream all = imu_stream(node, Time{});
+  ArrivedNode out{{all.node_names, all.content, {}}, {}};
+  ImuSamples& to = out.stream.samples;
+  const auto copy = [](const std::vector<double>& from, std::size_t i, std::size_t width,
+                       std::vector<double>& onto) {
+    if (from.empty()) return;
+    onto.insert(onto.end(), &from[i * width], &from[i * width] + width);
+  };
+  for (const auto& [at, i] : heard) {
+    to.stamps.push_back(time_at(zero, at));
+    copy(all.samples.orientation, i, 4, to.orientation);
+    copy(all.samples.acceleration, i, 3, to.acceleration);
+    copy(all.samples.angular_velocity, i, 3, to.angular_velocity);
+    to.valid.push_back(1);
+    out.clock.stamps_ns.push_back(to_ns(to.stamps.back()));
+    out.clock.times_ns.push_back(to_ns(time_at(zero, node.truth.times[i])));
+  }
+  return out;
+}
+
+TrueRecording truth_of(const Rehearsal& rehearsal, const Motion& motion, Time zero) {
+  TrueRecording truth;
+  truth.length_s = motion.length_s;
+  truth.start_ns = to_ns(zero);
+  const MocapRun& run = rehearsal.mocap;
+  const auto ns = [&](double s) { return to_ns(time_at(zero, s)); };
+  truth.mocap = {"mocap",
+                 run.rate_hz,
+                 run.frames,
+                 ns(run.start_click_s),
+                 ns(run.stop_click_s),
+                 ns(run.first_frame_s)};
+  truth.kinect = {"kinect", rehearsal.camera.world_from_kinect, rehearsal.camera.drift_ppm,
+                  kinect_clock(rehearsal, zero)};
+  for (const SimulatedNode& node : rehearsal.nodes) {
+    truth.nodes.push_back(true_node(node, motion, zero));
+    truth.nodes.back().id = static_cast<std::uint32_t>(truth.nodes.size());
+  }
+  return truth;
+}
+
+}  // namespace kinalign
