@@ -3,9 +3,9 @@
 // answer is never longer than what it answers; so is a mark of a recording.
 #include "fuzz/pieces.h"
 
-#include "kinalign/io/recording_format.h"
 #include "kinalign/protocols/marks/mark_call.h"
 #include "kinalign/protocols/marks/vicon_trigger.h"
+#include "kinalign/recording/format.h"
 
 using namespace kinalign;
 

@@ -12,9 +12,9 @@
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/unknown_file.h"
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/recording_beside.h"
-#include "kinalign/io/recording_parts.h"
-#include "kinalign/io/survey_parts.h"
+#include "kinalign/recording/beside.h"
+#include "kinalign/recording/parts.h"
+#include "kinalign/recording/survey_parts.h"
 
 #include <fmt/format.h>
 

@@ -13,8 +13,8 @@
 #include "kinalign/align/space.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/take_hdf5.h"
-#include "kinalign/io/recording_beside.h"
-#include "kinalign/io/survey_parts.h"
+#include "kinalign/recording/beside.h"
+#include "kinalign/recording/survey_parts.h"
 
 #include <fmt/format.h>
 

@@ -14,11 +14,11 @@
 #include "kinalign/formats/take/take_npz.h"
 #include "kinalign/formats/xdf/survey.h"
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/recording_beside.h"
-#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/show_recording.h"
 #include "kinalign/io/show_xdf.h"
-#include "kinalign/io/survey_parts.h"
+#include "kinalign/recording/beside.h"
+#include "kinalign/recording/parts.h"
+#include "kinalign/recording/survey_parts.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -4,8 +4,8 @@
 
 #include "apps/kinalign/verb.h"
 
-#include "kinalign/io/recording_parts.h"
-#include "kinalign/io/recording_survey.h"
+#include "kinalign/recording/parts.h"
+#include "kinalign/recording/survey.h"
 #include "kinalign/take/recording.h"
 
 #include <string>

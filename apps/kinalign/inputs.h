@@ -7,7 +7,7 @@
 
 #include "kinalign/core/progress.h"
 #include "kinalign/formats/take/guarded.h"
-#include "kinalign/io/recording_survey.h"
+#include "kinalign/recording/survey.h"
 #include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"
 

@@ -3,7 +3,7 @@
 // programs read, is the id, or "imu/7" as topics begin.
 #pragma once
 
-#include "kinalign/io/recording_survey.h"
+#include "kinalign/recording/survey.h"
 #include "kinalign/take/lab.h"
 
 #include <cstdint>

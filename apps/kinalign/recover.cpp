@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kinalign/recording/recover.h"
+
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/describe_file.h"
 #include "apps/kinalign/inputs.h"
@@ -7,7 +9,6 @@
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/documents/report_json.h"
-#include "kinalign/io/recover_recording.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

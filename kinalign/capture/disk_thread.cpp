@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/disk_thread.h"
 
-#include "kinalign/io/recording_format.h"
+#include "kinalign/recording/format.h"
 
 #include <sys/statvfs.h>
 

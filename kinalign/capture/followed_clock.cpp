@@ -2,7 +2,7 @@
 #include "kinalign/capture/followed_clock.h"
 
 #include "kinalign/clock/live/live_clock.h"
-#include "kinalign/io/recording_format.h"
+#include "kinalign/recording/format.h"
 
 #include <algorithm>
 

@@ -5,9 +5,9 @@
 #include "kinalign/capture/findings_once.h"
 #include "kinalign/capture/pieces.h"
 #include "kinalign/core/error.h"
-#include "kinalign/io/recording_counts.h"
-#include "kinalign/io/recording_format.h"
 #include "kinalign/protocols/marks/mark.h"
+#include "kinalign/recording/counts.h"
+#include "kinalign/recording/format.h"
 
 #include <cstdint>
 #include <functional>

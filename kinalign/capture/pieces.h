@@ -7,7 +7,7 @@
 #include "kinalign/capture/datagram_batch.h"
 #include "kinalign/capture/host_clock.h"
 #include "kinalign/capture/udp_socket.h"
-#include "kinalign/io/recording_counts.h"
+#include "kinalign/recording/counts.h"
 
 #include <cstdint>
 #include <functional>

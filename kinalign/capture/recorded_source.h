@@ -5,7 +5,7 @@
 #include "kinalign/capture/past_counts.h"
 #include "kinalign/capture/recorder.h"
 #include "kinalign/capture/stream_status.h"
-#include "kinalign/io/recording_format.h"
+#include "kinalign/recording/format.h"
 
 #include <cstdint>
 #include <optional>

@@ -8,8 +8,8 @@
 #include "kinalign/capture/recorded_port.h"
 #include "kinalign/capture/recorder.h"
 #include "kinalign/capture/session_take.h"
-#include "kinalign/io/recording_counts.h"
-#include "kinalign/io/recording_format.h"
+#include "kinalign/recording/counts.h"
+#include "kinalign/recording/format.h"
 #include "kinalign/take/lab.h"
 
 #include <poll.h>

@@ -6,7 +6,7 @@
 #include "kinalign/capture/disk_thread.h"
 #include "kinalign/capture/node_status.h"
 #include "kinalign/capture/stream_status.h"
-#include "kinalign/io/recording_format.h"
+#include "kinalign/recording/format.h"
 #include "kinalign/wire/time.h"
 
 #include <algorithm>

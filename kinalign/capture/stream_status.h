@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/capture/sender_clock.h"
-#include "kinalign/io/recording_counts.h"
+#include "kinalign/recording/counts.h"
 #include "kinalign/wire/time.h"
 
 #include <cstdint>

@@ -4,11 +4,11 @@
 #pragma once
 
 #include "kinalign/core/error.h"
-#include "kinalign/io/recording_counts.h"
 #include "kinalign/protocols/kinect/frames.h"
 #include "kinalign/protocols/kinect/stream.h"
 #include "kinalign/protocols/noitom/receiver.h"
 #include "kinalign/protocols/xsens/stream.h"
+#include "kinalign/recording/counts.h"
 
 #include <map>
 #include <span>

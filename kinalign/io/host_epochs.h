@@ -3,7 +3,7 @@
 // sleep. Exchanges say which epoch they are of; what a device says beside them does not.
 #pragma once
 
-#include "kinalign/io/recording_format.h"
+#include "kinalign/recording/format.h"
 
 #include <cstdint>
 #include <map>

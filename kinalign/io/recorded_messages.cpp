@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/recorded_messages.h"
 
-#include "kinalign/io/recording_survey.h"
+#include "kinalign/recording/survey.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

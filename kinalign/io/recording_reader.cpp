@@ -2,8 +2,8 @@
 #include "kinalign/io/recording_reader.h"
 
 #include "kinalign/formats/bvh/head.h"
-#include "kinalign/io/recording_beside.h"
 #include "kinalign/io/sender_choice.h"
+#include "kinalign/recording/beside.h"
 
 #include <array>
 #include <charconv>

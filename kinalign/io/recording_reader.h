@@ -5,7 +5,7 @@
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
 #include "kinalign/io/device_rows.h"
-#include "kinalign/io/recording_survey.h"
+#include "kinalign/recording/survey.h"
 #include "kinalign/take/manifest.h"
 
 #include <memory>

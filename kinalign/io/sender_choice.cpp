@@ -3,7 +3,7 @@
 
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/io/recording_reader.h"
-#include "kinalign/io/survey_parts.h"
+#include "kinalign/recording/survey_parts.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/show_recording.h"
 
-#include "kinalign/io/recording_survey.h"
 #include "kinalign/io/shown_file.h"
 #include "kinalign/io/shown_pace.h"
 #include "kinalign/io/shown_rows.h"
+#include "kinalign/recording/survey.h"
 
 #include <map>
 #include <memory>

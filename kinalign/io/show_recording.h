@@ -5,8 +5,8 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/shown_file.h"
+#include "kinalign/recording/parts.h"
 #include "kinalign/take/recording.h"
 
 #include <string>

@@ -2,7 +2,7 @@
 #include "apps/kinalign/verbs.h"
 #include "tests/apps/fake_verb.h"
 #include "tests/folder.h"
-#include "tests/io/recorded_lab.h"
+#include "tests/recording/recorded_lab.h"
 
 #include <doctest/doctest.h>
 

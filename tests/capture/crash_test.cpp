@@ -7,7 +7,7 @@
 
 #include "kinalign/capture/recorder.h"
 #include "kinalign/capture/recording_disk.h"
-#include "kinalign/io/recording_format.h"
+#include "kinalign/recording/format.h"
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,7 @@
 #include "tests/mcap/mcap_files.h"
 
 #include "kinalign/capture/recorder.h"
-#include "kinalign/io/recording_survey.h"
+#include "kinalign/recording/survey.h"
 
 #include <doctest/doctest.h>
 

@@ -6,7 +6,7 @@
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
 
-#include "kinalign/io/recording_format.h"
+#include "kinalign/recording/format.h"
 
 #include <doctest/doctest.h>
 

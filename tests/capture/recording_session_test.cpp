@@ -4,9 +4,9 @@
 
 #include "tests/capture/recorded.h"
 
-#include "kinalign/io/recording_survey.h"
 #include "kinalign/protocols/marks/mark_call.h"
 #include "kinalign/protocols/noitom/frame.h"
+#include "kinalign/recording/survey.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/io/noitom_pose.h"
 
-#include "tests/io/recorded_lab.h"
 #include "tests/protocols/noitom/noitom_cases.h"
+#include "tests/recording/recorded_lab.h"
 
 #include <doctest/doctest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Streams that are read from a recording of tests/io/recorded_lab.h, and how far their stamps are
-// from the truth that their samples carry.
+// Streams that are read from a recording of tests/recording/recorded_lab.h, and how far their
+// stamps are from the truth that their samples carry.
 #pragma once
 
 #include "tests/folder.h"
-#include "tests/io/recorded_lab.h"
+#include "tests/recording/recorded_lab.h"
 
 #include "kinalign/io/open_recording.h"
 

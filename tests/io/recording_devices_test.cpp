@@ -4,8 +4,8 @@
 
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/io/recording_reader.h"
-#include "kinalign/io/recording_survey.h"
-#include "kinalign/io/recover_recording.h"
+#include "kinalign/recording/recover.h"
+#include "kinalign/recording/survey.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

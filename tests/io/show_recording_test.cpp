@@ -3,15 +3,15 @@
 
 #include "tests/folder.h"
 #include "tests/formats/xdf/xdf_cases.h"
-#include "tests/io/recorded_lab.h"
+#include "tests/recording/recorded_lab.h"
 
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/recording_parts.h"
 #include "kinalign/io/recording_reader.h"
 #include "kinalign/io/show_xdf.h"
 #include "kinalign/io/shown_rows.h"
-#include "kinalign/io/survey_parts.h"
 #include "kinalign/motion/kinect_joints.h"
+#include "kinalign/recording/parts.h"
+#include "kinalign/recording/survey_parts.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

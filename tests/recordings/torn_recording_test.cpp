@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording of several devices that breaks off or is damaged, aligned.
 #include "tests/folder.h"
-#include "tests/io/recorded_lab.h"
+#include "tests/recording/recorded_lab.h"
 
 #include "kinalign/align/align.h"
 #include "kinalign/io/open_recording.h"
 #include "kinalign/io/recording_reader.h"
-#include "kinalign/io/survey_parts.h"
+#include "kinalign/recording/survey_parts.h"
 
 #include <doctest/doctest.h>
 

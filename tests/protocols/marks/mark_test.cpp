@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/protocols/marks/mark.h"
 
-#include "kinalign/io/recording_format.h"
+#include "kinalign/recording/format.h"
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/recording/counts.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A count and what it is called in JSON.
+template <class Counts>
+struct NamedCount {
+  const char* name;
+  std::uint64_t& (*in)(Counts&);
+};
+
+constexpr std::array<NamedCount<SenderCounts>, 8> of_sender{
+    {{"messages", [](SenderCounts& c) -> std::uint64_t& { return c.messages; }},
+     {"bytes", [](SenderCounts& c) -> std::uint64_t& { return c.bytes; }},
+     {"frames", [](SenderCounts& c) -> std::uint64_t& { return c.frames; }},
+     {"lost", [](SenderCounts& c) -> std::uint64_t& { return c.order.lost; }},
+     {"late", [](SenderCounts& c) -> std::uint64_t& { return c.order.late; }},
+     {"duplicates", [](SenderCounts& c) -> std::uint64_t& { return c.order.duplicates; }},
+     {"restarts", [](SenderCounts& c) -> std::uint64_t& { return c.order.restarts; }},
+     {"refused", [](SenderCounts& c) -> std::uint64_t& { return c.refused; }}}};
+
+constexpr std::array<NamedCount<PortCounts>, 7> of_port{
+    {{"pieces", [](PortCounts& c) -> std::uint64_t& { return c.pieces; }},
+     {"bytes", [](PortCounts& c) -> std::uint64_t& { return c.bytes; }},
+     {"refused", [](PortCounts& c) -> std::uint64_t& { return c.refused; }},
+     {"cut", [](PortCounts& c) -> std::uint64_t& { return c.cut; }},
+     {"dropped", [](PortCounts& c) -> std::uint64_t& { return c.dropped; }},
+     {"links", [](PortCounts& c) -> std::uint64_t& { return c.links; }},
+     {"unsent", [](PortCounts& c) -> std::uint64_t& { return c.unsent; }}}};
+
+/// Properties of a schema, behind others.
+template <class Named>
+std::string integers(const Named& named) {
+  std::string properties;
+  for (const auto& count : named) {
+    properties += fmt::format(R"(, "{}": {{"type": "integer"}})", count.name);
+  }
+  return properties;
+}
+
+template <class Named, class Counts>
+void put(const Named& named, Counts counts, Json& json) {
+  for (const auto& count : named) json[count.name] = count.in(counts);
+}
+
+/// A hole that an overtaken frame fills is no loss any more: a count may fall.
+template <class Named, class Counts>
+Counts difference(const Named& named, Counts before, Counts now) {
+  Counts out;
+  for (const auto& count : named) {
+    const std::uint64_t then = count.in(before), is = count.in(now);
+    count.in(out) = is > then ? is - then : 0;
+  }
+  return out;
+}
+
+std::string text_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+std::uint64_t count_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
+}
+
+template <class Named, class Counts>
+void take(const Named& named, const Json& object, Counts& counts) {
+  for (const auto& count : named) count.in(counts) = count_of(object, count.name);
+}
+
+/// Names are texts of others: bytes that are no UTF-8 become U+FFFD.
+std::string line_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+McapSchema sender_counts_schema() {
+  return {
+      0, "kinalign.SenderCounts", "jsonschema",
+      R"({"type": "object", "properties": {"topic": {"type": "string"}, )"
+      R"("stream": {"type": "string"}, "sender": {"type": "string"}, "node": {"type": "string"})" +
+          integers(of_sender) + R"(}, "required": ["stream", "sender", "messages"]})"};
+}
+
+SenderCounts since(const SenderCounts& before, const SenderCounts& now) {
+  return difference(of_sender, before, now);
+}
+
+std::uint64_t frames_or_messages(const SenderCounts& counts) {
+  return counts.frames > 0 ? counts.frames : counts.messages;
+}
+
+/// Of trackers older versions counted no frames, but what was refused.
+bool speaks_another_protocol(const std::string& protocol, const SenderCounts& counts) {
+  const bool trackers = protocol == "slimevr";
+  if (trackers && counts.refused < counts.messages) return false;
+  const bool decoded =
+      trackers || protocol == "noitom" || protocol == "xsens" || protocol == "kinect";
+  const bool had_frames = counts.frames + counts.order.late + counts.order.duplicates > 0;
+  return decoded && !had_frames && are_many(counts.messages);
+}
+
+std::string to_json(const CountedSender& counted) {
+  Json json{{"topic", counted.topic}, {"stream", counted.stream}, {"sender", counted.sender}};
+  if (!counted.node.empty()) json["node"] = counted.node;
+  put(of_sender, counted.counts, json);
+  return line_of(json);
+}
+
+std::optional<CountedSender> to_counted_sender(std::string_view json) {
+  const Json object = Json::parse(json, nullptr, false);
+  if (!object.is_object() || text_of(object, "stream").empty()) return std::nullopt;
+  CountedSender counted{text_of(object, "topic"),
+                        text_of(object, "stream"),
+                        text_of(object, "sender"),
+                        text_of(object, "node"),
+                        {}};
+  take(of_sender, object, counted.counts);
+  return counted;
+}
+
+McapSchema port_counts_schema() {
+  return {0, "kinalign.PortCounts", "jsonschema",
+          R"({"type": "object", "properties": {"stream": {"type": "string"}, )"
+          R"("sifted": {"type": "boolean"})" +
+              integers(of_port) + R"(}, "required": ["stream", "pieces"]})"};
+}
+
+PortCounts since(const PortCounts& before, const PortCounts& now) {
+  PortCounts out = difference(of_port, before, now);
+  out.links = now.links;
+  out.sifted = now.sifted;
+  return out;
+}
+
+std::uint64_t strays(const PortCounts& counts, std::uint64_t lost) {
+  return counts.sifted && counts.dropped > lost ? counts.dropped - lost : 0;
+}
+
+std::string to_json(const CountedPort& counted) {
+  Json json{{"stream", counted.stream}};
+  put(of_port, counted.counts, json);
+  if (counted.counts.sifted) json["sifted"] = true;
+  return line_of(json);
+}
+
+std::optional<CountedPort> to_counted_port(std::string_view json) {
+  const Json object = Json::parse(json, nullptr, false);
+  if (!object.is_object() || text_of(object, "stream").empty()) return std::nullopt;
+  CountedPort counted{text_of(object, "stream"), {}};
+  take(of_port, object, counted.counts);
+  counted.counts.sifted = object.value("sifted", Json()) == Json(true);
+  return counted;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/recording/kinect_survey.h"
+
+#include "kinalign/wire/little_endian_reader.h"
+
+namespace kinalign {
+
+void KinectSurvey::add(std::uint16_t channel, const RawChannel& raw) {
+  if (raw.protocol == "kinect") ways_.try_emplace(channel, Way{raw, {}});
+}
+
+void KinectSurvey::take(std::uint16_t channel, std::string_view payload) {
+  const auto way = ways_.find(channel);
+  if (way == ways_.end()) return;
+  messages_.clear();
+  way->second.decoder.feed(octets(payload), messages_);
+  if (way->second.raw.transport == "udp") way->second.decoder.finish(messages_);
+  for (const KinectMessage& message : messages_) {
+    const auto* frame = std::get_if<KinectFrame>(&message);
+    if (frame == nullptr) continue;
+    const Sensor sensor{way->second.raw.stream, frame->origin.sensor};
+    if (sensors_.size() == most_sensors && !sensors_.contains(sensor)) continue;
+    sensors_[sensor].hear(moment_of(*frame), way->second.raw.sender);
+  }
+}
+
+Findings KinectSurvey::findings(const std::string& path) const {
+  Findings findings;
+  for (const auto& [sensor, sessions] : sensors_) {
+    if (!sessions.twins()) continue;
+    findings.push_back(two_senders(path, *sessions.twins(),
+                                   "alignment takes one of them for " + shown(sensor.first)));
+  }
+  return findings;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/recording/survey.h"
+
+#include "kinalign/core/crc.h"
+#include "kinalign/documents/lab_toml.h"
+#include "kinalign/protocols/slimevr/packet.h"
+#include "kinalign/recording/kinect_survey.h"
+#include "kinalign/wire/little_endian_reader.h"
+
+#include <algorithm>
+#include <array>
+
+namespace kinalign {
+
+namespace {
+
+/// Whose rotations a tracker's datagram brings. A stranger's brings none.
+std::uint32_t rotating_sensors(std::string_view payload) {
+  std::uint32_t sensors = 0;
+  SlimeDatagram datagram;
+  if (!decode_slime(octets(payload), datagram)) return sensors;
+  for (const SlimePacket& packet : datagram.packets) {
+    const auto* motion = std::get_if<SlimeMotion>(&packet);
+    const bool rotates = motion != nullptr && motion->rotation && !motion->is_correction;
+    if (rotates && motion->sensor < 32) sensors |= 1U << motion->sensor;
+  }
+  return sensors;
+}
+
+constexpr std::size_t most_counted = 4096;
+
+/// Of a message on a channel of counts: who is counted, in the words that it begins with.
+std::string_view counted(std::string_view json) {
+  return json.substr(0, std::min(json.find("\"messages\":"), json.find("\"pieces\":")));
+}
+
+/// The last message of each.
+using LastCounts = std::map<std::string, std::string, std::less<>>;
+
+template <class Counted>
+std::vector<Counted> all_of(const LastCounts& last,
+                            std::optional<Counted> (*decode)(std::string_view)) {
+  std::vector<Counted> all;
+  for (const auto& [who, json] : last) {
+    if (auto one = decode(json)) all.push_back(*std::move(one));
+  }
+  return all;
+}
+
+/// Collects what the records of one file say.
+class Surveyor {
+ public:
+  explicit Surveyor(const McapReader& reader) : reader_(reader) {}
+
+  Result<void> take(const McapRecord& record) {
+    std::visit([this](const auto& one) { add(one); }, record);
+    return {};
+  }
+
+  RecordingSurvey finish(const std::string& path) {
+    for (auto& [id, channel] : channels_) survey_.channels.push_back(std::move(channel));
+    std::stable_sort(
+        survey_.channels.begin(), survey_.channels.end(),
+        [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
+    survey_.senders = all_of(senders_, to_counted_sender);
+    survey_.ports = all_of(ports_, to_counted_port);
+    if (reader_.all_checked()) survey_.unchecked = 0;
+    if (auto anchor = utc_anchor(clock_)) survey_.steps = std::move(anchor->steps);
+    survey_.findings = reader_.findings();
+    survey_.flawed = !survey_.findings.empty();
+    for (Finding& finding : survey_.findings) finding.what.file = path;
+    append(survey_.findings, judge_strays(path, guard_));
+    append(survey_.findings, kinects_.findings(path));
+    return std::move(survey_);
+  }
+
+ private:
+  /// What a summary repeats and damage has changed is none the wiser.
+  void add(const McapChannel& channel) {
+    const auto [known, is_new] = channels_.try_emplace(channel.id);
+    if (!is_new && !known->second.channel.topic.empty()) return;
+    known->second.channel = channel;
+    const auto raw = to_raw(channel);
+    if (raw) kinects_.add(channel.id, *raw);
+    if (raw && !raw->place.empty()) survey_.places[raw->stream + "/" + raw->node] = raw->place;
+  }
+  void add(const McapMetadata& metadata) {
+    if (auto devices = to_expected_devices(metadata)) survey_.expected = *std::move(devices);
+    if (const auto end = to_end(metadata)) survey_.end = end;
+    survey_.ending = std::max(survey_.ending, ending_of(metadata));
+    if (survey_.facts) return;
+    survey_.facts = to_facts(metadata);
+    if (survey_.facts) clock_.push_back(survey_.facts->anchor);
+  }
+  void add(const McapAttachment& attachment) {
+    survey_.attachments.push_back(attachment.name);
+    if (attachment.name == "lab.toml") add_places(attachment.data);
+  }
+  /// Of nodes that were never heard, too. What is no lab.toml of ours says nothing.
+  void add_places(std::string_view lab_toml) {
+    const auto devices = read_devices(lab_toml, "lab.toml");
+    if (!devices) return;
+    for (const DeviceOptions& device : *devices) {
+      for (const auto& [id, place] : device.nodes) survey_.places[device.name + "/" + id] = place;
+    }
+  }
+  void add(const McapMessage& message) {
+    if (survey_.facts && !guard_.believes(message, reader_.unchecked())) return;
+    ++survey_.messages;
+    survey_.contents = add_to(survey_.contents, message);
+    if (reader_.unchecked()) ++survey_.unchecked;
+    ChannelSurvey& channel = channels_[message.channel];
+    channel.channel.id = message.channel;  // defined or not
+    if (channel.messages == 0) {
+      channel.first = channel.last = message.log_time;
+    } else {
+      // Of a writer that does not number its messages nothing is missing.
+      const std::uint32_t step = message.sequence - channel.last_number;
+      channel.in_order = channel.in_order && message.sequence > channel.last_number;
+      if (step > 1 && step < 1U << 31U) channel.missing += step - 1;
+    }
+    channel.last_number = message.sequence;
+    channel.first = std::min(channel.first, message.log_time);
+    channel.last = std::max(channel.last, message.log_time);
+    ++channel.messages;
+    channel.bytes += message.data.size();
+    const bool tracker = channel.channel.message_encoding == "slimevr";
+    if (tracker) channel.sensors |= rotating_sensors(message.data);
+    kinects_.take(message.channel, message.data);
+    if (survey_.facts && channel.channel.message_encoding == "json") {
+      add_told(channel.channel.topic, message);
+    }
+  }
+  /// What the recorder itself says.
+  void add_told(std::string_view topic, const McapMessage& message) {
+    if (topic == sender_counts_topic) return keep_last(message.data, senders_);
+    if (topic == port_counts_topic) return keep_last(message.data, ports_);
+    if (topic == marks_topic) return add_mark(message);
+    if (topic != host_clock_topic) return;
+    if (const auto pair = to_clock_pair(message.data)) clock_.push_back(*pair);
+  }
+  void add_mark(const McapMessage& message) {
+    auto mark = to_mark(message.data);
+    if (!mark) return;
+    if (survey_.marks.size() < most_marks) {
+      survey_.marks.emplace_back(*std::move(mark), message.log_time);
+    } else {
+      ++survey_.more_marks;
+    }
+  }
+  static void keep_last(std::string_view json, LastCounts& last) {
+    const std::string_view who = counted(json);
+    const auto known = last.find(who);
+    if (known != last.end()) {
+      known->second = json;
+    } else if (last.size() < most_counted) {
+      last.emplace(who, json);
+    }
+  }
+  template <class Other>
+  void add(const Other&) {}
+
+  const McapReader& reader_;
+  std::map<std::uint16_t, ChannelSurvey> channels_;
+  std::vector<ClockPair> clock_;
+  LastCounts senders_, ports_;
+  KinectSurvey kinects_;
+  NumberGuard guard_;
+  RecordingSurvey survey_;
+};
+
+}  // namespace
+
+std::uint32_t add_to(std::uint32_t contents, const McapMessage& message) {
+  std::string head;
+  append_little(message.channel, head);
+  append_little(message.sequence, head);
+  append_little(message.log_time, head);
+  append_little(message.publish_time, head);
+  append_little(static_cast<std::uint64_t>(message.data.size()), head);
+  return crc_of(message.data, crc_of(head, contents));
+}
+
+Result<void> read_recording(const PieceSource& source, McapReader& reader, const TakeRecord& take,
+                            const Progress& progress) {
+  std::uint64_t done = 0;
+  const auto next_piece = [&]() -> Result<std::string_view> {
+    const std::string_view piece = KA_TRY(source.next());
+    done += piece.size();
+    if (!go_on(progress, "reading", done, source.size)) return Failure(interruption(source.path));
+    return piece;
+  };
+  while (const auto record = KA_TRY(pull(reader, next_piece))) KA_TRY(take(*record));
+  if (reader.is_mcap()) return {};
+  return Failure(Error{source.path, 0, "an MCAP file", "another beginning"});
+}
+
+Result<void> read_recording(FileSystem& files, const std::string& path, McapReader& reader,
+                            const TakeRecord& take, const Progress& progress) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  return read_recording({path, file.size(), [&file] { return file.next(); }}, reader, take,
+                        progress);
+}
+
+Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progress& progress) {
+  McapReader reader;
+  Surveyor surveyor(reader);
+  std::uint64_t bytes = 0;
+  const auto count = [&](std::string_view what, std::uint64_t done, std::uint64_t total) {
+    bytes = done;
+    return go_on(progress, what, done, total);
+  };
+  KA_TRY(read_recording(
+      source, reader, [&](const McapRecord& record) { return surveyor.take(record); }, count));
+  RecordingSurvey survey = surveyor.finish(source.path);
+  survey.bytes = bytes;
+  if (!reader.closed()) {
+    survey.torn.push_back(source.path);
+    survey.ending = std::max(survey.ending, Ending::torn);
+  }
+  return survey;
+}
+
+Findings judge_strays(const std::string& path, const NumberGuard& guard) {
+  if (guard.strays() == 0) return {};
+  return {{Severity::error,
+           Error{path, 0, "messages with numbers that can be",
+                 std::to_string(guard.strays()) + " of others"},
+           "no checksum covers them, and something there was altered: they are left out", ""}};
+}
+
+Finding ends_before(const std::string& path) {
+  return {Severity::warning, Error{path, 0, "a recording up to its end", "one that ends before"},
+          "the disk took no more: what came later is in another file, if it took one",
+          "see for one where it was recorded, as take.part2.mcap; kinalign recover joins all"};
+}
+
+Findings judge_end(const std::string& path, const RecordingSurvey& survey) {
+  if (!survey.facts || survey.ending != Ending::none) return {};
+  return {ends_before(path)};
+}
+
+Findings judge_order(const std::string& path, const RecordingSurvey& survey) {
+  const bool in_order = std::all_of(survey.channels.begin(), survey.channels.end(),
+                                    [](const ChannelSurvey& one) { return one.in_order; });
+  if (!survey.facts || in_order) return {};
+  return {{Severity::warning,
+           Error{path, 0, "each channel's messages in their order", "some behind later ones"},
+           "all are there, but check takes some for missing, and align leaves some out",
+           "recover the recording's own files together, without one that recover has made"}};
+}
+
+Result<RecordingSurvey> survey_recording(FileSystem& files, const std::string& path,
+                                         const Progress& progress) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  return survey_recording({path, file.size(), [&file] { return file.next(); }}, progress);
+}
+
+Result<bool> is_recording(FileSystem& files, const std::string& path) {
+  const InputFile file = KA_TRY(InputFile::open(files, path));
+  std::array<char, mcap_magic.size()> head{};
+  const std::size_t got = KA_TRY(file.read_at(0, head));
+  return std::string_view(head.data(), got) == mcap_magic;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recording of three devices in memory, for tests. Each sample carries the true time at which it
+// was taken, seconds since the recording began, so that whatever reads it can be held against it.
+#pragma once
+
+#include "tests/mcap/mcap_files.h"
+#include "tests/protocols/xsens/xsens_cases.h"
+
+#include "kinalign/protocols/kinect/binary.h"
+#include "kinalign/protocols/kinect/frames.h"
+#include "kinalign/protocols/kinect/lines.h"
+#include "kinalign/protocols/noitom/stream.h"
+#include "kinalign/recording/format.h"
+#include "kinalign/wire/clockless.h"
+#include "kinalign/wire/little_endian_reader.h"
+#include "kinalign/wire/node_frame.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// 59 joints in a chain, with 180 or 354 channels, in Noitom's order of rotations.
+inline std::string noitom_chain(const std::string& tenth, bool displacement) {
+  const std::string rotations = "Yrotation Xrotation Zrotation\n";
+  const std::string six = "CHANNELS 6 Xposition Yposition Zposition " + rotations;
+  std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 93 0\n" + six;
+  for (int k = 1; k < 59; ++k) {
+    text += "JOINT " + (k == 10 ? tenth : "j" + std::to_string(k)) + "\n{\nOFFSET 0 1 0\n" +
+            (displacement ? six : "CHANNELS 3 " + rotations);
+  }
+  text += "End Site\n{\nOFFSET 0 1 0\n}\n" + std::string(58, '}') + "}\n";
+  return text + "MOTION\nFrames: 0\nFrame Time: 0.008\n";
+}
+
+class RecordedLab {
+ public:
+  static constexpr std::int64_t utc_begin = 1'790'000'000'000'000'000;
+  static constexpr std::int64_t host_begin = 5'000'000'000'000;  // up for 5000 s
+
+  explicit RecordedLab(std::uint64_t seed) : random_(seed) {}
+
+  std::uint64_t dropped = 0;  // that memory had no room for
+
+  /// A counter that reads `at_begin_s` when the recording begins and runs `ppm` fast. While the
+  /// host sleeps it runs on by `slept_s`, the host's clock does not; less than 0: that went back.
+  struct Counter {
+    double at_begin_s = 0.0, ppm = 0.0;
+    double sleep_at_s = 1e9, slept_s = 0.0;
+    double at(double t) const {
+      return at_begin_s + t * (1.0 + 1e-6 * ppm) + (t >= sleep_at_s ? slept_s : 0.0);
+    }
+  };
+
+  /// Fifteen frames a second from `from` to `to`, two samples in each, answered.
+  void add_node(std::uint32_t id, std::uint32_t boot_id, Counter counter, double from, double to,
+                const std::string& place = "") {
+    const auto us = [&](double t) { return static_cast<std::uint64_t>(1e6 * counter.at(t)); };
+    const RawChannel raw{"imu", "kinalign-node", "udp", "10.0.0.7:5005", std::to_string(id), place};
+    const std::string topic = "/imu/" + std::to_string(id);
+    const auto frames = channel(to_channel(topic + "/raw", raw));
+    McapChannel described = to_channel(topic + "/exchange", raw);
+    described.message_encoding = exchange_encoding;
+    const auto exchanges = channel(described);
+    std::optional<Exchange::Echo> echo;
+    std::uint32_t sequence = 0;
+    for (double t = from; t < to; t += 1.0 / 15.0) {
+      NodeFrame frame;
+      frame.origin = {id, boot_id, sequence++};
+      frame.n_tx_us = us(t);
+      frame.sample_count = 2;
+      for (std::size_t i = 0; i < 2; ++i) {
+        NodeSample& sample = frame.samples[i];
+        sample.age_us = i == 0 ? 40'000 : 7'000;
+        sample.has_acceleration = sample.has_angular_velocity = sample.gravity_included = true;
+        sample.acceleration = {static_cast<float>(t - 1e-6 * sample.age_us), 9.8F, 0.0F};
+      }
+      std::array<std::uint8_t, max_node_datagram> room{};
+      const auto bytes = encode(frame, nullptr, room);
+      const double arrival = t + way();
+      const NodeTime n{std::chrono::microseconds(frame.n_tx_us)};
+      add(exchanges, arrival, to_bytes({0, {boot_id, n, host(arrival), echo}}));
+      add(frames, arrival, std::string(text_of(bytes)));
+      const double sent = arrival + 0.0003;
+      echo = {NodeTime{std::chrono::microseconds(us(sent + way()))}, host(sent)};
+    }
+  }
+
+  /// Fifteen requests a second with a sample each, answered and confirmed; each `lost`th is lost.
+  void add_clockless_node(std::uint32_t id, double to, std::uint32_t lost) {
+    const RawChannel raw{"imu", "kinalign-node", "udp", "10.0.0.8:5005", std::to_string(id), ""};
+    const std::string topic = "/imu/" + std::to_string(id);
+    const auto datagrams = channel(to_channel(topic + "/raw", raw));
+    McapChannel described = to_channel(topic + "/exchange", raw);
+    described.message_encoding = exchange_encoding;
+    const auto exchanges = channel(described);
+    for (std::uint32_t k = 0; k < 15.0 * to; ++k) {
+      if (k % lost == lost - 1) continue;
+      const double t = k / 15.0, arrival = t + way(), answered = arrival + 0.0003;
+      const double confirmed = answered + way() + way();
+      std::array<std::uint8_t, max_node_datagram> room{};
+      ClocklessRequest request;
+      request.origin = {id, 1, k};
+      request.has_sample = true;
+      request.sample.has_acceleration = true;
+      request.sample.acceleration = {static_cast<float>(t), 9.8F, 0.0F};
+      const std::uint64_t number = (std::uint64_t{1} << 32U) + k;
+      add(exchanges, arrival, to_bytes(RecordedClockless{0, {number, host(arrival), {}, {}, 1}}));
+      add(datagrams, arrival, std::string(text_of(encode(request, nullptr, room))));
+      const ClocklessConfirm confirm{request.origin, {}};
+      const ClocklessExchange exchange{number, host(arrival), host(answered), host(confirmed), 1};
+      add(exchanges, confirmed, to_bytes(RecordedClockless{0, exchange}));
+      add(datagrams, confirmed, std::string(text_of(encode(confirm, nullptr, room))));
+    }
+  }
+
+  /// Lines as datagrams may have them: without an end.
+  enum class KinectForm { binary, bare_lines };
+  /// Thirty frames a second of one body, `least_s` and more from the sensor to the sender, whose
+  /// clock is another one; four pings a second.
+  void add_kinect(Counter sensor, Counter sender, double least_s, double to,
+                  KinectForm form = KinectForm::binary) {
+    const auto ticks = [](const Counter& c, double t) {
+      return static_cast<std::int64_t>(1e7 * c.at(t));
+    };
+    const RawChannel raw{"kinect", "kinect", "udp", "10.0.0.9:6007", "", ""};
+    const auto frames = channel(to_channel("/kinect/raw", raw));
+    McapChannel described = to_channel("/kinect/exchange", raw);
+    described.message_encoding = exchange_encoding;
+    const auto exchanges = channel(described);
+    for (std::uint32_t k = 0; k < 30.0 * to; ++k) {
+      const double t = k / 30.0, taken = t + least_s + way() / 4.0, sent = taken + 0.0001;
+      KinectFrame frame;
+      frame.origin = {2, 77, k};
+      frame.device_ticks = ticks(sensor, t);
+      frame.taken_ticks = ticks(sender, taken);
+      frame.sent_ticks = ticks(sender, sent);
+      KinectBody body;
+      body.id = 72057594037927936;
+      body.states.fill(2);
+      body.positions[0] = static_cast<float>(t);
+      frame.bodies = {body};
+      const auto bytes = encode_kinect_binary(frame);
+      std::string text(bytes.begin(), bytes.end());
+      if (form == KinectForm::bare_lines) {
+        text = encode_kinect_line(frame);
+        while (text.ends_with('\n')) text.pop_back();
+      }
+      add(frames, sent + way(), std::move(text));
+    }
+    std::optional<Exchange::Echo> echo;
+    for (double t = 0.01; t < to; t += 0.25) {
+      const double arrival = t + way(), answered = arrival + 0.0002;
+      const NodeTime n = kinect_sender_time(ticks(sender, t));
+      const std::uint32_t epoch = arrival >= sender.sleep_at_s ? 1 : 0;
+      if (t >= sender.sleep_at_s && t - 0.25 < sender.sleep_at_s) echo.reset();
+      add(exchanges, arrival, to_bytes({epoch, {77, n, host(arrival), echo}}));
+      echo = {kinect_sender_time(ticks(sender, answered + way())), host(answered)};
+    }
+  }
+
+  /// Whatever somebody sends to a device's port.
+  void add_datagram(const RawChannel& raw, double at, std::string bytes) {
+    add(channel(to_channel("/" + raw.stream + "/raw/" + raw.sender, raw)), at, std::move(bytes));
+  }
+
+  /// 125 frames a second whose root's x is the time, in metres; each `lost`th is lost.
+  void add_mocap(NoitomForm form, const std::string& transport, double to, std::uint32_t lost = 0,
+                 const std::string& sender = "10.0.0.3:7012") {
+    skeleton_ = noitom_chain("Spine3", false);
+    const auto frames =
+        channel(to_channel("/mocap/raw/" + sender, {"mocap", "noitom", transport, sender, "", ""}));
+    double last = 0.0;
+    for (std::uint32_t k = 0; k < 125.0 * to; ++k) {
+      if (lost > 0 && k % lost == lost - 1) continue;
+      const double t = k * 0.008;
+      NoitomFrame frame;
+      frame.form = form;
+      frame.name = "Char01";
+      if (form == NoitomForm::new_header) frame.frame_index = 4'294'967'000U + k;  // wraps
+      frame.values.assign(noitom_values(false, false), 0.0F);
+      frame.values[0] = static_cast<float>(100.0 * t);
+      std::vector<std::uint8_t> bytes;
+      REQUIRE(append_noitom(frame, bytes));
+      last = std::max(last, t + way() / 4.0);  // no overtaking
+      add(frames, last, {bytes.begin(), bytes.end()});
+    }
+  }
+
+  /// Nobody said whose the mocap is.
+  void forget_skeleton() { skeleton_.clear(); }
+
+  /// A SlimeVR tracker's packets of type 23, a hundred a second: an acceleration whose x, in steps
+  /// of 1/128 m/s2, is as near to the time as that goes. `forged`: the number of one in the middle
+  /// that isn't the tracker's.
+  void add_tracker(const std::string& host, double to, std::uint64_t forged = 0,
+                   std::uint8_t sensors = 1) {
+    const auto channel_id = channel(
+        to_channel("/slime/raw/" + host, {"slime", "slimevr", "udp", host + ":6969", "", ""}));
+    if (forged > 0) add(channel_id, to / 2.0, tracker_packet(forged, to / 2.0));
+    double last = 0.0;
+    for (std::uint32_t k = 0; k < 100.0 * to; ++k) {
+      const double t = 0.01 * k;
+      last = std::max(last, t + way());  // no overtaking
+      for (std::uint8_t sensor = 0; sensor < sensors; ++sensor) {
+        const std::uint64_t number = std::uint64_t{k} * sensors + sensor + 1;
+        add(channel_id, last, tracker_packet(number, t, sensor));
+      }
+    }
+  }
+
+  /// Both clocks of the machine once a second, the wall clock set by `step_s` at `at`.
+  void add_clock(double to, double at, double step_s) {
+    McapChannel described;
+    described.topic = host_clock_topic;
+    described.message_encoding = "json";
+    const auto pairs = channel(described);
+    for (double t = 0.0; t < to; t += 1.0) {
+      const Duration moved{std::llround(1e9 * (t >= at ? step_s : 0.0))};
+      add(pairs, t, to_json(ClockPair{host(t), utc(t) + moved}));
+    }
+  }
+
+  void add_mark(double t, const Mark& mark) {
+    McapChannel described;
+    described.topic = marks_topic;
+    described.message_encoding = "json";
+    if (!marks_) marks_ = channel(described);
+    add(*marks_, t, to_json(RecordedMark{mark, "call", "10.0.0.9:40000"}));
+  }
+
+  static std::string tracker_packet(std::uint64_t number, double t, std::uint8_t sensor = 0) {
+    std::string bytes;
+    const auto put = [&bytes](std::uint64_t value, int size) {
+      for (int i = size - 1; i >= 0; --i) bytes += static_cast<char>(value >> 8 * i);
+    };
+    put(23, 4);
+    put(number, 8);
+    put(sensor, 1);
+    for (const int part : {0, 0, 0, 32767}) put(static_cast<std::uint64_t>(part), 2);
+    for (const auto a : {std::llround(128.0 * t), 0LL, 0LL}) put(static_cast<std::uint64_t>(a), 2);
+    return bytes;
+  }
+
+  /// Which of a recording's files: its messages from `from` to `to`.
+  struct Part {
+    int number = 1;
+    double from = -1e9, to = 1e9;
+    std::string first = "take.mcap";
+    McapCompression compression = McapCompression::zstd;
+  };
+  std::string file(bool closed = true) { return file(Part{}, closed); }
+  /// The file, its messages in the order of arrival, half a second in a chunk.
+  std::string file(const Part& part, bool closed = true) {
+    std::stable_sort(messages_.begin(), messages_.end(),
+                     [](const Message& a, const Message& b) { return a.arrival < b.arrival; });
+    MemoryFile file;
+    McapWriter writer(file.store());
+    REQUIRE(writer.begin({"kinalign", "test"}));
+    REQUIRE(writer.write(to_metadata(
+        {"03", "S1A02", "lab", part.first, part.number, {host(0.0), utc_time(utc_begin)}})));
+    if (!skeleton_.empty()) REQUIRE(writer.write(McapAttachment{0, 0, "mocap.bvh", "", skeleton_}));
+    std::map<std::uint16_t, std::uint32_t> numbers;
+    for (auto message = messages_.begin(); message != messages_.end();) {
+      const double begin = message->arrival;
+      McapChunkContent content;
+      for (; message != messages_.end() && message->arrival < begin + 0.5; ++message) {
+        const std::uint16_t id = message->channel;
+        const std::uint32_t number = numbers[id]++;
+        if (message->arrival < part.from || message->arrival >= part.to) continue;
+        if (!content.messages().contains(id)) define(channels_[id - 1U], content);
+        const auto log =
+            static_cast<std::uint64_t>(utc_begin + std::llround(1e9 * message->arrival));
+        content.add(McapMessage{id, number, log, log, message->data});
+      }
+      if (!content.empty()) REQUIRE(writer.write(store(content, part.compression)));
+    }
+    const bool is_last = messages_.empty() || part.to > messages_.back().arrival;
+    if (closed && is_last) REQUIRE(writer.write(to_metadata(RecordingEnd{dropped})));
+    if (closed) REQUIRE(writer.finish());
+    return file.bytes;
+  }
+
+  /// Sixty samples a second of Xsens MVN's: poses and, by turns, trackers whose first
+  /// acceleration's x is the time.
+  void add_xsens(double to) {
+    const auto datagrams =
+        channel(to_channel("/xsens/raw", {"xsens", "xsens", "udp", "10.0.0.4:9763", "", ""}));
+    double last = 0.0;
+    for (std::uint32_t k = 0; k < 60.0 * to; ++k) {
+      const double t = k / 60.0;
+      XsensSample trackers = xsens_trackers(true, k);
+      std::get<XsensTrackers>(trackers.body).trackers[0].raw->acceleration[0] =
+          static_cast<float>(t);
+      last = std::max(last, t + way() / 4.0);
+      for (const XsensSample& sample : {xsens_pose(23, k), trackers}) {
+        const Bytes bytes = bytes_of(sample);
+        add(datagrams, last, {bytes.begin(), bytes.end()});
+      }
+    }
+  }
+
+  /// Each `each`th message, and the `before` before it, arrives `by_s` later than it was to,
+  /// overtaken by those behind it.
+  void hold_back(std::size_t each, double by_s, std::size_t before = 0) {
+    for (std::size_t i = 0; i < messages_.size(); ++i) {
+      if (i % each + before >= each - 1) messages_[i].arrival += by_s;
+    }
+  }
+
+  /// Messages come by twos in one, when the later one was to come.
+  void join_pairs() {
+    std::vector<Message> joined;
+    for (std::size_t i = 1; i < messages_.size(); i += 2) {
+      joined.push_back(messages_[i]);
+      joined.back().data = messages_[i - 1].data + messages_[i].data;
+    }
+    messages_ = std::move(joined);
+  }
+
+  /// Each message comes as two at once.
+  void cut_in_two() {
+    std::vector<Message> cut;
+    for (const Message& one : messages_) {
+      const std::size_t half = one.data.size() / 2;
+      cut.push_back({one.channel, one.arrival, one.data.substr(0, half)});
+      cut.push_back({one.channel, one.arrival, one.data.substr(half)});
+    }
+    messages_ = std::move(cut);
+  }
+
+  static HostTime host(double t) { return HostTime{Duration{host_begin + std::llround(1e9 * t)}}; }
+  /// When a moment of the recording was.
+  static Time utc(double t) { return utc_time(utc_begin + std::llround(1e9 * t)); }
+
+ private:
+  struct Message {
+    std::uint16_t channel = 0;
+    double arrival = 0.0;
+    std::string data;
+  };
+  std::uint16_t channel(McapChannel described) {
+    described.id = static_cast<std::uint16_t>(channels_.size() + 1);
+    if (described.message_encoding == "json") described.schema_id = described.id;
+    channels_.push_back(std::move(described));
+    return channels_.back().id;
+  }
+  static void define(const McapChannel& channel, McapChunkContent& content) {
+    if (channel.schema_id != 0) content.add(McapSchema{channel.schema_id, "any", "jsonschema", ""});
+    content.add(channel);
+  }
+  void add(std::uint16_t channel, double arrival, std::string data) {
+    messages_.push_back({channel, arrival, std::move(data)});
+  }
+  /// Of a packet: 1.5 ms and more, seldom much more.
+  double way() { return 0.0015 + std::exponential_distribution<double>(250.0)(random_); }
+
+  std::mt19937_64 random_;
+  std::vector<McapChannel> channels_;
+  std::vector<Message> messages_;
+  std::optional<std::uint16_t> marks_;  // their channel
+  std::string skeleton_;
+};
+
+}  // namespace kinalign
