@@ -3,8 +3,8 @@
 // in their limits, rotations unit, the same by whatever pieces the file is read in.
 // Input: protocol, then messages: kind (1 an exchange), milliseconds since the one before, length
 // in two bytes, payload.
-#include "kinalign/io/recording_reader.h"
 #include "kinalign/mcap/writer.h"
+#include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/wire/clockless.h"
 #include "kinalign/wire/little_endian_reader.h"
 #include "kinalign/wire/node_frame.h"

@@ -3,8 +3,8 @@
 // again as the same; poses and nodes made of them hold numbers alone.
 #include "fuzz/pieces.h"
 
-#include "kinalign/io/xsens_pose.h"
 #include "kinalign/protocols/xsens/stream.h"
+#include "kinalign/recording/streams/xsens_pose.h"
 
 #include <cstdlib>
 

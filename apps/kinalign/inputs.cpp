@@ -9,7 +9,7 @@
 #include "kinalign/core/files.h"
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/recording_reader.h"
+#include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/take/remembered_path.h"
 
 #include <algorithm>

@@ -13,7 +13,7 @@
 #include "kinalign/formats/table/layout.h"
 #include "kinalign/formats/table/table_reader.h"
 #include "kinalign/formats/unknown_file.h"
-#include "kinalign/io/recording_reader.h"
+#include "kinalign/recording/streams/device_reader.h"
 
 #include <algorithm>
 #include <array>

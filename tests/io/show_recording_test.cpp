@@ -6,11 +6,11 @@
 #include "tests/recording/recorded_lab.h"
 
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/recording_reader.h"
 #include "kinalign/io/show_xdf.h"
 #include "kinalign/io/shown_rows.h"
 #include "kinalign/motion/kinect_joints.h"
 #include "kinalign/recording/parts.h"
+#include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey_parts.h"
 
 #include <doctest/doctest.h>

@@ -5,9 +5,9 @@
 #include "tests/recording/recorded_lab.h"
 
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/recording_reader.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/recover.h"
+#include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey_parts.h"
 
 #include <doctest/doctest.h>

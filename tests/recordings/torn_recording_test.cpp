@@ -5,7 +5,7 @@
 
 #include "kinalign/align/align.h"
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/recording_reader.h"
+#include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey_parts.h"
 
 #include <doctest/doctest.h>

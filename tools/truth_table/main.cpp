@@ -9,9 +9,9 @@
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/io/open_recording.h"
-#include "kinalign/io/recording_reader.h"
 #include "kinalign/motion/interpolation/clip_motion.h"
 #include "kinalign/recording/parts.h"
+#include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey_parts.h"
 #include "kinalign/simulate/rehearsal/judge_recording.h"
 

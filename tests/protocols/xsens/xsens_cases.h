@@ -4,8 +4,8 @@
 
 #include "tests/formats/joined_bytes.h"
 
-#include "kinalign/io/xsens_pose.h"
 #include "kinalign/protocols/xsens/stream.h"
+#include "kinalign/recording/streams/xsens_pose.h"
 
 #include <doctest/doctest.h>
 

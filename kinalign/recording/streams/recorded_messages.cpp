@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/recorded_messages.h"
+#include "kinalign/recording/streams/recorded_messages.h"
 
 #include "kinalign/recording/survey.h"
 

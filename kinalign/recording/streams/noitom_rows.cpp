@@ -2,10 +2,10 @@
 // Noitom's frames: poses of the skeleton that the recording has a header of, stamped by the number
 // that the source gives its frames; over a connection, which loses none, by their count; in
 // datagrams without a number by arrival.
-#include "kinalign/io/device_rows.h"
-#include "kinalign/io/noitom_pose.h"
-#include "kinalign/io/numbered_frames.h"
 #include "kinalign/protocols/noitom/receiver.h"
+#include "kinalign/recording/streams/device_rows.h"
+#include "kinalign/recording/streams/noitom_pose.h"
+#include "kinalign/recording/streams/numbered_frames.h"
 
 namespace kinalign {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/recording_reader.h"
+#include "kinalign/recording/streams/device_reader.h"
 
 #include <algorithm>
 #include <bit>

@@ -2,11 +2,11 @@
 // A Kinect's frames: the sensor's ticks, put on UTC in two steps, since nothing answers on its
 // clock: the sender had the frame in its hands at `taken`, and pings put the sender's clock on the
 // host's. Stamps are late by the least time from the sensor to the sender.
-#include "kinalign/io/device_rows.h"
-#include "kinalign/io/kinect_person.h"
-#include "kinalign/io/rows_in_order.h"
 #include "kinalign/protocols/kinect/frames.h"
 #include "kinalign/protocols/kinect/stream.h"
+#include "kinalign/recording/streams/device_rows.h"
+#include "kinalign/recording/streams/kinect_person.h"
+#include "kinalign/recording/streams/rows_in_order.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/host_epochs.h"
+#include "kinalign/recording/streams/host_epochs.h"
 
 #include <algorithm>
 #include <iterator>

@@ -3,9 +3,9 @@
 // whole or torn.
 #pragma once
 
-#include "kinalign/io/sender_roll.h"
 #include "kinalign/mcap/reader.h"
 #include "kinalign/recording/parts.h"
+#include "kinalign/recording/streams/sender_roll.h"
 #include "kinalign/take/recording.h"
 
 #include <functional>

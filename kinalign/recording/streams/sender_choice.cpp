@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/sender_choice.h"
+#include "kinalign/recording/streams/sender_choice.h"
 
 #include "kinalign/documents/manifest_toml.h"
-#include "kinalign/io/recording_reader.h"
+#include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey_parts.h"
 
 #include <fmt/format.h>

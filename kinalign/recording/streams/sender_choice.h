@@ -4,8 +4,8 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/device_rows.h"
-#include "kinalign/io/sender_roll.h"
+#include "kinalign/recording/streams/device_rows.h"
+#include "kinalign/recording/streams/sender_roll.h"
 
 #include <string>
 #include <vector>

@@ -4,7 +4,7 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/io/device_rows.h"
+#include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/recording/survey.h"
 #include "kinalign/take/manifest.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/recording_reader.h"
+#include "kinalign/recording/streams/device_reader.h"
 
-#include "tests/io/recorded_streams.h"
+#include "tests/recording/streams/recorded_streams.h"
 
 #include <doctest/doctest.h>
 

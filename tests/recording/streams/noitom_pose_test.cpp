@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/noitom_pose.h"
+#include "kinalign/recording/streams/noitom_pose.h"
 
 #include "tests/protocols/noitom/noitom_cases.h"
 #include "tests/recording/recorded_lab.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses of Xsens MVN's stream, or its trackers' inertial samples, stamped by its sample counter.
-#include "kinalign/io/device_rows.h"
-#include "kinalign/io/numbered_frames.h"
-#include "kinalign/io/xsens_pose.h"
 #include "kinalign/protocols/xsens/stream.h"
+#include "kinalign/recording/streams/device_rows.h"
+#include "kinalign/recording/streams/numbered_frames.h"
+#include "kinalign/recording/streams/xsens_pose.h"
 
 namespace kinalign {
 

@@ -5,9 +5,9 @@
 
 #include "kinalign/clock/offline/device_clock.h"
 #include "kinalign/formats/reader.h"
-#include "kinalign/io/host_epochs.h"
-#include "kinalign/io/recorded_messages.h"
-#include "kinalign/io/rows_in_order.h"
+#include "kinalign/recording/streams/host_epochs.h"
+#include "kinalign/recording/streams/recorded_messages.h"
+#include "kinalign/recording/streams/rows_in_order.h"
 #include "kinalign/take/manifest.h"
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/counted_clock.h"
+#include "kinalign/recording/streams/counted_clock.h"
 
 #include <doctest/doctest.h>
 

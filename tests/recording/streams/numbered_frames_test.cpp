@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/numbered_frames.h"
+#include "kinalign/recording/streams/numbered_frames.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/xsens_pose.h"
+#include "kinalign/recording/streams/xsens_pose.h"
 
 #include "tests/protocols/xsens/xsens_cases.h"
 #include "tests/seeds.h"

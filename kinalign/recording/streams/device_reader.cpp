@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/recording_reader.h"
+#include "kinalign/recording/streams/device_reader.h"
 
 #include "kinalign/formats/bvh/head.h"
-#include "kinalign/io/sender_choice.h"
 #include "kinalign/recording/beside.h"
+#include "kinalign/recording/streams/sender_choice.h"
 
 #include <array>
 #include <charconv>

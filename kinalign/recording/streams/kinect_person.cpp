@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/kinect_person.h"
+#include "kinalign/recording/streams/kinect_person.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which device of a recording is read, and what is said of the file.
-#include "tests/io/recorded_streams.h"
+#include "tests/recording/streams/recorded_streams.h"
 
 #include "kinalign/documents/manifest_toml.h"
-#include "kinalign/io/recording_reader.h"
 #include "kinalign/recording/recover.h"
+#include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey.h"
 
 #include <doctest/doctest.h>

@@ -2,9 +2,9 @@
 // Rotations of one sensor of a SlimeVR tracker, each with the acceleration that came with it or
 // just before. Their packets carry no time: stamps are arrivals.
 #include "kinalign/formats/imu_converter.h"
-#include "kinalign/io/device_rows.h"
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/protocols/slimevr/packet.h"
+#include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <fmt/format.h>

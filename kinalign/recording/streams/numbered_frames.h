@@ -3,11 +3,11 @@
 // of nodes without a counter the clock, node_rows.cpp.
 #pragma once
 
-#include "kinalign/io/counted_clock.h"
-#include "kinalign/io/device_rows.h"
-#include "kinalign/io/recorded_messages.h"
-#include "kinalign/io/rows_in_order.h"
 #include "kinalign/protocols/sequence_count.h"
+#include "kinalign/recording/streams/counted_clock.h"
+#include "kinalign/recording/streams/device_rows.h"
+#include "kinalign/recording/streams/recorded_messages.h"
+#include "kinalign/recording/streams/rows_in_order.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>

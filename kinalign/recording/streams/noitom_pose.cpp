@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/noitom_pose.h"
+#include "kinalign/recording/streams/noitom_pose.h"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 // exchanges that the recorder made out of frames and replies. Of a node without a counter the
 // number of its request is the counter.
 #include "kinalign/formats/imu_converter.h"
-#include "kinalign/io/device_rows.h"
-#include "kinalign/io/numbered_frames.h"
-#include "kinalign/io/rows_in_order.h"
+#include "kinalign/recording/streams/device_rows.h"
+#include "kinalign/recording/streams/numbered_frames.h"
+#include "kinalign/recording/streams/rows_in_order.h"
 #include "kinalign/wire/clockless.h"
 #include "kinalign/wire/little_endian_reader.h"
 #include "kinalign/wire/node_frame.h"

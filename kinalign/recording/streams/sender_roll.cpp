@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/io/sender_roll.h"
+#include "kinalign/recording/streams/sender_roll.h"
 
 #include <algorithm>
 
