@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whatever an answer says, the values are ones that NTP can say.
-#include "kinalign/capture/clock_state.h"
+#include "kinalign/capture/ntp/clock_state.h"
 
 #include <cstdlib>
 

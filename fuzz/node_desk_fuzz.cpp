@@ -4,7 +4,7 @@
 // bytes than were sent.
 #include "fuzz/node_datagrams.h"
 
-#include "kinalign/capture/node_desk.h"
+#include "kinalign/capture/nodes/node_desk.h"
 #include "kinalign/wire/bytes.h"
 #include "kinalign/wire/node_reply.h"
 

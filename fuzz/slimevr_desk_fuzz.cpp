@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two hosts, one tracker that is never silent: what becomes of it is the same whether or not others
 // send what they like in between, in its name too. No address gets more bytes than it sent.
-#include "kinalign/capture/slimevr_desk.h"
+#include "kinalign/capture/recorder/slimevr_desk.h"
 #include "kinalign/wire/bytes.h"
 
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/key_advice.h"
 
-#include "kinalign/capture/node_keys.h"
+#include "kinalign/capture/nodes/node_keys.h"
 
 #include <cerrno>
 #include <cstring>

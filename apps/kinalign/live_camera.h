@@ -5,7 +5,7 @@
 
 #include "apps/kinalign/live_socket.h"
 
-#include "kinalign/capture/host_clock.h"
+#include "kinalign/capture/net/host_clock.h"
 #include "kinalign/protocols/kinect/message.h"
 #include "kinalign/simulate/random.h"
 #include "kinalign/simulate/rehearsal/rehearsal.h"

@@ -10,7 +10,7 @@
 #include "firmware/node/clockless_node.h"
 #include "firmware/node/node.h"
 
-#include "kinalign/capture/host_clock.h"
+#include "kinalign/capture/net/host_clock.h"
 #include "kinalign/simulate/nodes/inertial_nodes.h"
 
 #include <variant>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/live_socket.h"
 
-#include "kinalign/capture/socket_address.h"
+#include "kinalign/capture/net/socket_address.h"
 
 #include <sys/socket.h>
 #include <unistd.h>

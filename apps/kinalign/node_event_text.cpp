@@ -4,7 +4,7 @@
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/node_text.h"
 
-#include "kinalign/capture/node_table.h"
+#include "kinalign/capture/nodes/node_table.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -5,8 +5,8 @@
 
 #include "apps/kinalign/node_names.h"
 
-#include "kinalign/capture/host_clock.h"
-#include "kinalign/capture/node_event.h"
+#include "kinalign/capture/net/host_clock.h"
+#include "kinalign/capture/nodes/node_event.h"
 #include "kinalign/clock/clock_event.h"
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 #include "apps/kinalign/clock_news.h"
 #include "apps/kinalign/console.h"
 
-#include "kinalign/capture/node_receiver.h"
+#include "kinalign/capture/nodes/node_receiver.h"
 
 #include <chrono>
 #include <optional>

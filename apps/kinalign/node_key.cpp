@@ -3,7 +3,7 @@
 #include "apps/kinalign/key_advice.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/capture/node_keys.h"
+#include "kinalign/capture/nodes/node_keys.h"
 
 namespace kinalign {
 

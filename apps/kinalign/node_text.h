@@ -4,7 +4,7 @@
 
 #include "apps/kinalign/node_names.h"
 
-#include "kinalign/capture/node_receiver.h"
+#include "kinalign/capture/nodes/node_receiver.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/port_advice.h"
 
-#include "kinalign/capture/udp_socket.h"
+#include "kinalign/capture/net/udp_socket.h"
 
 #include <fmt/format.h>
 

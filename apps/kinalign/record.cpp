@@ -7,7 +7,7 @@
 #include "apps/kinalign/take_path.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/capture/recording_session.h"
+#include "kinalign/capture/recorder/recording_session.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -10,7 +10,7 @@
 #include "apps/kinalign/node_text.h"
 #include "apps/kinalign/summary.h"
 
-#include "kinalign/capture/recording_session.h"
+#include "kinalign/capture/recorder/recording_session.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

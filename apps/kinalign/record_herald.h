@@ -8,8 +8,8 @@
 #include "apps/kinalign/record_text.h"
 #include "apps/kinalign/silence_news.h"
 
-#include "kinalign/capture/host_clock.h"
-#include "kinalign/capture/session_take.h"
+#include "kinalign/capture/net/host_clock.h"
+#include "kinalign/capture/recorder/session_take.h"
 
 #include <memory>
 #include <optional>

@@ -6,7 +6,7 @@
 #include "apps/kinalign/settings.h"
 #include "apps/kinalign/verb.h"
 
-#include "kinalign/capture/node_keys.h"
+#include "kinalign/capture/nodes/node_keys.h"
 #include "kinalign/documents/lab_toml.h"
 #include "kinalign/documents/toml_entries.h"
 #include "kinalign/formats/bvh/head.h"

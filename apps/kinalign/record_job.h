@@ -5,7 +5,7 @@
 #include "apps/kinalign/console.h"
 #include "apps/kinalign/lab_advice.h"
 
-#include "kinalign/capture/recording_session.h"
+#include "kinalign/capture/recorder/recording_session.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record_stage.h"
 
-#include "kinalign/capture/recording_session.h"
+#include "kinalign/capture/recorder/recording_session.h"
 
 #include <utility>
 

@@ -2,8 +2,8 @@
 // What `record` says of a lab: a table for people, members of JSON objects for programs. Pure.
 #pragma once
 
-#include "kinalign/capture/node_status.h"
-#include "kinalign/capture/stream_status.h"
+#include "kinalign/capture/nodes/node_status.h"
+#include "kinalign/capture/recorder/stream_status.h"
 #include "kinalign/take/lab.h"
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/capture/time_server.h"
+#include "kinalign/capture/ntp/time_server.h"
 
 #include "apps/kinalign/key_advice.h"
 #include "apps/kinalign/node_herald.h"
@@ -8,9 +8,9 @@
 #include "apps/kinalign/time_server_text.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/capture/node_keys.h"
-#include "kinalign/capture/own_addresses.h"
-#include "kinalign/capture/udp_socket.h"
+#include "kinalign/capture/net/own_addresses.h"
+#include "kinalign/capture/net/udp_socket.h"
+#include "kinalign/capture/nodes/node_keys.h"
 
 #include <fmt/format.h>
 

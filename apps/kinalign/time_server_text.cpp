@@ -4,8 +4,8 @@
 #include "apps/kinalign/json_text.h"
 #include "apps/kinalign/summary.h"
 
-#include "kinalign/capture/clock_state.h"
-#include "kinalign/capture/udp_socket.h"
+#include "kinalign/capture/net/udp_socket.h"
+#include "kinalign/capture/ntp/clock_state.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // What the time server says of itself: lines for people, members of JSON objects for programs.
 #pragma once
 
-#include "kinalign/capture/ntp_responder.h"
+#include "kinalign/capture/ntp/ntp_responder.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/time_server_text.h"
 
-#include "kinalign/capture/clock_state.h"
+#include "kinalign/capture/ntp/clock_state.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>

@@ -6,7 +6,7 @@
 #include "tests/folder.h"
 #include "tests/mcap/mcap_files.h"
 
-#include "kinalign/capture/recording_session.h"
+#include "kinalign/capture/recorder/recording_session.h"
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 // and takes replies. Time is an argument.
 #pragma once
 
-#include "kinalign/capture/node_desk.h"
+#include "kinalign/capture/nodes/node_desk.h"
 #include "kinalign/wire/node_reply.h"
 
 #include <optional>

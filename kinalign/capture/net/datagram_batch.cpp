@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/net/datagram_batch.h"
+
+#include "kinalign/capture/net/kernel_stamp.h"
+
+#include <arpa/inet.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace kinalign {
+
+namespace {
+
+template <class T>
+T read_as(const cmsghdr& control) {
+  T value{};
+  std::memcpy(&value, CMSG_DATA(&control), sizeof value);
+  return value;
+}
+
+HostAddress bytes_of(const in6_addr& address) {
+  HostAddress bytes{};
+  std::memcpy(bytes.data(), &address, bytes.size());
+  return bytes;
+}
+
+HostAddress bytes_of(const in_addr& address) {
+  std::array<std::uint8_t, 4> bytes{};
+  std::memcpy(bytes.data(), &address, bytes.size());
+  return mapped_ipv4(bytes);
+}
+
+void read_control(const cmsghdr& control, Datagram& datagram) {
+  if (const auto stamp = kernel_stamp(control)) {
+    datagram.received = stamp;
+  } else if (control.cmsg_level == IPPROTO_IP && control.cmsg_type == IP_PKTINFO) {
+    const auto info = read_as<in_pktinfo>(control);
+    datagram.to = bytes_of(info.ipi_addr);
+    datagram.unicast = info.ipi_addr.s_addr == info.ipi_spec_dst.s_addr;
+  } else if (control.cmsg_level == IPPROTO_IPV6 && control.cmsg_type == IPV6_PKTINFO) {
+    const auto info = read_as<in6_pktinfo>(control);
+    datagram.to = bytes_of(info.ipi6_addr);
+    datagram.unicast = datagram.to[0] != 0xff;
+  }
+}
+
+/// The address that was asked, as the one to answer from; returns the bytes of `control` used.
+std::size_t put_source(const Datagram& asked, std::uint32_t scope,
+                       std::span<std::uint8_t> control) {
+  const bool four = is_ipv4(asked.to);
+  const std::size_t size = four ? sizeof(in_pktinfo) : sizeof(in6_pktinfo);
+  cmsghdr head{};
+  head.cmsg_level = four ? IPPROTO_IP : IPPROTO_IPV6;
+  head.cmsg_type = four ? IP_PKTINFO : IPV6_PKTINFO;
+  head.cmsg_len = CMSG_LEN(size);
+  std::memcpy(control.data(), &head, sizeof head);
+  std::uint8_t* at = control.data() + CMSG_LEN(0);
+  if (four) {
+    in_pktinfo info{};
+    std::memcpy(&info.ipi_spec_dst, asked.to.data() + 12, 4);
+    std::memcpy(at, &info, sizeof info);
+  } else {
+    in6_pktinfo info{};
+    std::memcpy(&info.ipi6_addr, asked.to.data(), asked.to.size());
+    info.ipi6_ifindex = scope;
+    std::memcpy(at, &info, sizeof info);
+  }
+  return CMSG_SPACE(size);
+}
+
+/// Where `asked` came from, as the system has it; its length is returned.
+socklen_t put_peer(const Datagram& asked, sockaddr_in6& peer) {
+  if (!is_ipv4(asked.from)) {
+    peer.sin6_family = AF_INET6;
+    peer.sin6_port = htons(asked.from_port);
+    peer.sin6_scope_id = asked.from_scope;
+    std::memcpy(&peer.sin6_addr, asked.from.data(), asked.from.size());
+    return sizeof peer;
+  }
+  sockaddr_in four{};
+  four.sin_family = AF_INET;
+  four.sin_port = htons(asked.from_port);
+  std::memcpy(&four.sin_addr, asked.from.data() + 12, 4);
+  std::memcpy(&peer, &four, sizeof four);
+  return sizeof four;
+}
+
+}  // namespace
+
+bool send_back(int fd, const Datagram& asked, std::span<const std::uint8_t> bytes) {
+  if (asked.from_port == 0) return false;
+  sockaddr_in6 peer{};
+  alignas(cmsghdr) std::array<std::uint8_t, CMSG_SPACE(sizeof(in6_pktinfo))> control{};
+  // sendmsg(2) writes to nothing that it is pointed to.
+  iovec out{const_cast<std::uint8_t*>(bytes.data()), bytes.size()};
+  msghdr head{};
+  head.msg_name = &peer;
+  head.msg_namelen = put_peer(asked, peer);
+  head.msg_iov = &out;
+  head.msg_iovlen = 1;
+  if (asked.unicast) {
+    head.msg_control = control.data();
+    head.msg_controllen = put_source(asked, asked.from_scope, control);
+  }
+  return ::sendmsg(fd, &head, MSG_DONTWAIT) == static_cast<ssize_t>(bytes.size());
+}
+
+DatagramBatch::DatagramBatch(std::size_t bytes) : slots_(most), in_(most), out_(most) {
+  unsent_.reserve(most);
+  for (std::size_t i = 0; i < most; ++i) {
+    Slot& slot = slots_[i];
+    slot.bytes.resize(bytes);
+    slot.in = {slot.bytes.data(), slot.bytes.size()};
+    in_[i].msg_hdr.msg_iov = &slot.in;
+    in_[i].msg_hdr.msg_iovlen = 1;
+    in_[i].msg_hdr.msg_name = &slot.from;
+    in_[i].msg_hdr.msg_control = slot.control.data();
+  }
+}
+
+std::size_t DatagramBatch::receive(int fd) {
+  queue_length_ = 0;
+  for (mmsghdr& message : in_) {  // as the last batch left them
+    message.msg_hdr.msg_namelen = sizeof(sockaddr_in6);
+    message.msg_hdr.msg_controllen = control_room;
+  }
+  const int got = ::recvmmsg(fd, in_.data(), most, MSG_DONTWAIT, nullptr);
+  return got < 0 ? 0 : static_cast<std::size_t>(got);
+}
+
+Datagram DatagramBatch::at(std::size_t i) const {
+  const Slot& slot = slots_[i];
+  const mmsghdr& message = in_[i];
+  Datagram datagram;
+  datagram.bytes = std::span(slot.bytes).first(message.msg_len);
+  datagram.cut = (message.msg_hdr.msg_flags & MSG_TRUNC) != 0;
+  datagram.from_port = ntohs(slot.from.sin6_port);  // where sin_port stands too
+  if (slot.from.sin6_family == AF_INET6) {
+    datagram.from = bytes_of(slot.from.sin6_addr);
+    datagram.from_scope = slot.from.sin6_scope_id;
+  } else {
+    sockaddr_in four{};
+    std::memcpy(&four, &slot.from, sizeof four);
+    datagram.from = bytes_of(four.sin_addr);
+  }
+  msghdr head = message.msg_hdr;  // CMSG_NXTHDR wants one that it could write to
+  for (cmsghdr* control = CMSG_FIRSTHDR(&head); control != nullptr;
+       control = CMSG_NXTHDR(&head, control)) {
+    read_control(*control, datagram);
+  }
+  return datagram;
+}
+
+void DatagramBatch::queue(std::size_t i, const Datagram& asked, std::size_t size) {
+  Slot& slot = slots_[i];
+  const bool six = slot.from.sin6_family == AF_INET6;
+  const std::uint32_t scope = six ? slot.from.sin6_scope_id : 0;
+  slot.out = {slot.answer.data(), size};
+  msghdr head{};
+  head.msg_name = &slot.from;
+  head.msg_namelen = in_[i].msg_hdr.msg_namelen;
+  head.msg_iov = &slot.out;
+  head.msg_iovlen = 1;
+  head.msg_control = slot.answer_control.data();
+  head.msg_controllen = put_source(asked, scope, slot.answer_control);
+  queued_[queue_length_] = i;
+  out_[queue_length_++].msg_hdr = head;
+}
+
+std::span<const std::size_t> DatagramBatch::send(int fd) {
+  unsent_.clear();
+  for (std::size_t at = 0; at < queue_length_;) {
+    const auto left = static_cast<unsigned>(queue_length_ - at);
+    const int sent = ::sendmmsg(fd, &out_[at], left, MSG_DONTWAIT);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) unsent_.push_back(queued_[at]);  // no route, a full buffer; on with the next
+    at += sent < 0 ? 1 : static_cast<std::size_t>(sent);
+  }
+  queue_length_ = 0;
+  return unsent_;
+}
+
+}  // namespace kinalign

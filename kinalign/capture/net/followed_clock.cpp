@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/net/followed_clock.h"
+
+#include "kinalign/clock/live/live_clock.h"
+#include "kinalign/recording/format.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+SenderClock sender_clock(const ClockStamp& stamp, NodeTime n, double drift) {
+  SenderClock clock{stamp.time.time_since_epoch() - n.time_since_epoch(), std::nullopt, drift};
+  if (stamp.certainty == Certainty::certified) {
+    clock.half_interval = (*stamp.latest - *stamp.earliest) / 2;
+  }
+  return clock;
+}
+
+FollowedClock::FollowedClock() : clock_(std::make_unique<LiveClock>()) {}
+FollowedClock::FollowedClock(FollowedClock&&) noexcept = default;
+FollowedClock& FollowedClock::operator=(FollowedClock&&) noexcept = default;
+FollowedClock::~FollowedClock() = default;
+
+void FollowedClock::push(Exchange exchange, std::uint32_t epoch) {
+  exchange.boot = life_of(exchange.boot, epoch);
+  // In the order in which they came, by microseconds of rounding: later is as true.
+  heard_ = exchange.h_rx = std::max(heard_, exchange.h_rx);
+  clock_->push(exchange);
+  (void)clock_->take_events();  // a screen has no place for them; align finds them again
+  now_.reset();
+  const auto stamp = clock_->host_from_node(exchange.boot, exchange.n_tx);
+  if (!stamp) return;
+  const ClockPiece* piece = clock_->piece();
+  now_ = sender_clock(*stamp, exchange.n_tx, piece ? piece->estimate().slope().mean : 0.0);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/net/host_clock.h"
+
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <limits>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr Duration narrow = std::chrono::microseconds(2);  // a bracket that is not read again
+constexpr Duration reading_noise = std::chrono::microseconds(1);
+constexpr Duration shortest_sleep = std::chrono::milliseconds(10);
+
+Duration read_clock(clockid_t clock) {
+  timespec now{};
+  ::clock_gettime(clock, &now);
+  return std::chrono::seconds(now.tv_sec) + Duration{now.tv_nsec};
+}
+
+Duration share(Duration of, double part) {
+  return Duration{static_cast<std::int64_t>(static_cast<double>(of.count()) * part)};
+}
+
+/// raw - utc, least and greatest.
+std::pair<Duration, Duration> offsets(const ClockBracket& b) {
+  const Duration utc = b.utc.time_since_epoch();
+  return {b.before.time_since_epoch() - utc, b.after.time_since_epoch() - utc};
+}
+
+}  // namespace
+
+HostTime SystemClocks::raw() { return HostTime{read_clock(CLOCK_MONOTONIC_RAW)}; }
+Time SystemClocks::utc() { return Time{read_clock(CLOCK_REALTIME)}; }
+
+Duration SystemClocks::asleep() {
+  Duration least = Duration::max();
+  for (int i = 0; i < 3; ++i) {  // an interruption between two readings looks like sleep
+    const Duration running = read_clock(CLOCK_MONOTONIC);
+    least = std::min(least, read_clock(CLOCK_BOOTTIME) - running);
+  }
+  return least;
+}
+
+SystemClocks::~SystemClocks() {
+  if (timer_ && *timer_ >= 0) ::close(*timer_);
+}
+
+bool WallWatch::must_ask(const Look& look) {
+  constexpr Duration seldom = std::chrono::milliseconds(100);
+  constexpr Duration narrow_look = Duration{500};
+  if (ran_ && look.at - ran_->at < seldom && look.most - look.least <= narrow_look) {
+    const Look both{ran_->at, std::max(ran_->least, look.least), std::min(ran_->most, look.most)};
+    if (both.least <= both.most) {
+      ran_ = both;
+      return false;
+    }
+  }
+  ran_ = look;
+  return true;
+}
+
+bool SystemClocks::wall_was_set() {
+  if (!timer_) {
+    timer_ = ::timerfd_create(CLOCK_REALTIME, TFD_NONBLOCK | TFD_CLOEXEC);
+    itimerspec never{};
+    never.it_value.tv_sec = std::numeric_limits<std::int32_t>::max();  // in 2038 it reads as a tick
+    ::timerfd_settime(*timer_, TFD_TIMER_ABSTIME | TFD_TIMER_CANCEL_ON_SET, &never, nullptr);
+  }
+  const Duration before = read_clock(CLOCK_MONOTONIC);
+  const Duration wall = read_clock(CLOCK_REALTIME);
+  const Duration after = read_clock(CLOCK_MONOTONIC);
+  if (!watch_.must_ask({after, wall - after, wall - before})) return false;
+  std::uint64_t ticks = 0;
+  return ::read(*timer_, &ticks, sizeof ticks) < 0 && errno == ECANCELED;
+}
+
+bool runs_on(const ClockBracket& earlier, const ClockBracket& later, double slew) {
+  const auto [least_then, greatest_then] = offsets(earlier);
+  const auto [least, greatest] = offsets(later);
+  const Duration slack = reading_noise + share(later.after - earlier.before, slew);
+  return least - slack <= greatest_then && least_then <= greatest + slack;
+}
+
+HostTime arrival(std::optional<Time> stamp, const ClockBracket& behind, Time steady) {
+  if (!stamp || *stamp < steady || *stamp > behind.utc) return behind.after;
+  const Duration since = behind.utc - *stamp;
+  return behind.after - share(since, 1.0 - most_slew);
+}
+
+// What most_slew leaves in doubt of arrivals that waited for five seconds.
+bool is_behind(const Moment& one, const Moment& other) {
+  constexpr Duration most_doubt = std::chrono::milliseconds(5);
+  if (!one.stamp || !other.stamp) return one.at > other.at;
+  return *one.stamp > *other.stamp && one.at - other.at > -most_doubt;
+}
+
+HostAxis::HostAxis(ClockReader& reader) : reader_(reader), asleep_(reader.asleep()) {
+  static_cast<void>(reader_.wall_was_set());  // from now on
+  bracket_ = read();
+  steady_ = bracket_.utc;
+}
+
+HostTime HostAxis::now() {
+  const HostTime read = reader_.raw() + shift_;
+  if (read < last_) {
+    ++epoch_;
+    shift_ += last_ - read;
+    events_.add({HostClockEvent::Kind::backwards, last_, last_ - read});
+    return last_;
+  }
+  last_ = read;
+  return read;
+}
+
+ClockBracket HostAxis::read() {
+  ClockBracket best;
+  for (int i = 0; i < 3; ++i) {
+    const HostTime before = now();
+    const Time utc = reader_.utc();
+    const ClockBracket bracket{before, utc, now()};
+    if (i == 0 || bracket.after - bracket.before < best.after - best.before) best = bracket;
+    if (best.after - best.before <= narrow) break;
+  }
+  return best;
+}
+
+/// A datagram may have waited, and be received several looks after a step.
+void HostAxis::look() {
+  const ClockBracket before = std::exchange(bracket_, read());
+  const bool set = reader_.wall_was_set();  // until behind the bracket
+  was_set_ = was_set_ || set;
+  if (set || !runs_on(before, bracket_, most_slew)) steady_ = bracket_.utc;
+}
+
+ClockPair HostAxis::watch() {
+  const ClockBracket bracket = read();
+  const Duration asleep = reader_.asleep();
+  if (asleep - asleep_ > shortest_sleep) {
+    ++epoch_;
+    events_.add({HostClockEvent::Kind::suspended, bracket.after, asleep - asleep_});
+  }
+  asleep_ = asleep;
+  const bool seen = std::exchange(was_set_, false);
+  const bool set = reader_.wall_was_set();
+  if (set) steady_ = bracket.utc;
+  if (watched_ && (seen || set || !runs_on(*watched_, bracket, fastest_slew))) {
+    const Duration by = offsets(*watched_).first - offsets(bracket).first;
+    events_.add({HostClockEvent::Kind::wall_stepped, bracket.after, by});
+  }
+  watched_ = bracket;
+  return {bracket.before + (bracket.after - bracket.before) / 2, bracket.utc};
+}
+
+}  // namespace kinalign

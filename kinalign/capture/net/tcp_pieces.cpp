@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/net/kernel_stamp.h"
+#include "kinalign/capture/net/pieces.h"
+#include "kinalign/capture/net/socket_address.h"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <tuple>
+
+namespace kinalign {
+
+namespace {
+
+// A read has one stamp, that of its last bytes: the smaller it is, the truer for what waited while
+// the machine stood still. Frames have 1 to 4 KB. (The kernel merges packets that wait, and their
+// stamps: over loopback 16 frames of 1480 bytes.)
+constexpr std::size_t read_size = std::size_t{4} << 10;
+constexpr int reads_in_turn = 64;  // of a connection, before other ports have theirs
+constexpr std::size_t most_links = 8;
+constexpr Duration between_tries = std::chrono::seconds(1);
+constexpr Duration idle_after = std::chrono::seconds(3);  // chosen: each device sends many a second
+constexpr int type = SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
+
+/// Of the other end.
+std::pair<HostAddress, std::uint16_t> peer_of(int fd) {
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  if (::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &size) != 0) return {};
+  if (peer.ss_family == AF_INET) {
+    sockaddr_in four{};
+    std::memcpy(&four, &peer, sizeof four);
+    std::array<std::uint8_t, 4> bytes{};
+    std::memcpy(bytes.data(), &four.sin_addr, 4);
+    return {mapped_ipv4(bytes), ntohs(four.sin_port)};
+  }
+  sockaddr_in6 six{};
+  std::memcpy(&six, &peer, sizeof six);
+  HostAddress host{};
+  std::memcpy(host.data(), &six.sin6_addr, host.size());
+  return {host, ntohs(six.sin6_port)};
+}
+
+/// The kernel stamps what arrives. Of a listener: on its connections, from their first byte on.
+void ask_for_stamps(int fd) {
+  const int yes = 1;
+  ::setsockopt(fd, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
+}
+
+/// Notices a device that vanished without a word within half a minute.
+void keep_alive(int fd) {
+  const auto set = [fd](int level, int name, int value) {
+    ::setsockopt(fd, level, name, &value, sizeof value);
+  };
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, 10);
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 5);
+  set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+}
+
+/// Gives up after three seconds (two requests, 1 and 2 s patience: measured 3.1 s), so that a new
+/// try is made. The system's own further requests come at 32 and 64 s: so late a device that was
+/// switched on in between would be heard.
+void ask_briefly(int fd) {
+  const int once_more = 1;
+  ::setsockopt(fd, IPPROTO_TCP, TCP_SYNCNT, &once_more, sizeof once_more);
+}
+
+/// recv(2), and when the last of those bytes arrived. Behind a lost segment earlier ones may have
+/// come later; they were sent earlier, which is what clocks are bounded by.
+ssize_t receive_stamped(int fd, std::span<char> room, std::optional<Time>& stamp) {
+  alignas(cmsghdr) std::array<std::uint8_t, 128> control{};
+  iovec in{room.data(), room.size()};
+  msghdr head{};
+  head.msg_iov = &in;
+  head.msg_iovlen = 1;
+  head.msg_control = control.data();
+  head.msg_controllen = control.size();
+  const ssize_t got = ::recvmsg(fd, &head, 0);
+  if (got <= 0) return got;
+  for (cmsghdr* c = CMSG_FIRSTHDR(&head); c != nullptr; c = CMSG_NXTHDR(&head, c)) {
+    if (const auto said = kernel_stamp(*c)) stamp = said;
+  }
+  return got;
+}
+
+Failure no_address(const std::string& address) {
+  return Failure(Error{"", 0, "an IPv4 or IPv6 address", shown(address)});
+}
+
+}  // namespace
+
+TcpPieces::Handle::~Handle() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+TcpPieces::TcpPieces(std::string address, std::uint16_t port, Handle listener)
+    : address_(std::move(address)),
+      port_(port),
+      listener_(std::move(listener)),
+      buffer_(read_size) {}
+
+Result<TcpPieces> TcpPieces::connect(const std::string& address, std::uint16_t port) {
+  if (address.empty() || find_address(address, port, SOCK_STREAM) == nullptr)
+    return no_address(address);
+  return TcpPieces(address, port, Handle());
+}
+
+Result<TcpPieces> TcpPieces::listen(const std::string& address, std::uint16_t port) {
+  const std::string own = address.empty() ? "0.0.0.0" : address;
+  const FoundAddress found = find_address(own, port, SOCK_STREAM);
+  if (found == nullptr) return no_address(address);
+  Handle listener(::socket(found->ai_family, type, 0));
+  const int yes = 1;
+  ::setsockopt(listener.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  ask_for_stamps(listener.fd());
+  if (listener.fd() < 0 || ::bind(listener.fd(), found->ai_addr, found->ai_addrlen) != 0 ||
+      ::listen(listener.fd(), static_cast<int>(most_links)) != 0) {
+    return Failure(
+        Error{endpoint_text(own, port), 0, "a TCP port to serve on", obstacle(errno, port)});
+  }
+  const std::uint16_t bound = bound_port(listener.fd());
+  return TcpPieces(address, bound, std::move(listener));
+}
+
+void TcpPieces::add_fds(std::vector<int>& fds) const {
+  if (listener_.fd() >= 0) fds.push_back(listener_.fd());
+  for (const Link& link : links_) fds.push_back(link.socket.fd());
+}
+
+void TcpPieces::accept(HostTime now) {
+  for (;;) {
+    Handle socket(::accept4(listener_.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (socket.fd() < 0) return;
+    if (links_.size() == most_links && !give_up_idle(now)) {
+      ++counts_.refused;
+      continue;  // which closes it
+    }
+    keep_alive(socket.fd());
+    links_.push_back({std::move(socket), now});
+  }
+}
+
+/// A device that vanished without a word must not keep out the one that returns: of those that say
+/// nothing the one that has done so for longest goes. Whether there is one.
+bool TcpPieces::give_up_idle(HostTime now) {
+  const auto idlest = std::min_element(
+      links_.begin(), links_.end(), [](const Link& a, const Link& b) { return a.heard < b.heard; });
+  if (now - idlest->heard < idle_after) return false;
+  links_.erase(idlest);
+  return true;
+}
+
+void TcpPieces::try_to_connect(HostTime now) {
+  if (now < next_try_) return;
+  next_try_ = now + between_tries;
+  const FoundAddress found = find_address(address_, port_, SOCK_STREAM);
+  if (found == nullptr) return;
+  Handle socket(::socket(found->ai_family, type, 0));
+  if (socket.fd() < 0) return;
+  keep_alive(socket.fd());
+  ask_briefly(socket.fd());
+  ask_for_stamps(socket.fd());
+  if (::connect(socket.fd(), found->ai_addr, found->ai_addrlen) != 0 && errno != EINPROGRESS) {
+    return;
+  }
+  links_.push_back({std::move(socket), now});
+}
+
+void TcpPieces::drain(HostAxis& axis, const TakePiece& take) {
+  if (listener_.fd() >= 0) {
+    accept(axis.now());
+  } else if (links_.empty()) {
+    try_to_connect(axis.now());
+  }
+  std::erase_if(links_, [&](Link& link) { return !drain_link(link, axis, take); });
+}
+
+void TcpPieces::send(std::size_t sender, std::span<const std::uint8_t> bytes) {
+  for (const Link& link : links_) {
+    if (!link.sender || link.sender->number != sender) continue;
+    if (link.sender->life != senders_.at(sender).life) continue;
+    const ssize_t sent =
+        ::send(link.socket.fd(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent == static_cast<ssize_t>(bytes.size())) return;
+    ++counts_.unsent;
+    // The rest can't be kept back: what came next would begin within a message.
+    if (sent > 0) ::shutdown(link.socket.fd(), SHUT_RDWR);
+    return;
+  }
+}
+
+/// Whether the connection is still there, made or in the making.
+bool TcpPieces::settle(Link& link) {
+  int fault = 0;
+  socklen_t size = sizeof fault;
+  ::getsockopt(link.socket.fd(), SOL_SOCKET, SO_ERROR, &fault, &size);
+  if (fault != 0) return false;
+  std::tie(link.host, link.port) = peer_of(link.socket.fd());
+  link.connected = link.port != 0;
+  if (link.connected) ++counts_.links;
+  return true;
+}
+
+bool TcpPieces::drain_link(Link& link, HostAxis& axis, const TakePiece& take) {
+  if (!link.connected && !settle(link)) return false;
+  for (int turn = 0; link.connected && turn < reads_in_turn; ++turn) {
+    std::optional<Time> stamp;
+    const ssize_t got = receive_stamped(link.socket.fd(), buffer_, stamp);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
+    if (got == 0) return false;
+    axis.look();
+    const HostTime arrival = link.heard = axis.arrival(stamp);
+    const auto sender = senders_.number(link.sender, link.host, link.port, arrival);
+    ++(sender ? counts_.pieces : counts_.refused);
+    if (!sender) continue;
+    const auto size = static_cast<std::size_t>(got);
+    counts_.bytes += size;
+    take({*sender, {buffer_.data(), size}, arrival});
+  }
+  return true;
+}
+
+}  // namespace kinalign

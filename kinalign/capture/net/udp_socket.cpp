@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/net/udp_socket.h"
+
+#include "kinalign/capture/net/socket_address.h"
+
+#include <linux/sock_diag.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr int receive_buffer = 4 << 20;  // a tenth of a second of a flood
+
+bool set(int fd, int level, int name, int value) {
+  return ::setsockopt(fd, level, name, &value, sizeof value) == 0;
+}
+
+bool set_options(int fd, int family) {
+  if (!set(fd, SOL_SOCKET, SO_RCVBUFFORCE, receive_buffer)) {  // needs CAP_NET_ADMIN
+    set(fd, SOL_SOCKET, SO_RCVBUF, receive_buffer);            // net.core.rmem_max at most
+  }
+  if (!set(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1)) return false;
+  if (family == AF_INET) return set(fd, IPPROTO_IP, IP_PKTINFO, 1);
+  return set(fd, IPPROTO_IPV6, IPV6_V6ONLY, 1) && set(fd, IPPROTO_IPV6, IPV6_RECVPKTINFO, 1);
+}
+
+/// An address and port as the system has them.
+struct Socket {
+  Socket(const HostAddress& address, std::uint16_t port) {
+    if (is_ipv4(address)) {
+      sockaddr_in four{};
+      four.sin_family = AF_INET;
+      four.sin_port = htons(port);
+      std::memcpy(&four.sin_addr, address.data() + 12, 4);
+      std::memcpy(&bytes, &four, size = sizeof four);
+    } else {
+      sockaddr_in6 six{};
+      six.sin6_family = AF_INET6;
+      six.sin6_port = htons(port);
+      std::memcpy(&six.sin6_addr, address.data(), address.size());
+      std::memcpy(&bytes, &six, size = sizeof six);
+    }
+    family = bytes.ss_family;
+  }
+  const sockaddr* data() const { return reinterpret_cast<const sockaddr*>(&bytes); }
+
+  sockaddr_storage bytes{};
+  socklen_t size = 0;
+  int family = 0;
+};
+
+}  // namespace
+
+std::string obstacle(int code, std::uint16_t port) {
+  if (code == EADDRINUSE) return std::string(port_taken);
+  if (code == EACCES || code == EPERM) {
+    return std::string(port < 1024 ? low_port_forbidden : port_forbidden);
+  }
+  if (code == EADDRNOTAVAIL) return std::string(address_elsewhere);
+  return std::strerror(code);
+}
+
+std::optional<std::string> spelt_address(const std::string& text) {
+  const FoundAddress found = find_address(text, 0, SOCK_DGRAM);
+  if (found == nullptr) return std::nullopt;
+  return address_text(*found->ai_addr);
+}
+
+std::string address_text(const sockaddr& address) {
+  std::array<char, NI_MAXHOST> text{};
+  const bool four = address.sa_family == AF_INET;
+  const socklen_t size = four ? sizeof(sockaddr_in) : sizeof(sockaddr_in6);
+  ::getnameinfo(&address, size, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST);
+  return text.data();
+}
+
+Result<UdpSocket> UdpSocket::open(const std::string& address, std::uint16_t port) {
+  const FoundAddress found = find_address(address, port, SOCK_DGRAM);
+  if (found == nullptr) {
+    return Failure(Error{"", 0, "an IPv4 or IPv6 address", shown(address)});
+  }
+  const int type = SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
+  UdpSocket socket(::socket(found->ai_family, type, 0), address);
+  const bool bound = socket.fd_ >= 0 && set_options(socket.fd_, found->ai_family) &&
+                     ::bind(socket.fd_, found->ai_addr, found->ai_addrlen) == 0;
+  if (!bound) {
+    return Failure(
+        Error{endpoint_text(address, port), 0, "a UDP port to serve on", obstacle(errno, port)});
+  }
+  socket.port_ = bound_port(socket.fd_);
+  return socket;
+}
+
+bool UdpSocket::share_port() const { return set(fd_, SOL_SOCKET, SO_REUSEPORT, 1); }
+
+Result<UdpSocket> UdpSocket::connected(const HostAddress& own, std::uint16_t port,
+                                       const HostAddress& peer, std::uint16_t peer_port) {
+  const Socket here(own, port), there(peer, peer_port);
+  const int type = SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC;
+  UdpSocket socket(::socket(here.family, type, 0), to_string(own));
+  const bool joined = socket.fd_ >= 0 && set_options(socket.fd_, here.family) &&
+                      socket.share_port() && ::bind(socket.fd_, here.data(), here.size) == 0 &&
+                      ::connect(socket.fd_, there.data(), there.size) == 0;
+  if (joined) {
+    socket.port_ = port;
+    return socket;
+  }
+  return Failure(Error{endpoint_text(to_string(peer), peer_port), 0, "a UDP socket for it alone",
+                       obstacle(errno, port)});
+}
+
+UdpSocket::UdpSocket(UdpSocket&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)), port_(other.port_), address_(std::move(other.address_)) {}
+
+UdpSocket& UdpSocket::operator=(UdpSocket&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  std::swap(port_, other.port_);
+  std::swap(address_, other.address_);
+  return *this;
+}
+
+UdpSocket::~UdpSocket() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+bool system_knows_ipv6() {
+  const int fd = ::socket(AF_INET6, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (fd >= 0) ::close(fd);
+  return fd >= 0 || errno != EAFNOSUPPORT;
+}
+
+Result<std::vector<UdpSocket>> open_udp_sockets(const std::vector<std::string>& addresses,
+                                                std::uint16_t port) {
+  std::vector<std::string> all = addresses;
+  if (all.empty()) all = {"0.0.0.0"};
+  if (addresses.empty() && system_knows_ipv6()) all.emplace_back("::");
+  std::vector<UdpSocket> sockets;
+  for (const std::string& address : all) {
+    sockets.push_back(KA_TRY(UdpSocket::open(address, port)));
+    port = sockets.front().port();
+  }
+  return sockets;
+}
+
+std::uint64_t dropped_by_kernel(const UdpSocket& socket) {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> found{};
+  socklen_t size = sizeof found;
+  if (::getsockopt(socket.fd(), SOL_SOCKET, SO_MEMINFO, found.data(), &size) != 0) return 0;
+  return found[SK_MEMINFO_DROPS];
+}
+
+std::string endpoint_text(const std::string& address, std::uint16_t port) {
+  return (is_ipv6_text(address) ? "[" + address + "]" : address) + ":" + std::to_string(port);
+}
+
+}  // namespace kinalign

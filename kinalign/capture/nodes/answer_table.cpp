@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/nodes/answer_table.h"
+
+namespace kinalign {
+
+void AnswerTable::add(const GivenAnswer& answer) {
+  GivenAnswer& place = answers_[answer.sequence % remembered];
+  place = answer;
+  place.given = true;
+  if (!begun_ || static_cast<std::int32_t>(answer.sequence - newest_) > 0)
+    newest_ = answer.sequence;
+  begun_ = true;
+}
+
+AnswerTable::Found AnswerTable::find(std::uint32_t sequence, std::uint32_t nonce,
+                                     GivenAnswer& answer) {
+  if (!begun_) return Found::never;
+  const auto back = static_cast<std::int32_t>(newest_ - sequence);
+  if (back >= static_cast<std::int32_t>(remembered)) return Found::stale;
+  GivenAnswer& place = answers_[sequence % remembered];
+  if (!place.given || place.sequence != sequence || place.nonce != nonce) return Found::never;
+  const bool used = place.used;
+  place.used = true;
+  answer = place;
+  return used ? Found::before : Found::now;
+}
+
+}  // namespace kinalign

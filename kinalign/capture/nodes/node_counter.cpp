@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/nodes/node_counter.h"
+
+#include <cmath>
+#include <cstdlib>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::int64_t turn_us = std::int64_t{1} << 32;  // 71.6 min
+
+/// A reading further from what was foretold is no narrow one: delays and, in a day of silence, a
+/// crystal 100 ppm off.
+constexpr std::int64_t trusted_us = 20'000'000;
+
+}  // namespace
+
+std::int64_t NodeCounter::foretold_us(HostTime h_rx) const {
+  return newest_us_ + std::chrono::duration_cast<std::chrono::microseconds>(h_rx - heard_).count();
+}
+
+std::int64_t NodeCounter::widened(std::uint64_t counter_us, HostTime h_rx) const {
+  const auto read = static_cast<std::int64_t>(counter_us);
+  if (!begun_ || read >= turn_us) return read;
+  const std::int64_t foretold = foretold_us(h_rx);
+  const auto turns = static_cast<std::int64_t>(
+      std::llround(static_cast<double>(foretold - read) / static_cast<double>(turn_us)));
+  const std::int64_t nearest = read + turns * turn_us;
+  return turns > 0 && std::abs(nearest - foretold) <= trusted_us ? nearest : read;
+}
+
+std::int64_t NodeCounter::widened_before(std::uint64_t counter_us, std::int64_t n_tx_us) const {
+  const auto read = static_cast<std::int64_t>(counter_us);
+  if (read >= turn_us || n_tx_us < turn_us) return read;
+  const std::int64_t same_turn = n_tx_us - n_tx_us % turn_us + read;
+  return same_turn - n_tx_us > turn_us / 2 ? same_turn - turn_us : same_turn;
+}
+
+std::int64_t NodeCounter::ahead_us(std::int64_t n_us, HostTime h_rx) const {
+  return begun_ ? n_us - foretold_us(h_rx) : 0;
+}
+
+void NodeCounter::take(std::int64_t n_us, HostTime h_rx) {
+  if (begun_ && n_us <= newest_us_) return;
+  newest_us_ = n_us;
+  heard_ = h_rx;
+  begun_ = true;
+}
+
+}  // namespace kinalign

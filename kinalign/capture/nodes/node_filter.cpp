@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// A classic BPF program (the kernel's Documentation/networking/filter.rst). The filter of a UDP
+// socket sees the UDP header's 8 bytes in front of the datagram.
+#include "kinalign/capture/nodes/node_filter.h"
+
+#include "kinalign/wire/node_datagram.h"
+#include "kinalign/wire/node_layout.h"
+
+#include <linux/filter.h>
+#include <linux/sock_diag.h>
+#include <sys/socket.h>
+
+#include <array>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint32_t header = 8;
+constexpr std::uint32_t least = node_datagram_size(0, false);
+
+constexpr sock_filter step(int code, std::uint32_t k, int if_true = 0, int if_false = 0) {
+  return {static_cast<std::uint16_t>(code), static_cast<std::uint8_t>(if_true),
+          static_cast<std::uint8_t>(if_false), k};
+}
+
+}  // namespace
+
+bool attach_node_filter(const UdpSocket& socket) {
+  // Versions pass: those that we don't know are counted.
+  std::array program{
+      step(BPF_LD | BPF_W | BPF_LEN, 0),
+      step(BPF_JMP | BPF_JGE | BPF_K, header + least, 0, 8),
+      step(BPF_JMP | BPF_JGT | BPF_K, header + max_node_datagram, 7, 0),
+      step(BPF_ALU | BPF_SUB | BPF_K, header),
+      step(BPF_MISC | BPF_TAX, 0),
+      step(BPF_LD | BPF_H | BPF_ABS, header + 6),  // its length, as it says
+      step(BPF_JMP | BPF_JEQ | BPF_X, 0, 0, 3),
+      step(BPF_LD | BPF_W | BPF_ABS, header),
+      step(BPF_JMP | BPF_JEQ | BPF_K, node_magic, 0, 1),
+      step(BPF_RET | BPF_K, 0xffff),
+      step(BPF_RET | BPF_K, 0),
+  };
+  const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
+  return ::setsockopt(socket.fd(), SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof filter) == 0;
+}
+
+}  // namespace kinalign

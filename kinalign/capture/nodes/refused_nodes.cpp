@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/nodes/refused_nodes.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr Duration any_every = std::chrono::seconds(1);
+constexpr Duration each_every = std::chrono::minutes(10);
+
+}  // namespace
+
+RefusedNodes::Claim& RefusedNodes::claim_of(NodeRefusal refusal, std::uint32_t node_id) {
+  const auto end = claims_.begin() + static_cast<std::ptrdiff_t>(used_);
+  const auto found = std::find_if(claims_.begin(), end, [&](const Claim& claim) {
+    return claim.node_id == node_id && claim.refusal == refusal;
+  });
+  if (found != end) return *found;
+  if (used_ < most) {
+    claims_[used_] = {node_id, refusal, std::nullopt};
+    return claims_[used_++];
+  }
+  others_[static_cast<std::size_t>(refusal)] = true;
+  return rest_;
+}
+
+bool RefusedNodes::take(NodeRefusal refusal, std::uint32_t node_id, HostTime now) {
+  Claim& claim = claim_of(refusal, node_id);
+  if (claim.told && now - *claim.told < each_every) return false;
+  if (told_ && now - *told_ < any_every) return false;
+  claim.told = told_ = now;
+  return true;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/ntp/chrony_query.h"
+
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <utility>
+
+namespace kinalign {
+
+ChronyQuery::ChronyQuery(std::uint16_t port)
+    : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+  sockaddr_in chronyd{};
+  chronyd.sin_family = AF_INET;
+  chronyd.sin_port = htons(port);
+  chronyd.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  // connected: nobody else's datagrams come in
+  (void)::connect(fd_, reinterpret_cast<const sockaddr*>(&chronyd), sizeof chronyd);
+}
+
+ChronyQuery::ChronyQuery(ChronyQuery&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)),
+      sequence_(other.sequence_),
+      asked_at_(other.asked_at_),
+      answered_at_(other.answered_at_),
+      answer_(other.answer_) {}
+
+ChronyQuery& ChronyQuery::operator=(ChronyQuery&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  sequence_ = other.sequence_;
+  asked_at_ = other.asked_at_;
+  answered_at_ = other.answered_at_;
+  answer_ = other.answer_;
+  return *this;
+}
+
+ChronyQuery::~ChronyQuery() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+std::optional<ChronyTracking> ChronyQuery::latest(HostTime now) {
+  constexpr Duration again = std::chrono::seconds(2), good_for = std::chrono::seconds(10);
+  receive(now);
+  if (!asked_at_ || now - *asked_at_ >= again) {
+    asked_at_ = now;
+    const auto request = chrony_tracking_request(++sequence_);
+    (void)::send(fd_, request.data(), request.size(), MSG_NOSIGNAL);  // refused: there is none
+  }
+  if (!answered_at_ || now - *answered_at_ > good_for) return std::nullopt;
+  return answer_;
+}
+
+void ChronyQuery::wait() const {
+  constexpr int most_ms = 100;
+  pollfd waiting{fd_, POLLIN, 0};
+  (void)::poll(&waiting, 1, most_ms);
+}
+
+void ChronyQuery::receive(HostTime now) {
+  constexpr int most = 4;  // answers in a row, should they have piled up
+  std::array<std::uint8_t, 256> bytes{};
+  for (int i = 0; i < most; ++i) {
+    const ssize_t got = ::recv(fd_, bytes.data(), bytes.size(), 0);
+    if (got < 0) return;
+    const auto answer =
+        decode_chrony_tracking(std::span(bytes).first(static_cast<std::size_t>(got)), sequence_);
+    if (!answer) continue;
+    answer_ = *answer;
+    answered_at_ = now;
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The NTP server: sockets around an NtpResponder. One thread, which waits only where nothing has
+// come.
+#pragma once
+
+#include "kinalign/capture/net/datagram_batch.h"
+#include "kinalign/capture/net/udp_socket.h"
+#include "kinalign/capture/nodes/node_receiver.h"
+#include "kinalign/capture/ntp/chrony_query.h"
+#include "kinalign/capture/ntp/clock_state.h"
+#include "kinalign/capture/ntp/ntp_responder.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct TimeServerOptions {
+  std::vector<std::string> addresses;         // to serve on; empty: all, of IPv4 and IPv6
+  std::uint16_t port = 123;                   // 0: any free one, the same for all addresses
+  std::optional<std::uint8_t> local_stratum;  // see ClockPolicy
+  std::vector<Network> exempt;                // from the limit on how often one may ask
+  SipHashKey key{};                           // random in each run
+  std::uint16_t chrony_port = 323;            // where a chronyd of this host takes commands
+};
+
+class TimeServer {
+ public:
+  static Result<TimeServer> open(const TimeServerOptions& options);
+
+  /// Serves until `go_on` says no; it is asked four times a second, and at once when a signal
+  /// arrives.
+  /// With `nodes` that port too, which comes first.
+  void serve(const std::function<bool()>& go_on, NodeReceiver* nodes = nullptr);
+
+  const std::vector<UdpSocket>& sockets() const { return sockets_; }
+  const NtpServerState& state() const { return responder_.state(); }
+  const NtpCounts& counts() const { return counts_; }
+
+ private:
+  TimeServer(const TimeServerOptions& options, std::vector<UdpSocket> sockets);
+  void look_at_clock();
+  void serve_until(HostTime end);
+  void drain(const UdpSocket& socket);
+  void answer(const UdpSocket& socket, std::size_t datagrams);
+
+  ClockPolicy policy_;
+  ChronyQuery chrony_;
+  std::vector<UdpSocket> sockets_;
+  NtpResponder responder_;
+  NtpCounts counts_;
+  std::unique_ptr<DatagramBatch> batch_;
+  NodeReceiver* nodes_ = nullptr;  // while it serves
+};
+
+}  // namespace kinalign

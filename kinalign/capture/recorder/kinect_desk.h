@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The host's side of a Kinect sender's pings (docs/formats/kinect_stream.md): which of them are
+// answered, and what they say of the sender's clock. No socket, no clock and no growth: time is an
+// argument.
+#pragma once
+
+#include "kinalign/capture/net/host_address.h"
+#include "kinalign/capture/net/rate_limit.h"
+#include "kinalign/capture/nodes/answer_pace.h"
+#include "kinalign/capture/nodes/answer_table.h"
+#include "kinalign/clock/host_from_node.h"
+#include "kinalign/protocols/kinect/message.h"
+#include "kinalign/wire/siphash.h"
+
+#include <optional>
+#include <vector>
+
+namespace kinalign {
+
+class KinectDesk {
+ public:
+  static constexpr std::size_t most_sessions = 32;
+
+  /// `secret`: random in each run; nonces and the strangers' table come from it.
+  explicit KinectDesk(const SipHashKey& secret) : secret_(secret) {}
+
+  /// In the order of arrival. Absent: the ping is refused, of one session too many at once, or of
+  /// an address that begins them too often.
+  std::optional<Exchange> receive(const KinectPing& ping, const HostAddress& from, HostTime h_rx);
+  /// The pong to the ping before; absent: none is due. `h_tx` was read before this call, and what
+  /// is returned is to be sent at once.
+  std::optional<KinectPong> answer(HostTime h_tx);
+
+ private:
+  struct Session {
+    std::uint32_t sensor = 0, session = 0;
+    HostTime heard{};
+    AnswerTable answers;
+    AnswerPace pace;
+    std::uint32_t next_pong = 0;
+  };
+  Session* session_of(const KinectPing& ping, const HostAddress& from, HostTime now);
+  static std::optional<HostTime> take_echo(Session& session, const KinectPing& ping);
+
+  SipHashKey secret_;
+  std::vector<Session> sessions_;
+  RateLimit strangers_;
+  std::uint64_t nonces_ = 0;
+  Session* asked_by_ = nullptr;  // of the ping before; nullptr: it is not answered
+  KinectOrigin asked_;
+  HostTime asked_at_{};
+};
+
+}  // namespace kinalign

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ports for marks from outside: docs/formats/marks.md.
+#pragma once
+
+#include "kinalign/capture/net/pieces.h"
+#include "kinalign/capture/recorder/findings_once.h"
+#include "kinalign/core/error.h"
+#include "kinalign/protocols/marks/mark.h"
+#include "kinalign/recording/counts.h"
+#include "kinalign/recording/format.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct MarkPortCounts {
+  std::uint64_t marks = 0, repeats = 0;
+  std::map<std::string, std::uint64_t> refused;  // by cause: "bad_json"
+};
+
+class MarkPort {
+ public:
+  enum class Form : std::uint8_t {
+    call,    // ours, answered
+    trigger  // Vicon's broadcasts
+  };
+  static Result<MarkPort> open(Form form, std::uint16_t port);
+
+  using TakeMark = std::function<void(const RecordedMark& mark, const Moment& came)>;
+  void add_fds(std::vector<int>& fds) const { pieces_.add_fds(fds); }
+  /// Tells each mark once.
+  void drain(HostAxis& axis, const TakeMark& take);
+
+  /// "marks", "trigger".
+  std::string name() const;
+  std::uint16_t port() const { return pieces_.port(); }
+  PortCounts port_counts() const;
+  const MarkPortCounts& counts() const { return counts_; }
+  /// Of what was refused since this was asked last: the first of each cause and host, once.
+  Findings take_findings() { return findings_.take(); }
+
+ private:
+  MarkPort(Form form, UdpPieces pieces);
+  bool decode(const Piece& piece, Mark& mark);
+  void refuse(const Piece& piece, Severity severity, const std::string& cause,
+              const char* expected);
+  std::string sender_of(const Piece& piece) const;
+  void take_piece(const Piece& piece, const TakeMark& take);
+
+  Form form_;
+  UdpPieces pieces_;
+  MarkRepeats repeats_;
+  MarkPortCounts counts_;
+  FindingsOnce findings_;
+};
+
+}  // namespace kinalign

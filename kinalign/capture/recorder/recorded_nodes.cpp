@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/recorder/recorded_nodes.h"
+
+#include "kinalign/capture/net/port_error.h"
+#include "kinalign/wire/little_endian_reader.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_nodes = 256;  // each takes two channels
+
+/// Without keys anybody can send in the name of any number of nodes: those that were not let in
+/// get no channels, or there would be none left.
+bool is_limited(NodeVerdict verdict) {
+  return verdict == NodeVerdict::limited || verdict == NodeVerdict::no_room ||
+         verdict == NodeVerdict::wrong_counter || verdict == NodeVerdict::unknown_answer;
+}
+
+/// What the kernel would have thrown away, if it could.
+std::uint64_t no_frames(const NodeCounts& counts) {
+  return counts.refusals[NodeRefusal::too_short] + counts.refusals[NodeRefusal::bad_magic] +
+         counts.refusals[NodeRefusal::wrong_length];
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RecordedNodes>> RecordedNodes::open(const DeviceOptions& device,
+                                                           const NodeDeskOptions& desk,
+                                                           ClockReader& clocks,
+                                                           Recorder& recorder) {
+  NodeReceiverOptions options;
+  if (!device.address.empty()) options.addresses = {device.address};
+  options.port = static_cast<std::uint16_t>(device.port);
+  options.desk = desk;
+  NodeReceiver receiver = KA_TRY(told_of(device.name, NodeReceiver::open(options, clocks)));
+  return std::unique_ptr<RecordedNodes>(
+      new RecordedNodes(device, desk.lab_key.has_value(), std::move(receiver), recorder));
+}
+
+RecordedNodes::RecordedNodes(DeviceOptions device, bool keyed, NodeReceiver receiver,
+                             Recorder& recorder)
+    : device_(std::move(device)),
+      keyed_(keyed),
+      receiver_(std::move(receiver)),
+      recorder_(recorder) {
+  receiver_.watch([this](const NodeArrival& arrival, const NodeNews& news, LiveClock*) {
+    const Moment came{arrival.h_rx, arrival.stamp};
+    if (held_.must_hold(came, news.node_id, until_)) {
+      held_.hold(came, news.node_id,
+                 {arrival,
+                  news,
+                  {arrival.bytes.begin(), arrival.bytes.end()},
+                  {news.readings.begin(), news.readings.end()}});
+    } else {
+      take(arrival, news);
+    }
+  });
+}
+
+void RecordedNodes::drain(const std::optional<Moment>& until) {
+  until_ = until;
+  receiver_.drain();
+  until_.reset();
+}
+
+void RecordedNodes::release(const std::optional<Moment>& until) {
+  held_.release(until, [&](Held& held) {
+    held.arrival.bytes = held.bytes;
+    held.news.readings = held.readings;
+    take(held.arrival, held.news);
+  });
+}
+
+void RecordedNodes::take(const NodeArrival& arrival, const NodeNews& news) {
+  const bool has_room = nodes_.size() < most_nodes && (keyed_ || !is_limited(news.verdict));
+  if (!has_room && !nodes_.contains(news.node_id)) {
+    ++crowded_;
+    return;
+  }
+  Node& node = node_of(news.node_id, arrival.from);
+  std::optional<std::uint64_t> device_ns;
+  if (news.exchange) {
+    device_ns = static_cast<std::uint64_t>(news.exchange->n_tx.time_since_epoch().count());
+    recorder_.record(node.exchanges, arrival.h_rx, to_bytes({receiver_.epoch(), *news.exchange}),
+                     device_ns);
+  }
+  if (news.clockless) {
+    recorder_.record(node.exchanges, arrival.h_rx, to_bytes({receiver_.epoch(), *news.clockless}));
+  }
+  bytes_ += arrival.bytes.size();
+  judge(node, news);
+  node.raw.record(recorder_, arrival.h_rx, text_of(arrival.bytes), device_ns);
+}
+
+RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress& from) {
+  const auto found = nodes_.find(id);
+  if (found != nodes_.end()) return found->second;
+  const std::string number = std::to_string(id);
+  const auto place = device_.nodes.find(number);
+  const RawChannel raw{device_.name, "kinalign-node",
+                       "udp",        endpoint_text(to_string(from.host), from.port),
+                       number,       place == device_.nodes.end() ? "" : place->second};
+  const std::string topic = "/" + device_.name + "/" + number;
+  McapChannel exchanges = to_channel(topic + "/exchange", raw);
+  exchanges.message_encoding = exchange_encoding;
+  const std::uint16_t channel = recorder_.add_channel(std::move(exchanges));
+  return nodes_.emplace(id, Node{RecordedSource(recorder_, topic + "/raw", raw), channel})
+      .first->second;
+}
+
+/// Which count a datagram belongs to. What is held counts as a message alone: it may be one of the
+/// next, or a recording played back.
+void RecordedNodes::judge(Node& node, const NodeNews& news) {
+  SenderCounts& counts = node.raw.status.counts;
+  switch (news.verdict) {
+    case NodeVerdict::accepted:
+      break;
+    case NodeVerdict::held:
+      return;
+    case NodeVerdict::duplicate:
+      ++counts.order.duplicates;
+      return;
+    case NodeVerdict::replayed:
+    case NodeVerdict::earlier_life:
+      ++counts.order.late;
+      return;
+    default:
+      ++counts.refused;
+      return;
+  }
+  ++counts.frames;
+  node.raw.status.samples += news.readings.size();
+  if (!news.exchange) return;
+  const BootKey before = std::exchange(node.boot, news.exchange->boot);
+  const bool same_life = before == node.boot && counts.frames > 1;
+  if (!same_life && counts.frames > 1) ++counts.order.restarts;
+  if (same_life && news.frame < node.newest) ++counts.order.late;
+  node.newest = same_life ? std::max(node.newest, news.frame) : news.frame;
+}
+
+void RecordedNodes::look(HostTime now) {
+  count_lost();
+  for (auto& [id, node] : nodes_) node.raw.take_rate(now);
+}
+
+/// Another device that sends here, say: nothing of it is in the take, and who learns of that behind
+/// it has no take. A node's frames that found no room are known as lost once the next one has come:
+/// so what was dropped until a second ago is looked at.
+void RecordedNodes::find_strays() {
+  PortCounts counts = this->counts();
+  counts.dropped = std::exchange(dropped_, counts.dropped);
+  std::uint64_t lost = 0;
+  for (const auto& [id, node] : nodes_) lost += node.raw.status.counts.order.lost;
+  const std::uint64_t came = strays(counts, lost);
+  if (!are_many(came)) return;
+  findings_.add("",
+                {Severity::warning,
+                 Error{device_.name, 0, "frames of nodes alone at port " + std::to_string(port()),
+                       std::to_string(came) + " datagrams that are none"},
+                 "they are thrown away: nothing of them is recorded",
+                 "see which port and protocol each device sends to"});
+}
+
+void RecordedNodes::remember(std::uint64_t chunk, std::uint64_t first) {
+  count_lost();
+  for (auto& [id, node] : nodes_) node.raw.remember(chunk, first);
+}
+
+void RecordedNodes::count_lost() {
+  for (const NodeStatus& status : receiver_.status()) {
+    const auto found = nodes_.find(status.node_id);
+    if (found == nodes_.end()) continue;
+    Lost& lost = found->second.lost[status.stream];
+    if (std::exchange(lost.lives, status.lives) != status.lives) lost.before += lost.present;
+    lost.present = status.lost;
+    StreamStatus& stream = found->second.raw.status;
+    if (status.battery_mv) stream.battery_volts = 1e-3 * *status.battery_mv;
+  }
+  for (auto& [id, node] : nodes_) {
+    std::uint64_t& lost = node.raw.status.counts.order.lost;
+    lost = 0;
+    for (const auto& [stream, of_one] : node.lost) lost += of_one.before + of_one.present;
+  }
+}
+
+void RecordedNodes::begin(std::uint64_t chunk) {
+  for (auto& [id, node] : nodes_) node.raw.begin(chunk);
+}
+
+void RecordedNodes::tell(std::uint16_t counts, HostTime now) const {
+  for (const auto& [id, node] : nodes_) node.raw.tell(recorder_, counts, now);
+}
+
+PortCounts RecordedNodes::counts() const {
+  const NodeCounts& counts = receiver_.counts();
+  PortCounts out;
+  out.pieces = counts.verdicts.total() - no_frames(counts) - held_.size();
+  out.bytes = bytes_;
+  out.refused = counts.verdicts[NodeVerdict::refused] - no_frames(counts) +
+                receiver_.not_unicast() + receiver_.from_port_0() + crowded_;
+  out.dropped = receiver_.dropped() + no_frames(counts);
+  out.sifted = true;
+  return out;
+}
+
+void RecordedNodes::add_streams(std::vector<StreamStatus>& all) const {
+  for (const auto& [id, node] : nodes_) all.push_back(node.raw.of_take());
+}
+
+}  // namespace kinalign

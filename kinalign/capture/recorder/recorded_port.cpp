@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/recorder/recorded_port.h"
+
+#include "kinalign/capture/net/port_error.h"
+#include "kinalign/protocols/kinect/binary.h"
+#include "kinalign/protocols/kinect/lines.h"
+#include "kinalign/wire/little_endian_reader.h"
+
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+std::string encoded(const KinectPong& pong, bool as_line) {
+  if (as_line) return encode_kinect_line(pong);
+  return std::string(text_of(encode_kinect_binary(pong)));
+}
+
+}  // namespace
+
+Result<RecordedPort> RecordedPort::open(const DeviceOptions& device, const SipHashKey& secret) {
+  return RecordedPort(device, KA_TRY(told_of(device.name, open_pieces(device))), secret);
+}
+
+Result<RecordedPort::Pieces> RecordedPort::open_pieces(const DeviceOptions& device) {
+  const auto port = static_cast<std::uint16_t>(device.port);
+  if (device.transport == "udp") return Pieces(KA_TRY(UdpPieces::open(device.address, port)));
+  if (device.transport == "tcp") return Pieces(KA_TRY(TcpPieces::connect(device.address, port)));
+  return Pieces(KA_TRY(TcpPieces::listen(device.address, port)));
+}
+
+RecordedPort::RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret)
+    : device_(std::move(device)), pieces_(std::move(pieces)) {
+  if (device_.protocol == "slimevr") slimes_ = std::make_unique<SlimeDesk>(secret);
+  if (device_.protocol == "kinect") kinects_ = std::make_unique<KinectDesk>(secret);
+}
+
+void RecordedPort::add_fds(std::vector<int>& fds) const {
+  std::visit([&](const auto& pieces) { pieces.add_fds(fds); }, pieces_);
+}
+
+void RecordedPort::drain(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until) {
+  const bool may_hold = until && device_.transport == "udp";
+  const TakePiece to = [&](const Piece& piece) {
+    const Moment came{piece.arrival, piece.stamp};
+    if (may_hold && held_.must_hold(came, piece.sender, until)) {
+      held_.hold(came, piece.sender, {piece, sender_of(piece), std::string(piece.bytes)});
+      held_bytes_ += piece.bytes.size();
+    } else {
+      take(piece, sender_of(piece), axis, recorder);
+    }
+  };
+  std::visit([&](auto& pieces) { pieces.drain(axis, to); }, pieces_);
+}
+
+void RecordedPort::release(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until) {
+  held_.release(until, [&](Held& held) {
+    held.piece.bytes = held.bytes;
+    held_bytes_ -= held.bytes.size();
+    take(held.piece, held.sender, axis, recorder);
+  });
+}
+
+/// Answers go out before anything is written: what is done in between delays one way alone.
+void RecordedPort::take(const Piece& piece, const Senders::Sender& sender, HostAxis& axis,
+                        Recorder& recorder) {
+  Source& source = source_of(sender, piece.sender, recorder);
+  source.watch.feed(piece.bytes, piece.arrival, newest_frames_);
+  if (kinects_) answer_pings(source, piece, axis, recorder);
+  if (slimes_) answer_trackers(source, piece);
+  source.recorded.record(recorder, piece.arrival, piece.bytes);
+}
+
+const Senders::Sender& RecordedPort::sender_of(const Piece& piece) const {
+  const auto at = [&](const auto& pieces) -> const Senders::Sender& {
+    return pieces.senders().at(piece.sender);
+  };
+  return std::visit(at, pieces_);
+}
+
+/// A new sender, or another in the place of one that fell silent, gets a channel of its own.
+RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std::size_t number,
+                                              Recorder& recorder) {
+  const bool is_shared = sender.life > Senders::most_lives;
+  if (sources_.size() <= number) sources_.resize(number + 1);
+  if (is_shared) sources_[number].reset();
+  std::optional<Source>& source = is_shared ? others_ : sources_[number];
+  const NodeAddress address{sender.host, sender.port};
+  if (source && source->life == sender.life) {
+    source->address = address;
+    return *source;
+  }
+  const RawChannel raw{device_.name,
+                       device_.protocol,
+                       device_.transport,
+                       is_shared ? "" : endpoint_text(to_string(sender.host), sender.port),
+                       "",
+                       ""};
+  source.emplace(Source{RecordedSource(recorder, topic("raw", sender.life), raw), raw,
+                        StreamWatch(device_.protocol, device_.transport == "udp", raw.sender),
+                        sender.life, address});
+  return *source;
+}
+
+/// "/kinect/raw" of the first sender that was ever heard, "/kinect/raw/2" of the next one.
+std::string RecordedPort::topic(const char* content, std::uint64_t life) const {
+  const std::string first = "/" + device_.name + "/" + content;
+  if (life > Senders::most_lives) return first + "/others";
+  return life == 1 ? first : first + "/" + std::to_string(life);
+}
+
+void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& axis,
+                                Recorder& recorder) {
+  std::size_t may_send = piece.bytes.size();  // nobody who forges an address gains by it
+  for (const KinectPing& ping : source.watch.pings()) {
+    const auto exchange = kinects_->receive(ping, source.address.host, piece.arrival);
+    if (!exchange) {
+      ++source.pings_refused;
+      continue;
+    }
+    if (const auto pong = kinects_->answer(axis.now())) {
+      const std::string bytes = encoded(*pong, source.watch.speaks_lines());
+      const bool forgeable = device_.transport == "udp";
+      if (!forgeable || bytes.size() <= may_send) {
+        may_send -= forgeable ? bytes.size() : 0;
+        std::visit([&](auto& pieces) { pieces.send(piece.sender, octets(bytes)); }, pieces_);
+      }
+    }
+    if (!source.exchanges) {
+      source.clock = std::make_unique<FollowedClock>();
+      McapChannel channel = to_channel(topic("exchange", source.life), source.raw);
+      channel.message_encoding = exchange_encoding;
+      source.exchanges = recorder.add_channel(std::move(channel));
+    }
+    source.clock->push(*exchange, axis.epoch());
+    const std::int64_t sent_ns = exchange->n_tx.time_since_epoch().count();
+    const auto device_ns =
+        sent_ns < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(sent_ns));
+    recorder.record(*source.exchanges, piece.arrival, to_bytes({axis.epoch(), *exchange}),
+                    device_ns);
+  }
+}
+
+/// Whoever shakes hands counts anew, also at an address where another tracker was.
+void RecordedPort::answer_trackers(Source& source, const Piece& piece) {
+  look_at(source);
+  const SlimeNews news = slimes_->receive({octets(piece.bytes), source.address, piece.arrival});
+  ++source.verdicts[news.verdict];
+  if (news.spoke) ++source.spoken;
+  if (news.counts_anew) source.greeted = source.recorded.status.counts.order;
+  send_answers();
+}
+
+void RecordedPort::send_answers() {
+  auto* udp = std::get_if<UdpPieces>(&pieces_);  // trackers have no other
+  if (udp == nullptr) return;
+  for (const SlimeSending& sending : slimes_->take_sendings()) {
+    udp->send_to(sending.to.host, sending.to.port, sending.answer.datagram());
+  }
+}
+
+void RecordedPort::tick(HostTime now) {
+  if (!slimes_) return;
+  slimes_->tick(now);
+  send_answers();
+}
+
+template <class Port, class Visit>
+void RecordedPort::for_each_source(Port& port, Visit visit) {
+  for (auto& source : port.sources_) {
+    if (source) visit(*source);
+  }
+  if (port.others_) visit(*port.others_);
+}
+
+void RecordedPort::look(HostTime now) {
+  for_each_source(*this, [&](Source& source) {
+    look_at(source);
+    find_faults(source);
+    source.recorded.take_rate(now);
+  });
+}
+
+void RecordedPort::remember(std::uint64_t chunk, std::uint64_t first) {
+  for_each_source(*this, [&](Source& source) {
+    look_at(source);
+    source.recorded.remember(chunk, first);
+  });
+}
+
+void RecordedPort::begin(std::uint64_t chunk) {
+  for_each_source(*this, [&](Source& source) { source.recorded.begin(chunk); });
+}
+
+void RecordedPort::tell(Recorder& recorder, std::uint16_t counts, HostTime now) const {
+  for_each_source(*this,
+                  [&](const Source& source) { source.recorded.tell(recorder, counts, now); });
+}
+
+/// What is known of a sender beside its messages and bytes.
+void RecordedPort::look_at(Source& source) const {
+  SenderCounts& counts = source.recorded.status.counts;
+  const SenderCounts watched = source.watch.counts();
+  counts.frames = watched.frames + source.spoken;
+  if (!slimes_) counts.order = watched.order;
+  counts.refused = watched.refused + refused(source.verdicts) + source.pings_refused;
+  if (source.clock) source.recorded.status.clock = source.clock->now();
+  const SlimeDevice* tracker = slimes_ ? slimes_->device_at(source.address) : nullptr;
+  if (tracker == nullptr) return;  // it went elsewhere: the address keeps what it counted
+  counts.order = source.greeted;
+  counts.order += tracker->numbers.counts();
+  if (tracker->battery_volts) source.recorded.status.battery_volts = *tracker->battery_volts;
+}
+
+/// Axis Studio's compressed port, say: who learns of it behind the take has no take. A host that
+/// comes back is not told of again.
+void RecordedPort::find_faults(const Source& source) {
+  const SenderCounts& counts = source.recorded.status.counts;
+  const bool none = !source.exchanges && speaks_another_protocol(device_.protocol, counts);
+  if (counts.refused == 0 && !none && !source.watch.has_twins()) return;
+  const std::string host = to_string(source.address.host);
+  const std::string name = device_.name + " from " + endpoint_text(host, source.address.port);
+  Findings findings = source.watch.findings(name);
+  append(findings, findings_of(source.verdicts, name));
+  if (none) {
+    findings.push_back({Severity::warning,
+                        Error{name, 0, "frames of " + device_.protocol,
+                              std::to_string(counts.messages) + " messages, none of them one"},
+                        "all is recorded, but nothing of it can be aligned as " + device_.protocol,
+                        "see which port and protocol the device sends to"});
+  }
+  for (Finding& finding : findings) findings_.add(host, std::move(finding));
+}
+
+std::uint16_t RecordedPort::port() const {
+  return std::visit([](const auto& pieces) { return pieces.port(); }, pieces_);
+}
+
+PortCounts RecordedPort::counts() const {
+  PortCounts counts = std::visit([](const auto& pieces) { return pieces.counts(); }, pieces_);
+  counts.pieces -= held_.size();
+  counts.bytes -= held_bytes_;
+  return counts;
+}
+
+std::uint64_t RecordedPort::heard() const {
+  return std::visit([](const auto& pieces) { return pieces.heard(); }, pieces_);
+}
+
+void RecordedPort::add_streams(std::vector<StreamStatus>& all) const {
+  for_each_source(*this, [&](const Source& source) { all.push_back(source.recorded.of_take()); });
+}
+
+}  // namespace kinalign

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/recorder/recording_disk.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::string_view suffix = ".mcap";
+constexpr int most_parts = 1000;  // names that are tried
+
+std::string part_path(const std::string& path, int part) {
+  if (part == 1) return path;
+  return path.substr(0, path.size() - suffix.size()) + ".part" + std::to_string(part) +
+         std::string(suffix);
+}
+
+/// Where the next file may stand. A file that an earlier recording has left takes no more than its
+/// own number.
+Result<std::string> free_path(const std::string& path, int part) {
+  for (; part <= most_parts; ++part) {
+    std::string free = part_path(path, part);
+    struct stat status {};
+    if (part == 1 || ::lstat(free.c_str(), &status) != 0) return free;
+  }
+  return Failure(Error{path, 0, "at most 1000 files of one recording", "more"});
+}
+
+McapStore store_of(const std::shared_ptr<GrowingFile>& file) {
+  return {[file](std::string_view bytes) { return file->append(bytes); },
+          [file](std::uint64_t at, std::span<char> to) { return file->read_at(at, to); }};
+}
+
+}  // namespace
+
+Result<RecordingDisk> RecordingDisk::open(FileSystem& files, std::string path, MakeHead head) {
+  if (!path.ends_with(suffix)) return Failure(Error{path, 0, "a name that ends in .mcap", ""});
+  RecordingDisk disk(files, std::move(path), std::move(head));
+  KA_TRY(disk.open_part());
+  return disk;
+}
+
+/// The next file and what it begins with. What failed halfway is removed: it holds no sample.
+Result<void> RecordingDisk::open_part() {
+  const int part = static_cast<int>(paths_.size()) + 1;
+  const std::string path = KA_TRY(free_path(path_, part));
+  auto file = std::make_shared<GrowingFile>(KA_TRY(GrowingFile::create(*files_, path)));
+  auto writer = std::make_unique<McapWriter>(store_of(file));
+  const RecordingHead head = head_(part);
+  Result<void> begun = writer->begin(head.header);
+  for (const McapMetadata& metadata : head.metadata) {
+    if (begun) begun = writer->write(metadata);
+  }
+  for (const McapAttachment& attachment : head.attachments) {
+    if (begun) begun = writer->write(attachment);
+  }
+  if (!begun) {
+    files_->remove(path.c_str());
+    return begun;
+  }
+  file_ = std::move(file);
+  writer_ = std::move(writer);
+  open_ = stands_ = true;
+  synced_ = 0;
+  paths_.push_back(path);
+  return {};
+}
+
+/// With no file open the next write tries again, and nothing is told: that was.
+Result<void> RecordingDisk::write(McapStoredChunk chunk) {
+  kept_bytes_ += chunk.bytes.size();
+  kept_.push_back({std::move(chunk)});
+  Result<void> put = put_kept();
+  return put || !open_ ? put : next_part(put.error());
+}
+
+/// Into the file what is not in it yet. A new one that takes none of it is removed again, or a full
+/// disk that takes names alone would fill with them.
+Result<void> RecordingDisk::put_kept() {
+  const bool fresh = !open_;
+  if (fresh) KA_TRY(open_part());
+  for (Kept& kept : kept_) {
+    if (kept.end != 0) continue;
+    Result<void> written = writer_->write(kept.chunk);
+    if (!written && fresh && &kept == &kept_.front()) remove_part();
+    if (!written) return written;
+    kept.end = file_->size();
+    kept.written = true;
+  }
+  if (repeated_) files_->remove(std::exchange(repeated_, std::nullopt)->path.c_str());
+  if (given_up_) failures_.push_back({*std::exchange(given_up_, std::nullopt), paths_.back()});
+  return {};
+}
+
+void RecordingDisk::remove_part() {
+  files_->remove(paths_.back().c_str());
+  paths_.pop_back();
+  open_ = stands_ = false;
+}
+
+/// Ends the file for what it is worth; all that memory has goes into the next one, too. A further
+/// file of which no sync has brought anything to the disk is repeated by that one, and stays until
+/// then alone: where every sync fails, there would be a thousand. Of two such files the fuller one
+/// stays.
+void RecordingDisk::give_up_part() {
+  if (!std::exchange(stands_, false)) return;
+  const std::uint64_t of_others = bytes_before_ - (open_ ? 0 : file_->size());
+  (void)finish_part();
+  const auto chunks = static_cast<std::size_t>(
+      std::count_if(kept_.begin(), kept_.end(), [](const Kept& kept) { return kept.end != 0; }));
+  for (Kept& kept : kept_) kept.end = 0;
+  if (synced_ != 0 || paths_.size() < 2) return;
+  Repeated one{paths_.back(), chunks, bytes_before_ - of_others};
+  bytes_before_ = of_others;
+  paths_.pop_back();
+  if (repeated_ && repeated_->chunks > chunks) std::swap(*repeated_, one);
+  if (repeated_) files_->remove(repeated_->path.c_str());
+  repeated_ = std::move(one);
+}
+
+/// Told once, and once more where it goes on later.
+Result<void> RecordingDisk::next_part(const Error& why) {
+  const bool told = std::exchange(given_up_, given_up_.value_or(why)).has_value();
+  give_up_part();
+  Result<void> result = put_kept();
+  if (!result && !told) failures_.push_back({why, ""});
+  return result;
+}
+
+std::uint64_t RecordingDisk::unwritten() const {
+  std::uint64_t messages = 0;
+  for (const Kept& kept : kept_) {
+    if (kept.written) continue;
+    for (const auto& [channel, count] : kept.chunk.channel_messages) messages += count;
+  }
+  return messages;
+}
+
+std::optional<RecordingDisk::Sync> RecordingDisk::unsynced() const {
+  if (!open_ || file_->size() == synced_) return std::nullopt;
+  return Sync{file_, file_->size()};
+}
+
+Result<void> RecordingDisk::synced(const Sync& sync, const Result<void>& result) {
+  if (!open_ || sync.file != file_) return {};  // it was given up in the meantime
+  if (!result) return next_part(result.error());
+  forget_synced(sync.size);
+  return {};
+}
+
+void RecordingDisk::forget_synced(std::uint64_t size) {
+  synced_ = size;
+  while (!kept_.empty() && kept_.front().end != 0 && kept_.front().end <= size) {
+    kept_bytes_ -= kept_.front().chunk.bytes.size();
+    kept_.pop_front();
+  }
+}
+
+/// Once a file: what failed is cut off again, and can be read as it is; `recover` gives it an
+/// index.
+Result<void> RecordingDisk::finish_part() {
+  if (!std::exchange(open_, false)) return {};
+  const std::uint64_t size = file_->size();
+  Result<void> finished = writer_->finish();
+  if (!finished) (void)file_->cut(size);
+  bytes_before_ += file_->size();
+  return finished;
+}
+
+Result<void> RecordingDisk::finish_once(const McapMetadata& end) {
+  KA_TRY(put_kept());
+  KA_TRY(writer_->write(end));
+  KA_TRY(finish_part());
+  KA_TRY(file_->sync());
+  forget_synced(file_->size());
+  file_->close();
+  return {};
+}
+
+/// Two tries. What failed in the end was the last sync, say: the file may hold nothing of it.
+Result<void> RecordingDisk::finish(const McapMetadata& end) {
+  Result<void> result = finish_once(end);
+  if (result) return result;
+  const auto told = static_cast<std::ptrdiff_t>(failures_.size());
+  result = next_part(result.error());
+  if (result) result = finish_once(end);
+  if (!result) give_up_part();
+  if (std::exchange(end_told_, true)) failures_.erase(failures_.begin() + told, failures_.end());
+  return result;
+}
+
+std::uint64_t RecordingDisk::bytes() const {
+  return bytes_before_ + (open_ ? file_->size() : 0) + (repeated_ ? repeated_->bytes : 0);
+}
+
+std::vector<std::string> RecordingDisk::paths() const {
+  std::vector<std::string> all = paths_;
+  if (repeated_) all.push_back(repeated_->path);
+  return all;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/recorder/stream_watch.h"
+
+#include "kinalign/wire/little_endian_reader.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_sensors = 8;     // of a sender
+constexpr std::size_t most_of_a_port = 64;  // whose sessions are known
+
+template <class Refused>
+std::uint64_t sum(const Refused& refused) {
+  return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
+}
+
+/// What a decoder could make nothing of: rises with each piece that has some in it.
+std::uint64_t trouble(const NoitomCounts& counts) {
+  return sum(counts.refused) + counts.bytes_skipped;
+}
+std::uint64_t trouble(const XsensCounts& counts) {
+  return sum(counts.refused) + counts.bytes_skipped;
+}
+std::uint64_t trouble(const KinectStreamCounts& counts) {
+  return sum(counts.refused) + counts.skipped_bytes;
+}
+
+}  // namespace
+
+StreamWatch::StreamWatch(const std::string& protocol, bool datagrams, const std::string& sender) {
+  if (protocol == "noitom") decoder_.emplace<Noitom>().datagrams = datagrams;
+  if (protocol == "xsens") decoder_.emplace<Xsens>();
+  if (protocol == "kinect") {
+    Kinect& kinect = decoder_.emplace<Kinect>();
+    kinect.datagrams = datagrams;
+    kinect.sender = sender;
+  }
+}
+
+void StreamWatch::feed(Noitom& noitom, const Piece& piece, NewestKinectFrames&) {
+  noitom.frames.clear();
+  if (noitom.datagrams) {
+    noitom.decoder.feed_datagram(piece.bytes, piece.arrival, noitom.frames);
+  } else {
+    noitom.decoder.feed(piece.bytes, noitom.frames);
+  }
+}
+
+void StreamWatch::feed(Xsens& xsens, const Piece& piece, NewestKinectFrames&) {
+  xsens.samples.clear();
+  xsens.decoder.feed(piece.bytes, xsens.samples);
+}
+
+void StreamWatch::feed(Kinect& kinect, const Piece& piece, NewestKinectFrames& newest) {
+  kinect.messages.clear();
+  kinect.pings.clear();
+  kinect.decoder.feed(piece.bytes, kinect.messages);
+  if (kinect.datagrams) kinect.decoder.finish(kinect.messages);
+  for (KinectMessage& message : kinect.messages) {
+    if (const auto* ping = std::get_if<KinectPing>(&message)) kinect.pings.push_back(*ping);
+    if (auto* frame = std::get_if<KinectFrame>(&message)) count(kinect, std::move(*frame), newest);
+  }
+}
+
+/// One that another sender brought before goes on with that session's count, or is started anew
+/// behind the newest.
+StreamWatch::KinectSensor StreamWatch::sensor_behind(const KinectSessions& sessions,
+                                                     std::uint32_t session) {
+  KinectSensor sensor;
+  const KinectMoment* last = sessions.stand(session);
+  if (last == nullptr) last = sessions.newest();
+  if (last == nullptr) return sensor;
+  sensor.joiner.follow(*last);
+  if (last->origin.session != session) sensor.restarted = last->origin.session;
+  return sensor;
+}
+
+/// Who speaks beside the newest session's sender goes on with a count of its own.
+void StreamWatch::count(Kinect& kinect, KinectFrame frame, NewestKinectFrames& newest) {
+  const KinectOrigin origin = frame.origin;
+  const bool is_heard = kinect.sensors.contains(origin.sensor);
+  if (!is_heard && kinect.sensors.size() == most_sensors) {
+    ++kinect.further_sensors;
+    return;
+  }
+  KinectSessions alone;  // of one that has no room among the port's
+  const bool has_room = newest.contains(origin.sensor) || newest.size() < most_of_a_port;
+  KinectSessions& sessions = has_room ? newest[origin.sensor] : alone;
+  if (!is_heard) {
+    kinect.sensors.emplace(origin.sensor, sensor_behind(sessions, origin.session));
+  }
+  KinectSensor& sensor = kinect.sensors.at(origin.sensor);
+  const bool had_twins = sessions.twins().has_value();
+  const auto turn = sessions.hear(moment_of(frame), kinect.sender);
+  if (sessions.twins() && !had_twins) kinect.twins.push_back(*sessions.twins());
+  if (turn == KinectSessions::Turn::over) {
+    ++kinect.late;
+    return;
+  }
+  if (sensor.restarted && sessions.is_beside(*sensor.restarted)) {
+    sensor.joiner.begin_beside();
+    sensor.restarted.reset();
+  }
+  kinect.frames.clear();
+  sensor.joiner.take(std::move(frame), kinect.frames, kinect.sender);
+  kinect.whole += static_cast<std::uint64_t>(
+      std::count_if(kinect.frames.begin(), kinect.frames.end(),
+                    [](const JoinedKinectFrame& one) { return one.whole; }));
+}
+
+void StreamWatch::feed(std::string_view piece, HostTime arrival, NewestKinectFrames& newest) {
+  std::visit(
+      [&](auto& decoder) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(decoder)>, std::monostate>) {
+          const std::uint64_t before = trouble(decoder.decoder.counts());
+          feed(decoder, {octets(piece), arrival}, newest);
+          if (trouble(decoder.decoder.counts()) > before) ++refused_;
+        }
+      },
+      decoder_);
+}
+
+std::span<const KinectPing> StreamWatch::pings() const {
+  const auto* kinect = std::get_if<Kinect>(&decoder_);
+  return kinect == nullptr ? std::span<const KinectPing>() : kinect->pings;
+}
+
+bool StreamWatch::speaks_lines() const {
+  const auto* kinect = std::get_if<Kinect>(&decoder_);
+  return kinect != nullptr && kinect->decoder.speaks_lines();
+}
+
+bool StreamWatch::has_twins() const {
+  const auto* kinect = std::get_if<Kinect>(&decoder_);
+  return kinect != nullptr && !kinect->twins.empty();
+}
+
+SenderCounts StreamWatch::counts(const Noitom& noitom) {
+  const NoitomCounts& counts = noitom.decoder.counts();
+  // The last one is whole as well, though no other has come behind it.
+  SenderCounts out{0, 0, counts.frames + (noitom.decoder.has_last() ? 1 : 0), {}, 0};
+  for (const auto& [index, avatar] : noitom.decoder.avatars()) {
+    out.order += avatar.by_index.counts();
+  }
+  return out;
+}
+
+SenderCounts StreamWatch::counts(const Xsens& xsens) {
+  const XsensCounts& counts = xsens.decoder.counts();
+  SenderCounts out{0, 0, counts.samples, {}, 0};
+  for (const auto& [channel, order] : xsens.decoder.channels()) out.order += order;
+  return out;
+}
+
+SenderCounts StreamWatch::counts(const Kinect& kinect) {
+  SenderCounts out{0, 0, kinect.whole, {}, kinect.further_sensors};
+  out.order.late = kinect.late;
+  for (const auto& [id, sensor] : kinect.sensors) {
+    const KinectFrameCounts joined = sensor.joiner.counts();
+    out.order += joined.frames;
+    out.order.late += joined.stale;
+    out.refused += joined.contradicting;
+  }
+  return out;
+}
+
+SenderCounts StreamWatch::counts() const {
+  SenderCounts all = std::visit(
+      [](const auto& decoder) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(decoder)>, std::monostate>) {
+          return SenderCounts();
+        } else {
+          return counts(decoder);
+        }
+      },
+      decoder_);
+  all.refused += refused_;
+  return all;
+}
+
+Findings StreamWatch::findings(const std::string& name) const {
+  if (const auto* noitom = std::get_if<Noitom>(&decoder_)) return noitom->decoder.findings(name);
+  if (const auto* xsens = std::get_if<Xsens>(&decoder_)) return xsens->decoder.findings(name);
+  Findings findings;
+  if (const auto* kinect = std::get_if<Kinect>(&decoder_)) {
+    for (const KinectTwins& twins : kinect->twins) {
+      findings.push_back(
+          two_senders(name, twins,
+                      "all is recorded, each sender's by itself; alignment takes one "
+                      "of them"));
+    }
+  }
+  return findings;
+}
+
+}  // namespace kinalign

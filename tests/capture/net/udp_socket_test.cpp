@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/net/udp_socket.h"
+
+#include "tests/capture/loopback.h"
+
+#include "kinalign/capture/net/datagram_batch.h"
+#include "kinalign/capture/net/own_addresses.h"
+
+#include <doctest/doctest.h>
+#include <poll.h>
+
+using namespace kinalign;
+
+namespace {
+
+std::string message(const Result<UdpSocket>& socket) {
+  return socket ? "opened" : to_string(socket.error());
+}
+
+/// The first byte of each datagram that is there, or comes within two seconds.
+std::vector<int> first_bytes(DatagramBatch& batch, const UdpSocket& socket) {
+  pollfd waiting{socket.fd(), POLLIN, 0};
+  ::poll(&waiting, 1, 2000);
+  std::vector<int> bytes;
+  const std::size_t came = batch.receive(socket.fd());
+  for (std::size_t i = 0; i < came; ++i) bytes.push_back(batch.at(i).bytes[0]);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("an address is spelt in one way, and a name is none") {
+  CHECK(spelt_address("0:0::1") == "::1");
+  CHECK(spelt_address("::FFFF") == "::ffff");
+  CHECK(spelt_address("0") == "0.0.0.0");
+  CHECK(spelt_address("127.0.0.1") == "127.0.0.1");
+  CHECK_FALSE(spelt_address("localhost"));
+}
+
+TEST_CASE("clients are told addresses that they can send to, never one that stands for all") {
+  using List = std::vector<std::string>;
+  const List own{"192.168.7.1", "10.0.0.1", "fd00::1"};
+  CHECK(reachable_at({}, own) == own);
+  CHECK(reachable_at({"0.0.0.0"}, own) == List{"192.168.7.1", "10.0.0.1"});
+  CHECK(reachable_at({"127.0.0.1", "::"}, own) == List{"127.0.0.1", "fd00::1"});
+  CHECK(reachable_at({"::"}, {"192.168.7.1"}).empty());
+}
+
+TEST_CASE("port 0 is any free one, and a port that is taken is named") {
+  const auto first = UdpSocket::open("127.0.0.1", 0);
+  REQUIRE(first);
+  CHECK(first->port() > 0);
+  const std::string place = "127.0.0.1:" + std::to_string(first->port());
+  CHECK(message(UdpSocket::open("127.0.0.1", first->port())) ==
+        place + ": expected a UDP port to serve on, found another program on it");
+  CHECK(message(UdpSocket::open("127.0.0.2", first->port())) == "opened");
+}
+
+TEST_CASE("a port is free again once its socket is gone, or was moved over") {
+  auto first = UdpSocket::open("127.0.0.1", 0);
+  auto second = UdpSocket::open("127.0.0.1", 0);
+  REQUIRE(first);
+  REQUIRE(second);
+  const std::uint16_t port = first->port();
+  *first = std::move(*second);
+  second = UdpSocket::open("127.0.0.2", 0);
+  CHECK(message(UdpSocket::open("127.0.0.1", port)) == "opened");
+}
+
+TEST_CASE("who is followed has a socket of its own, and the port is no other program's for that") {
+  const Client friend_of_ours, stranger;
+  for (const std::string here : {"127.0.0.1", "0.0.0.0"}) {
+    CAPTURE(here);
+    const auto open = UdpSocket::open(here, 0);
+    REQUIRE(open);
+    DatagramBatch batch;
+    friend_of_ours.send("127.0.0.1", open->port(), {1});
+    REQUIRE(first_bytes(batch, *open) == std::vector{1});
+    const Datagram from = batch.at(0);
+    const auto follow = [&] {
+      return UdpSocket::connected(from.to, open->port(), from.from, from.from_port);
+    };
+    CHECK(message(follow()).ends_with(
+        "expected a UDP socket for it alone, found another program on it"));
+    REQUIRE(open->share_port());
+    const auto line = follow();
+    REQUIRE(line);
+    CHECK_FALSE(UdpSocket::open(here, open->port()));
+    friend_of_ours.send("127.0.0.1", open->port(), {2});
+    stranger.send("127.0.0.1", open->port(), {3});
+    CHECK(first_bytes(batch, *line) == std::vector{2});
+    CHECK(first_bytes(batch, *open) == std::vector{3});
+  }
+}
+
+TEST_CASE("an address that this host has not, or that is none, is named") {
+  CHECK(message(UdpSocket::open("192.0.2.77", 0)) ==
+        "192.0.2.77:0: expected a UDP port to serve on, found no interface that has it");
+  for (const std::string text : {"lab", "::1::", "1.2.3.4.5", ""}) {
+    const std::string found = text.empty() ? "" : ", found " + text;
+    CHECK(message(UdpSocket::open(text, 0)) == "expected an IPv4 or IPv6 address" + found);
+  }
+}
+
+TEST_CASE("an IPv6 address stands in brackets before its port") {
+  CHECK(endpoint_text("::1", 123) == "[::1]:123");
+  CHECK(endpoint_text("127.0.0.1", 123) == "127.0.0.1:123");
+}
