@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The real recorder under the load of bench/record_load.cpp on loopback: for the test
+"""The real recorder under the load of tools/record_load/main.cpp on loopback: for the test
 tests/apps/record_load_check.py and the bench bench/record_load.py."""
 import json
 import os

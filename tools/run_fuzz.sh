@@ -21,7 +21,7 @@ fi
 
 seeds() { # TARGET FOLDER
   local patterns=() pattern file n=0 # read, not expanded: they hold for ../shared/data, not for here
-  read -ra patterns < <(sed -n 's|^// Seeds: *||p' "fuzz/$1.cpp" 2>/dev/null) || true
+  read -ra patterns < <(sed -n 's|^// Seeds: *||p' "fuzz"/*/"$1.cpp" 2>/dev/null) || true
   for pattern in "${patterns[@]}"; do
     # shellcheck disable=SC2231 # the pattern shall be expanded
     for file in ../shared/data/$pattern; do

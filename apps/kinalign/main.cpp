@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/kinalign/program.h"
+#include "apps/cli/program.h"
 #include "apps/kinalign/verbs.h"
 
 #include <unistd.h>

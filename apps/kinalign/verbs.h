@@ -2,7 +2,7 @@
 // All verbs, in the order of the help page. A new verb: its file, a line here, a line in verbs.cpp.
 #pragma once
 
-#include "apps/kinalign/verb.h"
+#include "apps/cli/verb.h"
 
 #include <vector>
 

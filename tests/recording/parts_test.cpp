@@ -4,11 +4,11 @@
 #include "tests/folder.h"
 #include "tests/recording/recorded_lab.h"
 
-#include "kinalign/io/open_recording.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/recover.h"
 #include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey_parts.h"
+#include "kinalign/sources/open_recording.h"
 
 #include <doctest/doctest.h>
 

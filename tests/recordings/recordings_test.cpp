@@ -6,8 +6,8 @@
 
 #include "kinalign/align/align.h"
 #include "kinalign/formats/table/layout.h"
-#include "kinalign/io/open_recording.h"
 #include "kinalign/motion/arrivals.h"
+#include "kinalign/sources/open_recording.h"
 
 #include <Eigen/Eigenvalues>
 #include <doctest/doctest.h>

@@ -4,9 +4,9 @@
 #include "tests/recording/recorded_lab.h"
 
 #include "kinalign/align/align.h"
-#include "kinalign/io/open_recording.h"
 #include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey_parts.h"
+#include "kinalign/sources/open_recording.h"
 
 #include <doctest/doctest.h>
 

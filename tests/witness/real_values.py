@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every number of real recordings by a plain reading in Python, for tests/io/real_values_test.cpp.
+"""Every number of real recordings by a plain reading in Python, for tests/sources/real_values_test.cpp.
 FOLDER/files.txt names one a line: how it is to be read, a tab, its path. Of line i come i_stamps (seconds and
 nanoseconds), i_positions, i_orientation, i_acceleration, i_angular_velocity: metres, y up, nan where nothing is."""
 import csv

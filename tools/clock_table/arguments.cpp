@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/clock_table/arguments.h"
 
-#include "apps/kinalign/command_line.h"
-#include "apps/kinalign/field_text.h"
+#include "apps/cli/command_line.h"
+#include "apps/cli/field_text.h"
 #include "tools/clock_table/promises.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // kinalign_demo_recording OUT_DIR: what a suit, a Kinect and five nodes would have written of one
 // person who waves, bends and steps. Streams to disk: an hour needs no more memory than a minute.
-#include "apps/kinalign/command_line.h"
+#include "apps/cli/command_line.h"
 #include "tools/demo/devices.h"
 
 #include <sys/stat.h>

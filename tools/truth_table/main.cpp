@@ -3,17 +3,17 @@
 // RECORDING is what was aligned (recording.toml or .mcap), TAKE what came out of it, TRUTH
 // simulate's truth.json. Prints errors of time and of values; ends with 1 where a certified stamp
 // lies outside its interval.
-#include "apps/kinalign/inputs.h"
+#include "apps/kinalign/verbs/inputs.h"
 
 #include "kinalign/documents/truth_json.h"
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/take/take_hdf5.h"
-#include "kinalign/io/open_recording.h"
 #include "kinalign/motion/interpolation/clip_motion.h"
 #include "kinalign/recording/parts.h"
 #include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey_parts.h"
 #include "kinalign/simulate/rehearsal/judge_recording.h"
+#include "kinalign/sources/open_recording.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "tests/folder.h"
 
 #include "kinalign/formats/bvh/bvh.h"
-#include "kinalign/io/open_recording.h"
+#include "kinalign/sources/open_recording.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "tests/formats/reading.h"
 
 #include "kinalign/formats/table/table_reader.h"
-#include "kinalign/io/formats.h"
+#include "kinalign/sources/formats.h"
 
 #include <doctest/doctest.h>
 

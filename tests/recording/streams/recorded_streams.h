@@ -6,7 +6,7 @@
 #include "tests/folder.h"
 #include "tests/recording/recorded_lab.h"
 
-#include "kinalign/io/open_recording.h"
+#include "kinalign/sources/open_recording.h"
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/command_line.h"
+
+#include "apps/cli/field_text.h"
+
+#include "kinalign/core/nearest_name.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::array<std::pair<char, std::string_view>, 4> letters{
+    {{'o', "out"}, {'q', "quiet"}, {'v', "verbose"}, {'h', "help"}}};
+
+Failure wrong(std::string place, std::string expected, std::string found) {
+  return Failure(Error{std::move(place), 0, std::move(expected), std::move(found)});
+}
+
+bool looks_like_a_flag(std::string_view word) {
+  return word.size() > 1 && word[0] == '-' && word.find_first_of("0123456789.") != 1;
+}
+
+/// One walk over the words.
+class Walk {
+ public:
+  Walk(const std::vector<std::string>& words, const Usage& usage, const Fields& common)
+      : words_(words), usage_(usage) {
+    for (const Fields* some : {&usage.flags, &usage.settings, &common}) {
+      for (const Field& field : *some) fields_.push_back(&field);
+    }
+  }
+
+  Result<Parsed> parse() {
+    bool flags = true;
+    for (; at_ < words_.size(); ++at_) {
+      const std::string& word = words_[at_];
+      if (flags && word == "--") {
+        flags = false;
+      } else if (flags && looks_like_a_flag(word)) {
+        KA_TRY(word.starts_with("--") ? long_flag(word) : letter(word));
+        if (parsed_.help) return std::move(parsed_);
+      } else {
+        plain_.push_back(word);
+      }
+    }
+    KA_TRY(place_words());
+    return std::move(parsed_);
+  }
+
+ private:
+  Result<void> long_flag(const std::string& word) {
+    const auto equals = word.find('=');
+    const std::string flag = word.substr(0, equals);
+    const bool has_value = equals != std::string::npos;
+    if (flag == "--help" && !has_value) {
+      parsed_.help = true;
+      return {};
+    }
+    const Field* field = find(flag);
+    if (field != nullptr) {
+      return has_value ? set(*field, flag, word.substr(equals + 1)) : set_bare(*field, flag);
+    }
+    field = flag.starts_with("--no-") ? find("--" + flag.substr(5)) : nullptr;
+    if (field != nullptr && is_switch(*field) && !has_value) return set(*field, flag, "false");
+    return unknown(flag);
+  }
+
+  Result<void> letter(const std::string& word) {
+    for (std::size_t i = 1; i < word.size(); ++i) {
+      const std::string flag{'-', word[i]};
+      const Field* field = find_letter(word[i]);
+      if (word[i] == 'h') {
+        parsed_.help = true;
+        return {};
+      }
+      if (field == nullptr) return unknown(flag);
+      if (!is_switch(*field) && i + 1 < word.size()) return set(*field, flag, word.substr(i + 1));
+      KA_TRY(set_bare(*field, flag));
+    }
+    return {};
+  }
+
+  /// A flag whose value, where it has one, is the next word.
+  Result<void> set_bare(const Field& field, const std::string& flag) {
+    if (is_switch(field)) return set(field, flag, "true");
+    if (at_ + 1 == words_.size() || looks_like_a_flag(words_[at_ + 1])) {
+      return wrong(flag, "a value behind it (" + placeholder(field) + ")",
+                   at_ + 1 == words_.size() ? "the end" : shown(words_[at_ + 1]));
+    }
+    return set(field, flag, words_[++at_]);
+  }
+
+  Result<void> set(const Field& field, const std::string& flag, const std::string& text) {
+    const bool many = std::holds_alternative<std::vector<std::string>*>(field.value);
+    const bool first = parsed_.given.insert_or_assign(field.name, Source::flag).second;
+    if (!first && !many) return wrong(flag, "to be given once", "given twice");
+    if (first && many) std::get<std::vector<std::string>*>(field.value)->clear();
+    return set_field(field, text).map_error([&](Error error) {
+      error.file = flag;
+      return error;
+    });
+  }
+
+  Result<void> place_words() {
+    std::size_t next = 0;
+    std::size_t needed = 0;  // by the positionals behind the current one
+    for (const Positional& place : usage_.positionals) needed += place.least;
+    if (plain_.size() < needed) needed = 0;  // the last ones are missing, not the first
+    for (const Positional& place : usage_.positionals) {
+      needed -= std::min(needed, place.least);
+      for (std::size_t n = 0; n < place.most && next + needed < plain_.size(); ++n, ++next) {
+        KA_TRY(place_word(place, plain_[next]));
+      }
+      if (place.words->size() < place.least) {
+        return wrong("", place.name + " (" + place.meaning + ")", "nothing in its place");
+      }
+    }
+    if (next == plain_.size()) return {};
+    const std::string& further = plain_[next];
+    const bool config = usage_.positionals.empty() && further.ends_with(".toml");
+    return wrong(
+        "", "no further word" + (config ? " (did you mean --config " + shown(further) + "?)" : ""),
+        shown(further));
+  }
+
+  static Result<void> place_word(const Positional& place, const std::string& word) {
+    const auto& choices = place.choices;
+    if (!choices.empty() && std::find(choices.begin(), choices.end(), word) == choices.end()) {
+      return wrong(place.name, any_of(choices), shown(word));
+    }
+    place.words->push_back(word);
+    return {};
+  }
+
+  const Field* find(const std::string& flag) const {
+    const auto found = std::find_if(fields_.begin(), fields_.end(), [&](const Field* field) {
+      return flag_of(field->name) == flag;
+    });
+    return found == fields_.end() ? nullptr : *found;
+  }
+
+  const Field* find_letter(char letter) const {
+    for (const auto& [short_name, name] : letters) {
+      if (short_name == letter) return find(flag_of(name));
+    }
+    return nullptr;
+  }
+
+  Failure unknown(const std::string& flag) const {
+    std::vector<std::string> known{"--help"};
+    for (const Field* field : fields_) known.push_back(flag_of(field->name));
+    const std::string near = suggestion(flag, known);
+    return wrong("", "a known flag" + (near.empty() ? "" : " (" + near + ")"), shown(flag));
+  }
+
+  const std::vector<std::string>& words_;
+  const Usage& usage_;
+  std::vector<const Field*> fields_;
+  std::size_t at_ = 0;
+  std::vector<std::string> plain_;
+  Parsed parsed_;
+};
+
+}  // namespace
+
+Fields common_fields(Common& common, const Page& page) {
+  const Field out_file{"out", "file to write", &common.out};
+  const Field out_folder{.name = "out",
+                         .meaning = page.out_is_new ? "folder to write into; none may be there"
+                                                    : "folder to write into, made if need be",
+                         .value = &common.out,
+                         .stands_for = "FOLDER"};
+  const Fields choosable{
+      page.out_is_folder ? out_folder : out_file,
+      {"force", "overwrite what is there", &common.force},
+      {"json", "print JSON and nothing else on stdout", &common.json},
+      {"dry_run", "say what would be done and write nothing", &common.dry_run},
+      {"jobs", "threads to use; 0: one a processor", &common.jobs, 0.0, 1024.0},
+  };
+  Fields fields;
+  for (const Field& field : choosable) {
+    const auto& names = page.common;
+    if (std::find(names.begin(), names.end(), field.name) != names.end()) fields.push_back(field);
+  }
+  fields.push_back(
+      {"config", "settings to use instead of the project's kinalign.toml", &common.config});
+  fields.push_back({"quiet", "print errors only", &common.quiet});
+  fields.push_back({"verbose", "say more: what each file was read as, names of joints and nodes",
+                    &common.verbose});
+  fields.push_back({.name = "color",
+                    .meaning = "colours: auto is on a terminal without NO_COLOR",
+                    .value = &common.color,
+                    .choices = {"auto", "always", "never"}});
+  return fields;
+}
+
+bool is_common_setting(const std::string& name) {
+  return name == "jobs" || name == "quiet" || name == "verbose" || name == "color";
+}
+
+Result<Parsed> parse_words(const std::vector<std::string>& words, const Usage& usage,
+                           const Fields& common) {
+  return Walk(words, usage, common).parse();
+}
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
+  const std::string near = nearest_name(word, known);
+  return near.empty() ? "" : "did you mean " + near + "?";
+}
+
+}  // namespace kinalign

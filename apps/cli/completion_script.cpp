@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Completions of verbs, flags, choices and layouts for bash, zsh and fish; everything else
+// completes to file names.
+#include "apps/cli/command_line.h"
+#include "apps/cli/field_text.h"
+#include "apps/cli/help.h"
+
+#include "kinalign/sources/formats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) {
+    if (!word.empty()) text += (text.empty() ? "" : " ") + word;
+  }
+  return text;
+}
+
+/// Calls use(page, usage, fields) for each verb, with all its flags in one list.
+template <class Use>
+void for_each_verb(const std::vector<Verb>& verbs, Use&& use) {
+  for (const Verb& verb : verbs) {
+    describe_verb(verb, [&](const Usage& usage) {
+      Common common;
+      Fields fields = usage.flags;
+      fields.insert(fields.end(), usage.settings.begin(), usage.settings.end());
+      const Fields everywhere = common_fields(common, verb.page);
+      fields.insert(fields.end(), everywhere.begin(), everywhere.end());
+      use(verb.page, usage, fields);
+    });
+  }
+}
+
+/// Words that a flag may be given; none: any, or a file.
+std::vector<std::string> values_of(const Field& field) {
+  if (field.name != "layout" && !field.name.ends_with("_layout")) return field.choices;
+  const auto names = format_names();
+  return {names.begin(), names.end()};
+}
+
+std::string verb_names(const std::vector<Verb>& verbs) {
+  std::vector<std::string> names;
+  names.reserve(verbs.size());
+  for (const Verb& verb : verbs) names.push_back(verb.page.name);
+  return joined(names);
+}
+
+/// Text within single quotes of a shell, without what zsh's _arguments reads as its own.
+std::string quotable(std::string text) {
+  std::erase_if(text, [](char c) { return c == '\'' || c == '[' || c == ']'; });
+  std::replace(text.begin(), text.end(), ':', ',');
+  return text;
+}
+
+std::string bash_script(const std::vector<Verb>& verbs) {
+  std::string cases;
+  for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
+    std::vector<std::string> words{"--help"};
+    for (const Field& field : fields) {
+      words.push_back(flag_of(field.name));
+      if (is_switch(field)) continue;
+      const std::string letter = field.name == "out" ? fmt::format("|'{} -o'", page.name) : "";
+      cases += fmt::format("    '{} {}'{}) words='{}' ;;\n", page.name, flag_of(field.name), letter,
+                           joined(values_of(field)));
+    }
+    std::string choices;
+    for (const Positional& place : usage.positionals) choices += joined(place.choices);
+    cases += fmt::format("    '{} '*) [[ $word == -* ]] && words='{}' || words='{}' ;;\n",
+                         page.name, joined(words), choices);
+  });
+  return fmt::format(
+      "# bash completion of kinalign\n_kinalign() {{\n"
+      "  local word=${{COMP_WORDS[COMP_CWORD]}} words='{} --help --version'\n"
+      "  [ \"$COMP_CWORD\" -gt 1 ] && case \"${{COMP_WORDS[1]}} ${{COMP_WORDS[COMP_CWORD-1]}}\" "
+      "in\n"
+      "{}  esac\n"
+      "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n}}\n"
+      "complete -o default -F _kinalign kinalign\n",
+      verb_names(verbs), cases);
+}
+
+std::string zsh_script(const std::vector<Verb>& verbs) {
+  std::string list;
+  for (const Verb& verb : verbs) {
+    list += fmt::format("    '{}:{}'\n", verb.page.name, quotable(verb.page.summary));
+  }
+  std::string cases;
+  for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
+    cases += fmt::format("    {}) _arguments", page.name);
+    for (const Field& field : fields) {
+      const std::string many =
+          std::holds_alternative<std::vector<std::string>*>(field.value) ? "*" : "";
+      cases +=
+          fmt::format(" \\\n      '{}{}[{}]", many, flag_of(field.name), quotable(field.meaning));
+      const std::string values = joined(values_of(field));
+      if (!values.empty()) {
+        cases += fmt::format(":value:({})", values);
+      } else if (!is_switch(field)) {
+        cases += ":value:_files";
+      }
+      cases += "'";
+    }
+    std::string choices;
+    for (const Positional& place : usage.positionals) choices += joined(place.choices);
+    cases += choices.empty() ? " \\\n      '*:file:_files' ;;\n"
+                             : fmt::format(" \\\n      '*:word:({})' ;;\n", choices);
+  });
+  return fmt::format(
+      "#compdef kinalign\n_kinalign() {{\n  local -a verbs=(\n{}  )\n"
+      "  if (( CURRENT == 2 )); then\n    _describe verb verbs\n    return\n  fi\n"
+      "  local verb=$words[2]\n  shift words\n  (( CURRENT-- ))\n  case $verb in\n{}  esac\n}}\n"
+      "if [ \"$funcstack[1]\" = _kinalign ]; then\n  _kinalign \"$@\"\nelse\n"
+      "  compdef _kinalign kinalign\nfi\n",
+      list, cases);
+}
+
+std::string fish_script(const std::vector<Verb>& verbs) {
+  std::string text = "# fish completion of kinalign\n";
+  for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
+    text += fmt::format("complete -c kinalign -n __fish_use_subcommand -a {} -d '{}'\n", page.name,
+                        quotable(page.summary));
+    const std::string within =
+        fmt::format("complete -c kinalign -n '__fish_seen_subcommand_from {}'", page.name);
+    for (const Field& field : fields) {
+      text += fmt::format("{} -l {}", within, flag_of(field.name).substr(2));
+      const std::string values = joined(values_of(field));
+      if (!field.choices.empty()) text += " -x";
+      if (field.choices.empty() && !is_switch(field)) text += " -r";
+      if (!values.empty()) text += fmt::format(" -a '{}'", values);
+      text += fmt::format(" -d '{}'\n", quotable(field.meaning));
+    }
+    for (const Positional& place : usage.positionals) {
+      if (!place.choices.empty())
+        text += fmt::format("{} -a '{}'\n", within, joined(place.choices));
+    }
+  });
+  return text;
+}
+
+}  // namespace
+
+std::string completion_script(const std::string& shell, const std::vector<Verb>& verbs) {
+  if (shell == "zsh") return zsh_script(verbs);
+  if (shell == "fish") return fish_script(verbs);
+  return bash_script(verbs);
+}
+
+}  // namespace kinalign

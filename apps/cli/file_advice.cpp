@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/file_advice.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+namespace kinalign {
+
+std::vector<std::string> file_advice(const Error& error) {
+  const bool is_bad_disk = error.expected == "a readable file" && error.found == std::strerror(EIO);
+  if (is_bad_disk && error.file.ends_with(".mcap")) {
+    return {"kinalign recover " + harmless(error.file) +
+            " -o whole.mcap makes a file of what the disk can give"};
+  }
+  if (error.expected != "a regular file" || error.found != "a directory") return {};
+  std::vector<std::string> recordings;
+  std::error_code fault;
+  for (std::filesystem::directory_iterator file(error.file, fault), end; !fault && file != end;
+       file.increment(fault)) {
+    const std::string name = file->path().string();
+    if (name.ends_with(".mcap")) recordings.push_back(name);
+  }
+  if (recordings.empty()) return {"name a file in it"};
+  return {"name a file in it, as " +
+          harmless(*std::min_element(recordings.begin(), recordings.end()))};
+}
+
+}  // namespace kinalign

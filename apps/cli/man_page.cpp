@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// kinalign(1), in the man macros of roff (groff_man(7)).
+#include "apps/cli/command_line.h"
+#include "apps/cli/field_text.h"
+#include "apps/cli/help.h"
+
+#include <fmt/format.h>
+
+namespace kinalign {
+
+namespace {
+
+/// Text that roff takes literally.
+std::string literal(std::string_view text) {
+  std::string out;
+  if (text.starts_with('.') || text.starts_with('\'')) out += "\\&";
+  for (const char c : text) {
+    if (c == '\\') {
+      out += "\\e";
+    } else if (c == '-') {
+      out += "\\-";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string item(std::string_view head, std::string_view text) {
+  return fmt::format(".TP\n.B {}\n{}\n", literal(head), literal(text));
+}
+
+std::string items(const Fields& fields) {
+  std::string text;
+  for (const Field& field : fields) {
+    const FlagText flag = flag_text(field);
+    text += item(flag.flag, flag.meaning);
+  }
+  return text;
+}
+
+std::string verb_section(const Page& page, const Usage& usage) {
+  std::string text =
+      fmt::format(".SS \"{}\"\n{}\n", literal(usage_line(page, usage)), literal(page.summary));
+  if (!page.text.empty()) text += fmt::format(".PP\n{}\n", literal(page.text));
+  for (const Example& example : page.examples) {
+    text += fmt::format(".PP\n{}:\n.PP\n.RS\n.EX\n{}\n.EE\n.RE\n", literal(example.meaning),
+                        literal(example.command));
+  }
+  for (const Positional& place : usage.positionals) text += item(place.name, place.meaning);
+  Common common;
+  const Page bare{page.name, "", "", {}, {}};
+  Fields own = common_fields(common, page);
+  own.resize(own.size() - common_fields(common, bare).size());
+  return text + items(usage.flags) + items(usage.settings) + items(own);
+}
+
+}  // namespace
+
+std::string man_page(const std::vector<Verb>& verbs) {
+  std::string text = fmt::format(
+      ".TH KINALIGN 1 \"\" \"kinalign {}\" \"User Commands\"\n.SH NAME\n"
+      "kinalign \\- align motion capture, Kinect v2 and IMU recordings\n"
+      ".SH SYNOPSIS\n.B kinalign\n.I VERB\n[\\fIFLAGS\\fR]\n.SH VERBS\n",
+      program_version());
+  for (const Verb& verb : verbs) {
+    describe_verb(verb, [&](const Usage& usage) { text += verb_section(verb.page, usage); });
+  }
+  Common common;
+  text += ".SH FLAGS OF EVERY VERB\n" + items(common_fields(common, Page{}));
+  text += item("-h, --help", "the verb's page");
+  text +=
+      ".SH SETTINGS\nA flag wins over KINALIGN_<NAME> in the environment, that over what a "
+      "manifest "
+      "states, that over\nthe nearest kinalign.toml in the current folder or above it, that "
+      "over\n.I "
+      "~/.config/kinalign/config.toml.\n.B kinalign config\nprints what is in force and whence.\n"
+      ".SH EXIT STATUS\n";
+  text += item("0", "done") +
+          item("1", "done, with warnings or errors found; rebuild: not the same") +
+          item("2", "wrong use");
+  text += item("3", "input or output") + item("130", "stopped by Ctrl-C; no half file is left");
+  return text;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/program.h"
+
+#include "apps/cli/command_line.h"
+#include "apps/cli/console.h"
+#include "apps/cli/file_advice.h"
+#include "apps/cli/help.h"
+#include "apps/cli/settings.h"
+
+#include <algorithm>
+#include <new>
+#include <optional>
+#include <thread>
+
+namespace kinalign {
+
+namespace {
+
+/// A file of a few bytes may say that it needs gigabytes.
+template <class Work>
+Result<int> with_memory(const Work& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    return Failure(Error{"", 0, "as much memory as the files need", "no more of it"});
+  }
+}
+
+/// One call of one verb.
+class Run {
+ public:
+  Run(const Verb& verb, const std::vector<Verb>& verbs, std::vector<std::string> words,
+      const Surroundings& surroundings)
+      : verb_(verb), verbs_(verbs), words_(std::move(words)), surroundings_(surroundings) {}
+
+  int operator()() {
+    const auto fill = [&](Usage& usage) { return take_words(usage); };
+    const auto call = [&] { return enter(); };
+    const Result<int> code = with_memory([&] { return verb_.enter(fill, call); });
+    if (!filled_) return early_;
+    return leave(code);
+  }
+
+ private:
+  /// True: go on. Otherwise early_ is the exit code.
+  bool take_words(Usage& usage) {
+    const Result<bool> help = set_options(usage);
+    Console console(surroundings_, common_, verb_.page.name);
+    if (!help) {
+      console.if_it_fails([&](const Error& error) { return advice(error); });
+      console.report(help.error());
+      early_ = unreadable_ ? failed : wrong_use;
+    } else if (*help) {
+      console.put(help_page(verb_.page, usage));
+      early_ = console.finish() ? done : failed;
+    } else {
+      filled_ = true;
+    }
+    return filled_;
+  }
+
+  std::vector<std::string> advice(const Error& error) const {
+    const std::string variable = surroundings_.variable("KINALIGN_CONFIG");
+    const bool by_variable = common_.config.empty() && error.file == variable;
+    if (unreadable_ && by_variable) return {"KINALIGN_CONFIG names it"};
+    if (unreadable_) return {};
+    if (error.line > 0) return {std::string(settings_pages)};
+    return {"kinalign " + verb_.page.name + " --help shows what it takes, with examples"};
+  }
+
+  Result<std::vector<SettingsFile>> read_settings() {
+    const auto found = find_settings(surroundings_, common_.config);
+    unreadable_ = !found;
+    return parse_settings(KA_TRY(found));
+  }
+
+  /// Whether the help page was asked for.
+  Result<bool> set_options(Usage& usage) {
+    const Fields common = common_fields(common_, verb_.page);
+    Parsed parsed = KA_TRY(parse_words(words_, usage, common));
+    if (parsed.help) {
+      common_ = Common{};
+      return true;
+    }
+    sources_ = std::move(parsed.given);
+    const Settable settable{verb_.page, usage.settings, common};
+    for (const SettingsFile& file : KA_TRY(read_settings())) {
+      KA_TRY(apply_settings(file, settable, verbs_, sources_));
+    }
+    KA_TRY(apply_environment(surroundings_, settable, sources_));
+    if (usage.check) KA_TRY(usage.check(common_, sources_));
+    return false;
+  }
+
+  Call enter() {
+    take_signals();
+    console_.emplace(surroundings_, common_, verb_.page.name);
+    const auto processors = std::max(1U, std::thread::hardware_concurrency());
+    const auto jobs = common_.jobs > 0 ? static_cast<std::size_t>(common_.jobs) : processors;
+    return Call{common_, sources_, jobs, *console_, verbs_, surroundings_};
+  }
+
+  int leave(const Result<int>& code) {
+    if (interrupted() && !code) {
+      console_->complain("kinalign " + verb_.page.name + ": stopped; no unfinished file is left");
+      return stopped;
+    }
+    if (!code) {
+      console_->report(code.error());
+      for (const std::string& line : file_advice(code.error())) console_->complain("  " + line);
+    }
+    const Result<void> written = console_->finish();
+    if (!written) console_->report(written.error());
+    if (!code && console_->refused()) return wrong_use;
+    return code && written ? *code : failed;
+  }
+
+  const Verb& verb_;
+  const std::vector<Verb>& verbs_;
+  std::vector<std::string> words_;
+  const Surroundings& surroundings_;
+  Common common_;
+  Sources sources_;
+  std::optional<Console> console_;
+  bool filled_ = false;
+  bool unreadable_ = false;  // a file of settings is
+  int early_ = done;
+};
+
+/// `text` on stdout, or where it answers wrong use on stderr.
+int say(const std::string& text, ExitCode code, const Surroundings& surroundings) {
+  const Common common;
+  Console console(surroundings, common, "");
+  if (code == done) {
+    console.put(text);
+    return console.finish() ? done : failed;
+  }
+  console.note(text.substr(0, text.find_last_not_of('\n') + 1));
+  return code;
+}
+
+int unknown_verb(const std::vector<Verb>& verbs, const std::string& word,
+                 const Surroundings& surroundings) {
+  std::vector<std::string> known{"--help", "--version", "help"};
+  for (const Verb& verb : verbs) known.push_back(verb.page.name);
+  const Common common;
+  Console console(surroundings, common, "");
+  console.if_it_fails([&](const Error&) {
+    const std::string near = suggestion(word, known);
+    return std::vector<std::string>{(near.empty() ? "" : near + " ") +
+                                    "kinalign --help lists the verbs"};
+  });
+  const bool flag = word.starts_with('-');
+  console.report(Error{"", 0, flag ? "a verb before its flags" : "a known verb", shown(word)});
+  return wrong_use;
+}
+
+}  // namespace
+
+int run_program(const std::vector<Verb>& verbs, const std::vector<std::string>& words,
+                const Surroundings& surroundings) {
+  if (words.empty()) return say(overview(verbs), wrong_use, surroundings);
+  std::string name = words.front();
+  std::vector<std::string> rest(words.begin() + 1, words.end());
+  if (name == "--version") return say("kinalign " + program_version() + "\n", done, surroundings);
+  const bool help = name == "--help" || name == "-h" || name == "help";
+  if (help && rest.empty()) return say(overview(verbs), done, surroundings);
+  if (help) {
+    name = rest.front();
+    rest = {"--help"};
+  }
+  const auto verb = std::find_if(verbs.begin(), verbs.end(),
+                                 [&](const Verb& one) { return one.page.name == name; });
+  if (verb == verbs.end()) return unknown_verb(verbs, name, surroundings);
+  return Run(*verb, verbs, std::move(rest), surroundings)();
+}
+
+}  // namespace kinalign

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program behind main: from words to a verb, its settings, its run and its exit code.
+#pragma once
+
+#include "apps/cli/verb.h"
+
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+enum ExitCode : int { done = 0, findings = 1, wrong_use = 2, failed = 3, stopped = 130 };
+
+/// `words`: the command line without the program's name.
+int run_program(const std::vector<Verb>& verbs, const std::vector<std::string>& words,
+                const Surroundings& surroundings);
+
+}  // namespace kinalign

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/verb.h"
+
+#include "apps/cli/field_text.h"
+
+#include <cassert>
+
+namespace kinalign {
+
+namespace {
+
+void copy_value(const Field& from, const Field& onto) {
+  assert(from.value.index() == onto.value.index());
+  std::visit(
+      [&](auto* source) { *std::get<std::remove_const_t<decltype(source)>>(onto.value) = *source; },
+      from.value);
+}
+
+}  // namespace
+
+void describe_verb(const Verb& verb, const std::function<void(const Usage&)>& use) {
+  const auto look = [&](const Usage& usage) {
+    use(usage);
+    return false;
+  };
+  (void)verb.enter(look, [&]() -> Call { std::abort(); });
+}
+
+void copy_given(const Fields& from, const Fields& onto, const Sources& sources, Source least) {
+  for (const Field& field : from) {
+    const auto source = sources.find(field.name);
+    if (source == sources.end() || source->second < least) continue;
+    for (const Field& other : onto) {
+      if (other.name == field.name) copy_value(field, other);
+    }
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/record/disk_forecast.h"
+
+#include "apps/kinalign/text/record_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace kinalign {
+
+namespace {
+
+/// "3 min", "2.5 h", "12 d": with as many digits as a forecast deserves.
+std::string minutes_text(double minutes) {
+  if (minutes < 120) return fmt::format("{:.0f} min", minutes);
+  if (minutes < 48 * 60) return fmt::format("{:.1f} h", minutes / 60);
+  return fmt::format("{:.0f} d", minutes / 60 / 24);
+}
+
+}  // namespace
+
+void DiskForecast::look(HostTime now, std::uint64_t written, std::uint64_t free) {
+  constexpr Duration window = std::chrono::seconds(30);
+  constexpr Duration lately = std::chrono::seconds(5);
+  constexpr double least_s = 2.0;  // of a rate that means something
+  free_ = free;
+  looks_.push_back({now, written});
+  while (now - looks_.front().at > window) looks_.pop_front();
+  const auto before = std::find_if(
+      looks_.rbegin(), std::prev(looks_.rend()),
+      [&](const Look& look) { return now - look.at >= lately; });  // else the first of all
+  const double s = seconds(now - before->at);
+  rate_ = 0.0;
+  if (s >= least_s && written > before->written) {
+    rate_ = static_cast<double>(written - before->written) / s;
+  }
+  if (now - before->at >= lately) looks_.back().rate = rate_;
+  for (const Look& look : looks_) rate_ = std::max(rate_, look.rate);
+}
+
+std::optional<double> DiskForecast::minutes_left() const {
+  if (!(rate_ > 0.0)) return std::nullopt;
+  const double left = free_ > reserve ? static_cast<double>(*free_ - reserve) : 0.0;
+  return left / rate_ / 60.0;
+}
+
+bool DiskForecast::take_warning() {
+  const auto left = minutes_left();
+  if (!left) return false;
+  double step = warned_;
+  for (const double minutes : std::array{10.0, 5.0, 2.0, 1.0}) {
+    if (*left <= minutes) step = minutes;
+  }
+  if (step >= warned_) return false;
+  warned_ = step;
+  return true;
+}
+
+std::string disk_text(const DiskForecast& forecast, std::uint64_t bytes, const std::string& path) {
+  const auto left = forecast.minutes_left();
+  const auto free = forecast.free();
+  const std::string room = free ? fmt::format("{:.1f} GB", megabytes(*free) / 1e3) : "";
+  std::string text = "disk  ";
+  if (left) {
+    text += fmt::format("{} left at this rate, {}; ", minutes_text(*left), room);
+  } else if (free) {
+    text += room + " left; ";
+  }
+  return text + fmt::format("{:.1f} MB in {}", megabytes(bytes), path);
+}
+
+}  // namespace kinalign

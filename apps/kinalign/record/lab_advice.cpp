@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/record/lab_advice.h"
+
+#include "apps/kinalign/text/port_advice.h"
+
+#include "kinalign/documents/toml_entries.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Port = std::optional<std::int64_t>;
+
+struct MarkFlag {
+  const char* name = "";
+  const char* flag = "";
+  Port port;
+};
+
+std::array<MarkFlag, 2> mark_flags(const Port& marks, const Port& trigger) {
+  return {{{"marks", "--marks-port", marks}, {"trigger", "--trigger-port", trigger}}};
+}
+
+WantedPort wanted_by(const DeviceOptions& device, const LabSources& sources) {
+  WantedPort wanted{static_cast<std::uint16_t>(device.port), "", "", device.transport != "udp"};
+  if (sources.by_flag.contains(device.name)) {
+    const std::string said =
+        fmt::format("--device {}={}:{}:", device.name, device.protocol, device.transport);
+    wanted.port_from = said + "PORT";
+    wanted.address_from = said + "ADDRESS:PORT";
+  } else {
+    const std::string said = fmt::format("[device.{}] in {}", toml_key(device.name), sources.file);
+    wanted.port_from = "port of " + said;
+    wanted.address_from = "address of " + said;
+  }
+  return wanted;
+}
+
+}  // namespace
+
+Result<void> check_mark_ports(const Lab& lab, const Port& marks, const Port& trigger) {
+  for (const auto& [name, flag, port] : mark_flags(marks, trigger)) {
+    for (const DeviceOptions& device : lab.devices) {
+      if (port.value_or(0) == 0 || device.port != *port || device.transport != "udp") continue;
+      return Failure(Error{flag, 0, "another UDP port than that of device " + device.name,
+                           std::to_string(*port)});
+    }
+  }
+  return {};
+}
+
+Advice lab_port_advice(const Lab& lab, const LabSources& sources, const Port& marks,
+                       const Port& trigger) {
+  std::map<std::string, WantedPort> wanted;
+  for (const DeviceOptions& device : lab.devices) wanted[device.name] = wanted_by(device, sources);
+  for (const auto& [name, flag, port] : mark_flags(marks, trigger)) {
+    wanted[name] = {static_cast<std::uint16_t>(port.value_or(0)), flag, "", false};
+  }
+  return [wanted](const Error& error) -> std::vector<std::string> {
+    const auto whose = wanted.find(error.file);
+    if (whose == wanted.end()) return {};
+    return port_advice(error, whose->second);
+  };
+}
+
+std::string named_by(const std::string& key, const DeviceOptions& device,
+                     const LabSources& sources) {
+  return fmt::format("{} of [device.{}] in {} names it", key, toml_key(device.name), sources.file);
+}
+
+}  // namespace kinalign

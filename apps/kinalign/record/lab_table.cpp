@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/record/lab_table.h"
+
+#include "apps/cli/terminal.h"
+#include "apps/kinalign/text/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+/// A sender in whose place another is heard is shown for so long.
+constexpr Duration forgotten_after = std::chrono::seconds(30);
+
+enum Column : std::size_t {
+  device,
+  rate,
+  lost,
+  late,
+  twice,
+  heard,
+  offset,
+  drift,
+  battery,
+  recorded,
+  link
+};
+constexpr std::size_t columns = 11;
+using Cells = std::array<std::string, columns>;
+
+/// Where there is no room, what --json and the end say as well goes first.
+constexpr std::array<Column, 7> worth_least{link, recorded, twice, late, drift, battery, offset};
+
+/// One line, not laid out: cells, or a text behind the device.
+struct Row {
+  Cells cells;
+  std::optional<std::string> text{};
+  bool bad = false;
+};
+
+Row head() {
+  return {{"device", "rate/s", "lost", "late", "twice", "heard", "clock", "ppm", "battery",
+           "recorded", "link"}};
+}
+
+/// Host minus device, and half the certified interval: "-1000.0031 s ± 1.04 ms".
+std::string offset_cell(const std::optional<SenderClock>& clock) {
+  if (!clock) return "";
+  if (!clock->half_interval) return "not locked";
+  return fmt::format("{:.4f} s ± {:.2f} ms", seconds(clock->host_minus_sender),
+                     1e3 * seconds(*clock->half_interval));
+}
+
+std::string rate_cell(const StreamStatus& stream, double nominal_hz) {
+  const std::string hz = fmt::format("{:.1f}", stream.rate_hz);
+  return nominal_hz > 0 ? fmt::format("{} of {:g}", hz, nominal_hz) : hz;
+}
+
+/// "0.1 s", "silent 12 s": to be told apart without colours, too.
+std::string heard_cell(const StreamStatus& stream, HostTime now) {
+  const double ago = seconds(now - stream.heard);
+  return is_silent(stream, now) ? fmt::format("silent {:.0f} s", ago)
+                                : fmt::format("{:.1f} s", ago);
+}
+
+/// Whether another sender of the same device is heard: a program that was started again has
+/// another port. Nodes stand each for itself.
+bool is_replaced(const StreamStatus& stream, const LabStatus& status) {
+  return stream.node.empty() &&
+         std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& other) {
+           return other.stream == stream.stream && !is_silent(other, status.now);
+         });
+}
+
+Cells cells_of(const StreamStatus& stream, const DeviceOptions& options, const LabStatus& status) {
+  const auto clock = clock_of(stream, node_of(stream, status.nodes));
+  const SequenceCounts& order = stream.counts.order;
+  return {name_of(stream),
+          rate_cell(stream, nominal_rate_hz(options)),
+          grouped(order.lost),
+          grouped(order.late),
+          grouped(order.duplicates),
+          heard_cell(stream, status.now),
+          offset_cell(clock),
+          clock ? fmt::format("{:+.1f}", 1e6 * clock->drift) : "",
+          stream.battery_volts ? fmt::format("{:.2f} V", *stream.battery_volts) : "",
+          fmt::format("{:.1f} MB", megabytes(stream.counts.bytes)),
+          options.transport + " " + stream.sender};
+}
+
+Row note(std::string who, std::string text, bool bad) {
+  Row row{{}, std::move(text), bad};
+  row.cells[device] = std::move(who);
+  return row;
+}
+
+void add_losses(const std::string& port, const LabStatus& status, std::vector<Row>& rows) {
+  for (const auto& [name, counts] : status.ports) {
+    const std::string text = name == port ? loss_of(counts, frames_lost(name, status.streams)) : "";
+    if (!text.empty()) rows.push_back(note(name, text, true));
+  }
+}
+
+void add_device(const DeviceOptions& options, const LabStatus& status, std::vector<Row>& rows) {
+  for (const StreamStatus& stream : status.streams) {
+    if (stream.stream != options.name) continue;
+    const bool silent = is_silent(stream, status.now);
+    const bool replaced = silent && is_replaced(stream, status);
+    if (replaced && status.now - stream.heard >= forgotten_after) continue;
+    const bool bad = options.required && silent && !replaced;
+    rows.push_back({cells_of(stream, options, status), std::nullopt, bad});
+  }
+  for (const std::string& name : unheard_of(options, status)) {
+    rows.push_back(note(name,
+                        fmt::format("{}nothing yet, {:.0f} s", options.required ? "missing: " : "",
+                                    seconds(status.now - status.begun)),
+                        options.required));
+  }
+  add_losses(options.name, status, rows);
+}
+
+using Widths = std::array<std::size_t, columns>;  // of each column; 0: it is left out
+
+/// While nobody is heard; a head would say nothing.
+bool only_devices(const Widths& wide) {
+  return std::all_of(wide.begin() + 1, wide.end(), [](std::size_t places) { return places == 0; });
+}
+
+Widths widths_of(const std::vector<Row>& rows, std::size_t width) {
+  Widths wide{};
+  for (const Row& row : rows) {
+    if (&row == &rows.front()) continue;  // a head alone is no reason for a column
+    for (std::size_t i = 0; i < columns; ++i) wide[i] = std::max(wide[i], places(row.cells[i]));
+  }
+  if (only_devices(wide)) return wide;
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < columns; ++i) {
+    if (wide[i] > 0) wide[i] = std::max(wide[i], places(rows.front().cells[i]));
+    all += wide[i] > 0 ? wide[i] + (i == 0 ? 0U : 1U) : 0U;
+  }
+  for (const Column column : worth_least) {
+    if (all <= width) break;
+    const std::size_t none = std::exchange(wide[column], 0);
+    all -= none > 0 ? none + 1 : 0;
+  }
+  return wide;
+}
+
+std::string line_of(const Row& row, const Widths& wide) {
+  std::string line;
+  for (std::size_t i = 0; i < columns; ++i) {
+    if (wide[i] == 0) continue;
+    const std::string gap(wide[i] - std::min(wide[i], places(row.cells[i])), ' ');
+    const bool to_the_left = i == device || i == link;
+    line += (i == 0 ? "" : " ") + (to_the_left ? row.cells[i] + gap : gap + row.cells[i]);
+    if (row.text) return line + " " + *row.text;
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line;
+}
+
+/// The last line that is as bad as that, else none.
+std::vector<TableLine>::iterator last_of(std::vector<TableLine>& table, bool bad) {
+  const auto found = std::find_if(table.rbegin(), table.rend(), [bad](const TableLine& line) {
+    return !line.head && line.bad == bad;
+  });
+  return found == table.rend() ? table.end() : std::prev(found.base());
+}
+
+}  // namespace
+
+std::vector<TableLine> lab_table(const Lab& lab, const LabStatus& status, std::size_t width) {
+  std::vector<Row> rows{head()};
+  for (const DeviceOptions& options : lab.devices) add_device(options, status, rows);
+  for (const char* port : {"marks", "trigger"}) add_losses(port, status, rows);
+  const auto wide = widths_of(rows, width);
+  std::vector<TableLine> lines;
+  lines.reserve(rows.size());
+  for (const Row& row : rows) {
+    const bool is_head = &row == &rows.front();
+    if (!is_head || !only_devices(wide)) lines.push_back({line_of(row, wide), row.bad, is_head});
+  }
+  return lines;
+}
+
+std::vector<TableLine> fitted(std::vector<TableLine> table, std::size_t rows) {
+  if (table.size() <= rows) return table;
+  if (rows < 3 && table.front().head) {  // of more worth than a head is what it stands above
+    table.erase(table.begin());
+    return fitted(std::move(table), rows);
+  }
+  if (rows == 0) return {};
+  std::size_t out = 0, amiss = 0;
+  while (table.size() + 1 > rows) {
+    auto last = last_of(table, false);
+    if (last == table.end()) last = last_of(table, true);
+    ++out;
+    amiss += last->bad ? 1 : 0;
+    table.erase(last);
+  }
+  table.push_back(
+      {fmt::format("… {} more{}", out, amiss > 0 ? fmt::format(", {} amiss", amiss) : ""),
+       amiss > 0});
+  return table;
+}
+
+}  // namespace kinalign

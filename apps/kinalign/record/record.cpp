@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/cli/program.h"
+#include "apps/kinalign/record/record_job.h"
+#include "apps/kinalign/record/record_stage.h"
+#include "apps/kinalign/record/steady_memory.h"
+#include "apps/kinalign/record/take_path.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/capture/recorder/recording_session.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+// What waits for a slow disk, before the program grows.
+constexpr std::size_t waiting_room = std::size_t{16} << 20;
+
+Usage describe_record(RecordJob& o) {
+  Usage usage;
+  usage.flags = {
+      {"device", "NAME=PROTOCOL[:TRANSPORT[:ADDRESS]]:PORT, as in imu=nodes:5005; may be repeated",
+       &o.devices},
+      {"subject", "who moves: part of the file's name", &o.subject},
+      {"action", "what they do: part of the file's name", &o.action},
+      {"seconds", "end by itself after so long", &o.seconds, 0.0, 1e6},
+      {"wait", "wait for a mark that starts the take; one that stops ends it", &o.wait},
+      {"repeat", "with --wait: then wait for the next take, until Ctrl-C", &o.repeat}};
+  usage.settings = {{"lab_key", "file of the key that the nodes' keys come from", &o.lab_key},
+                    {"marks_port", "UDP port for marks of other programs; 0: any free one",
+                     &o.marks_port, 0.0, 65535.0},
+                    {"trigger_port", "UDP port for Vicon's start and stop, usually 30",
+                     &o.trigger_port, 0.0, 65535.0}};
+  for (const Field& field : describe(o.options)) usage.settings.push_back(field);
+  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+    if (common.out.empty()) return Failure(Error{"--out", 0, "a folder for the files", "none"});
+    if (common.out.ends_with(".mcap")) {
+      return Failure(Error{"--out", 0,
+                           "a folder for the files, whose names --subject and --action say",
+                           common.out});
+    }
+    if (o.marks_port && o.marks_port == o.trigger_port && o.marks_port != 0) {
+      return Failure(Error{"--trigger-port", 0, "another port than --marks-port",
+                           std::to_string(*o.trigger_port)});
+    }
+    if (o.repeat && !o.wait) {
+      return Failure(Error{"--repeat", 0, "--wait beside it: takes need a start", "none"});
+    }
+    RecordJob flags = o;  // ports of marks are looked at beside the file's devices, too
+    flags.marks_port.reset();
+    flags.trigger_port.reset();
+    KA_TRY(lab_of(flags, {}));
+    return {};
+  };
+  return usage;
+}
+
+/// With those that it is in.
+Result<void> make_folder(const std::string& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (std::error_code none; std::filesystem::is_directory(folder, none)) return {};
+  const std::string why = failed ? failed.message() : "something else of that name";
+  return Failure(Error{folder, 0, "a folder for the files", why});
+}
+
+/// Of a disk that stands still, and with which somebody has lost patience. Its threads work on with
+/// what main() has made, so nothing of that may end before the process does.
+[[noreturn]] void leave(Call& call, RecordingSession& session, Stage& stage,
+                        std::shared_ptr<SessionTake> take) {
+  for (; take; take = session.next_take()) {
+    const DiskStatus disk = take->disk.status();
+    if (disk.finished && !disk.refused) continue;  // the disk has all of it
+    const auto& paths = disk.paths;
+    call.console.report(Error{paths.empty() ? call.common.out : paths.front(), 0,
+                              paths.empty() ? "a disk that begins the take's file"
+                                            : "a disk that takes the end of the take",
+                              "one that stands still"});
+  }
+  (void)call.console.finish();
+  stage.leave();
+  std::_Exit(failed);
+}
+
+/// Whether the disk has all of a take, as an exit code.
+int written(const SessionTake& take, Call& call, RecordHerald& herald) {
+  const DiskStatus disk = take.disk.status();
+  const bool warned = herald.take_warned();
+  if (disk.refused) {
+    call.console.report(*disk.refused);
+    return failed;
+  }
+  const bool whole = disk.dropped == 0 && disk.paths.size() == 1 && !herald.disk_full();
+  return whole && herald.unheard_required().empty() && !warned ? 0 : 1;
+}
+
+/// A take: whether nothing of it is amiss, as an exit code.
+int record_take(const RecordJob& o, Call& call, RecordingSession& session, Stage& stage,
+                const std::shared_ptr<SessionTake>& take) {
+  RecordHerald& herald = stage.herald();
+  stage.begin(*take, o.wait);
+  const auto tell_start = [&] {
+    const auto paths = take->disk.status().paths;
+    if (!paths.empty()) herald.tell_start(paths.front());
+    return !paths.empty();
+  };
+  bool begun = tell_start();
+  if (begun || !take->disk.status().finished) {
+    stage.record(*take);
+    if (!o.repeat) stage.end();
+    if (!stage.write_rest(*take)) leave(call, session, stage, take);
+    if (!begun) begun = tell_start();
+  }
+  if (begun) {
+    herald.tell_end();
+  } else {
+    herald.tell_never_begun(take->disk.status());
+  }
+  return written(*take, call, herald);
+}
+
+/// What --repeat ends with: which of the takes have something amiss, as was told of each.
+void tell_takes(Console& console, std::size_t takes, std::vector<std::string> amiss, int worst) {
+  constexpr std::size_t most_named = 8;
+  std::string text = fmt::format("kinalign record: {} take{}", takes, takes == 1 ? "" : "s");
+  if (amiss.size() > most_named) {
+    const std::size_t more = amiss.size() - most_named;
+    amiss.resize(most_named);
+    amiss.push_back(fmt::format("{} more", more));
+  }
+  if (!amiss.empty()) {
+    text += fmt::format("; exit code {} for what was told above before the end of {}", worst,
+                        fmt::join(amiss, ", "));
+  }
+  console.note(harmless(text));
+}
+
+/// One take, or with --repeat one after another. The worst exit code of all.
+int record_takes(const RecordJob& o, Call& call, RecordingSession& session, Stage& stage) {
+  const auto free_path = [folder = call.common.out, subject = o.subject, action = o.action] {
+    (void)make_folder(folder);  // somebody may have removed it; what it lacks, the file will say
+    return free_take_path(folder, subject, action);
+  };
+  const TakePlan plan{free_path, o.subject, o.action};
+  if (o.wait) {
+    session.obey_marks(plan,
+                       o.repeat ? RecordingSession::Starts::each : RecordingSession::Starts::next);
+  } else {
+    session.start(plan);
+  }
+  std::size_t takes = 0;
+  int worst = 0;
+  std::vector<std::string> amiss;
+  while (const auto take = stage.next_take()) {
+    ++takes;
+    const int code = record_take(o, call, session, stage, take);
+    worst = std::max(worst, code);
+    if (!o.repeat) return worst;
+    const auto paths = take->disk.status().paths;
+    if (code != 0) amiss.push_back(paths.empty() ? "one that never had a file" : paths.front());
+  }
+  if (takes > 0) {
+    tell_takes(call.console, takes, amiss, worst);
+    return worst;
+  }
+  call.console.note("kinalign record: stopped before a start came; nothing was recorded");
+  return 1;
+}
+
+Result<int> run(RecordJob& o, Call& call) {
+  Console& console = call.console;
+  console.never_wait();
+  take_every_signal();
+  keep_memory(waiting_room);
+  RecordingSession::Options options = KA_TRY(session_options(o, call));
+  KA_TRY(make_folder(call.common.out));
+  SystemClocks ports_clock, nodes_clock;
+  console.if_it_fails(
+      lab_port_advice(options.lab, sources_of(o, call), o.marks_port, o.trigger_port));
+  const auto session = KA_TRY(RecordingSession::open(
+      std::move(options), {call.surroundings.files, ports_clock, nodes_clock}));
+  console.if_it_fails({});
+  RecordHerald herald(*session, console);
+  Stage stage(*session, herald, o.seconds);
+  const int code = record_takes(o, call, *session, stage);
+  take_signals();  // nothing has to be closed in order any more
+  return code;
+}
+
+}  // namespace
+
+Verb record_verb() {
+  return make_verb<RecordJob>(
+      {.name = "record",
+       .summary = "devices into a recording, nothing lost",
+       .text =
+           "Receives, stamps and stores until Ctrl-C what devices send. The file (MCAP) is "
+           "whole up to the last second at any time, whatever becomes of the program, on a disk "
+           "that keeps up; no file is ever overwritten. Protocols: nodes, noitom, xsens, kinect, "
+           "slimevr; transports: udp, tcp (to the device's address), tcp-listen. On a terminal "
+           "keys make marks: s start, e stop, t T-pose, Enter begins and ends a text. Exit code "
+           "1 where the disk failed and the recording went on in another file, or was nearly "
+           "full and ended it, where a required device sent nothing, where something was sent that "
+           "nobody can use, or with --wait no start came.",
+       .examples =
+           {{"kinalign record -o takes --device imu=nodes:5005 --device mocap=xsens:udp:9763",
+             "inertial nodes, and Xsens MVN sending to this machine"},
+            {"kinalign record -o takes --subject 03 --action S1A02 --device "
+             "mocap=noitom:tcp:192.168.7.5:7001",
+             "Axis Neuron serving; takes/03_S1A02_01.mcap. Its skeleton: lab.toml, or align's "
+             "manifest"},
+            {"kinalign record -o takes --config lab.toml",
+             "the devices of a lab: docs/recording.md"},
+            {"kinalign record -o takes --config lab.toml --trigger-port 30 --wait --repeat",
+             "a take from each start of Vicon's to its stop, and the seconds before"}},
+       .common = {"out", "json"},
+       .out_is_folder = true},
+      describe_record, run);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who clicks on a suit's program, live: each click is told to the recorder as a mark, as a program
+// that controls the lab would.
+#pragma once
+
+#include "apps/kinalign/simulate/live_socket.h"
+
+#include "kinalign/protocols/marks/mark.h"
+#include "kinalign/simulate/rehearsal/rehearsal.h"
+#include "kinalign/wire/time.h"
+
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+class LiveClicks {
+ public:
+  /// `run`: another in each run, so that its marks are not taken for an earlier one's.
+  LiveClicks(const MocapRun& mocap, std::uint64_t run, HostTime start, LiveSocket socket);
+
+  /// Sends what is due, and takes what is answered. Whether anybody hears it is his own affair.
+  void work(HostTime now);
+  LiveTraffic traffic() { return socket_.traffic(); }
+  HostTime next() const { return sent_ < calls_.size() ? calls_[sent_].at : HostTime::max(); }
+
+ private:
+  struct Call {
+    HostTime at{};
+    std::string text;
+  };
+  void add(Mark::Kind kind, const std::string& id, HostTime at);
+
+  LiveSocket socket_;
+  std::vector<Call> calls_;  // in their order
+  std::size_t sent_ = 0;
+};
+
+}  // namespace kinalign

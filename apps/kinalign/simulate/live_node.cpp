@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/simulate/live_node.h"
+
+#include <algorithm>
+#include <array>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double frame_rate_hz = 15.0;  // the firmware's
+
+NodeSettings settings_of(const LiveNodeOptions& options) {
+  NodeSettings settings;
+  settings.node_id = options.id;
+  settings.boot_id = options.boot_id;
+  return settings;
+}
+
+}  // namespace
+
+LiveNode::LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, ClockReader& clock,
+                   LiveSocket socket)
+    : samples_(node),
+      clock_(clock),
+      start_(options.start),
+      counter_(node.seed, options.length_s),
+      socket_(std::move(socket)),
+      up_({.link = options.link}, node.seed, Way::up, frame_rate_hz),
+      down_({.link = options.link}, node.seed, Way::down, frame_rate_hz) {
+  if (options.clockless) {
+    node_.emplace<ClocklessNode>(*this, settings_of(options)).set_link(true);
+  } else {
+    node_.emplace<Node>(*this, settings_of(options)).set_link(true);
+  }
+}
+
+void LiveNode::work() {
+  std::array<std::uint8_t, max_node_datagram> room{};
+  while (const std::size_t size = socket_.receive(room)) {
+    down_.put(clock_.raw(), std::span(room).first(size));
+  }
+  auto* counting = std::get_if<Node>(&node_);
+  auto* clockless = std::get_if<ClocklessNode>(&node_);
+  sampling_ = true;
+  while (sample_due(counter_at(clock_.raw()))) {
+    if (counting != nullptr) counting->tick(1);
+    if (clockless != nullptr) clockless->tick(1);
+    ++next_sample_;
+  }
+  sampling_ = false;
+  if (counting != nullptr) counting->poll();
+  if (clockless != nullptr) clockless->poll();
+  while (const auto datagram = up_.take(clock_.raw())) (void)socket_.send(*datagram);
+}
+
+HostTime LiveNode::next() const {
+  const std::uint64_t now_us = counter_at(clock_.raw());
+  HostTime next = std::min(up_.next(), down_.next());
+  if (const auto* counting = std::get_if<Node>(&node_)) {
+    next = std::min(next, host_at(now_us + counting->idle_us(now_us)));
+  }
+  if (next_sample_ < samples_.samples.size()) {
+    next = std::min(next, host_at(samples_.samples[next_sample_].counter_us));
+  }
+  return next;
+}
+
+LiveNodeCounts LiveNode::counts() {
+  LiveNodeCounts counts;
+  if (auto* counting = std::get_if<Node>(&node_)) {
+    const NodeTally tally = counting->counts();
+    counts.sent = tally.frames.sent;
+    counts.samples = tally.frames.samples_sent;
+    counts.answered = tally.replies.accepted;
+  }
+  if (const auto* clockless = std::get_if<ClocklessNode>(&node_)) {
+    counts.sent = counts.samples = clockless->counts().requests;
+    counts.answered = clockless->counts().answers.accepted;
+  }
+  return counts;
+}
+
+std::uint64_t LiveNode::counter_at(HostTime t) const {
+  return static_cast<std::uint64_t>(counter_.reading(seconds(t - start_)) * 1e6);
+}
+
+/// Not before the counter stands there.
+HostTime LiveNode::host_at(std::uint64_t counter_us) const {
+  const double s = counter_.host(static_cast<double>(counter_us) * 1e-6);
+  return start_ + Duration{static_cast<std::int64_t>(s * 1e9) + 1000};
+}
+
+std::uint64_t LiveNode::counter_us() {
+  return sampling_ ? samples_.samples[next_sample_].counter_us : counter_at(clock_.raw());
+}
+
+bool LiveNode::read_imu(NodeSample& sample) {
+  sample = samples_.samples[next_sample_].sample;
+  return true;
+}
+
+bool LiveNode::send(std::span<const std::uint8_t> datagram) {
+  up_.put(clock_.raw(), datagram);
+  return true;
+}
+
+bool LiveNode::receive(std::span<std::uint8_t> room, std::size_t& size) {
+  const auto datagram = down_.take(clock_.raw());
+  if (!datagram) return false;
+  size = std::min(room.size(), datagram->size());
+  std::copy_n(datagram->begin(), size, room.begin());
+  return true;
+}
+
+}  // namespace kinalign

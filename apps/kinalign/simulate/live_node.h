@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// A node that is sent live: the firmware's own logic (firmware/node) over samples that were made
+// beforehand, a counter made of the host's clock, and a radio both ways. Samples are taken at the
+// very instants for which they were made, however late this program wakes up: on a board a timer
+// of higher priority takes them.
+#pragma once
+
+#include "apps/kinalign/simulate/live_link.h"
+#include "apps/kinalign/simulate/live_socket.h"
+#include "firmware/node/clockless_node.h"
+#include "firmware/node/node.h"
+
+#include "kinalign/capture/net/host_clock.h"
+#include "kinalign/simulate/nodes/inertial_nodes.h"
+
+#include <variant>
+
+namespace kinalign {
+
+struct LiveNodeOptions {
+  std::uint32_t id = 1, boot_id = 1;
+  Link link = Link::paper;
+  bool clockless = false;  // no counter: each sample in a request of its own (wire/clockless.h)
+  HostTime start{};        // of time 0 of the motion
+  double length_s = 0.0;   // of the motion
+};
+
+/// Of either kind of node.
+struct LiveNodeCounts {
+  std::uint64_t sent = 0, samples = 0;  // frames or requests, and what was in them
+  std::uint64_t answered = 0;           // by the host, as far as it reached the node
+};
+
+class LiveNode final : public Board {
+ public:
+  LiveNode(const SimulatedNode& node, const LiveNodeOptions& options, ClockReader& clock,
+           LiveSocket socket);
+  LiveNode(const LiveNode&) = delete;
+  LiveNode& operator=(const LiveNode&) = delete;
+  ~LiveNode() = default;
+
+  /// All that is due.
+  void work();
+  /// When something is due, should no datagram arrive.
+  HostTime next() const;
+  int fd() const { return socket_.fd(); }
+  LiveNodeCounts counts();
+  LiveTraffic traffic() { return socket_.traffic(); }
+
+  std::uint64_t counter_us() override;
+  bool read_imu(NodeSample& sample) override;
+  bool send(std::span<const std::uint8_t> datagram) override;
+  bool receive(std::span<std::uint8_t> room, std::size_t& size) override;
+  bool read_battery(std::uint16_t&) override { return false; }
+  void show(const Lights&) override {}
+  void lock() override {}  // one thread
+  void unlock() override {}
+
+ private:
+  bool sample_due(std::uint64_t now_us) const {
+    return next_sample_ < samples_.samples.size() &&
+           samples_.samples[next_sample_].counter_us <= now_us;
+  }
+  std::uint64_t counter_at(HostTime t) const;
+  HostTime host_at(std::uint64_t counter_us) const;
+
+  const SimulatedNode& samples_;
+  ClockReader& clock_;
+  HostTime start_;
+  SimulatedClock counter_;
+  LiveSocket socket_;
+  LiveLink up_, down_;
+  std::variant<std::monostate, Node, ClocklessNode> node_;
+  std::size_t next_sample_ = 0;
+  bool sampling_ = false;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/simulate/live_rehearsal.h"
+
+#include <poll.h>
+#include <sys/prctl.h>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration behind = 500ms, longest_wait = 100ms;
+
+Duration duration(double s) { return Duration{static_cast<std::int64_t>(s * 1e9)}; }
+constexpr std::size_t noitom_joints = 59;
+
+/// Both clocks at once, and so much later on both.
+ClockPair begin_after(ClockReader& clock, Duration wait) {
+  const HostTime before = clock.raw();
+  const Time utc = clock.utc();
+  const HostTime after = clock.raw();
+  return {before + (after - before) / 2 + wait, utc + wait};
+}
+
+}  // namespace
+
+LiveTraffic LiveCounts::all() const {
+  LiveTraffic all;
+  for (const LiveTraffic& one : {mocap, kinect, nodes, clicks}) all += one;
+  return all;
+}
+
+Result<LiveSockets> open_live(const LiveOptions& options, std::size_t nodes) {
+  LiveSockets sockets{KA_TRY(LiveSocket::connected_to(options.to, options.mocap_port)),
+                      KA_TRY(LiveSocket::connected_to(options.to, options.kinect_port)),
+                      KA_TRY(LiveSocket::connected_to(options.to, options.marks_port)),
+                      {}};
+  for (std::size_t n = 0; n < nodes; ++n) {
+    sockets.nodes.push_back(KA_TRY(LiveSocket::connected_to(options.to, options.node_port)));
+  }
+  return sockets;
+}
+
+Result<void> check_live(const Motion& motion, const std::string& name) {
+  const std::size_t joints = motion.skeleton.joints();
+  if (joints == noitom_joints) return {};
+  return Failure(Error{name, 0,
+                       "for --live a suit's skeleton of 59 joints, as Noitom's stream has it",
+                       std::to_string(joints) + " joints"});
+}
+
+LiveRehearsal::LiveRehearsal(const Motion& motion, const Rehearsal& rehearsal,
+                             const LiveOptions& options, ClockReader& clock, LiveSockets sockets)
+    : clock_(&clock),
+      start_(begin_after(clock, duration(options.begin_in_s))),
+      length_s_(motion.length_s) {
+  const HostTime start = start_.raw;
+  // New in each run, as a device draws them at each start.
+  const std::uint64_t run = mix64(static_cast<std::uint64_t>(start.time_since_epoch().count()));
+  suit_ = std::make_unique<LiveSuit>(motion, rehearsal.mocap, options.seed, start,
+                                     std::move(sockets.mocap));
+  camera_ = std::make_unique<LiveCamera>(
+      rehearsal,
+      LiveCameraOptions{options.seed, static_cast<std::uint32_t>(run), start, motion.length_s},
+      clock, std::move(sockets.kinect));
+  clicks_ = std::make_unique<LiveClicks>(rehearsal.mocap, run, start, std::move(sockets.clicks));
+  for (std::size_t n = 0; n < rehearsal.nodes.size(); ++n) {
+    LiveNodeOptions node{.id = static_cast<std::uint32_t>(n + 1),
+                         .boot_id = static_cast<std::uint32_t>(mix64(run + n)),
+                         .link = options.link,
+                         .clockless = options.clockless,
+                         .start = start,
+                         .length_s = motion.length_s};
+    nodes_.push_back(
+        std::make_unique<LiveNode>(rehearsal.nodes[n], node, clock, std::move(sockets.nodes[n])));
+  }
+}
+
+double LiveRehearsal::run(const std::function<bool()>& go_on) {
+  ::prctl(PR_SET_TIMERSLACK, 1000UL);  // ns: the standard 50 us would make delays longer
+  const HostTime end = start_.raw + duration(length_s_) + behind;
+  while (clock_->raw() < start_.raw) {  // a node's counter says nothing before
+    if (!go_on()) return 0.0;
+    wait(std::min(start_.raw, clock_->raw() + longest_wait));
+  }
+  for (HostTime now = clock_->raw(); now < end; now = clock_->raw()) {
+    if (!go_on()) return std::min(seconds(now - start_.raw), length_s_);
+    suit_->work(now);
+    camera_->work();
+    clicks_->work(now);
+    for (const auto& node : nodes_) node->work();
+    HostTime next =
+        std::min({end, now + longest_wait, suit_->next(), camera_->next(), clicks_->next()});
+    for (const auto& node : nodes_) next = std::min(next, node->next());
+    wait(next);
+  }
+  return length_s_;
+}
+
+/// Or until a datagram arrives.
+void LiveRehearsal::wait(HostTime until) const {
+  std::vector<pollfd> heard{{camera_->fd(), POLLIN, 0}};
+  for (const auto& node : nodes_) heard.push_back({node->fd(), POLLIN, 0});
+  const Duration left = std::max(until - clock_->raw(), Duration::zero());
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(left);
+  const timespec timeout{whole.count(), (left - whole).count()};
+  ::ppoll(heard.data(), heard.size(), &timeout, nullptr);
+}
+
+LiveCounts LiveRehearsal::counts() const {
+  LiveCounts counts;
+  counts.mocap_frames = suit_->sent();
+  counts.kinect_frames = camera_->sent();
+  counts.mocap = suit_->traffic();
+  counts.kinect = camera_->traffic();
+  counts.clicks = clicks_->traffic();
+  counts.worst_late = std::max(suit_->worst_late(), camera_->worst_late());
+  for (const auto& node : nodes_) {
+    const LiveNodeCounts one = node->counts();
+    counts.node_frames += one.sent;
+    counts.node_samples += one.samples;
+    counts.replies += one.answered;
+    counts.nodes += node->traffic();
+  }
+  return counts;
+}
+
+TrueRecording live_truth(const Rehearsal& rehearsal, const Motion& motion, const ClockPair& start,
+                         std::optional<double> clockless_hz) {
+  TrueRecording truth = truth_of(rehearsal, motion, start.utc);
+  truth.host = TrueHost{start.raw.time_since_epoch().count(), to_ns(start.utc)};
+  // From the stamps of a file, which the host made, back to the device's own.
+  const auto begin_at = [](TrueClock& clock, std::int64_t first) {
+    if (clock.stamps_ns.empty()) return;
+    const std::int64_t shift = first - clock.stamps_ns.front();
+    for (std::int64_t& stamp : clock.stamps_ns) stamp += shift;
+  };
+  if (!rehearsal.ticks.empty()) begin_at(truth.kinect.clock, 100 * rehearsal.ticks.front().device);
+  for (std::size_t n = 0; n < truth.nodes.size(); ++n) {
+    const SimulatedNode& node = rehearsal.nodes[n];
+    if (clockless_hz) {
+      truth.nodes[n].clock = {};
+      for (std::size_t i = 0; i < node.truth.times.size(); ++i) {
+        truth.nodes[n].clock.stamps_ns.push_back(
+            std::llround(1e9 / *clockless_hz * static_cast<double>(i)));
+        truth.nodes[n].clock.times_ns.push_back(to_ns(time_at(start.utc, node.truth.times[i])));
+      }
+    } else if (!node.samples.empty()) {
+      begin_at(truth.nodes[n].clock,
+               1000 * static_cast<std::int64_t>(node.samples.front().counter_us));
+    }
+  }
+  return truth;
+}
+
+}  // namespace kinalign

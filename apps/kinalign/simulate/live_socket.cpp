@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/simulate/live_socket.h"
+
+#include "kinalign/capture/net/socket_address.h"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace kinalign {
+
+LiveTraffic& LiveTraffic::operator+=(const LiveTraffic& more) {
+  sent += more.sent;
+  refused += more.refused;
+  heard += more.heard;
+  return *this;
+}
+
+Result<void> check_live_address(const std::string& host) {
+  if (find_address(host, 1, SOCK_DGRAM)) return {};
+  return Failure(Error{"--to", 0, "an address in numbers, as 127.0.0.1", shown(host)});
+}
+
+Result<LiveSocket> LiveSocket::connected_to(const std::string& host, std::uint16_t port) {
+  KA_TRY(check_live_address(host));
+  const FoundAddress address = find_address(host, port, SOCK_DGRAM);
+  LiveSocket made(::socket(address->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (made.fd_ < 0 || ::connect(made.fd_, address->ai_addr, address->ai_addrlen) != 0) {
+    return Failure(Error{"--to", 0, "a way to " + host + " port " + std::to_string(port),
+                         std::strerror(errno)});
+  }
+  return made;
+}
+
+LiveSocket::LiveSocket(LiveSocket&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)), traffic_(other.traffic_) {}
+LiveSocket& LiveSocket::operator=(LiveSocket&& other) noexcept {
+  std::swap(fd_, other.fd_);
+  std::swap(traffic_, other.traffic_);
+  return *this;
+}
+LiveSocket::~LiveSocket() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+/// An answer that nobody listens there waits in the socket for the next call, be it of sending or
+/// of receiving, which then does nothing else: it is taken out before each.
+void LiveSocket::hear_refusal() {
+  int refusal = 0;
+  socklen_t size = sizeof refusal;
+  const bool asked = ::getsockopt(fd_, SOL_SOCKET, SO_ERROR, &refusal, &size) == 0;
+  if (asked && refusal != 0) ++traffic_.refused;
+}
+
+bool LiveSocket::send(std::span<const std::uint8_t> datagram) {
+  hear_refusal();
+  ++traffic_.sent;
+  const bool taken = ::send(fd_, datagram.data(), datagram.size(), MSG_NOSIGNAL) ==
+                     static_cast<ssize_t>(datagram.size());
+  if (!taken) ++traffic_.refused;
+  return taken;
+}
+
+std::size_t LiveSocket::receive(std::span<std::uint8_t> room) {
+  hear_refusal();
+  const ssize_t size = ::recv(fd_, room.data(), room.size(), 0);
+  if (size < 0) return 0;
+  ++traffic_.heard;
+  return static_cast<std::size_t>(size);
+}
+
+const LiveTraffic& LiveSocket::traffic() {
+  hear_refusal();
+  return traffic_;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A suit's program that broadcasts live: Noitom's binary stream with displacement, over UDP.
+#pragma once
+
+#include "apps/kinalign/simulate/live_socket.h"
+
+#include "kinalign/formats/bvh/write.h"
+#include "kinalign/simulate/random.h"
+#include "kinalign/simulate/rehearsal/rehearsal.h"
+
+namespace kinalign {
+
+/// What a device's own program takes from the measurement to the socket: 2 ms, and 1 ms more in the
+/// mean. Estimates on the kind side: it cannot be seen from the host, and a real one takes more.
+inline double program_delay_s(const RandomStream& random, std::uint64_t frame) {
+  return 0.002 + random.exponential(frame, 0, 0.001);
+}
+
+class LiveSuit {
+ public:
+  LiveSuit(const Motion& motion, const MocapRun& run, std::uint64_t seed, HostTime start,
+           LiveSocket socket);
+
+  /// Sends the frames that are due.
+  void work(HostTime now);
+  HostTime next() const { return next_; }
+  std::uint64_t sent() const { return sent_; }
+  LiveTraffic traffic() { return socket_.traffic(); }
+  /// How late a frame left at the worst.
+  Duration worst_late() const { return worst_late_; }
+
+ private:
+  void plan();
+  std::vector<std::uint8_t> datagram();
+
+  const Motion& motion_;
+  MocapRun run_;
+  RandomStream random_;
+  HostTime start_;
+  LiveSocket socket_;
+  BvhChannels channels_;
+  Pose pose_;
+  std::size_t frame_ = 0;
+  HostTime next_ = HostTime::max();
+  std::uint64_t sent_ = 0;
+  Duration worst_late_{0};
+};
+
+}  // namespace kinalign

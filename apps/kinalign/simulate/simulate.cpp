@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/command_line.h"
+#include "apps/cli/program.h"
+#include "apps/kinalign/simulate/simulate_folder.h"
+#include "apps/kinalign/simulate/simulate_text.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/motion/interpolation/clip_motion.h"
+#include "kinalign/simulate/person/built_in_motion.h"
+
+#include <fcntl.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::string_view built_in = "built-in";
+constexpr double usual_s = 60.0, most_s = 3600.0;
+constexpr std::size_t most_bvh = std::size_t{256} << 20;
+// Simulated recordings begin then, so that the same seed gives the same bytes.
+constexpr std::int64_t start_ns = 1'790'000'000'000'000'000;
+
+struct Simulate {
+  std::vector<std::string> motion;
+  std::int64_t seed = 1;
+  std::optional<double> seconds;
+  std::int64_t node_rate = 100;
+  std::string node_stamps = "own";
+  bool live = false;
+  std::string to = "127.0.0.1";
+  std::int64_t mocap_port = 7012, kinect_port = 7020, node_port = 5005, marks_port = 7030;
+  std::string link = "C";
+  double begin_in = 0.5;
+  bool clockless = false;
+};
+
+Result<void> refuse(const Sources& given, const char* name, const Error& error) {
+  return given.contains(name) ? Result<void>(Failure(error)) : Result<void>{};
+}
+
+/// Two devices on one port can't be told apart, and no recorder opens one for both.
+Result<void> check_live_ports(const Simulate& o) {
+  std::map<std::int64_t, const char*> flags;
+  for (const auto& [port, flag] :
+       {std::pair(o.mocap_port, "--mocap-port"), std::pair(o.kinect_port, "--kinect-port"),
+        std::pair(o.node_port, "--node-port"), std::pair(o.marks_port, "--marks-port")}) {
+    const auto [other, is_free] = flags.emplace(port, flag);
+    if (is_free) continue;
+    return Failure(Error{flag, 0, std::string("another port than that of ") + other->second,
+                         std::to_string(port)});
+  }
+  return {};
+}
+
+Result<void> check_simulate(const Simulate& o, const Common& common, const Sources& given) {
+  if (common.out.empty()) return Failure(Error{"--out", 0, "a new folder's name", "none"});
+  if (o.live) {
+    KA_TRY(check_live_address(o.to));
+    KA_TRY(check_live_ports(o));
+    return refuse(given, "node_stamps",
+                  {"--node-stamps", 0, "files", "--live, where nodes send their own"});
+  }
+  for (const auto& [name, flag] :
+       {std::pair("to", "--to"), std::pair("link", "--link"), std::pair("begin_in", "--begin-in"),
+        std::pair("clockless", "--clockless"), std::pair("mocap_port", "--mocap-port"),
+        std::pair("kinect_port", "--kinect-port"), std::pair("node_port", "--node-port"),
+        std::pair("marks_port", "--marks-port")}) {
+    KA_TRY(refuse(given, name, {flag, 0, "--live beside it", "none"}));
+  }
+  return {};
+}
+
+Usage describe_simulate(Simulate& o) {
+  Usage usage;
+  usage.positionals = {{"MOTION",
+                        "built-in, or a BVH of a Perception Neuron or CMU skeleton, 3 s at least",
+                        &o.motion}};
+  usage.flags = {
+      {"seed", "of the person and of all that is drawn", &o.seed, 0.0, 9e15},
+      {"seconds", "how long (default: 60, or all of a BVH, which has no more)", &o.seconds,
+       least_rehearsal_s, most_s},
+      {"node_rate", "samples of a node, Hz: 15, 60 and 100 are usual", &o.node_rate, 1.0, 1000.0},
+      {.name = "node_stamps",
+       .meaning = "nodes' stamps: by their own clocks, or of arrival over the paper's radio",
+       .value = &o.node_stamps,
+       .choices = {"own", "arrival"}},
+      {"live", "send it in real time, as the devices would; of a BVH: a suit's, with its 59 joints",
+       &o.live},
+      {"to", "live: address of the host that records, in numbers", &o.to},
+      {"mocap_port", "live: the host's port for the suit", &o.mocap_port, 1.0, 65535.0},
+      {"kinect_port", "live: the host's port for the Kinect", &o.kinect_port, 1.0, 65535.0},
+      {"node_port", "live: the host's port for the nodes", &o.node_port, 1.0, 65535.0},
+      {"marks_port", "live: the host's port for marks: the clicks on the suit's program",
+       &o.marks_port, 1.0, 65535.0},
+      {.name = "link",
+       .meaning =
+           "live: the nodes' radio (docs/clock.md: A wired, B quiet Wi-Fi, C the paper's ...)",
+       .value = &o.link,
+       .choices = {"A", "B", "C", "D", "E", "F", "G"}},
+      {"begin_in", "live: time to start the recorder in, s", &o.begin_in, 0.1, 3600.0},
+      {"clockless", "live: nodes without a counter, as the paper's; --node-rate 15 is theirs",
+       &o.clockless}};
+  usage.check = [&o](const Common& common, const Sources& given) {
+    return check_simulate(o, common, given);
+  };
+  return usage;
+}
+
+Result<Motion> motion_of(const Simulate& o, Call& call) {
+  const std::string& name = o.motion.front();
+  if (name == built_in) {
+    return built_in_motion(
+        {.length_s = o.seconds.value_or(usual_s), .seed = static_cast<std::uint64_t>(o.seed)});
+  }
+  call.console.if_it_fails([near = suggestion(name, {std::string(built_in)})](const Error&) {
+    return near.empty() ? std::vector<std::string>{} : std::vector<std::string>{near};
+  });
+  const std::string text = KA_TRY(read_whole(call.surroundings.files, name, most_bvh));
+  call.console.if_it_fails({});
+  const BvhFile file = KA_TRY(read_bvh(text, name, {}));
+  auto motion = kinalign::motion_of(file.clip);
+  if (!motion) return Failure(Error{name, 0, motion.error().expected, motion.error().found});
+  motion->length_s = std::min(motion->length_s, o.seconds.value_or(most_s));
+  return motion;
+}
+
+/// Says of a truth what only the verb knows.
+TrueRecording named(TrueRecording truth, const Simulate& o) {
+  truth.seed = static_cast<std::uint64_t>(o.seed);
+  truth.motion = o.motion.front() == built_in ? built_in : file_name(o.motion.front());
+  truth.motion_file = "motion.bvh";
+  return truth;
+}
+
+/// All that a rehearsal is made from.
+struct Job {
+  const Simulate& o;
+  RehearsalFolder folder;
+  const Motion& motion;
+  const Rehearsal& rehearsal;
+};
+
+Result<int> write_files(const Job& job, Call& call) {
+  const Simulate& o = job.o;
+  TrueRecording truth = named(truth_of(job.rehearsal, job.motion, utc_time(start_ns)), o);
+  const NodeStamps stamps = o.node_stamps == "own" ? NodeStamps::own : NodeStamps::arrival;
+  KA_TRY(write_devices(job.folder, job.rehearsal, job.motion, stamps, truth));
+  KA_TRY(write_truth(job.folder, truth));
+  call.console.if_it_fails({});
+  tell_files({truth, job.rehearsal, job.folder.path, o.seconds}, call.console);
+  return done;
+}
+
+LiveOptions live_options(const Simulate& o) {
+  return {.to = o.to,
+          .mocap_port = static_cast<std::uint16_t>(o.mocap_port),
+          .kinect_port = static_cast<std::uint16_t>(o.kinect_port),
+          .node_port = static_cast<std::uint16_t>(o.node_port),
+          .marks_port = static_cast<std::uint16_t>(o.marks_port),
+          .link = static_cast<Link>(o.link.front() - 'A'),
+          .seed = static_cast<std::uint64_t>(o.seed),
+          .begin_in_s = o.begin_in,
+          .clockless = o.clockless};
+}
+
+bool is_there(FileSystem& files, const std::string& path) {
+  const int fd = files.open(path.c_str(), O_RDONLY | O_CLOEXEC, 0);
+  if (fd >= 0) files.close(fd);
+  return fd >= 0;
+}
+
+Result<int> send_live(const Job& job, LiveSockets sockets, Call& call) {
+  const Simulate& o = job.o;
+  const LiveOptions options = live_options(o);
+  KA_TRY(write_suit_head(job.folder, job.motion));
+  KA_TRY(write_lab(job.folder, options, job.rehearsal));
+  std::optional<double> clockless_hz;
+  if (o.clockless) clockless_hz = static_cast<double>(o.node_rate);
+  KA_TRY(write_live_manifest(job.folder, job.rehearsal, clockless_hz));
+  SystemClocks clock;
+  LiveRehearsal live(job.motion, job.rehearsal, options, clock, std::move(sockets));
+  TrueRecording truth = named(live_truth(job.rehearsal, job.motion, live.start(), clockless_hz), o);
+  truth.link = o.link;
+  KA_TRY(write_truth(job.folder, truth));
+  call.console.if_it_fails({});
+  tell_start({truth, job.rehearsal, job.folder.path, o.seconds}, options, call.console);
+  SentRehearsal sent{.options = options, .folder = job.folder.path};
+  sent.length_s = job.motion.length_s;
+  sent.sent_s = live.run([] { return !interrupted(); });
+  sent.counts = live.counts();
+  sent.recorded_there = is_there(job.folder.files, job.folder.path + "/" + live_take_name);
+  tell_end(sent, call.console);
+  if (!sent.whole()) return stopped;
+  return sent.unanswered() ? findings : done;
+}
+
+/// All that can be wrong of the motion and of the way to the host is found before a folder is made.
+Result<int> run(Simulate& o, Call& call) {
+  const std::string& name = o.motion.front();
+  const Motion motion = KA_TRY(motion_of(o, call));
+  call.console.if_it_fails([](const Error&) {
+    return std::vector<std::string>{"without --live it is simulated into files"};
+  });
+  if (o.live) KA_TRY(check_live(motion, name));
+  call.console.if_it_fails({});
+  auto rehearsal = rehearse(motion, {.seed = static_cast<std::uint64_t>(o.seed),
+                                     .node_rate_hz = static_cast<std::uint32_t>(o.node_rate)});
+  if (!rehearsal) {
+    return Failure(Error{name, 0, rehearsal.error().expected, rehearsal.error().found});
+  }
+  call.console.if_it_fails([to = o.to](const Error&) {
+    return std::vector<std::string>{"nothing was written",
+                                    "ip route get " + to + " shows what this machine knows of it"};
+  });
+  std::optional<LiveSockets> sockets;
+  if (o.live) sockets = KA_TRY(open_live(live_options(o), rehearsal->nodes.size()));
+  call.console.if_it_fails({});
+  const RehearsalFolder folder{call.surroundings.files, call.common.out};
+  KA_TRY(make_new_folder(folder.path));
+  call.console.if_it_fails([path = folder.path](const Error&) {
+    return std::vector<std::string>{path + " is not whole: delete it"};
+  });
+  KA_TRY(make_new_folder(folder.path + "/truth"));
+  KA_TRY(write_motion(folder, motion));
+  const Job job{o, folder, motion, *rehearsal};
+  return sockets ? send_live(job, *std::move(sockets), call) : write_files(job, call);
+}
+
+}  // namespace
+
+Verb simulate_verb() {
+  return make_verb<Simulate>(
+      {.name = "simulate",
+       .summary = "what devices would have recorded of a motion, with the truth",
+       .text = "Writes into a new folder what a suit (60 Hz, started and stopped by clicks), a "
+               "Kinect v2 (30 Hz) and five inertial nodes would have recorded, each by its own "
+               "clock and with its own errors; recording.toml for align; and in truth/ what no "
+               "device knows. The same seed gives the same bytes. With --live it sends them in "
+               "real time instead: Noitom's stream, the Kinect sender's, and five nodes over a "
+               "radio that delays and loses.",
+       .examples = {{"kinalign simulate built-in -o rehearsal --seconds 60",
+                     "a person of our own making, then: kinalign align rehearsal/recording.toml -o "
+                     "take.h5"},
+                    {"kinalign simulate walk.bvh -o rehearsal --seed 7 --node-rate 15",
+                     "your own motion, with nodes as slow as the paper's"},
+                    {"kinalign simulate built-in -o rehearsal --live --seconds 20",
+                     "to kinalign record -o rehearsal --config rehearsal/lab.toml"}},
+       .common = {"out", "json"},
+       .out_is_folder = true,
+       .out_is_new = true},
+      describe_simulate, run);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/simulate/simulate_text.h"
+
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/simulate/simulate_folder.h"
+#include "apps/kinalign/text/summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double same_s = 0.005;  // lengths are shown in hundredths
+
+Json json_of(const ToldRehearsal& told) {
+  std::uint64_t samples = 0;
+  for (const SimulatedNode& node : told.rehearsal.nodes) samples += node.samples.size();
+  return {{"folder", told.folder},
+          {"truth", told.folder + "/truth/truth.json"},
+          {"seed", told.truth.seed},
+          {"length_s", told.truth.length_s},
+          {"mocap_frames", told.truth.mocap.frames},
+          {"kinect_frames", told.rehearsal.ticks.size()},
+          {"node_samples", samples}};
+}
+
+std::string head_lines(const ToldRehearsal& told) {
+  const TrueRecording& truth = told.truth;
+  std::string text = fmt::format("{}: {} of {}, seed {}\n", told.folder,
+                                 duration_text(truth.length_s), truth.motion, truth.seed);
+  if (told.asked_s && *told.asked_s > truth.length_s + same_s) {
+    text += fmt::format("  note    {} has no more: --seconds asked for {}\n", truth.motion,
+                        duration_text(*told.asked_s));
+  }
+  return text;
+}
+
+std::string align_line(const std::string& folder) {
+  return fmt::format("  next    kinalign align {0}/recording.toml -o {0}/take.h5\n", folder);
+}
+
+struct Port {
+  const char* name;
+  std::uint16_t number;
+  LiveTraffic traffic;
+};
+
+std::vector<Port> ports_of(const SentRehearsal& sent) {
+  const LiveOptions& options = sent.options;
+  return {{"mocap", options.mocap_port, sent.counts.mocap},
+          {"kinect", options.kinect_port, sent.counts.kinect},
+          {"imu", options.node_port, sent.counts.nodes},
+          {"marks", options.marks_port, sent.counts.clicks}};
+}
+
+/// Of those ports that did not take all.
+std::string refused_line(const SentRehearsal& sent) {
+  std::string list;
+  for (const Port& port : ports_of(sent)) {
+    if (port.traffic.refused == 0) continue;
+    list += fmt::format("{}{} of {} on {} port {}", list.empty() ? "" : ", ",
+                        grouped(port.traffic.refused), grouped(port.traffic.sent), port.name,
+                        port.number);
+  }
+  return list.empty() ? "" : "  datagrams that nobody took: " + list + "\n";
+}
+
+std::string nobody_line(const SentRehearsal& sent) {
+  std::string ports;
+  bool taken = false;
+  for (const Port& port : ports_of(sent)) {
+    ports += fmt::format("{}{} {}", ports.empty() ? "" : ", ", port.name, port.number);
+    taken = taken || port.traffic.refused < port.traffic.sent;
+  }
+  return fmt::format(
+      "  {}: is kinalign record running on ports {} of {}? --begin-in leaves time to start it\n",
+      taken ? "nobody answered this" : "nobody received this", ports, sent.options.to);
+}
+
+}  // namespace
+
+void tell_files(const ToldRehearsal& told, Console& console) {
+  Json json = json_of(told);
+  std::string text = head_lines(told);
+  text += fmt::format("  mocap   {} frames at {} Hz: mocap.bvh\n", grouped(told.truth.mocap.frames),
+                      told.truth.mocap.rate_hz);
+  text += fmt::format("  kinect  {} frames: kinect.csv\n", grouped(told.rehearsal.ticks.size()));
+  text +=
+      fmt::format("  imu     {} samples of {} nodes: imu_*.csv\n",
+                  grouped(json["node_samples"].get<std::uint64_t>()), told.rehearsal.nodes.size());
+  text += "  truth   truth/truth.json, truth/motion.bvh\n" + align_line(told.folder);
+  console.print(harmless(text));
+  json["manifest"] = told.folder + "/recording.toml";
+  console.print_json(json_text(json));
+}
+
+void tell_start(const ToldRehearsal& told, const LiveOptions& options, Console& console) {
+  console.print(harmless(
+      head_lines(told) +
+      fmt::format("  sending to {}: mocap on port {}, kinect {}, imu {}, marks {}\n", options.to,
+                  options.mocap_port, options.kinect_port, options.node_port, options.marks_port) +
+      fmt::format("  record  kinalign record -o {0} --config {0}/lab.toml\n", told.folder)));
+  Json json{{"event", "sending"}};
+  json.update(json_of(told));
+  json["start_raw_ns"] = told.truth.host->raw_ns;
+  json["start_utc_ns"] = told.truth.host->utc_ns;
+  console.print_json(json_text(json));
+  console.flush();
+}
+
+SentText sent_text(const SentRehearsal& sent) {
+  const LiveCounts& counts = sent.counts;
+  SentText text;
+  if (!sent.whole()) {
+    text.sent = fmt::format("  stopped after {:.1f} s of {:.1f} s\n", sent.sent_s, sent.length_s);
+  }
+  text.sent += fmt::format("  sent {} frames of mocap, {} of kinect, {} of nodes with {} samples\n",
+                           grouped(counts.mocap_frames), grouped(counts.kinect_frames),
+                           grouped(counts.node_frames), grouped(counts.node_samples));
+  text.sent += fmt::format("  {} replies reached nodes; a frame left {:.1f} ms late at the worst\n",
+                           grouped(counts.replies), 1e3 * seconds(counts.worst_late));
+  text.nobody = refused_line(sent);
+  // Who was stopped at once can't have been answered yet.
+  const bool judged = sent.whole() || counts.all().refused > 0;
+  if (sent.unanswered() && judged) text.nobody += nobody_line(sent);
+  if (!sent.whole() || sent.unanswered()) return text;
+  text.next = sent.recorded_there
+                  ? align_line(sent.folder)
+                  : fmt::format(
+                        "  next    {0}/recording.toml names {0}/{1}, which is not there: put the "
+                        "name of what was recorded in its place\n"
+                        "          then: kinalign align {0}/recording.toml -o {0}/take.h5\n",
+                        sent.folder, live_take_name);
+  return text;
+}
+
+void tell_end(const SentRehearsal& sent, Console& console) {
+  const SentText text = sent_text(sent);
+  console.print(harmless(text.sent));
+  if (!text.nobody.empty()) {
+    console.print(console.paint(Colour::warning, harmless(text.nobody)));
+  }
+  console.print(harmless(text.next));
+  const LiveCounts& counts = sent.counts;
+  console.print_json(json_text(Json{{"event", "sent"},
+                                    {"mocap_frames", counts.mocap_frames},
+                                    {"kinect_frames", counts.kinect_frames},
+                                    {"node_frames", counts.node_frames},
+                                    {"node_samples", counts.node_samples},
+                                    {"replies", counts.replies},
+                                    {"datagrams", counts.all().sent},
+                                    {"refused", counts.all().refused},
+                                    {"heard", counts.all().heard},
+                                    {"worst_late_ms", 1e3 * seconds(counts.worst_late)},
+                                    {"stopped", !sent.whole()},
+                                    {"sent_s", sent.sent_s},
+                                    {"length_s", sent.length_s}}));
+}
+
+}  // namespace kinalign

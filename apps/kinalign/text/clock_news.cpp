@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/clock_news.h"
+
+#include "apps/kinalign/text/node_event_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Kind = ClockEvent::Kind;
+
+constexpr Duration steps_within = std::chrono::seconds(10);
+constexpr Duration quiet = std::chrono::minutes(1);
+constexpr Duration patience = std::chrono::seconds(1);
+
+bool is_step(Kind kind) { return kind == Kind::step || kind == Kind::slip; }
+
+/// What a clock says that contradicts the assumptions, and what follows from that.
+bool is_trouble(Kind kind) {
+  return is_step(kind) || kind == Kind::withdrawn || kind == Kind::violator ||
+         kind == Kind::settled || kind == Kind::relaxed || kind == Kind::uneasy;
+}
+
+}  // namespace
+
+/// A stream may be another node's now.
+ClockNews::Clock& ClockNews::clock_of(std::size_t stream, std::uint32_t node_id) {
+  Clock& clock = clocks_[stream];
+  if (clock.node_id != node_id) {
+    tell_waiting(clock);
+    clock = {};
+    clock.node_id = node_id;
+  }
+  return clock;
+}
+
+void ClockNews::hear(std::size_t stream, std::uint32_t node_id, const ClockEvent& event,
+                     HostTime now) {
+  Clock& clock = clock_of(stream, node_id);
+  if (!is_trouble(event.kind)) return;
+  if (!contradicts(stream, node_id, now)) clock.contradicts = false;
+  clock.troubled = now;
+  if (is_step(event.kind)) return take_step(clock, event);
+  if (clock.contradicts) return;
+  if (event.kind == Kind::withdrawn) return withdraw(clock, event, now);
+  clock.settled = event.kind == Kind::settled;
+  const std::string text = event_text(event, node_id, names_);
+  if (!text.empty()) lines_.push_back(text);
+}
+
+void ClockNews::take_step(Clock& clock, const ClockEvent& event) {
+  std::rotate(clock.steps.begin(), clock.steps.begin() + 1, clock.steps.end());
+  clock.steps.back() = event.end;
+  clock.settled = false;
+  if (clock.contradicts) return;
+  const HostTime first = clock.steps.front();
+  clock.contradicts = first != HostTime::min() && event.end - first <= steps_within;
+  if (!clock.contradicts) return lines_.push_back(event_text(event, clock.node_id, names_));
+  clock.waiting.reset();
+  lines_.push_back(fmt::format(
+      "{}: warning: {}, so nothing of it is certified; its steps are told again after a quiet "
+      "minute",
+      names_.name(clock.node_id), contradiction));
+}
+
+/// Stretches that overlap are one; what is withdrawn as the clock settles was withdrawn before, or
+/// not certified.
+void ClockNews::withdraw(Clock& clock, const ClockEvent& event, HostTime now) {
+  const bool known =
+      clock.told && event.begin >= clock.told->begin && event.begin <= clock.told->end;
+  if (std::exchange(clock.settled, false) && known) return;
+  if (!clock.waiting) {
+    clock.waiting = Stretch{event.begin, event.end, now};
+    return;
+  }
+  clock.waiting->begin = std::min(clock.waiting->begin, event.begin);
+  clock.waiting->end = std::max(clock.waiting->end, event.end);
+}
+
+void ClockNews::tell_waiting(Clock& clock) {
+  if (!clock.waiting) return;
+  const ClockEvent whole{Kind::withdrawn, 0, clock.waiting->begin, clock.waiting->end};
+  lines_.push_back(event_text(whole, clock.node_id, names_));
+  clock.told = std::exchange(clock.waiting, std::nullopt);
+}
+
+std::vector<std::string> ClockNews::lines(HostTime now) {
+  for (auto& [stream, clock] : clocks_) {
+    if (!clock.waiting) continue;
+    const bool caused = clock.steps.back() >= clock.waiting->end;
+    if (caused || now - clock.waiting->since >= patience) tell_waiting(clock);
+  }
+  return std::exchange(lines_, {});
+}
+
+bool ClockNews::contradicts(std::size_t stream, std::uint32_t node_id, HostTime now) const {
+  const auto found = clocks_.find(stream);
+  if (found == clocks_.end() || found->second.node_id != node_id) return false;
+  return found->second.contradicts && now - found->second.troubled < quiet;
+}
+
+}  // namespace kinalign

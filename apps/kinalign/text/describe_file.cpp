@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/describe_file.h"
+
+#include "apps/cli/console.h"
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/describe_report.h"
+
+#include "kinalign/align/judge.h"
+#include "kinalign/align/plan.h"
+#include "kinalign/documents/report_json.h"
+#include "kinalign/formats/take/take_hdf5.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can read", ""}; }
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Contents {
+  std::string kind, parts;  // "points", "25 joints"
+  Json names;
+};
+
+/// "1 joint", "25 joints"
+std::string counted(std::size_t n, std::string_view what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
+Contents contents(const Skeleton& skeleton) {
+  return {
+      "clip",
+      counted(skeleton.joints(), "joint") + ", " + counted(skeleton.end_sites.size(), "end site"),
+      skeleton.joint_names};
+}
+
+Contents contents(const std::vector<std::string>& joints) {
+  return {"points", counted(joints.size(), "joint"), joints};
+}
+
+Contents contents(const ImuGroup& group) {
+  const ImuContent& content = group.content;
+  std::string parts = counted(group.node_names.size(), "node") + ":";
+  if (content.orientation) parts += " orientation,";
+  if (content.acceleration) {
+    parts += content.gravity ? " acceleration with gravity" : " acceleration without gravity";
+    if (content.gravity && !group.root_node.empty()) parts += " in " + group.root_node + " only";
+    parts += ",";
+  }
+  if (content.angular_velocity) parts += " angular velocity,";
+  parts.pop_back();
+  return {"imu", parts, group.node_names};
+}
+
+Contents contents_of(const RecordedStream& stream) {
+  if (const auto* clip = std::get_if<ClipInput>(&stream.data)) return contents(clip->skeleton);
+  if (const auto* points = std::get_if<PointInput>(&stream.data)) {
+    return contents(points->joint_names);
+  }
+  const auto& imu = std::get<ImuInput>(stream.data);
+  return contents({imu.node_names, imu.content, ""});
+}
+
+Contents contents_of(const TakeGroup& group) {
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return contents(clip->skeleton);
+  if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
+    return contents(points->joint_names);
+  }
+  return contents(std::get<ImuGroup>(group.kind));
+}
+
+Json files_json(const std::vector<InputFacts>& files) {
+  Json out = Json::array();
+  for (const InputFacts& file : files) {
+    out.push_back({{"name", file.name}, {"sha256", file.sha256}, {"bytes", file.bytes}});
+  }
+  return out;
+}
+
+double rate_hz(const RecordedStream& s) {
+  const double step = s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns));
+  return step > 0.0 ? 1e9 / step : 0.0;
+}
+
+double seconds_of(const StampSurvey& survey) {
+  return 1e-9 * static_cast<double>((survey.last - survey.first).count());
+}
+
+/// " (25 on the whole)" where the median step is not what comes of all.
+std::string mean_rate_text(const RecordedStream& s) {
+  const double length = seconds_of(s.survey), rate = rate_hz(s);
+  if (!(length > 0.0)) return "";
+  const double mean = static_cast<double>(s.survey.kept() - 1) / length;
+  return std::abs(mean - rate) < 0.1 * rate ? "" : fmt::format(" ({:.4g} on the whole)", mean);
+}
+
+std::string stream_lines(const RecordedStream& s, const Contents& c, Names names) {
+  const bool one_node = c.kind == "imu" && c.names.size() == 1;
+  const std::string who = one_node ? shown(c.names.front().get<std::string>()) : c.kind;
+  std::string line = fmt::format("  {:<8} {} ({}): {} samples over {:.3f} s at {:.4g} Hz{}; {}\n",
+                                 s.name, who, shown(s.format), s.survey.samples,
+                                 seconds_of(s.survey), rate_hz(s), mean_rate_text(s), c.parts);
+  if (s.survey.kept() > 0) {
+    line += fmt::format("           from {} to {} ns{}\n", to_ns(first_of(s)), to_ns(last_of(s)),
+                        s.counted ? ", counted at that rate" : "");
+  }
+  if (names == Names::yes || (c.kind == "imu" && !one_node)) {
+    line += name_lines(c.names.get<std::vector<std::string>>());
+  }
+  if (s.survey.kept() < s.survey.samples) {
+    line += fmt::format("           {} stamps repeat, {} step back, {} leap ahead\n",
+                        s.survey.duplicates, s.survey.backward, s.survey.ahead);
+  }
+  return line;
+}
+
+Json stream_json(const RecordedStream& s, const Contents& c, const Findings& findings) {
+  return {{"name", s.name},
+          {"kind", c.kind},
+          {"format", s.format},
+          {"names", c.names},
+          {"stamps_counted", s.counted},
+          {"samples", s.survey.samples},
+          {"first_ns", to_ns(first_of(s))},
+          {"last_ns", to_ns(last_of(s))},
+          {"rate_hz", rate_hz(s)},
+          {"duplicate_stamps", s.survey.duplicates},
+          {"backward_stamps", s.survey.backward},
+          {"ahead_stamps", s.survey.ahead},
+          {"files", files_json(s.files)},
+          {"findings", Json::parse(findings_json(findings))}};
+}
+
+/// In the child: everything about a take as one JSON text.
+Result<std::string> take_facts(FileSystem& files, const std::string& path) {
+  const TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  const TakeHeader& header = reader.header();
+  Json out{{"file", path},
+           {"kind", "take"},
+           {"software", reader.software()},
+           {"subject", header.subject},
+           {"action", header.action},
+           {"frames", header.frames},
+           {"streams", Json::array()}};
+  for (const TakeGroup& group : header.groups) {
+    const Contents c = contents_of(group);
+    out["streams"].push_back({{"name", group.name},
+                              {"kind", c.kind},
+                              {"parts", c.parts},
+                              {"names", c.names},
+                              {"files", files_json(group.files)}});
+  }
+  out["report"] = Json::parse(KA_TRY(reader.report_json()), nullptr, false);
+  if (out["report"].is_discarded()) {
+    return Failure(Error{path, 0, "a report as JSON", "a text that is none"});
+  }
+  return json_text(out);
+}
+
+}  // namespace
+
+std::string contents_line(const RecordedStream& stream) {
+  const Contents c = contents_of(stream);
+  return (c.kind == "imu" ? "nodes, " : c.kind + ", ") + c.parts;
+}
+
+std::string read_as(const RecordedStream& stream) {
+  return fmt::format("{}: read as {}, {} samples", stream.files.front().name, contents_line(stream),
+                     stream.survey.samples);
+}
+
+Description describe_recording(const std::string& path, const Recording& recording, Names names) {
+  Json out{{"file", path},
+           {"kind", "recording"},
+           {"subject", recording.subject},
+           {"action", recording.action},
+           {"streams", Json::array()}};
+  std::string text = path + "\n";
+  std::size_t findings = 0;
+  for (const RecordedStream& s : recording.streams) {
+    const Contents c = contents_of(s);
+    Findings found = said_by_file(s, recording).findings;
+    append(found, s.findings);
+    out["streams"].push_back(stream_json(s, c, found));
+    text += stream_lines(s, c, names);
+    findings += found.size();
+  }
+  if (findings > 0) {
+    text += fmt::format("  {} finding{}: see kinalign check {}\n", findings,
+                        findings == 1 ? "" : "s", path);
+  }
+  return {std::move(text), json_text(out)};
+}
+
+Result<Description> describe_take(FileSystem& files, const std::string& path, Names names) {
+  const std::string json =
+      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return take_facts(files, path); }));
+  return Description{take_text(json, names), json};
+}
+
+std::string finding_lines(Findings findings, const Console& console) {
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+  std::string text;
+  for (const Finding& finding : findings) {
+    const std::string word = fmt::format("{:<8}", to_string(finding.severity));
+    text += console.paint(colour_of(finding.severity), word) + " ";
+    text += harmless(to_string(finding.what) + "\n         " + finding.meaning + "\n");
+    if (!finding.repair.empty()) text += harmless("         " + finding.repair + "\n");
+  }
+  return text;
+}
+
+}  // namespace kinalign

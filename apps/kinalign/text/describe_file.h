@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is in a file, as lines for people and as JSON.
+#pragma once
+
+#include "apps/cli/verb.h"
+
+#include "kinalign/recording/parts.h"
+#include "kinalign/recording/survey.h"
+#include "kinalign/take/recording.h"
+
+#include <string>
+
+namespace kinalign {
+
+struct Description {
+  std::string text;  // lines
+  std::string json;  // an object
+};
+
+/// Whether every joint's and node's name stands there: --verbose.
+enum class Names { no, yes };
+
+Description describe_recording(const std::string& path, const Recording& recording, Names names);
+
+/// Of a recorder's file.
+Description describe_survey(const std::string& path, const RecordingSurvey& survey,
+                            const RecordingParts& parts);
+/// What is wrong with it: damage, a missing end, messages that its own numbers miss.
+Findings judge_survey(const std::string& path, const RecordingSurvey& survey);
+
+/// "points, 25 joints"
+std::string contents_line(const RecordedStream& stream);
+
+/// "kinect.csv: read as points, 25 joints, 1785 samples"
+std::string read_as(const RecordedStream& stream);
+
+/// Opens the take in a child process.
+Result<Description> describe_take(FileSystem& files, const std::string& path, Names names);
+
+/// The file and the expectation of an error about a take that HDF5 can't read.
+Error blame(const std::string& path);
+
+/// "warning walk.bvh:12: expected ...": lines of what was found, worst first, harmless and in the
+/// console's colours.
+std::string finding_lines(Findings findings, const Console& console);
+
+}  // namespace kinalign

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/describe_report.h"
+
+#include "apps/cli/help.h"
+#include "apps/kinalign/text/summary.h"
+
+#include "kinalign/core/error.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <numbers>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
+  std::string text = json[key].get<std::string>();
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+double number_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return 0.0;
+  return json[key].get<double>();
+}
+
+std::uint64_t count_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned()) return 0;
+  return json[key].get<std::uint64_t>();
+}
+
+/// ns; 0 where none stands, or none that a take can have.
+std::int64_t stamp_at(const Json& json, const char* key) {
+  constexpr std::int64_t furthest = 9'200'000'000'000'000'000;
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number_integer()) return 0;
+  const auto ns = json[key].get<std::int64_t>();
+  return ns > furthest || ns < -furthest ? 0 : ns;
+}
+
+const Json& list_at(const Json& json, const char* key) {
+  static const Json none = Json::array();
+  if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return none;
+  return json[key];
+}
+
+/// A stamp as calendars have it, to the millisecond.
+std::string date_text(std::int64_t ns) {
+  const std::int64_t ms = (ns + 500'000) / 1'000'000;
+  const std::time_t whole = ms / 1000;
+  std::tm parts{};
+  ::gmtime_r(&whole, &parts);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", parts.tm_year + 1900,
+                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
+                     ms % 1000);
+}
+
+/// The take's span; devices without a calendar count from near zero.
+std::string span_text(const Json& report) {
+  constexpr std::int64_t year_ns = 32'000'000'000'000'000;
+  const std::int64_t begin = stamp_at(report, "begin_ns"), end = stamp_at(report, "end_ns");
+  if (begin < year_ns || end < begin) {
+    return fmt::format("  from {:.3f} to {:.3f} s, no date known\n",
+                       1e-9 * static_cast<double>(begin), 1e-9 * static_cast<double>(end));
+  }
+  return fmt::format("  from {} to {} UTC\n", date_text(begin), date_text(end));
+}
+
+std::string head_text(const Json& take, const Json& report) {
+  const double rate = number_at(report, "rate_hz");
+  const std::uint64_t frames = count_at(take, "frames");
+  std::string text = fmt::format("{}: a take by {}, {} frames", text_at(take, "file"),
+                                 text_at(take, "software"), grouped(frames));
+  if (rate > 0.0) {
+    text += fmt::format(" at {:.4g} Hz, {}", rate,
+                        duration_text(take_seconds(stamp_at(report, "begin_ns"),
+                                                   stamp_at(report, "end_ns"), rate)));
+  }
+  text += "\n";
+  const std::string subject = text_at(take, "subject"), action = text_at(take, "action");
+  if (!subject.empty() || !action.empty()) {
+    text += subject.empty() ? "" : "  subject " + subject;
+    text += action.empty() ? "" : (subject.empty() ? "  action " : ", action ") + action;
+    text += "\n";
+  }
+  return text + span_text(report);
+}
+
+/// ", 97.8 % valid, 1.6 % inferred"; of a skeleton that was not resampled nothing.
+std::string marks_text(const Json& s) {
+  const std::uint64_t samples = count_at(s, "samples");
+  if (samples == 0) return "";
+  const std::uint64_t invalid = std::min(samples, count_at(s, "invalid"));
+  const std::string valid = share_text(samples - invalid, samples);
+  std::string text = valid.empty() ? ", nothing valid" : ", " + valid + " valid";
+  const auto share = [&](const char* key, const char* what) {
+    if (count_at(s, key) > 0) text += ", " + share_text(count_at(s, key), samples) + what;
+  };
+  share("inferred", " inferred");
+  share("bridged", " interpolated over loss");
+  share("unsure", " of unknown time");
+  return text;
+}
+
+/// "29.92 Hz, shared clock, 97.8 % valid, 2 gaps (0.83 s)"
+std::string quality_text(const Json& s) {
+  const auto has = [&s](const char* key) { return s.is_object() && s.contains(key); };
+  std::optional<std::int64_t> interval_ns;
+  if (has("worst_interval_ns")) interval_ns = stamp_at(s, "worst_interval_ns");
+  const bool counted = has("stamps_counted") && s["stamps_counted"] == true;
+  std::string text = fmt::format("{:.4g} Hz, ", number_at(s, "rate_hz"));
+  text += clock_text(interval_ns, counted);
+  if (count_at(s, "late") > 0) {
+    text += fmt::format(", {} samples {:.2f} s late and more", grouped(count_at(s, "late")),
+                        1e-9 * number_at(s, "worst_late_ns"));
+  }
+  text += marks_text(s);
+  const std::uint64_t gaps = count_at(s, "gaps");
+  if (gaps > 0) {
+    text += fmt::format(", {} gap{} ({:.2f} s)", gaps, gaps == 1 ? "" : "s",
+                        1e-9 * number_at(s, "gap_time_ns"));
+  }
+  return text + fmt::format(", nearest sample within {:.1f} ms\n",
+                            1e-6 * number_at(s, "worst_nearest_ns"));
+}
+
+std::vector<std::string> texts_at(const Json& json, const char* key) {
+  std::vector<std::string> out;
+  for (const Json& one : list_at(json, key)) {
+    if (one.is_string()) out.push_back(one.get<std::string>());
+  }
+  return out;
+}
+
+std::string stream_text(const Json& stream, const Json& report, Names names) {
+  const std::string name = text_at(stream, "name");
+  std::string text =
+      fmt::format("  {:<8} {}: {}\n", name, text_at(stream, "kind"), text_at(stream, "parts"));
+  if (names == Names::yes) text += name_lines(texts_at(stream, "names"));
+  for (const Json& file : list_at(stream, "files")) {
+    text += fmt::format("           {}  sha256 {}...\n", text_at(file, "name"),
+                        text_at(file, "sha256").substr(0, 12));
+  }
+  const bool reference = name == text_at(report, "reference");
+  for (const Json& s : list_at(report, "streams")) {
+    if (text_at(s, "stream") != name) continue;
+    if (reference) return text + "           the reference" + marks_text(s) + "\n";
+    const std::string nodes = fmt::format("{}", fmt::join(texts_at(s, "nodes"), ", "));
+    text += "           " + (nodes.empty() ? "" : nodes + ": ") + quality_text(s);
+  }
+  return text;
+}
+
+std::string space_text(const Json& space) {
+  std::string text =
+      fmt::format("  space    {} on {}, {}: {:.1f} cm rms (before: {:.1f})\n",
+                  text_at(space, "stream"), text_at(space, "onto"), text_at(space, "method"),
+                  100.0 * number_at(space, "after_m"), 100.0 * number_at(space, "before_m"));
+  for (const Json& joint : list_at(space, "joints")) {
+    text += fmt::format("           {:<16} on {:<16} {:6.1f} cm over {} rows\n",
+                        text_at(joint, "joint"), text_at(joint, "onto"),
+                        100.0 * number_at(joint, "after_m"), grouped(count_at(joint, "rows")));
+  }
+  return text;
+}
+
+/// Against the take's first frame: what was said before it is negative.
+std::string mark_text(const Json& mark, std::int64_t begin_ns) {
+  const double at_s =
+      1e-9 * (static_cast<double>(stamp_at(mark, "time_ns")) - static_cast<double>(begin_ns));
+  return fmt::format("  mark     {}\n", mark_words(text_at(mark, "kind"), text_at(mark, "text"),
+                                                   at_s, text_at(mark, "source")));
+}
+
+std::string finding_text(const Json& finding) {
+  const Error what{text_at(finding, "file"), static_cast<std::int64_t>(count_at(finding, "line")),
+                   text_at(finding, "expected"), text_at(finding, "found")};
+  return fmt::format("  {:<8} {}: {}\n", text_at(finding, "severity"), to_string(what),
+                     text_at(finding, "meaning"));
+}
+
+/// A finding of the report, as alignment made it.
+Finding finding_of(const Json& finding) {
+  const std::string severity = text_at(finding, "severity");
+  Finding out;
+  if (severity == "note") out.severity = Severity::note;
+  if (severity == "error") out.severity = Severity::error;
+  out.what = {text_at(finding, "file"), static_cast<std::int64_t>(count_at(finding, "line")),
+              text_at(finding, "expected"), text_at(finding, "found")};
+  out.meaning = text_at(finding, "meaning");
+  out.repair = text_at(finding, "repair");
+  return out;
+}
+
+}  // namespace
+
+std::string mark_words(std::string_view kind, std::string_view text, double at_s,
+                       std::string_view source) {
+  return fmt::format("{}{} at {:.3f} s, by {}", kind, text.empty() ? "" : " " + shown(text), at_s,
+                     source);
+}
+
+std::string name_lines(const std::vector<std::string>& names) {
+  constexpr std::size_t indent = 11, width = 80;
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + shown(name);
+  return text.empty() ? "" : std::string(indent, ' ') + wrapped(text, indent, width) + "\n";
+}
+
+Result<Findings> report_findings(const std::string& report, const std::string& path) {
+  const Json json = Json::parse(report, nullptr, false);
+  if (json.is_discarded()) {
+    return Failure(Error{path, 0, "a report as JSON", "a text that is none"});
+  }
+  Findings out;
+  for (const Json& finding : list_at(json, "findings")) out.push_back(finding_of(finding));
+  return out;
+}
+
+std::string take_text(const std::string& json, Names names) {
+  const Json take = Json::parse(json, nullptr, false);
+  const Json none = Json::object();
+  const Json& report = take.is_object() && take.contains("report") ? take["report"] : none;
+  std::string text = head_text(take, report);
+  for (const Json& stream : list_at(take, "streams")) text += stream_text(stream, report, names);
+  for (const Json& space : list_at(report, "spaces")) text += space_text(space);
+  for (const Json& mark : list_at(report, "marks")) {
+    text += mark_text(mark, stamp_at(report, "begin_ns"));
+  }
+  for (const Json& finding : list_at(report, "findings")) text += finding_text(finding);
+  return text;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/describe_report.h"
+#include "apps/kinalign/text/node_names.h"
+#include "apps/kinalign/text/record_text.h"
+#include "apps/kinalign/text/summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double seconds_of(const ChannelSurvey& channel) {
+  return static_cast<double>(channel.last - channel.first) / 1e9;
+}
+
+/// Over the whole channel; 0 of a single message.
+double rate_of(const ChannelSurvey& channel) {
+  const double s = seconds_of(channel);
+  return s > 0.0 ? static_cast<double>(channel.messages - 1) / s : 0.0;
+}
+
+Json json_of(const ChannelSurvey& channel) {
+  return {{"topic", channel.channel.topic},
+          {"encoding", channel.channel.message_encoding},
+          {"metadata", channel.channel.metadata},
+          {"messages", channel.messages},
+          {"bytes", channel.bytes},
+          {"first_ns", channel.first},
+          {"last_ns", channel.last},
+          {"missing", channel.missing}};
+}
+
+/// The log time of the first message, ns.
+std::uint64_t first_of(const RecordingSurvey& survey) {
+  std::uint64_t first = UINT64_MAX;
+  for (const ChannelSurvey& channel : survey.channels) {
+    if (channel.messages > 0) first = std::min(first, channel.first);
+  }
+  return first;
+}
+
+std::string mark_text(const RecordedMark& mark, double at_s) {
+  const std::string latency = mark.mark.latency ? fmt::format(", {:g} ms before its effect",
+                                                              1e3 * seconds(*mark.mark.latency))
+                                                : "";
+  return mark_words(kinalign::name_of(mark.mark.kind), mark.mark.text, at_s, mark.source) + latency;
+}
+
+/// What the recorder counted and was told.
+void add_told(const RecordingSurvey& survey, Json& json) {
+  json["marks"] = json["senders"] = json["ports"] = Json::array();
+  for (const auto& [mark, log_time] : survey.marks) {
+    Json one = Json::parse(to_json(mark));
+    one["time_ns"] = log_time;
+    json["marks"].push_back(one);
+  }
+  for (const CountedSender& one : survey.senders) {
+    json["senders"].push_back(Json::parse(to_json(one)));
+  }
+  for (const CountedPort& one : survey.ports) {
+    json["ports"].push_back(Json::parse(to_json(one)));
+  }
+}
+
+std::string text_of(const std::string& path, const RecordingSurvey& survey,
+                    const RecordingParts& parts) {
+  std::string text = fmt::format("{}\n", path);
+  const auto line = [&text](std::string_view name, const std::string& value) {
+    text += fmt::format("  {:<12}{}\n", name, value);
+  };
+  line("format", survey.facts ? "MCAP, a recording of kinalign's" : "MCAP");
+  if (survey.facts && !survey.facts->subject.empty()) line("subject", survey.facts->subject);
+  if (survey.facts && !survey.facts->action.empty()) line("action", survey.facts->action);
+  if (survey.facts && survey.facts->part > 1) {
+    line("part", fmt::format("{} of {}", survey.facts->part, survey.facts->first));
+  }
+  for (std::size_t k = 1; k < parts.size(); ++k) line("goes on in", parts[k].path);
+  line("state", survey.torn.empty() ? "whole" : "torn: no index at its end");
+  line("messages", grouped(survey.messages));
+  line("size", fmt::format("{:.1f} MB", static_cast<double>(survey.bytes) / 1e6));
+  for (const ChannelSurvey& channel : survey.channels) {
+    line("channel",
+         fmt::format("{}: {} messages, {:.1f} s, {:.1f} Hz, {:.1f} MB", channel.channel.topic,
+                     grouped(channel.messages), seconds_of(channel), rate_of(channel),
+                     static_cast<double>(channel.bytes) / 1e6));
+  }
+  for (const CountedSender& one : survey.senders) {
+    // the recorder tells its counts once a second, and the last time as it ends
+    line("sender", name_of(one, survey) + ": " + counts_text(one.counts) +
+                       (survey.facts && !survey.end ? "; counted up to 1 s before the end" : ""));
+  }
+  for (const CountedPort& one : survey.ports) {
+    const std::string lost = loss_of(one.counts, frames_lost(one.stream, survey.senders));
+    if (!lost.empty()) line("port", one.stream + ": " + lost);
+  }
+  const std::uint64_t first = first_of(survey);
+  for (const auto& [mark, log_time] : survey.marks) {
+    line("mark", mark_text(mark, static_cast<double>(log_time - first) / 1e9));
+  }
+  if (survey.more_marks > 0) line("marks", grouped(survey.more_marks) + " more, not shown");
+  return text;
+}
+
+Json json_of(const std::string& path, const RecordingSurvey& survey, const RecordingParts& parts) {
+  Json json{{"file", path},
+            {"closed", survey.torn.empty()},
+            {"messages", survey.messages},
+            {"unchecked", survey.unchecked},
+            {"bytes", survey.bytes},
+            {"attachments", survey.attachments},
+            {"channels", Json::array()}};
+  if (survey.facts) {
+    json["subject"] = survey.facts->subject;
+    json["action"] = survey.facts->action;
+    json["part"] = survey.facts->part;
+  }
+  for (std::size_t k = 1; k < parts.size(); ++k) json["goes_on_in"].push_back(parts[k].path);
+  if (survey.end) json["dropped"] = survey.end->dropped;
+  for (const ChannelSurvey& channel : survey.channels) json["channels"].push_back(json_of(channel));
+  add_told(survey, json);
+  return json;
+}
+
+}  // namespace
+
+Description describe_survey(const std::string& path, const RecordingSurvey& survey,
+                            const RecordingParts& parts) {
+  return {text_of(path, survey, parts), json_text(json_of(path, survey, parts))};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/describe_xdf.h"
+
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string rate_text(const XdfStreamSurvey& one) {
+  const double nominal = one.stream.nominal_rate_hz;
+  std::string text = nominal > 0.0 ? fmt::format("{:.6g} Hz nominal", nominal) : "irregular";
+  if (one.rate_hz() > 0.0) text += fmt::format(", {:.6g} Hz by the stamps", one.rate_hz());
+  return text;
+}
+
+std::string stamps_text(const XdfStreamSurvey& one) {
+  std::string text = fmt::format("{:.6f} to {:.6f} s, {:.1f} s of the sender's clock", *one.first,
+                                 *one.last, *one.last - *one.first);
+  if (one.deduced > 0) text += fmt::format("; {} deduced by the rate", grouped(one.deduced));
+  return text;
+}
+
+std::string clock_text(const XdfStreamSurvey& one) {
+  if (one.clock.empty()) return "no clock offsets";
+  double residual = 0.0;
+  for (const XdfClockLine& line : one.clock) residual = std::max(residual, line.largest_residual);
+  const XdfClockLine& last = one.clock.back();
+  std::string text =
+      fmt::format("{} clock offset{}: {:+.6f} s, {:+.3f} ppm, residuals up to {:.3f} ms",
+                  grouped(one.clock_offsets), one.clock_offsets == 1 ? "" : "s", last.offset,
+                  1e6 * last.slope, 1e3 * residual);
+  if (one.clock.size() > 1) text += fmt::format("; began anew {} times", one.clock.size() - 1);
+  return text;
+}
+
+std::string stream_lines(const XdfStreamSurvey& one, Names names) {
+  const XdfStream& s = one.stream;
+  std::string text;
+  const auto line = [&text](std::string_view name, const std::string& value) {
+    text += fmt::format("  {:<12}{}\n", name, value);
+  };
+  line("stream", fmt::format("{}{}: {} channel{} of {}, {} samples, {}", shown(s.name),
+                             s.type.empty() ? "" : " (" + shown(s.type) + ")", s.channel_count,
+                             s.channel_count == 1 ? "" : "s", name_of(s.format),
+                             grouped(one.samples), rate_text(one)));
+  if (one.first) line("  stamps", stamps_text(one));
+  line("  clock", clock_text(one));
+  if (names == Names::no) return text;
+  for (const XdfChannel& channel : s.channels) {
+    line("  channel", fmt::format("{}{}", shown(channel.label),
+                                  channel.unit.empty() ? "" : ", " + shown(channel.unit)));
+  }
+  return text;
+}
+
+Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json json_of(const XdfStreamSurvey& one) {
+  const XdfStream& s = one.stream;
+  Json json{{"id", s.id},
+            {"name", s.name},
+            {"type", s.type},
+            {"source_id", s.source_id},
+            {"hostname", s.hostname},
+            {"created_at", s.created_at},
+            {"channel_format", name_of(s.format)},
+            {"channel_count", s.channel_count},
+            {"channels", Json::array()},
+            {"nominal_rate_hz", s.nominal_rate_hz},
+            {"rate_hz", one.rate_hz()},
+            {"samples", one.samples},
+            {"deduced_stamps", one.deduced},
+            {"backward_stamps", one.backward},
+            {"no_stamps", one.timeless},
+            {"no_numbers", one.no_numbers},
+            {"first_s", number(one.first)},
+            {"last_s", number(one.last)},
+            {"clock_offsets", one.clock_offsets},
+            {"clock", Json::array()}};
+  for (const XdfChannel& channel : s.channels) {
+    json["channels"].push_back(
+        {{"label", channel.label}, {"unit", channel.unit}, {"type", channel.type}});
+  }
+  for (const XdfClockLine& line : one.clock) {
+    json["clock"].push_back({{"first_s", line.first},
+                             {"last_s", line.last},
+                             {"origin_s", line.origin},
+                             {"offset_s", line.offset},
+                             {"slope", line.slope},
+                             {"offsets", line.offsets},
+                             {"rms_residual_s", line.rms_residual},
+                             {"largest_residual_s", line.largest_residual}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Description describe_xdf(const std::string& path, const XdfSurvey& survey, Names names) {
+  std::string text = fmt::format("{}\n", path);
+  text += fmt::format("  {:<12}XDF 1.0\n", "format");
+  text += fmt::format("  {:<12}{:.1f} MB\n", "size", static_cast<double>(survey.bytes) / 1e6);
+  Json json{{"file", path}, {"kind", "xdf"}, {"bytes", survey.bytes}, {"streams", Json::array()}};
+  for (const XdfStreamSurvey& one : survey.streams) {
+    text += stream_lines(one, names);
+    json["streams"].push_back(json_of(one));
+  }
+  const std::size_t wrong = survey.findings.size();
+  if (wrong > 0) {
+    text +=
+        fmt::format("  {} finding{}: see kinalign check {}\n", wrong, wrong == 1 ? "" : "s", path);
+  }
+  return {std::move(text), json_text(json)};
+}
+
+namespace {
+
+/// What is told of streams of one file.
+class Judge {
+ public:
+  Judge(const std::string& path, Findings& out) : path_(path), out_(out) {}
+
+  void judge(const XdfStreamSurvey& one) {
+    const std::string of = fmt::format("of '{}' ", shown(one.stream.name));
+    if (one.samples == 0) {
+      say(Severity::note, of + "samples", "none", "it was recorded and said nothing");
+      return;
+    }
+    if (one.timeless > 0) {
+      say(Severity::warning, of + "stamps that are numbers below 1e15",
+          grouped(one.timeless) + " others", "these samples have no time");
+    }
+    if (one.backward > 0) {
+      say(Severity::warning, of + "stamps that rise",
+          fmt::format("{} that step back, by up to {:.3f} s", grouped(one.backward),
+                      one.largest_step_back_s),
+          "the sender's clock was set back, or samples came in another order");
+    }
+    if (one.no_numbers > 0) {
+      say(Severity::note, of + "numbers", grouped(one.no_numbers) + " that are NaN or infinite",
+          "many senders write so what was not measured");
+    }
+    judge_clock(one, of);
+  }
+
+ private:
+  void judge_clock(const XdfStreamSurvey& one, const std::string& of) {
+    if (one.clock.empty()) {
+      say(Severity::note, of + "clock offsets", "none",
+          "its stamps are taken for the recorder's clock");
+    }
+    if (one.clock.size() > 1) {
+      say(Severity::warning, of + "one clock", fmt::format("{}", one.clock.size()),
+          "it was reset on the way; stamps go by the nearest of their lines");
+    }
+  }
+  void say(Severity severity, std::string expected, std::string found, std::string meaning) {
+    out_.push_back(
+        {severity, Error{path_, 0, std::move(expected), std::move(found)}, std::move(meaning), ""});
+  }
+
+  const std::string& path_;
+  Findings& out_;
+};
+
+}  // namespace
+
+Findings judge_xdf(const std::string& path, const XdfSurvey& survey) {
+  Findings findings = survey.findings;
+  Judge judge(path, findings);
+  for (const XdfStreamSurvey& one : survey.streams) judge.judge(one);
+  if (survey.streams.empty()) {
+    findings.push_back({Severity::warning, Error{path, 0, "a stream", "none that can be read"},
+                        "nothing can be taken from it", ""});
+  }
+  return findings;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/describe_report.h"
+#include "apps/kinalign/text/node_names.h"
+#include "apps/kinalign/text/record_text.h"
+#include "apps/kinalign/text/summary.h"
+
+#include "kinalign/documents/toml_entries.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+/// "mocap", "imu waist", "imu 7" of what topics begin with: "mocap", "imu/7".
+std::string name_of(const std::string& beginning, const RecordingSurvey& survey) {
+  const std::size_t end = beginning.find('/');
+  if (end == std::string::npos) return beginning;
+  const std::string stream = beginning.substr(0, end), node = beginning.substr(end + 1);
+  return sender_name(stream, node, survey);
+}
+
+/// Those that the lab wanted, and that the file has nothing of: as their topics begin.
+std::vector<std::string> unheard(const RecordingSurvey& survey) {
+  std::vector<std::string> names;
+  for (const auto& [name, required] : survey.expected) {
+    const std::string begins = "/" + name + "/";  // of nodes any one's
+    const bool heard =
+        std::any_of(survey.channels.begin(), survey.channels.end(), [&](const ChannelSurvey& one) {
+          return one.channel.topic.starts_with(begins) && one.messages > 0;
+        });
+    if (!heard && required) names.push_back(name);
+  }
+  return names;
+}
+
+/// Of a topic: of what the recorder counted before it wrote the last counts, what is neither there
+/// nor between two that are. Counts of a later part begin with the recording, not with the file.
+std::uint64_t uncovered(const CountedSender& counted, const RecordingSurvey& survey) {
+  std::uint64_t known = 0;
+  for (const ChannelSurvey& channel : survey.channels) {
+    if (channel.channel.topic == counted.topic) known += channel.messages + channel.missing;
+  }
+  const bool whole = survey.facts && survey.facts->part == 1;
+  return whole && counted.counts.messages > known ? counted.counts.messages - known : 0;
+}
+
+/// What reached the recorder and is not in the file: its numbers are left out, or, at either end of
+/// a topic, its own counts say so.
+Findings gone(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  const auto tell = [&](std::string expected, std::uint64_t lacks) {
+    if (lacks == 0) return;
+    findings.push_back({Severity::error,
+                        {path, 0, std::move(expected), grouped(lacks) + " missing"},
+                        "these messages reached the recorder and are not in the file",
+                        "a further part of the recording may have them: recover takes all parts"});
+  };
+  for (const ChannelSurvey& channel : survey.channels) {
+    tell(channel.channel.topic + " without a number left out", channel.missing);
+  }
+  for (const CountedSender& one : survey.senders) {
+    tell(fmt::format("the {} messages on {} that were counted", grouped(one.counts.messages),
+                     one.topic),
+         uncovered(one, survey));
+  }
+  return findings;
+}
+
+/// By the devices' own numbers: what they sent and what never reached the recorder, and their
+/// lives.
+Findings numbered(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  for (const CountedSender& one : survey.senders) {
+    const SequenceCounts& order = one.counts.order;
+    if (order.lost > 0) {
+      const std::uint64_t came = frames_or_messages(one.counts);
+      findings.push_back(
+          {Severity::note,
+           {path, 0, "every frame that " + name_of(one, survey) + " sent",
+            fmt::format("{} lost of {}", grouped(order.lost), grouped(order.lost + came))},
+           "by the sender's own numbers; they did not reach the recorder, or were never sent",
+           ""});
+    }
+    if (order.restarts > 0) {
+      findings.push_back({Severity::note,
+                          {path, 0, "one life of " + name_of(one, survey),
+                           grouped(order.restarts + 1) + ": it was started anew"},
+                          "each has a clock of its own, and nothing is known of between",
+                          ""});
+    }
+  }
+  return findings;
+}
+
+/// What came to a port of devices and could not be recorded.
+Finding port_loss(const std::string& path, const CountedPort& port, const std::string& lost) {
+  return {Severity::warning,
+          {path, 0, "everything that came to the port of " + port.stream, lost},
+          "these reached the recording machine and are not in it",
+          "see what else it does while it records"};
+}
+
+/// Whoever finds a port of marks may send what is none, without harm; but a mark that somebody
+/// meant may be among it.
+Finding no_marks(const std::string& path, const CountedPort& port) {
+  return {Severity::note,
+          {path, 0, "marks alone at the port of " + port.stream,
+           grouped(port.counts.refused) + " datagrams that are none"},
+          "record said why, and answered so",
+          "docs/formats/marks.md says how a mark is sent"};
+}
+
+/// A node without the lab's key, say; the kernel keeps back, and counts, what is no frame at all.
+Finding no_nodes(const std::string& path, const CountedPort& port) {
+  return {Severity::note,
+          {path, 0, "frames alone of the lab's nodes at the port of " + port.stream,
+           grouped(port.counts.refused) + " that are refused"},
+          "a node that is missing may have sent them: without the lab's key, say",
+          "record said of which node, and why"};
+}
+
+/// Another device that sent there, say: record warned of it from as many on.
+Finding strays_at(const std::string& path, const CountedPort& port, std::uint64_t strays) {
+  return {are_many(strays) ? Severity::warning : Severity::note,
+          {path, 0, "frames of nodes alone at the port of " + port.stream,
+           fmt::format("{}{} datagrams that are none",
+                       strays < port.counts.dropped ? "at least " : "", grouped(strays))},
+          "they were thrown away: nothing of them is in it",
+          "see which port and protocol each device sends to"};
+}
+
+/// The recorder's own ports; no device has such a name.
+bool is_of_marks(const CountedPort& port) {
+  return port.stream == "marks" || port.stream == "trigger";
+}
+
+/// What came and is not in it, by port.
+Findings not_recorded(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  for (const CountedPort& one : survey.ports) {
+    if (one.counts.sifted) {
+      if (one.counts.refused > 0) findings.push_back(no_nodes(path, one));
+      const std::uint64_t came = strays(one.counts, frames_lost(one.stream, survey.senders));
+      if (came > 0) findings.push_back(strays_at(path, one, came));
+      continue;
+    }
+    CountedPort of_device = one;
+    if (is_of_marks(one)) {
+      if (one.counts.refused > 0) findings.push_back(no_marks(path, one));
+      of_device.counts.refused = 0;
+    }
+    const std::string lost = loss_of(of_device.counts, 0);
+    if (!lost.empty()) findings.push_back(port_loss(path, one, lost));
+  }
+  return findings;
+}
+
+/// What came to the port of a device of which nothing is there; empty: nothing did.
+std::string came_unheard(const std::string& device, const RecordingSurvey& survey) {
+  const bool heard = std::any_of(survey.senders.begin(), survey.senders.end(),
+                                 [&](const CountedSender& one) { return one.stream == device; });
+  const auto port = std::find_if(survey.ports.begin(), survey.ports.end(),
+                                 [&](const CountedPort& one) { return one.stream == device; });
+  if (heard || port == survey.ports.end()) return "";
+  return unheard_but_came(port->counts, "to its port");
+}
+
+Findings lacking(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  for (const std::string& name : unheard(survey)) {
+    const std::string came = came_unheard(name.substr(0, name.find('/')), survey);
+    findings.push_back(
+        {Severity::warning,
+         {path, 0, "messages of " + name_of(name, survey), came.empty() ? "none" : "none: " + came},
+         "a device that the lab requires is not in it",
+         came.empty() ? "see that it sends to the recording machine; "
+                        "docs/recording.md"
+                      : "see that it sends to this port, and other devices to "
+                        "theirs; docs/recording.md"});
+  }
+  return findings;
+}
+
+/// Of a suit over UDP whose pieces don't tell which frame they are of.
+Finding hardly_read(const std::string& path, const std::string& name, const SenderCounts& counts) {
+  return {Severity::warning,
+          {path, 0, "frames that can be read in what " + name + " sent",
+           fmt::format("{}; {} times none", grouped(counts.frames), grouped(counts.refused))},
+          "fewer than half of them can be aligned, though their bytes are all in the recording",
+          "prefer TCP, which loses and mixes no pieces of frames"};
+}
+
+/// Of what no rows can be made: the recorder saw none of the protocol's frames in it, or nothing
+/// says whose body moves.
+Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings;
+  std::set<std::string> without_skeleton;
+  for (const CountedSender& one : survey.senders) {
+    const auto channel =
+        std::find_if(survey.channels.begin(), survey.channels.end(),
+                     [&](const ChannelSurvey& known) { return known.channel.topic == one.topic; });
+    if (channel == survey.channels.end()) continue;
+    const std::string& protocol = channel->channel.message_encoding;
+    if (speaks_another_protocol(protocol, one.counts)) {
+      findings.push_back(
+          {Severity::warning,
+           {path, 0, "frames of " + protocol + " in what " + name_of(one, survey) + " sent",
+            grouped(one.counts.messages) + " messages, none of them one"},
+           "nothing of it can be aligned as " + protocol,
+           "see which port and protocol the device sends to"});
+    }
+    const bool heard = protocol == "noitom" && one.counts.frames > 0;
+    if (heard && are_many(one.counts.refused) && one.counts.refused > one.counts.frames) {
+      findings.push_back(hardly_read(path, name_of(one, survey), one.counts));
+    }
+    const auto& names = survey.attachments;
+    const bool has_body = std::find(names.begin(), names.end(), one.stream + ".bvh") != names.end();
+    if (heard && !has_body) without_skeleton.insert(one.stream);
+  }
+  for (const std::string& stream : without_skeleton) {
+    findings.push_back(
+        {Severity::note,
+         {path, 0, "a skeleton for " + stream, "none"},
+         "Noitom's stream does not say whose body it moves; alignment needs it",
+         "skeleton = \"a.bvh\" in [stream." + toml_key(stream) + "] of a recording.toml"});
+  }
+  return findings;
+}
+
+/// That recover may give what it makes of the file.
+std::string new_name(const std::string& path) {
+  return path == "whole.mcap" ? "recovered.mcap" : "whole.mcap";
+}
+
+}  // namespace
+
+Findings judge_survey(const std::string& path, const RecordingSurvey& survey) {
+  Findings findings = survey.findings;
+  for (const std::string& torn : survey.torn) {
+    findings.push_back({Severity::warning,
+                        {torn, 0, "an index at the recording's end", "none"},
+                        "it was not closed: the program or the machine stopped, or the disk did",
+                        survey.messages == 0 ? "nothing of it can be read"
+                                             : "kinalign recover " + torn + " -o " +
+                                                   new_name(torn) + " gives it one"});
+  }
+  append(findings, judge_end(path, survey));
+  append(findings, judge_order(path, survey));
+  if (!survey.steps.empty()) {
+    const WallClockStep& worst = *std::max_element(
+        survey.steps.begin(), survey.steps.end(), [](const auto& a, const auto& b) {
+          return std::chrono::abs(a.by) < std::chrono::abs(b.by);
+        });
+    findings.push_back({Severity::warning,
+                        {path, 0, "a wall clock that nobody sets while it records",
+                         fmt::format("set {} times, by {:+.3f} s at the most", survey.steps.size(),
+                                     seconds(worst.by))},
+                        "UTC in it is the clock's of the beginning; time differences are right",
+                        "let the machine's clock be set before recording: docs/time_server.md"});
+  }
+  if (survey.facts) append(findings, gone(path, survey));
+  if (survey.more_marks > 0) {
+    findings.push_back({Severity::note,
+                        {path, 0, fmt::format("at most {} marks", grouped(most_marks)),
+                         grouped(survey.more_marks) + " more"},
+                        "alignment leaves them out",
+                        ""});
+  }
+  if (survey.end && survey.end->dropped > 0) {
+    findings.push_back({Severity::error,
+                        {path, 0, "every message that reached the recorder",
+                         grouped(survey.end->dropped) + " fewer"},
+                        "the disk was too slow for too long, and memory full",
+                        "record to a disk of the machine itself"});
+  }
+  append(findings, lacking(path, survey));
+  append(findings, numbered(path, survey));
+  append(findings, not_recorded(path, survey));
+  append(findings, unreadable(path, survey));
+  return findings;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/node_event_text.h"
+
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/node_text.h"
+
+#include "kinalign/capture/nodes/node_table.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A switch, so that the compiler tells of a kind that is new.
+const char* name_of(ClockEvent::Kind kind) {
+  using Kind = ClockEvent::Kind;
+  switch (kind) {
+    case Kind::new_boot:
+      return "new_boot";
+    case Kind::step:
+      return "step";
+    case Kind::slip:
+      return "slip";
+    case Kind::uneasy:
+      return "uneasy";
+    case Kind::settled:
+      return "settled";
+    case Kind::host_backwards:
+      return "host_backwards";
+    case Kind::withdrawn:
+      return "withdrawn";
+    case Kind::violator:
+      return "violator";
+    case Kind::relaxed:
+      return "relaxed";
+    case Kind::route:
+      return "route";
+  }
+  return "";
+}
+
+const char* name_of(HostClockEvent::Kind kind) {
+  if (kind == HostClockEvent::Kind::suspended) return "suspended";
+  return kind == HostClockEvent::Kind::backwards ? "backwards" : "wall_stepped";
+}
+
+std::string what_happened(const NodeEvent& event, const NodeNames& names) {
+  using Kind = NodeEvent::Kind;
+  switch (event.kind) {
+    case Kind::joined:
+      return "joined";
+    case Kind::started:
+      return "started anew";
+    case Kind::restarted:
+      return "warning: started anew with its old boot id; its firmware draws none";
+    case Kind::twins:
+      return "warning: two nodes have this id; both are kept apart, flash one of them anew";
+    case Kind::renamed:
+      return fmt::format("seems to be what {} was", names.name(event.other_id.value_or(0)));
+    case Kind::moved:
+      return "sends from another address";
+    case Kind::left:
+      return "nothing for ten seconds";
+    case Kind::returned:
+      return "is back, its clock goes on";
+    case Kind::newer_version:
+      return fmt::format("speaks version {} of the protocol, which this program does not know",
+                         event.version);
+    case Kind::too_many:
+      return fmt::format("warning: not taken in, there are {} already", NodeTable::most_streams);
+    case Kind::wrong_key:
+      break;  // wrong_key_text
+  }
+  return {};
+}
+
+/// What is refused for its MAC may be anybody, whatever node it says it is.
+std::string wrong_key_text(const NodeEvent& event, const NodeNames& names) {
+  const bool no_key = event.refusal == NodeRefusal::no_key;
+  const char* what = no_key ? "with a MAC, and there is no --lab-key"
+                     : event.refusal == NodeRefusal::no_mac ? "without a MAC"
+                                                            : "with another key";
+  const std::string mend =
+      no_key ? "; --lab-key FILE, the lab's, lets it in"
+             : fmt::format(
+                   "; if it is that node, flash what kinalign node-key --lab-key LAB --node {} "
+                   "prints",
+                   event.node_id);
+  return fmt::format("warning: something that says it is {} is not heard: it sends {} (from {}){}",
+                     names.name(event.node_id), what, address_text(event.address), mend);
+}
+
+}  // namespace
+
+std::string event_text(const NodeEvent& event, const NodeNames& names) {
+  if (event.kind == NodeEvent::Kind::newer_version) return "a node " + what_happened(event, names);
+  if (event.kind == NodeEvent::Kind::wrong_key) return wrong_key_text(event, names);
+  return fmt::format("{}: {} ({})", names.name(event.node_id), what_happened(event, names),
+                     address_text(event.address));
+}
+
+std::string event_json(const NodeEvent& event) {
+  Json json{{"event", "node_event"},
+            {"kind", kinalign::name_of(event.kind)},
+            {"warning", is_warning(event.kind)}};
+  const bool unheard = event.kind == NodeEvent::Kind::wrong_key;  // it has no stream
+  if (!unheard) json["stream"] = event.stream;
+  json["node_id"] = event.node_id;
+  json["boot_id"] = event.boot_id;
+  json["at_ns"] = json_ns(event.at);
+  json["address"] = address_text(event.address);
+  if (event.other_id) json["other_id"] = *event.other_id;
+  if (event.version != 0) json["version"] = event.version;
+  if (unheard) json["refusal"] = refusal_name(event.refusal);
+  return json_text(json);
+}
+
+std::string event_text(const ClockEvent& event, std::uint32_t node_id, const NodeNames& names) {
+  using Kind = ClockEvent::Kind;
+  const auto says = [&](const std::string& what) { return names.name(node_id) + ": " + what; };
+  const double by_ms = 1e3 * std::abs(event.by.value_or(0.0));  // which way is not always known
+  if (event.kind == Kind::step && !event.by) {
+    return says("warning: its counter stepped, or its crystal bends more than was assumed");
+  }
+  if (event.kind == Kind::step) {
+    return says(fmt::format("warning: its counter stepped by at least {:.3f} ms", by_ms));
+  }
+  if (event.kind == Kind::slip) {
+    return says(fmt::format("warning: its counter stepped by {:.3f} ms", by_ms));
+  }
+  if (event.kind == Kind::withdrawn) {
+    return says(fmt::format("warning: the stamps of {:.1f} s are not certified any more",
+                            seconds(event.end - event.begin)));
+  }
+  if (event.kind == Kind::uneasy) {
+    return says(fmt::format("its likeliest stamps may be off by up to {:.3f} ms; certificates hold",
+                            by_ms));
+  }
+  if (event.kind == Kind::settled) return says("its counter runs evenly again");
+  return event.kind == Kind::relaxed ? says("its clock may bend more than was assumed") : "";
+}
+
+std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_t node_id) {
+  Json json{
+      {"event", "clock_event"}, {"kind", name_of(event.kind)},      {"stream", stream},
+      {"node_id", node_id},     {"begin_ns", json_ns(event.begin)}, {"end_ns", json_ns(event.end)}};
+  if (event.by) json["by_ms"] = 1e3 * std::abs(*event.by);
+  if (event.curvature) json["curvature_ppm_per_s"] = 1e6 * *event.curvature;
+  return json_text(json);
+}
+
+std::string event_text(const HostClockEvent& event) {
+  using Kind = HostClockEvent::Kind;
+  if (event.kind == Kind::suspended) {
+    return fmt::format("warning: this machine slept for {:.1f} s; the nodes' clocks begin anew",
+                       seconds(event.by));
+  }
+  if (event.kind == Kind::backwards) {
+    return "warning: this machine's raw clock went back; the nodes' clocks begin anew";
+  }
+  return fmt::format("the wall clock was set by {:+.3f} s; stamps of nodes do not depend on it",
+                     seconds(event.by));
+}
+
+std::string event_json(const HostClockEvent& event) {
+  return json_text(Json{{"event", "host_event"},
+                        {"kind", name_of(event.kind)},
+                        {"at_ns", json_ns(event.at)},
+                        {"by_ms", 1e3 * seconds(event.by)}});
+}
+
+}  // namespace kinalign

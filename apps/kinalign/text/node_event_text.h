@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happened to a node, to its clock or to this machine: a line for people, a JSON object for
+// programs.
+#pragma once
+
+#include "apps/kinalign/text/node_names.h"
+
+#include "kinalign/capture/net/host_clock.h"
+#include "kinalign/capture/nodes/node_event.h"
+#include "kinalign/clock/clock_event.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace kinalign {
+
+/// "node 7: two nodes have this id (192.168.7.21:4000)"; no line end.
+std::string event_text(const NodeEvent& event, const NodeNames& names = {});
+std::string event_json(const NodeEvent& event);
+
+/// `node_id`: whose clock. Empty where people need not be told.
+std::string event_text(const ClockEvent& event, std::uint32_t node_id, const NodeNames& names = {});
+std::string event_json(const ClockEvent& event, std::size_t stream, std::uint32_t node_id);
+
+std::string event_text(const HostClockEvent& event);
+std::string event_json(const HostClockEvent& event);
+
+}  // namespace kinalign

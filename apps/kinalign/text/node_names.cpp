@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/node_names.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+std::string sender_name(const std::string& stream, const std::string& node,
+                        const std::string& place) {
+  if (node.empty()) return stream;
+  return stream + " " + (place.empty() ? node : place);
+}
+
+std::string sender_name(const std::string& stream, const std::string& node,
+                        const RecordingSurvey& survey) {
+  const auto place = survey.places.find(stream + "/" + node);
+  return sender_name(stream, node, place == survey.places.end() ? "" : place->second);
+}
+
+std::string name_of(const CountedSender& sender, const RecordingSurvey& survey) {
+  return sender_name(sender.stream, sender.node, survey) +
+         (sender.sender.empty() ? "" : " from " + sender.sender);
+}
+
+std::string NodeNames::short_name(std::uint32_t id) const {
+  const std::string number = std::to_string(id);
+  const auto place = places.find(number);
+  return place == places.end() ? number : place->second;
+}
+
+NodeNames node_names(const Lab& lab) {
+  const auto nodes =
+      std::find_if(lab.devices.begin(), lab.devices.end(),
+                   [](const DeviceOptions& device) { return device.protocol == "nodes"; });
+  return nodes == lab.devices.end() ? NodeNames{} : NodeNames{nodes->name, nodes->nodes};
+}
+
+}  // namespace kinalign

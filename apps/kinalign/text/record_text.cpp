@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/record_text.h"
+
+#include "apps/kinalign/text/node_names.h"
+#include "apps/kinalign/text/node_text.h"
+#include "apps/kinalign/text/summary.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Its nodes that have places and that were never heard.
+std::vector<std::string> unheard_nodes(const DeviceOptions& device, const LabStatus& status) {
+  std::vector<std::string> names;
+  for (const auto& node : device.nodes) {  // clang 14 can't hand a structured binding on
+    const bool heard =
+        std::any_of(status.streams.begin(), status.streams.end(), [&](const StreamStatus& stream) {
+          return stream.stream == device.name && stream.node == node.first;
+        });
+    if (!heard) names.push_back(sender_name(device.name, node.first, node.second));
+  }
+  return names;
+}
+
+bool is_heard(const DeviceOptions& device, const LabStatus& status) {
+  return std::any_of(status.streams.begin(), status.streams.end(),
+                     [&](const StreamStatus& stream) { return stream.stream == device.name; });
+}
+
+PortCounts counts_of(const DeviceOptions& device, const LabStatus& status) {
+  const auto found = std::find_if(status.ports.begin(), status.ports.end(),
+                                  [&](const auto& one) { return one.first == device.name; });
+  return found == status.ports.end() ? PortCounts() : found->second;
+}
+
+void forget_unheard(LabStatus& status) {
+  std::erase_if(status.streams,
+                [](const StreamStatus& stream) { return stream.counts.messages == 0; });
+}
+
+/// What a port of nodes, or the kernel before it, let nothing of in.
+std::string thrown_away(const PortCounts& counts, std::uint64_t frames_lost) {
+  if (!counts.sifted) return "dropped by the kernel";
+  const std::uint64_t least = strays(counts, frames_lost);
+  if (least == counts.dropped) return "thrown away: no frames of nodes";
+  if (least == 0) return "thrown away: no frames of nodes, or no room for them";
+  return fmt::format("thrown away, {} of them or more no frames of nodes", grouped(least));
+}
+
+/// Of a device that nothing was heard of; empty: nothing has come to its port.
+std::string came_unheard(const DeviceOptions& device, const LabStatus& status, std::uint16_t port) {
+  if (is_heard(device, status)) return "";
+  return unheard_but_came(counts_of(device, status), fmt::format("to port {}", port));
+}
+
+/// Of a device of which nothing has come.
+std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, std::uint16_t port) {
+  const bool linked = counts.links > 0;
+  if (device.transport == "tcp") {
+    return fmt::format("{} {}:{} yet", linked ? "nothing has come from" : "no connection to",
+                       device.address, port);
+  }
+  if (device.transport == "tcp-listen" && !linked) {
+    return fmt::format("nobody has connected to port {} yet", port);
+  }
+  return fmt::format("nothing has come to port {} yet", port);
+}
+
+}  // namespace
+
+double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
+
+bool is_silent(const StreamStatus& stream, HostTime now) {
+  return now - stream.heard >= silent_after;
+}
+
+const NodeStatus* node_of(const StreamStatus& stream, const std::vector<NodeStatus>& nodes) {
+  const NodeStatus* found = nullptr;
+  for (const NodeStatus& node : nodes) {
+    if (std::to_string(node.node_id) != stream.node) continue;
+    if (found == nullptr || node.heard > found->heard) found = &node;
+  }
+  return found;
+}
+
+std::optional<SenderClock> clock_of(const StreamStatus& stream, const NodeStatus* node) {
+  if (node == nullptr) return stream.clock;
+  if (!node->n || !node->stamp) return std::nullopt;
+  return sender_clock(*node->stamp, *node->n, node->drift);
+}
+
+std::vector<std::string> unheard_of(const DeviceOptions& device, const LabStatus& status) {
+  std::vector<std::string> names = unheard_nodes(device, status);
+  if (names.empty() && !is_heard(device, status)) names.push_back(device.name);
+  return names;
+}
+
+std::string loss_of(const PortCounts& counts, std::uint64_t frames_lost) {
+  std::string text;
+  for (const auto& [count, what] : {std::pair(counts.dropped, thrown_away(counts, frames_lost)),
+                                    std::pair(counts.refused, std::string("refused, not recorded")),
+                                    std::pair(counts.cut, std::string("cut")),
+                                    std::pair(counts.unsent, std::string("answers not sent"))}) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
+  }
+  return text;
+}
+
+std::string unheard_but_came(const PortCounts& counts, const std::string& to) {
+  const std::uint64_t came = counts.dropped + counts.refused;
+  if (!counts.sifted || came == 0) return "";
+  return fmt::format("{} datagrams came {}, none {}", grouped(came), to,
+                     counts.refused == 0 ? "a frame of nodes" : "was let in");
+}
+
+std::string name_of(const StreamStatus& stream) {
+  return sender_name(stream.stream, stream.node, stream.place);
+}
+
+std::vector<std::string> unheard_in_take(const Lab& lab, LabStatus status) {
+  forget_unheard(status);
+  std::vector<std::string> all;
+  for (const DeviceOptions& device : lab.devices) {
+    const auto of_one = unheard_of(device, status);
+    all.insert(all.end(), of_one.begin(), of_one.end());
+  }
+  return all;
+}
+
+std::vector<std::string> end_lines_of_unheard(const Lab& lab, LabStatus status,
+                                              const Ports& ports) {
+  forget_unheard(status);
+  std::vector<std::string> lines;
+  for (const DeviceOptions& device : lab.devices) {
+    const std::string what = came_unheard(device, status, ports.at(device.name));
+    for (const std::string& name : unheard_of(device, status)) {
+      lines.push_back(fmt::format("{}: {}", name, what.empty() ? "nothing came" : what));
+    }
+  }
+  return lines;
+}
+
+std::vector<std::string> lines_of_unheard(const Lab& lab, const LabStatus& status,
+                                          const Ports& ports) {
+  std::vector<std::string> lines;
+  for (const DeviceOptions& device : lab.devices) {
+    const std::uint16_t port = ports.at(device.name);
+    std::string what = came_unheard(device, status, port);
+    if (what.empty()) what = nothing_yet(device, counts_of(device, status), port);
+    for (const std::string& name : unheard_of(device, status)) {
+      lines.push_back(fmt::format("{}: {}", name, what));
+    }
+  }
+  return lines;
+}
+
+std::vector<std::string> missing(const Lab& lab, const LabStatus& status) {
+  std::vector<std::string> names;
+  for (const DeviceOptions& device : lab.devices) {
+    if (!device.required) continue;
+    bool alive = false;
+    for (const StreamStatus& stream : status.streams) {
+      if (stream.stream != device.name) continue;
+      const bool silent = is_silent(stream, status.now);
+      alive = alive || !silent;
+      if (silent && !stream.place.empty()) names.push_back(name_of(stream));
+    }
+    const auto unheard = unheard_nodes(device, status);
+    names.insert(names.end(), unheard.begin(), unheard.end());
+    if (!alive && device.nodes.empty()) names.push_back(device.name);
+  }
+  return names;
+}
+
+std::vector<StreamStatus> newest_of_each(const std::vector<StreamStatus>& streams) {
+  std::vector<StreamStatus> newest;
+  for (const StreamStatus& stream : streams) {
+    const auto same = std::find_if(newest.begin(), newest.end(), [&](const StreamStatus& other) {
+      return other.stream == stream.stream && other.sender == stream.sender &&
+             other.node == stream.node;
+    });
+    if (same == newest.end()) {
+      newest.push_back(stream);
+    } else if (same->heard < stream.heard) {
+      *same = stream;
+    }
+  }
+  return newest;
+}
+
+std::string counts_text(const SenderCounts& counts) {
+  std::string text =
+      fmt::format("{} messages, {:.1f} MB", grouped(counts.messages), megabytes(counts.bytes));
+  std::string_view between = "; ";
+  for (const auto& [count, what] :
+       {std::pair(counts.order.lost, "lost"), std::pair(counts.order.late, "late"),
+        std::pair(counts.order.duplicates, "twice"), std::pair(counts.refused, "refused")}) {
+    if (count == 0) continue;
+    text += fmt::format("{}{} {}", between, grouped(count), what);
+    between = ", ";
+  }
+  if (const std::uint64_t restarts = counts.order.restarts) {
+    text += fmt::format("{}started anew {}", between,
+                        restarts == 1 ? "once" : grouped(restarts) + " times");
+  }
+  return text;
+}
+
+std::string end_line(const StreamStatus& stream) {
+  if (stream.counts.messages == 0) return "";
+  return fmt::format("  {} from {}: {}\n", name_of(stream), stream.sender,
+                     counts_text(stream.counts));
+}
+
+std::string port_line(const std::string& name, const PortCounts& counts,
+                      std::uint64_t frames_lost) {
+  const std::string text = loss_of(counts, frames_lost);
+  return text.empty() ? "" : fmt::format("  port of {}: {}\n", name, text);
+}
+
+Json json_of(const StreamStatus& stream, const LabStatus& status) {
+  Json json = Json::parse(
+      to_json({stream.topic, stream.stream, stream.sender, stream.node, stream.counts}));
+  if (!stream.place.empty()) json["place"] = stream.place;
+  json["rate_hz"] = stream.rate_hz;
+  json["silent_s"] = seconds(status.now - stream.heard);
+  if (stream.battery_volts) json["battery_v"] = *stream.battery_volts;
+  const NodeStatus* node = node_of(stream, status.nodes);
+  if (stream.clock) {
+    json["clock"] = {{"host_minus_sender_ns", stream.clock->host_minus_sender.count()},
+                     {"drift_ppm", 1e6 * stream.clock->drift}};
+    if (const auto half = stream.clock->half_interval) {
+      json["clock"]["half_interval_ms"] = 1e3 * seconds(*half);
+    }
+  }
+  if (node == nullptr) return json;
+  Json clock = Json::parse(status_json(*node));
+  for (const char* said_above :
+       {"event", "stream", "node_id", "address", "accepted", "lost", "rate_hz", "battery_mv"}) {
+    clock.erase(said_above);
+  }
+  json["clock"] = clock;
+  return json;
+}
+
+}  // namespace kinalign

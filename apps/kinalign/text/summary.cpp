@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/summary.h"
+
+#include "apps/cli/console.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <vector>
+
+namespace kinalign {
+
+namespace {
+
+/// The report's streams of one name: a device, or all nodes.
+struct Group {
+  StreamReport sum;                 // counts of all
+  std::vector<StreamReport> parts;  // one, or one a node's file
+  std::size_t nodes = 0;
+};
+
+void add(Group& group, const StreamReport& s) {
+  StreamReport& sum = group.sum;
+  sum.gaps += s.gaps;
+  sum.gap_time_ns += s.gap_time_ns;
+  sum.samples += s.samples;
+  sum.invalid += s.invalid;
+  sum.inferred += s.inferred;
+  sum.bridged += s.bridged;
+  sum.unsure += s.unsure;
+  if (!s.worst_interval_ns) {
+    sum.worst_interval_ns.reset();
+  } else if (sum.worst_interval_ns) {
+    sum.worst_interval_ns = std::max(*sum.worst_interval_ns, *s.worst_interval_ns);
+  }
+  sum.counted = sum.counted || s.counted;
+  group.nodes += s.nodes.size();
+  group.parts.push_back(s);
+}
+
+std::vector<Group> groups_of(const AlignmentReport& report) {
+  std::vector<Group> groups;
+  for (const StreamReport& s : report.streams) {
+    if (groups.empty() || groups.back().sum.stream != s.stream) {
+      Group group;
+      group.sum.stream = s.stream;
+      group.sum.worst_interval_ns = 0;
+      groups.push_back(group);
+    }
+    add(groups.back(), s);
+  }
+  return groups;
+}
+
+std::string name_of(const Group& group) {
+  if (group.nodes == 0) return group.sum.stream;
+  return fmt::format("{} ({} node{})", group.sum.stream, group.nodes, group.nodes == 1 ? "" : "s");
+}
+
+/// Half-widths in order of doubt: an unknown one is the largest.
+std::int64_t doubt(const StreamReport& s) { return s.worst_interval_ns.value_or(INT64_MAX); }
+
+std::uint64_t harm(const StreamReport& s) { return s.invalid + s.bridged; }
+
+/// ", worst node: wrist_left" where the nodes differ in `measure`.
+template <class Measure>
+std::string worst_node(const Group& group, Measure measure) {
+  const auto less = [measure](const auto& a, const auto& b) { return measure(a) < measure(b); };
+  const auto [least, most] = std::minmax_element(group.parts.begin(), group.parts.end(), less);
+  if (measure(*least) == measure(*most)) return "";
+  return fmt::format(", worst node: {}", fmt::join(most->nodes, ", "));
+}
+
+std::string time_text(const Group& group, const Console& console) {
+  const auto& known = group.sum.worst_interval_ns;
+  std::string sure = clock_text(known, group.sum.counted);
+  if (group.sum.unsure > 0) {
+    sure += ", " + share_text(group.sum.unsure, group.sum.samples) + " unknown";
+  }
+  if (!known || group.sum.unsure > 0) sure = console.paint(Colour::warning, sure);
+  return harmless(name_of(group)) + " " + sure + worst_node(group, doubt);
+}
+
+std::string time_line(std::vector<Group> groups, const std::string& reference,
+                      const Console& console) {
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const Group& a, const Group& b) { return doubt(a.sum) > doubt(b.sum); });
+  std::string text;
+  for (const Group& group : groups) {
+    if (group.sum.stream == reference) continue;
+    text += (text.empty() ? "  time   " : "   ") + time_text(group, console);
+  }
+  return text.empty() ? "" : text + "\n";
+}
+
+std::string space_line(const SpaceReport& s) {
+  const Eigen::AngleAxisd turn(s.transform.rotation);
+  std::string how = "root onto root in every frame";
+  if (s.method == "fit") how = "fitted once per take";
+  if (s.method == "given") how = "as given";
+  std::string text =
+      fmt::format("  space  {} on {} {:.1f} cm rms (before: {:.1f}), rotation {:.1f}°, {}",
+                  harmless(s.stream), harmless(s.onto), 100.0 * s.after_m, 100.0 * s.before_m,
+                  turn.angle() * 180.0 / std::numbers::pi, how);
+  if (!s.joints.empty()) {
+    const JointResidual& worst = s.joints.front();
+    text +=
+        fmt::format("; worst joint: {} {:.1f} cm", harmless(worst.joint), 100.0 * worst.after_m);
+  }
+  return text + "\n";
+}
+
+std::string gap_line(const Group& group) {
+  const StreamReport& s = group.sum;
+  if (s.gaps == 0 && harm(s) == 0 && s.inferred == 0) return "";
+  std::vector<std::string> said;
+  if (s.gaps > 0) {
+    said.push_back(fmt::format("{} gap{} ({:.2f} s, marked)", s.gaps, s.gaps == 1 ? "" : "s",
+                               1e-9 * static_cast<double>(s.gap_time_ns)));
+  }
+  const auto share = [&](std::uint64_t part, const char* what) {
+    if (part > 0) said.push_back(share_text(part, s.samples) + " " + what);
+  };
+  share(s.invalid, "invalid");
+  share(s.inferred, "inferred");
+  share(s.bridged, "interpolated over loss");
+  std::string text = "  gaps   " + harmless(s.stream);
+  for (const std::string& one : said) text += (&one == said.data() ? " " : ", ") + one;
+  return text + worst_node(group, harm) + "\n";
+}
+
+std::string gap_lines(std::vector<Group> groups) {
+  const auto part = [](const Group& g) {
+    return static_cast<double>(harm(g.sum)) / std::max(1.0, static_cast<double>(g.sum.samples));
+  };
+  std::stable_sort(groups.begin(), groups.end(),
+                   [part](const Group& a, const Group& b) { return part(a) > part(b); });
+  std::string text;
+  for (const Group& group : groups) text += gap_line(group);
+  return text;
+}
+
+/// The worst findings, a line each; a hundred of them are for `info`.
+std::string finding_lines(const Findings& findings, const Console& console) {
+  constexpr std::size_t most = 5;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, findings.size()); ++k) {
+    const Finding& finding = findings[k];
+    const Colour colour = colour_of(finding.severity);
+    const std::string repair = finding.repair.empty() ? "" : "; " + finding.repair;
+    text += fmt::format("  {}  {}: {}{}\n", console.paint(colour, to_string(finding.severity)),
+                        harmless(to_string(finding.what)), finding.meaning, repair);
+  }
+  if (findings.size() > most) text += fmt::format("  and {} more\n", findings.size() - most);
+  return text;
+}
+
+}  // namespace
+
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {
+    text.insert(static_cast<std::size_t>(at), 1, ',');
+  }
+  return text;
+}
+
+double take_seconds(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz) {
+  const double last = rate_hz > 0.0 ? 1.0 / rate_hz : 0.0;
+  return 1e-9 * (static_cast<double>(end_ns) - static_cast<double>(begin_ns)) + last;
+}
+
+std::string duration_text(double s) {
+  constexpr double shown_as_minute = 59.995, longest = 1e15;
+  if (!(s >= shown_as_minute)) return fmt::format("{:.2f} s", s);
+  const auto whole = static_cast<std::int64_t>(std::min(s + 0.005, longest));
+  return whole < 3600
+             ? fmt::format("{} min {:02} s", whole / 60, whole % 60)
+             : fmt::format("{} h {:02} min {:02} s", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string share_text(std::uint64_t part, std::uint64_t whole) {
+  if (part == 0 || whole == 0) return "";
+  const double percent = 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+  return percent < 0.05 ? "< 0.1 %" : fmt::format("{:.1f} %", percent);
+}
+
+std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool counted) {
+  if (!interval_ns)
+    return counted ? "counted stamps of unknown accuracy" : "stamps of unknown accuracy";
+  if (*interval_ns == 0) return counted ? "counted stamps, shared clock" : "shared clock";
+  return fmt::format("{}± {:.1f} ms", counted ? "counted stamps " : "",
+                     1e-6 * static_cast<double>(*interval_ns));
+}
+
+std::string summary(const AlignmentReport& report, const std::string& out, const Console& console) {
+  const double length = take_seconds(to_ns(report.begin), to_ns(report.end), report.rate_hz);
+  const std::vector<Group> groups = groups_of(report);
+  std::string names;
+  for (const Group& group : groups) names += (names.empty() ? "" : " + ") + name_of(group);
+  std::string text = fmt::format(
+      "{}: {}, {} frames at {:.4g} Hz, {}\n", out.empty() ? "nothing written" : harmless(out),
+      duration_text(length), grouped(report.frames), report.rate_hz, harmless(names));
+  text += time_line(groups, report.reference, console);
+  for (const SpaceReport& s : report.spaces) text += space_line(s);
+  text += gap_lines(groups);
+  text += finding_lines(report.findings, console);
+  if (!out.empty()) text += fmt::format("  see    kinalign info {}\n", harmless(out));
+  return text;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/time_server_text.h"
+
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/summary.h"
+
+#include "kinalign/capture/net/udp_socket.h"
+#include "kinalign/capture/ntp/clock_state.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::array<std::string_view, 4> leap_names{"none", "insert", "delete", "unsynchronised"};
+
+std::string_view name_of(NtpLeap leap) { return leap_names[static_cast<std::size_t>(leap)]; }
+
+std::string reference_text(std::uint32_t id) {
+  return fmt::format("{}.{}.{}.{}", id >> 24, id >> 16 & 0xff, id >> 8 & 0xff, id & 0xff);
+}
+
+nlohmann::ordered_json state_json(const NtpServerState& state) {
+  return {{"leap", name_of(state.leap)},
+          {"stratum", state.stratum},
+          {"reference_id", reference_text(state.reference_id)},
+          {"root_delay_ms", 1e3 * seconds(state.root_delay)},
+          {"root_dispersion_ms", 1e3 * seconds(state.root_dispersion)},
+          {"precision_log2_s", state.precision}};
+}
+
+nlohmann::ordered_json event_json(const std::string& event, const nlohmann::ordered_json& more) {
+  nlohmann::ordered_json json{{"event", event}};
+  json.update(more);
+  return json;
+}
+
+/// What the clients' own settings are to say.
+std::string client_lines(const ServedPort& served) {
+  const std::string host = served.reachable.empty() ? "ADDRESS" : served.reachable.front();
+  if (served.port != 123) {
+    return fmt::format(
+        "  clients  chrony: server {} port {} iburst\n"
+        "           most others, ESP32 and ntpdate among them, ask port 123 only\n",
+        host, served.port);
+  }
+  return fmt::format(
+      "  clients  chrony: server {} iburst\n"
+      "           ESP32: esp_sntp_setservername(0, \"{}\")\n",
+      host, host);
+}
+
+std::string node_lines(const ServedPort& served) {
+  if (!served.node_port) return "";
+  return fmt::format("  nodes    port {}, {}\n", *served.node_port,
+                     served.keyed ? "with keys" : "without keys: anybody may imitate one");
+}
+
+}  // namespace
+
+std::string clock_text(const NtpServerState& state) {
+  if (state.leap == NtpLeap::unsynchronised) {
+    return "not synchronised, and no reference: clients are told so and turn away";
+  }
+  const std::string leap =
+      state.leap == NtpLeap::none ? "" : ", a leap second at the end of the day (UTC)";
+  if (state.reference_id == local_reference_id) {
+    return fmt::format("not synchronised: this machine is the reference, stratum {}{}",
+                       state.stratum, leap);
+  }
+  const Duration most = state.root_dispersion + state.root_delay / 2;  // RFC 5905: root distance
+  const double ms = 1e3 * seconds(most);
+  const std::string within =
+      ms < 0.1 ? fmt::format("{:.0f} us", 1e3 * ms) : fmt::format("{:.1f} ms", ms);
+  return fmt::format("synchronised within {}, stratum {}{}", within, state.stratum, leap);
+}
+
+std::string start_lines(const ServedPort& served, const NtpServerState& state) {
+  std::vector<std::string> at;
+  for (const std::string& address : served.addresses) {
+    at.push_back(endpoint_text(address, served.port));
+  }
+  return fmt::format("serving time on {}, UDP\n  clock    {}\n{}{}", fmt::join(at, " and "),
+                     clock_text(state), client_lines(served), node_lines(served));
+}
+
+std::string start_json(const ServedPort& served, const NtpServerState& state) {
+  nlohmann::ordered_json json = event_json(
+      "started",
+      {{"addresses", served.addresses}, {"port", served.port}, {"reachable", served.reachable}});
+  if (served.node_port) {
+    json["node_port"] = *served.node_port;
+    json["node_keys"] = served.keyed;
+  }
+  json.update(state_json(state));
+  return json_text(json);
+}
+
+std::string clock_json(const NtpServerState& state) {
+  return json_text(event_json("clock", state_json(state)));
+}
+
+std::string utc_text(Time t) {
+  const auto whole = std::chrono::floor<std::chrono::seconds>(t.time_since_epoch());
+  return fmt::format("{:%FT%TZ}", fmt::gmtime(static_cast<std::time_t>(whole.count())));
+}
+
+std::string live_line(Time now, std::string_view what) {
+  return fmt::format("{} kinalign time-server: {}", utc_text(now), what);
+}
+
+std::string counts_text(const NtpCounts& counts) {
+  const std::uint64_t answered = counts[NtpOutcome::answered];
+  std::string text =
+      fmt::format("{} NTP request{} answered", grouped(answered), answered == 1 ? "" : "s");
+  for (std::size_t i = 1; i < ntp_outcomes; ++i) {
+    const auto outcome = static_cast<NtpOutcome>(i);
+    std::string name(name_of(outcome));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    if (counts[outcome] > 0) text += fmt::format(", {} {}", grouped(counts[outcome]), name);
+  }
+  return text;
+}
+
+std::string counts_json(const NtpCounts& counts, const std::string& event, double elapsed_s) {
+  nlohmann::ordered_json json{{"event", event},
+                              {"elapsed_s", std::round(elapsed_s * 1e3) / 1e3},
+                              {"received", counts.total()}};
+  for (std::size_t i = 0; i < ntp_outcomes; ++i) {
+    const auto outcome = static_cast<NtpOutcome>(i);
+    json[std::string(name_of(outcome))] = counts[outcome];
+  }
+  return json_text(json);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/time_server/node_herald.h"
+
+#include "apps/kinalign/text/node_event_text.h"
+#include "apps/kinalign/text/node_text.h"
+#include "apps/kinalign/text/time_server_text.h"
+
+namespace kinalign {
+
+void tell_live(Console& console, std::string_view what) {
+  console.note(live_line(SystemClocks{}.utc(), what));
+}
+
+std::string NodeHerald::operator()() {
+  tell_events();
+  if (Clock::now() >= next_status_) {
+    next_status_ += std::chrono::seconds(1);
+    tell_status();
+    look_at_key();
+  }
+  console_.flush();
+  return nodes_text(receiver_.status());
+}
+
+void NodeHerald::tell_events() {
+  for (const HostClockEvent& event : receiver_.take_host_events()) {
+    tell_live(console_, event_text(event));
+    console_.print_json(event_json(event));
+  }
+  for (const NodeEvent& event : receiver_.take_node_events()) {
+    tell_live(console_, event_text(event));
+    console_.print_json(event_json(event));
+  }
+  const HostTime now = SystemClocks{}.raw();
+  for (const auto& [stream, node_id, event] : receiver_.take_clock_events()) {
+    clock_news_.hear(stream, node_id, event, now);
+    console_.print_json(event_json(event, stream, node_id));
+  }
+  tell_clocks(clock_news_.lines(now));
+}
+
+void NodeHerald::tell_clocks(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) tell_live(console_, line);
+}
+
+void NodeHerald::tell_status() {
+  for (const ClockPair& pair : receiver_.take_pairs()) console_.print_json(pair_json(pair));
+  for (const NodeStatus& status : receiver_.status()) console_.print_json(status_json(status));
+  if (--counts_in_s_ > 0) return;
+  counts_in_s_ = 10;
+  console_.print_json(node_counts_json(receiver_));
+}
+
+/// Once a second; what can't be read, half written or gone, leaves the keys as they are.
+void NodeHerald::look_at_key() {
+  if (lab_.path.empty()) return;
+  const auto key = read_lab_key(files_, lab_.path);
+  tell_key_trouble(key ? "" : to_string(key.error()));
+  if (!key || *key == lab_.key) return;
+  lab_.key = *key;
+  receiver_.replace_key(*key);
+  tell_live(console_, lab_.path + " has another key now; the old one is good for 60 s");
+  console_.print_json(R"({"event": "key_replaced"})");
+}
+
+/// Each trouble once, as long as it lasts.
+void NodeHerald::tell_key_trouble(const std::string& trouble) {
+  if (trouble == key_trouble_) return;
+  key_trouble_ = trouble;
+  if (trouble.empty()) return;
+  tell_live(console_, "warning: " + trouble + "; the key that was read before stays in force");
+  console_.print_json(R"({"event": "key_unreadable"})");
+}
+
+std::string NodeHerald::summary_of(const NodeStatus& status) const {
+  SystemClocks clocks;
+  const ClockPair now{.raw = clocks.raw(), .utc = clocks.utc()};
+  const bool bad = clock_news_.contradicts(status.stream, status.node_id, now.raw);
+  return status_text(status, now, bad ? contradiction : "");
+}
+
+void NodeHerald::tell_end() {
+  tell_events();
+  tell_clocks(clock_news_.last_lines());
+  for (const NodeStatus& status : receiver_.status()) {
+    console_.print("  " + summary_of(status) + "\n");
+    console_.print_json(status_json(status));
+  }
+  console_.print(refused_lines(receiver_));
+  console_.print_json(node_counts_json(receiver_));
+}
+
+}  // namespace kinalign

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tells what happens on the nodes' port while the time server serves, and takes a new lab key when
+// its file is replaced.
+#pragma once
+
+#include "apps/cli/console.h"
+#include "apps/kinalign/text/clock_news.h"
+
+#include "kinalign/capture/nodes/node_receiver.h"
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace kinalign {
+
+/// A lab's key and the file that it was read from; neither where nodes have no keys.
+struct LabKeyFile {
+  std::string path;
+  std::optional<LabKey> key;
+};
+
+/// A message of a server that runs for days, on stderr with the time of day.
+void tell_live(Console& console, std::string_view what);
+
+class NodeHerald {
+ public:
+  /// `lab`: as the receiver has it.
+  NodeHerald(NodeReceiver& receiver, Console& console, FileSystem& files, LabKeyFile lab)
+      : receiver_(receiver), console_(console), files_(files), lab_(std::move(lab)) {}
+
+  /// Some times a second. Its status in a few words: "3 nodes, 2 locked".
+  std::string operator()();
+  void tell_end();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void tell_events();
+  void tell_status();
+  void look_at_key();
+  void tell_key_trouble(const std::string& trouble);
+
+  void tell_clocks(const std::vector<std::string>& lines);
+  std::string summary_of(const NodeStatus& status) const;
+
+  NodeReceiver& receiver_;
+  Console& console_;
+  FileSystem& files_;
+  LabKeyFile lab_;
+  ClockNews clock_news_;
+  std::string key_trouble_;  // that was told, and still stands
+  Clock::time_point next_status_ = Clock::now() + std::chrono::seconds(1);
+  int counts_in_s_ = 10;
+};
+
+}  // namespace kinalign

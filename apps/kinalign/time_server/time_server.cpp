@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/ntp/time_server.h"
+
+#include "apps/kinalign/text/key_advice.h"
+#include "apps/kinalign/text/port_advice.h"
+#include "apps/kinalign/text/summary.h"
+#include "apps/kinalign/text/time_server_text.h"
+#include "apps/kinalign/time_server/node_herald.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/capture/net/own_addresses.h"
+#include "kinalign/capture/net/udp_socket.h"
+#include "kinalign/capture/nodes/node_keys.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct TimeServerFlags {
+  std::int64_t port = 123;
+  std::vector<std::string> listen, exempt;
+  std::optional<std::int64_t> local_stratum, node_port;
+  std::string lab_key;
+};
+
+Result<std::vector<Network>> networks_of(const std::vector<std::string>& texts) {
+  std::vector<Network> networks;
+  for (const std::string& text : texts) {
+    auto network = parse_network(text);
+    if (!network) return Failure(Error{"--exempt", 0, network.error().expected, shown(text)});
+    networks.push_back(*network);
+  }
+  return networks;
+}
+
+/// Two addresses of which one is in the other's way, which the system would put down to another
+/// program.
+Result<void> check_pair(const std::string& one, const std::string& other) {
+  if (one == other) {
+    return Failure(Error{"--listen", 0, "each address once", one + " twice"});
+  }
+  if (is_ipv6_text(one) != is_ipv6_text(other)) return {};
+  for (const auto& [all, part] : {std::pair{one, other}, std::pair{other, one}}) {
+    if (!is_any_address(all)) continue;
+    return Failure(Error{"--listen", 0, "nothing that " + all + " stands for already", part});
+  }
+  return {};
+}
+
+/// As the system writes them.
+Result<std::vector<std::string>> addresses_of(const std::vector<std::string>& texts) {
+  std::vector<std::string> addresses;
+  for (const std::string& text : texts) {
+    const auto address = spelt_address(text);
+    if (!address) return Failure(Error{"--listen", 0, "an IPv4 or IPv6 address", shown(text)});
+    for (const std::string& other : addresses) KA_TRY(check_pair(other, *address));
+    addresses.push_back(*address);
+  }
+  return addresses;
+}
+
+/// Flags that forbid one another, or need one another.
+Result<void> check_flags(const TimeServerFlags& o, const Sources& given) {
+  KA_TRY(addresses_of(o.listen));
+  KA_TRY(networks_of(o.exempt));
+  if (given.contains("lab_key") && o.lab_key.empty()) {  // an unset variable is no wish for none
+    return Failure(Error{"--lab-key", 0, "a file's name", "nothing"});
+  }
+  if (!o.node_port && !o.lab_key.empty()) {
+    return Failure(Error{"--lab-key", 0, "--node-port beside it", "none"});
+  }
+  if (o.node_port == o.port && o.port != 0) {
+    return Failure(Error{"--node-port", 0, "another port than --port",
+                         fmt::format("{}: both flags name the same port", o.port)});
+  }
+  return {};
+}
+
+Usage describe_time_server(TimeServerFlags& o) {
+  Usage usage;
+  usage.flags = {
+      {"listen", "an address to serve on (all, where none is given); may be repeated", &o.listen},
+      {"exempt", "an address or network that may ask as often as it likes; may be repeated",
+       &o.exempt}};
+  usage.settings = {
+      {"port", "UDP port; 0: any free one", &o.port, 0.0, 65535.0},
+      {"local_stratum",
+       "let clients follow this machine's clock, right or wrong, while nothing synchronises it: "
+       "the lab's reference, at this stratum; 10 is usual",
+       &o.local_stratum, 1.0, 15.0},
+      {"node_port", "UDP port for inertial nodes; 0: any free one", &o.node_port, 0.0, 65535.0},
+      {"lab_key", "file of the key that the nodes' keys come from (see node-key)", &o.lab_key}};
+  usage.check = [&o](const Common&, const Sources& given) { return check_flags(o, given); };
+  return usage;
+}
+
+Result<TimeServerOptions> options_of(const TimeServerFlags& flags) {
+  TimeServerOptions options;
+  options.addresses = flags.listen;
+  options.port = static_cast<std::uint16_t>(flags.port);
+  if (flags.local_stratum) options.local_stratum = static_cast<std::uint8_t>(*flags.local_stratum);
+  options.exempt = KA_TRY(networks_of(flags.exempt));
+  options.key = KA_TRY(new_secret());
+  return options;
+}
+
+/// On a port that could not be opened. `flag`: the one that names it.
+Advice advice_on_port(const std::string& flag, std::int64_t port) {
+  const WantedPort wanted{static_cast<std::uint16_t>(port), flag, "--listen", false};
+  return [wanted](const Error& error) { return port_advice(error, wanted); };
+}
+
+Result<LabKeyFile> read_key_file(const TimeServerFlags& flags, Call& call) {
+  LabKeyFile lab{flags.lab_key, std::nullopt};
+  if (lab.path.empty()) return lab;
+  FileSystem& files = call.surroundings.files;
+  call.console.if_it_fails(key_advice);
+  lab.key = KA_TRY(read_lab_key(files, lab.path));
+  return lab;
+}
+
+/// Absent where no port for nodes is wanted.
+Result<std::optional<NodeReceiver>> open_nodes(const TimeServerFlags& flags,
+                                               const std::optional<LabKey>& lab_key,
+                                               ClockReader& clocks) {
+  if (!flags.node_port) return std::nullopt;
+  NodeReceiverOptions options;
+  options.addresses = flags.listen;
+  options.port = static_cast<std::uint16_t>(*flags.node_port);
+  options.desk.secret = KA_TRY(new_secret());
+  options.desk.lab_key = lab_key;
+  return KA_TRY(NodeReceiver::open(options, clocks));
+}
+
+ServedPort served_port(const TimeServer& server, const std::optional<NodeReceiver>& nodes,
+                       const TimeServerFlags& flags) {
+  ServedPort served;
+  for (const UdpSocket& socket : server.sockets()) served.addresses.push_back(socket.address());
+  served.reachable = reachable_at(flags.listen, own_addresses());
+  served.port = server.sockets().front().port();
+  if (nodes) served.node_port = nodes->sockets().front().port();
+  served.keyed = !flags.lab_key.empty();
+  return served;
+}
+
+/// Tells what changes while the server serves.
+class Herald {
+ public:
+  Herald(const TimeServer& server, std::optional<NodeHerald>& nodes, Console& console)
+      : server_(server),
+        nodes_(nodes),
+        console_(console),
+        progress_(console.progress()),
+        told_(server.state()) {}
+
+  /// Whether to go on.
+  bool operator()() {
+    tell_clock();
+    tell_strays();
+    tell_counts();
+    tell_trouble();
+    const std::string nodes = nodes_ ? (*nodes_)() : "";
+    const std::string both = counts_text(server_.counts()) + (nodes.empty() ? "" : "; " + nodes);
+    return progress_("serving: " + both, 0, 0);
+  }
+  void tell_end() {
+    const double s = elapsed_s();
+    console_.print(
+        fmt::format("served for {}: {}\n", duration_text(s), counts_text(server_.counts())));
+    if (nodes_) nodes_->tell_end();
+    console_.print_json(counts_json(server_.counts(), "stopped", s));
+  }
+
+ private:
+  double elapsed_s() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+
+  void tell_clock() {
+    const NtpServerState& now = server_.state();
+    if (now.leap == told_.leap && now.stratum == told_.stratum) return;
+    told_ = now;
+    tell_live(console_, "the clock is now " + clock_text(now));
+    console_.print_json(clock_json(now));
+    console_.flush();
+  }
+  /// Once: the count goes on telling it.
+  void tell_strays() {
+    if (strays_told_ || server_.counts()[NtpOutcome::from_node] == 0) return;
+    strays_told_ = true;
+    tell_live(console_,
+              "warning: a node sends to the NTP port; nodes are received on another one, "
+              "--node-port");
+  }
+  /// Each trouble with stdout once, as long as it lasts: nobody else may notice for hours.
+  void tell_trouble() {
+    const std::string trouble = console_.out_trouble();
+    if (std::exchange(out_trouble_, trouble) == trouble) return;
+    tell_live(console_, trouble.empty()
+                            ? "standard output takes lines again"
+                            : "warning: standard output takes no more (" + trouble +
+                                  "): at most 1 MiB of lines waits for room; serving goes on");
+  }
+  void tell_counts() {
+    constexpr double every_s = 10;
+    if (elapsed_s() < every_s * (counts_told_ + 1)) return;
+    ++counts_told_;
+    console_.print_json(counts_json(server_.counts(), "counts", elapsed_s()));
+    console_.flush();
+  }
+
+  const TimeServer& server_;
+  std::optional<NodeHerald>& nodes_;
+  Console& console_;
+  Progress progress_;
+  NtpServerState told_;
+  std::string out_trouble_;  // that was told, and still stands
+  Clock::time_point began_ = Clock::now();
+  int counts_told_ = 0;
+  bool strays_told_ = false;
+};
+
+Result<int> run(TimeServerFlags& o, Call& call) {
+  Console& console = call.console;
+  console.never_wait();
+  o.listen = KA_TRY(addresses_of(o.listen));
+  const LabKeyFile lab = KA_TRY(read_key_file(o, call));
+  console.if_it_fails(advice_on_port("--port", o.port));
+  TimeServer server = KA_TRY(TimeServer::open(KA_TRY(options_of(o))));
+  console.if_it_fails(advice_on_port("--node-port", o.node_port.value_or(0)));
+  SystemClocks clocks;
+  auto nodes = KA_TRY(open_nodes(o, lab.key, clocks));
+  const ServedPort served = served_port(server, nodes, o);
+  console.print(harmless(start_lines(served, server.state())));
+  console.print_json(start_json(served, server.state()));
+  if (server.state().leap == NtpLeap::unsynchronised) {
+    console.note(
+        "kinalign time-server: warning: nothing sets this machine's clock, so clients are told "
+        "not to follow it; with --local-stratum 10 they do, right or wrong, in a lab that has no "
+        "other clock");
+  }
+  console.flush();
+  std::optional<NodeHerald> node_herald;
+  if (nodes) node_herald.emplace(*nodes, console, call.surroundings.files, lab);
+  Herald herald(server, node_herald, console);
+  server.serve([&herald] { return herald(); }, nodes ? &*nodes : nullptr);
+  herald.tell_end();
+  return 0;
+}
+
+}  // namespace
+
+Verb time_server_verb() {
+  return make_verb<TimeServerFlags>(
+      {.name = "time-server",
+       .summary = "the lab's clock: answer NTP requests",
+       .text =
+           "Serves the system's clock by NTP (RFC 5905) until Ctrl-C. Strangers get 8 answers at "
+           "once, then one in 2 s; --exempt is for clients that ask more often. With --json each "
+           "line is an object, by its member event: started and stopped; with --node-port pair "
+           "and, for each node, node (node_id, certainty, time_ns, earliest_ns, latest_ns, "
+           "drift_ppm and more), once a second; counts and node_counts, every 10 s; clock, "
+           "node_event, clock_event, host_event, key_replaced, key_unreadable and missed when it "
+           "happens. Members in _ns are on CLOCK_MONOTONIC_RAW, but utc_ns and the node's own "
+           "counter_ns: "
+           R"({"schema": "kinalign.time-server/1", "event": "pair", "raw_ns": 4521080113, )"
+           R"("utc_ns": 1790000000000000000}. docs/time_server.md has every member.)",
+       .examples = {{"kinalign time-server --local-stratum 10",
+                     "a lab without another clock; port 123 needs root"},
+                    {"kinalign time-server --port 12300 --listen 127.0.0.1",
+                     "without rights, for this machine"},
+                    {"kinalign time-server --node-port 5005 --lab-key lab.key",
+                     "inertial nodes too; see node-key"},
+                    {"kinalign time-server --json", "a line of JSON for each event, see below"}},
+       .common = {"json"}},
+      describe_time_server, run);
+}
+
+}  // namespace kinalign

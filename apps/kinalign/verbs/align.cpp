@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/cli/field_text.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/summary.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/align_job.h"
+#include "apps/kinalign/verbs/inputs.h"
+#include "apps/kinalign/verbs/quick.h"
+
+#include "kinalign/align/plan.h"
+#include "kinalign/documents/report_json.h"
+#include "kinalign/formats/unknown_file.h"
+#include "kinalign/recording/beside.h"
+#include "kinalign/recording/parts.h"
+#include "kinalign/recording/survey_parts.h"
+#include "kinalign/sources/open_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+namespace {
+
+/// What to align, and what overrides a manifest.
+struct AlignVerb {
+  std::vector<std::string> manifest;  // at most one
+  AlignOptions options;
+  bool slerp = false;
+  QuickFlags quick;
+};
+
+Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& given) {
+  const bool quick = !o.quick.mocap.empty();
+  if (!o.manifest.empty()) KA_TRY(refuse_beside(o.manifest.front(), given));
+  if (o.manifest.empty() && !quick) {
+    return Failure(Error{"", 0, "either a recording.toml or --mocap FILE", "neither"});
+  }
+  if (quick) {
+    KA_TRY(refuse_alone(o.quick, given));
+    KA_TRY(quick_manifest(o.quick));
+  }
+  const auto rotations = given.find("rotations");
+  if (o.slerp && rotations != given.end() && rotations->second == Source::flag) {
+    return Failure(Error{"--slerp", 0, "--rotations or --slerp", "both"});
+  }
+  if (common.out.empty() && !common.dry_run) {
+    return Failure(Error{"-o", 0, "the take's file name, as in -o take.h5", "none"});
+  }
+  return {};
+}
+
+Usage describe_verb_options(AlignVerb& o) {
+  Usage usage;
+  usage.positionals = {{"RECORDING",
+                        "what `record` wrote, or a recording.toml: streams, files, clocks",
+                        &o.manifest, 0, 1}};
+  usage.flags = o.quick.fields();
+  usage.flags.push_back({"slerp", "the same as --rotations slerp", &o.slerp});
+  usage.settings = describe(o.options);
+  usage.check = [&o](const Common& common, const Sources& given) {
+    return check_use(o, common, given);
+  };
+  return usage;
+}
+
+/// Of the recording that begins in `path`; knows no options.
+Result<Manifest> survey_for_manifest(const std::string& path, const Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const Progress progress = call.console.progress();
+  const RecordingParts parts = KA_TRY(parts_from(files, path, progress));
+  return recorded_manifest(KA_TRY(survey_parts(files, parts, progress)), path);
+}
+
+/// What a file is instead that is neither a recording nor named as a manifest.
+Result<Error> no_recording(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  const std::string_view head = KA_TRY(file.next());
+  if (head.empty()) return unknown_file(path, head);
+  if (path.ends_with(".mcap")) {
+    return Error{path, 0,
+                 "an MCAP file, as its name says (a file of another kind goes behind --mocap, "
+                 "--kinect, ...)",
+                 beginning_of(head)};
+  }
+  return Error{path, 0,
+               "a recording or a recording.toml (a single file goes behind --mocap, --kinect, ...)",
+               "another ending"};
+}
+
+/// As it stands in a file or follows from flags, with the options of the call.
+Result<Manifest> manifest_with_options(AlignVerb& o, const Call& call) {
+  Manifest manifest;
+  if (o.manifest.empty()) {
+    manifest = KA_TRY(quick_manifest(o.quick));
+    manifest.align = o.options;
+    return manifest;
+  }
+  FileSystem& files = call.surroundings.files;
+  const std::string& path = o.manifest.front();
+  if (KA_TRY(is_recording(files, path))) {
+    manifest = KA_TRY(survey_for_manifest(path, call));
+    manifest.align = o.options;
+    return manifest;
+  }
+  if (!path.ends_with(".toml")) return Failure(KA_TRY(no_recording(files, path)));
+  manifest = KA_TRY(load_manifest(files, path, o.options));
+  copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
+  return manifest;
+}
+
+Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
+  Manifest manifest = KA_TRY(manifest_with_options(o, call));
+  if (o.slerp) manifest.align.rotations = "slerp";
+  return manifest;
+}
+
+/// What can be told only once the manifest is read.
+Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const Sources& given) {
+  const auto source = given.find("reference");
+  if (source == given.end() || source->second != Source::flag) return {};
+  std::vector<std::string> names;
+  for (const StreamOptions& stream : manifest.streams) names.push_back(stream.name);
+  const std::string& wanted = o.options.reference;
+  if (std::find(names.begin(), names.end(), wanted) == names.end()) {
+    return Failure(Error{"--reference", 0, "a stream: " + any_of(names), shown(wanted)});
+  }
+  const auto moved = manifest.spaces.find(wanted);
+  if (o.manifest.empty() && moved != manifest.spaces.end() && moved->second.method != "none") {
+    return Failure(Error{"--reference", 0, "--space none beside it: the reference is not moved",
+                         "--space " + moved->second.method});
+  }
+  return {};
+}
+
+/// The start that lays a skeleton or points beside the others, where none of it overlaps them.
+std::string start_advice(const AlignVerb& o, const Recording& recording, const Manifest& manifest) {
+  constexpr std::int64_t most = 4'000'000'000'000'000'000;
+  for (const RecordedStream& s : recording.streams) {
+    Time first = Time::min(), last = Time::max();
+    for (const RecordedStream& other : recording.streams) {
+      if (&other == &s) continue;
+      first = std::max(first, take_time(other.clock, other.survey.first));
+      last = std::min(last, take_time(other.clock, other.survey.last));
+    }
+    const Time own = take_time(s.clock, s.survey.first);
+    const bool apart = own > last || take_time(s.clock, s.survey.last) < first;
+    const auto near = [](Time t) { return to_ns(t) > -most && to_ns(t) < most; };
+    const bool told = near(own) && near(first);
+    const bool quick = o.manifest.empty();
+    const bool placed = s.step_ns || std::holds_alternative<PointInput>(s.data);
+    if (!placed || !apart || first > last || !told || (quick && s.name != "mocap")) continue;
+    const std::int64_t start =
+        s.step_ns ? options_of(manifest, s.name).start_ns.value_or(0) : to_ns(s.survey.first);
+    const std::int64_t latency = to_ns(own) - start;
+    const std::string where = quick ? "--start-ns {}" : "start_ns = {} in [stream." + s.name + "]";
+    return fmt::format(fmt::runtime(where), to_ns(first) - latency) + " puts the first frame of " +
+           shown(s.name) + " where the others have begun: right only if all began at once";
+  }
+  return "";
+}
+
+/// `path`: of the manifest, if any.
+std::vector<std::string> advice(const std::string& path, const Error& error) {
+  std::vector<std::string> lines{"nothing was written"};
+  const bool named = !path.empty() && error.file == path;
+  const bool manifest = path.ends_with(".toml") && named;
+  if (error.file.empty() || manifest) {
+    lines.push_back(manifest ? "docs/formats/recording_toml.md shows the keys"
+                             : "kinalign align --help shows the flags");
+    if (!manifest && error.expected.find("joints = {") != std::string::npos) {
+      lines.push_back(
+          "--joint KINECT=MOCAP names two that are one, and may be repeated; kinalign "
+          "info FILE -v lists the names of both");
+    }
+    if (const std::string names = name_advice(error); !names.empty()) lines.push_back(names);
+  } else if (named && (error.expected.starts_with("of stream ") ||
+                       error.expected == "a recording of devices")) {
+    lines.push_back("kinalign check " + path + " says what is wrong with the recording");
+  } else if (error.line > 0) {
+    lines.push_back("kinalign check " + error.file + " says what else is odd in it, up to there");
+  }
+  return lines;
+}
+
+Result<Recording> open_files(const AlignVerb& o, const Manifest& manifest, const std::string& base,
+                             Call& call) {
+  Recording recording = KA_TRY(
+      open_recording(call.surroundings.files, manifest, base, call.console.progress(), call.jobs));
+  for (const RecordedStream& stream : recording.streams) {
+    call.console.detail(harmless(read_as(stream)));
+  }
+  if (o.manifest.empty()) KA_TRY(check_kinds(o.quick, recording));
+  return recording;
+}
+
+Result<int> run(AlignVerb& o, Call& call) {
+  const std::string path = o.manifest.empty() ? "" : o.manifest.front();
+  call.console.if_it_fails([path](const Error& error) { return advice(path, error); });
+  Manifest manifest = KA_TRY(manifest_of(o, call));
+  const std::string base =
+      o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));
+  const std::string out = call.common.dry_run ? "" : call.common.out;
+  KA_TRY(keep_inputs(out, o.manifest));
+  KA_TRY(keep_inputs(out, with_namesakes(call.surroundings.files, files_named(manifest, base))));
+  for (const auto& use : {check_take_name(out), check_reference(o, manifest, call.sources)}) {
+    if (!use) return call.console.refuse(use.error());
+  }
+  const Recording recording = KA_TRY(open_files(o, manifest, base, call));
+  call.console.if_it_fails(
+      [path, start = start_advice(o, recording, manifest)](const Error& error) {
+        std::vector<std::string> lines = advice(path, error);
+        const bool apart = error.expected.find(" in time") != std::string::npos ||
+                           error.expected.find("common span") != std::string::npos;
+        if (apart && !start.empty()) lines.push_back(start);
+        return lines;
+      });
+  const auto placed = [&path](Error error) {
+    if (error.file.empty()) error.file = path;
+    return error;
+  };
+  const AlignmentReport report = KA_TRY(
+      align_to_file(call, recording, manifest, {out, call.common.overwrite()}).map_error(placed));
+  call.console.wrote(out);
+  call.console.print(summary(report, out, call.console));
+  call.console.print_json("{\"report\": " + report_json(report) + "}");
+  return code_of(report.findings);
+}
+
+}  // namespace
+
+Verb align_verb() {
+  return make_verb<AlignVerb>(
+      {.name = "align",
+       .summary = "raw files of one motion into a take: one grid, one space",
+       .text =
+           "Streams are cut to the span they share and resampled onto the reference's stamps; "
+           "nothing is invented across a gap. The take is an HDF5 file that h5py and MATLAB "
+           "open, with the report and every parameter inside. Exit code 1 where it was done with "
+           "warnings.",
+       .examples =
+           {{"kinalign align takes/03_S1A02_01.mcap -o take.h5",
+             "what was recorded, also if it is torn"},
+            {"kinalign align demo/recording.toml -o demo/mine.h5", "what the manifest says"},
+            {"kinalign align --mocap demo/mocap.bvh --start-ns 1790000000000000000 --kinect "
+             "demo/kinect.csv -o demo/quick.h5",
+             "two files without a manifest; a BVH knows no time of day"},
+            {"kinalign align --mocap demo/mocap.bvh --start-ns 1790000000000000000 --imu "
+             "waist=demo/imu_waist.csv --imu wrist_left=demo/imu_wrist_left.csv --root-node waist "
+             "-o demo/nodes.h5",
+             "nodes, brought into the waist's space"}},
+       .common = {"out", "force", "json", "dry_run", "jobs"}},
+      describe_verb_options, run);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/verbs/align_job.h"
+
+#include "apps/cli/console.h"
+
+#include "kinalign/align/align.h"
+#include "kinalign/formats/take/take_hdf5.h"
+
+#include <optional>
+
+namespace kinalign {
+
+Result<AlignmentReport> align_to_file(const Call& call, const Recording& recording,
+                                      const Manifest& manifest, const TakeTarget& target) {
+  std::optional<TakeWriter> writer;
+  TakeSink sink;
+  sink.begin = [&](const TakeHeader& header) -> Result<void> {
+    if (target.path.empty()) return {};
+    writer.emplace(
+        KA_TRY(TakeWriter::create(call.surroundings.files, target.path, target.overwrite, header)));
+    return {};
+  };
+  sink.rows = [&](const TakeSlab& slab) -> Result<void> {
+    return writer ? writer->append(slab) : Result<void>{};
+  };
+  AlignmentReport report =
+      KA_TRY(align(recording, manifest, sink, call.console.progress(), call.jobs));
+  if (writer) KA_TRY(writer->finish(report));
+  return report;
+}
+
+}  // namespace kinalign

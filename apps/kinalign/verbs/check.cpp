@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/cli/program.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/describe_report.h"
+#include "apps/kinalign/text/describe_xdf.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/align/arrivals_of.h"
+#include "kinalign/align/judge.h"
+#include "kinalign/align/plan.h"
+#include "kinalign/align/space.h"
+#include "kinalign/documents/report_json.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/recording/beside.h"
+#include "kinalign/recording/survey_parts.h"
+
+#include <fmt/format.h>
+
+namespace kinalign {
+
+namespace {
+
+struct Check {
+  std::vector<std::string> files;
+  StreamFlags stream;
+};
+
+Usage describe_check(Check& o) {
+  Usage usage;
+  usage.positionals = {
+      {"FILE", "takes, recordings, recording.toml, XDF or streams' files", &o.files, 1, SIZE_MAX}};
+  usage.flags = o.stream.fields();
+  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    KA_TRY(o.stream.stream({}));
+    return {};
+  };
+  return usage;
+}
+
+/// Reads every row of a take, in the child; its report.
+Result<std::string> read_through(FileSystem& files, const std::string& path) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  TakeSlab slab;
+  std::uint64_t rows = 0;
+  while (KA_TRY(reader.next(slab))) rows += slab.stamps.size();
+  if (rows != reader.header().frames) {
+    return Failure(
+        Error{path, 0, fmt::format("{} rows", reader.header().frames), std::to_string(rows)});
+  }
+  return reader.report_json();
+}
+
+/// What alignment would refuse or remark before it touches a sample: joints, nodes, the common
+/// span.
+Findings check_plan(const std::string& path, const Input& input) {
+  const auto judged = [&input]() -> Result<Findings> {
+    const AlignPlan plan = KA_TRY(plan_alignment(input.recording, *input.manifest));
+    KA_TRY(plan_spaces(plan.header, *input.manifest, plan.streams[plan.reference].group));
+    return judge_plan(input.recording, plan);
+  }();
+  if (judged) return *judged;
+  Error error = judged.error();
+  if (error.file.empty()) error.file = path;
+  const std::string repair = name_advice(error);
+  return {{Severity::error, std::move(error), "kinalign align makes no take of it", repair}};
+}
+
+/// A flag that the file has no use for is wrong use.
+Result<void> check_flags(const Check& o, const std::string& path, const RecordedStream* stream,
+                         Call& call) {
+  auto used = o.stream.check_use(path, stream, call.sources);
+  return used ? Result<void>{} : call.console.refuse(std::move(used).error());
+}
+
+/// What is wrong with how many files.
+struct Checked {
+  Findings findings;
+  std::size_t files = 1;
+};
+
+Result<Checked> check_take(const Check& o, const std::string& path, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  KA_TRY(check_flags(o, path, nullptr, call));
+  const std::string report =
+      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return read_through(files, path); }));
+  Checked out{KA_TRY(report_findings(report, path))};
+  for (Finding& finding : out.findings) {  // of several takes: which one's input
+    std::string& file = finding.what.file;
+    file = file.empty() ? path : fmt::format("{}: {}", path, file);
+  }
+  return out;
+}
+
+/// A take knows an input by its name below the manifest, a user of one file by its path.
+void name_as_typed(const std::string& path, const RecordedStream& stream, Findings& findings) {
+  for (Finding& finding : findings) {
+    if (finding.what.file == stream.files.front().name) finding.what.file = path;
+  }
+}
+
+Result<Checked> check_recording(const Check& o, const std::string& path, Call& call) {
+  KA_TRY(check_flags(o, path, nullptr, call));
+  FileSystem& files = call.surroundings.files;
+  const Progress progress = call.console.progress();
+  const RecordingParts parts = KA_TRY(parts_from(files, path, progress));
+  Checked out{judge_survey(path, KA_TRY(survey_parts(files, parts, progress)))};
+  append(out.findings, judge_parts(parts, PartsBehind::left));
+  append(out.findings, judge_namesakes(files, path));
+  return out;
+}
+
+Result<Checked> check_xdf(const Check& o, const std::string& path, Call& call) {
+  KA_TRY(check_flags(o, path, nullptr, call));
+  return Checked{
+      judge_xdf(path, KA_TRY(survey_xdf(call.surroundings.files, path, call.console.progress())))};
+}
+
+/// A stream's file that is named as something else is.
+Findings judge_name(const std::string& path, const RecordedStream& stream) {
+  const bool misnamed = path.ends_with(".mcap") || path.ends_with(".xdf") || path.ends_with(".h5");
+  if (!misnamed) return {};
+  return {{Severity::note,
+           Error{path, 0, "what its ending says", stream.format + ": " + contents_line(stream)},
+           "it was read and checked as that", "give it the ending of what it is"}};
+}
+
+/// What is wrong with one stream's samples.
+Result<Findings> check_stream(const Check& o, const Input& input, const RecordedStream& stream,
+                              const std::string& reference, Call& call) {
+  call.console.detail(harmless(read_as(stream)));
+  const StreamOptions& options =
+      input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
+  const Role role = input.manifest && stream.name == reference ? Role::reference : Role::resampled;
+  const Arrivals arrivals = KA_TRY(arrivals_of(stream, options, role, call.console.progress()));
+  Findings found = stream.findings;
+  append(found, judge_stamps(stream, options));
+  append(found, judge_arrivals(stream, arrivals, role));
+  append(found, judge_start(stream, options, arrivals));
+  Findings out = said_by_file(stream, input.recording).findings;
+  append(out, said_of(stream, input.recording, std::move(found)));
+  return out;
+}
+
+/// A stream's file, or a manifest with all of its streams.
+Result<Checked> check_input(const Check& o, const std::string& path, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  if (path.ends_with(".toml")) KA_TRY(check_flags(o, path, nullptr, call));
+  const Input input = KA_TRY(open_input(files, path, o.stream, call.console.progress()));
+  if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
+  Checked out;
+  if (input.manifest) out.files = files_named(*input.manifest, "").size();
+  const std::string reference =
+      input.manifest ? reference_name(input.recording, *input.manifest) : "";
+  for (const RecordedStream& stream : input.recording.streams) {
+    append(out.findings, KA_TRY(check_stream(o, input, stream, reference, call)));
+  }
+  if (input.manifest) {
+    append(out.findings, check_plan(path, input));
+  } else {
+    append(out.findings, judge_name(path, input.recording.streams.front()));
+    name_as_typed(path, input.recording.streams.front(), out.findings);
+  }
+  return out;
+}
+
+Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  if (KA_TRY(is_recording(files, path))) return check_recording(o, path, call);
+  if (KA_TRY(is_xdf(files, path))) return check_xdf(o, path, call);
+  if (KA_TRY(is_take(files, path))) return check_take(o, path, call);
+  return check_input(o, path, call);
+}
+
+Result<int> run(Check& o, Call& call) {
+  Findings all;
+  std::size_t files = 0;
+  bool usable = true;
+  for (const std::string& path : o.files) {
+    auto found = check_file(o, path, call);
+    if (found) {
+      append(all, found->findings);
+      files += found->files;
+    } else if (o.files.size() == 1 || call.console.refused() || interrupted()) {
+      return Failure(std::move(found).error());
+    } else {  // one file that can't be read must not hide what is wrong with the others
+      usable = false;
+      all.push_back({Severity::error, std::move(found).error(), "the file can't be used", ""});
+    }
+  }
+  call.console.print(finding_lines(all, call.console));
+  if (all.empty()) {
+    call.console.print(
+        fmt::format("{} file{} read, nothing found\n", files, files == 1 ? "" : "s"));
+  }
+  call.console.print_json("{\"findings\": " + findings_json(all) + "}");
+  return usable ? code_of(all) : failed;
+}
+
+}  // namespace
+
+Verb check_verb() {
+  return make_verb<Check>(
+      {.name = "check",
+       .summary = "what is wrong with a file, and what it means",
+       .text =
+           "Reads every value; of a manifest also whether it can be aligned, of a take also what "
+           "its report says. Exit code 1 where there are warnings or errors, 3 where a file can't "
+           "be used.",
+       .examples = {{"kinalign check demo/mocap.bvh", "frames, unit, stamps"},
+                    {"kinalign check demo/*.csv --json", "many files, for programs"}},
+       .common = {"json"}},
+      describe_check, run);
+}
+
+}  // namespace kinalign

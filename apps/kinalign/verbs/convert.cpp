@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/describe_report.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/align/judge.h"
+#include "kinalign/align/own_rows.h"
+#include "kinalign/documents/report_json.h"
+#include "kinalign/formats/bvh/copy.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/formats/take/take_npz.h"
+#include "kinalign/formats/xdf/survey.h"
+#include "kinalign/recording/beside.h"
+#include "kinalign/recording/parts.h"
+#include "kinalign/recording/survey_parts.h"
+#include "kinalign/sources/open_recording.h"
+#include "kinalign/view/show_recording.h"
+#include "kinalign/view/show_xdf.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace kinalign {
+
+namespace {
+
+struct Convert {
+  std::vector<std::string> from, to;  // one each
+  bool store_double = false;
+  StreamFlags stream;
+};
+
+Usage describe_convert(Convert& o) {
+  Usage usage;
+  usage.positionals = {{"IN", "a take, a recording, or a stream's file", &o.from},
+                       {"OUT", "a new file; its ending, .npz, .bvh or .mcap, decides", &o.to}};
+  usage.flags = o.stream.fields();
+  usage.flags.push_back({"double", "store 8-byte numbers instead of 4-byte ones", &o.store_double});
+  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    const std::string& to = o.to.front();
+    if (!to.ends_with(".npz") && !to.ends_with(".bvh") && !to.ends_with(".mcap")) {
+      return Failure(Error{to, 0, "a name that ends in .npz, .bvh or .mcap", "another ending"});
+    }
+    if (o.store_double && !to.ends_with(".npz")) {
+      return Failure(Error{"--double", 0, "a new file that ends in .npz", shown(to)});
+    }
+    KA_TRY(o.stream.stream({}));
+    return {};
+  };
+  return usage;
+}
+
+struct Job {
+  FileSystem& files;
+  std::string from, to;
+  Overwrite overwrite;
+  bool store_double = false;
+};
+
+/// Rows of a stream as a take would hold them.
+ClipRows rows_of(const ClipInput& input, ClipFrames& block) {
+  return own_rows(input.skeleton, std::move(block));
+}
+
+PointRows rows_of(const PointInput&, PointFrames& block) { return own_rows(std::move(block)); }
+
+ImuRows rows_of(const ImuInput&, ImuSamples& block) {
+  return {std::move(block.orientation),
+          std::move(block.acceleration),
+          std::move(block.angular_velocity),
+          std::move(block.valid),
+          {}};
+}
+
+ClipGroup group_of(const ClipInput& input) { return {input.skeleton}; }
+PointGroup group_of(const PointInput& input) { return {input.joint_names}; }
+ImuGroup group_of(const ImuInput& input) { return {input.node_names, input.content, ""}; }
+
+template <class Input, class Frames>
+Result<void> write_rows(const Input& input, const Passes<Frames>& passes, std::uint64_t frames,
+                        const Progress& progress, TakeNpzWriter& writer) {
+  const Pass<Frames> pass = KA_TRY(passes());
+  Frames block;
+  TakeSlab slab;
+  while (KA_TRY(pass(block))) {
+    slab.stamps = block.stamps;
+    slab.rows = {rows_of(input, block)};
+    KA_TRY(writer.append(slab));
+    slab.first += slab.stamps.size();
+    if (!go_on(progress, "converting", slab.first, frames)) return Failure(interruption());
+  }
+  return writer.finish();
+}
+
+Result<void> stream_to_npz(const Job& job, const RecordedStream& stream, const Progress& progress) {
+  TakeHeader header;
+  header.frames = stream.survey.samples;
+  header.parameters.align.store_double = job.store_double;
+  return std::visit(
+      [&](const auto& input) -> Result<void> {
+        header.groups = {{stream.name, group_of(input), false, false, stream.files}};
+        auto writer = KA_TRY(
+            TakeNpzWriter::create(job.files, job.to, job.overwrite, header, NpzNames::plain));
+        return write_rows(input, input.passes, header.frames, progress, writer);
+      },
+      stream.data);
+}
+
+/// `write(sink)` into a new file; what it found.
+template <class Write>
+Result<Findings> put_bvh(const Job& job, const Write& write) {
+  OutputFile out = KA_TRY(OutputFile::create(job.files, job.to, job.overwrite));
+  Findings findings = KA_TRY(write([&out](std::string_view text) { return out.write(text); }));
+  KA_TRY(out.commit());
+  return findings;
+}
+
+// The two for takes run in a child process.
+
+Result<void> take_to_npz(const Job& job) {
+  TakeReader reader = KA_TRY(TakeReader::open(job.files, job.from));
+  TakeHeader header = reader.header();
+  if (job.store_double) header.parameters.align.store_double = true;
+  auto writer =
+      KA_TRY(TakeNpzWriter::create(job.files, job.to, job.overwrite, header, NpzNames::by_stream));
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) KA_TRY(writer.append(slab));
+  return writer.finish();
+}
+
+/// What was found comes out of the child as a report's JSON.
+Result<Findings> convert_take(const Job& job) {
+  const auto work = [&job]() -> Result<std::string> {
+    Findings findings;
+    if (job.to.ends_with(".npz")) {
+      KA_TRY(take_to_npz(job));
+    } else {
+      findings = KA_TRY(put_bvh(
+          job, [&job](const TextSink& sink) { return take_to_bvh(job.files, job.from, sink); }));
+    }
+    return "{\"findings\": " + findings_json(findings) + "}";
+  };
+  return report_findings(KA_TRY(run_guarded(GuardLimits{}, blame(job.from), work)), job.from);
+}
+
+/// A flag that the input has no use for is wrong use.
+Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& call) {
+  auto used = o.stream.check_use(o.from.front(), stream, call.sources);
+  return used ? Result<void>{} : call.console.refuse(std::move(used).error());
+}
+
+Findings findings_of(const Recording& recording) {
+  Findings all;
+  for (const RecordedStream& stream : recording.streams) {
+    append(all, said_by_file(stream, recording).findings);
+    append(all, said_of(stream, recording, stream.findings));
+  }
+  return all;
+}
+
+/// All devices of a recording of which rows can be made, and what it says itself.
+Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call) {
+  const Progress progress = call.console.progress();
+  if (!job.to.ends_with(".mcap")) {
+    return call.console.refuse(Error{job.to, 0, "of a recording a file that ends in .mcap",
+                                     "another ending (kinalign align makes a take of it)"});
+  }
+  KA_TRY(check_flags(o, nullptr, call));
+  const RecordingParts parts = KA_TRY(parts_from(job.files, job.from, progress));
+  const RecordingSurvey survey = KA_TRY(survey_parts(job.files, parts, progress));
+  const Manifest manifest = KA_TRY(recorded_manifest(survey, job.from));
+  const OpenedInPart opened = KA_TRY(
+      open_what_can_be(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));
+  KA_TRY(show_recording(job.files, opened.recording, {parts, job.to, job.overwrite}, progress));
+  Findings findings = findings_of(opened.recording);
+  append(findings, opened.left_out);
+  return findings;
+}
+
+Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {
+  if (!job.to.ends_with(".mcap")) {
+    return call.console.refuse(
+        Error{job.to, 0, "of an XDF file one that ends in .mcap", "another ending"});
+  }
+  KA_TRY(check_flags(o, nullptr, call));
+  return KA_TRY(show_xdf(job.files, job.from, job.to, job.overwrite, call.console.progress()))
+      .findings;
+}
+
+Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
+  if (job.from.ends_with(".toml")) {
+    return call.console.refuse(Error{job.from, 0, "a take, or one stream's file", "a manifest"});
+  }
+  const Input input = KA_TRY(open_input(job.files, job.from, o.stream, call.console.progress()));
+  const RecordedStream& stream = input.recording.streams.front();
+  KA_TRY(check_flags(o, &stream, call));
+  call.console.detail(harmless(read_as(stream)));
+  if (job.to.ends_with(".bvh")) {
+    return put_bvh(job, [&](const TextSink& sink) {
+      return copy_bvh(job.files, job.from, sink, call.console.progress());
+    });
+  }
+  if (job.to.ends_with(".mcap")) {
+    KA_TRY(show_recording(job.files, input.recording, {{}, job.to, job.overwrite},
+                          call.console.progress()));
+  } else {
+    KA_TRY(stream_to_npz(job, stream, call.console.progress()));
+  }
+  return stream.findings;
+}
+
+Result<Findings> convert(const Job& job, const Convert& o, Call& call) {
+  if (KA_TRY(is_recording(job.files, job.from))) return convert_recording(job, o, call);
+  if (KA_TRY(is_xdf(job.files, job.from))) return convert_xdf(job, o, call);
+  if (!KA_TRY(is_take(job.files, job.from))) return convert_stream(job, o, call);
+  KA_TRY(check_flags(o, nullptr, call));
+  if (!job.to.ends_with(".mcap")) return convert_take(job);
+  return call.console.refuse(
+      Error{job.to, 0, "of a take a file that ends in .npz or .bvh", "another ending"});
+}
+
+Result<int> run(Convert& o, Call& call) {
+  call.console.if_it_fails(
+      [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
+  const Job job{call.surroundings.files, o.from.front(), o.to.front(), call.common.overwrite(),
+                o.store_double};
+  KA_TRY(keep_inputs(job.to, with_namesakes(call.surroundings.files, {job.from})));
+  const Findings findings = KA_TRY(convert(job, o, call));
+  call.console.wrote(job.to);
+  call.console.print(harmless(job.to) + "\n" + finding_lines(findings, call.console));
+  call.console.print_json(json_text(nlohmann::ordered_json{
+      {"written", true},
+      {"file", job.to},
+      {"findings", nlohmann::ordered_json::parse(findings_json(findings))}}));
+  return code_of(findings);
+}
+
+}  // namespace
+
+Verb convert_verb() {
+  return make_verb<Convert>(
+      {.name = "convert",
+       .summary = "one format into another",
+       .text =
+           "From a take to .npz or .bvh, from any stream's file to .npz, from .bvh to .bvh; from a "
+           "recording, an XDF or a stream's file to an .mcap of JSON, which Foxglove and "
+           "Lichtblick show. "
+           "Exit code 1 where it was done with warnings.",
+       .examples = {{"kinalign convert demo/mocap.bvh demo/mocap.npz",
+                     "positions, local_positions, local_rotations, joint_names, ... for NumPy"},
+                    {"kinalign convert demo/take.h5 demo/take.npz", "all streams of a take"},
+                    {"kinalign convert demo/take.h5 demo/aligned.bvh",
+                     "the take's skeleton stream"},
+                    {"kinalign convert takes/03_S1A02_01.mcap shown.mcap",
+                     "skeletons, samples, marks, to look at in Lichtblick"}},
+       .common = {"force", "json"}},
+      describe_convert, run);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/describe_xdf.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+namespace kinalign {
+
+namespace {
+
+struct Info {
+  std::vector<std::string> file;
+  StreamFlags stream;
+};
+
+Usage describe_info(Info& o) {
+  Usage usage;
+  usage.positionals = {
+      {"FILE", "a take, a recording, a recording.toml, an XDF or a stream's file", &o.file}};
+  usage.flags = o.stream.fields();
+  usage.check = [&o](const Common&, const Sources&) -> Result<void> {
+    KA_TRY(o.stream.stream({}));
+    return {};
+  };
+  return usage;
+}
+
+Result<Description> describe_input(const Info& o, Call& call, const std::string& path,
+                                   Names names) {
+  const Input input =
+      KA_TRY(open_input(call.surroundings.files, path, o.stream, call.console.progress()));
+  if (!input.manifest) {
+    auto used = o.stream.check_use(path, &input.recording.streams.front(), call.sources);
+    if (!used) return call.console.refuse(std::move(used).error());
+  }
+  return describe_recording(path, input.recording, names);
+}
+
+Result<Description> describe(const Info& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string& path = o.file.front();
+  const Names names = call.common.verbose ? Names::yes : Names::no;
+  const bool recording = KA_TRY(is_recording(files, path));
+  const bool take = !recording && KA_TRY(is_take(files, path));
+  const bool xdf = !recording && !take && KA_TRY(is_xdf(files, path));
+  if (recording || take || xdf || path.ends_with(".toml")) {
+    auto used = o.stream.check_use(path, nullptr, call.sources);
+    if (!used) return call.console.refuse(std::move(used).error());
+  }
+  if (take) return describe_take(files, path, names);
+  if (xdf) {
+    return describe_xdf(path, KA_TRY(survey_xdf(files, path, call.console.progress())), names);
+  }
+  if (!recording) return describe_input(o, call, path, names);
+  const Progress progress = call.console.progress();
+  return describe_survey(path, KA_TRY(survey_recording(files, path, progress)),
+                         KA_TRY(parts_from(files, path, progress)));
+}
+
+Result<int> run(Info& o, Call& call) {
+  const Description found = KA_TRY(describe(o, call));
+  call.console.print(harmless(found.text));
+  call.console.print_json(found.json);
+  return 0;
+}
+
+}  // namespace
+
+Verb info_verb() {
+  return make_verb<Info>(
+      {.name = "info",
+       .summary = "what is in a file",
+       .text = "Reads the whole file once. A take is opened in a process of its "
+               "own, with limits: HDF5 files from outside can crash the library.",
+       .examples = {{"kinalign info demo/mocap.bvh", "joints, frames, rate"},
+                    {"kinalign info demo/mocap.bvh -v", "with the joints' names"},
+                    {"kinalign info demo/take.h5 --json", "everything, with the report"}},
+       .common = {"json"}},
+      describe_info, run);
+}
+
+}  // namespace kinalign

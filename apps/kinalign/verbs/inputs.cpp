@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "apps/cli/field_text.h"
+#include "apps/kinalign/text/describe_file.h"
+
+#include "kinalign/align/unused_options.h"
+#include "kinalign/core/file_version.h"
+#include "kinalign/core/files.h"
+#include "kinalign/documents/manifest_toml.h"
+#include "kinalign/recording/streams/device_reader.h"
+#include "kinalign/sources/open_recording.h"
+#include "kinalign/take/remembered_path.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <system_error>
+
+namespace kinalign {
+
+Result<bool> is_take(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  const std::string_view piece = KA_TRY(file.next());
+  return piece.starts_with("\x89HDF\r\n\x1a\n");
+}
+
+Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
+                                                       std::string_view expected) {
+  const auto equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
+    return Failure(Error{"", 0, std::string(expected), "'" + shown(text) + "'"});
+  }
+  return std::pair{text.substr(0, equals), text.substr(equals + 1)};
+}
+
+Result<Manifest> load_manifest(FileSystem& files, const std::string& path,
+                               const AlignOptions& unsaid) {
+  constexpr std::size_t longest = std::size_t{1} << 20;
+  const std::string text = KA_TRY(read_whole(files, path, longest));
+  return read_manifest(text, path, unsaid);
+}
+
+Result<Manifest> recorded_manifest(const RecordingSurvey& survey, const std::string& path) {
+  if (survey.messages == 0) {
+    return Failure(Error{path, 0, "a recording in which a message can be read", "none"});
+  }
+  return manifest_of(survey, std::string(file_name(path))).map_error([&path](Error error) {
+    error.file = path;
+    return error;
+  });
+}
+
+Fields StreamFlags::fields() {
+  constexpr std::array<std::string_view, 5> of_alignment{"clock", "offset_ms", "drift_ppm",
+                                                         "interval_ms", "root_node"};
+  Fields out = describe(options);
+  std::erase_if(out, [&](const Field& field) {
+    return std::find(of_alignment.begin(), of_alignment.end(), field.name) != of_alignment.end();
+  });
+  out.push_back({"select", "rows of a table to take; may be repeated", &select});
+  return out;
+}
+
+Result<void> StreamFlags::check_use(const std::string& path, const RecordedStream* stream,
+                                    const Sources& given) const {
+  for (const auto& [name, source] : given) {
+    const auto is = [&name = name](std::string_view other) { return name == other; };
+    if (source != Source::flag) continue;
+    if (stream == nullptr) {
+      StreamFlags mine;
+      const Fields own = mine.fields();
+      if (std::none_of(own.begin(), own.end(), [&](const Field& f) { return is(f.name); }))
+        continue;
+      return Failure(Error{flag_of(name), 0, "a stream's own file",
+                           shown(path) + ", which says such things itself"});
+    }
+    const auto useless = useless_options(*stream);
+    if (std::none_of(useless.begin(), useless.end(), is)) continue;
+    return Failure(Error{flag_of(name), 0, "a file that has a use for it",
+                         shown(path) + ": " + contents_line(*stream)});
+  }
+  return {};
+}
+
+Result<StreamOptions> StreamFlags::stream(const std::vector<std::string>& paths) const {
+  StreamOptions out = options;
+  if (out.name.empty()) out.name = "stream";
+  for (const std::string& path : paths) out.files.push_back({path, ""});
+  for (const std::string& one : select) {
+    const auto [column, value] = KA_TRY(split_pair(one, "COLUMN=VALUE").map_error([](Error error) {
+      error.file = "--select";
+      return error;
+    }));
+    out.select[column] = value;
+  }
+  return out;
+}
+
+Result<Input> open_input(FileSystem& files, const std::string& path, const StreamFlags& flags,
+                         const Progress& progress) {
+  Input input;
+  if (path.ends_with(".toml")) {
+    input.manifest = KA_TRY(load_manifest(files, path));
+    input.recording =
+        KA_TRY(open_recording(files, *input.manifest, std::string(folder(path)), progress));
+    return input;
+  }
+  const StreamOptions options = KA_TRY(flags.stream({path}));
+  input.recording.streams = KA_TRY(open_streams(files, {options}, progress));
+  return input;
+}
+
+int code_of(const Findings& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& f) { return f.severity != Severity::note; })
+             ? 1
+             : 0;
+}
+
+Result<void> check_take_name(const std::string& out) {
+  for (const std::string_view ending : {".npz", ".csv", ".bvh"}) {
+    if (!out.ends_with(ending)) continue;
+    return Failure(Error{"-o", 0,
+                         "a name for an HDF5 file, as take.h5 (kinalign convert makes .npz and "
+                         ".bvh of a take)",
+                         shown(file_name(out))});
+  }
+  return {};
+}
+
+std::string name_advice(const Error& error) {
+  const bool name =
+      error.expected.starts_with("a joint of '") || error.expected.starts_with("a node of '");
+  return name ? "kinalign info FILE -v lists the names of joints and nodes" : "";
+}
+
+Result<std::optional<std::uint64_t>> first_difference(FileSystem& files, const std::string& a,
+                                                      const std::string& b) {
+  InputFile one = KA_TRY(InputFile::open(files, a)), other = KA_TRY(InputFile::open(files, b));
+  std::string_view p, q;  // what is left of both pieces, which may differ in length
+  for (std::uint64_t at = 0;;) {
+    if (p.empty()) p = KA_TRY(one.next());
+    if (q.empty()) q = KA_TRY(other.next());
+    if (p.empty() && q.empty()) return std::optional<std::uint64_t>{};
+    const std::size_t both = std::min(p.size(), q.size());
+    const auto differ = std::mismatch(p.begin(), p.begin() + both, q.begin());
+    const auto same = static_cast<std::size_t>(differ.first - p.begin());
+    at += same;
+    if (same < both || both == 0) return std::optional(at);
+    p.remove_prefix(both);
+    q.remove_prefix(both);
+  }
+}
+
+Result<void> keep_inputs(const std::string& out, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    if (same_file(out, input)) {
+      return Failure(Error{out, 0, "another name than those of the files it is made of",
+                           "'" + shown(file_name(input)) + "', which is one of them"});
+    }
+  }
+  return {};
+}
+
+namespace {
+
+/// Where a manifest names files: the streams' own and layouts.
+std::vector<std::string*> paths_in(Manifest& manifest) {
+  std::vector<std::string*> paths;
+  for (StreamOptions& stream : manifest.streams) {
+    for (StreamFile& file : stream.files) paths.push_back(&file.path);
+    if (stream.own_layout()) paths.push_back(&stream.layout);
+  }
+  return paths;
+}
+
+/// The one spelling of a path: its folder's, without links, and the file's own name, which may be a
+/// link. A folder that is not there is only brought into order.
+std::string place_of(const std::string& path) {
+  std::error_code fault;
+  const std::filesystem::path whole = std::filesystem::absolute(path, fault);
+  if (fault) return path;  // called from a folder that is gone
+  const auto parent = std::filesystem::canonical(whole.parent_path(), fault);
+  return ((fault ? whole.parent_path().lexically_normal() : parent) / whole.filename()).string();
+}
+
+/// As seen from where the program was called: "demo/"; "" for that folder itself.
+std::string from_here(const std::string& folder) {
+  std::error_code fault;
+  const auto here = std::filesystem::canonical(".", fault);
+  if (fault) return folder;
+  const std::string near = std::filesystem::path(folder).lexically_relative(here).string();
+  if (near.empty() || near == ".") return near.empty() ? folder : "";
+  return near.ends_with('/') ? near : near + "/";
+}
+
+}  // namespace
+
+std::string cut_common_folder(Manifest& manifest) {
+  const std::vector<std::string*> paths = paths_in(manifest);
+  if (paths.empty()) return "";
+  const bool relative = std::none_of(
+      paths.begin(), paths.end(), [](const std::string* path) { return path->starts_with('/'); });
+  for (std::string* path : paths) *path = place_of(*path);
+  std::string common(folder(*paths.front()));
+  for (const std::string* path : paths) {
+    while (!path->starts_with(common)) {
+      common.pop_back();
+      common = folder(common);
+    }
+  }
+  // Of files that share nothing a take remembers the names alone: no path of a machine's.
+  if (common == "/") return "";
+  for (std::string* path : paths) path->erase(0, common.size());
+  return relative ? from_here(common) : common;
+}
+
+std::vector<std::string> files_named(Manifest manifest, const std::string& folder) {
+  std::vector<std::string> paths;
+  for (const std::string* path : paths_in(manifest)) paths.push_back(path_in(folder, *path));
+  return paths;
+}
+
+}  // namespace kinalign

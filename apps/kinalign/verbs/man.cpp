@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/cli/help.h"
+#include "apps/kinalign/verbs.h"
+
+namespace kinalign {
+
+namespace {
+
+struct Man {};
+
+Usage describe(Man&) { return {}; }
+
+Result<int> run(Man&, Call& call) {
+  call.console.put(man_page(call.verbs));
+  return 0;
+}
+
+}  // namespace
+
+Verb man_verb() {
+  return make_verb<Man>({.name = "man",
+                         .summary = "print the man page",
+                         .text = "",
+                         .examples = {{"kinalign man | man -l -", "reads it"}},
+                         .common = {}},
+                        describe, run);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/kinalign/text/key_advice.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/capture/nodes/node_keys.h"
+
+namespace kinalign {
+
+namespace {
+
+struct NodeKeyFlags {
+  std::string new_lab_key, lab_key;
+  std::optional<std::int64_t> node;
+};
+
+/// An unset variable is no file's name.
+Result<void> check_named(const NodeKeyFlags& o, const Sources& given) {
+  const bool drawn = given.contains("new_lab_key") && o.new_lab_key.empty();
+  const bool read = given.contains("lab_key") && o.lab_key.empty();
+  if (!drawn && !read) return {};
+  return Failure(Error{drawn ? "--new-lab-key" : "--lab-key", 0, "a file's name", "nothing"});
+}
+
+/// Of a lab's key: nothing else is to be said.
+Result<void> check_drawn(const NodeKeyFlags& o, const Common& common) {
+  if (!common.out.empty()) {
+    return Failure(Error{"--out", 0, "none beside --new-lab-key, which names the new file itself",
+                         shown(common.out)});
+  }
+  if (o.lab_key.empty() && !o.node) return {};
+  return Failure(Error{o.node ? "--node" : "--lab-key", 0,
+                       "none beside --new-lab-key: one call makes the lab's key, the next ones, "
+                       "with --lab-key FILE --node N, the nodes'",
+                       "both"});
+}
+
+Result<void> check_node(const NodeKeyFlags& o) {
+  if (o.lab_key.empty() && !o.node) {
+    return Failure(Error{"", 0,
+                         "--new-lab-key FILE, once in a lab, or --lab-key FILE --node N, for each "
+                         "node",
+                         "none of them"});
+  }
+  if (!o.node) {
+    return Failure(
+        Error{"--lab-key", 0, "--node N beside it, the node that the key is for", "none"});
+  }
+  if (!o.lab_key.empty()) return {};
+  return Failure(
+      Error{"--node", 0, "--lab-key FILE beside it, of which a node's key is made", "none"});
+}
+
+Usage describe_node_key(NodeKeyFlags& o) {
+  Usage usage;
+  usage.flags = {{"new_lab_key", "draw a lab key, and write it into this new file", &o.new_lab_key},
+                 {"lab_key", "the file with the lab's key", &o.lab_key},
+                 {"node", "the node's id, as it is flashed", &o.node, 0.0, 4294967295.0}};
+  usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
+    KA_TRY(check_named(o, given));
+    return o.new_lab_key.empty() ? check_node(o) : check_drawn(o, common);
+  };
+  return usage;
+}
+
+Result<int> run_node_key(NodeKeyFlags& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  if (!o.new_lab_key.empty()) {
+    KA_TRY(write_key(files, o.new_lab_key, KA_TRY(new_lab_key())));
+    call.console.print(o.new_lab_key + ": a new lab key; keep a copy where nobody else reads it\n");
+    return 0;
+  }
+  call.console.if_it_fails(key_advice);
+  const LabKey lab = KA_TRY(read_lab_key(files, o.lab_key));
+  call.console.if_it_fails({});
+  const MacKey key = node_key(lab, static_cast<std::uint32_t>(*o.node));
+  if (call.common.out.empty()) {
+    call.console.put(key_text(key) + "\n");
+    return 0;
+  }
+  KA_TRY(write_key(files, call.common.out, key));
+  call.console.print(call.common.out + ": the key of node " + std::to_string(*o.node) + "\n");
+  return 0;
+}
+
+}  // namespace
+
+Verb node_key_verb() {
+  return make_verb<NodeKeyFlags>(
+      {.name = "node-key",
+       .summary = "the lab's key, and the key that a node is flashed with",
+       .text =
+           "A node with a key can't be imitated, nor its frames be replayed. Its key is derived "
+           "from the lab's, which time-server --lab-key reads; no file is ever overwritten.",
+       .examples = {{"kinalign node-key --new-lab-key lab.key", "once in a lab"},
+                    {"kinalign node-key --lab-key lab.key --node 7", "prints 32 digits"},
+                    {"kinalign node-key --lab-key lab.key --node 7 -o node7.key",
+                     "writes them, for nobody else to read"}},
+       .common = {"out"}},
+      describe_node_key, run_node_key);
+}
+
+}  // namespace kinalign

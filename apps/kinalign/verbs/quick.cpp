@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/verbs/quick.h"
+
+#include "apps/cli/field_text.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/core/files.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+/// What a manifest says in a flag's place, and the flag it means nothing without.
+struct Twin {
+  std::string_view flag, key, needs;
+};
+
+constexpr std::array<Twin, 15> twins{
+    {{"mocap", "file in [stream.mocap]", ""},
+     {"kinect", "file in [stream.kinect]", ""},
+     {"imu", "files in [stream.imu]", ""},
+     {"points", "file in [stream.NAME]", ""},
+     {"mocap_layout", "layout in [stream.mocap]", "mocap"},
+     {"kinect_layout", "layout in [stream.kinect]", "kinect"},
+     {"points_layout", "layout in [stream.NAME]", "points"},
+     {"imu_layout", "layout in [stream.imu]", "imu"},
+     {"root_node", "root_node in [stream.imu]", "imu"},
+     {"start_ns", "start_ns in [stream.mocap]", ""},
+     {"metres_per_unit", "metres_per_unit in [stream.mocap]", ""},
+     {"up", "up in [stream.mocap]", ""},
+     {"space", "method in [space.kinect]", "kinect"},
+     {"rotation_y_deg", "rotation_y_deg in [space.kinect]", "kinect"},
+     {"joint", "joints in [space.kinect]", "kinect"}}};
+
+bool is_given(std::string_view flag, const Sources& given) {
+  const auto found = given.find(std::string(flag));
+  return found != given.end() && found->second == Source::flag;
+}
+
+Result<std::pair<std::string, std::string>> pair_of(const std::string& flag,
+                                                    const std::string& text,
+                                                    std::string_view expected) {
+  return split_pair(text, expected).map_error([&](Error error) {
+    error.file = flag;
+    return error;
+  });
+}
+
+Result<void> check_stream_names(const Manifest& manifest) {
+  std::vector<std::string> names;
+  for (const StreamOptions& stream : manifest.streams) {
+    if (std::find(names.begin(), names.end(), stream.name) != names.end()) {
+      return Failure(Error{"--points", 0, "a name that no other stream has", shown(stream.name)});
+    }
+    names.push_back(stream.name);
+  }
+  return {};
+}
+
+Result<SpaceOptions> space_of(const QuickFlags& flags) {
+  SpaceOptions space = flags.space;
+  for (const std::string& joint : flags.joints) {
+    const auto pair = KA_TRY(pair_of("--joint", joint, "KINECT=MOCAP"));
+    if (!space.joints.insert(pair).second) {
+      return Failure(
+          Error{"--joint", 0, "each joint of the Kinect once", shown(pair.first) + " twice"});
+    }
+  }
+  return space;
+}
+
+Result<StreamOptions> nodes_of(const QuickFlags& flags) {
+  StreamOptions nodes;
+  nodes.name = "imu";
+  nodes.layout = flags.imu_layout;
+  nodes.root_node = flags.root_node;
+  for (const std::string& one : flags.imu) {
+    const auto [node, file] = KA_TRY(pair_of("--imu", one, "NODE=FILE"));
+    nodes.files.push_back({file, node});
+  }
+  return nodes;
+}
+
+/// Kinds of streams, as in RecordedStream::data, and their names in messages.
+constexpr std::size_t clip = 0, points = 1, nodes = 2;
+
+/// What a flag's file has to be.
+struct Wanted {
+  std::string flag, path;
+  std::vector<std::size_t> kinds;
+  std::string expected;
+};
+
+/// In the order of quick_manifest's files.
+std::vector<Wanted> wanted_kinds(const QuickFlags& flags) {
+  const std::vector<std::size_t> bodies{clip, points};
+  std::vector<Wanted> out{{"--mocap", flags.mocap, bodies, "a skeleton's file or points"}};
+  if (!flags.kinect.empty()) out.push_back({"--kinect", flags.kinect, {points}, "points"});
+  const auto add = [&out](const std::string& flag, const std::string& pair,
+                          const std::vector<std::size_t>& kinds, const std::string& expected) {
+    const std::size_t equals = pair.find('=');
+    out.push_back({flag + " " + pair.substr(0, equals), pair.substr(equals + 1), kinds, expected});
+  };
+  for (const std::string& one : flags.points) add("--points", one, bodies, "points");
+  for (const std::string& one : flags.imu) add("--imu", one, {nodes}, "a file of nodes");
+  return out;
+}
+
+}  // namespace
+
+Fields QuickFlags::fields() {
+  space.method = "fit";
+  return {
+      {"mocap", "the reference: a BVH, or a file of points", &mocap},
+      {"kinect", "a file of Kinect joints", &kinect},
+      {"imu", "a node's file; may be repeated", &imu},
+      {"points", "a further file of points; may be repeated", &points},
+      {"mocap_layout", "layout of the reference's file", &mocap_options.layout},
+      {"kinect_layout", "layout of the Kinect file", &kinect_layout},
+      {"points_layout", "layout of the further files of points", &points_layout},
+      {"imu_layout", "layout of the nodes' files", &imu_layout},
+      {"root_node", "node into whose space all nodes are brought", &root_node},
+      {"start_ns", "stamp of the click that started the mocap, ns since 1970",
+       &mocap_options.start_ns, -4e18, 4e18},
+      {"metres_per_unit", "length of the mocap file's unit, m; 0: the format's own (BVH: 0.01)",
+       &mocap_options.metres_per_unit, 0.0, 1000.0},
+      {.name = "up",
+       .meaning = "the mocap file's up axis (BVH: y)",
+       .value = &mocap_options.up,
+       .choices = {"", "y", "z"}},
+      {.name = "space",
+       .meaning = "how the Kinect comes into the mocap's space",
+       .value = &space.method,
+       .choices = {"none", "paper", "fit"}},
+      {"rotation_y_deg", "of --space paper: turn about the y axis, degrees", &space.rotation_y_deg,
+       -360.0, 360.0},
+      {"joint", "of --space: a Kinect's and a mocap's joint that mean one place; may be repeated",
+       &joints}};
+}
+
+Result<void> refuse_beside(const std::string& path, const Sources& given) {
+  for (const Twin& twin : twins) {
+    if (!is_given(twin.flag, given)) continue;
+    if (path.ends_with(".mcap")) {
+      const std::string key(twin.key.substr(0, twin.key.find('.')));
+      return Failure(Error{flag_of(twin.flag), 0,
+                           key + ".NAME] of a manifest, recording.toml, which mixes recordings "
+                                 "with files (NAME: a stream's own, see kinalign info)",
+                           shown(file_name(path)) + ", a recording, which brings its own streams"});
+    }
+    return Failure(Error{flag_of(twin.flag), 0, std::string(twin.key) + " of " + shown(path),
+                         "a flag beside the manifest"});
+  }
+  return {};
+}
+
+Result<void> refuse_alone(const QuickFlags& flags, const Sources& given) {
+  for (const Twin& twin : twins) {
+    if (!is_given(twin.flag, given) || twin.needs.empty() || is_given(twin.needs, given)) continue;
+    return Failure(Error{flag_of(twin.flag), 0, flag_of(twin.needs) + ", which it is for", "none"});
+  }
+  if (is_given("rotation_y_deg", given) && flags.space.method != "paper") {
+    return Failure(Error{"--rotation-y-deg", 0, "--space paper, which it is for",
+                         "--space " + flags.space.method});
+  }
+  if (!flags.joints.empty() && flags.space.method == "none") {
+    return Failure(Error{"--joint", 0, "--space fit or paper, which it is for", "--space none"});
+  }
+  return {};
+}
+
+Result<Manifest> quick_manifest(const QuickFlags& flags) {
+  Manifest manifest;
+  const auto add = [&manifest](StreamOptions stream, std::string name, std::string file) {
+    stream.name = std::move(name);
+    stream.files = {{std::move(file), ""}};
+    manifest.streams.push_back(std::move(stream));
+  };
+  add(flags.mocap_options, "mocap", flags.mocap);
+  StreamOptions kinect;
+  kinect.layout = flags.kinect_layout;
+  if (!flags.kinect.empty()) {
+    add(kinect, "kinect", flags.kinect);
+    manifest.spaces["kinect"] = KA_TRY(space_of(flags));
+  }
+  for (const std::string& one : flags.points) {
+    const auto [name, file] = KA_TRY(pair_of("--points", one, "NAME=FILE"));
+    StreamOptions further;
+    further.layout = flags.points_layout;
+    add(further, name, file);
+  }
+  if (!flags.imu.empty()) manifest.streams.push_back(KA_TRY(nodes_of(flags)));
+  KA_TRY(check_stream_names(manifest));
+  return manifest;
+}
+
+Result<void> check_kinds(const QuickFlags& flags, const Recording& recording) {
+  const std::vector<Wanted> wanted = wanted_kinds(flags);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const RecordedStream& stream = recording.streams[i];
+    const auto& kinds = wanted[i].kinds;
+    if (std::find(kinds.begin(), kinds.end(), stream.data.index()) != kinds.end()) continue;
+    return Failure(Error{wanted[i].path, 0, wanted[i].expected + " for " + wanted[i].flag,
+                         contents_line(stream)});
+  }
+  return {};
+}
+
+}  // namespace kinalign

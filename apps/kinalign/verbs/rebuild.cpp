@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/summary.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/align_job.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/documents/parameters_json.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/sources/open_recording.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace kinalign {
+
+namespace {
+
+struct Rebuild {
+  std::vector<std::string> take;
+  std::string inputs;
+  bool verify = false;
+};
+
+Usage describe_rebuild(Rebuild& o) {
+  Usage usage;
+  usage.positionals = {{"TAKE", "a take that kinalign wrote", &o.take}};
+  usage.flags = {{"inputs", "folder of the files that the take was made from", &o.inputs},
+                 {"verify", "compare every byte with the take; write nothing", &o.verify}};
+  usage.check = [&o](const Common& common, const Sources& /*given*/) -> Result<void> {
+    if (o.inputs.empty()) {
+      return Failure(Error{"--inputs", 0, "the folder of the take's inputs", "none"});
+    }
+    if (o.verify != common.out.empty()) {
+      return Failure(Error{"-o", 0, "either the new take's file name or --verify",
+                           o.verify ? "both" : "neither"});
+    }
+    KA_TRY(check_take_name(common.out));
+    return {};
+  };
+  return usage;
+}
+
+/// What a take says of its making; read in a child process.
+struct Origin {
+  std::string software;
+  Manifest parameters;
+  std::vector<InputFacts> files;
+};
+
+Result<std::string> origin_json(FileSystem& files, const std::string& path) {
+  const TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  nlohmann::json out{{"software", reader.software()},
+                     {"parameters", parameters_json(reader.header().parameters)},
+                     {"files", nlohmann::json::array()}};
+  for (const TakeGroup& group : reader.header().groups) {
+    for (const InputFacts& file : group.files) out["files"].push_back({file.name, file.sha256});
+  }
+  return json_text(out);
+}
+
+Result<Origin> origin_of(FileSystem& files, const std::string& path) {
+  const std::string text =
+      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return origin_json(files, path); }));
+  try {  // what a child says is not trusted either
+    const auto json = nlohmann::json::parse(text);
+    Origin origin;
+    origin.software = json.at("software").get<std::string>();
+    origin.parameters = KA_TRY(parse_parameters_json(json.at("parameters").get<std::string>()));
+    for (const auto& file : json.at("files")) {
+      origin.files.push_back({file.at(0).get<std::string>(), file.at(1).get<std::string>(), 0});
+    }
+    return origin;
+  } catch (const nlohmann::json::exception&) {
+    return Failure(Error{path, 0, "a take that says how it was made", "another answer"});
+  }
+}
+
+/// Inputs whose bytes are not those of the take's making.
+std::vector<std::string> changed_inputs(const Origin& origin, const Recording& recording) {
+  std::vector<std::string> changed;
+  for (const RecordedStream& stream : recording.streams) {
+    for (const InputFacts& file : stream.files) {
+      const bool same = std::any_of(
+          origin.files.begin(), origin.files.end(),
+          [&file](const InputFacts& f) { return f.name == file.name && f.sha256 == file.sha256; });
+      const bool named = std::find(changed.begin(), changed.end(), file.name) != changed.end();
+      if (!same && !named) changed.push_back(file.name);
+    }
+  }
+  return changed;
+}
+
+/// A folder that goes with everything in it.
+class Scratch {
+ public:
+  static Result<Scratch> make() {
+    std::error_code fault;
+    const auto temporary = std::filesystem::temp_directory_path(fault);
+    if (fault) {
+      return Failure(Error{"TMPDIR", 0, "a folder for temporary files", fault.message()});
+    }
+    std::string name = (temporary / "kinalign-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      return Failure(Error{name, 0, "room for a temporary folder", "none"});
+    }
+    return Scratch(std::move(name));
+  }
+  Scratch(Scratch&& other) noexcept : name_(std::exchange(other.name_, {})) {}
+  Scratch& operator=(Scratch&&) = delete;
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch() {
+    std::error_code ignored;
+    if (!name_.empty()) std::filesystem::remove_all(name_, ignored);
+  }
+  const std::string& name() const { return name_; }
+
+ private:
+  explicit Scratch(std::string name) : name_(std::move(name)) {}
+  std::string name_;
+};
+
+/// What --verify found; all empty: the same bytes from the same inputs.
+struct Verdict {
+  std::optional<std::uint64_t> difference;  // the first byte that differs
+  std::optional<Error> failure;             // why it can't be made again
+  std::vector<std::string> changed;         // inputs
+  bool same() const { return !difference && !failure; }
+};
+
+Result<Verdict> compare(const std::string& take, const Result<Recording>& recording,
+                        const Origin& origin, Call& call) {
+  Verdict out;
+  if (!recording) {
+    if (interrupted()) return Failure(recording.error());
+    out.failure = recording.error();
+    return out;
+  }
+  out.changed = changed_inputs(origin, *recording);
+  const Scratch scratch = KA_TRY(Scratch::make());
+  const std::string again = scratch.name() + "/take.h5";
+  auto made = align_to_file(call, *recording, origin.parameters, {again, Overwrite::no});
+  if (!made) {
+    const bool ours = interrupted() || made.error().file.starts_with(scratch.name());
+    if (ours) return Failure(std::move(made).error());
+    out.failure = std::move(made).error();
+  } else {
+    out.difference = KA_TRY(first_difference(call.surroundings.files, take, again));
+  }
+  return out;
+}
+
+std::string changed_line(const std::string& name) {
+  return harmless(name + " is not the file that the take was made from");
+}
+
+int say(const std::string& take, const Verdict& verdict, const Origin& origin, Call& call) {
+  nlohmann::ordered_json json{{"take", take},
+                              {"same", verdict.same()},
+                              {"software", origin.software},
+                              {"changed_inputs", verdict.changed}};
+  std::string text = fmt::format("{}: every byte agrees\n", take);
+  if (verdict.difference) {
+    text = fmt::format("{}: differs from byte {} on\n", take, *verdict.difference);
+    json["first_difference"] = *verdict.difference;
+  } else if (verdict.failure) {
+    text =
+        fmt::format("{}: differs: cannot be made again: {}\n", take, to_string(*verdict.failure));
+    json["failure"] = to_string(*verdict.failure);
+  }
+  for (const std::string& name : verdict.changed) text += "  " + changed_line(name) + "\n";
+  if (verdict.difference && verdict.changed.empty()) {
+    text += fmt::format(
+        "  the inputs are the same; the take was changed, or another version than {} "
+        "remade it\n",
+        origin.software);
+  }
+  call.console.print(harmless(text));
+  call.console.print_json(json_text(json));
+  return verdict.same() ? 0 : 1;
+}
+
+Result<int> write_again(const Recording& recording, const Origin& origin, Call& call) {
+  const std::string& out = call.common.out;
+  const std::vector<std::string> changed = changed_inputs(origin, recording);
+  for (const std::string& name : changed) {
+    call.console.note("kinalign rebuild: warning: " + changed_line(name));
+  }
+  const AlignmentReport report =
+      KA_TRY(align_to_file(call, recording, origin.parameters, {out, call.common.overwrite()}));
+  call.console.wrote(out);
+  call.console.print(summary(report, out, call.console));
+  call.console.print_json(json_text(nlohmann::ordered_json{
+      {"written", true}, {"frames", report.frames}, {"changed_inputs", changed}}));
+  return changed.empty() ? code_of(report.findings) : 1;
+}
+
+Result<int> run(Rebuild& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string& take = o.take.front();
+  const Origin origin = KA_TRY(origin_of(files, take));
+  const std::string base = o.inputs.ends_with('/') ? o.inputs : o.inputs + "/";
+  const std::vector<std::string> inputs = files_named(origin.parameters, base);
+  KA_TRY(keep_inputs(call.common.out, inputs));
+  call.console.if_it_fails(
+      [base, take, count = inputs.size()](const Error& error) -> std::vector<std::string> {
+        if (!error.file.starts_with(base)) return {};
+        return {
+            fmt::format("--inputs is one folder that has all {} files of the take by the names "
+                        "that kinalign info {} shows: copy or link them into one",
+                        count, take)};
+      });
+  // An input that is not there is no difference: nothing can be said.
+  for (const std::string& input : inputs) KA_TRY(InputFile::open(files, input));
+  Result<Recording> recording =
+      open_recording(files, origin.parameters, base, call.console.progress(), call.jobs);
+  if (o.verify) return say(take, KA_TRY(compare(take, recording, origin, call)), origin, call);
+  return write_again(KA_TRY(std::move(recording)), origin, call);
+}
+
+}  // namespace
+
+Verb rebuild_verb() {
+  return make_verb<Rebuild>(
+      {.name = "rebuild",
+       .summary = "make a take again from its inputs, compare every byte",
+       .text =
+           "A take holds every parameter that made it and the SHA-256 of every input. Exit code 1 "
+           "where an input is not the one that the take was made from, or where it was made with "
+           "warnings.",
+       .examples = {{"kinalign rebuild demo/take.h5 --inputs demo --verify",
+                     "exit code 0: the same bytes; 1: not"},
+                    {"kinalign rebuild demo/take.h5 --inputs demo -o demo/again.h5",
+                     "writes it again"}},
+       .common = {"out", "force", "json", "jobs"}},
+      describe_rebuild, run);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/recording/recover.h"
+
+#include "apps/cli/console.h"
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/summary.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/documents/report_json.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+struct Recover {
+  std::vector<std::string> files;
+};
+
+Usage describe_recover(Recover& o) {
+  Usage usage;
+  usage.positionals = {
+      {"FILE",
+       "a recording's file, with all of the same recording beside it; or several, in any order",
+       &o.files, 1, SIZE_MAX}};
+  usage.check = [](const Common& common, const Sources&) -> Result<void> {
+    if (common.out.empty()) return Failure(Error{"--out", 0, "a new file's name", "none"});
+    return {};
+  };
+  return usage;
+}
+
+/// What stands in the new file and, below, what was in the old ones and does not.
+std::string head_line(const std::string& out, const Recovered& done) {
+  const std::string of =
+      done.missing > 0 ? " of at least " + grouped(done.messages + done.missing) : "";
+  std::string text = fmt::format("{}: {}{} messages in {} channels, read again and whole\n", out,
+                                 grouped(done.messages), of, done.proof.channels.size());
+  if (done.missing > 0) {
+    text += fmt::format("  {} are lost, as the recording's own numbers and counts say\n",
+                        grouped(done.missing));
+  }
+  if (done.skipped > 0) {
+    text += fmt::format("  damage: {} bytes of what was there could not be read\n",
+                        grouped(done.skipped));
+  }
+  return text;
+}
+
+Result<int> run(Recover& o, Call& call) {
+  call.console.if_it_fails([](const Error&) {
+    return std::vector<std::string>{"nothing was written; the old files are as they were"};
+  });
+  const std::string& out = call.common.out;
+  KA_TRY(keep_inputs(out, o.files));
+  const Recovered done = KA_TRY(recover_recording(
+      call.surroundings.files, o.files, out, call.common.overwrite(), call.console.progress()));
+  call.console.wrote(out);
+  std::string text = head_line(out, done);
+  if (done.unchecked > 0) {
+    text +=
+        fmt::format("  {} of them no checksum covers (a torn end, or a writer that made none)\n",
+                    grouped(done.unchecked));
+  }
+  if (done.twice > 0) text += fmt::format("  {} stood in two files\n", grouped(done.twice));
+  if (done.nameless > 0) {
+    text += fmt::format("  {} left out: what their channel is was lost\n", grouped(done.nameless));
+  }
+  call.console.print(harmless(text) + finding_lines(done.findings, call.console));
+  call.console.print_json(json_text(nlohmann::ordered_json{
+      {"file", out},
+      {"messages", done.messages},
+      {"unchecked", done.unchecked},
+      {"twice", done.twice},
+      {"nameless", done.nameless},
+      {"missing", done.missing},
+      {"skipped_bytes", done.skipped},
+      {"findings", nlohmann::ordered_json::parse(findings_json(done.findings))}}));
+  return std::max(code_of(done.findings), done.missing + done.nameless > 0 ? 1 : 0);
+}
+
+}  // namespace
+
+Verb recover_verb() {
+  return make_verb<Recover>(
+      {.name = "recover",
+       .summary = "a torn recording, or several parts of one, into a whole file",
+       .text = "Copies every message that can be read, once, gives the new file its index, and "
+               "reads it again before it gets its name: what stands there must be what was copied. "
+               "The old files stay as they are. Exit code "
+               "1 where something was damaged, could not be read or is not there; a file that only "
+               "lacks its index and end is made whole with 0.",
+       .examples =
+           {{"kinalign recover takes/03_S1A02_01.mcap -o whole.mcap", "after a power cut"},
+            {"kinalign recover a.mcap a.part2.mcap -o whole.mcap",
+             "after a disk that failed: what stands in both is taken once, the surer copy"}},
+       .common = {"out", "force", "json"}},
+      describe_recover, run);
+}
+
+}  // namespace kinalign

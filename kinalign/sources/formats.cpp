@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/sources/formats.h"
+
+#include "kinalign/core/unchanged.h"
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/bvh/survey.h"
+#include "kinalign/formats/imu/opensim_sto.h"
+#include "kinalign/formats/imu/xsens_text.h"
+#include "kinalign/formats/points/ntu_skeleton.h"
+#include "kinalign/formats/points/trc.h"
+#include "kinalign/formats/points/ui_prmd_files.h"
+#include "kinalign/formats/points/ui_prmd_kinect.h"
+#include "kinalign/formats/table/layout.h"
+#include "kinalign/formats/table/table_reader.h"
+#include "kinalign/formats/unknown_file.h"
+#include "kinalign/recording/streams/device_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+struct Source {
+  FileSystem* files;
+  StreamOptions options;
+  StreamFile file;
+};
+
+/// A format that a program of ours reads.
+struct Format {
+  std::string_view name;
+  bool (*looks)(std::string_view head, std::string_view path);
+  Result<AnyReader> (*make)(const Source& source);
+  std::string_view selects = {};  // the one name that `select` may have here
+  Result<std::vector<std::string>> (*further_files)(const Source& source) = nullptr;       // if any
+  Result<ClipSurvey> (*survey)(const Source& source, const Progress& progress) = nullptr;  // if own
+};
+
+/// A format that is known whatever the file's name is.
+template <bool (*looks)(std::string_view head)>
+bool by_content(std::string_view head, std::string_view) {
+  return looks(head);
+}
+
+/// One of a pair of files. Angles, of the Kinect or of the optical system, would be wrong points if
+/// they were read by themselves: the reader refuses them.
+bool is_ui_prmd(std::string_view head, std::string_view path) {
+  if (named_as_ui_prmd_positions(path)) return looks_like_ui_prmd_kinect(head);
+  return named_as_ui_prmd_angles(path) &&
+         (looks_like_ui_prmd_kinect(head) ||
+          matches(*parse_layout(*builtin_layout("ui_prmd_vicon"), "ui_prmd_vicon"), head));
+}
+
+Result<std::vector<std::string>> ui_prmd_files(const Source& source) {
+  return std::vector{KA_TRY(ui_prmd_angles_of(*source.files, source.file.path))};
+}
+
+Result<AnyReader> make_ui_prmd(const Source& source) {
+  const std::string angles = KA_TRY(ui_prmd_angles_of(*source.files, source.file.path));
+  auto file = std::make_shared<InputFile>(KA_TRY(InputFile::open(*source.files, angles)));
+  return AnyReader(make_ui_prmd_kinect_reader(source.options, source.file.path, angles,
+                                              [file] { return file->next(); }));
+}
+
+constexpr std::array<Format, 6> formats{{
+    {"bvh", by_content<looks_like_bvh>,
+     [](const Source& s) -> Result<AnyReader> {
+       return AnyReader(make_bvh_reader(bvh_options(s.options), s.file.path));
+     },
+     "", nullptr,
+     [](const Source& s, const Progress& progress) {
+       return survey_bvh(*s.files, s.file.path, bvh_options(s.options), progress);
+     }},
+    {"trc", by_content<looks_like_trc>,
+     [](const Source& s) -> Result<AnyReader> {
+       return AnyReader(make_trc_reader(s.options, s.file.path));
+     }},
+    {"xsens", by_content<looks_like_xsens_text>,
+     [](const Source& s) -> Result<AnyReader> {
+       return AnyReader(make_xsens_text_reader(s.options, s.file.path, s.file.node));
+     }},
+    {"sto", by_content<looks_like_opensim_sto>,
+     [](const Source& s) -> Result<AnyReader> {
+       return AnyReader(make_opensim_sto_reader(s.options, s.file.path));
+     }},
+    {"ntu", by_content<looks_like_ntu_skeleton>,
+     [](const Source& s) -> Result<AnyReader> {
+       return AnyReader(make_ntu_skeleton_reader(s.options, s.file.path));
+     },
+     "body"},
+    {"ui_prmd_kinect", is_ui_prmd, make_ui_prmd, "", ui_prmd_files},
+}};
+
+Result<AnyReader> make_table_reader(const TableLayout& layout, const Source& source) {
+  if (layout.kind == TableKind::points) {
+    return AnyReader(make_point_table_reader(layout, source.options, source.file.path));
+  }
+  return AnyReader(
+      make_imu_table_reader(layout, source.options, source.file.path, source.file.node));
+}
+
+FoundFormat table_format(TableLayout layout, const Source& source) {
+  std::string name = layout.name;
+  return {std::move(name),
+          [layout = std::move(layout), source] { return make_table_reader(layout, source); },
+          {},
+          {},
+          {}};
+}
+
+/// A choice that a format does not know would be ignored in silence.
+Result<void> check_selection(const Format& format, const Source& source) {
+  for (const auto& [name, value] : source.options.select) {
+    if (name == format.selects) continue;
+    const std::string known(format.selects);
+    return Failure(Error{source.file.path, 0,
+                         known.empty()
+                             ? "no select for a file of format " + std::string(format.name)
+                             : "select by " + known,
+                         shown(name) + " = " + shown(value)});
+  }
+  return {};
+}
+
+/// Each pass sees the further files as they are now.
+FoundFormat watched(FoundFormat found) {
+  std::vector<std::optional<FileVersion>> versions;
+  for (const std::string& path : found.further_files) versions.push_back(version_of(path));
+  found.make = [make = std::move(found.make), paths = found.further_files,
+                versions]() -> Result<AnyReader> {
+    for (std::size_t i = 0; i < paths.size(); ++i) KA_TRY(unchanged(paths[i], versions[i]));
+    return make();
+  };
+  return found;
+}
+
+Result<FoundFormat> recording_format(const Source& source, const Progress& progress) {
+  RecordedDevice device = KA_TRY(listen(*source.files, source.options, source.file, progress));
+  return watched({"recording",
+                  std::move(device.make),
+                  std::move(device.further_files),
+                  {},
+                  device.heard->clock.time,
+                  std::move(device.by_file)});
+}
+
+Result<FoundFormat> program_format(const Format& format, const Source& source) {
+  KA_TRY(check_selection(format, source));
+  FoundFormat out{
+      std::string(format.name), [&format, source] { return format.make(source); }, {}, {}, {}};
+  if (format.survey != nullptr) {
+    out.survey = [&format, source](const Progress& progress) {
+      return format.survey(source, progress);
+    };
+  }
+  if (format.further_files == nullptr) return out;
+  out.further_files = KA_TRY(format.further_files(source));
+  return watched(std::move(out));
+}
+
+std::string known_formats() {
+  std::string text;
+  for (const std::string_view name : format_names()) {
+    text += (text.empty() ? "" : ", ") + std::string(name);
+  }
+  return text;
+}
+
+Result<FoundFormat> named_format(const Source& source) {
+  const std::string& wanted = source.options.layout;
+  const auto* known = std::find_if(formats.begin(), formats.end(),
+                                   [&](const Format& f) { return f.name == wanted; });
+  if (known != formats.end()) return program_format(*known, source);
+  if (const auto text = builtin_layout(wanted)) {
+    return table_format(KA_TRY(parse_layout(*text, wanted)), source);
+  }
+  if (!source.options.own_layout()) {
+    return Failure(Error{source.file.path, 0,
+                         "a layout's path (*.toml) or one of " + known_formats(),
+                         "'" + shown(wanted) + "'"});
+  }
+  constexpr std::size_t longest_layout = std::size_t{1} << 20;
+  const auto version = version_of(wanted);
+  const std::string text = KA_TRY(read_whole(*source.files, wanted, longest_layout));
+  FoundFormat out = table_format(KA_TRY(parse_layout(text, wanted)), source);
+  out.further_files.push_back(wanted);
+  KA_TRY(unchanged(wanted, version));
+  return watched(std::move(out));
+}
+
+}  // namespace
+
+std::vector<std::string_view> format_names() {
+  std::vector<std::string_view> names(std::size(formats));
+  std::transform(std::begin(formats), std::end(formats), names.begin(),
+                 [](const Format& format) { return format.name; });
+  const auto layouts = builtin_layout_names();
+  names.insert(names.end(), layouts.begin(), layouts.end());
+  return names;
+}
+
+Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
+                                const StreamFile& file, std::string_view head,
+                                const Progress& progress) {
+  const Source source{&files, options, file};
+  if (!options.layout.empty()) return named_format(source);
+  if (looks_like_recording(head)) return recording_format(source, progress);
+  for (const Format& format : formats) {
+    if (format.looks(head, file.path)) return program_format(format, source);
+  }
+  std::optional<TableLayout> named;  // the first one that knows the columns, if not the rows
+  for (const std::string_view name : builtin_layout_names()) {
+    const TableLayout layout = KA_TRY(parse_layout(*builtin_layout(name), name));
+    if (matches(layout, head)) return table_format(layout, source);
+    if (!named && knows_columns(layout, head)) named = layout;
+  }
+  if (named) return table_format(*named, source);  // its reader says which row is wrong
+  return Failure(unknown_file(file.path, head));
+}
+
+}  // namespace kinalign

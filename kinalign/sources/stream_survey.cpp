@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/sources/stream_survey.h"
+
+#include "kinalign/core/hash.h"
+#include "kinalign/core/unchanged.h"
+#include "kinalign/core/utf8.h"
+#include "kinalign/sources/formats.h"
+#include "kinalign/sources/value_survey.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+ClipInput input_of(const Skeleton& header, Passes<ClipFrames> passes) {
+  return {header, std::move(passes)};
+}
+/// Names of files from before UTF-8, as takes hold texts.
+std::vector<std::string> all_as_utf8(std::vector<std::string> names) {
+  for (std::string& name : names) name = as_utf8(name);
+  return names;
+}
+PointInput input_of(const PointHeader& header, Passes<PointFrames> passes) {
+  return {all_as_utf8(header.joint_names), std::move(passes)};
+}
+ImuInput input_of(const ImuHeader& header, Passes<ImuSamples> passes) {
+  return {all_as_utf8(header.node_names), header.content, std::move(passes)};
+}
+
+using Version = std::optional<FileVersion>;
+
+/// A file in the middle of a pass.
+template <class R>
+struct Reading {
+  InputFile file;
+  Version version;
+  std::unique_ptr<R> reader;
+  bool ended = false;
+
+  Result<bool> next(typename R::Frames& block) {
+    block = {};
+    while (block.size() == 0 && !ended) {
+      const std::string_view piece = KA_TRY(file.next());
+      KA_TRY(unchanged(file.path(), version));
+      if (!piece.empty()) {
+        KA_TRY(reader->feed(piece, block));
+      } else if (!KA_TRY(reader->read_further(block))) {
+        ended = true;
+        KA_TRY(reader->finish(block));
+      }
+    }
+    return block.size() > 0;
+  }
+};
+
+template <class R>
+Passes<typename R::Frames> passes_of(FileSystem& files, std::string path, const Version& version,
+                                     MakeReader make) {
+  using Frames = typename R::Frames;
+  return
+      [&files, path = std::move(path), version, make = std::move(make)]() -> Result<Pass<Frames>> {
+        auto reader = KA_TRY(make());
+        auto reading = std::make_shared<Reading<R>>(
+            Reading<R>{KA_TRY(InputFile::open(files, path)), version,
+                       std::get<std::unique_ptr<R>>(std::move(reader)), false});
+        return Pass<Frames>([reading](Frames& block) { return reading->next(block); });
+      };
+}
+
+/// The first pass: hashes the file and surveys its stamps and sizes, rows are thrown away.
+template <class R>
+Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_view head,
+                              const FoundFormat& format, std::unique_ptr<R> reader) {
+  Sha256 hash;
+  StampSurveyor surveyor;
+  typename R::Frames block;
+  auto sizes = sizes_of(block);
+  const auto take_block = [&] {
+    surveyor.add(block.stamps);
+    sizes.add(block);
+    block = {};
+  };
+  std::uint64_t bytes = 0;
+  std::string_view piece = head;
+  while (!piece.empty()) {
+    bytes += piece.size();
+    hash.update(piece);
+    KA_TRY(reader->feed(piece, block));
+    take_block();
+    if (!go_on(*job.progress, "reading", bytes, file.size())) {
+      return Failure(interruption(file.path()));
+    }
+    piece = KA_TRY(file.next());
+  }
+  while (KA_TRY(reader->read_further(block))) {
+    take_block();
+    if (!go_on(*job.progress, "reading", bytes, file.size())) {
+      return Failure(interruption(file.path()));
+    }
+  }
+  KA_TRY(reader->finish(block));
+  take_block();
+  RecordedStream out;
+  out.name = job.options->name;
+  out.format = format.name;
+  out.counted = reader->counted;
+  out.data =
+      input_of(*reader->header(), passes_of<R>(*job.files, file.path(), job.version, format.make));
+  out.survey = surveyor.result();
+  out.files.push_back({std::string(file_name(file.path())), hash.hex(), bytes});
+  out.findings = std::move(reader->findings);
+  append(out.findings, sizes.judge(*reader->header(), file.path()));
+  return out;
+}
+
+Result<InputFacts> facts_of(FileSystem& files, const std::string& path, const Progress& progress) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  Sha256 hash;
+  std::uint64_t bytes = 0;
+  for (;;) {
+    const std::string_view piece = KA_TRY(file.next());
+    if (piece.empty()) return InputFacts{std::string(file_name(path)), hash.hex(), bytes};
+    bytes += piece.size();
+    hash.update(piece);
+    if (!go_on(progress, "reading", bytes, file.size())) return Failure(interruption(path));
+  }
+}
+
+/// A BVH stamped from a click on record and, where it is known, a click on stop.
+Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
+  if (!options.start_ns || !options.end_ns || !s.step_ns) return {};
+  const double between = 1e-9 * static_cast<double>(*options.end_ns - *options.start_ns);
+  const double stated = 1e-9 * *s.step_ns * static_cast<double>(s.survey.samples);
+  if (std::abs(between - stated) <= 2e-9 * *s.step_ns) return {};
+  return {{Severity::warning,
+           Error{s.files.front().name, 0, fmt::format("{:.3f} s between the clicks", between),
+                 fmt::format("{} frames of {:.6g} s, {:.3f} s", s.survey.samples, 1e-9 * *s.step_ns,
+                             stated)},
+           "stamps are counted from the first click by the file's step",
+           "the true step may differ from the file's, or frames are missing"}};
+}
+
+Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path,
+                                   const FoundFormat& format) {
+  const ClipSurvey made = KA_TRY(format.survey(*job.progress));
+  RecordedStream out;
+  out.name = job.options->name;
+  out.format = format.name;
+  out.survey = made.survey;
+  out.counted = true;
+  out.step_ns = made.step_ns;
+  out.files.push_back(made.facts);
+  out.findings = made.findings;
+  out.data =
+      input_of(made.skeleton, passes_of<ClipReader>(*job.files, path, job.version, format.make));
+  append(out.findings, judge_clicks(*job.options, out));
+  return out;
+}
+
+}  // namespace
+
+Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) {
+  InputFile file = KA_TRY(InputFile::open(*job.files, named.path));
+  const std::string head(KA_TRY(file.next()));
+  const FoundFormat format =
+      KA_TRY(find_format(*job.files, *job.options, named, head, *job.progress));
+  SurveyedFile out;
+  out.paths = {named.path};
+  out.clock = format.clock;
+  if (format.survey) {
+    out.stream = KA_TRY(survey_clip(job, named.path, format));
+  } else {
+    AnyReader reader = KA_TRY(format.make());
+    out.stream = KA_TRY(std::visit(
+        [&](auto& any) { return survey(job, std::move(file), head, format, std::move(any)); },
+        reader));
+  }
+  out.stream.by_file = format.by_file;
+  for (const std::string& further : format.further_files) {
+    out.stream.files.push_back(KA_TRY(facts_of(*job.files, further, *job.progress)));
+    out.paths.push_back(further);
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/sources/value_survey.h"
+
+#include "kinalign/motion/arrays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint64_t enough = 10;  // points for a person, frames or samples for a mean
+
+/// Bounds chosen wide: a metre taken for a centimetre or the other way round lies outside, children
+/// and two people in one volume lie inside.
+constexpr double smallest_m = 0.2, largest_m = 20.0;
+/// From frame to frame, of a root that walks at 30 Hz. The joints of a hand are 6 cm and more from
+/// its wrist.
+constexpr double furthest_step_m = 0.05;
+/// A node at rest reads 9.8 m/s2, shanks of runners 20 in the mean.
+constexpr double least_with_gravity = 6.0, most_acceleration = 40.0;
+/// Limbs turn by 1 to 5 rad/s in the mean; degrees read as radians are 57 times more.
+constexpr double most_angular_velocity = 12.0;
+
+/// The power of ten that brings a size nearest to a person's.
+double times_too_large(double size_m) {
+  return std::pow(10.0, std::round(std::log10(size_m / 1.7)));
+}
+
+}  // namespace
+
+void PointSizes::Seen::add(const Vec3& at) {
+  if (at.isZero(0.0)) {
+    ++now_at_zero;
+    return;
+  }
+  const bool comes_far = at.squaredNorm() > furthest_step_m * furthest_step_m;
+  if (far || comes_far) lost_at_zero += now_at_zero;
+  now_at_zero = 0;
+  elsewhere = true;
+  far = comes_far;
+}
+
+void PointSizes::add(const PointFrames& block) {
+  if (block.size() == 0) return;
+  const std::size_t joints = block.state.size() / block.size();
+  all_frames_ += block.size();
+  joints_.resize(joints);
+  for (std::size_t t = 0; t < block.size(); ++t) {
+    Eigen::AlignedBox3d box;
+    std::uint64_t seen = 0;
+    for (std::size_t cell = t * joints; cell < (t + 1) * joints; ++cell) {
+      if (block.state[cell] == Tracking::missing) continue;
+      ++(block.state[cell] == Tracking::tracked ? tracked_ : inferred_);
+      const Vec3 at = vec3(block.positions, cell);
+      joints_[cell - t * joints].add(at);
+      box.extend(at);
+      ++seen;
+    }
+    seen_frames_ += seen > 0 ? 1 : 0;
+    if (seen < 2) continue;
+    most_points_ = std::max(most_points_, seen);
+    const double diagonal_m = box.diagonal().norm();
+    Frames& frames = diagonal_m > largest_m ? far_ : person_;
+    ++frames.count;
+    frames.diagonals_m += diagonal_m;
+  }
+}
+
+Findings PointSizes::judge(const PointHeader& header, const std::string& file) const {
+  if (all_frames_ >= enough && 10 * seen_frames_ < all_frames_) {
+    return {{Severity::warning,
+             Error{file, 0, "frames with a point in them, one in ten at least",
+                   fmt::format("{} of {}", seen_frames_, all_frames_)},
+             "in the others nothing was seen", "look at the cells that are empty"}};
+  }
+  Findings out = judge_seen(header, file);
+  append(out, judge_marks(header, file));
+  append(out, judge_unit(file));
+  return out;
+}
+
+Findings PointSizes::judge_seen(const PointHeader& header, const std::string& file) const {
+  Findings out;
+  if (inferred_ >= enough && tracked_ == 0) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "points that were tracked",
+                         fmt::format("none, and {} that were inferred", inferred_)},
+                   "a fit takes tracked ones only",
+                   "where they were tracked, say under [state] of a layout which value says so"});
+  }
+  std::size_t never = 0;
+  std::string first;
+  for (std::size_t j = 0; j < joints_.size() && j < header.joint_names.size(); ++j) {
+    if (joints_[j].seen()) continue;
+    if (never++ == 0) first = shown(header.joint_names[j]);
+  }
+  if (never > 0 && all_frames_ >= enough) {
+    out.push_back({Severity::note,
+                   Error{file, 0, "points that were seen at least once",
+                         fmt::format("{} of {} that never were, the first '{}'", never,
+                                     joints_.size(), first)},
+                   "they are invalid in every row",
+                   "where 0, 0, 0 is its place, as of a body seen from there: a layout without "
+                   "missing_point"});
+  }
+  return out;
+}
+
+/// A point that is always at zero, or moves away from it, is the file's origin: a body seen from
+/// its own root, or from where its root was first. Two are only where they have no offset from each
+/// other.
+Findings PointSizes::judge_marks(const PointHeader& header, const std::string& file) const {
+  Findings out;
+  const auto stays = std::count_if(joints_.begin(), joints_.end(),
+                                   [](const Seen& j) { return j.seen() && !j.elsewhere; });
+  std::uint64_t at_zero = 0;
+  std::string first;
+  for (std::size_t j = 0; j < joints_.size() && j < header.joint_names.size(); ++j) {
+    const Seen& joint = joints_[j];
+    const bool never_seen = !joint.elsewhere && stays > 1;
+    const std::uint64_t zeros = never_seen ? joint.now_at_zero : joint.lost();
+    if (at_zero == 0 && zeros > 0) first = shown(header.joint_names[j]);
+    at_zero += zeros;
+  }
+  if (at_zero > 0) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "points where they were seen",
+                         fmt::format("{} at exactly 0, 0, 0, the first of '{}'", at_zero, first)},
+                   "read as places, as they stand there",
+                   "missing_point = [0, 0, 0] in a layout of the file, where that means not seen"});
+  }
+  if (far_.count > 0 && far_.count <= person_.count) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "the points of a frame within 20 m",
+                         fmt::format("{} of {} frames in which they are not, {:.0f} m in the mean",
+                                     far_.count, far_.count + person_.count,
+                                     far_.diagonals_m / static_cast<double>(far_.count))},
+                   "read as places, as they stand there",
+                   "missing_point in a layout of the file, where a number stands for not seen"});
+  }
+  return out;
+}
+
+Findings PointSizes::judge_unit(const std::string& file) const {
+  const Frames& most = far_.count > person_.count ? far_ : person_;
+  if (far_.count + person_.count < enough) return {};
+  const double size = most.diagonals_m / static_cast<double>(most.count);
+  if (size <= largest_m && (size >= smallest_m || most_points_ < enough)) return {};
+  const std::string found =
+      size < 1000.0 ? fmt::format("{:.3g} m", size) : fmt::format("{:.0f} m", size);
+  const Error what{file, 0, "the points of a frame 0.2 to 20 m apart", found};
+  if (!(size > 0.0)) return {{Severity::warning, what, "they all lie in one place", ""}};
+  const double times = times_too_large(size);
+  return {
+      {Severity::warning, what,
+       times > 1.0 ? fmt::format("lengths are about {:g} times too large", times)
+                   : fmt::format("lengths are about {:g} times too small", 1.0 / times),
+       fmt::format("metres_per_unit of this stream, in a manifest or layout, {:g} times that now "
+                   "taken",
+                   1.0 / times)}};
+}
+
+double ImuSizes::Norms::deviation() const {
+  return std::sqrt(std::max(0.0, squares / static_cast<double>(count) - mean() * mean()));
+}
+
+void ImuSizes::add(std::span<const double> vectors, const ImuSamples& block, Norms& norms) {
+  for (std::size_t cell = 0; 3 * cell < vectors.size(); ++cell) {
+    if (block.valid[cell] == 0) continue;
+    const double square = vec3(vectors, cell).squaredNorm();
+    ++norms.count;
+    norms.sum += std::sqrt(square);
+    norms.squares += square;
+  }
+}
+
+void ImuSizes::add(const ImuSamples& block) {
+  samples_ += block.valid.size();
+  valid_ += static_cast<std::uint64_t>(std::count(block.valid.begin(), block.valid.end(), 1));
+  add(block.acceleration, block, acceleration_);
+  add(block.angular_velocity, block, angular_velocity_);
+  orientation_.add(block);
+}
+
+Findings ImuSizes::judge(const ImuHeader& header, const std::string& file) const {
+  const bool gravity = header.content.gravity;
+  Findings out;
+  const auto find = [&](const char* expected, const std::string& found, const char* advice) {
+    out.push_back(
+        {Severity::warning, Error{file, 0, expected, found}, "read as they stand there", advice});
+  };
+  if (samples_ >= enough && 10 * valid_ < samples_) {
+    out.push_back({Severity::warning,
+                   Error{file, 0, "nodes whose samples are valid, one in ten at least",
+                         fmt::format("{} of {}", valid_, samples_)},
+                   "the others are invalid: a quantity is missing in them",
+                   "look at the cells that are empty"});
+  }
+  if (acceleration_.count >= enough) {
+    const double mean = acceleration_.mean();
+    const std::string found = fmt::format("{:.3g} m/s2", mean);
+    // A limb without gravity stands still and jerks in turn; with it the mean is 9.8 and steady.
+    const bool steady = mean > 8.5 && mean < 12.0 && acceleration_.deviation() < 0.5 * mean;
+    if (mean > most_acceleration || (gravity && mean < least_with_gravity)) {
+      find(gravity ? "accelerations with gravity of 6 to 40 m/s2 in the mean"
+                   : "accelerations of at most 40 m/s2 in the mean",
+           found,
+           "acceleration_unit = \"g\" (or \"m/s2\"), or gravity = false, in a layout of the file");
+    } else if (!gravity && steady) {
+      find("accelerations without gravity", found + " in the mean",
+           "gravity = true in a layout of the file, where it stands in them");
+    }
+  }
+  if (angular_velocity_.count >= enough && angular_velocity_.mean() > most_angular_velocity) {
+    find("turns of at most 12 rad/s in the mean",
+         fmt::format("{:.3g} rad/s", angular_velocity_.mean()),
+         "angular_velocity_unit = \"deg/s\" in a layout of the file");
+  }
+  append(out, orientation_.judge(header, file));
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/view/show_recording.h"
+
+#include "kinalign/recording/survey.h"
+#include "kinalign/view/shown_file.h"
+#include "kinalign/view/shown_pace.h"
+#include "kinalign/view/shown_rows.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace kinalign {
+
+namespace {
+
+/// A stream in the middle of being shown.
+class Showing {
+ public:
+  virtual ~Showing() = default;
+  /// When its next sample is; absent behind the last.
+  virtual std::optional<Time> next() const = 0;
+  virtual Result<void> show(ShownFile& out) = 0;
+};
+
+/// Where a kind of stream goes.
+class ShowClip {
+ public:
+  static Result<ShowClip> begin(const std::string& stream, const ClipInput& input, ShownFile& out) {
+    ShowClip show;
+    show.stream_ = stream;
+    show.input_ = &input;
+    show.transforms_ = KA_TRY(out.add_channel("/" + stream + "/transforms", transforms_schema()));
+    show.poses_ = KA_TRY(out.add_channel("/" + stream + "/pose", pose_schema()));
+    return show;
+  }
+  Result<void> operator()(const ClipFrames& frames, std::size_t t, const ShownTime& time, bool due,
+                          ShownFile& out) const {
+    const Time device = frames.stamps[t];
+    if (due) {
+      KA_TRY(out.add(transforms_, time.at, device,
+                     transforms_json(stream_, input_->skeleton, frames, t, time)));
+    }
+    return out.add(poses_, time.at, device, pose_json(input_->skeleton, frames, t, time));
+  }
+
+ private:
+  std::string stream_;
+  const ClipInput* input_ = nullptr;
+  std::uint16_t transforms_ = 0, poses_ = 0;
+};
+
+class ShowPoints {
+ public:
+  static Result<ShowPoints> begin(const std::string& stream, const PointInput& input,
+                                  ShownFile& out) {
+    ShowPoints show;
+    show.stream_ = stream;
+    show.input_ = &input;
+    show.transforms_ = KA_TRY(out.add_channel("/" + stream + "/transforms", transforms_schema()));
+    show.points_ = KA_TRY(out.add_channel("/" + stream + "/points", points_schema()));
+    return show;
+  }
+  Result<void> operator()(const PointFrames& frames, std::size_t t, const ShownTime& time, bool due,
+                          ShownFile& out) const {
+    const Time device = frames.stamps[t];
+    if (due) {
+      KA_TRY(out.add(transforms_, time.at, device,
+                     transforms_json(stream_, input_->joint_names, frames, t, time)));
+    }
+    return out.add(points_, time.at, device, points_json(input_->joint_names, frames, t, time));
+  }
+
+ private:
+  std::string stream_;
+  const PointInput* input_ = nullptr;
+  std::uint16_t transforms_ = 0, points_ = 0;
+};
+
+class ShowImu {
+ public:
+  static Result<ShowImu> begin(const std::string& stream, const ImuInput& input, ShownFile& out) {
+    ShowImu show;
+    show.input_ = &input;
+    for (const std::string& node : input.node_names) {
+      std::string topic = "/" + stream;
+      topic += "/" + node;
+      show.nodes_.push_back(KA_TRY(out.add_channel(std::move(topic), imu_schema())));
+    }
+    return show;
+  }
+  Result<void> operator()(const ImuSamples& samples, std::size_t t, const ShownTime& time, bool,
+                          ShownFile& out) const {
+    for (std::size_t s = 0; s < nodes_.size(); ++s) {
+      KA_TRY(out.add(nodes_[s], time.at, samples.stamps[t],
+                     imu_json(input_->content, samples, t * nodes_.size() + s, time)));
+    }
+    return {};
+  }
+
+ private:
+  const ImuInput* input_ = nullptr;
+  std::vector<std::uint16_t> nodes_;
+};
+
+template <class Frames, class Show>
+class StreamShowing final : public Showing {
+ public:
+  StreamShowing(const RecordedStream& stream, Pass<Frames> pass, Show show)
+      : clock_(&stream.clock), pass_(std::move(pass)), show_(std::move(show)) {}
+
+  Result<void> begin() { return fill(); }
+  std::optional<Time> next() const override { return next_; }
+  Result<void> show(ShownFile& out) override {
+    const ShownTime time{*next_, half_width(*clock_, block_.stamps[row_])};
+    KA_TRY(show_(block_, row_, time, pace_.shows(time.at), out));
+    ++row_;
+    return fill();
+  }
+
+ private:
+  Result<void> fill() {
+    while (!ended_ && row_ >= block_.size()) {
+      ended_ = !KA_TRY(pass_(block_));
+      row_ = 0;
+    }
+    next_ = ended_ ? std::nullopt : std::optional(take_time(*clock_, block_.stamps[row_]));
+    return {};
+  }
+
+  const TimeModel* clock_;
+  Pass<Frames> pass_;
+  Show show_;
+  Frames block_;
+  std::size_t row_ = 0;
+  bool ended_ = false;
+  std::optional<Time> next_;
+  ShownPace pace_;  // of transforms
+};
+
+template <class Frames, class Show, class Input>
+Result<std::unique_ptr<Showing>> showing_of(const RecordedStream& stream, const Input& input,
+                                            ShownFile& out) {
+  Show show = KA_TRY(Show::begin(stream.name, input, out));
+  auto showing = std::make_unique<StreamShowing<Frames, Show>>(stream, KA_TRY(input.passes()),
+                                                               std::move(show));
+  KA_TRY(showing->begin());
+  return std::unique_ptr<Showing>(std::move(showing));
+}
+
+Result<std::unique_ptr<Showing>> begin_stream(const RecordedStream& stream, ShownFile& out) {
+  if (const auto* clip = std::get_if<ClipInput>(&stream.data)) {
+    return showing_of<ClipFrames, ShowClip>(stream, *clip, out);
+  }
+  if (const auto* points = std::get_if<PointInput>(&stream.data)) {
+    return showing_of<PointFrames, ShowPoints>(stream, *points, out);
+  }
+  return showing_of<ImuSamples, ShowImu>(stream, std::get<ImuInput>(stream.data), out);
+}
+
+/// The recording's own JSON: marks, counts, the host's clocks.
+class JsonChannels {
+ public:
+  explicit JsonChannels(ShownFile& out) : out_(out) {}
+
+  Result<void> take(const McapRecord& record) {
+    if (const auto* schema = std::get_if<McapSchema>(&record)) {
+      schemas_[schema->id] = *schema;
+    } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
+      return add(*channel);
+    } else if (const auto* message = std::get_if<McapMessage>(&record)) {
+      const auto found = copied_.find(message->channel);
+      if (found == copied_.end() || message->log_time > INT64_MAX) return {};
+      const Time at = utc_time(static_cast<std::int64_t>(message->log_time));
+      return out_.add(found->second, at, at, message->data);
+    }
+    return {};
+  }
+
+ private:
+  Result<void> add(const McapChannel& channel) {
+    const auto schema = schemas_.find(channel.schema_id);
+    if (channel.message_encoding != "json" || copied_.contains(channel.id)) return {};
+    if (schema == schemas_.end()) return {};
+    copied_[channel.id] = KA_TRY(out_.add_channel(channel.topic, schema->second));
+    return {};
+  }
+
+  ShownFile& out_;
+  std::map<std::uint16_t, McapSchema> schemas_;
+  std::map<std::uint16_t, std::uint16_t> copied_;  // its id -> ours
+};
+
+/// Of what stands in two files one copy, as stands_elsewhere() chooses.
+Result<void> copy_json(FileSystem& files, const RecordingParts& parts, const Progress& progress,
+                       ShownFile& shown) {
+  JsonChannels channels(shown);
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    McapReader reader;
+    NumberGuard guard;
+    const auto take = [&](const McapRecord& record) -> Result<void> {
+      const auto* message = std::get_if<McapMessage>(&record);
+      const bool is_out =
+          message != nullptr &&
+          ((parts[part].is_ours() && !guard.believes(*message, reader.unchecked())) ||
+           stands_elsewhere(parts, part, *message));
+      if (is_out) return {};
+      return channels.take(record);
+    };
+    KA_TRY(read_recording(files, parts[part].path, reader, take, progress));
+  }
+  return {};
+}
+
+/// All streams by turns, in the order of their samples' times.
+Result<void> show_streams(const std::vector<RecordedStream>& recorded, ShownFile& shown,
+                          const Progress& progress) {
+  std::vector<std::unique_ptr<Showing>> streams;
+  std::set<std::pair<Time, std::size_t>> next;  // sample of which stream
+  std::uint64_t rows = 0, done = 0;
+  const auto wait = [&](std::size_t i) {
+    if (const auto at = streams[i]->next()) next.emplace(*at, i);
+  };
+  for (const RecordedStream& stream : recorded) {
+    auto begun = begin_stream(stream, shown);
+    if (!begun) return Failure(std::move(begun).error());
+    streams.push_back(*std::move(begun));
+    wait(streams.size() - 1);
+    rows += stream.survey.samples;
+  }
+  while (!next.empty()) {
+    const std::size_t first = next.extract(next.begin()).value().second;
+    KA_TRY(streams[first]->show(shown));
+    wait(first);
+    if (++done % 1024 == 0 && !go_on(progress, "converting", done, rows)) {
+      return Failure(interruption());
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Shown> show_recording(FileSystem& files, const Recording& recording, const ShowFiles& paths,
+                             const Progress& progress) {
+  OutputFile file = KA_TRY(OutputFile::create(files, paths.out, paths.overwrite));
+  ShownFile shown(file);
+  KA_TRY(shown.begin());
+  KA_TRY(show_streams(recording.streams, shown, progress));
+  KA_TRY(copy_json(files, paths.from, progress, shown));
+  KA_TRY(shown.finish());
+  KA_TRY(file.commit());
+  return shown.counts();
+}
+
+}  // namespace kinalign

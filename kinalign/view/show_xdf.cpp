@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/view/show_xdf.h"
+
+#include "kinalign/formats/xdf/survey.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+McapSchema sample_schema() {
+  return {0, "kinalign.XdfSample", "jsonschema",
+          R"({"type": "object", "properties": {"stamp": {"type": "number", "description": )"
+          R"("s, the sender's clock, not corrected"}, "deduced": {"type": "boolean", )"
+          R"("description": "not written: the one before and the nominal rate"}, )"
+          R"("values": {"type": "array", "items": {"type": ["number", "string"]}, "description": )"
+          R"("one a channel; of numbers NaN, Infinity and -Infinity as these words"}}})"};
+}
+
+/// Absent of what is no time of a recorder.
+std::optional<Time> time_of(double s) {
+  constexpr double latest_s = 4e9;
+  if (!(s >= 0.0) || s > latest_s) return std::nullopt;
+  return utc_time(std::llround(s * 1e9));
+}
+
+/// JSON has no word for what is no number: as protobuf's JSON has it,
+/// https://protobuf.dev/programming-guides/json/
+Json value_json(double value) {
+  if (std::isnan(value)) return "NaN";
+  if (std::isinf(value)) return value > 0.0 ? "Infinity" : "-Infinity";
+  return value;
+}
+Json value_json(std::int64_t value) { return value; }
+Json value_json(const std::string& value) { return value; }
+
+std::string sample_json(const XdfSamples& samples, std::size_t t) {
+  Json values = Json::array();
+  std::visit(
+      [&](const auto& all) {
+        const std::size_t width = all.size() / samples.size();
+        for (std::size_t c = 0; c < width; ++c) values.push_back(value_json(all[t * width + c]));
+      },
+      samples.values);
+  const Json json = {{"stamp", samples.stamps[t]},
+                     {"deduced", samples.deduced[t] != 0},
+                     {"values", std::move(values)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A channel's name: the stream's, with its id where it is not alone, and no slash or blank in it.
+std::string topic_of(const XdfStream& stream, bool alone) {
+  std::string name = stream.name.empty() ? "stream" : stream.name;
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) <= ' ' || c == '/') c = '_';
+  }
+  return alone ? "/" + name : "/" + name + "/" + std::to_string(stream.id);
+}
+
+struct Channel {
+  std::uint16_t id = 0;
+  std::vector<XdfClockLine> lines;
+};
+
+/// What samples go to: a channel for each stream.
+class Channels {
+ public:
+  Channels(const XdfSurvey& survey, ShownFile& out) : survey_(survey), out_(out) {}
+
+  Result<void> begin() {
+    std::map<std::string, std::set<std::uint32_t>> ids;  // by name
+    for (const XdfStreamSurvey& one : survey_.streams) ids[one.stream.name].insert(one.stream.id);
+    for (const XdfStreamSurvey& one : survey_.streams) {
+      const std::string topic = topic_of(one.stream, ids[one.stream.name].size() == 1);
+      KA_TRY(out_.attach(topic.substr(1) + ".xml", one.stream.xml));
+      channels_[one.stream.id] = {KA_TRY(out_.add_channel(topic, sample_schema())), one.clock};
+    }
+    return {};
+  }
+
+  Result<void> take(const XdfItem& item) {
+    const auto* samples = std::get_if<XdfSamples>(&item);
+    if (samples == nullptr) return {};
+    const auto channel = channels_.find(samples->stream);
+    if (channel == channels_.end()) return {};
+    for (std::size_t t = 0; t < samples->size(); ++t) {
+      const auto at = time_of(corrected_xdf_stamp(channel->second.lines, samples->stamps[t]));
+      if (!at) {
+        ++timeless;
+        continue;
+      }
+      const Time device = time_of(samples->stamps[t]).value_or(*at);
+      KA_TRY(out_.add(channel->second.id, *at, device, sample_json(*samples, t)));
+    }
+    return {};
+  }
+
+  std::uint64_t timeless = 0;
+
+ private:
+  const XdfSurvey& survey_;
+  ShownFile& out_;
+  std::map<std::uint32_t, Channel> channels_;
+};
+
+}  // namespace
+
+Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
+                          Overwrite overwrite, const Progress& progress) {
+  const XdfSurvey survey = KA_TRY(survey_xdf(files, from, progress));
+  OutputFile file = KA_TRY(OutputFile::create(files, out, overwrite));
+  ShownFile shown(file);
+  KA_TRY(shown.begin());
+  Channels channels(survey, shown);
+  KA_TRY(channels.begin());
+  ShownXdf done;
+  done.findings = KA_TRY(
+      read_xdf(files, from, progress, [&](const XdfItem& item) { return channels.take(item); }));
+  if (channels.timeless > 0) {
+    done.findings.push_back({Severity::warning,
+                             Error{from, 0, "stamps from 0 to 4e9 s",
+                                   std::to_string(channels.timeless) + " samples of others"},
+                             "these samples were left out", ""});
+  }
+  KA_TRY(shown.finish());
+  KA_TRY(file.commit());
+  done.shown = shown.counts();
+  return done;
+}
+
+}  // namespace kinalign

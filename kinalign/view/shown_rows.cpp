@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/view/shown_rows.h"
+
+#include "kinalign/motion/arrays.h"
+#include "kinalign/motion/kinect_joints.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view time_properties =
+    R"({"type": "object", "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}})";
+
+McapSchema schema(std::string name, const std::string& properties) {
+  return {0, std::move(name), "jsonschema",
+          R"({"type": "object", "properties": {"timestamp": )" + std::string(time_properties) +
+              ", " + properties + "}}"};
+}
+
+Json time_json(Time at) {
+  const std::int64_t ns = to_ns(at);
+  constexpr std::int64_t second = 1'000'000'000;
+  const std::int64_t sec = ns / second - (ns % second < 0 ? 1 : 0);
+  return {{"sec", sec}, {"nsec", ns - sec * second}};
+}
+
+Json vector_json(const Vec3& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
+Json rotation_json(const Quat& q) {
+  return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}};
+}
+Vec3 vec_at(const std::vector<double>& values, std::size_t i) {
+  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
+Quat quat_at(const std::vector<double>& values, std::size_t i) {
+  return {values[4 * i], values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]};
+}
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+struct Frame {
+  std::string parent, child;
+  Vec3 place = Vec3::Zero();
+  Quat turn = Quat::Identity();
+};
+
+Json frame_json(const Frame& frame, const Json& time) {
+  return {{"timestamp", time},
+          {"parent_frame_id", frame.parent},
+          {"child_frame_id", frame.child},
+          {"translation", vector_json(frame.place)},
+          {"rotation", rotation_json(frame.turn)}};
+}
+
+/// With the turn from the viewers' world to ours in front.
+std::string frames_json(const std::vector<Frame>& frames, const ShownTime& time) {
+  const Json at = time_json(time.at);
+  const double half = std::numbers::sqrt2 / 2.0;
+  Json list = {
+      frame_json({"world", std::string(shown_space), Vec3::Zero(), {half, half, 0, 0}}, at)};
+  for (const Frame& frame : frames) list.push_back(frame_json(frame, at));
+  return text_of({{"transforms", std::move(list)}});
+}
+
+void add_time(const ShownTime& time, Json& json) {
+  json["timestamp"] = time_json(time.at);
+  if (time.half_width) json["interval_ns"] = time.half_width->count();
+}
+
+/// The nearest ancestor of a Kinect's joint that is there; nothing: none is.
+std::optional<std::size_t> ancestor(const PointFrames& frames, std::size_t row, std::size_t joint) {
+  while (kinect_parents[joint] != joint) {
+    joint = kinect_parents[joint];
+    if (frames.state[row + joint] != Tracking::missing) return joint;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+McapSchema transforms_schema() {
+  return {0, "foxglove.FrameTransforms", "jsonschema",
+          R"({"type": "object", "properties": {"transforms": {"type": "array", "items": )"
+          R"({"type": "object", "properties": {"timestamp": )" +
+              std::string(time_properties) +
+              R"(, "parent_frame_id": {"type": "string"}, "child_frame_id": {"type": "string"}, )"
+              R"("translation": {"type": "object", "properties": {"x": {"type": "number"}, )"
+              R"("y": {"type": "number"}, "z": {"type": "number"}}}, "rotation": )"
+              R"({"type": "object", "properties": {"x": {"type": "number"}, "y": )"
+              R"({"type": "number"}, "z": {"type": "number"}, "w": {"type": "number"}}}}}}}})"};
+}
+
+McapSchema pose_schema() {
+  return schema("kinalign.Pose",
+                R"("interval_ns": {"type": "integer"}, "joints": {"type": "object"})");
+}
+McapSchema points_schema() {
+  return schema("kinalign.Points",
+                R"("interval_ns": {"type": "integer"}, "joints": {"type": "object"})");
+}
+McapSchema imu_schema() {
+  return schema(
+      "kinalign.ImuSample",
+      R"("interval_ns": {"type": "integer"}, "valid": {"type": "boolean"}, "orientation": )"
+      R"({"type": "object"}, "acceleration": {"type": "object"}, "angular_velocity": )"
+      R"({"type": "object"})");
+}
+
+std::string transforms_json(const std::string& stream, const Skeleton& skeleton,
+                            const ClipFrames& frames, std::size_t t, const ShownTime& time) {
+  std::vector<Frame> out;
+  for (std::size_t j = 0; j < skeleton.joints(); ++j) {
+    const std::size_t at = t * skeleton.joints() + j;
+    const int parent = skeleton.parents[j];
+    out.push_back({parent < 0
+                       ? std::string(shown_space)
+                       : stream + "/" + skeleton.joint_names[static_cast<std::size_t>(parent)],
+                   stream + "/" + skeleton.joint_names[j], vec_at(frames.local_positions, at),
+                   quat_at(frames.local_rotations, at)});
+  }
+  return frames_json(out, time);
+}
+
+std::string transforms_json(const std::string& stream, const std::vector<std::string>& joints,
+                            const PointFrames& frames, std::size_t t, const ShownTime& time) {
+  const std::size_t row = t * joints.size();
+  const bool kinect =
+      std::equal(joints.begin(), joints.end(), kinect_joints.begin(), kinect_joints.end());
+  std::vector<Frame> out;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (frames.state[row + j] == Tracking::missing) continue;
+    const auto parent = kinect ? ancestor(frames, row, j) : std::nullopt;
+    const Vec3 place = vec_at(frames.positions, row + j);
+    const Vec3 from = parent ? vec_at(frames.positions, row + *parent) : Vec3(Vec3::Zero());
+    out.push_back({parent ? stream + "/" + joints[*parent] : std::string(shown_space),
+                   stream + "/" + joints[j], place - from, Quat::Identity()});
+  }
+  return frames_json(out, time);
+}
+
+std::string pose_json(const Skeleton& skeleton, const ClipFrames& frames, std::size_t t,
+                      const ShownTime& time) {
+  Json json, joints = Json::object();
+  add_time(time, json);
+  for (std::size_t j = 0; j < skeleton.joints(); ++j) {
+    const std::size_t at = t * skeleton.joints() + j;
+    joints[skeleton.joint_names[j]] = {
+        {"position", vector_json(vec_at(frames.local_positions, at))},
+        {"rotation", rotation_json(quat_at(frames.local_rotations, at))}};
+  }
+  json["joints"] = std::move(joints);
+  return text_of(json);
+}
+
+std::string points_json(const std::vector<std::string>& joints, const PointFrames& frames,
+                        std::size_t t, const ShownTime& time) {
+  constexpr std::array<std::string_view, 3> states{"missing", "inferred", "tracked"};
+  Json json, shown = Json::object();
+  add_time(time, json);
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const std::size_t at = t * joints.size() + j;
+    Json one = {{"state", states[static_cast<std::size_t>(frames.state[at])]}};
+    if (frames.state[at] != Tracking::missing) {
+      one["position"] = vector_json(vec_at(frames.positions, at));
+    }
+    shown[joints[j]] = std::move(one);
+  }
+  json["joints"] = std::move(shown);
+  return text_of(json);
+}
+
+std::string imu_json(const ImuContent& content, const ImuSamples& samples, std::size_t cell,
+                     const ShownTime& time) {
+  Json json;
+  add_time(time, json);
+  json["valid"] = samples.valid[cell] != 0;
+  if (samples.valid[cell] == 0) return text_of(json);
+  if (content.orientation) json["orientation"] = rotation_json(quat_at(samples.orientation, cell));
+  if (content.acceleration) json["acceleration"] = vector_json(vec_at(samples.acceleration, cell));
+  if (content.angular_velocity) {
+    json["angular_velocity"] = vector_json(vec_at(samples.angular_velocity, cell));
+  }
+  return text_of(json);
+}
+
+}  // namespace kinalign

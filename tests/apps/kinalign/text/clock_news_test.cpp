@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/text/clock_news.h"
+
+#include <doctest/doctest.h>
+
+namespace kinalign {
+
+namespace {
+
+using Kind = ClockEvent::Kind;
+using Lines = std::vector<std::string>;
+
+HostTime at(double s) { return HostTime{Duration{static_cast<std::int64_t>(s * 1e9)}}; }
+
+ClockEvent event(Kind kind, double begin, double end, double value = 0.0) {
+  return {kind, 5, at(begin), at(end), value};
+}
+
+/// A step of node 7 with its withdrawal, as the live clock tells both.
+void step(ClockNews& news, double s) {
+  news.hear(0, 7, event(Kind::step, s, s, 0.5), at(s));
+  news.hear(0, 7, event(Kind::withdrawn, s - 0.2, s), at(s));
+}
+
+const std::string stepped = "node 7: warning: its counter stepped by at least 500.000 ms";
+const std::string keeps =
+    "node 7: warning: its clock keeps contradicting the assumptions (more than 100 ppm off, or "
+    "asleep), so nothing of it is certified; its steps are told again after a quiet minute";
+
+std::string withdrawn(const std::string& s) {
+  return "node 7: warning: the stamps of " + s + " s are not certified any more";
+}
+
+}  // namespace
+
+TEST_CASE("a step is told before the stamps that it cost, and these once") {
+  ClockNews news;
+  for (const double s : {20.0, 20.1}) {
+    news.hear(0, 7, event(Kind::violator, s, s), at(s));
+    news.hear(0, 7, event(Kind::withdrawn, s - 5, s), at(s));
+  }
+  CHECK(news.lines(at(20.15)).empty());  // the cause may follow
+  news.hear(0, 7, event(Kind::step, 20, 20.2, -0.5), at(20.4));
+  news.hear(0, 7, event(Kind::withdrawn, 15, 20.2), at(20.4));
+  CHECK(news.lines(at(20.4)) == Lines{stepped, withdrawn("5.2")});
+  news.hear(0, 7, event(Kind::settled, 21, 21.2), at(21.4));
+  news.hear(0, 7, event(Kind::withdrawn, 20, 21.2), at(21.4));
+  CHECK(news.lines(at(25)) == Lines{"node 7: its counter runs evenly again"});
+}
+
+TEST_CASE("a withdrawal without a step is told within a second, or at the end") {
+  ClockNews news;
+  news.hear(0, 7, event(Kind::withdrawn, 15, 20), at(20));
+  news.hear(1, 8, event(Kind::withdrawn, 16, 20), at(20.5));
+  CHECK(news.lines(at(20.9)).empty());
+  CHECK(news.lines(at(21)) == Lines{withdrawn("5.0")});
+  CHECK(news.last_lines() ==
+        Lines{"node 8: warning: the stamps of 4.0 s are not certified any more"});
+  CHECK(news.last_lines().empty());
+}
+
+TEST_CASE("a clock that steps thrice in ten seconds has one line more, and a minute's rest") {
+  ClockNews news;
+  step(news, 20);
+  CHECK(news.lines(at(20)) == Lines{stepped, withdrawn("0.2")});
+  step(news, 25);
+  CHECK(news.lines(at(25)).size() == 2);
+  CHECK_FALSE(news.contradicts(0, 7, at(25)));
+  step(news, 30);
+  CHECK(news.lines(at(30)) == Lines{keeps});
+  for (double s = 31; s < 200; s += 0.3) {
+    step(news, s);
+    news.hear(0, 7, event(Kind::settled, s, s), at(s));
+    CHECK(news.lines(at(s)).empty());
+    CHECK(news.contradicts(0, 7, at(s)));
+  }
+  CHECK_FALSE(news.contradicts(1, 7, at(200)));
+  CHECK_FALSE(news.contradicts(0, 8, at(200)));
+  CHECK(news.contradicts(0, 7, at(255)));
+  CHECK_FALSE(news.contradicts(0, 7, at(260)));
+  step(news, 260);
+  CHECK(news.lines(at(260)) == Lines{stepped, withdrawn("0.2")});
+}
+
+TEST_CASE("each line has the node's name in its lab") {
+  ClockNews news(NodeNames{"imu", {{"7", "wrist"}}});
+  for (const double s : {20.0, 21.0, 22.0}) step(news, s);
+  news.hear(1, 8, event(Kind::settled, 22, 22), at(22));
+  const auto lines = news.lines(at(30));
+  REQUIRE(lines.size() == 4);
+  CHECK(lines[0] == "imu wrist: warning: its counter stepped by at least 500.000 ms");
+  CHECK(lines[2].starts_with("imu wrist: warning: its clock keeps contradicting"));
+  CHECK(lines[3] == "imu 8: its counter runs evenly again");
+}
+
+TEST_CASE("steps of a node a long time apart, and those of others, are told each") {
+  ClockNews news;
+  for (const double s : {20.0, 26.0, 32.0, 38.0}) {
+    step(news, s);
+    news.hear(1, 9, event(Kind::slip, s, s, 0.001), at(s));
+    CHECK(news.lines(at(s)).size() == 3);
+  }
+}
+
+TEST_CASE("a stream that is another node's now begins without what the one before had done") {
+  ClockNews news;
+  for (const double s : {20.0, 21.0, 22.0}) step(news, s);
+  CHECK(news.contradicts(0, 7, at(22)));
+  news.hear(0, 8, event(Kind::step, 23, 23, 0.5), at(23));
+  CHECK_FALSE(news.contradicts(0, 8, at(23)));
+  CHECK(news.lines(at(23)).back() == "node 8: warning: its counter stepped by at least 500.000 ms");
+}
+
+}  // namespace kinalign

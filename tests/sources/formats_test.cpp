@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which reader a file gets, and what is said where there is none.
+#include "kinalign/sources/formats.h"
+
+#include "tests/folder.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+using namespace kinalign;
+
+namespace {
+
+std::string numbers(int count, char between) {
+  std::string text = "1.5";
+  for (int i = 1; i < count; ++i) text += between + std::to_string(i);
+  return text + "\n";
+}
+
+struct Outcome {
+  std::string name, error;
+  std::vector<std::string> further;
+};
+
+Outcome found(const std::string& path, const std::string& layout = "") {
+  PosixFiles files;
+  StreamOptions options;
+  options.layout = layout;
+  const std::string text = bytes_in(path);
+  const auto format = find_format(files, options, {path, ""}, text);
+  if (!format) return {"", to_string(format.error()), {}};
+  return {format->name, "", format->further_files};
+}
+
+}  // namespace
+
+TEST_CASE("UI-PRMD's file of positions leads to its angles: by name, in a folder beside or here") {
+  const FreshFolder folder;
+  const std::string row = numbers(66, ',');
+  const std::string apart = folder.write("positions/Positions/m1_positions.txt", row);
+  const std::string angles = folder.write("positions/Angles/m1_angles.txt", row);
+  CHECK(found(apart).name == "ui_prmd_kinect");
+  CHECK(found(apart).further == std::vector{angles});
+  const std::string beside = folder.write("Positions/positions.d/m2_positions.txt", row);
+  CHECK(found(beside).error == (folder / "Positions/positions.d/m2_angles.txt") +
+                                   ": expected a readable file, found No such file or directory");
+  const std::string here = folder.write("Positions/positions.d/m2_angles.txt", row);
+  CHECK(found(beside).further == std::vector{here});
+  const std::string only = folder.write("Positions/m3.txt", row);
+  const std::string there = folder.write("Angles/m3.txt", row);
+  CHECK(found(only).further == std::vector{there});
+}
+
+TEST_CASE("UI-PRMD's file of angles has to stay as it was when it was found") {
+  const FreshFolder folder;
+  const std::string row = numbers(66, ',');
+  const std::string positions = folder.write("m_positions.txt", row);
+  folder.write("m_angles.txt", row);
+  PosixFiles files;
+  const auto format = find_format(files, {}, {positions, ""}, row);
+  REQUIRE(format);
+  CHECK(format->make());
+  const std::string angles = folder.write("m_angles.txt", row + row);
+  const auto again = format->make();
+  REQUIRE_FALSE(again);
+  CHECK(to_string(again.error()) ==
+        angles + ": expected a file that stays as it is while it is read, found one that changed");
+}
+
+TEST_CASE("numbers that could be UI-PRMD's are not, where no other file holds the angles") {
+  const FreshFolder folder;
+  const std::string lone = folder.write("sixtysix.txt", numbers(66, ','));
+  CHECK(found(lone).error.find("write a layout (docs/formats/layouts.md: ") != std::string::npos);
+  CHECK(found(lone, "ui_prmd_kinect").error ==
+        lone +
+            ": expected UI-PRMD's file of positions, ..._positions.txt; it leads to the angles, "
+            "found another name");
+}
+
+TEST_CASE("UI-PRMD's file of angles by itself is refused, the Kinect's and the optical one") {
+  const FreshFolder folder;
+  for (const int cells : {66, 117}) {
+    CAPTURE(cells);
+    const std::string angles = folder.write("m1_angles.txt", numbers(cells, ','));
+    CHECK(found(angles).error ==
+          angles +
+              ": expected UI-PRMD's file of positions, ..._positions.txt; it leads to the angles, "
+              "found the file of angles");
+  }
+  CHECK(found(folder.write("m1_positions.txt", numbers(117, ','))).name == "ui_prmd_vicon");
+}
+
+TEST_CASE("a file of no known kind: what it is, and what to do with a table") {
+  const FreshFolder folder;
+  const auto said = [&](std::string_view bytes) { return found(folder.write("f", bytes)).error; };
+  const std::string known =
+      (folder / "f") +
+      ":1: expected a format that kinalign knows (docs/formats); for a table of another kind write "
+      "a layout (docs/formats/layouts.md: layout = in a manifest, --layout with one file), found ";
+  CHECK(said("unix_ms,acc_x\n1,2\n") == known + "'unix_ms,acc_x'");
+  CHECK(said("\xff\xfe\x80 \x1b[31m\n") == known + "bytes that are no plain text");
+  CHECK(said("\x1f\x8b\x08") == known + "a gzip archive: unpack it first");
+  CHECK(said("PK\x03\x04 an .npz") == known + "a ZIP archive, such as .npz");
+  CHECK(said(std::string(300, 'x')) == known + "'" + std::string(40, 'x') + "...'");
+  CHECK(said("") == (folder / "f") + ": expected a recording's file, found an empty file");
+}
+
+TEST_CASE("a choice of rows that a format does not know is refused, not ignored") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string trc = folder.write("walk.trc", "PathFileType\t4\t(X/Y/Z)\twalk.trc\n");
+  const std::string ntu = folder.write("a.skeleton", "1\n0\n");
+  const auto refusal = [&](const std::string& path, const std::string& layout,
+                           const std::string& column) {
+    StreamOptions options;
+    options.layout = layout;
+    options.select = {{column, "2"}};
+    const auto format = find_format(files, options, {path, ""}, bytes_in(path));
+    return format ? "" : to_string(format.error());
+  };
+  CHECK(refusal(trc, "", "subject") ==
+        trc + ": expected no select for a file of format trc, found subject = 2");
+  CHECK(refusal(ntu, "ntu", "person") == ntu + ": expected select by body, found person = 2");
+  CHECK(refusal(ntu, "ntu", "body").empty());
+}
