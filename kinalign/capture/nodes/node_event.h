@@ -4,6 +4,7 @@
 
 #include "kinalign/capture/net/host_address.h"
 #include "kinalign/wire/node_datagram.h"
+#include "kinalign/wire/time.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,6 +2,7 @@
 #include "kinalign/capture/nodes/node_receiver.h"
 
 #include "kinalign/capture/nodes/node_filter.h"
+#include "kinalign/clock/live/live_clock.h"
 
 #include <algorithm>
 #include <span>
@@ -29,7 +30,6 @@ struct NodeReceiver::StreamClock {
 };
 
 NodeReceiver::NodeReceiver(NodeReceiver&&) noexcept = default;
-NodeReceiver& NodeReceiver::operator=(NodeReceiver&&) noexcept = default;
 NodeReceiver::~NodeReceiver() = default;
 
 Result<NodeReceiver> NodeReceiver::open(const NodeReceiverOptions& options, ClockReader& clocks) {

@@ -30,7 +30,7 @@ struct NodeReceiverOptions {
 class NodeReceiver {
  public:
   NodeReceiver(NodeReceiver&&) noexcept;
-  NodeReceiver& operator=(NodeReceiver&&) noexcept;
+  NodeReceiver& operator=(NodeReceiver&&) = delete;
   ~NodeReceiver();
 
   /// `clocks` has to stay.

@@ -3,6 +3,7 @@
 // own numbers miss, and the desk that answers them where the protocol wants answers.
 #pragma once
 
+#include "kinalign/capture/net/followed_clock.h"
 #include "kinalign/capture/net/pieces.h"
 #include "kinalign/capture/recorder/findings_once.h"
 #include "kinalign/capture/recorder/held_back.h"

@@ -6,6 +6,7 @@
 #include "tests/capture/test_node.h"
 
 #include "kinalign/capture/nodes/node_filter.h"
+#include "kinalign/clock/live/live_clock.h"
 
 #include <doctest/doctest.h>
 #include <poll.h>
