@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record/silence_news.h"
 
+#include "kinalign/capture/net/pieces.h"
+
 #include <algorithm>
 #include <map>
 

@@ -8,6 +8,7 @@
 #include "kinalign/align/judge.h"
 #include "kinalign/align/plan.h"
 #include "kinalign/documents/report_json.h"
+#include "kinalign/formats/take/guarded.h"
 #include "kinalign/formats/take/take_hdf5.h"
 
 #include <fmt/format.h>

@@ -5,6 +5,8 @@
 #include "apps/kinalign/text/node_text.h"
 #include "apps/kinalign/text/summary.h"
 
+#include "kinalign/capture/net/followed_clock.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
