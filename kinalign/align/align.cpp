@@ -91,11 +91,13 @@ AlignmentReport begin_report(const Recording& recording, const AlignPlan& plan) 
   report.frames = plan.header.frames;
   report.reference = recording.streams[plan.reference].name;
   report.rate_hz = plan.streams[plan.reference].rule.rate_hz();
-  for (const RecordedStream& s : recording.streams) {
-    SaidByFile by_file = said_by_file(s, recording);
-    append(report.findings, without_folders(std::move(by_file.findings)));
-    std::move(by_file.marks.begin(), by_file.marks.end(), std::back_inserter(report.marks));
-    Findings found = without_folders(s.findings);
+  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
+    const RecordedStream& s = recording.streams[i];
+    if (const SharedFile* file = newly_read_file(recording, i)) {
+      append(report.findings, without_folders(file->findings));
+      report.marks.insert(report.marks.end(), file->marks.begin(), file->marks.end());
+    }
+    Findings found = without_folders(all_findings(s));
     append(found, judge_stamps(s, options_of(plan.header.parameters, s.name)));
     append(report.findings, said_of(s, recording, std::move(found)));
   }
@@ -217,7 +219,6 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
   auto spaces = KA_TRY(plan_spaces(plan.header, manifest, reference_group));
   KA_TRY(fit_spaces(recording, plan, spaces, progress, jobs));
 
-  AlignmentReport report = begin_report(recording, plan);
   KA_TRY(sink.begin(plan.header));
   SlabMaker slabs =
       KA_TRY(SlabMaker::start(recording, plan, std::vector<bool>(plan.header.groups.size(), true)));
@@ -226,6 +227,11 @@ Result<AlignmentReport> align(const Recording& recording, const Manifest& manife
   KA_TRY(slabs.for_each(
       jobs, [&](TakeSlab& slab) { return pass_slab(job, slab, sink, progress, counts); }));
   if (counts.rows != plan.header.frames) return Failure(other_length(job, counts.rows));
+  KA_TRY(slabs.read_rest([&]() -> Result<void> {
+    if (go_on(progress, "aligning", counts.rows, plan.header.frames)) return {};
+    return Failure(interruption());
+  }));
+  AlignmentReport report = begin_report(recording, plan);
   finish_report(job, slabs, counts, report);
   return report;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every sample of a stream, read and thrown away: what `check` tells of it.
+// Every sample of some streams, read and thrown away: what `check` tells of them.
 #pragma once
 
 #include "kinalign/core/progress.h"
@@ -8,11 +8,16 @@
 #include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"
 
+#include <functional>
+#include <vector>
+
 namespace kinalign {
 
-/// How late its samples were stamped, by the step that alignment takes for its usual one. Fails
-/// where a value can't be read.
-Result<Arrivals> arrivals_of(const RecordedStream& stream, const StreamOptions& options, Role role,
-                             const Progress& progress);
+/// How late the samples of each stream were stamped, by the step that alignment takes for its usual
+/// one (`step_of`, see taken_step()). All streams are read to their ends, side by side. Fails where
+/// a value can't be read.
+Result<std::vector<Arrivals>> arrivals_of(
+    const std::vector<RecordedStream>& streams,
+    const std::function<TakenStep(const RecordedStream&)>& step_of, const Progress& progress);
 
 }  // namespace kinalign

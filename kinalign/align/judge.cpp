@@ -184,13 +184,6 @@ Findings said_of(const RecordedStream& stream, const Recording& recording, Findi
   return findings;
 }
 
-SaidByFile said_by_file(const RecordedStream& stream, const Recording& recording) {
-  const auto reads_it = [&](const RecordedStream& s) { return file_of(s) == file_of(stream); };
-  const auto& streams = recording.streams;
-  const auto first = std::find_if(streams.begin(), streams.end(), reads_it);
-  return first == streams.end() || &*first == &stream ? stream.by_file : SaidByFile{};
-}
-
 Findings judge_start(const RecordedStream& s, const StreamOptions& options,
                      const Arrivals& arrivals) {
   if (s.counted || !options.start_ns) return {};

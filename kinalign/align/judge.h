@@ -23,10 +23,6 @@ Findings judge_start(const RecordedStream& stream, const StreamOptions& options,
 /// Findings of a stream; where another one reads the same file, they name the stream.
 Findings said_of(const RecordedStream& stream, const Recording& recording, Findings findings);
 
-/// What the file says that a stream is read from, unless one before it reads it too: it is told
-/// once.
-SaidByFile said_by_file(const RecordedStream& stream, const Recording& recording);
-
 /// What the grid of `grid_hz` can't carry of one stream.
 Findings judge_content(const RecordedStream& stream, const ResampleCount& count, double grid_hz);
 

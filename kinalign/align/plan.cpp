@@ -36,9 +36,9 @@ std::string spans(const Recording& recording) {
 }
 
 /// What the reader of a stream without samples found wrong, where it found anything.
-Error no_samples(const RecordedStream& s) {
-  Findings all = s.findings;
-  append(all, s.by_file.findings);
+Error no_samples(const RecordedStream& s, const Recording& recording) {
+  Findings all = all_findings(s);
+  if (s.shared_file) append(all, recording.shared_files[*s.shared_file].findings);
   const auto worst = std::max_element(
       all.begin(), all.end(), [](const auto& a, const auto& b) { return a.severity < b.severity; });
   if (worst != all.end() && worst->severity == Severity::error) return worst->what;
@@ -50,7 +50,7 @@ Result<void> find_span(const Recording& recording, AlignPlan& plan) {
   plan.begin = Time::min();
   plan.end = Time::max();
   for (const RecordedStream& s : recording.streams) {
-    if (s.survey.kept() == 0) return Failure(no_samples(s));
+    if (s.survey.kept() == 0) return Failure(no_samples(s, recording));
     plan.begin = std::max(plan.begin, first_of(s));
     plan.end = std::min(plan.end, last_of(s));
   }
@@ -77,8 +77,35 @@ std::uint64_t first_frame(const RecordedStream& s, double step_ns, Time bound, b
   return low;
 }
 
+/// Rows of a pass over the reference that are kept and lie within the common span.
+template <class Frames>
+Result<std::uint64_t> count_in_span(Pass<Frames> pass, const RecordedStream& reference,
+                                    const AlignPlan& plan) {
+  Window window(std::move(pass), reference.clock);
+  std::uint64_t rows = 0;
+  constexpr std::size_t at_once = 4096;
+  for (std::int64_t from = to_ns(plan.begin);; from = window.time_ns.back() + 1) {
+    KA_TRY(window.fill(from, at_once));
+    const auto& stamps = window.time_ns;
+    const auto end = std::upper_bound(stamps.begin(), stamps.end(), to_ns(plan.end));
+    rows += static_cast<std::uint64_t>(end - stamps.begin());
+    if (end != stamps.end() || stamps.empty()) return rows;
+  }
+}
+
+/// A pass of rows that have stamps and no values.
+Pass<PointFrames> stamps_alone(std::shared_ptr<const std::vector<Time>> stamps) {
+  return [stamps = std::move(stamps), is_done = false](PointFrames& block) mutable -> Result<bool> {
+    block = {};
+    if (is_done || stamps->empty()) return false;
+    block.stamps = *stamps;
+    is_done = true;
+    return true;
+  };
+}
+
 /// Rows of the grid: by arithmetic for a fixed step, all that were kept where nothing is cut, else
-/// by a pass over the reference's stamps.
+/// by the reference's stamps, for which it is read where they are not known.
 Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPlan& plan) {
   if (reference.step_ns) {
     return first_frame(reference, *reference.step_ns, plan.end, true) -
@@ -87,19 +114,10 @@ Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPla
   if (first_of(reference) >= plan.begin && last_of(reference) <= plan.end) {
     return reference.survey.kept();
   }
+  if (reference.stamps) return count_in_span(stamps_alone(reference.stamps), reference, plan);
   return std::visit(
       [&](const auto& input) -> Result<std::uint64_t> {
-        auto pass = KA_TRY(input.passes());
-        Window window(std::move(pass), reference.clock);
-        std::uint64_t rows = 0;
-        constexpr std::size_t at_once = 4096;
-        for (std::int64_t from = to_ns(plan.begin);; from = window.time_ns.back() + 1) {
-          KA_TRY(window.fill(from, at_once));
-          const auto& stamps = window.time_ns;
-          const auto end = std::upper_bound(stamps.begin(), stamps.end(), to_ns(plan.end));
-          rows += static_cast<std::uint64_t>(end - stamps.begin());
-          if (end != stamps.end() || stamps.empty()) return rows;
-        }
+        return count_in_span(KA_TRY(input.passes()), reference, plan);
       },
       reference.data);
 }

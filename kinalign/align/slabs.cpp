@@ -87,6 +87,8 @@ struct SlabMaker::State {
   std::vector<StreamRows> streams;
   ImuRows nodes;                     // of one stream, on the way into its group
   std::vector<RotationSigns> signs;  // [groups]
+  std::vector<ReadNext> rests;       // of streams that are to be read to their ends
+  std::uint64_t rest_rows = 0;
   std::uint64_t done = 0;
 
   Result<void> open(std::size_t i);
@@ -105,6 +107,7 @@ Result<void> SlabMaker::State::open(std::size_t i) {
   const bool reference = i == plan->reference;
   if (const auto* clip = std::get_if<ClipInput>(&s.data)) {
     auto pass = KA_TRY(clip->passes());
+    if (s.late_findings) rests.push_back(read_on(pass, s.clock, rest_rows));
     if (reference) {
       streams[i].emplace<ReferenceRows<ClipFrames>>(std::move(pass), s, *plan);
     } else {
@@ -112,6 +115,7 @@ Result<void> SlabMaker::State::open(std::size_t i) {
     }
   } else if (const auto* points = std::get_if<PointInput>(&s.data)) {
     auto pass = KA_TRY(points->passes());
+    if (s.late_findings) rests.push_back(read_on(pass, s.clock, rest_rows));
     if (reference) {
       streams[i].emplace<ReferenceRows<PointFrames>>(std::move(pass), s, *plan);
     } else {
@@ -120,6 +124,7 @@ Result<void> SlabMaker::State::open(std::size_t i) {
   } else {
     const auto& imu = std::get<ImuInput>(s.data);
     auto pass = KA_TRY(imu.passes());
+    if (s.late_findings) rests.push_back(read_on(pass, s.clock, rest_rows));
     streams[i].emplace<ImuResampler>(std::move(pass), s.clock, rule, imu.content);
   }
   return {};
@@ -242,6 +247,10 @@ Result<void> SlabMaker::for_each(std::size_t jobs,
     std::swap(now, next);
   }
   return {};
+}
+
+Result<void> SlabMaker::read_rest(const std::function<Result<void>()>& go) {
+  return read_side_by_side(state_->rests, go);
 }
 
 ResampleCount SlabMaker::content(std::size_t stream) const {

@@ -38,13 +38,6 @@ class Reader {
   /// reader may not be used again.
   virtual Result<void> feed(std::string_view piece, Frames& out) = 0;
 
-  /// Behind the last piece: rows of a piece of what goes on in a further file, which the reader
-  /// opens itself. False where nothing more does.
-  virtual Result<bool> read_further(Frames& out) {
-    (void)out;
-    return false;
-  }
-
   /// The file has ended: appends what is left. Fails where the file stops in its head.
   virtual Result<void> finish(Frames& out) = 0;
 

@@ -160,6 +160,7 @@ std::optional<McapRecord> McapReader::read_record() {
   record_at_ = offset_;
   const RecordHead head = *head_of(rest());
   const std::string_view whole = rest().substr(0, mcap_record_head + head.length);
+  record_size_ = whole.size();
   const std::string_view content = whole.substr(mcap_record_head);
   std::optional<McapRecord> record;
   const bool is_chunk = head.op == McapOp::chunk;
@@ -245,6 +246,7 @@ void McapReader::end_in_record() {
   say(Severity::warning, "a whole record", "the file's end in the midst of one",
       chunk ? "messages of the chunk are read as far as they go, unchecked" : "it is left out");
   record_at_ = offset_;
+  record_size_ = bytes.size();
   in_torn_chunk_ = true;
   if (chunk) chunk_ = unpack_torn(*chunk, most_record);
   consume(bytes.size());

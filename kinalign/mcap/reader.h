@@ -31,12 +31,16 @@ class McapReader {
 
   /// Of the record that next() gave, or of its chunk.
   std::uint64_t at() const { return record_at_; }
+  /// Bytes of that record or chunk; of one at which the file breaks off as many as there are.
+  std::uint64_t size() const { return record_size_; }
   /// Ends as a file does that was closed. Else it is torn, however much of it was read.
   bool closed() const { return state_ == State::closed; }
   bool is_mcap() const { return state_ != State::foreign; }
   /// No checksum of a chunk covers the last record: it stands in the chunk at which the file breaks
   /// off, in one without a checksum, or in none.
   bool unchecked() const { return in_torn_chunk_ || uncovered_; }
+  /// The last record stands in the chunk at which the file breaks off.
+  bool in_torn_chunk() const { return in_torn_chunk_; }
   /// The data section's checksum, read at its end, covers every message of the file.
   bool all_checked() const { return all_checked_; }
   /// The summary's checksum, read at the file's end, does not fit.
@@ -73,7 +77,7 @@ class McapReader {
   std::string buffer_;
   std::size_t taken_ = 0;     // bytes of it that were read
   std::uint64_t offset_ = 0;  // of what comes then, in the file
-  std::uint64_t record_at_ = 0;
+  std::uint64_t record_at_ = 0, record_size_ = 0;
   std::uint32_t crc_ = 0;   // of the data section, then of the summary
   bool crc_counts_ = true;  // nothing of that was skipped
   std::string chunk_;       // its records

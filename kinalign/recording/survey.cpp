@@ -47,17 +47,17 @@ std::vector<Counted> all_of(const LastCounts& last,
   return all;
 }
 
-/// Collects what the records of one file say.
-class Surveyor {
- public:
-  explicit Surveyor(const McapReader& reader) : reader_(reader) {}
+}  // namespace
 
-  Result<void> take(const McapRecord& record) {
+class RecordingSurveyor::State {
+ public:
+  explicit State(const McapReader& reader) : reader_(reader) {}
+
+  void take(const McapRecord& record) {
     std::visit([this](const auto& one) { add(one); }, record);
-    return {};
   }
 
-  RecordingSurvey finish(const std::string& path) {
+  RecordingSurvey finish(const std::string& path, std::uint64_t bytes) {
     for (auto& [id, channel] : channels_) survey_.channels.push_back(std::move(channel));
     std::stable_sort(
         survey_.channels.begin(), survey_.channels.end(),
@@ -71,6 +71,11 @@ class Surveyor {
     for (Finding& finding : survey_.findings) finding.what.file = path;
     append(survey_.findings, judge_strays(path, guard_));
     append(survey_.findings, kinects_.findings(path));
+    survey_.bytes = bytes;
+    if (!reader_.closed()) {
+      survey_.torn.push_back(path);
+      survey_.ending = std::max(survey_.ending, Ending::torn);
+    }
     return std::move(survey_);
   }
 
@@ -169,7 +174,13 @@ class Surveyor {
   RecordingSurvey survey_;
 };
 
-}  // namespace
+RecordingSurveyor::RecordingSurveyor(const McapReader& reader)
+    : state_(std::make_unique<State>(reader)) {}
+RecordingSurveyor::~RecordingSurveyor() = default;
+void RecordingSurveyor::take(const McapRecord& record) { state_->take(record); }
+RecordingSurvey RecordingSurveyor::finish(const std::string& path, std::uint64_t bytes) {
+  return state_->finish(path, bytes);
+}
 
 std::uint32_t add_to(std::uint32_t contents, const McapMessage& message) {
   std::string head;
@@ -204,21 +215,18 @@ Result<void> read_recording(FileSystem& files, const std::string& path, McapRead
 
 Result<RecordingSurvey> survey_recording(const PieceSource& source, const Progress& progress) {
   McapReader reader;
-  Surveyor surveyor(reader);
+  RecordingSurveyor surveyor(reader);
   std::uint64_t bytes = 0;
   const auto count = [&](std::string_view what, std::uint64_t done, std::uint64_t total) {
     bytes = done;
     return go_on(progress, what, done, total);
   };
-  KA_TRY(read_recording(
-      source, reader, [&](const McapRecord& record) { return surveyor.take(record); }, count));
-  RecordingSurvey survey = surveyor.finish(source.path);
-  survey.bytes = bytes;
-  if (!reader.closed()) {
-    survey.torn.push_back(source.path);
-    survey.ending = std::max(survey.ending, Ending::torn);
-  }
-  return survey;
+  const auto take = [&](const McapRecord& record) -> Result<void> {
+    surveyor.take(record);
+    return {};
+  };
+  KA_TRY(read_recording(source, reader, take, count));
+  return surveyor.finish(source.path, bytes);
 }
 
 Findings judge_strays(const std::string& path, const NumberGuard& guard) {

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -51,6 +52,25 @@ struct RecordingSurvey {
   std::uint64_t bytes = 0;                                    // of the file
   Findings findings;
   bool flawed = false;  // the reader found something of these: damage, or a torn end
+};
+
+/// Surveys one file from its records, for a caller that reads them for other purposes too.
+class RecordingSurveyor {
+ public:
+  /// `reader`: that the records come from; it must outlive the surveyor.
+  explicit RecordingSurveyor(const McapReader& reader);
+  RecordingSurveyor(const RecordingSurveyor&) = delete;
+  RecordingSurveyor& operator=(const RecordingSurveyor&) = delete;
+  ~RecordingSurveyor();
+
+  /// Every record of the file, in its order.
+  void take(const McapRecord& record);
+  /// After the last record. `bytes`: of the file.
+  RecordingSurvey finish(const std::string& path, std::uint64_t bytes);
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 /// The CRC-32 of messages: channel, number, both times and payload of each, in their order.

@@ -84,17 +84,15 @@ void add(RecordingSurvey&& more, RecordingSurvey& survey) {
 
 }  // namespace
 
-Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& parts,
-                                     const Progress& progress) {
-  RecordingSurvey survey = KA_TRY(survey_recording(files, parts.front().path, progress));
+RecordingSurvey join_surveys(const RecordingParts& parts, std::vector<RecordingSurvey> surveys) {
+  RecordingSurvey survey = std::move(surveys.front());
   if (parts.size() == 1) return survey;
   MessageNumbers numbers;
   for (const RecordingPart& part : parts) numbers.add_all(part.numbers);
   EndTogether end = EndTogether().with(survey.ending, parts.front().facts);
-  for (auto part = parts.begin() + 1; part != parts.end(); ++part) {
-    RecordingSurvey more = KA_TRY(survey_recording(files, part->path, progress));
-    end = end.with(more.ending, part->facts);
-    add(std::move(more), survey);
+  for (std::size_t k = 1; k < parts.size(); ++k) {
+    end = end.with(surveys[k].ending, parts[k].facts);
+    add(std::move(surveys[k]), survey);
   }
   survey.messages = 0;
   for (ChannelSurvey& one : survey.channels) {
@@ -109,6 +107,15 @@ Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& pa
                    [](const auto& a, const auto& b) { return a.channel.topic < b.channel.topic; });
   survey.ending = end.ending;
   return survey;
+}
+
+Result<RecordingSurvey> survey_parts(FileSystem& files, const RecordingParts& parts,
+                                     const Progress& progress) {
+  std::vector<RecordingSurvey> surveys;
+  for (const RecordingPart& part : parts) {
+    surveys.push_back(KA_TRY(survey_recording(files, part.path, progress)));
+  }
+  return join_surveys(parts, std::move(surveys));
 }
 
 }  // namespace kinalign

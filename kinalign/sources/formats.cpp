@@ -13,7 +13,6 @@
 #include "kinalign/formats/table/layout.h"
 #include "kinalign/formats/table/table_reader.h"
 #include "kinalign/formats/unknown_file.h"
-#include "kinalign/recording/streams/device_reader.h"
 
 #include <algorithm>
 #include <array>
@@ -108,7 +107,6 @@ FoundFormat table_format(TableLayout layout, const Source& source) {
   return {std::move(name),
           [layout = std::move(layout), source] { return make_table_reader(layout, source); },
           {},
-          {},
           {}};
 }
 
@@ -138,20 +136,10 @@ FoundFormat watched(FoundFormat found) {
   return found;
 }
 
-Result<FoundFormat> recording_format(const Source& source, const Progress& progress) {
-  RecordedDevice device = KA_TRY(listen(*source.files, source.options, source.file, progress));
-  return watched({"recording",
-                  std::move(device.make),
-                  std::move(device.further_files),
-                  {},
-                  device.heard->clock.time,
-                  std::move(device.by_file)});
-}
-
 Result<FoundFormat> program_format(const Format& format, const Source& source) {
   KA_TRY(check_selection(format, source));
   FoundFormat out{
-      std::string(format.name), [&format, source] { return format.make(source); }, {}, {}, {}};
+      std::string(format.name), [&format, source] { return format.make(source); }, {}, {}};
   if (format.survey != nullptr) {
     out.survey = [&format, source](const Progress& progress) {
       return format.survey(source, progress);
@@ -204,11 +192,9 @@ std::vector<std::string_view> format_names() {
 }
 
 Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
-                                const StreamFile& file, std::string_view head,
-                                const Progress& progress) {
+                                const StreamFile& file, std::string_view head) {
   const Source source{&files, options, file};
   if (!options.layout.empty()) return named_format(source);
-  if (looks_like_recording(head)) return recording_format(source, progress);
   for (const Format& format : formats) {
     if (format.looks(head, file.path)) return program_format(format, source);
   }

@@ -22,20 +22,16 @@ using MakeReader = std::function<Result<AnyReader>()>;
 using SurveyClip = std::function<Result<ClipSurvey>(const Progress& progress)>;
 
 struct FoundFormat {
-  std::string name;  // "bvh", "trc", "recording", or a layout's
+  std::string name;  // "bvh", "trc", or a layout's
   MakeReader make;
   std::vector<std::string> further_files;  // that the reader opens itself
   SurveyClip survey;                       // empty: rows are read
-  std::optional<TimeModel> clock;          // of the device's stamps; absent: as the options say
-  SaidByFile by_file{};                    // that several streams may be read from
 };
 
 /// Decides by `options.layout` (a format's name, a built-in layout's, or the path of a layout) or,
-/// where that is empty, by `head`, the file's first bytes. Fails with the formats known. A
-/// recording is read once already, to learn the device's clock.
+/// where that is empty, by `head`, the file's first bytes. Fails with the formats known.
 Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
-                                const StreamFile& file, std::string_view head,
-                                const Progress& progress = {});
+                                const StreamFile& file, std::string_view head);
 
 /// The names that `layout` may have besides paths.
 std::vector<std::string_view> format_names();

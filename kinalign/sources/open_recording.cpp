@@ -70,25 +70,44 @@ struct NamedFile {
   std::string name() const { return options->name + (file->node.empty() ? "" : " " + file->node); }
 };
 
-/// With paths as a manifest in `folder` has them.
-Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, const NamedFile& named,
-                               const Progress& progress) {
-  StreamOptions options = *named.options;
+/// A file, with its options and paths as a manifest in `folder` has them.
+struct PlacedFile {
+  StreamOptions options;
+  StreamFile file;
+};
+PlacedFile place_of(const std::string& folder, const NamedFile& named) {
+  PlacedFile place{*named.options, {path_in(folder, named.file->path), named.file->node}};
+  StreamOptions& options = place.options;
   if (options.own_layout()) options.layout = path_in(folder, options.layout);
   if (!options.skeleton.empty()) options.skeleton = path_in(folder, options.skeleton);
   if (options.files.size() > 1) options.start_ns.reset();  // start_together
-  const StreamFile file{path_in(folder, named.file->path), named.file->node};
-  const SurveyJob job{&files, &options, &progress, version_of(file.path)};
-  SurveyedFile out = KA_TRY(survey_file(job, file));
+  return place;
+}
+
+/// Names its files as the take does and sets its clock. What the files of nodes share, such as a
+/// layout, is named with the first of them.
+SurveyedFile named_as_said(SurveyedFile out, const std::string& folder, const NamedFile& named,
+                           const StreamOptions& options) {
   for (std::size_t i = 0; i < out.paths.size(); ++i) {
     const std::string* as_named = &named.file->path;
     if (i > 0 && out.paths[i] == options.layout) as_named = &named.options->layout;
     if (i > 0 && out.paths[i] == options.skeleton) as_named = &named.options->skeleton;
     out.stream.files[i].name = remembered_path(folder, *as_named, out.paths[i]);
   }
+  if (named.file != &named.options->files.front()) {
+    out.paths.resize(1);
+    out.stream.files.resize(1);
+  }
   out.stream.clock =
       out.clock ? moved_by(*out.clock, options) : clock_of(options, out.stream.survey);
   return out;
+}
+
+Result<SurveyedFile> open_file(FileSystem& files, const std::string& folder, const NamedFile& named,
+                               const Progress& progress) {
+  const PlacedFile place = place_of(folder, named);
+  const SurveyJob job{&files, &place.options, &progress, version_of(place.file.path)};
+  return named_as_said(KA_TRY(survey_file(job, place.file)), folder, named, place.options);
 }
 
 /// Of two files that a take would call by one name, `rebuild` could not tell which is which, and a
@@ -156,22 +175,6 @@ Result<void> check_texts(const Manifest& manifest) {
   return {};
 }
 
-/// Nodes' files share a layout: one stream names it once.
-void drop_repeated(std::vector<SurveyedFile>& opened) {
-  for (std::size_t i = 0; i < opened.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (opened[k].stream.name != opened[i].stream.name) continue;
-      const auto& before = opened[k].stream.files;
-      const auto repeated = [&before](const InputFacts& facts) {
-        const auto same = [&](const InputFacts& other) { return other.name == facts.name; };
-        return std::any_of(before.begin(), before.end(), same);
-      };
-      auto& files = opened[i].stream.files;
-      files.erase(std::remove_if(files.begin() + 1, files.end(), repeated), files.end());
-    }
-  }
-}
-
 /// Their files.
 Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& streams) {
   std::vector<NamedFile> named;
@@ -184,22 +187,91 @@ Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& str
   return named;
 }
 
+/// Files that are opened in one go: the streams of one recording, or one file.
+struct Group {
+  std::string path;
+  bool is_recording = false;
+  std::vector<std::size_t> named;  // which files
+};
+std::vector<Group> groups_of(FileSystem& files, const std::string& folder,
+                             const std::vector<NamedFile>& named) {
+  std::vector<Group> groups;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    const std::string path = path_in(folder, named[i].file->path);
+    const auto known = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
+      return g.is_recording && g.path == path && named[i].options->layout.empty();
+    });
+    if (known != groups.end()) {
+      known->named.push_back(i);
+      continue;
+    }
+    const auto recording = is_recording(files, path);  // who can't read it says so later
+    groups.push_back(
+        {path, named[i].options->layout.empty() && recording && *recording, {i}});
+  }
+  return groups;
+}
+
+/// What is opened, by file.
+struct Opening {
+  FileSystem* files = nullptr;
+  const std::string* folder = nullptr;
+  const std::vector<NamedFile>* named = nullptr;
+  std::shared_ptr<RecordingSource> given;
+  std::vector<Result<SurveyedFile>> opened;
+
+  void open_group(const Group& group, const Progress& progress) {
+    if (!group.is_recording) {
+      const std::size_t i = group.named.front();
+      opened[i] = open_file(*files, *folder, (*named)[i], progress);
+      return;
+    }
+    std::vector<PlacedFile> places;
+    std::vector<StreamOptions> wanted;
+    for (const std::size_t i : group.named) {
+      places.push_back(place_of(*folder, (*named)[i]));
+      wanted.push_back(places.back().options);
+      wanted.back().files = {places.back().file};
+    }
+    const auto source = given && given->path() == group.path
+                            ? given
+                            : RecordingSource::open(*files, group.path,
+                                                    RecordingSource::Devices::heard, wanted,
+                                                    progress);
+    for (std::size_t k = 0; k < group.named.size(); ++k) {
+      const std::size_t i = group.named[k];
+      opened[i] = source ? open_device(places[k], (*named)[i], *source, progress)
+                         : Result<SurveyedFile>(Failure(source.error()));
+    }
+  }
+
+ private:
+  Result<SurveyedFile> open_device(const PlacedFile& place, const NamedFile& one,
+                                   const std::shared_ptr<RecordingSource>& source,
+                                   const Progress& progress) const {
+    const SurveyJob job{files, &place.options, &progress, {}};
+    return named_as_said(KA_TRY(survey_device(job, place.file, source)), *folder, one,
+                         place.options);
+  }
+};
+
 /// Side by side; what becomes of each.
 std::vector<Result<SurveyedFile>> open_each(FileSystem& files, const std::string& folder,
                                             const std::vector<NamedFile>& named,
-                                            const Progress& progress, std::size_t jobs) {
-  SharedProgress shared(progress, named.size());
-  std::vector<Result<SurveyedFile>> opened(named.size());
-  parallel_for(named.size(), jobs, [&](std::size_t i) {
-    opened[i] = open_file(files, folder, named[i], shared.part(i));
-  });
-  return opened;
+                                            const OpenWith& with) {
+  const std::vector<Group> groups = groups_of(files, folder, named);
+  SharedProgress shared(with.progress, groups.size());
+  Opening opening{&files, &folder, &named, with.recording,
+                  std::vector<Result<SurveyedFile>>(named.size())};
+  parallel_for(groups.size(), with.jobs,
+               [&](std::size_t g) { opening.open_group(groups[g], shared.part(g)); });
+  return std::move(opening.opened);
 }
 
 Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string& folder,
                                            const std::vector<StreamOptions>& streams,
-                                           const Progress& progress, std::size_t jobs) {
-  auto opened = open_each(files, folder, KA_TRY(named_files(streams)), progress, jobs);
+                                           const OpenWith& with) {
+  auto opened = open_each(files, folder, KA_TRY(named_files(streams)), with);
   std::vector<SurveyedFile> out;
   out.reserve(opened.size());
   for (auto& one : opened) out.push_back(KA_TRY(std::move(one)));
@@ -207,42 +279,49 @@ Result<std::vector<SurveyedFile>> open_all(FileSystem& files, const std::string&
   return out;
 }
 
-std::vector<RecordedStream> streams_of(std::vector<SurveyedFile> opened) {
-  drop_repeated(opened);
-  std::vector<RecordedStream> out;
-  out.reserve(opened.size());
-  for (SurveyedFile& one : opened) out.push_back(std::move(one.stream));
+/// With the files that several of the streams are read from.
+Recording joined(const Manifest& manifest, std::vector<SurveyedFile> opened) {
+  Recording out{manifest.subject, manifest.action, {}, {}};
+  std::vector<const RecordingSource*> sources;
+  for (SurveyedFile& one : opened) {
+    if (one.recording) {
+      const auto known = std::find(sources.begin(), sources.end(), one.recording.get());
+      one.stream.shared_file = static_cast<std::size_t>(known - sources.begin());
+      if (known == sources.end()) {
+        sources.push_back(one.recording.get());
+        out.shared_files.push_back(one.recording->shared());
+      }
+    }
+    out.streams.push_back(std::move(one.stream));
+  }
   return out;
 }
 
 /// Fails where a take could not name the files.
 Result<Recording> recording_of(const Manifest& manifest, std::vector<SurveyedFile> opened) {
   KA_TRY(check_names(opened));
-  return Recording{manifest.subject, manifest.action, streams_of(std::move(opened))};
+  return joined(manifest, std::move(opened));
 }
 
 }  // namespace
 
-Result<std::vector<RecordedStream>> open_streams(FileSystem& files,
-                                                 const std::vector<StreamOptions>& streams,
-                                                 const Progress& progress, std::size_t jobs) {
-  return streams_of(KA_TRY(open_all(files, "", streams, progress, jobs)));
+Result<Recording> open_streams(FileSystem& files, const std::vector<StreamOptions>& streams,
+                               const OpenWith& with) {
+  return joined({}, KA_TRY(open_all(files, "", streams, with)));
 }
 
 Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
-                                 const std::string& folder, const Progress& progress,
-                                 std::size_t jobs) {
+                                 const std::string& folder, const OpenWith& with) {
   KA_TRY(check_texts(manifest));
-  auto opened = KA_TRY(open_all(files, folder, manifest.streams, progress, jobs));
+  auto opened = KA_TRY(open_all(files, folder, manifest.streams, with));
   return recording_of(manifest, std::move(opened));
 }
 
 Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifest,
-                                      const std::string& folder, const Progress& progress,
-                                      std::size_t jobs) {
+                                      const std::string& folder, const OpenWith& with) {
   KA_TRY(check_texts(manifest));
   const std::vector<NamedFile> named = KA_TRY(named_files(manifest.streams));
-  auto each = open_each(files, folder, named, progress, jobs);
+  auto each = open_each(files, folder, named, with);
   std::vector<SurveyedFile> opened;
   Findings left_out;
   for (std::size_t i = 0; i < each.size(); ++i) {
@@ -257,6 +336,25 @@ Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifes
   }
   for (const StreamOptions& options : manifest.streams) KA_TRY(start_together(options, opened));
   return OpenedInPart{KA_TRY(recording_of(manifest, std::move(opened))), std::move(left_out)};
+}
+
+Result<void> read_through(const Recording& recording, const Progress& progress) {
+  std::vector<ReadNext> passes;
+  std::uint64_t rows = 0, all = 0;
+  for (const RecordedStream& stream : recording.streams) {
+    if (!stream.late_findings || *stream.late_findings) continue;
+    all += stream.survey.samples;
+    KA_TRY(std::visit(
+        [&](const auto& input) -> Result<void> {
+          passes.push_back(read_on(KA_TRY(input.passes()), stream.clock, rows));
+          return {};
+        },
+        stream.data));
+  }
+  return read_side_by_side(passes, [&]() -> Result<void> {
+    if (go_on(progress, "reading", rows, all)) return {};
+    return Failure(interruption());
+  });
 }
 
 }  // namespace kinalign

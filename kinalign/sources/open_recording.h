@@ -5,27 +5,33 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/take/manifest.h"
 #include "kinalign/take/recording.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace kinalign {
 
+struct OpenWith {
+  Progress progress{};  // never called on two threads at once
+  /// Threads to use: files are read side by side, which changes nothing but the time.
+  std::size_t jobs = 1;
+  /// A recording that was opened already, if the streams are read from it.
+  std::shared_ptr<RecordingSource> recording{};
+};
+
 /// The recorded streams of the given ones: one each, or one for each file of nodes. Paths are taken
-/// as they stand. `files` must outlive the streams. Files are read on up to `jobs` threads, which
-/// changes nothing but the time; the first that fails, in their order, is the error. `progress` is
-/// never called on two threads at once.
-Result<std::vector<RecordedStream>> open_streams(FileSystem& files,
-                                                 const std::vector<StreamOptions>& streams,
-                                                 const Progress& progress = {},
-                                                 std::size_t jobs = 1);
+/// as they stand. `files` must outlive the streams. A recording is read once, however many streams
+/// it has. Of several failures the error is that of the first file, in their order.
+Result<Recording> open_streams(FileSystem& files, const std::vector<StreamOptions>& streams,
+                               const OpenWith& with = {});
 
 /// All streams of a manifest; relative paths are relative to `folder` ("" or ending in '/').
 Result<Recording> open_recording(FileSystem& files, const Manifest& manifest,
-                                 const std::string& folder, const Progress& progress = {},
-                                 std::size_t jobs = 1);
+                                 const std::string& folder, const OpenWith& with = {});
 
 /// The same of what can be read, and of each stream or node that can't a warning why.
 struct OpenedInPart {
@@ -33,7 +39,9 @@ struct OpenedInPart {
   Findings left_out;
 };
 Result<OpenedInPart> open_what_can_be(FileSystem& files, const Manifest& manifest,
-                                      const std::string& folder, const Progress& progress = {},
-                                      std::size_t jobs = 1);
+                                      const std::string& folder, const OpenWith& with = {});
+
+/// Reads the streams to their ends whose late findings have not come yet, side by side.
+Result<void> read_through(const Recording& recording, const Progress& progress = {});
 
 }  // namespace kinalign

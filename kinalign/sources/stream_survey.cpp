@@ -49,7 +49,7 @@ struct Reading {
       KA_TRY(unchanged(file.path(), version));
       if (!piece.empty()) {
         KA_TRY(reader->feed(piece, block));
-      } else if (!KA_TRY(reader->read_further(block))) {
+      } else {
         ended = true;
         KA_TRY(reader->finish(block));
       }
@@ -96,12 +96,6 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
       return Failure(interruption(file.path()));
     }
     piece = KA_TRY(file.next());
-  }
-  while (KA_TRY(reader->read_further(block))) {
-    take_block();
-    if (!go_on(*job.progress, "reading", bytes, file.size())) {
-      return Failure(interruption(file.path()));
-    }
   }
   KA_TRY(reader->finish(block));
   take_block();
@@ -162,16 +156,49 @@ Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path
   return out;
 }
 
+/// Passes of a device. The first one that is read to its end has the findings about its values.
+template <class Frames>
+Passes<Frames> device_passes(DevicePasses<Frames> passes,
+                             typename DevicePass<Frames>::Header header, std::string path,
+                             std::shared_ptr<std::optional<Findings>> late) {
+  struct Reading {
+    DevicePass<Frames> pass;
+    decltype(sizes_of(Frames())) sizes;
+  };
+  return [=]() -> Result<Pass<Frames>> {
+    auto reading = std::make_shared<Reading>(Reading{passes(), sizes_of(Frames())});
+    return Pass<Frames>([=](Frames& block) -> Result<bool> {
+      if (KA_TRY(reading->pass.next(block))) {
+        reading->sizes.add(block);
+        return true;
+      }
+      if (*late) return false;
+      Findings found = reading->pass.findings();
+      append(found, reading->sizes.judge(header, path));
+      *late = std::move(found);
+      return false;
+    });
+  };
+}
+
+/// Reads a stream to its end, for its late findings.
+template <class Frames>
+Result<void> read_through(const Passes<Frames>& passes) {
+  const Pass<Frames> pass = KA_TRY(passes());
+  Frames block;
+  while (KA_TRY(pass(block))) {
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) {
   InputFile file = KA_TRY(InputFile::open(*job.files, named.path));
   const std::string head(KA_TRY(file.next()));
-  const FoundFormat format =
-      KA_TRY(find_format(*job.files, *job.options, named, head, *job.progress));
+  const FoundFormat format = KA_TRY(find_format(*job.files, *job.options, named, head));
   SurveyedFile out;
   out.paths = {named.path};
-  out.clock = format.clock;
   if (format.survey) {
     out.stream = KA_TRY(survey_clip(job, named.path, format));
   } else {
@@ -180,10 +207,43 @@ Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) 
         [&](auto& any) { return survey(job, std::move(file), head, format, std::move(any)); },
         reader));
   }
-  out.stream.by_file = format.by_file;
   for (const std::string& further : format.further_files) {
     out.stream.files.push_back(KA_TRY(facts_of(*job.files, further, *job.progress)));
     out.paths.push_back(further);
+  }
+  return out;
+}
+
+Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named,
+                                   const std::shared_ptr<RecordingSource>& recording) {
+  DeviceStream made = KA_TRY(recording->stream(*job.options, named));
+  SurveyedFile out;
+  out.recording = recording;
+  out.clock = std::move(made.clock);
+  RecordedStream& stream = out.stream;
+  stream.name = job.options->name;
+  stream.format = "recording";
+  stream.survey = made.survey;
+  stream.stamps = std::move(made.stamps);
+  stream.findings = std::move(made.findings);
+  stream.late_findings = std::make_shared<std::optional<Findings>>();
+  std::visit(
+      [&]<class Frames>(const DevicePasses<Frames>& passes) {
+        const auto& header = std::get<typename DevicePass<Frames>::Header>(made.header);
+        stream.data = input_of(
+            header, device_passes<Frames>(passes, header, named.path, stream.late_findings));
+      },
+      made.passes);
+  if (stream.survey.samples == 0) {
+    KA_TRY(std::visit([](const auto& input) { return read_through(input.passes); }, stream.data));
+  }
+  for (std::size_t i = 0; i < recording->facts().size(); ++i) {
+    stream.files.push_back(recording->facts()[i]);
+    out.paths.push_back(recording->parts()[i].path);
+  }
+  if (!made.skeleton_path.empty()) {
+    stream.files.push_back(KA_TRY(facts_of(*job.files, made.skeleton_path, *job.progress)));
+    out.paths.push_back(made.skeleton_path);
   }
   return out;
 }

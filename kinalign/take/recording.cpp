@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <utility>
 
 namespace kinalign {
@@ -60,6 +61,32 @@ std::string stream_label(const RecordedStream& s) {
 std::int64_t usual_step_ns(const RecordedStream& s, const StreamOptions& options) {
   if (options.rate_hz > 0.0) return step_of(1e9 / options.rate_hz);
   return step_of(s.step_ns.value_or(static_cast<double>(s.survey.median_step_ns)));
+}
+
+Findings all_findings(const RecordedStream& stream) {
+  Findings all = stream.findings;
+  if (stream.late_findings && *stream.late_findings) append(all, **stream.late_findings);
+  return all;
+}
+
+const SharedFile* newly_read_file(const Recording& recording, std::size_t stream) {
+  const auto file = recording.streams[stream].shared_file;
+  const auto begin = recording.streams.begin();
+  const bool is_known = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(stream),
+                                    [&](const RecordedStream& s) { return s.shared_file == file; });
+  return file && !is_known ? &recording.shared_files[*file] : nullptr;
+}
+
+Result<void> read_side_by_side(const std::vector<ReadNext>& passes,
+                               const std::function<Result<void>()>& go) {
+  std::set<std::pair<std::int64_t, std::size_t>> reached;  // how far, and which pass
+  for (std::size_t i = 0; i < passes.size(); ++i) reached.emplace(INT64_MIN, i);
+  while (!reached.empty()) {
+    const std::size_t i = reached.extract(reached.begin()).value().second;
+    if (const auto at = KA_TRY(passes[i]())) reached.emplace(*at, i);
+    KA_TRY(go());
+  }
+  return {};
 }
 
 RecordedStream recorded(std::string name, Clip clip) {

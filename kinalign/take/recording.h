@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -64,8 +65,8 @@ struct TakeMark {
   bool operator==(const TakeMark&) const = default;
 };
 
-/// What a file says, whichever of its streams is read.
-struct SaidByFile {
+/// A file that several streams are read from, such as a recording.
+struct SharedFile {
   Findings findings;            // of the file as a whole
   std::vector<TakeMark> marks;  // in the order of their arrival
 };
@@ -81,8 +82,13 @@ struct RecordedStream {
   bool counted = false;
   TimeModel clock;  // from those to the take's axis
   std::vector<InputFacts> files;
-  Findings findings;   // of the reader
-  SaidByFile by_file;  // each stream that reads it has the same
+  Findings findings;  // of the reader
+  /// Of a stream that opening has not read through: findings about its values, absent until a pass
+  /// has been read to its end. Copies of such a pass share their place. nullptr: none come.
+  std::shared_ptr<std::optional<Findings>> late_findings;
+  /// Of such a stream: the stamp of each row, in their order.
+  std::shared_ptr<const std::vector<Time>> stamps;
+  std::optional<std::size_t> shared_file;  // of the Recording, that it is read from
 };
 
 /// The stream's first and last stamp on the take's axis.
@@ -95,10 +101,37 @@ std::string stream_label(const RecordedStream& stream);
 /// The usual step between samples in ns: the stated one, else the median. At most 30 years.
 std::int64_t usual_step_ns(const RecordedStream& stream, const StreamOptions& options);
 
+/// The reader's findings and, behind them, the late ones that have come.
+Findings all_findings(const RecordedStream& stream);
+
 struct Recording {
   std::string subject, action;  // empty where nothing is known
   std::vector<RecordedStream> streams;
+  std::vector<SharedFile> shared_files;
 };
+
+/// The shared file of that stream where no stream before it is read from it; else nullptr.
+const SharedFile* newly_read_file(const Recording& recording, std::size_t stream);
+
+/// One of several passes that are read side by side: reads its next block and returns the stamp of
+/// the block's last sample on the take's axis, ns; absent behind the last block.
+using ReadNext = std::function<Result<std::optional<std::int64_t>>()>;
+
+/// Reads on where `pass` has come to, and counts its rows. `clock` and `rows` must outlive it.
+template <class Frames>
+ReadNext read_on(Pass<Frames> pass, const TimeModel& clock, std::uint64_t& rows) {
+  return [pass = std::move(pass), &clock, &rows]() -> Result<std::optional<std::int64_t>> {
+    Frames block;
+    if (!KA_TRY(pass(block))) return std::optional<std::int64_t>();
+    rows += block.size();
+    return std::optional(to_ns(take_time(clock, block.stamps.back())));
+  };
+}
+
+/// Reads all passes to their ends, always the one that has come least far: streams of one recording
+/// then share its chunks. Calls `go` after each block, which may fail.
+Result<void> read_side_by_side(const std::vector<ReadNext>& passes,
+                               const std::function<Result<void>()>& go);
 
 /// Streams that lie in memory: surveyed here, for tests and small jobs.
 RecordedStream recorded(std::string name, Clip clip);

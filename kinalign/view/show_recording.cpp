@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/show_recording.h"
 
-#include "kinalign/recording/survey.h"
 #include "kinalign/view/shown_file.h"
 #include "kinalign/view/shown_pace.h"
 #include "kinalign/view/shown_rows.h"
@@ -10,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -162,61 +162,64 @@ Result<std::unique_ptr<Showing>> begin_stream(const RecordedStream& stream, Show
 }
 
 /// The recording's own JSON: marks, counts, the host's clocks.
-class JsonChannels {
+class ShowJson final : public Showing {
  public:
-  explicit JsonChannels(ShownFile& out) : out_(out) {}
+  ShowJson(MessagePass pass, std::map<std::uint16_t, std::uint16_t> channels)
+      : pass_(std::move(pass)), channels_(std::move(channels)) {}
 
-  Result<void> take(const McapRecord& record) {
-    if (const auto* schema = std::get_if<McapSchema>(&record)) {
-      schemas_[schema->id] = *schema;
-    } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
-      return add(*channel);
-    } else if (const auto* message = std::get_if<McapMessage>(&record)) {
-      const auto found = copied_.find(message->channel);
-      if (found == copied_.end() || message->log_time > INT64_MAX) return {};
-      const Time at = utc_time(static_cast<std::int64_t>(message->log_time));
-      return out_.add(found->second, at, at, message->data);
+  static Result<std::unique_ptr<Showing>> begin(const RecordingSource& recording, ShownFile& out) {
+    std::map<std::uint16_t, std::uint16_t> channels;  // its id -> ours
+    std::vector<std::uint16_t> ids;
+    for (const JsonChannel& one : recording.json_channels()) {
+      channels[one.id] = KA_TRY(out.add_channel(one.topic, one.schema));
+      ids.push_back(one.id);
+    }
+    auto json = std::make_unique<ShowJson>(recording.messages_of(ids), std::move(channels));
+    KA_TRY(json->fill());
+    return std::unique_ptr<Showing>(std::move(json));
+  }
+
+  std::optional<Time> next() const override {
+    if (row_ == messages_.size()) return std::nullopt;
+    return utc_time(static_cast<std::int64_t>(messages_[row_].log_time));
+  }
+  Result<void> show(ShownFile& out) override {
+    const Message& message = messages_[row_];
+    const Time at = *next();
+    KA_TRY(out.add(channels_.at(message.channel), at, at, message.json));
+    ++row_;
+    return fill();
+  }
+
+ private:
+  struct Message {
+    std::uint16_t channel = 0;
+    std::uint64_t log_time = 0;
+    std::string json;
+  };
+
+  Result<void> fill() {
+    while (!ended_ && row_ == messages_.size()) {
+      messages_.clear();
+      row_ = 0;
+      ended_ = !KA_TRY(pass_.next_chunk([this](const ChunkMessage& message) -> Result<void> {
+        messages_.push_back({message.channel, message.log_time, std::string(message.data)});
+        return {};
+      }));
     }
     return {};
   }
 
- private:
-  Result<void> add(const McapChannel& channel) {
-    const auto schema = schemas_.find(channel.schema_id);
-    if (channel.message_encoding != "json" || copied_.contains(channel.id)) return {};
-    if (schema == schemas_.end()) return {};
-    copied_[channel.id] = KA_TRY(out_.add_channel(channel.topic, schema->second));
-    return {};
-  }
-
-  ShownFile& out_;
-  std::map<std::uint16_t, McapSchema> schemas_;
-  std::map<std::uint16_t, std::uint16_t> copied_;  // its id -> ours
+  MessagePass pass_;
+  std::map<std::uint16_t, std::uint16_t> channels_;
+  std::vector<Message> messages_;  // of a chunk
+  std::size_t row_ = 0;
+  bool ended_ = false;
 };
 
-/// Of what stands in two files one copy, as stands_elsewhere() chooses.
-Result<void> copy_json(FileSystem& files, const RecordingParts& parts, const Progress& progress,
-                       ShownFile& shown) {
-  JsonChannels channels(shown);
-  for (std::size_t part = 0; part < parts.size(); ++part) {
-    McapReader reader;
-    NumberGuard guard;
-    const auto take = [&](const McapRecord& record) -> Result<void> {
-      const auto* message = std::get_if<McapMessage>(&record);
-      const bool is_out =
-          message != nullptr &&
-          ((parts[part].is_ours() && !guard.believes(*message, reader.unchecked())) ||
-           stands_elsewhere(parts, part, *message));
-      if (is_out) return {};
-      return channels.take(record);
-    };
-    KA_TRY(read_recording(files, parts[part].path, reader, take, progress));
-  }
-  return {};
-}
-
-/// All streams by turns, in the order of their samples' times.
-Result<void> show_streams(const std::vector<RecordedStream>& recorded, ShownFile& shown,
+/// All streams by turns, in the order of their samples' times; `own`: the recording's own messages.
+Result<void> show_streams(const std::vector<RecordedStream>& recorded,
+                          std::unique_ptr<Showing> own, ShownFile& shown,
                           const Progress& progress) {
   std::vector<std::unique_ptr<Showing>> streams;
   std::set<std::pair<Time, std::size_t>> next;  // sample of which stream
@@ -230,6 +233,10 @@ Result<void> show_streams(const std::vector<RecordedStream>& recorded, ShownFile
     streams.push_back(*std::move(begun));
     wait(streams.size() - 1);
     rows += stream.survey.samples;
+  }
+  if (own) {
+    streams.push_back(std::move(own));
+    wait(streams.size() - 1);
   }
   while (!next.empty()) {
     const std::size_t first = next.extract(next.begin()).value().second;
@@ -249,8 +256,9 @@ Result<Shown> show_recording(FileSystem& files, const Recording& recording, cons
   OutputFile file = KA_TRY(OutputFile::create(files, paths.out, paths.overwrite));
   ShownFile shown(file);
   KA_TRY(shown.begin());
-  KA_TRY(show_streams(recording.streams, shown, progress));
-  KA_TRY(copy_json(files, paths.from, progress, shown));
+  std::unique_ptr<Showing> own;
+  if (paths.recording != nullptr) own = KA_TRY(ShowJson::begin(*paths.recording, shown));
+  KA_TRY(show_streams(recording.streams, std::move(own), shown, progress));
   KA_TRY(shown.finish());
   KA_TRY(file.commit());
   return shown.counts();

@@ -5,7 +5,7 @@
 
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
-#include "kinalign/recording/parts.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/take/recording.h"
 #include "kinalign/view/shown_file.h"
 
@@ -14,13 +14,13 @@
 namespace kinalign {
 
 struct ShowFiles {
-  RecordingParts
-      from;  // a recording's files: their JSON channels (marks, counts, clocks) are copied
+  /// Whose JSON channels (marks, counts, the host's clocks) are copied; nullptr: none.
+  const RecordingSource* recording = nullptr;
   std::string out;
   Overwrite overwrite = Overwrite::no;
 };
 
-/// Messages stand in the order of their times, but for those copied, which come last.
+/// Messages stand in the order of their times.
 Result<Shown> show_recording(FileSystem& files, const Recording& recording, const ShowFiles& paths,
                              const Progress& progress = {});
 

@@ -9,9 +9,7 @@
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/motion/interpolation/clip_motion.h"
-#include "kinalign/recording/parts.h"
-#include "kinalign/recording/streams/device_reader.h"
-#include "kinalign/recording/survey_parts.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/simulate/rehearsal/judge_recording.h"
 #include "kinalign/sources/open_recording.h"
 
@@ -37,15 +35,16 @@ struct Opened {
 Result<Opened> open(FileSystem& files, const std::string& path) {
   Opened opened;
   Manifest manifest;
+  std::shared_ptr<RecordingSource> source;
   if (KA_TRY(is_recording(files, path))) {
-    const RecordingSurvey survey =
-        KA_TRY(survey_parts(files, KA_TRY(parts_from(files, path, {})), {}));
-    opened.facts = survey.facts;
-    manifest = KA_TRY(manifest_of(survey, std::string(file_name(path))));
+    source = KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::heard));
+    opened.facts = source->first_survey().facts;
+    manifest = KA_TRY(manifest_of(source->survey(), std::string(file_name(path))));
   } else {
     manifest = KA_TRY(load_manifest(files, path));
   }
-  opened.recording = KA_TRY(open_recording(files, manifest, std::string(folder(path))));
+  opened.recording =
+      KA_TRY(open_recording(files, manifest, std::string(folder(path)), {{}, 1, source}));
   return opened;
 }
 

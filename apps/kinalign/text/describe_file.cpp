@@ -185,10 +185,12 @@ Description describe_recording(const std::string& path, const Recording& recordi
            {"streams", Json::array()}};
   std::string text = path + "\n";
   std::size_t findings = 0;
-  for (const RecordedStream& s : recording.streams) {
+  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
+    const RecordedStream& s = recording.streams[i];
     const Contents c = contents_of(s);
-    Findings found = said_by_file(s, recording).findings;
-    append(found, s.findings);
+    const SharedFile* file = newly_read_file(recording, i);
+    Findings found = file == nullptr ? Findings{} : file->findings;
+    append(found, all_findings(s));
     out["streams"].push_back(stream_json(s, c, found));
     text += stream_lines(s, c, names);
     findings += found.size();

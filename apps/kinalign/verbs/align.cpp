@@ -12,14 +12,14 @@
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/unknown_file.h"
 #include "kinalign/recording/beside.h"
-#include "kinalign/recording/parts.h"
-#include "kinalign/recording/survey_parts.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -69,13 +69,11 @@ Usage describe_verb_options(AlignVerb& o) {
   return usage;
 }
 
-/// Of the recording that begins in `path`; knows no options.
-Result<Manifest> survey_for_manifest(const std::string& path, const Call& call) {
-  FileSystem& files = call.surroundings.files;
-  const Progress progress = call.console.progress();
-  const RecordingParts parts = KA_TRY(parts_from(files, path, progress));
-  return recorded_manifest(KA_TRY(survey_parts(files, parts, progress)), path);
-}
+/// What to align, and the recording where it had to be opened to know that.
+struct Wanted {
+  Manifest manifest;
+  std::shared_ptr<RecordingSource> recording{};
+};
 
 /// What a file is instead that is neither a recording nor named as a manifest.
 Result<Error> no_recording(FileSystem& files, const std::string& path) {
@@ -94,30 +92,33 @@ Result<Error> no_recording(FileSystem& files, const std::string& path) {
 }
 
 /// As it stands in a file or follows from flags, with the options of the call.
-Result<Manifest> manifest_with_options(AlignVerb& o, const Call& call) {
-  Manifest manifest;
+Result<Wanted> wanted_with_options(AlignVerb& o, const Call& call) {
+  Wanted wanted;
+  Manifest& manifest = wanted.manifest;
   if (o.manifest.empty()) {
     manifest = KA_TRY(quick_manifest(o.quick));
     manifest.align = o.options;
-    return manifest;
+    return wanted;
   }
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.manifest.front();
   if (KA_TRY(is_recording(files, path))) {
-    manifest = KA_TRY(survey_for_manifest(path, call));
+    wanted.recording = KA_TRY(RecordingSource::open(
+        files, path, RecordingSource::Devices::heard, {}, call.console.progress()));
+    manifest = KA_TRY(recorded_manifest(wanted.recording->survey(), path));
     manifest.align = o.options;
-    return manifest;
+    return wanted;
   }
   if (!path.ends_with(".toml")) return Failure(KA_TRY(no_recording(files, path)));
   manifest = KA_TRY(load_manifest(files, path, o.options));
   copy_given(describe(o.options), describe(manifest.align), call.sources, Source::environment);
-  return manifest;
+  return wanted;
 }
 
-Result<Manifest> manifest_of(AlignVerb& o, const Call& call) {
-  Manifest manifest = KA_TRY(manifest_with_options(o, call));
-  if (o.slerp) manifest.align.rotations = "slerp";
-  return manifest;
+Result<Wanted> wanted_of(AlignVerb& o, const Call& call) {
+  Wanted wanted = KA_TRY(wanted_with_options(o, call));
+  if (o.slerp) wanted.manifest.align.rotations = "slerp";
+  return wanted;
 }
 
 /// What can be told only once the manifest is read.
@@ -188,10 +189,11 @@ std::vector<std::string> advice(const std::string& path, const Error& error) {
   return lines;
 }
 
-Result<Recording> open_files(const AlignVerb& o, const Manifest& manifest, const std::string& base,
+Result<Recording> open_files(const AlignVerb& o, const Wanted& wanted, const std::string& base,
                              Call& call) {
-  Recording recording = KA_TRY(
-      open_recording(call.surroundings.files, manifest, base, call.console.progress(), call.jobs));
+  Recording recording =
+      KA_TRY(open_recording(call.surroundings.files, wanted.manifest, base,
+                            {call.console.progress(), call.jobs, wanted.recording}));
   for (const RecordedStream& stream : recording.streams) {
     call.console.detail(harmless(read_as(stream)));
   }
@@ -202,7 +204,8 @@ Result<Recording> open_files(const AlignVerb& o, const Manifest& manifest, const
 Result<int> run(AlignVerb& o, Call& call) {
   const std::string path = o.manifest.empty() ? "" : o.manifest.front();
   call.console.if_it_fails([path](const Error& error) { return advice(path, error); });
-  Manifest manifest = KA_TRY(manifest_of(o, call));
+  Wanted wanted = KA_TRY(wanted_of(o, call));
+  Manifest& manifest = wanted.manifest;
   const std::string base =
       o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));
   const std::string out = call.common.dry_run ? "" : call.common.out;
@@ -211,7 +214,7 @@ Result<int> run(AlignVerb& o, Call& call) {
   for (const auto& use : {check_take_name(out), check_reference(o, manifest, call.sources)}) {
     if (!use) return call.console.refuse(use.error());
   }
-  const Recording recording = KA_TRY(open_files(o, manifest, base, call));
+  const Recording recording = KA_TRY(open_files(o, wanted, base, call));
   call.console.if_it_fails(
       [path, start = start_advice(o, recording, manifest)](const Error& error) {
         std::vector<std::string> lines = advice(path, error);

@@ -14,7 +14,7 @@
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/recording/beside.h"
-#include "kinalign/recording/survey_parts.h"
+#include "kinalign/recording/streams/recording_source.h"
 
 #include <fmt/format.h>
 
@@ -103,10 +103,10 @@ void name_as_typed(const std::string& path, const RecordedStream& stream, Findin
 Result<Checked> check_recording(const Check& o, const std::string& path, Call& call) {
   KA_TRY(check_flags(o, path, nullptr, call));
   FileSystem& files = call.surroundings.files;
-  const Progress progress = call.console.progress();
-  const RecordingParts parts = KA_TRY(parts_from(files, path, progress));
-  Checked out{judge_survey(path, KA_TRY(survey_parts(files, parts, progress)))};
-  append(out.findings, judge_parts(parts, PartsBehind::left));
+  const auto recording = KA_TRY(RecordingSource::open(
+      files, path, RecordingSource::Devices::unheard, {}, call.console.progress()));
+  Checked out{judge_survey(path, recording->survey())};
+  append(out.findings, judge_parts(recording->parts(), PartsBehind::left));
   append(out.findings, judge_namesakes(files, path));
   return out;
 }
@@ -126,20 +126,33 @@ Findings judge_name(const std::string& path, const RecordedStream& stream) {
            "it was read and checked as that", "give it the ending of what it is"}};
 }
 
-/// What is wrong with one stream's samples.
-Result<Findings> check_stream(const Check& o, const Input& input, const RecordedStream& stream,
-                              const std::string& reference, Call& call) {
-  call.console.detail(harmless(read_as(stream)));
-  const StreamOptions& options =
-      input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
-  const Role role = input.manifest && stream.name == reference ? Role::reference : Role::resampled;
-  const Arrivals arrivals = KA_TRY(arrivals_of(stream, options, role, call.console.progress()));
-  Findings found = stream.findings;
-  append(found, judge_stamps(stream, options));
-  append(found, judge_arrivals(stream, arrivals, role));
-  append(found, judge_start(stream, options, arrivals));
-  Findings out = said_by_file(stream, input.recording).findings;
-  append(out, said_of(stream, input.recording, std::move(found)));
+/// What is wrong with the streams' samples.
+Result<Findings> check_streams(const Check& o, const Input& input, Call& call) {
+  const Recording& recording = input.recording;
+  const std::string reference = input.manifest ? reference_name(recording, *input.manifest) : "";
+  const auto options = [&](const RecordedStream& stream) -> const StreamOptions& {
+    return input.manifest ? options_of(*input.manifest, stream.name) : o.stream.options;
+  };
+  const auto role = [&](const RecordedStream& stream) {
+    return input.manifest && stream.name == reference ? Role::reference : Role::resampled;
+  };
+  for (const RecordedStream& stream : recording.streams) {
+    call.console.detail(harmless(read_as(stream)));
+  }
+  const std::vector<Arrivals> arrivals = KA_TRY(arrivals_of(
+      recording.streams,
+      [&](const RecordedStream& s) { return taken_step(s, options(s), role(s)); },
+      call.console.progress()));
+  Findings out;
+  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
+    const RecordedStream& stream = recording.streams[i];
+    if (const SharedFile* file = newly_read_file(recording, i)) append(out, file->findings);
+    Findings found = all_findings(stream);
+    append(found, judge_stamps(stream, options(stream)));
+    append(found, judge_arrivals(stream, arrivals[i], role(stream)));
+    append(found, judge_start(stream, options(stream), arrivals[i]));
+    append(out, said_of(stream, recording, std::move(found)));
+  }
   return out;
 }
 
@@ -151,11 +164,7 @@ Result<Checked> check_input(const Check& o, const std::string& path, Call& call)
   if (!input.manifest) KA_TRY(check_flags(o, path, &input.recording.streams.front(), call));
   Checked out;
   if (input.manifest) out.files = files_named(*input.manifest, "").size();
-  const std::string reference =
-      input.manifest ? reference_name(input.recording, *input.manifest) : "";
-  for (const RecordedStream& stream : input.recording.streams) {
-    append(out.findings, KA_TRY(check_stream(o, input, stream, reference, call)));
-  }
+  append(out.findings, KA_TRY(check_streams(o, input, call)));
   if (input.manifest) {
     append(out.findings, check_plan(path, input));
   } else {

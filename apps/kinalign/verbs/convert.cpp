@@ -14,8 +14,7 @@
 #include "kinalign/formats/take/take_npz.h"
 #include "kinalign/formats/xdf/survey.h"
 #include "kinalign/recording/beside.h"
-#include "kinalign/recording/parts.h"
-#include "kinalign/recording/survey_parts.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/open_recording.h"
 #include "kinalign/view/show_recording.h"
 #include "kinalign/view/show_xdf.h"
@@ -154,9 +153,10 @@ Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& c
 
 Findings findings_of(const Recording& recording) {
   Findings all;
-  for (const RecordedStream& stream : recording.streams) {
-    append(all, said_by_file(stream, recording).findings);
-    append(all, said_of(stream, recording, stream.findings));
+  for (std::size_t i = 0; i < recording.streams.size(); ++i) {
+    if (const SharedFile* file = newly_read_file(recording, i)) append(all, file->findings);
+    const RecordedStream& stream = recording.streams[i];
+    append(all, said_of(stream, recording, all_findings(stream)));
   }
   return all;
 }
@@ -169,12 +169,14 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
                                      "another ending (kinalign align makes a take of it)"});
   }
   KA_TRY(check_flags(o, nullptr, call));
-  const RecordingParts parts = KA_TRY(parts_from(job.files, job.from, progress));
-  const RecordingSurvey survey = KA_TRY(survey_parts(job.files, parts, progress));
-  const Manifest manifest = KA_TRY(recorded_manifest(survey, job.from));
-  const OpenedInPart opened = KA_TRY(
-      open_what_can_be(job.files, manifest, std::string(folder(job.from)), progress, call.jobs));
-  KA_TRY(show_recording(job.files, opened.recording, {parts, job.to, job.overwrite}, progress));
+  const auto source = KA_TRY(RecordingSource::open(
+      job.files, job.from, RecordingSource::Devices::heard, {}, progress));
+  const Manifest manifest = KA_TRY(recorded_manifest(source->survey(), job.from));
+  const OpenedInPart opened =
+      KA_TRY(open_what_can_be(job.files, manifest, std::string(folder(job.from)),
+                              {progress, call.jobs, source}));
+  KA_TRY(show_recording(job.files, opened.recording, {source.get(), job.to, job.overwrite},
+                        progress));
   Findings findings = findings_of(opened.recording);
   append(findings, opened.left_out);
   return findings;
@@ -204,7 +206,7 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
     });
   }
   if (job.to.ends_with(".mcap")) {
-    KA_TRY(show_recording(job.files, input.recording, {{}, job.to, job.overwrite},
+    KA_TRY(show_recording(job.files, input.recording, {nullptr, job.to, job.overwrite},
                           call.console.progress()));
   } else {
     KA_TRY(stream_to_npz(job, stream, call.console.progress()));

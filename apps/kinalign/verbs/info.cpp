@@ -5,6 +5,9 @@
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/inputs.h"
 
+#include "kinalign/recording/streams/recording_source.h"
+#include "kinalign/sources/open_recording.h"
+
 namespace kinalign {
 
 namespace {
@@ -34,6 +37,7 @@ Result<Description> describe_input(const Info& o, Call& call, const std::string&
     auto used = o.stream.check_use(path, &input.recording.streams.front(), call.sources);
     if (!used) return call.console.refuse(std::move(used).error());
   }
+  KA_TRY(read_through(input.recording, call.console.progress()));
   return describe_recording(path, input.recording, names);
 }
 
@@ -53,9 +57,9 @@ Result<Description> describe(const Info& o, Call& call) {
     return describe_xdf(path, KA_TRY(survey_xdf(files, path, call.console.progress())), names);
   }
   if (!recording) return describe_input(o, call, path, names);
-  const Progress progress = call.console.progress();
-  return describe_survey(path, KA_TRY(survey_recording(files, path, progress)),
-                         KA_TRY(parts_from(files, path, progress)));
+  const auto source = KA_TRY(RecordingSource::open(
+      files, path, RecordingSource::Devices::unheard, {}, call.console.progress()));
+  return describe_survey(path, source->first_survey(), source->parts());
 }
 
 Result<int> run(Info& o, Call& call) {

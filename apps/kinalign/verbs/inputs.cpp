@@ -8,7 +8,7 @@
 #include "kinalign/core/file_version.h"
 #include "kinalign/core/files.h"
 #include "kinalign/documents/manifest_toml.h"
-#include "kinalign/recording/streams/device_reader.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/open_recording.h"
 #include "kinalign/take/remembered_path.h"
 
@@ -103,11 +103,11 @@ Result<Input> open_input(FileSystem& files, const std::string& path, const Strea
   if (path.ends_with(".toml")) {
     input.manifest = KA_TRY(load_manifest(files, path));
     input.recording =
-        KA_TRY(open_recording(files, *input.manifest, std::string(folder(path)), progress));
+        KA_TRY(open_recording(files, *input.manifest, std::string(folder(path)), {progress}));
     return input;
   }
   const StreamOptions options = KA_TRY(flags.stream({path}));
-  input.recording.streams = KA_TRY(open_streams(files, {options}, progress));
+  input.recording = KA_TRY(open_streams(files, {options}, {progress}));
   return input;
 }
 

@@ -220,7 +220,7 @@ Result<int> run(Rebuild& o, Call& call) {
   // An input that is not there is no difference: nothing can be said.
   for (const std::string& input : inputs) KA_TRY(InputFile::open(files, input));
   Result<Recording> recording =
-      open_recording(files, origin.parameters, base, call.console.progress(), call.jobs);
+      open_recording(files, origin.parameters, base, {call.console.progress(), call.jobs});
   if (o.verify) return say(take, KA_TRY(compare(take, recording, origin, call)), origin, call);
   return write_again(KA_TRY(std::move(recording)), origin, call);
 }

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the messages of a recorded device to rows, in two passes: one listens and learns the
-// device's clock, the other stamps its rows by that.
+// From the messages of a recorded device to rows: a first pass learns the device's clock, later
+// passes stamp rows by it.
 #pragma once
 
 #include "kinalign/clock/offline/device_clock.h"
 #include "kinalign/formats/reader.h"
+#include "kinalign/recording/format.h"
 #include "kinalign/recording/streams/host_epochs.h"
-#include "kinalign/recording/streams/recorded_messages.h"
 #include "kinalign/recording/streams/rows_in_order.h"
 #include "kinalign/take/manifest.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -21,15 +23,33 @@
 
 namespace kinalign {
 
-/// What is asked for.
+/// A device's message as it was recorded.
+struct RecordedMessage {
+  const RawChannel* channel = nullptr;
+  std::uint16_t channel_id = 0;
+  HostTime arrival{};
+  std::string_view payload;  // good until the next message
+  bool is_exchange() const { return channel->protocol == exchange_encoding; }
+};
+
+/// Which device of a recording.
+struct DeviceChoice {
+  std::string stream;
+  std::string node;    // of inertial nodes: an id, or a place where the lab named it; empty: the only
+  std::string sender;  // the address, with its port or without; empty: the one that sent most
+  std::set<std::string> passed_over{};  // senders at that address that are not taken
+
+  bool operator==(const DeviceChoice&) const = default;
+};
+
+/// What rows are asked for.
 struct DeviceWish {
   StreamOptions options;
   StreamFile file;
   DeviceChoice choice;
-  std::string skeleton{};                       // a BVH's header, where the options name one
-  std::shared_ptr<const RecordingParts> parts;  // the file and those that go on behind it
+  std::string skeleton{};  // a BVH's header, where the options name one
   /// Of a Kinect; avatar or character of mocap; a SlimeVR tracker's sensor.
-  std::optional<std::uint64_t> body;
+  std::optional<std::uint64_t> body{};
   bool trackers = false;  // of Xsens: inertial samples, not poses
 };
 
@@ -68,16 +88,42 @@ inline void stamp_by_arrival(const std::string& file, HeardDevice& heard) {
        "stamps are arrivals, late by unknown times", "offset_ms takes off a delay that is known"});
 }
 
-/// The first pass.
+/// Learns from a device's messages what its rows need to be stamped: the first pass.
 class DeviceListener {
  public:
+  using TakeStamp = std::function<void(Time)>;
+
   virtual ~DeviceListener() = default;
   virtual void take(const RecordedMessage& message) = 0;
-  /// `heard` has channel, skeleton and utc_minus_host. Fails where no rows could be made.
-  virtual Result<void> finish(HeardDevice& heard) = 0;
+  /// After the last message, once. `heard` has channel, skeleton and utc_minus_host. Fails where no
+  /// rows could be made.
+  virtual Result<void> finish(const DeviceWish& wish, HeardDevice& heard) = 0;
+  /// After finish(): the stamp of each row that DeviceRows makes, in their order.
+  virtual void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const = 0;
 };
 
-/// The second one. After a failure it may not be used again.
+/// The stamps of rows in the order that RowsInOrder brings them into. `Row`: what is known of a row.
+template <class Row>
+class OrderedStamps {
+ public:
+  OrderedStamps(std::size_t most_overtaking, std::function<void(Time, const Row&)> take)
+      : waiting_(most_overtaking), take_(std::move(take)) {}
+  void add(Time stamp, Row row) { waiting_.add(stamp, std::move(row)); }
+  /// A message has ended: what need not wait any more is taken.
+  void settle() {
+    while (const auto first = waiting_.take_first()) take_(first->first, first->second);
+  }
+  void finish() {
+    waiting_.finish();
+    settle();
+  }
+
+ private:
+  RowsInOrder<Row> waiting_;
+  std::function<void(Time, const Row&)> take_;
+};
+
+/// Makes rows of the same messages: each later pass. After a failure it may not be used again.
 template <class Frames>
 class DeviceRows {
  public:
@@ -129,15 +175,15 @@ using AnyDeviceRows =
 /// A protocol that rows can be made of.
 struct DeviceProtocol {
   std::string_view name;
-  std::unique_ptr<DeviceListener> (*listen)(const DeviceWish& wish);
+  std::unique_ptr<DeviceListener> (*listen)(std::optional<std::uint64_t> body);
   AnyDeviceRows (*rows)(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard);
 };
-/// Both are made of a wish; the rows of what was heard, too.
+/// `body`: which one of several, see DeviceWish.
 template <class Listener, class Rows>
 DeviceProtocol device_protocol(std::string_view name) {
   return {name,
-          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
-            return std::make_unique<Listener>(wish);
+          [](std::optional<std::uint64_t> body) -> std::unique_ptr<DeviceListener> {
+            return std::make_unique<Listener>(body);
           },
           [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {
             return std::make_unique<Rows>(wish, std::move(heard));

@@ -62,9 +62,17 @@ struct Taken {
 
 bool came_before(const Exchange& a, const Exchange& b) { return a.h_rx < b.h_rx; }
 
+/// The life of a frame's sender; `arrival`: of the message that completed it.
+std::optional<Time> stamp_of_frame(const HeardDevice& heard, BootKey session, NodeTime sent,
+                                   NodeTime device, HostTime arrival) {
+  return stamp_of(heard.clock, heard.epochs.life_at(session, sent, arrival), device, arrival);
+}
+
+constexpr std::size_t most_overtaking = 16;  // half a second: no network delays one for longer
+
 class KinectListener final : public DeviceListener {
  public:
-  explicit KinectListener(const DeviceWish& wish) : file_(wish.file.path) {}
+  explicit KinectListener(std::optional<std::uint64_t>) {}
 
   void take(const RecordedMessage& message) override {
     if (message.is_exchange()) {
@@ -83,10 +91,15 @@ class KinectListener final : public DeviceListener {
                         kinect_sender_time(part.taken_ticks), kinect_sender_time(part.sent_ticks),
                         message.arrival});
     }
+    arrival_ = message.arrival;
+    add_joined();
   }
 
-  Result<void> finish(HeardDevice& heard) override {
-    if (taken_.empty()) return Failure(nothing_of("frames of a Kinect", file_, heard));
+  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
+    if (taken_.empty()) return Failure(nothing_of("frames of a Kinect", wish.file.path, heard));
+    joined_.clear();
+    frames_.finish(joined_);
+    add_joined();
     for (Taken& one : taken_) {
       one.life = epochs_.life_at(one.life, one.sent, one.arrival);
       exchanges_.push_back({one.life, one.sent, one.arrival, std::nullopt});
@@ -102,11 +115,38 @@ class KinectListener final : public DeviceListener {
     std::stable_sort(from_sensor.begin(), from_sensor.end(), came_before);
     heard.clock = device_clock(from_sensor, heard.utc_minus_host);
     heard.epochs = std::move(epochs_);
+    taken_ = {};
+    exchanges_ = {};
     return {};
   }
 
+  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
+    OrderedStamps<bool> stamps(most_overtaking, [&take](Time stamp, bool) { take(stamp); });
+    for (const Joined& one : rows_) {
+      const auto stamp = stamp_of_frame(heard, one.session, one.sent, one.device, one.arrival);
+      if (stamp) stamps.add(*stamp, true);
+      if (one.ends_message) stamps.settle();
+    }
+    stamps.finish();
+  }
+
  private:
-  std::string file_;
+  struct Joined {
+    BootKey session = 0;
+    NodeTime sent{}, device{};
+    HostTime arrival{};  // of the message that completed it
+    bool ends_message = false;
+  };
+  void add_joined() {
+    for (const JoinedKinectFrame& one : joined_) {
+      rows_.push_back({one.frame.origin.session, kinect_sender_time(one.frame.sent_ticks),
+                       kinect_sender_time(one.frame.device_ticks), arrival_,
+                       &one == &joined_.back()});
+    }
+  }
+
+  HostTime arrival_{};
+  std::vector<Joined> rows_;
   KinectFrames frames_;
   std::vector<KinectFrame> parts_;
   std::vector<JoinedKinectFrame> joined_;
@@ -166,10 +206,9 @@ class KinectRows final : public DeviceRows<PointFrames> {
   void stamp_joined() {
     for (JoinedKinectFrame& joined : joined_) {
       KinectFrame& frame = joined.frame;
-      const BootKey life = heard_->epochs.life_at(frame.origin.session,
-                                                  kinect_sender_time(frame.sent_ticks), arrival_);
-      const auto stamp =
-          stamp_of(heard_->clock, life, kinect_sender_time(frame.device_ticks), arrival_);
+      const auto stamp = stamp_of_frame(
+          *heard_, frame.origin.session, kinect_sender_time(frame.sent_ticks),
+          kinect_sender_time(frame.device_ticks), arrival_);
       if (!stamp) {
         ++unknown_;
         continue;
@@ -191,7 +230,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
   PointHeader header_;
   KinectFrames frames_;
   std::vector<JoinedKinectFrame> joined_;
-  RowsInOrder<KinectFrame> waiting_{16};  // half a second: no network holds one back for longer
+  RowsInOrder<KinectFrame> waiting_{most_overtaking};
   HostTime arrival_{};
   std::uint64_t unknown_ = 0, wild_ = 0;
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/recording/streams/device_reader.h"
+#include "kinalign/recording/streams/recording_source.h"
+#include "kinalign/recording/streams/sender_roll.h"
 
 #include <algorithm>
 #include <bit>

@@ -130,9 +130,21 @@ void clockless_clock(std::span<const ClocklessExchange> exchanges, const DeviceW
        "its stamps are late by the way of its fastest request", ""});
 }
 
+/// The stamp of a sample; absent where nothing is known of its clock.
+std::optional<Time> stamp_of_sample(const HeardDevice& heard, const AcceptedFrame& frame,
+                                    std::uint32_t age_us, HostTime arrival) {
+  const bool counted = heard.step_ns > 0.0;  // this node's requests
+  if (counted == frame.n_tx.has_value()) return std::nullopt;
+  const NodeTime sent =
+      counted ? counter_of({frame.life, frame.number, {}}, heard.step_ns) : *frame.n_tx;
+  return stamp_of(heard.clock, frame.life, sent - std::chrono::microseconds(age_us), arrival);
+}
+
+constexpr std::size_t most_overtaking = 64;  // samples of some frames: a radio reorders them
+
 class NodeListener final : public DeviceListener {
  public:
-  explicit NodeListener(const DeviceWish& wish) : wish_(wish) {}
+  explicit NodeListener(std::optional<std::uint64_t>) {}
 
   void take(const RecordedMessage& message) override {
     if (message.is_exchange()) {
@@ -143,8 +155,12 @@ class NodeListener final : public DeviceListener {
     }
     const auto frame = frames_.take(message);
     if (!frame) return;
+    const std::int64_t at = frame->n_tx ? frame->n_tx->time_since_epoch().count() : frame->number;
+    heard_.push_back({frame->life, at, message.arrival,
+                      static_cast<std::uint32_t>(frame->sample_count), frame->n_tx.has_value()});
     for (std::size_t i = 0; i < frame->sample_count; ++i) {
       const NodeSample& sample = frame->samples[i];
+      ages_us_.push_back(sample.age_us);
       content_.orientation |= sample.has_orientation;
       content_.acceleration |= sample.has_acceleration;
       content_.angular_velocity |= sample.has_angular_velocity;
@@ -152,23 +168,50 @@ class NodeListener final : public DeviceListener {
     }
   }
 
-  Result<void> finish(HeardDevice& heard) override {
+  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
     if (exchanges_.empty() && clockless_.empty()) {
-      return Failure(Error{wish_.file.path, 0, "frames of node " + heard.channel.node,
+      return Failure(Error{wish.file.path, 0, "frames of node " + heard.channel.node,
                            "none that was accepted"});
     }
     heard.content = content_;
     if (exchanges_.empty()) {
-      clockless_clock(clockless_, wish_, heard);
+      clockless_clock(clockless_, wish, heard);
     } else {
       heard.clock = device_clock(exchanges_, heard.utc_minus_host);
     }
+    exchanges_ = {};
+    clockless_ = {};
     return {};
   }
 
+  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
+    OrderedStamps<bool> stamps(most_overtaking, [&take](Time stamp, bool) { take(stamp); });
+    auto age_us = ages_us_.begin();
+    for (const HeardFrame& one : heard_) {
+      AcceptedFrame frame;
+      frame.life = one.life;
+      frame.number = one.at;
+      if (one.has_counter) frame.n_tx = NodeTime{Duration{one.at}};
+      for (std::uint32_t i = 0; i < one.samples; ++i) {
+        const auto stamp = stamp_of_sample(heard, frame, *age_us++, one.arrival);
+        if (stamp) stamps.add(*stamp, true);
+      }
+      stamps.settle();
+    }
+    stamps.finish();
+  }
+
  private:
-  DeviceWish wish_;
+  struct HeardFrame {
+    BootKey life = 0;
+    std::int64_t at = 0;  // the counter when it was sent, ns, or the number of the request
+    HostTime arrival{};
+    std::uint32_t samples = 0;
+    bool has_counter = false;
+  };
   AcceptedFrames frames_;
+  std::vector<HeardFrame> heard_;
+  std::vector<std::uint32_t> ages_us_;  // of all samples, frame after frame
   std::vector<Exchange> exchanges_;
   std::vector<ClocklessExchange> clockless_;
   ImuContent content_;
@@ -195,7 +238,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
     if (!frame) return {};
     for (std::size_t i = 0; i < frame->sample_count; ++i) {
       const NodeSample& sample = frame->samples[i];
-      const auto stamp = stamp_at(*frame, sample, message.arrival);
+      const auto stamp = stamp_of_sample(*heard_, *frame, sample.age_us, message.arrival);
       if (!stamp) {
         ++unknown_;
         continue;
@@ -224,16 +267,6 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   const ImuHeader* header() const override { return &header_; }
 
  private:
-  std::optional<Time> stamp_at(const AcceptedFrame& frame, const NodeSample& sample,
-                               HostTime arrival) const {
-    const bool counted = heard_->step_ns > 0.0;  // this node's requests
-    if (counted == frame.n_tx.has_value()) return std::nullopt;
-    const NodeTime sent =
-        counted ? counter_of({frame.life, frame.number, {}}, heard_->step_ns) : *frame.n_tx;
-    return stamp_of(heard_->clock, frame.life, sent - std::chrono::microseconds(sample.age_us),
-                    arrival);
-  }
-
   void append_waiting(ImuSamples& out) {
     while (const auto first = waiting_.take_first()) {
       out.stamps.push_back(first->first);
@@ -266,7 +299,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   ImuConverter converter_;
   ImuHeader header_;
   AcceptedFrames frames_;
-  RowsInOrder<NodeSample> waiting_{64};  // of some frames: a radio lets them overtake each other
+  RowsInOrder<NodeSample> waiting_{most_overtaking};
   std::uint64_t unknown_ = 0, partial_ = 0;
 };
 

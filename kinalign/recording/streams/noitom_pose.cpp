@@ -21,7 +21,13 @@ std::string_view word(NoitomHierarchy hierarchy) {
   return hierarchy == NoitomHierarchy::studio ? "the Studio one" : "neither";
 }
 
+bool is_sound(float x) { return std::abs(x) < largest; }
+
 }  // namespace
+
+bool has_sound_values(std::span<const float> row) {
+  return std::all_of(row.begin(), row.end(), is_sound);
+}
 
 NoitomHierarchy noitom_hierarchy(const BvhHierarchy& hierarchy) {
   if (hierarchy.names.size() != noitom_joints) return NoitomHierarchy::other;
@@ -42,8 +48,7 @@ Result<void> NoitomPoser::append(const NoitomFrame& frame, Time stamp, ClipFrame
                          fmt::format("{} joints with {} channels, {}", hierarchy_.names.size(),
                                      hierarchy_.row_size(), word(noitom_hierarchy(hierarchy_)))});
   }
-  const auto sound = [](float x) { return std::abs(x) < largest; };
-  if (const auto odd = std::find_if_not(row.begin(), row.end(), sound); odd != row.end()) {
+  if (const auto odd = std::find_if_not(row.begin(), row.end(), is_sound); odd != row.end()) {
     return Failure(
         Error{name_, 0, "numbers in a frame",
               fmt::format("{} as value {} of {}", *odd, odd - row.begin() + 1, row.size())});

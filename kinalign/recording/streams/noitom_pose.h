@@ -15,6 +15,9 @@ enum class NoitomHierarchy : std::uint8_t {
 };
 NoitomHierarchy noitom_hierarchy(const BvhHierarchy& hierarchy);
 
+/// Whether every value of a frame is a number that can be a coordinate or an angle.
+bool has_sound_values(std::span<const float> row);
+
 /// Takes a frame for a row of the BVH: its channels' order, its units.
 class NoitomPoser {
  public:

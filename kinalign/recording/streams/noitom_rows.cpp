@@ -36,47 +36,51 @@ Result<BvhHierarchy> hierarchy_of(const HeardDevice& heard, const std::string& f
   return parse_bvh_hierarchy(heard.skeleton, heard.channel.stream + ".bvh", rows, odd);
 }
 
+/// Values in a frame; 0 where one is no number (NoitomPoser takes no such frame).
+std::uint32_t noitom_shape(const NoitomFrame& frame) {
+  const auto row = frame.row();
+  return has_sound_values(row) ? static_cast<std::uint32_t>(row.size()) : 0;
+}
+
 class NoitomListener final : public DeviceListener {
  public:
-  explicit NoitomListener(const DeviceWish& wish) : wish_(wish), frames_(wish.body) {}
+  explicit NoitomListener(std::optional<std::uint64_t> body) : frames_(body) {}
 
   void take(const RecordedMessage& message) override {
     placed_.clear();
     frames_.take(message, placed_);
-    count_placed();
+    keys_.add(placed_, noitom_shape);
   }
 
-  Result<void> finish(HeardDevice& heard) override {
+  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
     placed_.clear();
     frames_.finish(placed_);
-    count_placed();
-    append(heard.findings, frames_.findings(wish_.file.path));
-    if (counted_.empty() && !unnumbered_) {
-      return Failure(nothing_of(NoitomSource::what, wish_.file.path, heard, frames_.others()));
+    keys_.add(placed_, noitom_shape);
+    append(heard.findings, frames_.findings(wish.file.path));
+    if (keys_.empty()) {
+      return Failure(nothing_of(NoitomSource::what, wish.file.path, heard, frames_.others()));
     }
-    const BvhHierarchy hierarchy = KA_TRY(hierarchy_of(heard, wish_.file.path));
+    const BvhHierarchy hierarchy = KA_TRY(hierarchy_of(heard, wish.file.path));
+    row_size_ = hierarchy.row_size();
     heard.step_ns = 1e9 * hierarchy.frame_seconds;
-    if (unnumbered_) {
-      stamp_by_arrival(wish_.file.path, heard);
+    if (keys_.any_unnumbered()) {
+      stamp_by_arrival(wish.file.path, heard);
     } else {
-      count_clock(counted_, heard.step_ns, wish_, heard);
+      count_clock(keys_.counted(), heard.step_ns, wish, heard);
     }
     return {};
   }
 
- private:
-  void count_placed() {
-    for (const auto& one : placed_) {
-      if (one.place) counted_.push_back(*one.place);
-      unnumbered_ |= !one.place;
-    }
+  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
+    keys_.stamp_rows(
+        heard, [this](std::uint32_t values) { return values == row_size_; }, take);
   }
 
-  DeviceWish wish_;
+ private:
   NoitomFrames frames_;
   std::vector<NoitomFrames::Placed> placed_;
-  std::vector<CountedFrame> counted_;
-  bool unnumbered_ = false;
+  FrameKeys keys_;
+  std::size_t row_size_ = 0;
 };
 
 class NoitomRows final : public NumberedRows<NoitomSource, ClipFrames> {

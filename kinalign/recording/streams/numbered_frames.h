@@ -6,7 +6,6 @@
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/recording/streams/counted_clock.h"
 #include "kinalign/recording/streams/device_rows.h"
-#include "kinalign/recording/streams/recorded_messages.h"
 #include "kinalign/recording/streams/rows_in_order.h"
 #include "kinalign/wire/little_endian_reader.h"
 
@@ -125,6 +124,97 @@ std::optional<Time> stamp_of(const HeardDevice& heard, const PlacedFrame<Frame>&
   return stamp_of(heard.clock, one.place->life, counter_of(*one.place, heard.step_ns), one.arrival);
 }
 
+constexpr std::size_t most_overtaking_frames = 16;  // more have not been seen to overtake one
+
+/// Stamps of the frames of one datagram that says no time: the last frame's is the arrival, those
+/// before it are a step apart, or less where that would reach back to the message before.
+class ArrivalStamps {
+ public:
+  explicit ArrivalStamps(const HeardDevice& heard)
+      : step_(std::llround(heard.step_ns)), utc_minus_host_(heard.utc_minus_host) {}
+
+  /// Calls `take` with each of the message's `frames` stamps.
+  template <class Take>
+  void add(HostTime arrived, std::size_t frames, const Take& take) {
+    const Time arrival{arrived.time_since_epoch() + utc_minus_host_};
+    auto behind = static_cast<Duration::rep>(frames);
+    Duration step = step_;
+    if (before_) step = std::clamp((arrival - *before_) / behind, Duration{0}, step);
+    for (std::size_t k = 0; k < frames; ++k) take(k, arrival - --behind * step);
+    before_ = arrival;
+  }
+
+ private:
+  Duration step_, utc_minus_host_;
+  std::optional<Time> before_;
+};
+
+/// What is kept of each frame, so that its row can be stamped once the clock is known.
+class FrameKeys {
+ public:
+  /// A message's frames. `shape` says of a frame what decides whether a row can be made of it.
+  template <class Frame, class Shape>
+  void add(const std::vector<PlacedFrame<Frame>>& placed, const Shape& shape) {
+    for (const auto& one : placed) {
+      Key key{{}, one.place.has_value(), &one == &placed.back(), shape(one.frame)};
+      key.frame = one.place.value_or(CountedFrame{0, 0, one.arrival});
+      key.frame.arrival = one.arrival;
+      keys_.push_back(key);
+    }
+  }
+  bool empty() const { return keys_.empty(); }
+  bool any_unnumbered() const {
+    return std::any_of(keys_.begin(), keys_.end(), [](const Key& k) { return !k.is_numbered; });
+  }
+  std::vector<CountedFrame> counted() const {
+    std::vector<CountedFrame> frames;
+    for (const Key& key : keys_) {
+      if (key.is_numbered) frames.push_back(key.frame);
+    }
+    return frames;
+  }
+  /// `fits`: by a frame's shape, asked in the order of the rows.
+  template <class Fits>
+  void stamp_rows(const HeardDevice& heard, Fits fits, const DeviceListener::TakeStamp& take) const {
+    const auto put = [&](Time stamp, std::uint32_t shape) {
+      if (fits(shape)) take(stamp);
+    };
+    if (heard.by_arrival) return stamp_by_arrivals(heard, put);
+    OrderedStamps<std::uint32_t> stamps(most_overtaking_frames, put);
+    for (const Key& key : keys_) {
+      const auto stamp = !key.is_numbered
+                             ? std::nullopt
+                             : stamp_of(heard.clock, key.frame.life,
+                                        counter_of(key.frame, heard.step_ns), key.frame.arrival);
+      if (stamp) stamps.add(*stamp, key.shape);
+      if (key.ends_message) stamps.settle();
+    }
+    stamps.finish();
+  }
+
+ private:
+  struct Key {
+    CountedFrame frame;
+    bool is_numbered = false, ends_message = false;
+    std::uint32_t shape = 0;
+  };
+  template <class Put>
+  void stamp_by_arrivals(const HeardDevice& heard, const Put& put) const {
+    ArrivalStamps stamps(heard);
+    for (auto first = keys_.begin(); first != keys_.end();) {
+      const auto last =
+          std::find_if(first, keys_.end(), [](const Key& key) { return key.ends_message; });
+      stamps.add(last->frame.arrival, static_cast<std::size_t>(last - first) + 1,
+                 [&](std::size_t k, Time stamp) {
+                   put(stamp, (first + static_cast<std::ptrdiff_t>(k))->shape);
+                 });
+      first = last + 1;
+    }
+  }
+
+  std::vector<Key> keys_;
+};
+
 /// Rows of such frames, in the order of their numbers: what was overtaken in a network is put where
 /// it belongs. `Source` also says what they are: `frames`, and as what they were expected
 /// where there is none.
@@ -179,7 +269,8 @@ class NumberedRows : public DeviceRows<Frames> {
   void put_placed(Frames& out) {
     if (placed_.empty()) return;
     if (heard_->by_arrival) {
-      put_arrived(Time{placed_.back().arrival.time_since_epoch() + heard_->utc_minus_host}, out);
+      arrivals_.add(placed_.back().arrival, placed_.size(),
+                    [&](std::size_t k, Time stamp) { put(placed_[k].frame, stamp, out); });
       return;
     }
     for (auto& one : placed_) {
@@ -191,15 +282,6 @@ class NumberedRows : public DeviceRows<Frames> {
     }
     put_waiting(out);
   }
-  /// Frames that came at once were not taken at once: the last one's stamp is the arrival, those
-  /// before it are a step apart, or less where that would reach back to the message before.
-  void put_arrived(Time arrival, Frames& out) {
-    auto behind = static_cast<Duration::rep>(placed_.size());
-    Duration step{std::llround(heard_->step_ns)};
-    if (arrived_) step = std::clamp((arrival - *arrived_) / behind, Duration{0}, step);
-    for (const auto& one : placed_) put(one.frame, arrival - --behind * step, out);
-    arrived_ = arrival;
-  }
   void put_waiting(Frames& out) {
     while (const auto first = waiting_.take_first()) put(first->second, first->first, out);
   }
@@ -207,8 +289,8 @@ class NumberedRows : public DeviceRows<Frames> {
   std::shared_ptr<const HeardDevice> heard_;
   NumberedFrames<Source> frames_;
   std::vector<PlacedFrame<typename Source::Frame>> placed_;
-  RowsInOrder<typename Source::Frame> waiting_{16};  // more have not been seen to overtake one
-  std::optional<Time> arrived_;                      // of those that are stamped so
+  RowsInOrder<typename Source::Frame> waiting_{most_overtaking_frames};
+  ArrivalStamps arrivals_{*heard_};  // of frames that are stamped so
   std::optional<Error> misfit_;
   std::uint64_t appended_ = 0, misfits_ = 0, unknown_ = 0;
 };

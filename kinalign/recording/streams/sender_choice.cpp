@@ -2,8 +2,7 @@
 #include "kinalign/recording/streams/sender_choice.h"
 
 #include "kinalign/documents/manifest_toml.h"
-#include "kinalign/recording/streams/device_reader.h"
-#include "kinalign/recording/survey_parts.h"
+#include "kinalign/recording/streams/recording_source.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -47,15 +46,13 @@ Error with_senders(Error error, const std::string& chosen, const SenderRoll& sen
   return error;
 }
 
-Error with_nodes(FileSystem& files, const DeviceWish& wish, Error error, const Progress& progress) {
+Error with_nodes(const DeviceWish& wish, const RecordingSurvey& survey, Error error) {
   if (!wish.choice.node.empty()) return error;
-  const auto survey = survey_parts(files, *wish.parts, progress);
-  if (!survey) return error;
   std::string path = wish.file.path;
   for (const StreamFile& file : wish.options.files) {  // as the manifest has it
     if (wish.file.path.ends_with(file.path)) path = file.path;
   }
-  auto manifest = manifest_of(*survey, path);
+  auto manifest = manifest_of(survey, path);
   if (!manifest) return error;
   for (const StreamOptions& stream : manifest->streams) {
     if (stream.name != wish.choice.stream || stream.files.size() < 2) continue;

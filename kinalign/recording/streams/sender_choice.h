@@ -2,10 +2,9 @@
 // Which of several senders of a stream is the device, and what is said of the others.
 #pragma once
 
-#include "kinalign/core/files.h"
-#include "kinalign/core/progress.h"
 #include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/recording/streams/sender_roll.h"
+#include "kinalign/recording/survey.h"
 
 #include <string>
 #include <vector>
@@ -21,7 +20,7 @@ Error with_senders(Error error, const std::string& chosen, const SenderRoll& sen
 
 /// A recording has several nodes of the stream and none was asked for: with lines of a manifest
 /// that ask for one, or for all. Any other error as it is.
-Error with_nodes(FileSystem& files, const DeviceWish& wish, Error error, const Progress& progress);
+Error with_nodes(const DeviceWish& wish, const RecordingSurvey& survey, Error error);
 
 /// That there are others than the ones that are read. `any_sender`: nobody asked for one.
 Findings judge_senders(const DeviceWish& wish, bool any_sender, const SenderRoll& senders);

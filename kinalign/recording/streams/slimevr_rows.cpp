@@ -83,31 +83,37 @@ class SlimeSamples {
   std::map<std::uint16_t, Tracker> trackers_;  // by channel
 };
 
+Time stamp_at(HostTime arrival, const HeardDevice& heard) {
+  return Time{arrival.time_since_epoch() + heard.utc_minus_host};
+}
+
 class SlimeListener final : public DeviceListener {
  public:
-  explicit SlimeListener(const DeviceWish& wish)
-      : file_(wish.file.path), any_sensor_(!wish.body), samples_(wish.body) {}
+  explicit SlimeListener(std::optional<std::uint64_t> sensor)
+      : any_sensor_(!sensor), samples_(sensor) {}
 
   void take(const RecordedMessage& message) override {
     taken_.clear();
     samples_.take(message, taken_);
     rotations_ += taken_.size();
+    arrivals_.insert(arrivals_.end(), taken_.size(), message.arrival);
     for (const SlimeSample& one : taken_) accelerations_ += one.acceleration ? 1U : 0U;
   }
 
-  Result<void> finish(HeardDevice& heard) override {
+  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
+    const std::string& file = wish.file.path;
     if (rotations_ == 0) {
       return Failure(Error{
-          file_, 0, "of stream " + shown(heard.channel.stream) + " rotations of a SlimeVR tracker",
+          file, 0, "of stream " + shown(heard.channel.stream) + " rotations of a SlimeVR tracker",
           "none"});
     }
-    stamp_by_arrival(file_, heard);
+    stamp_by_arrival(file, heard);
     // Few of many have one where the tracker sends them now and then: then they are no stream's.
     heard.content = {true, 2 * accelerations_ > rotations_, false, false};
     if (any_sensor_ && samples_.sensors.size() > 1) {
       heard.findings.push_back(
           {Severity::warning,
-           Error{file_, 0, "one sensor of tracker " + host_of(heard.channel.sender),
+           Error{file, 0, "one sensor of tracker " + host_of(heard.channel.sender),
                  fmt::format("{} of them", samples_.sensors.size())},
            "the first that was heard was read",
            fmt::format("{}/{} as a node's name, say, is one", host_of(heard.channel.sender),
@@ -116,11 +122,15 @@ class SlimeListener final : public DeviceListener {
     return {};
   }
 
+  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
+    for (const HostTime arrival : arrivals_) take(stamp_at(arrival, heard));
+  }
+
  private:
-  std::string file_;
   bool any_sensor_;
   SlimeSamples samples_;
   std::vector<SlimeSample> taken_;
+  std::vector<HostTime> arrivals_;  // of the samples
   std::uint64_t rotations_ = 0, accelerations_ = 0;
 };
 
@@ -147,7 +157,7 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
         raw.acceleration = one.acceleration ? one.acceleration->data() : none.data();
         raw.valid = one.acceleration.has_value();
       }
-      out.stamps.push_back(Time{message.arrival.time_since_epoch() + heard_->utc_minus_host});
+      out.stamps.push_back(stamp_at(message.arrival, *heard_));
       converter_.append(raw, out);
     }
     return {};

@@ -95,7 +95,43 @@ Result<Global> global_of(const XsensPose& pose, const std::string& name) {
 
 constexpr double centimetre = 0.01;
 
+/// Bits of the shape of a sample of trackers.
+constexpr std::uint32_t can_begin = 1, begins_raw = 2, all_raw = 4, none_raw = 8;
+
+/// Ids that are known, each once.
+Result<std::vector<std::int32_t>> ids_of(const XsensTrackers& trackers, const std::string& name) {
+  std::vector<std::int32_t> ids;
+  for (const XsensTracker& t : trackers.trackers) {
+    const bool known = t.id >= 1 && t.id <= static_cast<int>(xsens_segments);
+    if (!known || std::find(ids.begin(), ids.end(), t.id) != ids.end()) {
+      return Failure(Error{name, 0, "trackers of the segments 1 to 23, each once",
+                           fmt::format("segment {} as item {}", t.id, ids.size() + 1)});
+    }
+    ids.push_back(t.id);
+  }
+  if (ids.empty()) return Failure(Error{name, 0, "a tracker", "none"});
+  return ids;
+}
+
 }  // namespace
+
+std::uint32_t xsens_shape(const XsensPose& pose) { return global_of(pose, "") ? 1 : 0; }
+
+std::uint32_t xsens_shape(const XsensTrackers& trackers) {
+  const auto is_raw = [](const XsensTracker& t) { return t.raw.has_value(); };
+  const auto& all = trackers.trackers;
+  std::uint32_t shape = ids_of(trackers, "") ? can_begin : 0;
+  if (!all.empty() && is_raw(all.front())) shape |= begins_raw;
+  if (std::all_of(all.begin(), all.end(), is_raw)) shape |= all_raw;
+  if (std::none_of(all.begin(), all.end(), is_raw)) shape |= none_raw;
+  return shape;
+}
+
+bool XsensFits<XsensTrackers>::operator()(std::uint32_t shape) {
+  if (!raw_ && (shape & can_begin) == 0) return false;
+  if (!raw_) raw_ = (shape & begins_raw) != 0;
+  return (shape & (*raw_ ? all_raw : none_raw)) != 0;
+}
 
 std::span<const std::string_view, xsens_segments> xsens_segment_names() { return names; }
 
@@ -153,17 +189,7 @@ Result<void> XsensPoser::append(const XsensPose& pose, Time stamp, ClipFrames& o
 }
 
 Result<void> XsensNodes::begin(const XsensTrackers& trackers) {
-  std::vector<std::int32_t> ids;
-  for (const XsensTracker& t : trackers.trackers) {
-    const bool known = t.id >= 1 && t.id <= static_cast<int>(xsens_segments);
-    if (!known || std::find(ids.begin(), ids.end(), t.id) != ids.end()) {
-      return Failure(Error{name_, 0, "trackers of the segments 1 to 23, each once",
-                           fmt::format("segment {} as item {}", t.id, ids.size() + 1)});
-    }
-    ids.push_back(t.id);
-  }
-  if (ids.empty()) return Failure(Error{name_, 0, "a tracker", "none"});
-  ids_ = std::move(ids);
+  ids_ = KA_TRY(ids_of(trackers, name_));
   for (const std::int32_t id : ids_) {
     node_names_.emplace_back(names[static_cast<std::size_t>(id - 1)]);
   }

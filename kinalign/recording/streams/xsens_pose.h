@@ -6,6 +6,7 @@
 #include "kinalign/motion/streams.h"
 #include "kinalign/protocols/xsens/sample.h"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,27 @@ constexpr std::size_t xsens_segments = 23;
 
 /// Pelvis, L5, ... LeftToe: the segment of id k stands at k - 1.
 std::span<const std::string_view, xsens_segments> xsens_segment_names();
+
+/// What decides whether XsensPoser takes a pose, or XsensNodes a sample of trackers.
+std::uint32_t xsens_shape(const XsensPose& pose);
+std::uint32_t xsens_shape(const XsensTrackers& trackers);
+
+/// Says of one shape after the other whether its sample is taken.
+template <class Items>
+class XsensFits;
+template <>
+class XsensFits<XsensPose> {
+ public:
+  bool operator()(std::uint32_t shape) const { return shape != 0; }
+};
+template <>
+class XsensFits<XsensTrackers> {
+ public:
+  bool operator()(std::uint32_t shape);
+
+ private:
+  std::optional<bool> raw_;  // the kind of items of the first sample
+};
 
 /// Poses of one character.
 class XsensPoser {

@@ -31,28 +31,31 @@ using XsensFrames = NumberedFrames<XsensSource<Items>>;
 template <class Items>
 class XsensListener final : public DeviceListener {
  public:
-  explicit XsensListener(const DeviceWish& wish) : wish_(wish), frames_(wish.body) {}
+  explicit XsensListener(std::optional<std::uint64_t> character) : frames_(character) {}
 
   void take(const RecordedMessage& message) override {
     placed_.clear();
     frames_.take(message, placed_);
-    for (const auto& one : placed_) counted_.push_back(*one.place);
+    keys_.add(placed_, [](const Items& items) { return xsens_shape(items); });
   }
 
-  Result<void> finish(HeardDevice& heard) override {
-    append(heard.findings, frames_.findings(wish_.file.path));
-    if (counted_.empty()) {
-      return Failure(nothing_of(meaning<Items>, wish_.file.path, heard, frames_.others()));
+  Result<void> finish(const DeviceWish& wish, HeardDevice& heard) override {
+    append(heard.findings, frames_.findings(wish.file.path));
+    if (keys_.empty()) {
+      return Failure(nothing_of(meaning<Items>, wish.file.path, heard, frames_.others()));
     }
-    count_clock(counted_, 0.0, wish_, heard);
+    count_clock(keys_.counted(), 0.0, wish, heard);
     return {};
   }
 
+  void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
+    keys_.stamp_rows(heard, XsensFits<Items>(), take);
+  }
+
  private:
-  DeviceWish wish_;
   XsensFrames<Items> frames_;
   std::vector<PlacedFrame<Items>> placed_;
-  std::vector<CountedFrame> counted_;
+  FrameKeys keys_;
 };
 
 class XsensPoseRows final : public NumberedRows<XsensSource<XsensPose>, ClipFrames> {

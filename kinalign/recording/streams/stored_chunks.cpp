@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/recording/streams/stored_chunks.h"
+
+#include "kinalign/core/unchanged.h"
+#include "kinalign/mcap/chunk.h"
+#include "kinalign/mcap/reader.h"
+#include "kinalign/wire/little_endian_reader.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+Error altered(const std::string& path) {
+  return {path, 0, "a file that stays as it is while it is read", "one that changed"};
+}
+
+/// The records of a chunk as they were before they were stored; of a message that stands in no
+/// chunk the record itself.
+Result<std::string> records_of(const StoredChunk& chunk, const std::string& path,
+                               std::string bytes) {
+  if (bytes.size() < mcap_record_head) return Failure(altered(path));
+  if (static_cast<McapOp>(bytes.front()) == McapOp::message) return bytes;
+  const auto view = decode_mcap_chunk(std::string_view(bytes).substr(mcap_record_head));
+  if (!view) return Failure(altered(path));
+  if (chunk.is_torn) return unpack_torn(*view, McapReader::most_record);
+  return unpack(*view, McapReader::most_record).map_error([&](const Error&) {
+    return altered(path);
+  });
+}
+
+/// The messages of unpacked records, as McapReader yields them.
+std::vector<ChunkMessage> messages_in(std::string_view records,
+                                      const std::vector<std::uint32_t>& left_out) {
+  std::vector<ChunkMessage> messages;
+  std::uint32_t place = 0;
+  auto skipped = left_out.begin();
+  while (records.size() >= mcap_record_head) {
+    LittleEndianReader head(octets(records));
+    const auto op = static_cast<McapOp>(head.take<std::uint8_t>());
+    const auto length = head.take<std::uint64_t>();
+    if (op == McapOp{} || length > records.size() - mcap_record_head) break;
+    const std::string_view content = records.substr(mcap_record_head, length);
+    records.remove_prefix(mcap_record_head + length);
+    if (op != McapOp::message) continue;
+    const auto record = decode_mcap_record(op, content);
+    if (!record) continue;
+    const std::uint32_t here = place++;
+    if (skipped != left_out.end() && *skipped == here) {
+      ++skipped;
+      continue;
+    }
+    const auto& message = std::get<McapMessage>(*record);
+    messages.push_back({message.channel, message.log_time, message.data});
+  }
+  return messages;
+}
+
+}  // namespace
+
+StoredChunks::StoredChunks(FileSystem& files, std::vector<File> parts,
+                           std::vector<StoredChunk> chunks)
+    : files_(&files),
+      parts_(std::move(parts)),
+      chunks_(std::move(chunks)),
+      open_files_(parts_.size()) {}
+
+Result<std::shared_ptr<const OpenedChunk>> StoredChunks::open(std::size_t k) const {
+  const std::lock_guard lock(mutex_);
+  if (const auto known = places_.find(k); known != places_.end()) {
+    cache_.splice(cache_.begin(), cache_, known->second);
+    return cache_.front().opened;
+  }
+  auto opened = KA_TRY(read(chunks_[k]));
+  cache_.push_front({k, opened});
+  places_[k] = cache_.begin();
+  cached_bytes_ += opened->bytes.size();
+  while (cached_bytes_ > most_cached && cache_.size() > 1) {
+    cached_bytes_ -= cache_.back().opened->bytes.size();
+    places_.erase(cache_.back().chunk);
+    cache_.pop_back();
+  }
+  return opened;
+}
+
+Result<std::shared_ptr<const OpenedChunk>> StoredChunks::read(const StoredChunk& chunk) const {
+  const File& part = parts_[chunk.part];
+  auto& file = open_files_[chunk.part];
+  if (!file) file.emplace(KA_TRY(InputFile::open(*files_, part.path)));
+  std::string bytes(chunk.size, '\0');
+  const std::size_t got = KA_TRY(file->read_at(chunk.at, bytes));
+  KA_TRY(unchanged(part.path, part.version));
+  if (got != bytes.size()) return Failure(altered(part.path));
+  auto opened = std::make_shared<OpenedChunk>();
+  opened->bytes = KA_TRY(records_of(chunk, part.path, std::move(bytes)));
+  opened->messages = messages_in(opened->bytes, chunk.left_out);
+  return std::shared_ptr<const OpenedChunk>(std::move(opened));
+}
+
+MessagePass::MessagePass(std::shared_ptr<const StoredChunks> chunks,
+                         std::vector<std::uint16_t> channels)
+    : chunks_(std::move(chunks)), channels_(std::move(channels)) {
+  std::sort(channels_.begin(), channels_.end());
+}
+
+Result<bool> MessagePass::next_chunk(const Take& take) {
+  const auto is_mine = [this](std::uint16_t channel) {
+    return std::binary_search(channels_.begin(), channels_.end(), channel);
+  };
+  while (next_ < chunks_->size()) {
+    const std::size_t k = next_++;
+    const auto& there = (*chunks_)[k].channels;
+    if (std::none_of(there.begin(), there.end(), is_mine)) continue;
+    const auto chunk = KA_TRY(chunks_->open(k));
+    for (const ChunkMessage& message : chunk->messages) {
+      if (is_mine(message.channel)) KA_TRY(take(message));
+    }
+    return true;
+  }
+  return false;
+}
+
+}  // namespace kinalign
