@@ -4,7 +4,7 @@
 // Input: protocol, then messages: kind (1 an exchange), milliseconds since the one before, length
 // in two bytes, payload.
 #include "kinalign/mcap/writer.h"
-#include "kinalign/recording/streams/device_reader.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/wire/clockless.h"
 #include "kinalign/wire/little_endian_reader.h"
 #include "kinalign/wire/node_frame.h"
@@ -195,23 +195,23 @@ void check_rows(const ImuSamples& s, const ImuHeader& header) {
   }
 }
 
-template <class R>
-std::vector<Time> read(R& reader, std::string_view file, std::size_t piece,
-                       const TimeModel& clock) {
-  typename R::Frames rows;
-  for (; !file.empty(); file.remove_prefix(std::min(piece, file.size()))) {
-    if (!reader.feed(file.substr(0, piece), rows)) return {};
+template <class Frames>
+std::vector<Time> read(DevicePass<Frames> pass, const TimeModel& clock) {
+  std::vector<Time> stamps;
+  Frames rows;
+  for (;;) {
+    const auto more = pass.next(rows);
+    require(more.has_value());  // opening has read as far as a pass can fail
+    if (!*more) return stamps;
+    require(pass.header() != nullptr);
+    check_rows(rows, *pass.header());
+    constexpr std::int64_t furthest = 4'000'000'000'000'000'000;
+    for (const Time stamp : rows.stamps) {
+      require(std::abs(to_ns(stamp)) <= furthest);
+      require(std::abs(to_ns(take_time(clock, stamp))) <= furthest);
+    }
+    stamps.insert(stamps.end(), rows.stamps.begin(), rows.stamps.end());
   }
-  if (!reader.finish(rows)) return {};
-  if (rows.size() == 0) return {};
-  require(reader.header() != nullptr);
-  check_rows(rows, *reader.header());
-  constexpr std::int64_t furthest = 4'000'000'000'000'000'000;
-  for (const Time stamp : rows.stamps) {
-    require(std::abs(to_ns(stamp)) <= furthest);
-    require(std::abs(to_ns(take_time(clock, stamp))) <= furthest);
-  }
-  return rows.stamps;
 }
 
 }  // namespace
@@ -224,17 +224,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   PosixFiles files;
   StreamOptions options;
   options.name = "s";
-  const auto device = listen(files, options, {"/proc/self/fd/" + std::to_string(fd), ""}, {});
-  ::close(fd);
-  if (!device) return 0;
-  std::array<std::vector<Time>, 2> stamps;
-  for (std::size_t pass = 0; pass < stamps.size(); ++pass) {
-    auto reader = device->make();
-    require(reader.has_value());
-    const std::size_t piece = pass == 0 ? file.size() : 1 + data[1];
-    stamps[pass] = std::visit(
-        [&](auto& any) { return read(*any, file, piece, device->heard->clock.time); }, *reader);
+  const std::string path = "/proc/self/fd/" + std::to_string(fd);
+  const auto source =
+      RecordingSource::open(files, path, RecordingSource::Devices::heard, {options});
+  if (source) {
+    const auto stream = (*source)->stream(options, {path, ""});
+    // The stamps that the first pass foretells are those of the rows, in every pass.
+    for (int pass = 0; stream && pass < 2; ++pass) {
+      const auto stamps = std::visit(
+          [&](const auto& passes) { return read(passes(), stream->clock); }, stream->passes);
+      require(stamps == *stream->stamps);
+    }
   }
-  require(stamps[0] == stamps[1]);
+  ::close(fd);
   return 0;
 }

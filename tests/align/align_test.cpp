@@ -168,8 +168,9 @@ TEST_CASE("a stream without samples is refused with what its reader found wrong,
       {Severity::note, Error{"k.csv", 0, "less", "more"}, "", ""}};
   CHECK(refusal() == "k.csv: expected rows of body 3, found none");
   recording.streams[1].findings.clear();
-  recording.streams[1].by_file.findings = {
-      {Severity::error, Error{"k.mcap", 0, "a record", "none"}, "nothing was read", ""}};
+  recording.streams[1].shared_file = 0;
+  recording.shared_files = {
+      {{{Severity::error, Error{"k.mcap", 0, "a record", "none"}, "nothing was read", ""}}, {}}};
   CHECK(refusal() == "k.mcap: expected a record, found none");
 }
 
@@ -179,8 +180,9 @@ TEST_CASE("the marks of a file that two streams are read from stand once in the 
   const TakeMark start{Time{Duration{5 * ms}}, "start", "dance", std::nullopt, "keyboard"};
   for (RecordedStream& stream : recording.streams) {
     stream.files = {{"take.mcap", "", 0}};
-    stream.by_file.marks = {start};
+    stream.shared_file = 0;
   }
+  recording.shared_files = {{{}, {start}}};
   const auto take = align(recording, {});
   REQUIRE(take);
   CHECK(take->report.marks == std::vector<TakeMark>{start});

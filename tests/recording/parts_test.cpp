@@ -6,7 +6,7 @@
 
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/recover.h"
-#include "kinalign/recording/streams/device_reader.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/recording/survey_parts.h"
 #include "kinalign/sources/open_recording.h"
 
@@ -46,7 +46,7 @@ std::uint64_t samples(FileSystem& files, const std::string& path, const std::str
   options.files = {{path, node}};
   const auto streams = open_streams(files, {options});
   if (!streams) FAIL(to_string(streams.error()));
-  auto pass = std::get<ImuInput>(streams->front().data).passes();
+  auto pass = std::get<ImuInput>(streams->streams.front().data).passes();
   REQUIRE(pass);
   std::uint64_t count = 0;
   ImuSamples block;
@@ -56,7 +56,7 @@ std::uint64_t samples(FileSystem& files, const std::string& path, const std::str
     CHECK(block.stamps.front() > last);
     last = block.stamps.back();
   }
-  CHECK(count == streams->front().survey.samples);
+  CHECK(count == streams->streams.front().survey.samples);
   return count;
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("who reads a recording whose later file is not there is told that it e
     StreamOptions options;
     options.name = "imu";
     options.files = {{file, "12"}};
-    return told(open_streams(files, {options})->front().by_file.findings);
+    return told(open_streams(files, {options})->shared_files.front().findings);
   };
   CHECK(said(path) == "a recording up to its end, one that ends before\n");
   CHECK(said(lab.whole()).empty());
@@ -265,5 +265,5 @@ TEST_CASE("a message of a torn end whose number can't be is left out, and told")
   options.files = {{folder / "take.mcap", "12"}};
   const auto streams = open_streams(files, {options});
   REQUIRE(streams);
-  CHECK(told(streams->front().by_file.findings).find("1 of others") != std::string::npos);
+  CHECK(told(streams->shared_files.front().findings).find("1 of others") != std::string::npos);
 }

@@ -4,7 +4,7 @@
 #include "tests/recording/recorded_lab.h"
 
 #include "kinalign/align/align.h"
-#include "kinalign/recording/streams/device_reader.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/recording/survey_parts.h"
 #include "kinalign/sources/open_recording.h"
 

@@ -40,15 +40,15 @@ Result<std::size_t> pass_over(const RecordedStream& stream) {
   return rows;
 }
 
-std::string error_of(const Result<std::vector<RecordedStream>>& streams) {
+std::string error_of(const Result<Recording>& streams) {
   return streams ? "none" : to_string(streams.error());
 }
 
 RecordedStream one_stream(FileSystem& files, const StreamOptions& options) {
   auto streams = open_streams(files, {options});
   REQUIRE_MESSAGE(streams, error_of(streams));
-  REQUIRE(streams->size() == 1);
-  return streams->front();
+  REQUIRE(streams->streams.size() == 1);
+  return streams->streams.front();
 }
 
 }  // namespace
@@ -136,22 +136,22 @@ TEST_CASE("files read side by side give what one after the other gives, the firs
     const std::string node = "n" + std::to_string(i);
     named.push_back({folder.write(node + ".csv", rows_from(i, 10 + i)), node});
   }
-  const auto one = open_streams(files, {nodes(named)}, {}, 1);
-  const auto four = open_streams(files, {nodes(named)}, {}, 4);
+  const auto one = open_streams(files, {nodes(named)}, {{}, 1});
+  const auto four = open_streams(files, {nodes(named)}, {{}, 4});
   REQUIRE(one);
   REQUIRE(four);
-  REQUIRE(one->size() == 9);
-  REQUIRE(four->size() == 9);
+  REQUIRE(one->streams.size() == 9);
+  REQUIRE(four->streams.size() == 9);
   for (std::size_t i = 0; i < 9; ++i) {
-    CHECK(std::get<ImuInput>((*four)[i].data).node_names ==
+    CHECK(std::get<ImuInput>(four->streams[i].data).node_names ==
           std::vector<std::string>{"n" + std::to_string(i)});
-    CHECK((*four)[i].files[0].sha256 == (*one)[i].files[0].sha256);
-    CHECK((*four)[i].survey.samples == 10 + i);
+    CHECK(four->streams[i].files[0].sha256 == one->streams[i].files[0].sha256);
+    CHECK(four->streams[i].survey.samples == 10 + i);
   }
   folder.write("n3.csv", head + "x,1,0,0,0\n");
   folder.write("n7.csv", "no head\n");
   for (const std::size_t jobs : {std::size_t{1}, std::size_t{4}}) {
-    CHECK(error_of(open_streams(files, {nodes(named)}, {}, jobs)) ==
+    CHECK(error_of(open_streams(files, {nodes(named)}, {{}, jobs})) ==
           (folder / "n3.csv") + ":2: expected a stamp inside +-4e18 ns, found x");
   }
 }
@@ -169,11 +169,11 @@ TEST_CASE("progress rises to all files' bytes, and stops the job when it says so
     last = done;
     return true;
   };
-  REQUIRE(open_streams(files, streams, count));
+  REQUIRE(open_streams(files, streams, {count}));
   CHECK(rises);
   CHECK(last == folder.read("a.csv").size() + folder.read("b.csv").size());
   const Progress stop = [](std::string_view, std::uint64_t, std::uint64_t) { return false; };
-  const auto stopped = open_streams(files, streams, stop);
+  const auto stopped = open_streams(files, streams, {stop});
   REQUIRE_FALSE(stopped);
   CHECK(stopped.error().file == one);
 }

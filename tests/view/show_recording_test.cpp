@@ -7,7 +7,7 @@
 
 #include "kinalign/motion/kinect_joints.h"
 #include "kinalign/recording/parts.h"
-#include "kinalign/recording/streams/device_reader.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/recording/survey_parts.h"
 #include "kinalign/sources/open_recording.h"
 #include "kinalign/view/show_xdf.h"
@@ -53,26 +53,19 @@ double seconds_of(std::uint64_t log_time) {
   return 1e-9 * static_cast<double>(static_cast<std::int64_t>(log_time) - RecordedLab::utc_begin);
 }
 
-/// What a manifest would say of these files.
-Manifest manifest_of_parts(FileSystem& files, const RecordingParts& parts) {
-  const auto survey = survey_parts(files, parts, {});
-  REQUIRE(survey);
-  const auto manifest = manifest_of(*survey, "take.mcap");
-  REQUIRE(manifest);
-  return *manifest;
-}
-
 /// A recording, with the files that it went on in, as it is shown.
 std::map<std::string, std::vector<ShownMessage>> shown_recording(const FreshFolder& folder,
                                                                  const std::string& path) {
   PosixFiles files;
-  const auto parts = parts_from(files, path, {});
-  REQUIRE(parts);
+  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::heard);
+  REQUIRE(source);
+  const auto manifest = manifest_of((*source)->survey(), "take.mcap");
+  REQUIRE(manifest);
   const auto recording =
-      open_recording(files, manifest_of_parts(files, *parts), folder.path() + "/");
+      open_recording(files, *manifest, folder.path() + "/", {{}, 1, *source});
   REQUIRE(recording);
   const std::string out = folder / "shown.mcap";
-  const auto shown = show_recording(files, *recording, {*parts, out, Overwrite::no});
+  const auto shown = show_recording(files, *recording, {source->get(), out, Overwrite::no});
   REQUIRE(shown);
   CHECK(shown->out_of_range == 0);
   return messages_in(out);

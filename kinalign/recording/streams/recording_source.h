@@ -111,8 +111,9 @@ class RecordingSource {
   const std::vector<JsonChannel>& json_channels() const;
   MessagePass messages_of(std::vector<std::uint16_t> channels) const;
 
+  struct State;  // recording_source.cpp
+
  private:
-  struct State;
   explicit RecordingSource(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };

@@ -111,10 +111,10 @@ Opened opened(StreamOptions options, const std::string& up = "y") {
   PosixFiles files;
   const auto streams = open_streams(files, {options});
   REQUIRE(streams);
-  const auto& input = std::get<ClipInput>(streams->front().data);
+  const auto& input = std::get<ClipInput>(streams->streams.front().data);
   auto pass = input.passes();
   REQUIRE(pass);
-  Opened out{input.skeleton, {}, streams->front().survey, streams->front().findings};
+  Opened out{input.skeleton, {}, streams->streams.front().survey, streams->streams.front().findings};
   REQUIRE((*pass)(out.frames));
   return out;
 }
@@ -198,9 +198,9 @@ TEST_CASE("a survey judges a BVH as reading does, also by a frame without a line
   StreamOptions options;
   options.name = "mocap";
   options.files = {{folder.write("p.bvh", text), ""}};
-  const auto streams = open_streams(files, {options}, {}, 1);
+  const auto streams = open_streams(files, {options});
   REQUIRE(streams);
-  const Findings& findings = streams->front().findings;
+  const Findings& findings = streams->streams.front().findings;
   REQUIRE(!findings.empty());
   CHECK(findings.back().what.found == "one that lies along z");
 }

@@ -4,7 +4,7 @@
 
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/recording/recover.h"
-#include "kinalign/recording/streams/device_reader.h"
+#include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/recording/survey.h"
 
 #include <doctest/doctest.h>
@@ -13,16 +13,16 @@
 using namespace kinalign;
 using namespace std::chrono_literals;
 
-TEST_CASE("marks come with each stream of a recording, on the take's axis") {
+TEST_CASE("a recording's marks stand on the take's axis") {
   const FreshFolder folder;
   RecordedLab lab(20261123);
   lab.add_node(12, 1, {3.0, -35.0}, 0.0, 4.0);
   lab.add_mark(1.0, {Mark::Kind::start, "dance", Duration{53'000'000}, "1"});
   lab.add_mark(3.0, {Mark::Kind::text, "a word", std::nullopt, "2"});
   PosixFiles files;
-  const RecordedStream stream =
-      opened(files, stream_named("imu", folder.write("take.mcap", lab.file())));
-  const std::vector<TakeMark>& marks = stream.by_file.marks;
+  const SharedFile file =
+      opened_file(files, stream_named("imu", folder.write("take.mcap", lab.file())));
+  const std::vector<TakeMark>& marks = file.marks;
   REQUIRE(marks.size() == 2);
   CHECK(marks[0] == TakeMark{utc_time(RecordedLab::utc_begin + 1'000'000'000), "start", "dance",
                              Duration{53'000'000}, "call"});
@@ -39,12 +39,12 @@ TEST_CASE("what a recording does not have, and what of it is not looked at, is t
   }
   lab.dropped = 5;
   PosixFiles files;
-  const RecordedStream stream =
-      opened(files, stream_named("imu", folder.write("take.mcap", lab.file())));
-  CHECK(stream.by_file.marks.size() == most_marks);
-  REQUIRE(stream.by_file.findings.size() == 2);
-  CHECK(stream.by_file.findings[0].what.found == "2 more");
-  CHECK(stream.by_file.findings[1].what.found == "5 fewer, of all devices");
+  const SharedFile file =
+      opened_file(files, stream_named("imu", folder.write("take.mcap", lab.file())));
+  CHECK(file.marks.size() == most_marks);
+  REQUIRE(file.findings.size() == 2);
+  CHECK(file.findings[0].what.found == "2 more");
+  CHECK(file.findings[1].what.found == "5 fewer, of all devices");
 }
 
 TEST_CASE("whatever byte of a recording's summary is damaged, its streams are the same") {
@@ -356,8 +356,8 @@ TEST_CASE("each sensor of a tracker that has several is a node") {
   CHECK(nodes == std::vector<std::string>{"10.0.0.21/0", "10.0.0.21/1", "10.0.0.22"});
   const auto streams = open_streams(files, manifest->streams);
   REQUIRE(streams);
-  REQUIRE(streams->size() == 3);
-  for (const RecordedStream& stream : *streams) {
+  REQUIRE(streams->streams.size() == 3);
+  for (const RecordedStream& stream : streams->streams) {
     CHECK(stream.findings.size() == 1);
     CHECK(says_arrivals(stream));
     CHECK(node_errors(stream).samples == 2000);

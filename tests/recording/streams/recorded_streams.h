@@ -24,12 +24,28 @@ inline StreamOptions stream_named(const std::string& name, const std::string& pa
   return options;
 }
 
+/// One stream, read through once, with its late findings behind the others.
+inline RecordedStream read_through_once(Recording recording) {
+  REQUIRE(recording.streams.size() == 1);
+  REQUIRE(read_through(recording));
+  RecordedStream& stream = recording.streams.front();
+  stream.findings = all_findings(stream);
+  return std::move(stream);
+}
+
 inline RecordedStream opened(FileSystem& files, const StreamOptions& options) {
-  auto streams = open_streams(files, {options});
+  auto recording = open_streams(files, {options});
   INFO(options.name);
-  if (!streams) FAIL(streams.error().expected, ", found ", streams.error().found);
-  REQUIRE(streams->size() == 1);
-  return std::move(streams->front());
+  if (!recording) FAIL(recording.error().expected, ", found ", recording.error().found);
+  return read_through_once(*std::move(recording));
+}
+
+/// The recording's file as a whole.
+inline SharedFile opened_file(FileSystem& files, const StreamOptions& options) {
+  auto recording = open_streams(files, {options});
+  REQUIRE(recording);
+  REQUIRE(recording->shared_files.size() == 1);
+  return std::move(recording->shared_files.front());
 }
 
 /// What it warns of, and what that means.

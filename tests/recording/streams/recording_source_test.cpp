@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/recording/streams/device_reader.h"
+#include "kinalign/recording/streams/recording_source.h"
 
 #include "tests/recording/streams/recorded_streams.h"
 
@@ -197,8 +197,9 @@ TEST_CASE("a file that breaks off anywhere is read up to there, and that is said
     const auto size = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
     const std::string path = folder.write("torn.mcap", whole.substr(0, size));
     const RecordedStream stream = opened(files, stream_named("imu", path));
+    const Findings of_file = opened_file(files, stream_named("imu", path)).findings;
     const auto torn = std::count_if(
-        stream.by_file.findings.begin(), stream.by_file.findings.end(),
+        of_file.begin(), of_file.end(),
         [](const Finding& f) { return f.repair == "kinalign recover makes a whole file of it"; });
     CHECK(torn == 1);
     const Errors errors = node_errors(stream);
@@ -220,8 +221,8 @@ TEST_CASE("a SlimeVR tracker's rotations are stamped as they come, with their ac
   REQUIRE(manifest);
   const auto streams = open_streams(files, manifest->streams);
   REQUIRE(streams);
-  REQUIRE(streams->size() == 2);
-  for (const RecordedStream& stream : *streams) {
+  REQUIRE(streams->streams.size() == 2);
+  for (const RecordedStream& stream : streams->streams) {
     CHECK(stream.findings.size() == 1);
     CHECK(says_arrivals(stream));
     CHECK(std::get<ImuInput>(stream.data).content == ImuContent{true, true, false, false});
@@ -230,7 +231,7 @@ TEST_CASE("a SlimeVR tracker's rotations are stamped as they come, with their ac
     CHECK(errors.certified == 0);
     CHECK(errors.least > 1.4);
   }
-  CHECK(std::get<ImuInput>(streams->back().data).node_names ==
+  CHECK(std::get<ImuInput>(streams->streams.back().data).node_names ==
         std::vector<std::string>{"10.0.0.22"});
 }
 
