@@ -139,14 +139,16 @@ class ArrivalStamps {
     const Time arrival{arrived.time_since_epoch() + utc_minus_host_};
     auto behind = static_cast<Duration::rep>(frames);
     Duration step = step_;
-    if (before_) step = std::clamp((arrival - *before_) / behind, Duration{0}, step);
+    if (any_before_) step = std::clamp((arrival - before_) / behind, Duration{0}, step);
     for (std::size_t k = 0; k < frames; ++k) take(k, arrival - --behind * step);
+    any_before_ = true;
     before_ = arrival;
   }
 
  private:
   Duration step_, utc_minus_host_;
-  std::optional<Time> before_;
+  bool any_before_ = false;
+  Time before_{};
 };
 
 /// What is kept of each frame, so that its row can be stamped once the clock is known.

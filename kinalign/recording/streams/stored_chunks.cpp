@@ -19,7 +19,7 @@ Error altered(const std::string& path) {
 /// The records of a chunk as they were before they were stored; of a message that stands in no
 /// chunk the record itself.
 Result<std::string> records_of(const StoredChunk& chunk, const std::string& path,
-                               std::string bytes) {
+                               const std::string& bytes) {
   if (bytes.size() < mcap_record_head) return Failure(altered(path));
   if (static_cast<McapOp>(bytes.front()) == McapOp::message) return bytes;
   const auto view = decode_mcap_chunk(std::string_view(bytes).substr(mcap_record_head));
@@ -93,7 +93,7 @@ Result<std::shared_ptr<const OpenedChunk>> StoredChunks::read(const StoredChunk&
   KA_TRY(unchanged(part.path, part.version));
   if (got != bytes.size()) return Failure(altered(part.path));
   auto opened = std::make_shared<OpenedChunk>();
-  opened->bytes = KA_TRY(records_of(chunk, part.path, std::move(bytes)));
+  opened->bytes = KA_TRY(records_of(chunk, part.path, bytes));
   opened->messages = messages_in(opened->bytes, chunk.left_out);
   return std::shared_ptr<const OpenedChunk>(std::move(opened));
 }

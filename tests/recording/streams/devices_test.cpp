@@ -362,7 +362,7 @@ TEST_CASE("each sensor of a tracker that has several is a node") {
     CHECK(says_arrivals(stream));
     CHECK(node_errors(stream).samples == 2000);
   }
-  CHECK(std::get<ImuInput>((*streams)[1].data).node_names ==
+  CHECK(std::get<ImuInput>(streams->streams[1].data).node_names ==
         std::vector<std::string>{"10.0.0.21/1"});
   // Whoever asks for the tracker alone is told of the others.
   const RecordedStream first = opened(files, stream_named("slime", path, "10.0.0.21"));
