@@ -13,7 +13,7 @@
 #include "kinalign/formats/take/take_bvh.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/formats/take/take_npz.h"
-#include "kinalign/formats/xdf/survey.h"
+#include "kinalign/formats/xdf/xdf.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/parts.h"
 #include "kinalign/recording/survey_parts.h"
