@@ -3,7 +3,6 @@
 
 #include "kinalign/core/unchanged.h"
 #include "kinalign/formats/bvh/bvh.h"
-#include "kinalign/formats/bvh/survey.h"
 #include "kinalign/formats/imu/opensim_sto.h"
 #include "kinalign/formats/imu/xsens_text.h"
 #include "kinalign/formats/points/ntu_skeleton.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/formats/xdf/xml_walk.h"
+// The XML of stream headers; xdf_test.cpp has what the headers say.
+#include "kinalign/formats/xdf/header.h"
 
 #include <doctest/doctest.h>
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of files that are no takes.
-#include "kinalign/formats/take/hdf5_start.h"
-
+// The messages about files that are no takes.
 #include "tests/folder.h"
 #include "tests/witness.h"
 
