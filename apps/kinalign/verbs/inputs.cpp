@@ -130,8 +130,7 @@ Result<void> check_take_name(const std::string& out) {
 }
 
 std::string name_advice(const Error& error) {
-  const bool name =
-      error.expected.starts_with("a joint of '") || error.expected.starts_with("a node of '");
+  const bool name = error.kind == ErrorKind::no_such_joint || error.kind == ErrorKind::no_such_node;
   return name ? "kinalign info FILE -v lists the names of joints and nodes" : "";
 }
 

@@ -38,7 +38,8 @@ Result<DeviceProtocol> protocol_of(const RawChannel& channel, const DeviceWish& 
     known += (known.empty() ? "" : ", ") + std::string(one.name);
   }
   return Failure(Error{file, 0, "of stream " + shown(channel.stream) + " one of: " + known,
-                       "'" + shown(channel.protocol) + "', of which no rows can be made yet"});
+                       "'" + shown(channel.protocol) + "', of which no rows can be made yet",
+                       ErrorKind::no_rows_in_recording});
 }
 
 std::string selected(const StreamOptions& options, const char* key, const std::string& otherwise) {

@@ -96,7 +96,8 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
     add_nodes(path, node_names(*raw, nodes), device->options.files);
   }
   if (devices.empty()) {
-    return Failure(Error{path, 0, "a recording of devices", "one in which none was heard"});
+    return Failure(Error{path, 0, "a recording of devices", "one in which none was heard",
+                         ErrorKind::no_rows_in_recording});
   }
   std::stable_sort(devices.begin(), devices.end(),
                    [](const Device& a, const Device& b) { return a.rank < b.rank; });
