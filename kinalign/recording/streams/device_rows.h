@@ -129,15 +129,13 @@ using AnyDeviceRows =
 
 /// A protocol that rows can be made of.
 struct DeviceProtocol {
-  std::string_view name;
   std::unique_ptr<DeviceListener> (*listen)(const DeviceWish& wish);
   AnyDeviceRows (*rows)(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard);
 };
 /// Both are made of a wish; the rows of what was heard, too.
 template <class Listener, class Rows>
-DeviceProtocol device_protocol(std::string_view name) {
-  return {name,
-          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
+DeviceProtocol device_protocol() {
+  return {[](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
             return std::make_unique<Listener>(wish);
           },
           [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {

@@ -105,6 +105,6 @@ class NoitomRows final : public NumberedRows<NoitomSource, ClipFrames> {
 
 }  // namespace
 
-DeviceProtocol noitom_protocol() { return device_protocol<NoitomListener, NoitomRows>("noitom"); }
+DeviceProtocol noitom_protocol() { return device_protocol<NoitomListener, NoitomRows>(); }
 
 }  // namespace kinalign

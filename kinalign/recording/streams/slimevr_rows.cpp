@@ -171,6 +171,6 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
 
 }  // namespace
 
-DeviceProtocol slimevr_protocol() { return device_protocol<SlimeListener, SlimeRows>("slimevr"); }
+DeviceProtocol slimevr_protocol() { return device_protocol<SlimeListener, SlimeRows>(); }
 
 }  // namespace kinalign
