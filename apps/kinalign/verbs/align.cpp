@@ -14,6 +14,7 @@
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/parts.h"
 #include "kinalign/recording/survey_parts.h"
+#include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <fmt/format.h>
@@ -103,7 +104,7 @@ Result<Manifest> manifest_with_options(AlignVerb& o, const Call& call) {
   }
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.manifest.front();
-  if (KA_TRY(is_recording(files, path))) {
+  if (KA_TRY(kind_of_file(files, path)) == FileKind::recording) {
     manifest = KA_TRY(survey_for_manifest(path, call));
     manifest.align = o.options;
     return manifest;

@@ -19,12 +19,6 @@
 
 namespace kinalign {
 
-Result<bool> is_take(FileSystem& files, const std::string& path) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  const std::string_view piece = KA_TRY(file.next());
-  return piece.starts_with("\x89HDF\r\n\x1a\n");
-}
-
 Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
                                                        std::string_view expected) {
   const auto equals = text.find('=');
