@@ -13,6 +13,7 @@
 #include "kinalign/recording/streams/device_reader.h"
 #include "kinalign/recording/survey_parts.h"
 #include "kinalign/simulate/rehearsal/judge_recording.h"
+#include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <fmt/format.h>
@@ -37,7 +38,7 @@ struct Opened {
 Result<Opened> open(FileSystem& files, const std::string& path) {
   Opened opened;
   Manifest manifest;
-  if (KA_TRY(is_recording(files, path))) {
+  if (KA_TRY(kind_of_file(files, path)) == FileKind::recording) {
     const RecordingSurvey survey =
         KA_TRY(survey_parts(files, KA_TRY(parts_from(files, path, {})), {}));
     opened.facts = survey.facts;

@@ -2,6 +2,7 @@
 #include "kinalign/recording/streams/device_reader.h"
 
 #include "kinalign/formats/bvh/head.h"
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/streams/sender_choice.h"
 
@@ -14,31 +15,43 @@ namespace kinalign {
 
 namespace {
 
-std::array<DeviceProtocol, 5> protocols() {
-  return {node_protocol(), kinect_protocol(), noitom_protocol(), xsens_protocol(),
-          slimevr_protocol()};
+DeviceProtocol rows_of(Protocol protocol) {
+  switch (protocol) {
+    case Protocol::nodes:
+      return node_protocol();
+    case Protocol::noitom:
+      return noitom_protocol();
+    case Protocol::xsens:
+      return xsens_protocol();
+    case Protocol::kinect:
+      return kinect_protocol();
+    case Protocol::slimevr:
+      break;
+  }
+  return slimevr_protocol();
 }
 
 Result<DeviceProtocol> protocol_of(const RawChannel& channel, const DeviceWish& wish) {
   const std::string& file = wish.file.path;
-  if (!wish.skeleton.empty() && channel.protocol != "noitom") {
+  const auto protocol = find_recorded_protocol(channel.protocol);
+  if (!wish.skeleton.empty() && !(protocol && row_of(*protocol).needs_skeleton)) {
     return Failure(Error{file, 0, "a skeleton of a noitom stream alone",
                          "one of " + shown(channel.stream) + ", of " + shown(channel.protocol)});
   }
-  if (wish.trackers && channel.protocol == "xsens") return xsens_tracker_protocol();
+  if (wish.trackers && protocol && row_of(*protocol).has_trackers) return xsens_tracker_protocol();
   if (wish.trackers) {
     return Failure(Error{file, 0, "trackers of an xsens stream",
                          shown(channel.stream) + ", of " + shown(channel.protocol)});
   }
-  for (const DeviceProtocol& one : protocols()) {
-    if (one.name == channel.protocol) return one;
-  }
+  if (protocol) return rows_of(*protocol);
   std::string known;
-  for (const DeviceProtocol& one : protocols()) {
-    known += (known.empty() ? "" : ", ") + std::string(one.name);
+  for (const Protocol one :
+       {Protocol::nodes, Protocol::kinect, Protocol::noitom, Protocol::xsens, Protocol::slimevr}) {
+    known += (known.empty() ? "" : ", ") + std::string(row_of(one).recorded_name);
   }
   return Failure(Error{file, 0, "of stream " + shown(channel.stream) + " one of: " + known,
-                       "'" + shown(channel.protocol) + "', of which no rows can be made yet"});
+                       "'" + shown(channel.protocol) + "', of which no rows can be made yet",
+                       ErrorKind::no_rows_in_recording});
 }
 
 std::string selected(const StreamOptions& options, const char* key, const std::string& otherwise) {

@@ -51,13 +51,14 @@ inline Error nothing_of(std::string_view what, const std::string& file, const He
                         std::uint64_t others = 0) {
   const std::string expected = "of stream " + shown(heard.channel.stream) + " " + std::string(what);
   if (others > 0) {
-    return {file, 0, expected, std::to_string(others) + " of other types or bodies alone"};
+    return {file, 0, expected, std::to_string(others) + " of other types or bodies alone",
+            ErrorKind::no_rows_in_recording};
   }
   return {file, 0,
           expected +
               " (nothing in it is of that protocol: see which port and protocol the device "
               "sends to)",
-          "none"};
+          "none", ErrorKind::no_rows_in_recording};
 }
 
 /// Of a device whose packets say no time, and no number that could stand for it.
@@ -128,15 +129,13 @@ using AnyDeviceRows =
 
 /// A protocol that rows can be made of.
 struct DeviceProtocol {
-  std::string_view name;
   std::unique_ptr<DeviceListener> (*listen)(const DeviceWish& wish);
   AnyDeviceRows (*rows)(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard);
 };
 /// Both are made of a wish; the rows of what was heard, too.
 template <class Listener, class Rows>
-DeviceProtocol device_protocol(std::string_view name) {
-  return {name,
-          [](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
+DeviceProtocol device_protocol() {
+  return {[](const DeviceWish& wish) -> std::unique_ptr<DeviceListener> {
             return std::make_unique<Listener>(wish);
           },
           [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {

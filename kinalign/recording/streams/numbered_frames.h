@@ -3,6 +3,7 @@
 // of nodes without a counter the clock, node_rows.cpp.
 #pragma once
 
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/recording/streams/counted_clock.h"
 #include "kinalign/recording/streams/device_rows.h"
@@ -40,7 +41,7 @@ class NumberedFrames {
   void take(const RecordedMessage& message, std::vector<Placed>& out) {
     Channel& from = channels_[message.channel_id];
     from.id = message.channel_id;
-    from.lossless = message.channel->transport != "udp";
+    from.lossless = !is_datagrams(message.channel->transport);
     arrivals_.clear();
     feed(from, message);
     place(from, message.arrival, out);

@@ -78,12 +78,12 @@ Result<void> RecordedMessages::finish(const TakeMessage& take) {
                                : "'" + shown(choice_.stream) + "'"});
   }
   const bool node = !nodes_.empty();
-  return Failure(
-      Error{file(), 0,
-            fmt::format("of stream {} {}", choice_.stream,
-                        node ? fmt::format("node {}", fmt::join(nodes_, ", "))
-                             : fmt::format("select.sender {}", fmt::join(roll_.hosts(), ", "))),
-            "'" + shown(node ? choice_.node : choice_.sender) + "'"});
+  return Failure(Error{
+      file(), 0,
+      fmt::format("of stream {} {}", choice_.stream,
+                  node ? fmt::format("node {}", fmt::join(nodes_, ", "))
+                       : fmt::format("select.sender {}", fmt::join(roll_.hosts(), ", "))),
+      "'" + shown(node ? choice_.node : choice_.sender) + "'", ErrorKind::no_rows_in_recording});
 }
 
 Result<void> RecordedMessages::take_records(const TakeMessage& take) {
