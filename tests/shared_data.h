@@ -5,9 +5,11 @@
 
 #include "tests/folder.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kinalign {
 
@@ -16,6 +18,18 @@ inline std::string shared_path(std::string_view name) {
 }
 
 inline bool shared_data() { return std::filesystem::is_directory(shared_path("bvh")); }
+
+/// All real BVH files, but those below wild/: what becomes of these is asked file by file.
+inline std::vector<std::filesystem::path> shared_bvh_files() {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(shared_path(""))) {
+    const std::string path = entry.path().string();
+    const bool is_wild = path.find("/wild/") != std::string::npos;
+    if (entry.path().extension() == ".bvh" && !is_wild) paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
 
 inline std::string shared_text(std::string_view name) { return bytes_in(shared_path(name)); }
 

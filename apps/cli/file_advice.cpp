@@ -2,20 +2,17 @@
 #include "apps/cli/file_advice.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 
 namespace kinalign {
 
 std::vector<std::string> file_advice(const Error& error) {
-  const bool is_bad_disk = error.expected == "a readable file" && error.found == std::strerror(EIO);
-  if (is_bad_disk && error.file.ends_with(".mcap")) {
+  if (error.kind == ErrorKind::unreadable_disk && error.file.ends_with(".mcap")) {
     return {"kinalign recover " + harmless(error.file) +
             " -o whole.mcap makes a file of what the disk can give"};
   }
-  if (error.expected != "a regular file" || error.found != "a directory") return {};
+  if (error.kind != ErrorKind::directory) return {};
   std::vector<std::string> recordings;
   std::error_code fault;
   for (std::filesystem::directory_iterator file(error.file, fault), end; !fault && file != end;

@@ -2,7 +2,7 @@
 // What is read does not depend on where the file is cut, arrays are as long as they say, and clocks
 // fitted to any offsets give numbers.
 // Seeds: xdf/*.xdf
-#include "kinalign/formats/xdf/clock.h"
+#include "kinalign/formats/xdf/xdf.h"
 
 #include <algorithm>
 #include <cmath>

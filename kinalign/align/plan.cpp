@@ -56,7 +56,7 @@ Result<void> find_span(const Recording& recording, AlignPlan& plan) {
   }
   if (plan.begin > plan.end) {
     return Failure(Error{"", 0, "streams that overlap in time (see start_ns and offset_ms)",
-                         spans(recording)});
+                         spans(recording), ErrorKind::no_common_span});
   }
   return {};
 }
@@ -225,6 +225,7 @@ Result<void> make_groups(const Recording& recording, const Manifest& manifest, A
 Error unknown_node(const TakeGroup& group, const std::vector<std::string>& nodes,
                    const StreamOptions& options, const std::string& name, const std::string& key) {
   Error error = unknown_name(name, "a node of '" + group.name + "' for " + key, nodes);
+  error.kind = ErrorKind::no_such_node;
   error.line = line_of(options.lines, key);
   return error;
 }
@@ -296,7 +297,7 @@ Result<AlignPlan> plan_alignment(const Recording& recording, const Manifest& man
   plan.header.frames = KA_TRY(count_rows(reference, plan));
   if (plan.header.frames == 0) {
     return Failure(Error{"", 0, "frames of '" + reference.name + "' in the common span",
-                         "none; " + spans(recording)});
+                         "none; " + spans(recording), ErrorKind::no_common_span});
   }
   return plan;
 }

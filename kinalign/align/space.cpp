@@ -39,6 +39,7 @@ Result<std::size_t> known_joint(const TakeGroup& group, const std::string& name,
   const std::size_t j = find_joint(names, name);
   if (j < names.size()) return j;
   Error error = unknown_name(name, "a joint of '" + group.name + "'", names);
+  error.kind = ErrorKind::no_such_joint;
   error.line = line;
   return Failure(std::move(error));
 }
@@ -138,7 +139,7 @@ Result<void> find_joints(const TakeHeader& header, SpacePlan& plan) {
   if (plan.options.method == "fit" && plan.pairs.size() < 3) {
     return Failure(Error{"", line_of(plan.options.lines, "joints"),
                          "three named joints or more for a fit (joints = { ... })",
-                         std::to_string(plan.pairs.size())});
+                         std::to_string(plan.pairs.size()), ErrorKind::too_few_joints});
   }
   return {};
 }

@@ -13,12 +13,34 @@
 
 namespace kinalign {
 
+/// What went wrong, for code that gives advice. Code asks for the kind and never searches the words
+/// of a message. There is a kind only for what some code asks for; any other error is `other`.
+enum class ErrorKind : std::uint8_t {
+  other,
+  interrupted,           // the user stopped the job
+  directory,             // a file was expected
+  unreadable_disk,       // the system reports an input/output error
+  no_such_file,          // reported for key files only
+  exposed_key,           // other users may read the key file
+  forbidden_key,         // this user may not read the key file
+  port_taken,            // another program has the port
+  port_forbidden,        // this user may not open the port
+  address_elsewhere,     // no interface of this machine has the address
+  no_such_joint,         // an option names a joint that the stream does not have
+  no_such_node,          // an option names a node that the stream does not have
+  too_few_joints,        // a fit needs more named joints
+  no_common_span,        // the streams do not overlap in time
+  no_rows_in_recording,  // a recording has no device, or nothing of it can be read as the stream
+};
+inline constexpr ErrorKind last_error_kind = ErrorKind::no_rows_in_recording;
+
 /// What went wrong, said for the person who has to mend the file.
 struct Error {
   std::string file;       // as the user named it; empty where there is none
   std::int64_t line = 0;  // from 1; 0 for binary files, whose byte offset stands in `found`
   std::string expected;   // "three numbers after OFFSET"
   std::string found;      // "two", or the text that stood there, see shown()
+  ErrorKind kind = ErrorKind::other;  // for advice; no part of the message
 };
 
 /// "walk.bvh:12: expected 2 frames, found 1"

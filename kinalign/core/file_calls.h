@@ -16,6 +16,12 @@ inline Failure failed(const std::string& path, std::string expected, int code) {
   return Failure(Error{path, 0, std::move(expected), std::strerror(code)});
 }
 
+/// A file could not be opened or read.
+inline Failure unreadable(const std::string& path, int code) {
+  const ErrorKind kind = code == EIO ? ErrorKind::unreadable_disk : ErrorKind::other;
+  return Failure(Error{path, 0, "a readable file", std::strerror(code), kind});
+}
+
 /// Reads until `to` is full or the file ends.
 inline Result<std::size_t> fill(FileSystem& files, const std::string& path, int fd,
                                 std::uint64_t at, std::span<char> to) {
@@ -25,7 +31,7 @@ inline Result<std::size_t> fill(FileSystem& files, const std::string& path, int 
         files.read_at(fd, to.data() + done, to.size() - done, static_cast<off_t>(at + done));
     if (got == 0) break;
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return failed(path, "a readable file", errno);
+    if (got < 0) return unreadable(path, errno);
     done += static_cast<std::size_t>(got);
   }
   return done;

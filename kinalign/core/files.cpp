@@ -55,25 +55,27 @@ int PosixFiles::rename(const char* from, const char* to) { return std::rename(fr
 int PosixFiles::remove(const char* path) { return ::unlink(path); }
 int PosixFiles::close(int fd) { return ::close(fd); }
 
-Result<InputFile> InputFile::open(FileSystem& files, std::string path) {
+Result<InputFile> InputFile::open(FileSystem& files, std::string path, std::size_t piece) {
   // O_NONBLOCK: opening a pipe without a writer would wait for ever; regular files ignore it.
   const int fd = files.open(path.c_str(), O_RDONLY | O_NONBLOCK, 0);
-  if (fd < 0) return failed(path, "a readable file", errno);
+  if (fd < 0) return unreadable(path, errno);
   struct stat status {};
   if (::fstat(fd, &status) != 0) {
     const int code = errno;
     files.close(fd);
-    return failed(path, "a readable file", code);
+    return unreadable(path, code);
   }
   if (!S_ISREG(status.st_mode)) {
     files.close(fd);
-    return Failure(Error{path, 0, "a regular file", kind_of(status.st_mode)});
+    const ErrorKind kind = S_ISDIR(status.st_mode) ? ErrorKind::directory : ErrorKind::other;
+    return Failure(Error{path, 0, "a regular file", kind_of(status.st_mode), kind});
   }
-  return InputFile(files, std::move(path), fd, static_cast<std::uint64_t>(status.st_size));
+  return InputFile(files, std::move(path), fd, static_cast<std::uint64_t>(status.st_size), piece);
 }
 
-InputFile::InputFile(FileSystem& files, std::string path, int fd, std::uint64_t size)
-    : files_(&files), path_(std::move(path)), fd_(fd), size_(size), buffer_(piece_size) {}
+InputFile::InputFile(FileSystem& files, std::string path, int fd, std::uint64_t size,
+                     std::size_t piece)
+    : files_(&files), path_(std::move(path)), fd_(fd), size_(size), buffer_(piece) {}
 
 InputFile::InputFile(InputFile&& other) noexcept
     : files_(other.files_),
@@ -103,7 +105,7 @@ Result<std::string_view> InputFile::next() {
   for (;;) {
     const ssize_t got = files_->read(fd_, buffer_.data(), buffer_.size());
     if (got >= 0) return std::string_view(buffer_.data(), static_cast<std::size_t>(got));
-    if (errno != EINTR) return failed(path_, "a readable file", errno);
+    if (errno != EINTR) return unreadable(path_, errno);
   }
 }
 
@@ -116,7 +118,7 @@ Result<std::string_view> InputFile::next_or_zeros() {
       want = page - at_ % page;
       continue;
     }
-    if (got < 0 && errno != EIO) return failed(path_, "a readable file", errno);
+    if (got < 0 && errno != EIO) return unreadable(path_, errno);
     auto size = static_cast<std::size_t>(std::max<ssize_t>(got, 0));
     if (got < 0 && at_ < size_) {
       size = static_cast<std::size_t>(std::min(page - at_ % page, size_ - at_));

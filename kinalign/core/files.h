@@ -60,7 +60,9 @@ class InputFile {
   static constexpr std::size_t piece_size = std::size_t{256} << 10;
 
   /// Refuses what is not a regular file: a pipe can't be read twice, a directory not at all.
-  static Result<InputFile> open(FileSystem& files, std::string path);
+  /// `piece`: bytes at most of a piece, for a caller that needs the beginning alone.
+  static Result<InputFile> open(FileSystem& files, std::string path,
+                                std::size_t piece = piece_size);
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&& other) noexcept;
   InputFile(const InputFile&) = delete;
@@ -83,7 +85,7 @@ class InputFile {
   const std::string& path() const { return path_; }
 
  private:
-  InputFile(FileSystem& files, std::string path, int fd, std::uint64_t size);
+  InputFile(FileSystem& files, std::string path, int fd, std::uint64_t size, std::size_t piece);
 
   FileSystem* files_;
   std::string path_;

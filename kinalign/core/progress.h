@@ -23,11 +23,9 @@ inline bool go_on(const Progress& progress, std::string_view what, std::uint64_t
 
 /// What a job fails with that was told to stop.
 inline Error interruption(std::string file = {}) {
-  return {std::move(file), 0, "the end of the job", "an interruption"};
+  return {std::move(file), 0, "the end of the job", "an interruption", ErrorKind::interrupted};
 }
 
-inline bool is_interruption(const Error& error) {
-  return error.expected == interruption().expected && error.found == interruption().found;
-}
+inline bool is_interruption(const Error& error) { return error.kind == ErrorKind::interrupted; }
 
 }  // namespace kinalign

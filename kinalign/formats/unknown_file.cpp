@@ -11,10 +11,12 @@ namespace {
 
 using namespace std::string_view_literals;
 
+constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
+
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> marks{
     {{"\x1f\x8b"sv, "a gzip archive: unpack it first"},
      {"PK\x03\x04"sv, "a ZIP archive, such as .npz"},
-     {"\x89HDF\r\n\x1a\n"sv, "an HDF5 file"},
+     {hdf5_signature, "an HDF5 file"},
      {"\x89PNG"sv, "a picture"},
      {"%PDF"sv, "a PDF"},
      {"<?xml"sv, "XML"}}};
@@ -25,6 +27,8 @@ bool is_text(std::string_view line) {
 }
 
 }  // namespace
+
+bool looks_like_hdf5(std::string_view head) { return head.starts_with(hdf5_signature); }
 
 std::string beginning_of(std::string_view head) {
   if (head.empty()) return "an empty file";

@@ -9,6 +9,9 @@
 
 namespace kinalign {
 
+/// A take begins as every HDF5 file does.
+bool looks_like_hdf5(std::string_view head);
+
 /// How a file begins, for messages: "an empty file", "a gzip archive", "'unix_ms,acc_x'" or, where
 /// the bytes are no text, that alone.
 std::string beginning_of(std::string_view head);

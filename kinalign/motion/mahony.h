@@ -17,7 +17,7 @@ struct MahonyOptions {
   // Near the truth a tilt error e and a bias error b obey e' = b - tilt_gain e, b' = -bias_gain e:
   // critically damped where bias_gain is a quarter of tilt_gain squared, then with the time
   // constant 2 / tilt_gain, here 20 s. The paper's experiments had 1/s and 0.3/s2 (recalled, not
-  // looked up), which a limb that swings misleads: kinalign/simulate/README.md has the errors by
+  // looked up), which a limb that swings misleads: docs/imu_noise.md has the errors by
   // which these were chosen.
   double tilt_gain = 0.1;              // kP, 1/s; times a step it must stay below 2
   double bias_gain = 0.0025;           // kI, 1/s2

@@ -133,7 +133,8 @@ Error unreadable_beginning(const std::string& path) {
 }
 
 Result<std::optional<RecordingFacts>> read_facts(FileSystem& files, const std::string& path) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
+  constexpr std::size_t page = 4096;  // the facts stand within the first one
+  InputFile file = KA_TRY(InputFile::open(files, path, page));
   McapReader reader;
   while (const auto record = KA_TRY(pull(reader, [&file] { return file.next_or_zeros(); }))) {
     if (std::holds_alternative<McapMessage>(*record)) break;

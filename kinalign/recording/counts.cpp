@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/counts.h"
 
+#include "kinalign/protocols/protocols.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -102,14 +104,13 @@ std::uint64_t frames_or_messages(const SenderCounts& counts) {
   return counts.frames > 0 ? counts.frames : counts.messages;
 }
 
-/// Of trackers older versions counted no frames, but what was refused.
-bool speaks_another_protocol(const std::string& protocol, const SenderCounts& counts) {
-  const bool trackers = protocol == "slimevr";
-  if (trackers && counts.refused < counts.messages) return false;
-  const bool decoded =
-      trackers || protocol == "noitom" || protocol == "xsens" || protocol == "kinect";
+bool speaks_another_protocol(std::string_view recorded_protocol, const SenderCounts& counts) {
+  const auto protocol = find_recorded_protocol(recorded_protocol);
+  if (!protocol || !row_of(*protocol).has_frame_decoder) return false;
+  // Older versions counted no frames of trackers, only refused messages.
+  if (protocol == Protocol::slimevr && counts.refused < counts.messages) return false;
   const bool had_frames = counts.frames + counts.order.late + counts.order.duplicates > 0;
-  return decoded && !had_frames && are_many(counts.messages);
+  return !had_frames && are_many(counts.messages);
 }
 
 std::string to_json(const CountedSender& counted) {

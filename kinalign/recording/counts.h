@@ -31,7 +31,7 @@ std::uint64_t frames_or_messages(const SenderCounts& counts);
 constexpr bool are_many(std::uint64_t datagrams) { return datagrams >= 20; }
 /// Of a protocol that is decoded: many messages, and nothing of them was a frame, sent again or
 /// late either.
-bool speaks_another_protocol(const std::string& protocol, const SenderCounts& counts);
+bool speaks_another_protocol(std::string_view recorded_protocol, const SenderCounts& counts);
 struct CountedSender {
   std::string topic, stream, sender;  // topic: what it sent stands there
   std::string node;                   // of inertial nodes the id, else empty

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/kinect_survey.h"
 
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 namespace kinalign {
 
 void KinectSurvey::add(std::uint16_t channel, const RawChannel& raw) {
-  if (raw.protocol == "kinect") ways_.try_emplace(channel, Way{raw, {}});
+  if (find_recorded_protocol(raw.protocol) != Protocol::kinect) return;
+  ways_.try_emplace(channel, Way{raw, {}});
 }
 
 void KinectSurvey::take(std::uint16_t channel, std::string_view payload) {
@@ -14,7 +16,7 @@ void KinectSurvey::take(std::uint16_t channel, std::string_view payload) {
   if (way == ways_.end()) return;
   messages_.clear();
   way->second.decoder.feed(octets(payload), messages_);
-  if (way->second.raw.transport == "udp") way->second.decoder.finish(messages_);
+  if (is_datagrams(way->second.raw.transport)) way->second.decoder.finish(messages_);
   for (const KinectMessage& message : messages_) {
     const auto* frame = std::get_if<KinectFrame>(&message);
     if (frame == nullptr) continue;

@@ -3,6 +3,7 @@
 
 #include "kinalign/core/crc.h"
 #include "kinalign/documents/lab_toml.h"
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/protocols/slimevr/packet.h"
 #include "kinalign/recording/kinect_survey.h"
 #include "kinalign/wire/little_endian_reader.h"
@@ -129,8 +130,9 @@ class RecordingSurveyor::State {
     channel.last = std::max(channel.last, message.log_time);
     ++channel.messages;
     channel.bytes += message.data.size();
-    const bool tracker = channel.channel.message_encoding == "slimevr";
-    if (tracker) channel.sensors |= rotating_sensors(message.data);
+    if (find_recorded_protocol(channel.channel.message_encoding) == Protocol::slimevr) {
+      channel.sensors |= rotating_sensors(message.data);
+    }
     kinects_.take(message.channel, message.data);
     if (survey_.facts && channel.channel.message_encoding == "json") {
       add_told(channel.channel.topic, message);

@@ -3,7 +3,6 @@
 
 #include "kinalign/core/unchanged.h"
 #include "kinalign/formats/bvh/bvh.h"
-#include "kinalign/formats/bvh/survey.h"
 #include "kinalign/formats/imu/opensim_sto.h"
 #include "kinalign/formats/imu/xsens_text.h"
 #include "kinalign/formats/points/ntu_skeleton.h"
@@ -13,6 +12,8 @@
 #include "kinalign/formats/table/layout.h"
 #include "kinalign/formats/table/table_reader.h"
 #include "kinalign/formats/unknown_file.h"
+#include "kinalign/formats/xdf/xdf.h"
+#include "kinalign/recording/format.h"
 
 #include <algorithm>
 #include <array>
@@ -150,6 +151,25 @@ Result<FoundFormat> program_format(const Format& format, const Source& source) {
   return watched(std::move(out));
 }
 
+/// What reads a file: one of the two, or neither.
+struct Recognized {
+  const Format* format = nullptr;
+  std::optional<TableLayout> layout{};
+};
+
+Result<Recognized> recognize(std::string_view head, std::string_view path) {
+  for (const Format& format : formats) {
+    if (format.looks(head, path)) return Recognized{&format};
+  }
+  std::optional<TableLayout> named;  // the first one that knows the columns, if not the rows
+  for (const std::string_view name : builtin_layout_names()) {
+    TableLayout layout = KA_TRY(parse_layout(*builtin_layout(name), name));
+    if (matches(layout, head)) return Recognized{nullptr, std::move(layout)};
+    if (!named && knows_columns(layout, head)) named = std::move(layout);
+  }
+  return Recognized{nullptr, std::move(named)};  // its reader says which row is wrong
+}
+
 std::string known_formats() {
   std::string text;
   for (const std::string_view name : format_names()) {
@@ -195,17 +215,22 @@ Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
                                 const StreamFile& file, std::string_view head) {
   const Source source{&files, options, file};
   if (!options.layout.empty()) return named_format(source);
-  for (const Format& format : formats) {
-    if (format.looks(head, file.path)) return program_format(format, source);
-  }
-  std::optional<TableLayout> named;  // the first one that knows the columns, if not the rows
-  for (const std::string_view name : builtin_layout_names()) {
-    const TableLayout layout = KA_TRY(parse_layout(*builtin_layout(name), name));
-    if (matches(layout, head)) return table_format(layout, source);
-    if (!named && knows_columns(layout, head)) named = layout;
-  }
-  if (named) return table_format(*named, source);  // its reader says which row is wrong
+  Recognized known = KA_TRY(recognize(head, file.path));
+  if (known.format != nullptr) return program_format(*known.format, source);
+  if (known.layout) return table_format(*std::move(known.layout), source);
   return Failure(unknown_file(file.path, head));
+}
+
+Result<FileKind> kind_of_file(FileSystem& files, const std::string& path) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  std::array<char, 8> start{};  // the longest signature
+  const std::string_view signature(start.data(), KA_TRY(file.read_at(0, start)));
+  if (looks_like_recording(signature)) return FileKind::recording;
+  if (looks_like_xdf(signature)) return FileKind::xdf;
+  if (looks_like_hdf5(signature)) return FileKind::take;
+  if (path.ends_with(".toml")) return FileKind::manifest;
+  const Recognized known = KA_TRY(recognize(KA_TRY(file.next()), path));
+  return known.format != nullptr || known.layout ? FileKind::stream : FileKind::unknown;
 }
 
 }  // namespace kinalign

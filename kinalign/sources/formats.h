@@ -8,6 +8,7 @@
 #include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -32,6 +33,19 @@ struct FoundFormat {
 /// where that is empty, by `head`, the file's first bytes. Fails with the formats known.
 Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
                                 const StreamFile& file, std::string_view head);
+
+/// What a file is, by its first bytes; a manifest, which has none of its own, by its ending .toml.
+enum class FileKind : std::uint8_t {
+  recording,  // MCAP
+  xdf,
+  take,  // HDF5
+  manifest,
+  stream,   // a format or a built-in layout knows it; its reader may still refuse it
+  unknown,  // also an empty file; a layout that the user names may read it as a stream
+};
+
+/// Reads the file's head once. Fails where the file can't be opened or read.
+Result<FileKind> kind_of_file(FileSystem& files, const std::string& path);
 
 /// The names that `layout` may have besides paths.
 std::vector<std::string_view> format_names();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/take/lab.h"
 
-#include "kinalign/core/nearest_name.h"
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/take/manifest.h"
 
 #include <arpa/inet.h>
@@ -14,8 +14,6 @@ namespace kinalign {
 
 namespace {
 
-const std::vector<std::string> protocols{"nodes", "noitom", "xsens", "kinect", "slimevr"};
-const std::vector<std::string> transports{"udp", "tcp", "tcp-listen"};
 // What a recorder has itself: ports, and topics that would stand below the device's name.
 const std::vector<std::string> own_names{"marks", "trigger", "clock", "counts"};
 
@@ -45,14 +43,20 @@ bool is_ip_address(const std::string& text) {
          ::inet_pton(AF_INET6, text.substr(0, text.find('%')).c_str(), &room) == 1;
 }
 
+bool connects(const DeviceOptions& device) {
+  return find_transport(device.transport) == Transport::tcp;
+}
+
 /// Whether a device can be reached, or reach us.
-Result<void> check_place(const DeviceOptions& device) {
-  const bool datagrams = device.protocol == "nodes" || device.protocol == "slimevr";
-  if (datagrams && device.transport != "udp") {
-    return wrong(device, "transport udp, the only one of protocol " + device.protocol,
+Result<void> check_place(const DeviceOptions& device, const ProtocolRow& row) {
+  const auto transport = find_transport(device.transport);
+  if (transport && !may_come_over(row, *transport)) {
+    return wrong(device,
+                 "transport " + std::string(name_of(row.transports.front())) +
+                     ", the only one of protocol " + device.protocol,
                  device.transport);
   }
-  if (device.transport == "tcp" && (device.address.empty() || device.port <= 0)) {
+  if (connects(device) && (device.address.empty() || device.port <= 0)) {
     return wrong(device, "an address and a port to connect to", "none");
   }
   if (!device.address.empty() && !is_ip_address(device.address)) {
@@ -72,10 +76,11 @@ Result<void> check_pair(const DeviceOptions& device, const DeviceOptions& other)
   if (other.name == device.name) {
     return wrong(device, "each name once", device.name + " twice");
   }
-  if (device.protocol == "nodes" && other.protocol == "nodes") {
+  const auto protocol = find_protocol(device.protocol);
+  if (protocol && row_of(*protocol).has_node_ids && other.protocol == device.protocol) {
     return wrong(device, "one device for all nodes", other.name + " beside it");
   }
-  const bool serves = device.transport != "tcp";  // an address that is left out is then every one
+  const bool serves = !connects(device);  // an address that is left out is then every one
   const bool same_place = other.address == device.address ||
                           (serves && (is_every(device.address) || is_every(other.address)));
   const bool same_port = device.port != 0 && other.port == device.port &&
@@ -107,14 +112,11 @@ Result<void> check_places(const DeviceOptions& device) {
 }
 
 /// Whether all that is said of a device is of use to its protocol.
-Result<void> check_use(const DeviceOptions& device) {
-  if (!is_one_of(protocols, device.protocol)) {
-    return wrong(device, "protocol, what the device speaks", "none");
-  }
-  if (!device.skeleton.empty() && device.protocol != "noitom") {
+Result<void> check_use(const DeviceOptions& device, const ProtocolRow& row) {
+  if (!device.skeleton.empty() && !row.needs_skeleton) {
     return wrong(device, "skeleton of noitom alone", "of " + device.protocol);
   }
-  if (device.protocol != "nodes") {
+  if (!row.has_node_ids) {
     if (!device.lab_key.empty())
       return wrong(device, "lab_key of nodes alone", "of " + device.protocol);
     if (!device.nodes.empty())
@@ -155,16 +157,12 @@ Result<DeviceOptions> parse_device(const std::string& text) {
       text.substr(equals + 1, last - equals - 1);  // PROTOCOL[:TRANSPORT[:ADDRESS]]
   const auto first = std::min(middle.find(':'), middle.size());
   device.protocol = middle.substr(0, first);
-  if (!is_one_of(protocols, device.protocol)) {
-    return Failure(unknown_name(device.protocol, "a known protocol", protocols));
-  }
+  if (!find_protocol(device.protocol)) return Failure(unknown_protocol(device.protocol));
   if (first < middle.size()) {
     middle = middle.substr(first + 1);
     const auto second = std::min(middle.find(':'), middle.size());
     device.transport = middle.substr(0, second);
-    if (!is_one_of(transports, device.transport)) {
-      return Failure(unknown_name(device.transport, "a known transport", transports));
-    }
+    if (!find_transport(device.transport)) return Failure(unknown_transport(device.transport));
     if (second < middle.size()) device.address = middle.substr(second + 1);
   }
   return device;
@@ -189,24 +187,26 @@ Result<void> validate(const Lab& lab) {
     const DeviceOptions& device = lab.devices[i];
     KA_TRY(check_stream_name(device.name));
     KA_TRY(check_name(device));
-    KA_TRY(check_use(device));
-    KA_TRY(check_place(device));
+    const auto protocol = find_protocol(device.protocol);
+    if (!protocol) return wrong(device, "protocol, what the device speaks", "none");
+    KA_TRY(check_use(device, row_of(*protocol)));
+    KA_TRY(check_place(device, row_of(*protocol)));
     for (std::size_t k = 0; k < i; ++k) KA_TRY(check_pair(device, lab.devices[k]));
   }
   return {};
 }
 
 double nominal_rate_hz(const DeviceOptions& device) {
-  constexpr double kinect_v2 = 30.0;
   if (device.rate_hz > 0.0) return device.rate_hz;
-  return device.protocol == "kinect" ? kinect_v2 : 0.0;
+  const auto protocol = find_protocol(device.protocol);
+  return protocol ? row_of(*protocol).usual_rate_hz : 0.0;
 }
 
 Fields describe(DeviceOptions& o) {
   return {
-      {"protocol", "what the device speaks", &o.protocol, -unlimited, unlimited, protocols},
+      {"protocol", "what the device speaks", &o.protocol, -unlimited, unlimited, protocol_names()},
       {"transport", "udp; tcp: we connect to the device; tcp-listen: it connects to us",
-       &o.transport, -unlimited, unlimited, transports},
+       &o.transport, -unlimited, unlimited, transport_names()},
       {"address", "of the device to connect to; else ours to listen on (all)", &o.address},
       {"port", "its port to connect to; else ours", &o.port, 0.0, 65535.0},
       {"skeleton", "of noitom: a BVH file with the header that the stream lacks", &o.skeleton},

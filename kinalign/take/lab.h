@@ -16,7 +16,7 @@ namespace kinalign {
 /// Where a stream of one kind of device comes from.
 struct DeviceOptions {
   std::string name;               // the stream's: "mocap", "kinect", "imu"
-  std::string protocol;           // nodes, noitom, xsens, kinect, slimevr
+  std::string protocol;           // a name in protocols/protocols.h; empty: not given
   std::string transport = "udp";  // udp; tcp: we connect; tcp-listen: the device does
   std::string address;            // of the device to connect to; else ours to listen on (all)
   std::int64_t port = -1;         // 0: any free one, where we listen; -1: nobody said

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/show_xdf.h"
 
-#include "kinalign/formats/xdf/survey.h"
+#include "kinalign/formats/xdf/xdf.h"
 
 #include <nlohmann/json.hpp>
 

@@ -192,3 +192,34 @@ TEST_CASE("a reference that is shorter when it is read again is an error, never 
   CHECK(fault(of({reference, recorded("kinect", hundred())})) ==
         "optical: expected 100 frames, as in the first reading, found 90");
 }
+
+TEST_CASE("a refusal that a verb gives advice on has a kind") {
+  const auto kind = [](const Recording& recording, const Manifest& manifest) {
+    const auto take = align(recording, manifest);
+    REQUIRE_FALSE(take);
+    return take.error().kind;
+  };
+  const auto kind_of_space = [&kind](const SpaceOptions& space) {
+    Manifest manifest;
+    manifest.spaces["kinect"] = space;
+    return kind(two(hundred(), hundred()), manifest);
+  };
+  auto late = recorded("imu", node("waist"));
+  late.clock.pieces.front().offset = Duration{5000 * ms};
+  CHECK(kind(of({recorded("optical", hundred()), late}), {}) == ErrorKind::no_common_span);
+  CHECK(kind(two(points(joints, every(1000 * ms, 2), wander),
+                 points(joints, every(10 * ms, 21, 400 * ms), wander)),
+             {}) == ErrorKind::no_common_span);
+  Manifest manifest;
+  manifest.streams = {told("imu")};
+  manifest.streams[0].root_node = "hip";
+  CHECK(kind(of({recorded("optical", hundred()), recorded("imu", node("waist"))}), manifest) ==
+        ErrorKind::no_such_node);
+  SpaceOptions space = by("fit");
+  space.joints = {{"Nose", "Head"}};
+  CHECK(kind_of_space(space) == ErrorKind::no_such_joint);
+  space.joints = {{"Head", "Head"}, {"HandLeft", "HandLeft"}};
+  CHECK(kind_of_space(space) == ErrorKind::too_few_joints);
+  space.onto = "vicon";
+  CHECK(kind_of_space(space) == ErrorKind::other);
+}

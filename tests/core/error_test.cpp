@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/core/error.h"
 
+#include "kinalign/core/progress.h"
+
 #include <doctest/doctest.h>
 
 #include <string>
@@ -118,6 +120,19 @@ TEST_CASE("KA_TRY may stand in the argument of another") {
   CHECK(eighth(24) == 3);
   REQUIRE(!eighth(12));
   CHECK(to_string(eighth(12).error()) == "numbers.txt:3: expected an even number, found 3");
+}
+
+TEST_CASE("an error's kind is no part of its message") {
+  CHECK(Error{"a", 0, "b", "c"}.kind == ErrorKind::other);
+  CHECK(to_string(Error{"a", 0, "b", "c", ErrorKind::directory}) ==
+        to_string(Error{"a", 0, "b", "c"}));
+}
+
+TEST_CASE("an interruption is known by its kind, whatever the words of an error are") {
+  const Error interrupted = interruption("walk.bvh");
+  CHECK(to_string(interrupted) == "walk.bvh: expected the end of the job, found an interruption");
+  CHECK(is_interruption(interrupted));
+  CHECK_FALSE(is_interruption(Error{"", 0, interrupted.expected, interrupted.found}));
 }
 
 TEST_CASE("severities have names") {

@@ -11,6 +11,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 
 using namespace kinalign;
 
@@ -56,6 +58,30 @@ TEST_CASE("a file is read from front to back in pieces") {
   }
   CHECK(found == bytes);
   CHECK(read_whole(files, folder / "data", bytes.size()) == bytes);
+}
+
+TEST_CASE("a folder and a bad disk have kinds of their own among the errors") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto kind = [](const auto& result) { return result.error().kind; };
+  CHECK(kind(InputFile::open(files, folder.path())) == ErrorKind::directory);
+  CHECK(kind(InputFile::open(files, folder / "none")) == ErrorKind::other);
+  CHECK(kind(InputFile::open(files, "/dev/null")) == ErrorKind::other);
+  const std::string path = folder.write("data", "12345");
+  for (const auto& [code, expected] :
+       {std::pair(EIO, ErrorKind::unreadable_disk), std::pair(EACCES, ErrorKind::other)}) {
+    FaultyFiles faulty;
+    faulty.code = code;
+    faulty.fail_at = 1;
+    CHECK(kind(InputFile::open(faulty, path)) == expected);
+    auto file = InputFile::open(faulty, path);
+    REQUIRE(file);
+    faulty.fail_at = faulty.calls + 1;
+    CHECK(kind(file->next()) == expected);
+    faulty.fail_at = faulty.calls + 1;
+    std::array<char, 4> some{};
+    CHECK(kind(file->read_at(0, some)) == expected);
+  }
 }
 
 TEST_CASE("what is no regular file is refused at once, with what it is") {

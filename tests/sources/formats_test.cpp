@@ -2,6 +2,7 @@
 // Which reader a file gets, and what is said where there is none.
 #include "kinalign/sources/formats.h"
 
+#include "tests/faulty_files.h"
 #include "tests/folder.h"
 
 #include <doctest/doctest.h>
@@ -123,4 +124,81 @@ TEST_CASE("a choice of rows that a format does not know is refused, not ignored"
         trc + ": expected no select for a file of format trc, found subject = 2");
   CHECK(refusal(ntu, "ntu", "person") == ntu + ": expected select by body, found person = 2");
   CHECK(refusal(ntu, "ntu", "body").empty());
+}
+
+TEST_CASE("a file's kind is told by its first bytes, whatever its name is") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto kind = [&](const std::string& name, const std::string& bytes) {
+    return kind_of_file(files, folder.write(name, bytes)).value();
+  };
+  const std::string mcap = "\x89MCAP0\r\n", hdf5 = "\x89HDF\r\n\x1a\n";
+  for (const std::string name : {"a.mcap", "a.h5", "a.toml", "a"}) {
+    CAPTURE(name);
+    CHECK(kind(name, mcap) == FileKind::recording);
+    CHECK(kind(name, mcap + "and more") == FileKind::recording);
+    CHECK(kind(name, "XDF:") == FileKind::xdf);
+    CHECK(kind(name, hdf5) == FileKind::take);
+  }
+  CHECK(kind("walk.bvh", "HIERARCHY\nROOT Hips\n") == FileKind::stream);
+  CHECK(kind("walk.mcap", "HIERARCHY\nROOT Hips\n") == FileKind::stream);
+  CHECK(kind("k.trc", "PathFileType\t4\t(X/Y/Z)\tk.trc\n") == FileKind::stream);
+}
+
+TEST_CASE("a manifest is known by its ending, even if it is empty") {
+  const FreshFolder folder;
+  PosixFiles files;
+  CHECK(kind_of_file(files, folder.write("a.toml", "")).value() == FileKind::manifest);
+  const std::string text = "[stream.mocap]\nfile = \"walk.bvh\"\n";
+  CHECK(kind_of_file(files, folder.write("recording.toml", text)).value() == FileKind::manifest);
+  CHECK(kind_of_file(files, folder.write("recording.txt", text)).value() == FileKind::unknown);
+}
+
+TEST_CASE("a table is a stream if a built-in layout knows its columns") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string known = "time_ns,qw,qx,qy,qz\n1790000000000000000,1,0,0,0\n";
+  CHECK(kind_of_file(files, folder.write("a.csv", known)).value() == FileKind::stream);
+  CHECK(kind_of_file(files, folder.write("b.csv", "a,b,c\n1,2,3\n")).value() == FileKind::unknown);
+}
+
+TEST_CASE("an empty file and one that ends within a signature are of no known kind") {
+  const FreshFolder folder;
+  PosixFiles files;
+  for (const std::string whole : {"\x89MCAP0\r\n", "\x89HDF\r\n\x1a\n", "XDF:"}) {
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+      CAPTURE(size);
+      const std::string path = folder.write("cut", whole.substr(0, size));
+      CHECK(kind_of_file(files, path).value() == FileKind::unknown);
+    }
+  }
+}
+
+TEST_CASE("a folder and a file that is not there have no kind, but an error") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const auto of_folder = kind_of_file(files, folder.path());
+  REQUIRE_FALSE(of_folder);
+  CHECK(of_folder.error().kind == ErrorKind::directory);
+  CHECK(of_folder.error().found == "a directory");
+  const auto missing = kind_of_file(files, folder / "none.mcap");
+  REQUIRE_FALSE(missing);
+  CHECK(missing.error().expected == "a readable file");
+}
+
+TEST_CASE("a file is opened once for its kind, and a bad disk is told as such") {
+  const FreshFolder folder;
+  const std::string path = folder.write("walk.bvh", "HIERARCHY\nROOT Hips\n");
+  FaultyFiles counting;
+  CHECK(kind_of_file(counting, path).value() == FileKind::stream);
+  CHECK(counting.calls == 4);  // open, the signature, the head, close
+  for (const int at : {2, 3}) {
+    CAPTURE(at);
+    FaultyFiles files;
+    files.fail_at = at;
+    files.code = EIO;
+    const auto kind = kind_of_file(files, path);
+    REQUIRE_FALSE(kind);
+    CHECK(kind.error().kind == ErrorKind::unreadable_disk);
+  }
 }

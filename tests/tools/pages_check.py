@@ -22,11 +22,18 @@ STANDS_FOR = {"./dev demo": "kinalign align demo/recording.toml -o demo/take.h5 
 
 
 def commands_of(block):
-    """[command, its lines, expected lines] in order; a command ending in a backslash goes on."""
+    """[command, its lines, expected lines] in order. A command goes on after a backslash at the end of its line,
+    and after <<END up to a line END."""
     found = []
+    here_document = False
     for line in block.splitlines():
-        if line.startswith("$ "):
+        if here_document:
+            found[-1][0] += "\n" + line
+            found[-1][1].append(line)
+            here_document = line != "END"
+        elif line.startswith("$ "):
             found.append([line[2:], [line], []])
+            here_document = line.endswith("<<END")
         elif found and found[-1][0].endswith("\\") and not found[-1][2]:
             found[-1][0] = found[-1][0][:-1] + line.strip()
             found[-1][1].append(line)
@@ -99,7 +106,8 @@ def main():
     for page in [p for p in pages if BLOCK.search(p.read_text())]:
         with tempfile.TemporaryDirectory(prefix="kinalign-pages-") as name:
             folder = pathlib.Path(name) / "kinalign"
-            shutil.copytree(ROOT / "docs/examples", folder / "docs/examples")
+            for copied in ("docs/examples", "layouts"):
+                shutil.copytree(ROOT / copied, folder / copied)
             if SHARED.exists():
                 (pathlib.Path(name) / "shared").symlink_to(SHARED)
             subprocess.run([demo_recording, folder / "demo", "--seed", "1", "--seconds", "60"], check=True)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tools' own cases, counted like the others: a sentence, a small tree, the exact outcome."""
+import os
 import pathlib
 import re
 import subprocess
@@ -168,6 +169,41 @@ def packages_that_are_there_are_not_asked_for(folder):
     missing = ROOT / "tools/missing_packages.sh"
     assert run(missing, "packages.txt", "build", cwd=folder) == (0, "")
     assert run(missing, "packages.txt", "build", "test", cwd=folder) == (0, "no-such-package-here\n")
+
+
+def dev_with_a_fake_apt(folder, apt_get):
+    """./dev where a package is missing and apt-get is a script; its exit code, and what it prints."""
+    put(folder, "packages.txt", "no-such-package-here build\n")
+    for name in ("dev", "tools/missing_packages.sh"):
+        put(folder, name, (ROOT / name).read_text()).chmod(0o755)
+    for name, script in {"apt-get": apt_get, "sudo": 'exec "$@"', "cmake": "", "sleep": ""}.items():
+        put(folder, f"fake/{name}", f"#!/bin/sh\n{script}\n").chmod(0o755)
+    environment = {**os.environ, "PATH": f"{folder}/fake:{os.environ['PATH']}", "KINALIGN_NO_PACKAGES": ""}
+    return run(f"{folder}/dev", "build", "release", env=environment)
+
+
+@case
+def dev_waits_for_another_package_manager(folder):
+    lock = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (aptd)"
+    code, text = dev_with_a_fake_apt(
+        folder, f'echo "$@" >>calls; [ -e busy ] || {{ touch busy; echo "{lock}"; exit 100; }}')
+    assert code == 0, text
+    assert text == ("dev: installing no-such-package-here\n"
+                    "dev: waiting for another package manager, up to two minutes\n"), text
+    calls = (pathlib.Path(folder) / "calls").read_text().splitlines()
+    assert calls == ["-qy update", "-qy update",
+                     "-qy install --no-install-recommends no-such-package-here"], calls
+
+
+@case
+def dev_prints_why_a_package_could_not_be_installed(folder):
+    code, text = dev_with_a_fake_apt(
+        folder, '[ "$2" = update ] || { echo "E: Unable to locate package $4"; exit 100; }')
+    assert code == 3
+    assert text == ("dev: installing no-such-package-here\n"
+                    "E: Unable to locate package no-such-package-here\n"
+                    f"dev: could not install no-such-package-here: see {folder}/build/apt_*.log; "
+                    "if they come from elsewhere, set KINALIGN_NO_PACKAGES=1\n"), text
 
 
 @case

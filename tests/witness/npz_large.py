@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Opens a file beyond 4 GB of tests/formats/take/npz_test.cpp."""
+"""Opens a file beyond 4 GB of tests/formats/take/take_npz_test.cpp."""
 import sys
 import zipfile
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Opens the files of tests/formats/take/npz_test.cpp as a user would; numpy checks every checksum."""
+"""Opens the files of tests/formats/take/take_npz_test.cpp as a user would; numpy checks every checksum."""
 import sys
 import zipfile
 

@@ -11,6 +11,7 @@
 #include "kinalign/motion/interpolation/clip_motion.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/simulate/rehearsal/judge_recording.h"
+#include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <fmt/format.h>
@@ -36,7 +37,7 @@ Result<Opened> open(FileSystem& files, const std::string& path) {
   Opened opened;
   Manifest manifest;
   std::shared_ptr<RecordingSource> source;
-  if (KA_TRY(is_recording(files, path))) {
+  if (KA_TRY(kind_of_file(files, path)) == FileKind::recording) {
     source = KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::heard));
     opened.facts = source->first_survey().facts;
     manifest = KA_TRY(manifest_of(source->survey(), std::string(file_name(path))));

@@ -4,6 +4,7 @@
 #include "apps/kinalign/text/port_advice.h"
 
 #include "kinalign/documents/toml_entries.h"
+#include "kinalign/protocols/protocols.h"
 
 #include <fmt/format.h>
 
@@ -29,7 +30,8 @@ std::array<MarkFlag, 2> mark_flags(const Port& marks, const Port& trigger) {
 }
 
 WantedPort wanted_by(const DeviceOptions& device, const LabSources& sources) {
-  WantedPort wanted{static_cast<std::uint16_t>(device.port), "", "", device.transport != "udp"};
+  WantedPort wanted{static_cast<std::uint16_t>(device.port), "", "",
+                    !is_datagrams(device.transport)};
   if (sources.by_flag.contains(device.name)) {
     const std::string said =
         fmt::format("--device {}={}:{}:", device.name, device.protocol, device.transport);
@@ -48,7 +50,8 @@ WantedPort wanted_by(const DeviceOptions& device, const LabSources& sources) {
 Result<void> check_mark_ports(const Lab& lab, const Port& marks, const Port& trigger) {
   for (const auto& [name, flag, port] : mark_flags(marks, trigger)) {
     for (const DeviceOptions& device : lab.devices) {
-      if (port.value_or(0) == 0 || device.port != *port || device.transport != "udp") continue;
+      if (port.value_or(0) == 0 || device.port != *port || !is_datagrams(device.transport))
+        continue;
       return Failure(Error{flag, 0, "another UDP port than that of device " + device.name,
                            std::to_string(*port)});
     }

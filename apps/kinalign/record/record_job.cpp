@@ -10,6 +10,7 @@
 #include "kinalign/documents/lab_toml.h"
 #include "kinalign/documents/toml_entries.h"
 #include "kinalign/formats/bvh/head.h"
+#include "kinalign/protocols/protocols.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -61,6 +62,11 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
+bool needs_skeleton(const DeviceOptions& device) {
+  const auto protocol = find_protocol(device.protocol);
+  return protocol && row_of(*protocol).needs_skeleton;
+}
+
 std::string without_skeleton(const std::string& device) {
   return fmt::format(
       "note: {0} has no skeleton: Noitom's stream does not say whose body it moves. Put skeleton = "
@@ -100,7 +106,7 @@ Result<void> read_files(const RecordJob& job, Call& call, RecordingSession::Opti
     }
     if (!device.skeleton.empty()) {
       KA_TRY(read_skeleton(call, device, named_by("skeleton", device, sources), options));
-    } else if (device.protocol == "noitom") {
+    } else if (needs_skeleton(device)) {
       call.console.note(without_skeleton(device.name));
     }
   }

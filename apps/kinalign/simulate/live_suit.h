@@ -4,7 +4,7 @@
 
 #include "apps/kinalign/simulate/live_socket.h"
 
-#include "kinalign/formats/bvh/write.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/simulate/random.h"
 #include "kinalign/simulate/rehearsal/rehearsal.h"
 

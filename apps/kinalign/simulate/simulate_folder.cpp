@@ -3,7 +3,7 @@
 
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/documents/truth_json.h"
-#include "kinalign/formats/bvh/write.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/stream_write.h"
 
 #include <fmt/format.h>

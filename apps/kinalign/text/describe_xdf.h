@@ -4,7 +4,7 @@
 
 #include "apps/kinalign/text/describe_file.h"
 
-#include "kinalign/formats/xdf/survey.h"
+#include "kinalign/formats/xdf/xdf.h"
 
 namespace kinalign {
 

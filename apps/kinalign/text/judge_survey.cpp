@@ -6,6 +6,7 @@
 #include "apps/kinalign/text/summary.h"
 
 #include "kinalign/documents/toml_entries.h"
+#include "kinalign/protocols/protocols.h"
 
 #include <fmt/format.h>
 
@@ -215,13 +216,16 @@ Findings unreadable(const std::string& path, const RecordingSurvey& survey) {
            "nothing of it can be aligned as " + protocol,
            "see which port and protocol the device sends to"});
     }
-    const bool heard = protocol == "noitom" && one.counts.frames > 0;
-    if (heard && are_many(one.counts.refused) && one.counts.refused > one.counts.frames) {
+    const auto known = find_recorded_protocol(protocol);
+    if (!known || one.counts.frames == 0) continue;
+    const ProtocolRow& row = row_of(*known);
+    if (row.losses == LossNumbers::frame_heads && are_many(one.counts.refused) &&
+        one.counts.refused > one.counts.frames) {
       findings.push_back(hardly_read(path, name_of(one, survey), one.counts));
     }
     const auto& names = survey.attachments;
     const bool has_body = std::find(names.begin(), names.end(), one.stream + ".bvh") != names.end();
-    if (heard && !has_body) without_skeleton.insert(one.stream);
+    if (row.needs_skeleton && !has_body) without_skeleton.insert(one.stream);
   }
   for (const std::string& stream : without_skeleton) {
     findings.push_back(

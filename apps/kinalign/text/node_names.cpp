@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/text/node_names.h"
 
+#include "kinalign/protocols/protocols.h"
+
 #include <algorithm>
 
 namespace kinalign {
@@ -30,8 +32,10 @@ std::string NodeNames::short_name(std::uint32_t id) const {
 
 NodeNames node_names(const Lab& lab) {
   const auto nodes =
-      std::find_if(lab.devices.begin(), lab.devices.end(),
-                   [](const DeviceOptions& device) { return device.protocol == "nodes"; });
+      std::find_if(lab.devices.begin(), lab.devices.end(), [](const DeviceOptions& device) {
+        const auto protocol = find_protocol(device.protocol);
+        return protocol && row_of(*protocol).has_node_ids;
+      });
   return nodes == lab.devices.end() ? NodeNames{} : NodeNames{nodes->name, nodes->nodes};
 }
 

@@ -6,6 +6,7 @@
 #include "apps/kinalign/text/summary.h"
 
 #include "kinalign/capture/net/followed_clock.h"
+#include "kinalign/protocols/protocols.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -66,11 +67,12 @@ std::string came_unheard(const DeviceOptions& device, const LabStatus& status, s
 /// Of a device of which nothing has come.
 std::string nothing_yet(const DeviceOptions& device, const PortCounts& counts, std::uint16_t port) {
   const bool linked = counts.links > 0;
-  if (device.transport == "tcp") {
+  const auto transport = find_transport(device.transport);
+  if (transport == Transport::tcp) {
     return fmt::format("{} {}:{} yet", linked ? "nothing has come from" : "no connection to",
                        device.address, port);
   }
-  if (device.transport == "tcp-listen" && !linked) {
+  if (transport == Transport::tcp_listen && !linked) {
     return fmt::format("nobody has connected to port {} yet", port);
   }
   return fmt::format("nothing has come to port {} yet", port);

@@ -13,6 +13,7 @@
 #include "kinalign/formats/unknown_file.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/streams/recording_source.h"
+#include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <fmt/format.h>
@@ -102,9 +103,9 @@ Result<Wanted> wanted_with_options(AlignVerb& o, const Call& call) {
   }
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.manifest.front();
-  if (KA_TRY(is_recording(files, path))) {
-    wanted.recording = KA_TRY(RecordingSource::open(
-        files, path, RecordingSource::Devices::heard, {}, call.console.progress()));
+  if (KA_TRY(kind_of_file(files, path)) == FileKind::recording) {
+    wanted.recording = KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::heard,
+                                                    {}, call.console.progress()));
     manifest = KA_TRY(recorded_manifest(wanted.recording->survey(), path));
     manifest.align = o.options;
     return wanted;
@@ -174,14 +175,13 @@ std::vector<std::string> advice(const std::string& path, const Error& error) {
   if (error.file.empty() || manifest) {
     lines.push_back(manifest ? "docs/formats/recording_toml.md shows the keys"
                              : "kinalign align --help shows the flags");
-    if (!manifest && error.expected.find("joints = {") != std::string::npos) {
+    if (!manifest && error.kind == ErrorKind::too_few_joints) {
       lines.push_back(
           "--joint KINECT=MOCAP names two that are one, and may be repeated; kinalign "
           "info FILE -v lists the names of both");
     }
     if (const std::string names = name_advice(error); !names.empty()) lines.push_back(names);
-  } else if (named && (error.expected.starts_with("of stream ") ||
-                       error.expected == "a recording of devices")) {
+  } else if (named && error.kind == ErrorKind::no_rows_in_recording) {
     lines.push_back("kinalign check " + path + " says what is wrong with the recording");
   } else if (error.line > 0) {
     lines.push_back("kinalign check " + error.file + " says what else is odd in it, up to there");
@@ -218,8 +218,7 @@ Result<int> run(AlignVerb& o, Call& call) {
   call.console.if_it_fails(
       [path, start = start_advice(o, recording, manifest)](const Error& error) {
         std::vector<std::string> lines = advice(path, error);
-        const bool apart = error.expected.find(" in time") != std::string::npos ||
-                           error.expected.find("common span") != std::string::npos;
+        const bool apart = error.kind == ErrorKind::no_common_span;
         if (apart && !start.empty()) lines.push_back(start);
         return lines;
       });

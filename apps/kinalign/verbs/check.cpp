@@ -15,6 +15,7 @@
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/streams/recording_source.h"
+#include "kinalign/sources/formats.h"
 
 #include <fmt/format.h>
 
@@ -175,10 +176,18 @@ Result<Checked> check_input(const Check& o, const std::string& path, Call& call)
 }
 
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
-  FileSystem& files = call.surroundings.files;
-  if (KA_TRY(is_recording(files, path))) return check_recording(o, path, call);
-  if (KA_TRY(is_xdf(files, path))) return check_xdf(o, path, call);
-  if (KA_TRY(is_take(files, path))) return check_take(o, path, call);
+  switch (KA_TRY(kind_of_file(call.surroundings.files, path))) {
+    case FileKind::recording:
+      return check_recording(o, path, call);
+    case FileKind::xdf:
+      return check_xdf(o, path, call);
+    case FileKind::take:
+      return check_take(o, path, call);
+    case FileKind::manifest:
+    case FileKind::stream:
+    case FileKind::unknown:  // unless --layout says what it is, opening it says what is wrong
+      break;
+  }
   return check_input(o, path, call);
 }
 

@@ -9,12 +9,14 @@
 #include "kinalign/align/judge.h"
 #include "kinalign/align/own_rows.h"
 #include "kinalign/documents/report_json.h"
-#include "kinalign/formats/bvh/copy.h"
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/take/take_bvh.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/formats/take/take_npz.h"
-#include "kinalign/formats/xdf/survey.h"
+#include "kinalign/formats/xdf/xdf.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/streams/recording_source.h"
+#include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
 #include "kinalign/view/show_recording.h"
 #include "kinalign/view/show_xdf.h"
@@ -131,7 +133,7 @@ Result<void> take_to_npz(const Job& job) {
 }
 
 /// What was found comes out of the child as a report's JSON.
-Result<Findings> convert_take(const Job& job) {
+Result<Findings> convert_in_child(const Job& job) {
   const auto work = [&job]() -> Result<std::string> {
     Findings findings;
     if (job.to.ends_with(".npz")) {
@@ -149,6 +151,13 @@ Result<Findings> convert_take(const Job& job) {
 Result<void> check_flags(const Convert& o, const RecordedStream* stream, Call& call) {
   auto used = o.stream.check_use(o.from.front(), stream, call.sources);
   return used ? Result<void>{} : call.console.refuse(std::move(used).error());
+}
+
+Result<Findings> convert_take(const Job& job, const Convert& o, Call& call) {
+  KA_TRY(check_flags(o, nullptr, call));
+  if (!job.to.ends_with(".mcap")) return convert_in_child(job);
+  return call.console.refuse(
+      Error{job.to, 0, "of a take a file that ends in .npz or .bvh", "another ending"});
 }
 
 Findings findings_of(const Recording& recording) {
@@ -169,14 +178,13 @@ Result<Findings> convert_recording(const Job& job, const Convert& o, Call& call)
                                      "another ending (kinalign align makes a take of it)"});
   }
   KA_TRY(check_flags(o, nullptr, call));
-  const auto source = KA_TRY(RecordingSource::open(
-      job.files, job.from, RecordingSource::Devices::heard, {}, progress));
+  const auto source = KA_TRY(
+      RecordingSource::open(job.files, job.from, RecordingSource::Devices::heard, {}, progress));
   const Manifest manifest = KA_TRY(recorded_manifest(source->survey(), job.from));
-  const OpenedInPart opened =
-      KA_TRY(open_what_can_be(job.files, manifest, std::string(folder(job.from)),
-                              {progress, call.jobs, source}));
-  KA_TRY(show_recording(job.files, opened.recording, {source.get(), job.to, job.overwrite},
-                        progress));
+  const OpenedInPart opened = KA_TRY(open_what_can_be(
+      job.files, manifest, std::string(folder(job.from)), {progress, call.jobs, source}));
+  KA_TRY(
+      show_recording(job.files, opened.recording, {source.get(), job.to, job.overwrite}, progress));
   Findings findings = findings_of(opened.recording);
   append(findings, opened.left_out);
   return findings;
@@ -193,9 +201,6 @@ Result<Findings> convert_xdf(const Job& job, const Convert& o, Call& call) {
 }
 
 Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
-  if (job.from.ends_with(".toml")) {
-    return call.console.refuse(Error{job.from, 0, "a take, or one stream's file", "a manifest"});
-  }
   const Input input = KA_TRY(open_input(job.files, job.from, o.stream, call.console.progress()));
   const RecordedStream& stream = input.recording.streams.front();
   KA_TRY(check_flags(o, &stream, call));
@@ -215,13 +220,20 @@ Result<Findings> convert_stream(const Job& job, const Convert& o, Call& call) {
 }
 
 Result<Findings> convert(const Job& job, const Convert& o, Call& call) {
-  if (KA_TRY(is_recording(job.files, job.from))) return convert_recording(job, o, call);
-  if (KA_TRY(is_xdf(job.files, job.from))) return convert_xdf(job, o, call);
-  if (!KA_TRY(is_take(job.files, job.from))) return convert_stream(job, o, call);
-  KA_TRY(check_flags(o, nullptr, call));
-  if (!job.to.ends_with(".mcap")) return convert_take(job);
-  return call.console.refuse(
-      Error{job.to, 0, "of a take a file that ends in .npz or .bvh", "another ending"});
+  switch (KA_TRY(kind_of_file(job.files, job.from))) {
+    case FileKind::recording:
+      return convert_recording(job, o, call);
+    case FileKind::xdf:
+      return convert_xdf(job, o, call);
+    case FileKind::take:
+      return convert_take(job, o, call);
+    case FileKind::manifest:
+      return call.console.refuse(Error{job.from, 0, "a take, or one stream's file", "a manifest"});
+    case FileKind::stream:
+    case FileKind::unknown:  // unless --layout says what it is, opening it says what is wrong
+      break;
+  }
+  return convert_stream(job, o, call);
 }
 
 Result<int> run(Convert& o, Call& call) {

@@ -6,6 +6,7 @@
 #include "apps/kinalign/verbs/inputs.h"
 
 #include "kinalign/recording/streams/recording_source.h"
+#include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
 
 namespace kinalign {
@@ -45,21 +46,28 @@ Result<Description> describe(const Info& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& path = o.file.front();
   const Names names = call.common.verbose ? Names::yes : Names::no;
-  const bool recording = KA_TRY(is_recording(files, path));
-  const bool take = !recording && KA_TRY(is_take(files, path));
-  const bool xdf = !recording && !take && KA_TRY(is_xdf(files, path));
-  if (recording || take || xdf || path.ends_with(".toml")) {
+  const FileKind kind = KA_TRY(kind_of_file(files, path));
+  if (kind != FileKind::stream && kind != FileKind::unknown) {
     auto used = o.stream.check_use(path, nullptr, call.sources);
     if (!used) return call.console.refuse(std::move(used).error());
   }
-  if (take) return describe_take(files, path, names);
-  if (xdf) {
-    return describe_xdf(path, KA_TRY(survey_xdf(files, path, call.console.progress())), names);
+  const Progress progress = call.console.progress();
+  switch (kind) {
+    case FileKind::recording: {
+      const auto source = KA_TRY(
+          RecordingSource::open(files, path, RecordingSource::Devices::unheard, {}, progress));
+      return describe_survey(path, source->first_survey(), source->parts());
+    }
+    case FileKind::xdf:
+      return describe_xdf(path, KA_TRY(survey_xdf(files, path, progress)), names);
+    case FileKind::take:
+      return describe_take(files, path, names);
+    case FileKind::manifest:
+    case FileKind::stream:
+    case FileKind::unknown:  // unless --layout says what it is, opening it says what is wrong
+      break;
   }
-  if (!recording) return describe_input(o, call, path, names);
-  const auto source = KA_TRY(RecordingSource::open(
-      files, path, RecordingSource::Devices::unheard, {}, call.console.progress()));
-  return describe_survey(path, source->first_survey(), source->parts());
+  return describe_input(o, call, path, names);
 }
 
 Result<int> run(Info& o, Call& call) {

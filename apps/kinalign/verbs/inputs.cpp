@@ -19,12 +19,6 @@
 
 namespace kinalign {
 
-Result<bool> is_take(FileSystem& files, const std::string& path) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  const std::string_view piece = KA_TRY(file.next());
-  return piece.starts_with("\x89HDF\r\n\x1a\n");
-}
-
 Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
                                                        std::string_view expected) {
   const auto equals = text.find('=');
@@ -130,8 +124,7 @@ Result<void> check_take_name(const std::string& out) {
 }
 
 std::string name_advice(const Error& error) {
-  const bool name =
-      error.expected.starts_with("a joint of '") || error.expected.starts_with("a node of '");
+  const bool name = error.kind == ErrorKind::no_such_joint || error.kind == ErrorKind::no_such_node;
   return name ? "kinalign info FILE -v lists the names of joints and nodes" : "";
 }
 

@@ -19,9 +19,6 @@
 
 namespace kinalign {
 
-/// Whether a file begins as HDF5 does. Fails where it can't be read.
-Result<bool> is_take(FileSystem& files, const std::string& path);
-
 /// "name=value" in two; fails without '=' or without a name.
 Result<std::pair<std::string, std::string>> split_pair(const std::string& text,
                                                        std::string_view expected);

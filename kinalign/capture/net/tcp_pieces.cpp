@@ -122,8 +122,7 @@ Result<TcpPieces> TcpPieces::listen(const std::string& address, std::uint16_t po
   ask_for_stamps(listener.fd());
   if (listener.fd() < 0 || ::bind(listener.fd(), found->ai_addr, found->ai_addrlen) != 0 ||
       ::listen(listener.fd(), static_cast<int>(most_links)) != 0) {
-    return Failure(
-        Error{endpoint_text(own, port), 0, "a TCP port to serve on", obstacle(errno, port)});
+    return Failure(no_port(endpoint_text(own, port), "a TCP port to serve on", errno, port));
   }
   const std::uint16_t bound = bound_port(listener.fd());
   return TcpPieces(address, bound, std::move(listener));

@@ -60,13 +60,19 @@ struct Socket {
 
 }  // namespace
 
-std::string obstacle(int code, std::uint16_t port) {
-  if (code == EADDRINUSE) return std::string(port_taken);
-  if (code == EACCES || code == EPERM) {
-    return std::string(port < 1024 ? low_port_forbidden : port_forbidden);
+Error no_port(std::string at, std::string expected, int code, std::uint16_t port) {
+  Error error{std::move(at), 0, std::move(expected), std::strerror(code)};
+  if (code == EADDRINUSE) {
+    error.found = "another program on it";
+    error.kind = ErrorKind::port_taken;
+  } else if (code == EACCES || code == EPERM) {
+    error.found = port < 1024 ? "no permission for a port below 1024" : "no permission";
+    error.kind = ErrorKind::port_forbidden;
+  } else if (code == EADDRNOTAVAIL) {
+    error.found = "no interface that has it";
+    error.kind = ErrorKind::address_elsewhere;
   }
-  if (code == EADDRNOTAVAIL) return std::string(address_elsewhere);
-  return std::strerror(code);
+  return error;
 }
 
 std::optional<std::string> spelt_address(const std::string& text) {
@@ -93,8 +99,7 @@ Result<UdpSocket> UdpSocket::open(const std::string& address, std::uint16_t port
   const bool bound = socket.fd_ >= 0 && set_options(socket.fd_, found->ai_family) &&
                      ::bind(socket.fd_, found->ai_addr, found->ai_addrlen) == 0;
   if (!bound) {
-    return Failure(
-        Error{endpoint_text(address, port), 0, "a UDP port to serve on", obstacle(errno, port)});
+    return Failure(no_port(endpoint_text(address, port), "a UDP port to serve on", errno, port));
   }
   socket.port_ = bound_port(socket.fd_);
   return socket;
@@ -114,8 +119,8 @@ Result<UdpSocket> UdpSocket::connected(const HostAddress& own, std::uint16_t por
     socket.port_ = port;
     return socket;
   }
-  return Failure(Error{endpoint_text(to_string(peer), peer_port), 0, "a UDP socket for it alone",
-                       obstacle(errno, port)});
+  return Failure(
+      no_port(endpoint_text(to_string(peer), peer_port), "a UDP socket for it alone", errno, port));
 }
 
 UdpSocket::UdpSocket(UdpSocket&& other) noexcept

@@ -15,14 +15,9 @@ struct sockaddr;  // <sys/socket.h>
 
 namespace kinalign {
 
-/// What may stand in the `found` of an error of a port that could not be opened, for who advises.
-inline constexpr std::string_view port_taken = "another program on it";
-inline constexpr std::string_view port_forbidden = "no permission";
-inline constexpr std::string_view low_port_forbidden = "no permission for a port below 1024";
-inline constexpr std::string_view address_elsewhere = "no interface that has it";
-
-/// What stands in the way of an address and port, for who has to clear it; `code`: errno.
-std::string obstacle(int code, std::uint16_t port);
+/// A port that could not be opened: what stands in the way, in words and as the error's kind.
+/// `at`: the address and port. `code`: errno.
+Error no_port(std::string at, std::string expected, int code, std::uint16_t port);
 
 class UdpSocket {
  public:

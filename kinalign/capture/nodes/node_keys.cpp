@@ -36,8 +36,9 @@ class OpenFile {
   int fd_;
 };
 
-Failure no_key(const std::string& path, const std::string& expected, const std::string& found) {
-  return Failure(Error{path, 0, expected, found});
+Failure no_key(const std::string& path, const std::string& expected, const std::string& found,
+               ErrorKind kind = ErrorKind::other) {
+  return Failure(Error{path, 0, expected, found, kind});
 }
 
 std::string octal(unsigned mode) {
@@ -53,17 +54,25 @@ Result<void> check_mode(int fd, const std::string& path) {
   if (::fstat(fd, &found) != 0) return no_key(path, "a key file", std::strerror(errno));
   if (!S_ISREG(found.st_mode)) return no_key(path, "a key file", "no regular file");
   if ((found.st_mode & 077U) == 0) return {};
-  return no_key(path, std::string(secret_key), octal(found.st_mode));
+  return no_key(path, "a key that nobody else may read (chmod 600)", octal(found.st_mode),
+                ErrorKind::exposed_key);
 }
 
 /// Of a file that may not be read: whose it is, where that may be known.
 std::string forbidden(const std::string& path) {
-  std::string text(no_permission);
+  const std::string text = "no permission to read it";
   struct stat found {};
   if (::stat(path.c_str(), &found) != 0) return text;
   const passwd* owner = ::getpwuid(found.st_uid);
   const std::string name = owner != nullptr ? owner->pw_name : std::to_string(found.st_uid);
   return text + ": it is " + name + "'s, " + octal(found.st_mode);
+}
+
+/// A lab key's file could not be opened.
+Failure no_lab_key(const std::string& path, int code) {
+  if (code == EACCES) return no_key(path, "a lab key", forbidden(path), ErrorKind::forbidden_key);
+  const ErrorKind kind = code == ENOENT ? ErrorKind::no_such_file : ErrorKind::other;
+  return no_key(path, "a lab key", std::strerror(code), kind);
 }
 
 /// Of a file that could not be made.
@@ -110,9 +119,7 @@ std::string key_text(std::span<const std::uint8_t> key) {
 
 Result<LabKey> read_lab_key(FileSystem& files, const std::string& path) {
   const OpenFile file(files, files.open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK, 0));
-  if (file.fd() < 0) {
-    return no_key(path, "a lab key", errno == EACCES ? forbidden(path) : std::strerror(errno));
-  }
+  if (file.fd() < 0) return no_lab_key(path, errno);
   KA_TRY(check_mode(file.fd(), path));
   std::array<char, 128> text{};
   const ssize_t got = files.read(file.fd(), text.data(), text.size());

@@ -30,14 +30,9 @@ Result<SipHashKey> new_secret();
 /// "000102…": two lowercase digits a byte.
 std::string key_text(std::span<const std::uint8_t> key);
 
-/// What read_lab_key expected of a file that others may read, for who advises.
-inline constexpr std::string_view secret_key = "a key that nobody else may read (chmod 600)";
-
-/// What it found of a file that is another user's begins so, and goes on with whose and which mode.
-inline constexpr std::string_view no_permission = "no permission to read it";
-
-/// 64 hexadecimal digits and at most a line end. Refuses a file that others may read; no message
-/// shows a byte of it.
+/// 64 hexadecimal digits and at most a line end. Refuses a file that others may read
+/// (ErrorKind::exposed_key). A file that this user may not read is ErrorKind::forbidden_key, and
+/// one that is not there ErrorKind::no_such_file. No message shows a byte of the file.
 Result<LabKey> read_lab_key(FileSystem& files, const std::string& path);
 
 /// The key's text and a line end, mode 0600. Refuses to overwrite anything: a lost key is a node

@@ -2,6 +2,7 @@
 #include "kinalign/capture/recorder/recorded_nodes.h"
 
 #include "kinalign/capture/net/port_error.h"
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
@@ -101,9 +102,12 @@ RecordedNodes::Node& RecordedNodes::node_of(std::uint32_t id, const NodeAddress&
   if (found != nodes_.end()) return found->second;
   const std::string number = std::to_string(id);
   const auto place = device_.nodes.find(number);
-  const RawChannel raw{device_.name, "kinalign-node",
-                       "udp",        endpoint_text(to_string(from.host), from.port),
-                       number,       place == device_.nodes.end() ? "" : place->second};
+  const RawChannel raw{device_.name,
+                       std::string(row_of(Protocol::nodes).recorded_name),
+                       std::string(name_of(Transport::udp)),
+                       endpoint_text(to_string(from.host), from.port),
+                       number,
+                       place == device_.nodes.end() ? "" : place->second};
   const std::string topic = "/" + device_.name + "/" + number;
   McapChannel exchanges = to_channel(topic + "/exchange", raw);
   exchanges.message_encoding = exchange_encoding;

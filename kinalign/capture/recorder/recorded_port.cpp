@@ -20,20 +20,41 @@ std::string encoded(const KinectPong& pong, bool as_line) {
 }  // namespace
 
 Result<RecordedPort> RecordedPort::open(const DeviceOptions& device, const SipHashKey& secret) {
-  return RecordedPort(device, KA_TRY(told_of(device.name, open_pieces(device))), secret);
+  const auto protocol = find_protocol(device.protocol);
+  if (!protocol) return Failure(unknown_protocol(device.protocol));
+  return RecordedPort(device, row_of(*protocol), KA_TRY(told_of(device.name, open_pieces(device))),
+                      secret);
 }
 
 Result<RecordedPort::Pieces> RecordedPort::open_pieces(const DeviceOptions& device) {
   const auto port = static_cast<std::uint16_t>(device.port);
-  if (device.transport == "udp") return Pieces(KA_TRY(UdpPieces::open(device.address, port)));
-  if (device.transport == "tcp") return Pieces(KA_TRY(TcpPieces::connect(device.address, port)));
+  const auto transport = find_transport(device.transport);
+  if (!transport) return Failure(unknown_transport(device.transport));
+  switch (*transport) {
+    case Transport::udp:
+      return Pieces(KA_TRY(UdpPieces::open(device.address, port)));
+    case Transport::tcp:
+      return Pieces(KA_TRY(TcpPieces::connect(device.address, port)));
+    case Transport::tcp_listen:
+      break;
+  }
   return Pieces(KA_TRY(TcpPieces::listen(device.address, port)));
 }
 
-RecordedPort::RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret)
-    : device_(std::move(device)), pieces_(std::move(pieces)) {
-  if (device_.protocol == "slimevr") slimes_ = std::make_unique<SlimeDesk>(secret);
-  if (device_.protocol == "kinect") kinects_ = std::make_unique<KinectDesk>(secret);
+RecordedPort::RecordedPort(DeviceOptions device, const ProtocolRow& protocol, Pieces pieces,
+                           const SipHashKey& secret)
+    : device_(std::move(device)), protocol_(&protocol), pieces_(std::move(pieces)) {
+  switch (protocol.answers) {
+    case Answers::kinect_pings:
+      kinects_ = std::make_unique<KinectDesk>(secret);
+      break;
+    case Answers::tracker_handshakes:
+      slimes_ = std::make_unique<SlimeDesk>(secret);
+      break;
+    case Answers::node_requests:  // RecordedNodes answers these
+    case Answers::none:
+      break;
+  }
 }
 
 void RecordedPort::add_fds(std::vector<int>& fds) const {
@@ -41,7 +62,7 @@ void RecordedPort::add_fds(std::vector<int>& fds) const {
 }
 
 void RecordedPort::drain(HostAxis& axis, Recorder& recorder, const std::optional<Moment>& until) {
-  const bool may_hold = until && device_.transport == "udp";
+  const bool may_hold = until && has_datagrams();
   const TakePiece to = [&](const Piece& piece) {
     const Moment came{piece.arrival, piece.stamp};
     if (may_hold && held_.must_hold(came, piece.sender, until)) {
@@ -92,14 +113,14 @@ RecordedPort::Source& RecordedPort::source_of(const Senders::Sender& sender, std
     return *source;
   }
   const RawChannel raw{device_.name,
-                       device_.protocol,
+                       std::string(protocol_->recorded_name),
                        device_.transport,
                        is_shared ? "" : endpoint_text(to_string(sender.host), sender.port),
                        "",
                        ""};
   source.emplace(Source{RecordedSource(recorder, topic("raw", sender.life), raw), raw,
-                        StreamWatch(device_.protocol, device_.transport == "udp", raw.sender),
-                        sender.life, address});
+                        StreamWatch(protocol_->protocol, has_datagrams(), raw.sender), sender.life,
+                        address});
   return *source;
 }
 
@@ -121,7 +142,7 @@ void RecordedPort::answer_pings(Source& source, const Piece& piece, HostAxis& ax
     }
     if (const auto pong = kinects_->answer(axis.now())) {
       const std::string bytes = encoded(*pong, source.watch.speaks_lines());
-      const bool forgeable = device_.transport == "udp";
+      const bool forgeable = has_datagrams();
       if (!forgeable || bytes.size() <= may_send) {
         may_send -= forgeable ? bytes.size() : 0;
         std::visit([&](auto& pieces) { pieces.send(piece.sender, octets(bytes)); }, pieces_);
@@ -217,7 +238,7 @@ void RecordedPort::look_at(Source& source) const {
 /// comes back is not told of again.
 void RecordedPort::find_faults(const Source& source) {
   const SenderCounts& counts = source.recorded.status.counts;
-  const bool none = !source.exchanges && speaks_another_protocol(device_.protocol, counts);
+  const bool none = !source.exchanges && speaks_another_protocol(protocol_->recorded_name, counts);
   if (counts.refused == 0 && !none && !source.watch.has_twins()) return;
   const std::string host = to_string(source.address.host);
   const std::string name = device_.name + " from " + endpoint_text(host, source.address.port);

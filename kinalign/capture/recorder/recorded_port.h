@@ -11,6 +11,7 @@
 #include "kinalign/capture/recorder/recorded_source.h"
 #include "kinalign/capture/recorder/slimevr_desk.h"
 #include "kinalign/capture/recorder/stream_watch.h"
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/take/lab.h"
 
 #include <cstdint>
@@ -72,7 +73,8 @@ class RecordedPort {
     std::uint64_t pings_refused = 0;
   };
 
-  RecordedPort(DeviceOptions device, Pieces pieces, const SipHashKey& secret);
+  RecordedPort(DeviceOptions device, const ProtocolRow& protocol, Pieces pieces,
+               const SipHashKey& secret);
   static Result<Pieces> open_pieces(const DeviceOptions& device);
   struct Held {
     Piece piece;
@@ -91,7 +93,10 @@ class RecordedPort {
   void look_at(Source& source) const;
   void find_faults(const Source& source);
 
+  bool has_datagrams() const { return std::holds_alternative<UdpPieces>(pieces_); }
+
   DeviceOptions device_;
+  const ProtocolRow* protocol_;
   Pieces pieces_;
   std::vector<std::optional<Source>> sources_;  // by the sender's number
   std::optional<Source> others_;                // strangers after too many lives share it

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/recorder/recording_session.h"
 
+#include "kinalign/protocols/protocols.h"
+
 #include <algorithm>
 #include <span>
 #include <thread>
@@ -99,7 +101,8 @@ RecordingSession::RecordingSession(Options options, Machine machine)
 
 Result<void> RecordingSession::open_ports() {
   for (const DeviceOptions& device : options_.lab.devices) {
-    if (device.protocol == "nodes") {
+    const auto protocol = find_protocol(device.protocol);
+    if (protocol && row_of(*protocol).answers == Answers::node_requests) {
       nodes_ = KA_TRY(RecordedNodes::open(device, options_.desk, machine_.nodes_clock, *recorder_));
     } else {
       const auto number = static_cast<std::uint8_t>(ports_.size());

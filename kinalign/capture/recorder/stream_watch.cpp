@@ -32,13 +32,23 @@ std::uint64_t trouble(const KinectStreamCounts& counts) {
 
 }  // namespace
 
-StreamWatch::StreamWatch(const std::string& protocol, bool datagrams, const std::string& sender) {
-  if (protocol == "noitom") decoder_.emplace<Noitom>().datagrams = datagrams;
-  if (protocol == "xsens") decoder_.emplace<Xsens>();
-  if (protocol == "kinect") {
-    Kinect& kinect = decoder_.emplace<Kinect>();
-    kinect.datagrams = datagrams;
-    kinect.sender = sender;
+StreamWatch::StreamWatch(Protocol protocol, bool datagrams, const std::string& sender) {
+  switch (protocol) {
+    case Protocol::noitom:
+      decoder_.emplace<Noitom>().datagrams = datagrams;
+      break;
+    case Protocol::xsens:
+      decoder_.emplace<Xsens>();
+      break;
+    case Protocol::kinect: {
+      Kinect& kinect = decoder_.emplace<Kinect>();
+      kinect.datagrams = datagrams;
+      kinect.sender = sender;
+      break;
+    }
+    case Protocol::nodes:    // RecordedNodes decodes these
+    case Protocol::slimevr:  // SlimeDesk decodes these
+      break;
   }
 }
 

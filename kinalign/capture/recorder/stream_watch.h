@@ -7,6 +7,7 @@
 #include "kinalign/protocols/kinect/frames.h"
 #include "kinalign/protocols/kinect/stream.h"
 #include "kinalign/protocols/noitom/receiver.h"
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/protocols/xsens/stream.h"
 #include "kinalign/recording/counts.h"
 
@@ -24,11 +25,9 @@ using NewestKinectFrames = std::map<std::uint32_t, KinectSessions>;
 
 class StreamWatch {
  public:
-  /// `protocol` as in take/lab.h. Of one that is not decoded here nothing is counted.
-  /// `datagrams`: a piece is one, with whole messages in it; else bytes cut anywhere. `sender`: as
-  /// findings name it.
-  explicit StreamWatch(const std::string& protocol = "", bool datagrams = false,
-                       const std::string& sender = "");
+  /// Nothing is counted for a protocol that is decoded elsewhere. `datagrams`: a piece is one, with
+  /// whole messages in it; else bytes cut anywhere. `sender`: as findings name it.
+  explicit StreamWatch(Protocol protocol, bool datagrams = false, const std::string& sender = "");
 
   /// `newest`: a Kinect that is heard on another way than before, in a connection made anew, goes
   /// on with its count, or has been started anew.

@@ -2,12 +2,16 @@
 // Biovision BVH, read and written. Layout: docs/formats/bvh.md.
 #pragma once
 
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/formats/clip_survey.h"
 #include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,9 +66,10 @@ bool looks_like_bvh(std::string_view head);
 Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
                      std::string_view name, Findings& findings);
 
-/// Whether a person's skeleton has a person's size and stands: findings that propose
-/// metres_per_unit or up where not. Of the rest pose and the first of `rows` [n,C] (none: a file
-/// without frames) the row decides what stands. Skeletons of fewer than ten joints are not judged.
+/// Checks that a person's skeleton has a person's size and stands upright; a finding proposes
+/// another metres_per_unit or another up axis. If the first of `rows` [n,C] shows clearly which
+/// axis is up, it decides; otherwise, or without rows, the rest pose decides. Skeletons with fewer
+/// than ten joints are not judged.
 Findings judge_size(const BvhHierarchy& hierarchy, const Skeleton& skeleton,
                     std::span<const double> rows, const BvhOptions& options, std::string_view name);
 
@@ -103,14 +108,68 @@ std::unique_ptr<ClipReader> make_bvh_reader(const BvhOptions& options, const std
 /// Reads a whole file. `name` appears in messages only. Memory goes by the values present.
 Result<BvhFile> read_bvh(std::string_view text, std::string_view name, const BvhOptions& options);
 
+/// The first pass over a file: its hash, its skeleton, its number of frames. The numbers are read
+/// only if the word count does not give the promised number of frames, or if the file ends within
+/// the last word.
+Result<ClipSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
+                              const Progress& progress);
+
 using TextSink = std::function<Result<void>(std::string_view)>;
 
 /// Writes `values` in the file's decimals: read, write, read gives every channel exactly. A Clip
 /// made elsewhere gets its channels from bvh_from_clip first; nothing else computes on angles.
-/// Larger than memory: bvh_write.h, bvh_copy.h.
+/// BvhWriter and copy_bvh write files that are larger than memory.
 Result<void> write_bvh(const BvhFile& file, const TextSink& sink);
 
-/// A clip made elsewhere with channels (BvhChannels of bvh_write.h).
+/// A clip made elsewhere, with the channels that BvhChannels gives it.
 BvhFile bvh_from_clip(Clip clip, double frame_seconds);
+
+/// Writes a BVH block by block. The number of frames must be known before the first block.
+class BvhWriter {
+ public:
+  BvhWriter(const BvhHierarchy& hierarchy, std::uint64_t frames, int decimals, TextSink sink);
+
+  /// The next rows of channel values [n,C].
+  Result<void> append(std::span<const double> values);
+  /// Fails where other than the promised frames were given.
+  Result<void> finish();
+
+ private:
+  TextSink sink_;
+  std::size_t row_size_;
+  int decimals_;
+  std::uint64_t frames_, written_ = 0;
+  std::string text_;  // not yet handed on
+};
+
+/// Channels for a clip made elsewhere: centimetres, y up, rotations Z X Y, six decimals; position
+/// channels for roots and for joints that leave their offset by more than a micrometre, or for all
+/// joints, as suits write them. Joints come in the order in which a BVH nests them.
+class BvhChannels {
+ public:
+  enum class Positions { of_what_moves, of_all };
+  explicit BvhChannels(const Skeleton& skeleton, Positions positions = Positions::of_what_moves);
+
+  /// All frames' local positions [n,J,3], in blocks: which joints move.
+  void see(std::span<const double> local_positions);
+  BvhHierarchy hierarchy(std::uint64_t frames, double frame_seconds) const;
+
+  /// Then their values: local positions [n,J,3] and rotations [n,J,4] become rows [n,C], appended.
+  void append(std::span<const double> local_positions, std::span<const double> local_rotations,
+              std::vector<double>& values) const;
+
+ private:
+  bool has_position(std::size_t j) const { return moves_[j] || skeleton_.parents[j] < 0; }
+
+  Skeleton skeleton_;
+  std::vector<std::size_t> order_;  // [J] the skeleton's joints as they are written
+  std::vector<bool> moves_;         // [J]
+};
+
+/// Copies a BVH with its own channels, values and decimals; every number stays as it is. Reads the
+/// file twice in pieces, because the number of frames is known only after the first pass. Returns
+/// the findings about its rows.
+Result<Findings> copy_bvh(FileSystem& files, const std::string& from, const TextSink& sink,
+                          const Progress& progress = {});
 
 }  // namespace kinalign

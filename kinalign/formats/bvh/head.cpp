@@ -1,13 +1,269 @@
 // SPDX-License-Identifier: Apache-2.0
+// A BVH's words, the parser of its hierarchy, and the head that is collected from pieces.
 #include "kinalign/formats/bvh/head.h"
 
-#include "kinalign/formats/bvh/words.h"
+#include "kinalign/core/numbers.h"
+#include "kinalign/core/utf8.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
 
 namespace kinalign {
 
 namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + 32);
+  }
+  return out;
+}
+
+/// Without such at both ends; a cell of a table loses less (cells.h).
+std::string_view stripped(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+class BvhWords {
+ public:
+  BvhWords(std::string_view text, std::string_view name) : text_(text), name_(name) {}
+
+  /// The next word; a brace is a word of its own. Empty at the end.
+  std::string_view next() {
+    skip_blanks();
+    const std::size_t begin = at_;
+    if (at_ < text_.size() && is_brace(text_[at_])) return text_.substr(at_++, 1);
+    while (at_ < text_.size() && !is_blank(text_[at_]) && !is_brace(text_[at_])) ++at_;
+    return text_.substr(begin, at_ - begin);
+  }
+
+  std::string_view peek() {
+    const BvhWords before = *this;
+    const std::string_view word = next();
+    *this = before;
+    return word;
+  }
+
+  /// What is left of the line, without a brace at its end: a name may hold blanks.
+  std::string_view rest_of_line() {
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '{') ++at_;
+    return stripped(text_.substr(begin, at_ - begin));
+  }
+
+  Error wrong(std::string expected, std::string_view found) const {
+    return Error{std::string(name_), line_, std::move(expected),
+                 found.empty() ? "the end of the file" : "'" + shown(found) + "'"};
+  }
+
+  std::int64_t line() const { return line_; }
+  std::size_t at() const { return at_; }
+
+ private:
+  static bool is_brace(char c) { return c == '{' || c == '}'; }
+  void skip_blanks() {
+    for (; at_ < text_.size() && is_blank(text_[at_]); ++at_) line_ += text_[at_] == '\n' ? 1 : 0;
+  }
+
+  std::string_view text_, name_;
+  std::size_t at_ = 0;
+  std::int64_t line_ = 1;
+};
+
+constexpr std::array<std::string_view, 6> channel_names{"xposition", "yposition", "zposition",
+                                                        "xrotation", "yrotation", "zrotation"};
+
+constexpr double largest = 1e15;  // as of the rows' values
+
+class HierarchyParser {
+ public:
+  HierarchyParser(std::string_view text, std::string_view name, Findings& findings)
+      : words_(text, name), name_(name), findings_(&findings) {}
+
+  Result<BvhHierarchy> parse(std::size_t& rows) {
+    std::string_view word = words_.next();
+    if (word.starts_with("\xEF\xBB\xBF")) word.remove_prefix(3);
+    if (lower(word) != "hierarchy") return Failure(words_.wrong("HIERARCHY", word));
+    while (lower(words_.peek()) == "root") KA_TRY(root());
+    word = words_.next();
+    if (lower(word) != "motion") return Failure(words_.wrong("ROOT or MOTION", word));
+    if (out_.names.empty()) return Failure(words_.wrong("a ROOT before MOTION", word));
+    KA_TRY(timing());
+    rows = words_.at();
+    out_.offset_decimals = offset_decimals_;
+    return std::move(out_);
+  }
+
+ private:
+  Result<void> root() {
+    words_.next();
+    KA_TRY(open_joint(-1));
+    while (!open_.empty()) KA_TRY(statement());
+    return {};
+  }
+
+  Result<void> open_joint(int parent) {
+    // No body and no crowd comes near these; what follows may be quadratic in them.
+    constexpr std::size_t most_joints = 10'000, deepest = 500;
+    if (out_.names.size() == most_joints || open_.size() == deepest) {
+      return Failure(words_.wrong("at most 10000 joints, 500 deep", "one more"));
+    }
+    out_.names.emplace_back(words_.rest_of_line());
+    if (out_.names.back().empty()) return Failure(words_.wrong("a name", "nothing"));
+    out_.parents.push_back(parent);
+    out_.offsets.emplace_back(Vec3::Zero());
+    out_.channels.emplace_back();
+    open_.push_back(static_cast<int>(out_.names.size()) - 1);
+    return brace("{");
+  }
+
+  /// One statement inside the innermost open joint.
+  Result<void> statement() {
+    const std::string_view word = words_.next();
+    const std::string key = lower(word);
+    const auto joint = static_cast<std::size_t>(open_.back());
+    if (key == "offset") {
+      out_.offsets[joint] = KA_TRY(offset());
+    } else if (key == "channels") {
+      KA_TRY(channels(out_.channels[joint]));
+    } else if (key == "joint") {
+      KA_TRY(open_joint(open_.back()));
+    } else if (key == "end") {
+      KA_TRY(end_site());
+    } else if (key == "}") {
+      open_.pop_back();
+    } else {
+      return Failure(words_.wrong("OFFSET, CHANNELS, JOINT, End Site or }", word));
+    }
+    return {};
+  }
+
+  Result<void> brace(std::string_view which) {
+    const std::string_view word = words_.next();
+    if (word != which) return Failure(words_.wrong(std::string(which), word));
+    return {};
+  }
+
+  Result<void> end_site() {
+    words_.rest_of_line();
+    EndSite site;
+    site.parent = open_.back();
+    KA_TRY(brace("{"));
+    if (lower(words_.peek()) == "offset") {
+      words_.next();
+      site.offset = KA_TRY(offset());
+    }
+    if (lower(words_.peek()) == "channels") {  // some writers add "CHANNELS 0"
+      std::vector<Channel> none;
+      words_.next();
+      KA_TRY(channels(none));
+      if (!none.empty()) return Failure(words_.wrong("an End Site without channels", "CHANNELS"));
+    }
+    out_.end_sites.push_back(site);
+    return brace("}");
+  }
+
+  Result<Vec3> offset() {
+    Vec3 out;
+    for (int i = 0; i < 3; ++i) {
+      const std::string_view word = words_.next();
+      if (!parse_number(word, out[i]) || !(std::abs(out[i]) < largest)) {
+        return Failure(words_.wrong("three numbers after OFFSET", word));
+      }
+      offset_decimals_ = std::max(offset_decimals_, decimals_of(word));
+    }
+    return out;
+  }
+
+  Result<void> channels(std::vector<Channel>& out) {
+    std::string_view word = words_.next();
+    double count = 0;
+    if (!parse_number(word, count) || count < 0 || count > 6 || count != std::floor(count)) {
+      return Failure(words_.wrong("0 to 6 channels", word));
+    }
+    for (int i = 0; i < static_cast<int>(count); ++i) {
+      word = words_.next();
+      const auto* known = std::find(channel_names.begin(), channel_names.end(), lower(word));
+      if (known == channel_names.end()) {
+        return Failure(words_.wrong("a channel such as Xposition or Zrotation", word));
+      }
+      const auto channel = static_cast<Channel>(known - channel_names.begin());
+      if (std::find(out.begin(), out.end(), channel) != out.end()) {
+        return Failure(words_.wrong("channels that differ", word));
+      }
+      out.push_back(channel);
+    }
+    return {};
+  }
+
+  /// "Frames: 12" and "Frame Time: 0.0083333"; blanks may stand before the colon.
+  Result<void> timing() {
+    const std::string_view frames = KA_TRY(value_of("frames", "Frames:"));
+    out_.frames_line = words_.line();
+    const auto [end, fault] =
+        std::from_chars(frames.data(), frames.data() + frames.size(), out_.frames);
+    if (fault != std::errc{} || end != frames.data() + frames.size()) {
+      return Failure(words_.wrong("the number of frames", frames));
+    }
+    if (lower(words_.peek()) != "frame") {
+      return Failure(words_.wrong("Frame Time:", words_.next()));
+    }
+    words_.next();
+    out_.frame_time = KA_TRY(value_of("time", "Frame Time:"));
+    constexpr double longest = 1e4;  // s: nobody waits longer, and a clip's end stays countable
+    if (!parse_number(out_.frame_time, out_.frame_seconds) || out_.frame_seconds <= 0.0 ||
+        out_.frame_seconds > longest) {
+      return Failure(words_.wrong("a frame time above 0 s", out_.frame_time));
+    }
+    if (out_.frame_seconds >= 1.0) {
+      findings_->push_back(
+          {Severity::warning,
+           Error{std::string(name_), words_.line(), "a frame time below 1 s", out_.frame_time},
+           "the clip is read at less than one frame a second",
+           "if the number is a rate, write its inverse"});
+    }
+    return {};
+  }
+
+  /// The word behind `key` and its colon, however they are spaced.
+  Result<std::string_view> value_of(std::string_view key, std::string_view wanted) {
+    std::string_view word = words_.next();
+    if (!lower(word).starts_with(key)) return Failure(words_.wrong(std::string(wanted), word));
+    word.remove_prefix(key.size());
+    if (word.empty()) word = words_.next();
+    if (word.starts_with(':')) word.remove_prefix(1);
+    return word.empty() ? words_.next() : word;
+  }
+
+  BvhWords words_;
+  std::string_view name_;
+  Findings* findings_;
+  BvhHierarchy out_;
+  std::vector<int> open_;  // joints whose brace is open, innermost last
+  int offset_decimals_ = 0;
+};
+
+/// Names that differ: a repeated one counts on to a number that no other name has.
+std::vector<std::string> told_apart(const std::vector<std::string>& names) {
+  std::set<std::string> taken(names.begin(), names.end());
+  std::map<std::string_view, int> times;
+  std::vector<std::string> out;
+  for (const std::string& name : names) {
+    int& number = times[name];
+    std::string other = name;
+    while (++number > 1 && !taken.insert(other = name + "#" + std::to_string(number)).second) {
+    }
+    out.push_back(std::move(other));
+  }
+  return out;
+}
 
 /// True where `text` reaches beyond the number of the line "Frame Time: ...".
 bool is_whole(std::string_view text) {
@@ -33,6 +289,44 @@ bool is_whole(std::string_view text) {
 }
 
 }  // namespace
+
+std::size_t BvhHierarchy::row_size() const {
+  std::size_t size = 0;
+  for (const auto& joint : channels) size += joint.size();
+  return size;
+}
+
+Result<BvhHierarchy> parse_bvh_hierarchy(std::string_view text, std::string_view name,
+                                         std::size_t& rows, Findings& findings) {
+  return HierarchyParser(text, name, findings).parse(rows);
+}
+
+Skeleton skeleton_of(const BvhHierarchy& hierarchy, const BvhOptions& options,
+                     std::string_view name, Findings& findings) {
+  Skeleton out;
+  out.parents = hierarchy.parents;
+  std::vector<std::string> names;
+  for (const std::string& written : hierarchy.names) names.push_back(as_utf8(written));
+  out.joint_names = told_apart(names);
+  for (std::size_t j = 0; j < out.joint_names.size(); ++j) {
+    const std::string& written = names[j];
+    if (out.joint_names[j] == written) continue;
+    findings.push_back(
+        {Severity::warning,
+         Error{std::string(name), 0, "joint names that differ", "'" + shown(written) + "' again"},
+         "read as '" + shown(out.joint_names[j]) + "'", ""});
+  }
+  for (std::size_t j = 0; j < hierarchy.offsets.size(); ++j) {
+    const Vec3 offset = hierarchy.offsets[j] * options.metres_per_unit;
+    const bool in_world = options.z_up && hierarchy.parents[j] < 0;
+    out.rest_offsets.push_back(in_world ? Vec3(offset.x(), offset.z(), -offset.y()) : offset);
+  }
+  for (EndSite site : hierarchy.end_sites) {
+    site.offset *= options.metres_per_unit;
+    out.end_sites.push_back(site);
+  }
+  return out;
+}
 
 Result<bool> BvhHead::add(std::string_view piece, Findings& findings) {
   constexpr std::size_t longest = std::size_t{8} << 20;

@@ -11,6 +11,9 @@
 
 namespace kinalign {
 
+/// Everything up to the blank separates words: tabs, returns and other control characters too.
+inline bool is_blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
+
 class BvhHead {
  public:
   explicit BvhHead(std::string name) : name_(std::move(name)) {}

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// A BVH in pieces: rows become poses.
-#include "kinalign/formats/bvh/values.h"
+// A BVH in pieces: rows of channels become local positions and rotations.
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/bvh/rows.h"
+#include "kinalign/motion/kinematics.h"
+#include "kinalign/motion/stamps.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 
 namespace kinalign {
 
 namespace {
+
+constexpr double half_root = 0.70710678118654752440;  // of 2: z up to y up is -90 degrees about x
 
 class BvhReader final : public ClipReader {
  public:
@@ -71,6 +79,113 @@ class BvhReader final : public ClipReader {
 };
 
 }  // namespace
+
+BvhOptions bvh_options(const StreamOptions& options) {
+  BvhOptions out;
+  if (options.metres_per_unit > 0.0) out.metres_per_unit = options.metres_per_unit;
+  out.z_up = options.up == "z";
+  out.start = utc_time(options.start_ns.value_or(0)) +
+              Duration{std::llround(options.click_latency_ms * 1e6)};
+  return out;
+}
+
+struct BvhPoser::Joint {
+  std::array<int, 3> position{-1, -1, -1};  // column of x, y, z; -1: the offset
+  std::array<int, 3> angle{-1, -1, -1};     // column of the order's first, second, third; -1: zero
+  EulerOrder order;
+  Vec3 offset = Vec3::Zero();  // m, in the file's axes
+  bool root = false;
+};
+
+BvhPoser::BvhPoser(const BvhHierarchy& hierarchy, const BvhOptions& options)
+    : row_size_(hierarchy.row_size()), options_(options), frame_ns_(hierarchy.frame_seconds * 1e9) {
+  int column = 0;
+  for (std::size_t j = 0; j < hierarchy.names.size(); ++j) {
+    Joint joint;
+    joint.offset = hierarchy.offsets[j] * options.metres_per_unit;
+    joint.root = hierarchy.parents[j] < 0;
+    std::array<int, 3> axes{-1, -1, -1};
+    std::size_t rotations = 0;
+    for (const Channel channel : hierarchy.channels[j]) {
+      if (channel < 3) {
+        joint.position[channel] = column;
+      } else {
+        axes[rotations] = channel - 3;
+        joint.angle[rotations++] = column;
+      }
+      ++column;
+    }
+    for (int axis = 0; axis < 3 && rotations < 3; ++axis) {  // axes without a channel come last
+      if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes[rotations++] = axis;
+    }
+    joint.order = {axes[0], axes[1], axes[2]};
+    joints_.push_back(joint);
+  }
+}
+
+BvhPoser::~BvhPoser() = default;
+BvhPoser::BvhPoser(BvhPoser&&) noexcept = default;
+BvhPoser& BvhPoser::operator=(BvhPoser&&) noexcept = default;
+
+void BvhPoser::place(const Joint& joint, std::span<const double> values,
+                     std::span<double> positions) const {
+  const std::size_t stride = 3 * joints_.size(), frames = values.size() / row_size_;
+  for (std::size_t k = 0; k < 3; ++k) {
+    double* to = &positions[k];
+    if (joint.position[k] < 0) {
+      const double offset = joint.offset[static_cast<int>(k)];
+      for (std::size_t i = 0; i < frames; ++i) to[i * stride] = offset;
+    } else {
+      const double* from = &values[static_cast<std::size_t>(joint.position[k])];
+      const double scale = options_.metres_per_unit;
+      for (std::size_t i = 0; i < frames; ++i) to[i * stride] = from[i * row_size_] * scale;
+    }
+  }
+  if (!options_.z_up || !joint.root) return;
+  for (std::size_t i = 0; i < frames; ++i) {
+    double* p = &positions[i * stride];
+    std::swap(p[1], p[2]);
+    p[2] = -p[2];
+  }
+}
+
+void BvhPoser::turn(const Joint& joint, std::span<const double> values,
+                    std::span<double> rotations) const {
+  const std::size_t stride = 4 * joints_.size(), frames = values.size() / row_size_;
+  EulerColumns columns;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (joint.angle[k] >= 0) columns.angles[k] = &values[static_cast<std::size_t>(joint.angle[k])];
+  }
+  columns.stride = row_size_;
+  columns.rotations = rotations.data();
+  columns.rotation_stride = stride;
+  rotations_from_euler(joint.order, columns, frames);
+  if (!options_.z_up || !joint.root) return;
+  for (std::size_t i = 0; i < frames; ++i) {
+    const auto q = rotations.subspan(i * stride, 4);
+    put_quat(q, 0, Quat(half_root, -half_root, 0.0, 0.0) * quat(q, 0));
+  }
+}
+
+void BvhPoser::append(std::span<const double> values, ClipFrames& out) {
+  const std::size_t joints = joints_.size(), frames = values.size() / row_size_;
+  const std::size_t before = out.size();
+  out.local_positions.resize((before + frames) * joints * 3);
+  out.local_rotations.resize((before + frames) * joints * 4);
+  for (std::size_t i = 0; i < frames; ++i) {
+    out.stamps.push_back(frame_stamp(options_.start, frame_ns_, frames_++));
+  }
+  // All joints of a few frames, then the next few: rows stay in the first cache.
+  for (std::size_t first = 0; first < frames; first += euler_frames) {
+    const std::size_t some = std::min(euler_frames, frames - first);
+    const auto rows = values.subspan(first * row_size_, some * row_size_);
+    for (std::size_t j = 0; j < joints; ++j) {
+      const std::size_t cell = (before + first) * joints + j;
+      place(joints_[j], rows, std::span(out.local_positions).subspan(3 * cell));
+      turn(joints_[j], rows, std::span(out.local_rotations).subspan(4 * cell));
+    }
+  }
+}
 
 std::unique_ptr<ClipReader> make_bvh_reader(const BvhOptions& options, const std::string& name) {
   return std::make_unique<BvhReader>(options, name);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/formats/bvh/survey.h"
-
+// The first pass over a BVH: hashed, its frames counted without reading their numbers.
 #include "kinalign/core/hash.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/bvh/head.h"
 #include "kinalign/formats/bvh/rows.h"
-#include "kinalign/formats/bvh/words.h"
 #include "kinalign/motion/stamps.h"
 #include "kinalign/motion/targets.h"
 

@@ -49,7 +49,8 @@ bool send(int pipe, char kind, std::string_view bytes) {
 }
 
 std::string packed(const Error& error) {
-  std::string out = std::to_string(error.line);
+  std::string out =
+      std::to_string(error.line) + '\0' + std::to_string(static_cast<int>(error.kind));
   for (const std::string* text : {&error.file, &error.expected, &error.found}) {
     out += '\0' + text->substr(0, message_most / 8);
   }
@@ -146,13 +147,17 @@ class Child {
 
 Error unpacked(std::string_view bytes) {
   Error error;
-  std::string line;
-  for (std::string* text : {&line, &error.file, &error.expected, &error.found}) {
+  std::string line, kind;
+  for (std::string* text : {&line, &kind, &error.file, &error.expected, &error.found}) {
     const auto end = std::min(bytes.find('\0'), bytes.size());
     *text = bytes.substr(0, end);
     bytes.remove_prefix(std::min(end + 1, bytes.size()));
   }
   error.line = std::strtoll(line.c_str(), nullptr, 10);
+  const unsigned long number = std::strtoul(kind.c_str(), nullptr, 10);
+  if (number <= static_cast<unsigned long>(last_error_kind)) {
+    error.kind = static_cast<ErrorKind>(number);
+  }
   return error;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/take/take_bvh.h"
+
 #include "kinalign/core/unchanged.h"
-#include "kinalign/formats/bvh/copy.h"
-#include "kinalign/formats/bvh/write.h"
 #include "kinalign/formats/take/take_hdf5.h"
 
 #include <fmt/format.h>
@@ -54,7 +54,7 @@ class PoseHolder {
 };
 
 /// What the first pass learns.
-struct ClipSurvey {
+struct RowSurvey {
   std::uint64_t rows = 0, invalid = 0;
   Time first{}, last{};
   Duration shortest = Duration::max(), longest = Duration::min();  // steps
@@ -99,7 +99,7 @@ Result<Chosen> choose(const TakeHeader& header, const std::string& path) {
   return Failure(Error{path, 0, "a take with a skeleton's stream", "none"});
 }
 
-Findings lost(const std::string& path, const Chosen& chosen, const ClipSurvey& survey) {
+Findings lost(const std::string& path, const Chosen& chosen, const RowSurvey& survey) {
   Findings out;
   if (!chosen.others.empty()) {
     out.push_back({Severity::note,
@@ -149,7 +149,7 @@ struct FirstPass {
   Chosen chosen;
   BvhChannels channels;
   PoseHolder holder;
-  ClipSurvey survey;
+  RowSurvey survey;
   std::size_t row;  // values of a row's positions
 
   void add(const std::vector<Time>& stamps, const ClipRows& rows) {
@@ -179,7 +179,7 @@ Result<FirstPass> look_through(FileSystem& files, const std::string& path) {
 Result<Findings> take_to_bvh(FileSystem& files, const std::string& from, const TextSink& sink) {
   const auto version = version_of(from);
   FirstPass pass = KA_TRY(look_through(files, from));
-  const ClipSurvey& survey = pass.survey;
+  const RowSurvey& survey = pass.survey;
   BvhWriter writer(pass.channels.hierarchy(survey.rows, survey.step_s()), survey.rows, 6, sink);
   TakeReader reader = KA_TRY(TakeReader::open(files, from));
   KA_TRY(unchanged(from, version));

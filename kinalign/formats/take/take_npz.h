@@ -1,16 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
-// A take, or one stream alone, as NPZ, with the names of the HDF5 file: mocap_positions for
-// /mocap/positions; of one stream alone plainly positions. docs/formats/take.md.
+// A take, or one stream alone, as numpy's NPZ. The names are those of the HDF5 file:
+// mocap_positions for /mocap/positions; positions for one stream alone. docs/formats/take.md.
+// An NPZ is a ZIP of .npy members, stored. It is written here and not by libzip, which pulls one
+// member after the other, while a take comes in slabs of all arrays at once. Lengths are known
+// before, so every byte has its place; checksums follow at the end. Dates are 1980-01-01: the same
+// arrays give the same bytes. ZIP64 is used if a number needs it (APPNOTE 6.3.10, 4.3 and 4.5.3).
 #pragma once
 
-#include "kinalign/formats/take/npz.h"
+#include "kinalign/core/error.h"
+#include "kinalign/core/files.h"
+#include "kinalign/formats/take/take_layout.h"
 #include "kinalign/take/take.h"
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kinalign {
+
+struct NpzArray {
+  std::string name;   // "positions": numpy.load(path)["positions"]
+  std::string descr;  // numpy's: "<f4", "<i8", "|u1", "<U12"
+  std::uint64_t value_bytes = 0;
+  std::vector<std::uint64_t> shape;  // {}: a scalar
+
+  std::uint64_t bytes() const;
+};
+
+/// An array of numbers, and what numpy makes of a list of texts: UTF-32, padded with zeros.
+NpzArray npz_numbers(std::string name, Stored stored, std::vector<std::uint64_t> shape);
+struct NpzTexts {
+  NpzArray array;
+  std::string bytes;
+};
+NpzTexts npz_texts(std::string name, const std::vector<std::string>& texts);
+
+class NpzWriter {
+ public:
+  /// The members in this order. Nothing stands at `path` until finish() has succeeded.
+  static Result<NpzWriter> create(FileSystem& files, std::string path, Overwrite overwrite,
+                                  const std::vector<NpzArray>& arrays);
+
+  /// The next bytes of array number `array`.
+  Result<void> append(std::size_t array, std::string_view bytes);
+  /// After all bytes of all arrays.
+  Result<void> finish();
+
+ private:
+  struct Member {
+    std::string name;
+    std::uint64_t header_at = 0;  // the member's local header
+    std::uint64_t size = 0;       // .npy header and values
+    std::uint64_t at = 0;         // where the next bytes go
+    std::uint64_t end = 0;
+    std::uint32_t checksum = 0;
+  };
+  explicit NpzWriter(OutputFile file) : file_(std::move(file)) {}
+
+  OutputFile file_;
+  std::vector<Member> members_;
+};
 
 enum class NpzNames {
   by_stream,  // mocap_positions

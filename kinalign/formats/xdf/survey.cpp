@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/formats/xdf/survey.h"
+// An XDF file read once: its streams, and what is wrong with them.
+#include "kinalign/formats/xdf/xdf.h"
 
 #include <algorithm>
 #include <cmath>

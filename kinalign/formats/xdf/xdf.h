@@ -3,8 +3,11 @@
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -122,5 +125,57 @@ class XdfReader {
 };
 
 bool looks_like_xdf(std::string_view head);
+
+/// The sender's clock between two resets. Correct a stamp by adding offset + slope * (stamp -
+/// origin).
+struct XdfClockLine {
+  double first = 0.0, last = 0.0;  // s, times of the first and last offset
+  double origin = 0.0;             // s
+  double offset = 0.0;             // s, at the origin
+  double slope = 0.0;              // s/s; 0 where there is one offset only
+  std::size_t offsets = 0;
+  double rms_residual = 0.0;      // s, of all offsets, outliers too
+  double largest_residual = 0.0;  // s
+};
+
+/// `offsets` are those of one stream in file order, below 1e15 s as XdfReader gives them. A reset
+/// is a time that steps back, or an offset that steps by more than a second and stays: the next
+/// offset is nearer to the new one than to the old one. An offset that steps and returns is an
+/// outlier.
+std::vector<XdfClockLine> fit_xdf_clock(std::span<const XdfClockOffset> offsets);
+
+/// The stamp on the recorder's clock, by the line that is nearest in time. If two lines are equally
+/// near, the later one counts. Without lines the stamp is unchanged.
+double corrected_xdf_stamp(std::span<const XdfClockLine> lines, double stamp);
+
+/// Looks at the first bytes of a file.
+Result<bool> is_xdf(FileSystem& files, const std::string& path);
+
+/// All items of a file, in its order, and what was wrong with it. Fails where `take` does.
+Result<Findings> read_xdf(FileSystem& files, const std::string& path, const Progress& progress,
+                          const std::function<Result<void>(const XdfItem&)>& take);
+
+struct XdfStreamSurvey {
+  XdfStream stream;
+  std::uint64_t samples = 0, deduced = 0;  // stamps that were not written
+  std::optional<double> first, last;       // least and greatest stamp, s of the sender's clock
+  std::uint64_t backward = 0;              // stamps that step back
+  double largest_step_back_s = 0.0;
+  std::uint64_t timeless = 0;    // samples whose stamp is no number below 1e15
+  std::uint64_t no_numbers = 0;  // values that are NaN or infinite
+  std::uint64_t clock_offsets = 0;
+  std::vector<XdfClockLine> clock;  // one for each stretch between resets of the sender's clock
+
+  /// By the first and the last stamp, pauses and all; 0 where there is no time between them.
+  double rate_hz() const;
+};
+
+struct XdfSurvey {
+  std::uint64_t bytes = 0;
+  std::vector<XdfStreamSurvey> streams;  // in the order of the file
+  Findings findings;                     // of the reader
+};
+
+Result<XdfSurvey> survey_xdf(FileSystem& files, const std::string& path, const Progress& progress);
 
 }  // namespace kinalign

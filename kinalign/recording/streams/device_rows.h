@@ -35,7 +35,7 @@ struct RecordedMessage {
 /// Which device of a recording.
 struct DeviceChoice {
   std::string stream;
-  std::string node;    // of inertial nodes: an id, or a place where the lab named it; empty: the only
+  std::string node;  // of inertial nodes: an id, or a place where the lab named it; empty: the only
   std::string sender;  // the address, with its port or without; empty: the one that sent most
   std::set<std::string> passed_over{};  // senders at that address that are not taken
 
@@ -71,13 +71,14 @@ inline Error nothing_of(std::string_view what, const std::string& file, const He
                         std::uint64_t others = 0) {
   const std::string expected = "of stream " + shown(heard.channel.stream) + " " + std::string(what);
   if (others > 0) {
-    return {file, 0, expected, std::to_string(others) + " of other types or bodies alone"};
+    return {file, 0, expected, std::to_string(others) + " of other types or bodies alone",
+            ErrorKind::no_rows_in_recording};
   }
   return {file, 0,
           expected +
               " (nothing in it is of that protocol: see which port and protocol the device "
               "sends to)",
-          "none"};
+          "none", ErrorKind::no_rows_in_recording};
 }
 
 /// Of a device whose packets say no time, and no number that could stand for it.
@@ -102,7 +103,8 @@ class DeviceListener {
   virtual void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const = 0;
 };
 
-/// The stamps of rows in the order that RowsInOrder brings them into. `Row`: what is known of a row.
+/// The stamps of rows in the order that RowsInOrder brings them into. `Row`: what is known of a
+/// row.
 template <class Row>
 class OrderedStamps {
  public:
@@ -174,15 +176,13 @@ using AnyDeviceRows =
 
 /// A protocol that rows can be made of.
 struct DeviceProtocol {
-  std::string_view name;
   std::unique_ptr<DeviceListener> (*listen)(std::optional<std::uint64_t> body);
   AnyDeviceRows (*rows)(const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard);
 };
 /// `body`: which one of several, see DeviceWish.
 template <class Listener, class Rows>
-DeviceProtocol device_protocol(std::string_view name) {
-  return {name,
-          [](std::optional<std::uint64_t> body) -> std::unique_ptr<DeviceListener> {
+DeviceProtocol device_protocol() {
+  return {[](std::optional<std::uint64_t> body) -> std::unique_ptr<DeviceListener> {
             return std::make_unique<Listener>(body);
           },
           [](const DeviceWish& wish, std::shared_ptr<const HeardDevice> heard) -> AnyDeviceRows {

@@ -4,6 +4,7 @@
 // host's. Stamps are late by the least time from the sensor to the sender.
 #include "kinalign/protocols/kinect/frames.h"
 #include "kinalign/protocols/kinect/stream.h"
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/recording/streams/kinect_person.h"
 #include "kinalign/recording/streams/rows_in_order.h"
@@ -27,7 +28,7 @@ class KinectFrames {
     messages_.clear();
     KinectStreamDecoder& decoder = decoders_[message.channel_id];
     decoder.feed(octets(message.payload), messages_);
-    if (message.channel->transport == "udp") decoder.finish(messages_);  // it has one message
+    if (is_datagrams(message.channel->transport)) decoder.finish(messages_);  // it has one message
     for (KinectMessage& one : messages_) {
       auto* frame = std::get_if<KinectFrame>(&one);
       if (frame == nullptr) continue;
@@ -206,9 +207,9 @@ class KinectRows final : public DeviceRows<PointFrames> {
   void stamp_joined() {
     for (JoinedKinectFrame& joined : joined_) {
       KinectFrame& frame = joined.frame;
-      const auto stamp = stamp_of_frame(
-          *heard_, frame.origin.session, kinect_sender_time(frame.sent_ticks),
-          kinect_sender_time(frame.device_ticks), arrival_);
+      const auto stamp =
+          stamp_of_frame(*heard_, frame.origin.session, kinect_sender_time(frame.sent_ticks),
+                         kinect_sender_time(frame.device_ticks), arrival_);
       if (!stamp) {
         ++unknown_;
         continue;
@@ -237,6 +238,6 @@ class KinectRows final : public DeviceRows<PointFrames> {
 
 }  // namespace
 
-DeviceProtocol kinect_protocol() { return device_protocol<KinectListener, KinectRows>("kinect"); }
+DeviceProtocol kinect_protocol() { return device_protocol<KinectListener, KinectRows>(); }
 
 }  // namespace kinalign

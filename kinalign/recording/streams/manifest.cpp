@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/recording/streams/sender_roll.h"
 
@@ -14,9 +15,24 @@ namespace {
 
 /// Mocap is the most exact and has the highest rate: its stamps become the grid.
 constexpr int kinect_rank = 1;
-int rank_of(std::string_view protocol) {
-  if (protocol == "noitom" || protocol == "xsens") return 0;
-  return protocol == "kinect" ? kinect_rank : 2;
+constexpr int last_rank = 2;
+int rank_of(std::string_view recorded_protocol) {
+  const auto protocol = find_recorded_protocol(recorded_protocol);
+  if (!protocol) return last_rank;
+  switch (row_of(*protocol).rows) {
+    case ProtocolRows::clip:
+      return 0;
+    case ProtocolRows::points:
+      return kinect_rank;
+    case ProtocolRows::imu:
+      break;
+  }
+  return last_rank;
+}
+
+bool is_named_by_address(const RawChannel& raw) {
+  const auto protocol = find_recorded_protocol(raw.protocol);
+  return protocol && row_of(*protocol).is_named_by_address;
 }
 
 /// What tells those of a stream apart.
@@ -46,7 +62,7 @@ Nodes nodes_in(const RecordingSurvey& survey) {
 /// addresses, and their sensors by numbers behind these, where there are some; nodes by their
 /// places, where these name one alone; of mocap and Kinects listening finds the one.
 std::vector<std::string> node_names(const RawChannel& raw, const Nodes& nodes) {
-  if (raw.protocol != "slimevr") {
+  if (!is_named_by_address(raw)) {
     const bool has_place =
         !raw.place.empty() && nodes.called.at(called(raw, raw.place)).size() == 1;
     return {has_place ? raw.place : raw.node};
@@ -86,7 +102,7 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
   for (const ChannelSurvey& one : survey.channels) {
     const auto raw = to_raw(one.channel);
     if (!raw || raw->protocol == exchange_encoding || one.messages == 0) continue;
-    if (raw->protocol == "slimevr" && one.sensors == 0 && some_rotate) continue;
+    if (is_named_by_address(*raw) && one.sensors == 0 && some_rotate) continue;
     auto device = std::find_if(devices.begin(), devices.end(),
                                [&](const Device& d) { return d.options.name == raw->stream; });
     if (device == devices.end()) {
@@ -97,7 +113,8 @@ Result<Manifest> manifest_of(const RecordingSurvey& survey, const std::string& p
     add_nodes(path, node_names(*raw, nodes), device->options.files);
   }
   if (devices.empty()) {
-    return Failure(Error{path, 0, "a recording of devices", "one in which none was heard"});
+    return Failure(Error{path, 0, "a recording of devices", "one in which none was heard",
+                         ErrorKind::no_rows_in_recording});
   }
   std::stable_sort(devices.begin(), devices.end(),
                    [](const Device& a, const Device& b) { return a.rank < b.rank; });

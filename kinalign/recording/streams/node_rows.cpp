@@ -305,6 +305,6 @@ class NodeRows final : public DeviceRows<ImuSamples> {
 
 }  // namespace
 
-DeviceProtocol node_protocol() { return device_protocol<NodeListener, NodeRows>("kinalign-node"); }
+DeviceProtocol node_protocol() { return device_protocol<NodeListener, NodeRows>(); }
 
 }  // namespace kinalign

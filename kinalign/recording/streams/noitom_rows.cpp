@@ -29,7 +29,7 @@ Result<BvhHierarchy> hierarchy_of(const HeardDevice& heard, const std::string& f
                          "of stream " + shown(heard.channel.stream) +
                              " the skeleton, which Noitom's stream lacks: skeleton = \"a.bvh\" in "
                              "lab.toml while recording, or now in the manifest",
-                         "none"});
+                         "none", ErrorKind::no_rows_in_recording});
   }
   std::size_t rows = 0;
   Findings odd;
@@ -109,6 +109,6 @@ class NoitomRows final : public NumberedRows<NoitomSource, ClipFrames> {
 
 }  // namespace
 
-DeviceProtocol noitom_protocol() { return device_protocol<NoitomListener, NoitomRows>("noitom"); }
+DeviceProtocol noitom_protocol() { return device_protocol<NoitomListener, NoitomRows>(); }
 
 }  // namespace kinalign

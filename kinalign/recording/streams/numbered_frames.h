@@ -3,6 +3,7 @@
 // of nodes without a counter the clock, node_rows.cpp.
 #pragma once
 
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/recording/streams/counted_clock.h"
 #include "kinalign/recording/streams/device_rows.h"
@@ -39,7 +40,7 @@ class NumberedFrames {
   void take(const RecordedMessage& message, std::vector<Placed>& out) {
     Channel& from = channels_[message.channel_id];
     from.id = message.channel_id;
-    from.lossless = message.channel->transport != "udp";
+    from.lossless = !is_datagrams(message.channel->transport);
     arrivals_.clear();
     feed(from, message);
     place(from, message.arrival, out);
@@ -177,7 +178,8 @@ class FrameKeys {
   }
   /// `fits`: by a frame's shape, asked in the order of the rows.
   template <class Fits>
-  void stamp_rows(const HeardDevice& heard, Fits fits, const DeviceListener::TakeStamp& take) const {
+  void stamp_rows(const HeardDevice& heard, Fits fits,
+                  const DeviceListener::TakeStamp& take) const {
     const auto put = [&](Time stamp, std::uint32_t shape) {
       if (fits(shape)) take(stamp);
     };

@@ -3,6 +3,7 @@
 
 #include "kinalign/core/hash.h"
 #include "kinalign/formats/bvh/head.h"
+#include "kinalign/protocols/protocols.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/streams/sender_choice.h"
 #include "kinalign/recording/survey_parts.h"
@@ -11,7 +12,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <set>
 #include <tuple>
@@ -23,37 +23,50 @@ namespace {
 constexpr std::size_t most_names = 32;  // of streams and nodes in messages
 constexpr std::size_t most_hosts = 8;   // of a stream that are listened to in the first pass
 
-std::array<DeviceProtocol, 5> protocols() {
-  return {node_protocol(), kinect_protocol(), noitom_protocol(), xsens_protocol(),
-          slimevr_protocol()};
+DeviceProtocol rows_of(Protocol protocol) {
+  switch (protocol) {
+    case Protocol::nodes:
+      return node_protocol();
+    case Protocol::noitom:
+      return noitom_protocol();
+    case Protocol::xsens:
+      return xsens_protocol();
+    case Protocol::kinect:
+      return kinect_protocol();
+    case Protocol::slimevr:
+      break;
+  }
+  return slimevr_protocol();
 }
 
 /// nullopt: no rows can be made of it.
-std::optional<DeviceProtocol> find_protocol(const std::string& name, bool trackers) {
-  if (trackers) return name == "xsens" ? std::optional(xsens_tracker_protocol()) : std::nullopt;
-  for (const DeviceProtocol& one : protocols()) {
-    if (one.name == name) return one;
-  }
-  return std::nullopt;
+std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers) {
+  const auto protocol = find_recorded_protocol(recorded_name);
+  if (!protocol) return std::nullopt;
+  if (!trackers) return rows_of(*protocol);
+  return row_of(*protocol).has_trackers ? std::optional(xsens_tracker_protocol()) : std::nullopt;
 }
 
 Result<DeviceProtocol> protocol_of(const RawChannel& channel, const DeviceWish& wish) {
   const std::string& file = wish.file.path;
-  if (!wish.skeleton.empty() && channel.protocol != "noitom") {
+  const auto protocol = find_recorded_protocol(channel.protocol);
+  if (!wish.skeleton.empty() && !(protocol && row_of(*protocol).needs_skeleton)) {
     return Failure(Error{file, 0, "a skeleton of a noitom stream alone",
                          "one of " + shown(channel.stream) + ", of " + shown(channel.protocol)});
   }
-  if (const auto known = find_protocol(channel.protocol, wish.trackers)) return *known;
+  if (const auto known = rows_of(channel.protocol, wish.trackers)) return *known;
   if (wish.trackers) {
     return Failure(Error{file, 0, "trackers of an xsens stream",
                          shown(channel.stream) + ", of " + shown(channel.protocol)});
   }
   std::string known;
-  for (const DeviceProtocol& one : protocols()) {
-    known += (known.empty() ? "" : ", ") + std::string(one.name);
+  for (const Protocol one :
+       {Protocol::nodes, Protocol::kinect, Protocol::noitom, Protocol::xsens, Protocol::slimevr}) {
+    known += (known.empty() ? "" : ", ") + std::string(row_of(one).recorded_name);
   }
   return Failure(Error{file, 0, "of stream " + shown(channel.stream) + " one of: " + known,
-                       "'" + shown(channel.protocol) + "', of which no rows can be made yet"});
+                       "'" + shown(channel.protocol) + "', of which no rows can be made yet",
+                       ErrorKind::no_rows_in_recording});
 }
 
 std::string selected(const StreamOptions& options, const char* key, const std::string& otherwise) {
@@ -131,16 +144,14 @@ class Listening {
   /// The device's first channel of payloads.
   const std::optional<RawChannel>& chosen() const { return chosen_; }
   /// After the last message, once. nullptr: no rows can be made of the protocol.
-  std::unique_ptr<DeviceListener> release() {
-    return begin() ? std::move(listener_) : nullptr;
-  }
+  std::unique_ptr<DeviceListener> release() { return begin() ? std::move(listener_) : nullptr; }
   bool is_released() const { return begun_ && !listener_; }
 
  private:
   bool begin() {
     if (begun_) return listener_ != nullptr;
     begun_ = true;
-    const auto protocol = find_protocol(chosen_->protocol, variant_.trackers);
+    const auto protocol = rows_of(chosen_->protocol, variant_.trackers);
     if (protocol) listener_ = protocol->listen(variant_.body);
     return listener_ != nullptr;
   }
@@ -190,8 +201,8 @@ struct RecordingSource::State {
   std::shared_ptr<const StoredChunks> chunks;
   std::optional<RecordingFacts> facts;
   std::map<std::uint16_t, DeviceChannel> channels;
-  std::vector<const DeviceChannel*> in_order;     // as they were defined
-  std::map<std::string, SenderRoll> senders;      // by stream, without its nodes
+  std::vector<const DeviceChannel*> in_order;      // as they were defined
+  std::map<std::string, SenderRoll> senders;       // by stream, without its nodes
   std::map<std::string, std::string> attachments;  // BVH headers, by name
   std::map<DeviceKey, Listening> listening;
   std::vector<JsonChannel> json;
@@ -278,8 +289,8 @@ class Scan {
                                 fmt::format("{} fewer, of all devices", end_->dropped)},
                           "the disk was too slow for too long, and memory full", ""});
     }
-    state_.chunks = std::make_shared<StoredChunks>(*state_.files, std::move(versions_),
-                                                   std::move(chunks_));
+    state_.chunks =
+        std::make_shared<StoredChunks>(*state_.files, std::move(versions_), std::move(chunks_));
   }
 
  private:
@@ -289,7 +300,8 @@ class Scan {
       if (const auto end = to_end(*metadata)) end_ = end;
       ended_ = ended_ || ending_of(*metadata) != Ending::none;
     } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
-      if (attachment->name.ends_with(".bvh")) state_.attachments[attachment->name] = attachment->data;
+      if (attachment->name.ends_with(".bvh"))
+        state_.attachments[attachment->name] = attachment->data;
     } else if (const auto* schema = std::get_if<McapSchema>(&record)) {
       schemas_[schema->id] = *schema;
     } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
@@ -442,8 +454,8 @@ class Scan {
 
 /// The channels of a wish, and what its error needs.
 struct Chosen {
-  std::vector<const DeviceChannel*> channels;  // as they were defined
-  std::optional<RawChannel> first;             // of payloads
+  std::vector<const DeviceChannel*> channels;   // as they were defined
+  std::optional<RawChannel> first;              // of payloads
   std::set<std::string> streams, nodes, meant;  // that are there; that the wish's node names
   DeviceChoice choice;                          // with what it left open
 
@@ -484,8 +496,7 @@ Result<Chosen> choose(const RecordingSource::State& state, const DeviceWish& wis
     if (!chosen.first && one->raw.protocol != exchange_encoding) chosen.first = one->raw;
   }
   if (choice.node.empty() && chosen.nodes.size() > 1) {
-    return Failure(Error{file, 0,
-                         fmt::format("one node of stream {}: select.node", choice.stream),
+    return Failure(Error{file, 0, fmt::format("one node of stream {}: select.node", choice.stream),
                          fmt::format("{}", fmt::join(chosen.nodes, ", "))});
   }
   if (chosen.meant.size() > 1) {
@@ -496,24 +507,24 @@ Result<Chosen> choose(const RecordingSource::State& state, const DeviceWish& wis
   }
   if (chosen.first) return chosen;
   if (chosen.streams.count(choice.stream) == 0) {
-    return Failure(
-        Error{file, 0,
-              fmt::format("select.stream, or a stream's name, of {}",
-                          chosen.streams.empty()
-                              ? "those recorded"
-                              : fmt::format("{}", fmt::join(chosen.streams, ", "))),
-              chosen.streams.empty() ? "a recording in which nothing was heard"
-                                     : "'" + shown(choice.stream) + "'"});
+    return Failure(Error{
+        file, 0,
+        fmt::format("select.stream, or a stream's name, of {}",
+                    chosen.streams.empty() ? "those recorded"
+                                           : fmt::format("{}", fmt::join(chosen.streams, ", "))),
+        chosen.streams.empty() ? "a recording in which nothing was heard"
+                               : "'" + shown(choice.stream) + "'"});
   }
   const bool node = !chosen.nodes.empty();
   const auto roll = state.senders.find(choice.stream);
-  const auto hosts = roll == state.senders.end() ? std::vector<std::string>{} : roll->second.hosts();
-  return Failure(Error{
-      file, 0,
-      fmt::format("of stream {} {}", choice.stream,
-                  node ? fmt::format("node {}", fmt::join(chosen.nodes, ", "))
-                       : fmt::format("select.sender {}", fmt::join(hosts, ", "))),
-      "'" + shown(node ? chosen.choice.node : chosen.choice.sender) + "'"});
+  const auto hosts =
+      roll == state.senders.end() ? std::vector<std::string>{} : roll->second.hosts();
+  return Failure(Error{file, 0,
+                       fmt::format("of stream {} {}", choice.stream,
+                                   node ? fmt::format("node {}", fmt::join(chosen.nodes, ", "))
+                                        : fmt::format("select.sender {}", fmt::join(hosts, ", "))),
+                       "'" + shown(node ? chosen.choice.node : chosen.choice.sender) + "'",
+                       ErrorKind::no_rows_in_recording});
 }
 
 /// Goes once more over the messages of a device that the first pass did not listen to as a whole.
@@ -611,12 +622,14 @@ Result<DeviceStream> stream_of(const RecordingSource::State& state, const Chosen
 
   std::map<std::uint16_t, RawChannel> channels;
   for (const DeviceChannel* one : chosen.channels) channels[one->id] = one->raw;
-  const auto shared = std::make_shared<const std::map<std::uint16_t, RawChannel>>(std::move(channels));
+  const auto shared =
+      std::make_shared<const std::map<std::uint16_t, RawChannel>>(std::move(channels));
   AnyDeviceRows any = heard.protocol.rows(wish, heard.device);
   KA_TRY(std::visit(
       [&]<class Frames>(std::unique_ptr<DeviceRows<Frames>>&) -> Result<void> {
-        const DevicePasses<Frames> passes = [chunks = state.chunks, ids = chosen.ids(), shared, wish,
-                                             device = heard.device, protocol = heard.protocol] {
+        const DevicePasses<Frames> passes = [chunks = state.chunks, ids = chosen.ids(), shared,
+                                             wish, device = heard.device,
+                                             protocol = heard.protocol] {
           auto rows = protocol.rows(wish, device);
           return DevicePass<Frames>(MessagePass(chunks, ids), shared, device->utc_minus_host,
                                     std::get<std::unique_ptr<DeviceRows<Frames>>>(std::move(rows)));
@@ -693,8 +706,9 @@ Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const
                          "an MCAP file of another program"});
   }
   const bool any_sender = wish.choice.sender.empty();
-  KA_TRY(choose(*state_, wish).map_error(
-      [&](Error error) { return with_nodes(wish, survey(), std::move(error)); }));
+  KA_TRY(choose(*state_, wish).map_error([&](Error error) {
+    return with_nodes(wish, survey(), std::move(error));
+  }));
   const auto roll = state_->senders.find(wish.choice.stream);
   const SenderRoll senders = roll == state_->senders.end() ? SenderRoll() : roll->second;
   std::optional<Error> why;  // no rows came of the busiest one

@@ -106,7 +106,7 @@ class SlimeListener final : public DeviceListener {
     if (rotations_ == 0) {
       return Failure(Error{
           file, 0, "of stream " + shown(heard.channel.stream) + " rotations of a SlimeVR tracker",
-          "none"});
+          "none", ErrorKind::no_rows_in_recording});
     }
     stamp_by_arrival(file, heard);
     // Few of many have one where the tracker sends them now and then: then they are no stream's.
@@ -182,6 +182,6 @@ class SlimeRows final : public DeviceRows<ImuSamples> {
 
 }  // namespace
 
-DeviceProtocol slimevr_protocol() { return device_protocol<SlimeListener, SlimeRows>("slimevr"); }
+DeviceProtocol slimevr_protocol() { return device_protocol<SlimeListener, SlimeRows>(); }
 
 }  // namespace kinalign

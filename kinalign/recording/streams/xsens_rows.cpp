@@ -93,11 +93,11 @@ class XsensTrackerRows final : public NumberedRows<XsensSource<XsensTrackers>, I
 }  // namespace
 
 DeviceProtocol xsens_protocol() {
-  return device_protocol<XsensListener<XsensPose>, XsensPoseRows>("xsens");
+  return device_protocol<XsensListener<XsensPose>, XsensPoseRows>();
 }
 
 DeviceProtocol xsens_tracker_protocol() {
-  return device_protocol<XsensListener<XsensTrackers>, XsensTrackerRows>("xsens");
+  return device_protocol<XsensListener<XsensTrackers>, XsensTrackerRows>();
 }
 
 }  // namespace kinalign

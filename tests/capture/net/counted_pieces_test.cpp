@@ -430,7 +430,7 @@ TEST_CASE("a suit's last frame counts, though over UDP no next one says that its
   frame.name = "Char01";
   frame.displacement = true;
   frame.values.assign(noitom_values(true, false), 1.0F);
-  StreamWatch watch("noitom", true);
+  StreamWatch watch(Protocol::noitom, true);
   for (std::uint32_t k = 0; k < 4; ++k) {
     frame.frame_index = k;
     std::vector<std::uint8_t> bytes;

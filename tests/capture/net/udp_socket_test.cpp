@@ -9,6 +9,9 @@
 #include <doctest/doctest.h>
 #include <poll.h>
 
+#include <cerrno>
+#include <utility>
+
 using namespace kinalign;
 
 namespace {
@@ -100,6 +103,21 @@ TEST_CASE("an address that this host has not, or that is none, is named") {
     const std::string found = text.empty() ? "" : ", found " + text;
     CHECK(message(UdpSocket::open(text, 0)) == "expected an IPv4 or IPv6 address" + found);
   }
+}
+
+TEST_CASE("what stands in the way of a port is said in words and as the error's kind") {
+  const auto said = [](int code, std::uint16_t port) {
+    const Error error = no_port("127.0.0.1:80", "a UDP port", code, port);
+    CHECK(error.file == "127.0.0.1:80");
+    CHECK(error.expected == "a UDP port");
+    return std::pair(error.kind, error.found);
+  };
+  using Said = std::pair<ErrorKind, std::string>;
+  CHECK(said(EADDRINUSE, 80) == Said(ErrorKind::port_taken, "another program on it"));
+  CHECK(said(EACCES, 80) == Said(ErrorKind::port_forbidden, "no permission for a port below 1024"));
+  CHECK(said(EPERM, 1024) == Said(ErrorKind::port_forbidden, "no permission"));
+  CHECK(said(EADDRNOTAVAIL, 80) == Said(ErrorKind::address_elsewhere, "no interface that has it"));
+  CHECK(said(EMFILE, 80) == Said(ErrorKind::other, "Too many open files"));
 }
 
 TEST_CASE("an IPv6 address stands in brackets before its port") {

@@ -116,7 +116,24 @@ TEST_CASE("a lab key of another user's is told with whose it is") {
   const std::string owner = me != nullptr ? me->pw_name : std::to_string(::getuid());
   CHECK(read_lab_key(files, folder.file(digits, 0400)).error().found ==
         "no permission to read it: it is " + owner + "'s, mode 0400");
-  CHECK(read_lab_key(files, folder.path + "/none").error().found == no_permission);
+  CHECK(read_lab_key(files, folder.path + "/none").error().found == "no permission to read it");
+}
+
+TEST_CASE("why a lab key could not be read stands in the error's kind") {
+  struct Forbidden : PosixFiles {
+    int open(const char*, int, mode_t) override {
+      errno = EACCES;
+      return -1;
+    }
+  } forbidden;
+  const Folder folder;
+  PosixFiles files;
+  const auto kind = [](const Result<LabKey>& key) { return key.error().kind; };
+  CHECK(kind(read_lab_key(files, folder.file(digits, 0640))) == ErrorKind::exposed_key);
+  CHECK(kind(read_lab_key(forbidden, folder.file(digits, 0600))) == ErrorKind::forbidden_key);
+  CHECK(kind(read_lab_key(files, folder.path + "/none")) == ErrorKind::no_such_file);
+  CHECK(kind(read_lab_key(files, folder.file("no key", 0600))) == ErrorKind::other);
+  CHECK(kind(read_lab_key(files, folder.path)) == ErrorKind::other);
 }
 
 TEST_CASE("a key for a folder that is not there names the folder") {

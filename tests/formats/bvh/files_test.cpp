@@ -70,11 +70,10 @@ std::size_t compare(const std::string& folder, const std::string& reference_file
 /// The files with frames below ../shared/data.
 std::vector<std::string> files_with_frames() {
   std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(shared_path(""))) {
-    if (entry.path().extension() != ".bvh") continue;
-    const auto file = read_bvh(bytes_in(entry.path()), "any", {});
+  for (const auto& path : shared_bvh_files()) {
+    const auto file = read_bvh(bytes_in(path), "any", {});
     REQUIRE(file);
-    if (file->clip.frames.size() > 0) paths.push_back(entry.path().string());
+    if (file->clip.frames.size() > 0) paths.push_back(path.string());
   }
   return paths;
 }
@@ -108,10 +107,9 @@ TEST_CASE("positions of every real BVH with frames equal another kinematics in N
 TEST_CASE("every real BVH reads, writes and reads again to the same numbers" *
           doctest::skip(!shared_data())) {
   std::size_t files = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(shared_path(""))) {
-    if (entry.path().extension() != ".bvh") continue;
-    CAPTURE(entry.path().filename().string());
-    const auto first = read_bvh(bytes_in(entry.path()), "first", {});
+  for (const auto& path : shared_bvh_files()) {
+    CAPTURE(path.filename().string());
+    const auto first = read_bvh(bytes_in(path), "first", {});
     REQUIRE(first);
     std::string text;
     const auto sink = [&text](std::string_view piece) -> Result<void> {

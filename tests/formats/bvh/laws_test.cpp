@@ -6,7 +6,7 @@
 #include "tests/formats/bvh/bvh_text.h"
 #include "tests/seeds.h"
 
-#include "kinalign/formats/bvh/survey.h"
+#include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/motion/kinematics.h"
 
 #include <doctest/doctest.h>

@@ -49,6 +49,16 @@ TEST_CASE("an error of work in a child comes back unchanged") {
   CHECK(to_string(result.error()) == "walk.bvh:142: expected 354 values in the frame, found 353");
 }
 
+TEST_CASE("an error of work in a child keeps its kind") {
+  for (const ErrorKind kind : {ErrorKind::other, ErrorKind::directory, last_error_kind}) {
+    const auto result = run_guarded({}, blame, [kind]() -> Result<std::string> {
+      return Failure(Error{"take.h5", 0, "a regular file", "a directory", kind});
+    });
+    REQUIRE_FALSE(result);
+    CHECK(result.error().kind == kind);
+  }
+}
+
 TEST_CASE("a crash in a child is an error") {
   CHECK(outcome({},
                 []() -> Result<std::string> {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/formats/xdf/clock.h"
-
 #include "tests/seeds.h"
 #include "tests/witness.h"
+
+#include "kinalign/formats/xdf/xdf.h"
 
 #include <doctest/doctest.h>
 

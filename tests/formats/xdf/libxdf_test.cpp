@@ -5,8 +5,6 @@
 #include "tests/seeds.h"
 #include "tests/shared_data.h"
 
-#include "kinalign/formats/xdf/clock.h"
-
 #include <doctest/doctest.h>
 
 #include <cstdlib>

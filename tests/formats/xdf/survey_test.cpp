@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/formats/xdf/survey.h"
-
 #include "tests/folder.h"
 #include "tests/formats/xdf/xdf_cases.h"
 

@@ -280,6 +280,28 @@ TEST_CASE("where nothing is of a stream's protocol the stream is named, and wher
   }
 }
 
+TEST_CASE("a recording without a row for the stream is an error of a kind of its own") {
+  const FreshFolder folder;
+  RecordedLab lab(20261126);
+  lab.add_node(12, 1, {3.0, -35.0}, 0.0, 2.0);
+  lab.add_datagram({"kinect", "kinect", "udp", "10.0.0.66:40000", "", ""}, 0.0, "GET /");
+  lab.add_datagram({"slimevr", "slimevr", "udp", "10.0.0.66:40001", "", ""}, 0.0, "GET /");
+  lab.add_datagram({"odd", "of_tomorrow", "udp", "10.0.0.66:40002", "", ""}, 0.0, "GET /");
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto kind = [&](const StreamOptions& options) {
+    const auto streams = open_streams(files, {options});
+    REQUIRE_FALSE(streams);
+    return streams.error().kind;
+  };
+  for (const char* stream : {"kinect", "slimevr", "odd"}) {
+    CAPTURE(stream);
+    CHECK(kind(stream_named(stream, path)) == ErrorKind::no_rows_in_recording);
+  }
+  CHECK(kind(stream_named("imu", path, "14")) == ErrorKind::no_rows_in_recording);
+  CHECK(kind(stream_named("mocap", path)) == ErrorKind::other);
+}
+
 TEST_CASE("a body that does not speak is not taken for another protocol") {
   const FreshFolder folder;
   RecordedLab lab(20261125);

@@ -46,6 +46,14 @@ TEST_CASE("what is wrong with a recording is said of it under the name that the 
   survey.facts.emplace();
   CHECK(refusal() ==
         "t/take.mcap: expected a recording of devices, found one in which none was heard");
+  CHECK(recorded_manifest(survey, "t/take.mcap").error().kind == ErrorKind::no_rows_in_recording);
+}
+
+TEST_CASE("where names stand is said for a joint or node that is not there, whatever its words") {
+  const std::string advice = "kinalign info FILE -v lists the names of joints and nodes";
+  CHECK(name_advice({"", 0, "any words", "any", ErrorKind::no_such_joint}) == advice);
+  CHECK(name_advice({"", 0, "any words", "any", ErrorKind::no_such_node}) == advice);
+  CHECK(name_advice({"", 0, "a joint of 'kinect' (known: Head)", "\"Nose\""}).empty());
 }
 
 TEST_CASE("paths are cut to what lies below their common folder, however they are spelt") {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/file_advice.h"
+
+#include "tests/folder.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+namespace {
+
+using Lines = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("for a folder the first recording in it is named, if it has one") {
+  const FreshFolder folder;
+  const Error error{folder.path(), 0, "any words", "others", ErrorKind::directory};
+  CHECK(file_advice(error) == Lines{"name a file in it"});
+  folder.write("b.mcap", "");
+  folder.write("a.mcap", "");
+  folder.write("0.csv", "");
+  CHECK(file_advice(error) == Lines{"name a file in it, as " + (folder / "a.mcap")});
+}
+
+TEST_CASE("for a recording on a bad disk recover is named, and for no other file") {
+  const auto advice = [](const std::string& file) {
+    return file_advice({file, 0, "any words", "others", ErrorKind::unreadable_disk});
+  };
+  CHECK(advice("t/a.mcap") ==
+        Lines{"kinalign recover t/a.mcap -o whole.mcap makes a file of what the disk can give"});
+  CHECK(advice("walk.bvh").empty());
+}
+
+TEST_CASE("an error of another kind has no such advice, whatever its words are") {
+  CHECK(file_advice({"a.mcap", 0, "a readable file", "Input/output error"}).empty());
+  CHECK(file_advice({".", 0, "a regular file", "a directory"}).empty());
+}
