@@ -53,6 +53,12 @@ struct DeviceWish {
   bool trackers = false;  // of Xsens: inertial samples, not poses
 };
 
+/// The wish of a stream of a manifest: select["stream"], by default the options' name;
+/// select["node"], by default the file's node; select["sender"], select["body"], select["kind"]. A
+/// tracker's node is its address, with "/1" behind it its sensor 1. Fails where a key or a body is
+/// none.
+Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file);
+
 /// What listening has found.
 struct HeardDevice {
   RawChannel channel;
@@ -189,6 +195,9 @@ DeviceProtocol device_protocol() {
             return std::make_unique<Rows>(wish, std::move(heard));
           }};
 }
+
+/// By the name that recordings have; absent where no rows, or no trackers, can be made of it.
+std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers);
 
 DeviceProtocol node_protocol();           // node_rows.cpp: inertial nodes of ours
 DeviceProtocol kinect_protocol();         // kinect_rows.cpp

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/protocols/protocols.h"
 #include "kinalign/recording/streams/recording_source.h"
-#include "kinalign/recording/streams/sender_roll.h"
+#include "kinalign/recording/streams/senders.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording, opened once: one pass over its files hashes them, surveys them, reads the exchanges of
-// all clocks and lists all senders. Its devices' streams are then read by the chunk index.
+// A recording, opened once: one pass over its files hashes them, surveys them, reads the exchanges
+// of all clocks and lists all senders. Its devices' streams are then read by the chunk index.
 // docs/formats/recording.md.
 #pragma once
 
@@ -23,6 +23,8 @@
 #include <vector>
 
 namespace kinalign {
+
+struct ScannedRecording;
 
 /// Rows of one device, in blocks.
 template <class FramesType>
@@ -61,21 +63,14 @@ using DevicePasses = std::function<DevicePass<Frames>()>;
 
 /// One device's stream.
 struct DeviceStream {
-  StampSurvey survey;                        // of its rows' stamps
+  StampSurvey survey;                               // of its rows' stamps
   std::shared_ptr<const std::vector<Time>> stamps;  // of its rows, in their order
-  TimeModel clock;                           // from the device's stamps to UTC
-  Findings findings;                         // those of its rows come with a pass
+  TimeModel clock;                                  // from the device's stamps to UTC
+  Findings findings;                                // those of its rows come with a pass
   std::variant<DevicePasses<ClipFrames>, DevicePasses<PointFrames>, DevicePasses<ImuSamples>>
       passes;
   std::variant<Skeleton, PointHeader, ImuHeader> header;
   std::string skeleton_path;  // of the BVH that the options name; empty: none
-};
-
-/// A channel of JSON that the recorder itself wrote: marks, counts, the host's clocks.
-struct JsonChannel {
-  std::uint16_t id = 0;
-  std::string topic;
-  McapSchema schema;
 };
 
 class RecordingSource {
@@ -86,10 +81,9 @@ class RecordingSource {
   /// Reads the file and, as they lie in the same folder, those that its recording went on in.
   /// `wanted`: streams of a manifest that may ask for a body or for trackers. `files` must outlive
   /// the source and what it hands out. An MCAP file of another program can be surveyed alone.
-  static Result<std::shared_ptr<RecordingSource>> open(FileSystem& files, const std::string& path,
-                                                       Devices devices,
-                                                       const std::vector<StreamOptions>& wanted = {},
-                                                       const Progress& progress = {});
+  static Result<std::shared_ptr<RecordingSource>> open(
+      FileSystem& files, const std::string& path, Devices devices,
+      const std::vector<StreamOptions>& wanted = {}, const Progress& progress = {});
   ~RecordingSource();
 
   const std::string& path() const;
@@ -111,11 +105,9 @@ class RecordingSource {
   const std::vector<JsonChannel>& json_channels() const;
   MessagePass messages_of(std::vector<std::uint16_t> channels) const;
 
-  struct State;  // recording_source.cpp
-
  private:
-  explicit RecordingSource(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  explicit RecordingSource(ScannedRecording state);
+  std::unique_ptr<ScannedRecording> state_;
 };
 
 /// All devices of a recording as streams of a manifest: mocap first, whose stamps are then the

@@ -5,7 +5,7 @@
 #include "kinalign/protocols/sequence_count.h"
 #include "kinalign/protocols/slimevr/packet.h"
 #include "kinalign/recording/streams/device_rows.h"
-#include "kinalign/recording/streams/sender_roll.h"
+#include "kinalign/recording/streams/senders.h"
 #include "kinalign/wire/little_endian_reader.h"
 
 #include <fmt/format.h>

@@ -5,6 +5,7 @@
 
 #include "kinalign/core/file_version.h"
 #include "kinalign/core/files.h"
+#include "kinalign/mcap/records.h"
 #include "kinalign/wire/time.h"
 
 #include <cstdint>
@@ -22,8 +23,8 @@ namespace kinalign {
 
 /// Where a chunk stands, or a message that stands in none, and what the first pass found in it.
 struct StoredChunk {
-  std::uint32_t part = 0;       // the file, by its number in the recording
-  bool is_torn = false;         // the file ends within it
+  std::uint32_t part = 0;               // the file, by its number in the recording
+  bool is_torn = false;                 // the file ends within it
   std::uint64_t at = 0, size = 0;       // bytes of the file
   std::vector<std::uint16_t> channels;  // that have messages here, rising
   /// Messages that do not count, by their place in the chunk, rising: damaged, or found in another
@@ -75,6 +76,13 @@ class StoredChunks {
   mutable std::list<Cached> cache_;                           // used last first
   mutable std::map<std::size_t, std::list<Cached>::iterator> places_;
   mutable std::size_t cached_bytes_ = 0;
+};
+
+/// A channel of JSON that the recorder itself wrote: marks, counts, the host's clocks.
+struct JsonChannel {
+  std::uint16_t id = 0;
+  std::string topic;
+  McapSchema schema;
 };
 
 /// Goes once through the messages of some channels, in the order of the files.

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/recording/streams/device_rows.h"
+
+#include "kinalign/protocols/protocols.h"
+
+#include <charconv>
+
+namespace kinalign {
+
+namespace {
+
+DeviceProtocol rows_of(Protocol protocol) {
+  switch (protocol) {
+    case Protocol::nodes:
+      return node_protocol();
+    case Protocol::noitom:
+      return noitom_protocol();
+    case Protocol::xsens:
+      return xsens_protocol();
+    case Protocol::kinect:
+      return kinect_protocol();
+    case Protocol::slimevr:
+      break;
+  }
+  return slimevr_protocol();
+}
+
+std::string selected(const StreamOptions& options, const char* key, const std::string& otherwise) {
+  const auto found = options.select.find(key);
+  return found == options.select.end() ? otherwise : found->second;
+}
+
+/// "10.0.0.21" and "1" of "10.0.0.21/1", a tracker's sensor; other nodes are returned as they are.
+std::pair<std::string, std::string> tracker_of(const std::string& node) {
+  const auto slash = node.rfind('/');
+  const bool has_sensor = slash != std::string::npos && slash + 1 < node.size() &&
+                          node.find_first_not_of("0123456789", slash + 1) == std::string::npos;
+  if (!has_sensor) return {node, ""};
+  return {node.substr(0, slash), node.substr(slash + 1)};
+}
+
+}  // namespace
+
+std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers) {
+  const auto protocol = find_recorded_protocol(recorded_name);
+  if (!protocol) return std::nullopt;
+  if (!trackers) return rows_of(*protocol);
+  return row_of(*protocol).has_trackers ? std::optional(xsens_tracker_protocol()) : std::nullopt;
+}
+
+Result<DeviceWish> wish_of(const StreamOptions& options, const StreamFile& file) {
+  for (const auto& [name, value] : options.select) {
+    if (name == "stream" || name == "node" || name == "sender" || name == "body") continue;
+    if (name == "kind" && (value == "poses" || value == "trackers")) continue;
+    return Failure(Error{file.path, 0,
+                         "select by stream, node, sender, body or kind (poses, trackers)",
+                         shown(name) + " = " + shown(value)});
+  }
+  DeviceWish wish{options, file, {}};
+  wish.trackers = selected(options, "kind", "poses") == "trackers";
+  wish.choice = {selected(options, "stream", options.name), selected(options, "node", file.node),
+                 selected(options, "sender", "")};
+  const auto [tracker, sensor] = tracker_of(wish.choice.node);
+  if (wish.choice.sender.empty()) wish.choice.sender = tracker;
+  const std::string body = selected(options, "body", sensor);
+  if (body.empty()) return wish;
+  std::uint64_t id = 0;
+  const auto [behind, fault] = std::from_chars(body.data(), body.data() + body.size(), id);
+  if (fault == std::errc{} && behind == body.data() + body.size()) {
+    wish.body = id;
+    return wish;
+  }
+  return Failure(Error{file.path, 0, "select.body: a whole number", "'" + shown(body) + "'"});
+}
+
+}  // namespace kinalign
