@@ -107,7 +107,7 @@ Findings all_findings(const RecordedStream& stream);
 struct Recording {
   std::string subject, action;  // empty where nothing is known
   std::vector<RecordedStream> streams;
-  std::vector<SharedFile> shared_files;
+  std::vector<SharedFile> shared_files{};
 };
 
 /// The shared file of that stream where no stream before it is read from it; else nullptr.
