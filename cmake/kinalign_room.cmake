@@ -5,6 +5,7 @@
 #     SOURCES
 #       rows.cpp
 #       write.cpp
+#     APART fast.cpp                   sources that are compiled by themselves, never joined (KINALIGN_JOIN)
 #     USES formats take                rooms whose headers it may include, with all below them;
 #                                      tools/check_includes.py holds it to that
 #     LIBRARIES Eigen3::Eigen          public; PRIVATE_LIBRARIES: only its .cpp files need them
@@ -32,7 +33,7 @@ function(kinalign_targets out)
 endfunction()
 
 function(kinalign_room path)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_USES;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;APART;USES;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_USES;TEST_LIBRARIES" ${ARGN})
   cmake_path(GET path PARENT_PATH parent)
   if(parent AND EXISTS ${CMAKE_SOURCE_DIR}/kinalign/${parent}/CMakeLists.txt)
     list(APPEND ROOM_USES ${parent})
@@ -40,7 +41,12 @@ function(kinalign_room path)
   kinalign_targets(target ${path})
   kinalign_targets(used ${ROOM_USES})
   if(ROOM_SOURCES)
-    add_library(${target} STATIC ${ROOM_SOURCES})
+    add_library(${target} STATIC ${ROOM_SOURCES} ${ROOM_APART})
+    set_source_files_properties(${ROOM_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${KINALIGN_JOIN} UNITY_BUILD_BATCH_SIZE 8)
+    if(KINALIGN_JOIN)  # g++ takes every joined file for a header, in which an unnamed namespace were a mistake
+      target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+    endif()
     set(reach PUBLIC)
     target_link_libraries(${target} PRIVATE ${ROOM_PRIVATE_LIBRARIES})
     kinalign_flags(${target})
