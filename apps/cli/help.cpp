@@ -12,16 +12,16 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t column = 28;  // where meanings begin
+constexpr std::size_t meaning_column = 28;  // where meanings begin
 
 std::string line_of(const std::string& left, const std::string& meaning) {
   std::string line = "  " + left;
-  if (line.size() + 2 > column) {
-    line += "\n" + std::string(column, ' ');
+  if (line.size() + 2 > meaning_column) {
+    line += "\n" + std::string(meaning_column, ' ');
   } else {
-    line.resize(column, ' ');
+    line.resize(meaning_column, ' ');
   }
-  return line + wrapped(meaning, column) + "\n";
+  return line + wrapped(meaning, meaning_column) + "\n";
 }
 
 std::string lines_of(const Fields& fields, const std::string& head) {

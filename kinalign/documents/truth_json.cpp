@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* schema = "kinalign.truth/1";
+constexpr const char* truth_schema = "kinalign.truth/1";
 
 // ---- to JSON
 
@@ -162,7 +162,7 @@ Result<void> check(const std::string& name, const std::string& stream, const Tru
 }  // namespace
 
 std::string truth_json(const TrueRecording& truth) {
-  Json json{{"schema", schema},           {"seed", truth.seed},
+  Json json{{"schema", truth_schema},     {"seed", truth.seed},
             {"motion", truth.motion},     {"motion_file", truth.motion_file},
             {"length_s", truth.length_s}, {"start_ns", truth.start_ns},
             {"link", truth.link}};
@@ -181,10 +181,11 @@ Result<TrueRecording> read_truth(std::string_view text, const std::string& name)
   try {
     const Json json = Json::parse(text);
     const std::string found = json.at("schema");
-    if (found != schema) return Failure(Error{name, 0, schema, shown(found)});
+    if (found != truth_schema) return Failure(Error{name, 0, truth_schema, shown(found)});
     truth = truth_from(json);
   } catch (const Json::exception& fault) {
-    return Failure(Error{name, 0, std::string("JSON as ") + schema + " has it", reason(fault)});
+    return Failure(
+        Error{name, 0, std::string("JSON as ") + truth_schema + " has it", reason(fault)});
   }
   KA_TRY(check(name, truth.kinect.stream, truth.kinect.clock));
   for (const TrueNode& node : truth.nodes) KA_TRY(check(name, node.node, node.clock));

@@ -66,7 +66,7 @@ Counts difference(const Named& named, Counts before, Counts now) {
   return out;
 }
 
-std::string text_of(const Json& object, const char* key) {
+std::string text_at(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
@@ -122,11 +122,11 @@ std::string to_json(const CountedSender& counted) {
 
 std::optional<CountedSender> to_counted_sender(std::string_view json) {
   const Json object = Json::parse(json, nullptr, false);
-  if (!object.is_object() || text_of(object, "stream").empty()) return std::nullopt;
-  CountedSender counted{text_of(object, "topic"),
-                        text_of(object, "stream"),
-                        text_of(object, "sender"),
-                        text_of(object, "node"),
+  if (!object.is_object() || text_at(object, "stream").empty()) return std::nullopt;
+  CountedSender counted{text_at(object, "topic"),
+                        text_at(object, "stream"),
+                        text_at(object, "sender"),
+                        text_at(object, "node"),
                         {}};
   take(of_sender, object, counted.counts);
   return counted;
@@ -159,8 +159,8 @@ std::string to_json(const CountedPort& counted) {
 
 std::optional<CountedPort> to_counted_port(std::string_view json) {
   const Json object = Json::parse(json, nullptr, false);
-  if (!object.is_object() || text_of(object, "stream").empty()) return std::nullopt;
-  CountedPort counted{text_of(object, "stream"), {}};
+  if (!object.is_object() || text_at(object, "stream").empty()) return std::nullopt;
+  CountedPort counted{text_at(object, "stream"), {}};
   take(of_port, object, counted.counts);
   counted.counts.sifted = object.value("sifted", Json()) == Json(true);
   return counted;

@@ -216,17 +216,15 @@ std::optional<RecordedMark> to_mark(std::string_view json) {
     const auto found = object.find(key);
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
   };
-  RecordedMark recorded{
-      {Mark::Kind::text, text("text"), std::nullopt, text("id")}, text("source"), text("sender")};
   const auto kind = mark_kind_named(text("kind"));
   if (!kind) return std::nullopt;
-  recorded.mark.kind = *kind;
-  const auto latency = object.find("latency_ms");
-  if (latency == object.end()) return recorded;
-  const double ms = latency->is_number() ? latency->get<double>() : -1.0;
-  if (!(ms >= 0.0 && ms <= most_latency_ms)) return std::nullopt;
-  recorded.mark.latency = Duration{std::llround(ms * 1e6)};
-  return recorded;
+  std::optional<Duration> latency;
+  if (const auto found = object.find("latency_ms"); found != object.end()) {
+    const double ms = found->is_number() ? found->get<double>() : -1.0;
+    if (!(ms >= 0.0 && ms <= most_latency_ms)) return std::nullopt;
+    latency = Duration{std::llround(ms * 1e6)};
+  }
+  return RecordedMark{{*kind, text("text"), latency, text("id")}, text("source"), text("sender")};
 }
 
 std::string to_bytes(const RecordedExchange& recorded) {

@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::uint64_t enough = 50;
+constexpr std::uint64_t enough_samples = 50;
 /// Chosen: a runner's mean leans by a few degrees, another axis by 90.
 constexpr double most_lean_deg = 45.0;
 /// Slower turns drown in the gyroscope's bias (0.05 rad/s and less) and in rounded angles.
@@ -68,7 +68,7 @@ Findings OrientationSense::judge(const ImuHeader& header, const std::string& fil
   for (std::size_t s = 0; s < nodes_.size(); ++s) {
     const Node& node = nodes_[s];
     const std::string name = s < header.node_names.size() ? shown(header.node_names[s]) : "";
-    if (header.content.acceleration && header.content.gravity && node.samples >= enough) {
+    if (header.content.acceleration && header.content.gravity && node.samples >= enough_samples) {
       const double lean = std::atan2(std::hypot(node.up.x(), node.up.z()), node.up.y());
       const double lean_deg = lean * (180.0 / std::numbers::pi);
       if (lean_deg > most_lean_deg) {
@@ -79,7 +79,7 @@ Findings OrientationSense::judge(const ImuHeader& header, const std::string& fil
       }
     }
     const double least = node.times * least_turn_rad_s * least_turn_rad_s;
-    if (node.turns < enough || node.felt < least) continue;
+    if (node.turns < enough_samples || node.felt < least) continue;
     const double alike = node.both / std::sqrt(std::max(node.turned * node.felt, 1e-300));
     if (alike >= least_likeness) continue;
     out.push_back({Severity::warning,

@@ -96,7 +96,8 @@ void add_similar_distances(const Repetition& piece, std::size_t t, Mean& mean) {
       (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   const Vec3 signs(1.0, 1.0, mirror);
   const Eigen::Matrix3d turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  const double scale = svd.singularValues().dot(signs) / std::max(spread, 1e-12);
+  const Vec3 stretch = svd.singularValues();
+  const double scale = stretch.dot(signs) / std::max(spread, 1e-12);
   for (const std::size_t i : valid) {
     const Vec3 moved = scale * (turn * (vec3(piece.kinect, i) - from)) + to;
     mean.add((moved - vec3(piece.truth, i)).norm());

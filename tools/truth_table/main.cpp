@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of a simulated recording:  kinalign_truth_table RECORDING TAKE TRUTH
+// What became of a simulated recording:  kinalign_truth_table [--summary] RECORDING TAKE TRUTH
 // RECORDING is what was aligned (recording.toml or .mcap), TAKE what came out of it, TRUTH
-// simulate's truth.json. Prints errors of time and of values; ends with 1 where a certified stamp
-// lies outside its interval.
+// simulate's truth.json. Prints two tables, the errors of time and of values, or a summary of five
+// lines. Ends with 1 where a certified stamp lies outside its interval.
 #include "apps/kinalign/verbs/inputs.h"
+#include "tools/truth_table/summary.h"
 
 #include "kinalign/documents/truth_json.h"
 #include "kinalign/formats/bvh/bvh.h"
@@ -16,6 +17,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace kinalign {
@@ -26,6 +28,7 @@ constexpr std::size_t most_text = std::size_t{1} << 30;
 
 struct Names {
   std::string recording, take, truth;
+  bool summary = false;
 };
 
 struct Opened {
@@ -86,6 +89,18 @@ std::string row(const ValueJudgement& one) {
                      or_none(one.before), text(one.after), or_none(one.alone), more);
 }
 
+std::string tables(const JudgedRecording& judged) {
+  std::string text =
+      "| device | samples | time error: median, ms | 95 % | worst | certified |\n"
+      "| --- | --- | --- | --- | --- | --- |\n";
+  for (const TimeJudgement& one : judged.times) text += row(one);
+  text +=
+      "\n| values, rms | before | in the take | noise alone | more than that |\n"
+      "| --- | --- | --- | --- | --- |\n";
+  for (const ValueJudgement& one : judged.values) text += row(one);
+  return text;
+}
+
 Result<Motion> true_motion(FileSystem& files, const Names& names, const TrueRecording& truth) {
   const std::string path = std::string(folder(names.truth)) + truth.motion_file;
   const BvhFile bvh = KA_TRY(read_bvh(KA_TRY(read_whole(files, path, most_text)), path, {}));
@@ -107,24 +122,20 @@ Result<int> run(const Names& names) {
   const Opened opened = KA_TRY(open(files, names.recording));
   const Take take = KA_TRY(read_take(files, names.take));
   const Duration shift = shift_of(opened, truth);
-  std::uint64_t outside = 0;
-  std::string text =
-      "| device | samples | time error: median, ms | 95 % | worst | certified |\n"
-      "| --- | --- | --- | --- | --- | --- |\n";
+  JudgedRecording judged{truth, {}, {}};
   for (const RecordedStream& stream : opened.recording.streams) {
-    const auto judged = judge_time(stream, truth, shift);
-    if (!judged) return Failure(of_recording(names, judged.error()));
-    outside += judged->outside;
-    text += row(*judged);
+    auto times = judge_time(stream, truth, shift);
+    if (!times) return Failure(of_recording(names, times.error()));
+    judged.times.push_back(*std::move(times));
   }
-  text +=
-      "\n| values, rms | before | in the take | noise alone | more than that |\n"
-      "| --- | --- | --- | --- | --- |\n";
-  const auto values = judge_values({take, opened.recording, truth, motion, shift});
+  auto values = judge_values({take, opened.recording, truth, motion, shift});
   if (!values) return Failure(of_recording(names, values.error()));
-  for (const ValueJudgement& one : *values) text += row(one);
-  std::fputs(text.c_str(), stdout);
-  return outside == 0 ? 0 : 1;
+  judged.values = *std::move(values);
+  std::fputs((names.summary ? summary(judged) : tables(judged)).c_str(), stdout);
+  return std::all_of(judged.times.begin(), judged.times.end(),
+                     [](const TimeJudgement& one) { return one.outside == 0; })
+             ? 0
+             : 1;
 }
 
 }  // namespace
@@ -132,11 +143,14 @@ Result<int> run(const Names& names) {
 }  // namespace kinalign
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::fputs("usage: kinalign_truth_table RECORDING TAKE TRUTH\n", stderr);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  const bool summary = !words.empty() && words.front() == "--summary";
+  if (summary) words.erase(words.begin());
+  if (words.size() != 3) {
+    std::fputs("usage: kinalign_truth_table [--summary] RECORDING TAKE TRUTH\n", stderr);
     return 2;
   }
-  const auto done = kinalign::run({argv[1], argv[2], argv[3]});
+  const auto done = kinalign::run({words[0], words[1], words[2], summary});
   if (done) return *done;
   std::fprintf(stderr, "%s\n", kinalign::to_string(done.error()).c_str());
   return 3;

@@ -13,20 +13,20 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Duration duration(double s) { return Duration{static_cast<std::int64_t>(s * 1e9)}; }
+Duration click_time(double s) { return Duration{static_cast<std::int64_t>(s * 1e9)}; }
 
 }  // namespace
 
 LiveClicks::LiveClicks(const MocapRun& mocap, std::uint64_t run, HostTime start, LiveSocket socket)
     : socket_(std::move(socket)) {
   const std::string id = std::to_string(run);
-  add(Mark::Kind::start, id + "-start", start + duration(mocap.start_click_s));
-  add(Mark::Kind::stop, id + "-stop", start + duration(mocap.stop_click_s));
+  add(Mark::Kind::start, id + "-start", start + click_time(mocap.start_click_s));
+  add(Mark::Kind::stop, id + "-stop", start + click_time(mocap.stop_click_s));
 }
 
 /// Twice, as docs/formats/marks.md advises: a lost datagram costs the mark, a repeat nothing.
 void LiveClicks::add(Mark::Kind kind, const std::string& id, HostTime at) {
-  const std::string text = encode_mark_call({kind, "", duration(click_latency_s), id});
+  const std::string text = encode_mark_call({kind, "", click_time(click_latency_s), id});
   calls_.push_back({at, text});
   calls_.push_back({at + 50ms, text});
 }

@@ -12,18 +12,18 @@ namespace kinalign {
 
 namespace {
 
-using Kind = ClockEvent::Kind;
+using EventKind = ClockEvent::Kind;
 
 constexpr Duration steps_within = std::chrono::seconds(10);
 constexpr Duration quiet = std::chrono::minutes(1);
 constexpr Duration patience = std::chrono::seconds(1);
 
-bool is_step(Kind kind) { return kind == Kind::step || kind == Kind::slip; }
+bool is_step(EventKind kind) { return kind == EventKind::step || kind == EventKind::slip; }
 
 /// What a clock says that contradicts the assumptions, and what follows from that.
-bool is_trouble(Kind kind) {
-  return is_step(kind) || kind == Kind::withdrawn || kind == Kind::violator ||
-         kind == Kind::settled || kind == Kind::relaxed || kind == Kind::uneasy;
+bool is_trouble(EventKind kind) {
+  return is_step(kind) || kind == EventKind::withdrawn || kind == EventKind::violator ||
+         kind == EventKind::settled || kind == EventKind::relaxed || kind == EventKind::uneasy;
 }
 
 }  // namespace
@@ -47,8 +47,8 @@ void ClockNews::hear(std::size_t stream, std::uint32_t node_id, const ClockEvent
   clock.troubled = now;
   if (is_step(event.kind)) return take_step(clock, event);
   if (clock.contradicts) return;
-  if (event.kind == Kind::withdrawn) return withdraw(clock, event, now);
-  clock.settled = event.kind == Kind::settled;
+  if (event.kind == EventKind::withdrawn) return withdraw(clock, event, now);
+  clock.settled = event.kind == EventKind::settled;
   const std::string text = event_text(event, node_id, names_);
   if (!text.empty()) lines_.push_back(text);
 }
@@ -84,7 +84,7 @@ void ClockNews::withdraw(Clock& clock, const ClockEvent& event, HostTime now) {
 
 void ClockNews::tell_waiting(Clock& clock) {
   if (!clock.waiting) return;
-  const ClockEvent whole{Kind::withdrawn, 0, clock.waiting->begin, clock.waiting->end};
+  const ClockEvent whole{EventKind::withdrawn, 0, clock.waiting->begin, clock.waiting->end};
   lines_.push_back(event_text(whole, clock.node_id, names_));
   clock.told = std::exchange(clock.waiting, std::nullopt);
 }

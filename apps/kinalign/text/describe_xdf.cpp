@@ -30,7 +30,7 @@ std::string stamps_text(const XdfStreamSurvey& one) {
   return text;
 }
 
-std::string clock_text(const XdfStreamSurvey& one) {
+std::string stream_clock_text(const XdfStreamSurvey& one) {
   if (one.clock.empty()) return "no clock offsets";
   double residual = 0.0;
   for (const XdfClockLine& line : one.clock) residual = std::max(residual, line.largest_residual);
@@ -54,7 +54,7 @@ std::string stream_lines(const XdfStreamSurvey& one, Names names) {
                              s.channel_count == 1 ? "" : "s", name_of(s.format),
                              grouped(one.samples), rate_text(one)));
   if (one.first) line("  stamps", stamps_text(one));
-  line("  clock", clock_text(one));
+  line("  clock", stream_clock_text(one));
   if (names == Names::no) return text;
   for (const XdfChannel& channel : s.channels) {
     line("  channel", fmt::format("{}{}", shown(channel.label),

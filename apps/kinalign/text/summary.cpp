@@ -144,7 +144,7 @@ std::string gap_lines(std::vector<Group> groups) {
 }
 
 /// The worst findings, a line each; a hundred of them are for `info`.
-std::string finding_lines(const Findings& findings, const Console& console) {
+std::string note_lines(const Findings& findings, const Console& console) {
   constexpr std::size_t most = 5;
   std::string text;
   for (std::size_t k = 0; k < std::min(most, findings.size()); ++k) {
@@ -207,7 +207,7 @@ std::string summary(const AlignmentReport& report, const std::string& out, const
   text += time_line(groups, report.reference, console);
   for (const SpaceReport& s : report.spaces) text += space_line(s);
   text += gap_lines(groups);
-  text += finding_lines(report.findings, console);
+  text += note_lines(report.findings, console);
   if (!out.empty()) text += fmt::format("  see    kinalign info {}\n", harmless(out));
   return text;
 }

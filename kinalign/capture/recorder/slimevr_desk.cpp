@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr Duration left_after = seconds(1);  // as their server does
-constexpr Duration replaced_after = seconds(60);
+constexpr Duration tracker_replaced_after = seconds(60);
 constexpr Duration heartbeat_every = milliseconds(500), ping_every = seconds(1);
 constexpr std::uint64_t most_credit = 4096;
 constexpr std::size_t most_sendings = 1024;  // of those that nobody takes
@@ -132,7 +132,7 @@ SlimeDevice* SlimeDesk::new_device(HostTime now) {
   SlimeDevice& place =
       *std::min_element(devices_.begin(), devices_.end(),
                         [&](const auto& a, const auto& b) { return heard(a) < heard(b); });
-  if (place.used && now - place.heard <= replaced_after) return nullptr;
+  if (place.used && now - place.heard <= tracker_replaced_after) return nullptr;
   place = {};
   return &place;
 }

@@ -11,16 +11,16 @@ namespace {
 
 constexpr double floors_known_after_s = 8.0;  // before a route's floors are known
 constexpr std::uint64_t floors_known_from_points = 100;
-constexpr double gaps_off = 20.0;         // a floor's usual gaps that make a bound stand apart, …
-constexpr double least_off_s = 20e-6;     // … and at least this
-constexpr double wander = 0.2e-6;         // of a slope between two routes
-constexpr double alike_deviations = 8.0;  // of round trips before and behind a step
+constexpr double gaps_off = 20.0;      // a floor's usual gaps that make a bound stand apart, …
+constexpr double least_off_s = 20e-6;  // … and at least this
+constexpr double wander = 0.2e-6;      // of a slope between two routes
+constexpr double alike_round_trips = 8.0;  // of round trips before and behind a step
 constexpr double step_deviations = 20.0;
 constexpr std::uint64_t few_points = 64;  // of a route: each one is told apart
 constexpr double far_gaps = 8.0;          // above a floor, where a bound says nothing of it: e^-8
-constexpr std::uint32_t seldom = 4;
-constexpr double stale_s = 1.0, stale_answer_s = 0.25;
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t most_unseen = 4;
+constexpr double stale_middle_s = 1.0, stale_answer_s = 0.25;
+constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void OffsetEstimate::add(const Bound& b) {
   const double density = middle_.density(b.side), excess = line.excess(bound);
   const ExcessCounts& counts = route_.floor(b.side).counts();
   const bool watched = floors_known(b.s) && counts.total() >= floors_known_from_points;
-  double limit = infinite;
+  double limit = no_limit;
   if (watched) limit = std::max(gaps_off / density, least_off_s);
   const Standing standing = excess < -limit  ? Standing::held
                             : excess > limit ? Standing::above
@@ -60,7 +60,7 @@ void OffsetEstimate::look(double s, bool said) {
   if (!route_.bounded()) return;
   const bool young = route_.points() < few_points;
   if (said || young) ++unseen_;
-  if (unseen_ >= (young ? 1 : seldom) || s - middle_.t > stale_s) refresh(s);
+  if (unseen_ >= (young ? 1 : most_unseen) || s - middle_.t > stale_middle_s) refresh(s);
 }
 
 void OffsetEstimate::refresh(double t) {
@@ -103,7 +103,7 @@ void OffsetEstimate::judge_change(double s) {
   refresh(s);
   joint_->judged = true;
   const double noise = std::hypot(joint_->floor_deviation, middle_.floor_deviation());
-  if (std::abs(middle_.round_trip - joint_->round_trip) > alike_deviations * noise) return;
+  if (std::abs(middle_.round_trip - joint_->round_trip) > alike_round_trips * noise) return;
   const double step = route_.middle_elsewhere(joint_->s, middle_).value - joint_->x;
   if (std::abs(step) < step_deviations * noise) return;
   last_change_->step = step;
@@ -129,11 +129,11 @@ void OffsetEstimate::join_routes(double s) {
 void OffsetEstimate::guess_floors(double s, const Middle& before) {
   const auto risen = [&](Side side) {
     const FloorLine floor = before.floor(side);
-    double least = infinite;
+    double least = no_limit;
     for (std::size_t k = 0; k < recent(side).behind(s); ++k) {
       least = std::min(least, floor.excess(recent(side).newest(k)));
     }
-    return least < infinite ? least : 0.0;
+    return least < no_limit ? least : 0.0;
   };
   const double up = risen(Side::above), down = risen(Side::below);
   middle_ = before.moved_to(s);

@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double knot_s = 1.0;
+constexpr double step_s = 1.0;
 constexpr double rate_known = 5e-6;  // chosen: so well the middle's edge tells it in half a minute
 // Chosen: delays of a busy radio vary by more, but not the least one of a second, for three.
 constexpr double leap_s = 0.05;
@@ -36,7 +36,7 @@ std::vector<Low> lows_of(std::span<const Exchange> exchanges, Stretch stretch) {
   std::vector<Low> lows;
   for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
     const Bound b = bound_by(origin, Side::above, exchanges[i].n_tx, exchanges[i].h_rx);
-    const auto second = static_cast<std::int64_t>(std::floor(b.s / knot_s));
+    const auto second = static_cast<std::int64_t>(std::floor(b.s / step_s));
     if (lows.empty() || lows.back().second != second) lows.push_back({i, second, b.s, b.x});
     if (b.x < lows.back().x) {
       lows.back().s = b.s;
@@ -114,7 +114,7 @@ std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOri
   std::vector<std::int64_t> seconds;
   for (const Exchange& e : exchanges) {
     const double s = bound_by(origin, Side::above, e.n_tx, e.h_rx).s;
-    const auto second = static_cast<std::int64_t>(std::floor((s - begin) / knot_s));
+    const auto second = static_cast<std::int64_t>(std::floor((s - begin) / step_s));
     if (!seconds.empty() && seconds.back() == second + 1) continue;
     seconds.insert(seconds.end(), {second, second + 1});
   }
@@ -123,7 +123,7 @@ std::vector<double> knots_of(std::span<const Exchange> exchanges, const ClockOri
   std::vector<double> knots;
   knots.reserve(seconds.size());
   for (const std::int64_t k : seconds) {
-    const double s = begin + knot_s * static_cast<double>(k);
+    const double s = begin + step_s * static_cast<double>(k);
     if (s < end) knots.push_back(s);
   }
   if (knots.empty() || end > knots.back()) knots.push_back(end);  // another piece may begin there

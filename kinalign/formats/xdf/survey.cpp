@@ -51,8 +51,8 @@ class Surveyor {
   }
 
   static void add_stamp(double stamp, XdfStreamSurvey& one, std::optional<double>& last) {
-    constexpr double largest = 1e15;  // s
-    if (!(std::abs(stamp) < largest)) {
+    constexpr double largest_stamp = 1e15;  // s
+    if (!(std::abs(stamp) < largest_stamp)) {
       ++one.timeless;
       return;
     }

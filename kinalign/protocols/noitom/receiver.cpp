@@ -10,7 +10,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_avatars = 64;
+constexpr std::size_t most_counted_avatars = 64;
 constexpr std::uint32_t longest_skip = 8;  // of numbers that a sender leaves out now and then
 // An end that did not come may be late, and come in the place of the next one's, which is then late
 // itself.
@@ -169,7 +169,8 @@ void NoitomReceiver::learn(const NoitomFrame* next, Arrival arrival) {
     pace_.push(*newest_->spread, *arrival - *newest_->began);
   if (next != nullptr && quiet_ < quiet_again) ++quiet_;
   const std::uint32_t avatar = newest_->head.avatar;
-  if (!newest_->head.index || (steps_.size() == most_avatars && !steps_.contains(avatar))) return;
+  if (!newest_->head.index || (steps_.size() == most_counted_avatars && !steps_.contains(avatar)))
+    return;
   steps_[avatar].push(is_plain ? step_to(*next) : std::nullopt);
 }
 

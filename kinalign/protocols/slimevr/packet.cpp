@@ -69,7 +69,7 @@ SlimeHandshake take_handshake(Body body) {
   hands.firmware = std::move(firmware);
   if (body.left() < 6) return hands;
   SlimeMac mac{};
-  for (auto& byte : mac) byte = body.byte();
+  for (std::size_t i = 0; i < mac.size(); ++i) mac[i] = body.byte();
   if (mac != SlimeMac{}) hands.mac = mac;
   if (body.left() == 0) return hands;
   hands.tracker = body.byte();

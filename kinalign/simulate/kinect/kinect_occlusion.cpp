@@ -23,9 +23,9 @@ constexpr double doubt = 0.003;  // of a frame of a joint that is seen, for one 
 struct GuessNoise {
   double at_entry, process;  // rad
 };
-constexpr double of_parent = 0.7;     // of a guessed parent's error: the same rows
-constexpr double longest_bone = 1.0;  // m: beyond it nothing is a bone
-constexpr double still_share = 0.3;   // a still limb is guessed better
+constexpr double of_parent = 0.7;         // of a guessed parent's error: the same rows
+constexpr double longest_bone = 1.0;      // m: beyond it nothing is a bone
+constexpr double still_limb_share = 0.3;  // a still limb is guessed better
 
 GuessNoise guess_noise(KinectPart part) {
   switch (part) {
@@ -143,7 +143,7 @@ class Tracker {
     const GuessNoise size = guess_noise(kinect_limbs[j].part);
     const double length = std::min(memory.bone.norm(), longest_bone);
     const double stir = scene_.stir[t * kinect_joint_count + j];
-    const double moved = std::min(1.0, still_share + stir / full_stir);
+    const double moved = std::min(1.0, still_limb_share + stir / full_stir);
     memory.error = of_parent * parent.error +
                    length * (size.at_entry * memory.entry + moved * size.process * memory.wander());
     const Vec3 guessed = memory.guess + axes * memory.error;

@@ -12,8 +12,8 @@ namespace kinalign {
 
 namespace {
 
-constexpr double of_robust = 0.75;  // the measured figures are of second differences
-constexpr double furthest = 0.08;   // m
+constexpr double of_robust = 0.75;   // the measured figures are of second differences
+constexpr double most_white = 0.08;  // m
 
 // Twitches: the measured autocorrelation falls within one frame by 5 % (trunk) to 24 % (feet) while
 // the usual second difference stays under a millimetre, so a few frames must be far off. The rate,
@@ -68,7 +68,7 @@ void add_white_noise(const KinectScene& scene, const KinectIds& ids, std::span<d
       for (std::size_t a = 0; a < 3; ++a) {
         const double draw = size * student_t(noise.tail, random.uniform(k + j, 2 * a),
                                              random.uniform(k + j, 2 * a + 1));
-        joints[3 * i + a] += std::clamp(draw, -furthest, furthest);
+        joints[3 * i + a] += std::clamp(draw, -most_white, most_white);
       }
     }
   }

@@ -15,7 +15,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double control_s = 0.2;
 constexpr double tick_s = 0.05;         // four to a control
 constexpr double most_turn_rate = 1.2;  // rad/s, estimated: a quarter turn in 1.3 s and two steps

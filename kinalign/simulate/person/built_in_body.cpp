@@ -14,7 +14,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double longest_leg = 0.9985;  // share of its bones' length that hip and ankle are apart
 constexpr double bend_depth = 0.75;     // rad, of the pelvis
 constexpr double squat_depth = 0.30;    // m
