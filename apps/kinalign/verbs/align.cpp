@@ -71,7 +71,7 @@ Usage describe_verb_options(AlignVerb& o) {
 }
 
 /// What to align, and the recording where it had to be opened to know that.
-struct Wanted {
+struct ToAlign {
   Manifest manifest;
   std::shared_ptr<RecordingSource> recording{};
 };
@@ -93,8 +93,8 @@ Result<Error> no_recording(FileSystem& files, const std::string& path) {
 }
 
 /// As it stands in a file or follows from flags, with the options of the call.
-Result<Wanted> wanted_with_options(AlignVerb& o, const Call& call) {
-  Wanted wanted;
+Result<ToAlign> wanted_with_options(AlignVerb& o, const Call& call) {
+  ToAlign wanted;
   Manifest& manifest = wanted.manifest;
   if (o.manifest.empty()) {
     manifest = KA_TRY(quick_manifest(o.quick));
@@ -116,8 +116,8 @@ Result<Wanted> wanted_with_options(AlignVerb& o, const Call& call) {
   return wanted;
 }
 
-Result<Wanted> wanted_of(AlignVerb& o, const Call& call) {
-  Wanted wanted = KA_TRY(wanted_with_options(o, call));
+Result<ToAlign> wanted_of(AlignVerb& o, const Call& call) {
+  ToAlign wanted = KA_TRY(wanted_with_options(o, call));
   if (o.slerp) wanted.manifest.align.rotations = "slerp";
   return wanted;
 }
@@ -189,7 +189,7 @@ std::vector<std::string> advice(const std::string& path, const Error& error) {
   return lines;
 }
 
-Result<Recording> open_files(const AlignVerb& o, const Wanted& wanted, const std::string& base,
+Result<Recording> open_files(const AlignVerb& o, const ToAlign& wanted, const std::string& base,
                              Call& call) {
   Recording recording =
       KA_TRY(open_recording(call.surroundings.files, wanted.manifest, base,
@@ -204,7 +204,7 @@ Result<Recording> open_files(const AlignVerb& o, const Wanted& wanted, const std
 Result<int> run(AlignVerb& o, Call& call) {
   const std::string path = o.manifest.empty() ? "" : o.manifest.front();
   call.console.if_it_fails([path](const Error& error) { return advice(path, error); });
-  Wanted wanted = KA_TRY(wanted_of(o, call));
+  ToAlign wanted = KA_TRY(wanted_of(o, call));
   Manifest& manifest = wanted.manifest;
   const std::string base =
       o.manifest.empty() ? cut_common_folder(manifest) : std::string(folder(o.manifest.front()));

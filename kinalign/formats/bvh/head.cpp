@@ -80,7 +80,7 @@ class BvhWords {
 constexpr std::array<std::string_view, 6> channel_names{"xposition", "yposition", "zposition",
                                                         "xrotation", "yrotation", "zrotation"};
 
-constexpr double largest = 1e15;  // as of the rows' values
+constexpr double largest_offset = 1e15;  // as of the rows' values
 
 class HierarchyParser {
  public:
@@ -174,7 +174,7 @@ class HierarchyParser {
     Vec3 out;
     for (int i = 0; i < 3; ++i) {
       const std::string_view word = words_.next();
-      if (!parse_number(word, out[i]) || !(std::abs(out[i]) < largest)) {
+      if (!parse_number(word, out[i]) || !(std::abs(out[i]) < largest_offset)) {
         return Failure(words_.wrong("three numbers after OFFSET", word));
       }
       offset_decimals_ = std::max(offset_decimals_, decimals_of(word));

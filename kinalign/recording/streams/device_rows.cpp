@@ -9,7 +9,7 @@ namespace kinalign {
 
 namespace {
 
-DeviceProtocol rows_of(Protocol protocol) {
+DeviceProtocol maker_of(Protocol protocol) {
   switch (protocol) {
     case Protocol::nodes:
       return node_protocol();
@@ -44,7 +44,7 @@ std::pair<std::string, std::string> tracker_of(const std::string& node) {
 std::optional<DeviceProtocol> rows_of(const std::string& recorded_name, bool trackers) {
   const auto protocol = find_recorded_protocol(recorded_name);
   if (!protocol) return std::nullopt;
-  if (!trackers) return rows_of(*protocol);
+  if (!trackers) return maker_of(*protocol);
   return row_of(*protocol).has_trackers ? std::optional(xsens_tracker_protocol()) : std::nullopt;
 }
 

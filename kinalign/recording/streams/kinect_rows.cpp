@@ -69,7 +69,8 @@ std::optional<Time> stamp_of_frame(const HeardDevice& heard, BootKey session, No
   return stamp_of(heard.clock, heard.epochs.life_at(session, sent, arrival), device, arrival);
 }
 
-constexpr std::size_t most_overtaking = 16;  // half a second: no network delays one for longer
+constexpr std::size_t most_overtaking_kinect_frames =
+    16;  // half a second: no network delays one for longer
 
 class KinectListener final : public DeviceListener {
  public:
@@ -122,7 +123,8 @@ class KinectListener final : public DeviceListener {
   }
 
   void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
-    OrderedStamps<bool> stamps(most_overtaking, [&take](Time stamp, bool) { take(stamp); });
+    OrderedStamps<bool> stamps(most_overtaking_kinect_frames,
+                               [&take](Time stamp, bool) { take(stamp); });
     for (const Joined& one : rows_) {
       const auto stamp = stamp_of_frame(heard, one.session, one.sent, one.device, one.arrival);
       if (stamp) stamps.add(*stamp, true);
@@ -231,7 +233,7 @@ class KinectRows final : public DeviceRows<PointFrames> {
   PointHeader header_;
   KinectFrames frames_;
   std::vector<JoinedKinectFrame> joined_;
-  RowsInOrder<KinectFrame> waiting_{most_overtaking};
+  RowsInOrder<KinectFrame> waiting_{most_overtaking_kinect_frames};
   HostTime arrival_{};
   std::uint64_t unknown_ = 0, wild_ = 0;
 };

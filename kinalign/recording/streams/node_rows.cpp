@@ -140,7 +140,8 @@ std::optional<Time> stamp_of_sample(const HeardDevice& heard, const AcceptedFram
   return stamp_of(heard.clock, frame.life, sent - std::chrono::microseconds(age_us), arrival);
 }
 
-constexpr std::size_t most_overtaking = 64;  // samples of some frames: a radio reorders them
+constexpr std::size_t most_overtaking_samples =
+    64;  // samples of some frames: a radio reorders them
 
 class NodeListener final : public DeviceListener {
  public:
@@ -185,7 +186,7 @@ class NodeListener final : public DeviceListener {
   }
 
   void stamp_rows(const HeardDevice& heard, const TakeStamp& take) const override {
-    OrderedStamps<bool> stamps(most_overtaking, [&take](Time stamp, bool) { take(stamp); });
+    OrderedStamps<bool> stamps(most_overtaking_samples, [&take](Time stamp, bool) { take(stamp); });
     auto age_us = ages_us_.begin();
     for (const HeardFrame& one : heard_) {
       AcceptedFrame frame;
@@ -299,7 +300,7 @@ class NodeRows final : public DeviceRows<ImuSamples> {
   ImuConverter converter_;
   ImuHeader header_;
   AcceptedFrames frames_;
-  RowsInOrder<NodeSample> waiting_{most_overtaking};
+  RowsInOrder<NodeSample> waiting_{most_overtaking_samples};
   std::uint64_t unknown_ = 0, partial_ = 0;
 };
 
