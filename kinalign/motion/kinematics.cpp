@@ -15,6 +15,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t block = 16;
+constexpr std::size_t few = 3;  // fewer lanes are quicker one by one
 using Lane = std::array<double, block>;
 
 // sin and cos of half an angle in degrees, through a quarter of it: reduced to +-180 degrees, the
@@ -54,19 +55,27 @@ struct Rotations {
 
 // q = q_a q_b q_c of three elementary rotations about different axes, multiplied out. `sign` is the
 // permutation's parity; the parts come out on the axes a, b, c.
+KA_INLINE void compose_lane(const std::array<Lane, 3>& degrees, double sign, std::size_t i,
+                            Rotations& q) {
+  double sa = 0.0, ca = 0.0, sb = 0.0, cb = 0.0, sc = 0.0, cc = 0.0;
+  half_angle(degrees[0][i], sa, ca);
+  half_angle(degrees[1][i], sb, cb);
+  half_angle(degrees[2][i], sc, cc);
+  const double cacb = ca * cb, sasb = sa * sb, sacb = sa * cb, casb = ca * sb;
+  q.part[0][i] = cacb * cc - sign * (sasb * sc);
+  q.part[1][i] = sacb * cc + sign * (casb * sc);
+  q.part[2][i] = casb * cc - sign * (sacb * sc);
+  q.part[3][i] = cacb * sc + sign * (sasb * cc);
+}
+
 KA_EVERY_PROCESSOR
 void compose(const std::array<Lane, 3>& degrees, double sign, Rotations& q) {
-  for (std::size_t i = 0; i < block; ++i) {
-    double sa = 0.0, ca = 0.0, sb = 0.0, cb = 0.0, sc = 0.0, cc = 0.0;
-    half_angle(degrees[0][i], sa, ca);
-    half_angle(degrees[1][i], sb, cb);
-    half_angle(degrees[2][i], sc, cc);
-    const double cacb = ca * cb, sasb = sa * sb, sacb = sa * cb, casb = ca * sb;
-    q.part[0][i] = cacb * cc - sign * (sasb * sc);
-    q.part[1][i] = sacb * cc + sign * (casb * sc);
-    q.part[2][i] = casb * cc - sign * (sacb * sc);
-    q.part[3][i] = cacb * sc + sign * (sasb * cc);
-  }
+  for (std::size_t i = 0; i < block; ++i) compose_lane(degrees, sign, i, q);
+}
+
+/// The same of the first lanes alone: streams bring their frames one by one.
+void compose_few(const std::array<Lane, 3>& degrees, double sign, std::size_t lanes, Rotations& q) {
+  for (std::size_t i = 0; i < lanes; ++i) compose_lane(degrees, sign, i, q);
 }
 
 // One joint of the chain over a block of frames: turned = parent's * local, at = parent's + turned
@@ -121,7 +130,11 @@ void rotations_from_euler(const EulerOrder& order, const EulerColumns& columns,
       const double* from = columns.angles[k] + first * columns.stride;
       for (std::size_t i = 0; i < lanes; ++i, from += columns.stride) degrees[k][i] = *from;
     }
-    compose(degrees, sign, q);
+    if (lanes < few) {
+      compose_few(degrees, sign, lanes, q);
+    } else {
+      compose(degrees, sign, q);
+    }
     double* to = columns.rotations + first * columns.rotation_stride;
     for (std::size_t i = 0; i < lanes; ++i, to += columns.rotation_stride) {
       to[0] = q.part[0][i];

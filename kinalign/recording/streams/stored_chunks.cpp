@@ -75,9 +75,9 @@ Result<std::shared_ptr<const OpenedChunk>> StoredChunks::open(std::size_t k) con
   auto opened = KA_TRY(read(chunks_[k]));
   cache_.push_front({k, opened});
   places_[k] = cache_.begin();
-  cached_bytes_ += opened->bytes.size();
+  cached_bytes_ += opened->memory();
   while (cached_bytes_ > most_cached && cache_.size() > 1) {
-    cached_bytes_ -= cache_.back().opened->bytes.size();
+    cached_bytes_ -= cache_.back().opened->memory();
     places_.erase(cache_.back().chunk);
     cache_.pop_back();
   }

@@ -41,13 +41,18 @@ struct ChunkMessage {
 struct OpenedChunk {
   std::string bytes;                   // that `messages` points into
   std::vector<ChunkMessage> messages;  // those that count, in their order
+
+  std::size_t memory() const {
+    return bytes.capacity() + messages.capacity() * sizeof(messages[0]);
+  }
 };
 
 /// Safe to use from several threads at once.
 class StoredChunks {
  public:
-  /// Bytes of unpacked chunks that the cache holds: some minutes of a lab.
-  static constexpr std::size_t most_cached = std::size_t{64} << 20;
+  /// Bytes of memory that the cache takes: a lab of seven devices fills it in some 100 s, and align
+  /// reads its streams within two slabs of each other (align/slabs.h).
+  static constexpr std::size_t most_cached = std::size_t{24} << 20;
 
   struct File {
     std::string path;
