@@ -119,10 +119,7 @@ class Scan {
     add_json(defined);
     if (channel.topic == marks_topic) mark_channels_.insert(channel.id);
     const auto raw = to_raw(channel);
-    if (!raw || mark_channels_.contains(channel.id)) {
-      others_.insert(channel.id);
-      return;
-    }
+    if (!raw || mark_channels_.contains(channel.id)) return;
     DeviceChannel& added = state_.channels[channel.id];
     added.raw = *raw;
     added.id = channel.id;
@@ -163,12 +160,12 @@ class Scan {
     const auto found = state_.channels.find(message.channel);
     const bool is_device = found != state_.channels.end();
     const bool is_json = json_channels_.contains(message.channel);
-    if (!counts || !(is_device || others_.contains(message.channel))) {
+    if (counts && mark_channels_.contains(message.channel)) take_mark(message);
+    if (!counts || !(is_device || is_json)) {
       chunk_.left_out.push_back(place);
       return;
     }
-    if (is_device || is_json) note_channel(message.channel);
-    if (mark_channels_.contains(message.channel)) take_mark(message);
+    note_channel(message.channel);
     if (is_device) hear(found->second, message);
   }
 
@@ -244,7 +241,7 @@ class Scan {
   bool is_in_chunk_ = false;
   std::uint32_t places_ = 0;
   std::map<std::uint16_t, McapSchema> schemas_;
-  std::set<std::uint16_t> mark_channels_, json_channels_, others_;
+  std::set<std::uint16_t> mark_channels_, json_channels_;
   std::map<std::string, std::size_t> hosts_;  // by stream: how many
   std::uint64_t more_marks_ = 0;              // than are looked at
   std::optional<RecordingEnd> end_;

@@ -198,9 +198,9 @@ TEST_CASE("a file that breaks off anywhere is read up to there, and that is said
     const std::string path = folder.write("torn.mcap", whole.substr(0, size));
     const RecordedStream stream = opened(files, stream_named("imu", path));
     const Findings of_file = opened_file(files, stream_named("imu", path)).findings;
-    const auto torn = std::count_if(
-        of_file.begin(), of_file.end(),
-        [](const Finding& f) { return f.repair == "kinalign recover makes a whole file of it"; });
+    const auto torn = std::count_if(of_file.begin(), of_file.end(), [](const Finding& f) {
+      return f.repair == "kinalign recover makes a whole file of it";
+    });
     CHECK(torn == 1);
     const Errors errors = node_errors(stream);
     CHECK(errors.outside == 0);
@@ -286,4 +286,103 @@ TEST_CASE("a Kinect's stamps hold where the host slept or its raw clock went bac
     CHECK(errors.most < 31.5);
     CHECK(stream.survey.backward == 0);
   }
+}
+
+namespace {
+
+/// Counts the bytes that are read.
+class CountingFiles : public PosixFiles {
+ public:
+  ssize_t read(int fd, void* data, std::size_t size) override {
+    return counted(PosixFiles::read(fd, data, size));
+  }
+  ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override {
+    return counted(PosixFiles::read_at(fd, data, size, at));
+  }
+  std::uint64_t bytes = 0;
+
+ private:
+  ssize_t counted(ssize_t got) {
+    bytes += static_cast<std::uint64_t>(std::max<ssize_t>(got, 0));
+    return got;
+  }
+};
+
+/// Mocap, a Kinect and five nodes.
+std::string seven_devices(const FreshFolder& folder, double seconds) {
+  RecordedLab lab(20261126);
+  lab.add_mocap(NoitomForm::new_header, "udp", seconds, 50);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, seconds);
+  for (std::uint32_t id = 1; id <= 5; ++id) lab.add_node(id, id, {3.0 * id, 5.0}, 0.1, seconds);
+  lab.hold_back(97, 0.03);
+  return folder.write("take.mcap", lab.file());
+}
+
+/// The manifest of all of its devices.
+std::vector<StreamOptions> all_streams(FileSystem& files, const std::string& path) {
+  return manifest_of(*survey_recording(files, path), path)->streams;
+}
+
+template <class Frames>
+std::vector<Time> stamps_of(const Passes<Frames>& passes) {
+  const auto pass = passes();
+  REQUIRE(pass);
+  std::vector<Time> stamps;
+  Frames block;
+  for (;;) {
+    const auto more = (*pass)(block);
+    REQUIRE(more);
+    if (!*more) return stamps;
+    stamps.insert(stamps.end(), block.stamps.begin(), block.stamps.end());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a recording of seven devices is read once to open all of its streams") {
+  const FreshFolder folder;
+  const std::string path = seven_devices(folder, 60.0);
+  const auto size = static_cast<double>(folder.read("take.mcap").size());
+  PosixFiles plain;
+  const auto streams = all_streams(plain, path);
+  CountingFiles files;
+  const auto recording = open_streams(files, streams);
+  REQUIRE(recording);
+  CHECK(recording->streams.size() == 7);
+  // Heads and first rows are read, too.
+  CHECK(static_cast<double>(files.bytes) < 1.1 * size);
+  files.bytes = 0;
+  REQUIRE(read_through(*recording));
+  CHECK(static_cast<double>(files.bytes) < 1.05 * size);  // once for all seven
+}
+
+TEST_CASE("the stamps that opening a recording foretells are those of its rows, in every pass") {
+  const FreshFolder folder;
+  const std::string path = seven_devices(folder, 20.0);
+  PosixFiles files;
+  const auto recording = open_streams(files, all_streams(files, path));
+  REQUIRE(recording);
+  for (const RecordedStream& stream : recording->streams) {
+    CAPTURE(stream_label(stream));
+    REQUIRE(stream.stamps);
+    CHECK(stream.survey.samples == stream.stamps->size());
+    for (int pass = 0; pass < 2; ++pass) {
+      CHECK(std::visit([](const auto& input) { return stamps_of(input.passes); }, stream.data) ==
+            *stream.stamps);
+    }
+  }
+}
+
+TEST_CASE("a recording that changes after it was opened is read no further") {
+  const FreshFolder folder;
+  const std::string path = seven_devices(folder, 20.0);
+  PosixFiles files;
+  const auto recording = open_streams(files, {stream_named("mocap", path)});
+  REQUIRE(recording);
+  std::string bytes = folder.read("take.mcap");
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  folder.write("take.mcap", bytes);
+  const auto read = read_through(*recording);
+  REQUIRE_FALSE(read);
+  CHECK(read.error().found == "one that changed");
 }
