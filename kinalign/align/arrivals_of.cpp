@@ -37,8 +37,8 @@ Result<std::vector<Arrivals>> arrivals_of(
     all += streams[i].survey.samples;
     KA_TRY(std::visit(
         [&](const auto& input) -> Result<void> {
-          passes.push_back(reading(KA_TRY(input.passes()), streams[i], step_of(streams[i]),
-                                   arrivals[i], rows));
+          passes.push_back(
+              reading(KA_TRY(input.passes()), streams[i], step_of(streams[i]), arrivals[i], rows));
           return {};
         },
         streams[i].data));

@@ -206,8 +206,7 @@ std::vector<Group> groups_of(FileSystem& files, const std::string& folder,
       continue;
     }
     const auto recording = is_recording(files, path);  // who can't read it says so later
-    groups.push_back(
-        {path, named[i].options->layout.empty() && recording && *recording, {i}});
+    groups.push_back({path, named[i].options->layout.empty() && recording && *recording, {i}});
   }
   return groups;
 }
@@ -233,11 +232,11 @@ struct Opening {
       wanted.push_back(places.back().options);
       wanted.back().files = {places.back().file};
     }
-    const auto source = given && given->path() == group.path
-                            ? given
-                            : RecordingSource::open(*files, group.path,
-                                                    RecordingSource::Devices::heard, wanted,
-                                                    progress);
+    const auto source =
+        given && given->path() == group.path
+            ? given
+            : RecordingSource::open(*files, group.path, RecordingSource::Devices::heard, wanted,
+                                    progress);
     for (std::size_t k = 0; k < group.named.size(); ++k) {
       const std::size_t i = group.named[k];
       opened[i] = source ? open_device(places[k], (*named)[i], *source, progress)

@@ -24,9 +24,9 @@ struct SurveyJob {
 };
 
 struct SurveyedFile {
-  RecordedStream stream;           // its files by their names only
-  std::vector<std::string> paths;  // where these files lie; the stream's own first
-  std::optional<TimeModel> clock;  // where the file itself says what its stamps are
+  RecordedStream stream;                       // its files by their names only
+  std::vector<std::string> paths;              // where these files lie; the stream's own first
+  std::optional<TimeModel> clock;              // where the file itself says what its stamps are
   std::shared_ptr<RecordingSource> recording;  // that it is a stream of, if any
 };
 

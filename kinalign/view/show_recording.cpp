@@ -218,9 +218,8 @@ class ShowJson final : public Showing {
 };
 
 /// All streams by turns, in the order of their samples' times; `own`: the recording's own messages.
-Result<void> show_streams(const std::vector<RecordedStream>& recorded,
-                          std::unique_ptr<Showing> own, ShownFile& shown,
-                          const Progress& progress) {
+Result<void> show_streams(const std::vector<RecordedStream>& recorded, std::unique_ptr<Showing> own,
+                          ShownFile& shown, const Progress& progress) {
   std::vector<std::unique_ptr<Showing>> streams;
   std::set<std::pair<Time, std::size_t>> next;  // sample of which stream
   std::uint64_t rows = 0, done = 0;

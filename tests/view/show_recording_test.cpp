@@ -61,8 +61,7 @@ std::map<std::string, std::vector<ShownMessage>> shown_recording(const FreshFold
   REQUIRE(source);
   const auto manifest = manifest_of((*source)->survey(), "take.mcap");
   REQUIRE(manifest);
-  const auto recording =
-      open_recording(files, *manifest, folder.path() + "/", {{}, 1, *source});
+  const auto recording = open_recording(files, *manifest, folder.path() + "/", {{}, 1, *source});
   REQUIRE(recording);
   const std::string out = folder / "shown.mcap";
   const auto shown = show_recording(files, *recording, {source->get(), out, Overwrite::no});

@@ -114,7 +114,8 @@ Opened opened(StreamOptions options, const std::string& up = "y") {
   const auto& input = std::get<ClipInput>(streams->streams.front().data);
   auto pass = input.passes();
   REQUIRE(pass);
-  Opened out{input.skeleton, {}, streams->streams.front().survey, streams->streams.front().findings};
+  Opened out{
+      input.skeleton, {}, streams->streams.front().survey, streams->streams.front().findings};
   REQUIRE((*pass)(out.frames));
   return out;
 }
