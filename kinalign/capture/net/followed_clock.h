@@ -23,6 +23,8 @@ class FollowedClock {
   FollowedClock();
   FollowedClock(FollowedClock&&) noexcept;
   FollowedClock& operator=(FollowedClock&&) noexcept;
+  FollowedClock(const FollowedClock&) = delete;
+  FollowedClock& operator=(const FollowedClock&) = delete;
   ~FollowedClock();
 
   /// `epoch`: of the host's axis.

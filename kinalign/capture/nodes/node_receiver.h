@@ -31,6 +31,8 @@ class NodeReceiver {
  public:
   NodeReceiver(NodeReceiver&&) noexcept;
   NodeReceiver& operator=(NodeReceiver&&) = delete;
+  NodeReceiver(const NodeReceiver&) = delete;
+  NodeReceiver& operator=(const NodeReceiver&) = delete;
   ~NodeReceiver();
 
   /// `clocks` has to stay.

@@ -84,6 +84,8 @@ class RecordingSource {
   static Result<std::shared_ptr<RecordingSource>> open(
       FileSystem& files, const std::string& path, Devices devices,
       const std::vector<StreamOptions>& wanted = {}, const Progress& progress = {});
+  RecordingSource(const RecordingSource&) = delete;
+  RecordingSource& operator=(const RecordingSource&) = delete;
   ~RecordingSource();
 
   const std::string& path() const;
