@@ -122,7 +122,8 @@ def main():
     for room in uses:
         folder = folder_of(room)
         found += faults(sources(ROOT / folder, deep=False), folder, below(room, uses), uses)
-    for folder in sorted({str(p.parent.relative_to(ROOT)) for p in ROOT.glob("kinalign/**/*.h")} - set(map(folder_of, uses))):
+    folders = {str(p.parent.relative_to(ROOT)) for p in sources(ROOT / "kinalign", deep=True)}
+    for folder in sorted(folders - set(map(folder_of, uses))):
         found.append(f"{folder}: no room: expected a CMakeLists.txt with kinalign_room")
     programs = [p for p in sorted(ROOT.glob("apps/*")) if p.is_dir() and str(p.relative_to(ROOT)) not in uses]
     for folder in programs:

@@ -13,6 +13,7 @@ namespace kinalign {
 namespace {
 
 constexpr int zstd_level = 1;
+constexpr std::uint64_t most_reserved = 16 << 20;  // before the bytes are there
 
 std::string compressed(std::string_view bytes) {
   std::string out(ZSTD_compressBound(bytes.size()), '\0');
@@ -30,6 +31,7 @@ std::string decompressed(std::string_view stored, std::uint64_t most) {
   if (stream == nullptr) return records;
   ZSTD_inBuffer in{stored.data(), stored.size(), 0};
   std::string block(ZSTD_DStreamOutSize(), '\0');
+  records.reserve(std::min<std::uint64_t>(most, most_reserved));  // `most` is what the file claims
   for (std::size_t more = 1; more != 0 && records.size() <= most;) {
     const std::size_t had = in.pos;
     ZSTD_outBuffer out{block.data(), block.size(), 0};

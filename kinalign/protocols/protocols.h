@@ -4,7 +4,7 @@
 //
 // A new protocol is a room below this one, an enumerator and a row here, and a case in each switch
 // over the enum: its decoder while recording (capture/recorder/stream_watch.cpp) and its rows for
-// alignment (recording/streams/device_reader.cpp).
+// alignment (recording/streams/device_rows.cpp).
 #pragma once
 
 #include "kinalign/core/error.h"

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -189,24 +190,34 @@ Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& str
 
 /// Files that are opened in one go: the streams of one recording, or one file.
 struct Group {
-  std::string path;
+  std::string path;                // as the first of them spells it
+  std::filesystem::path one_path;  // the same for ./a.mcap and a.mcap
   bool is_recording = false;
   std::vector<std::size_t> named;  // which files
 };
+
+std::filesystem::path normal_path(const std::string& path) {
+  std::error_code fault;
+  const auto whole = std::filesystem::absolute(path, fault);
+  return fault ? std::filesystem::path(path) : whole.lexically_normal();
+}
+
 std::vector<Group> groups_of(FileSystem& files, const std::string& folder,
                              const std::vector<NamedFile>& named) {
   std::vector<Group> groups;
   for (std::size_t i = 0; i < named.size(); ++i) {
     const std::string path = path_in(folder, named[i].file->path);
+    const std::filesystem::path one_path = normal_path(path);
     const auto known = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
-      return g.is_recording && g.path == path && named[i].options->layout.empty();
+      return g.is_recording && g.one_path == one_path && named[i].options->layout.empty();
     });
     if (known != groups.end()) {
       known->named.push_back(i);
       continue;
     }
     const auto recording = is_recording(files, path);  // who can't read it says so later
-    groups.push_back({path, named[i].options->layout.empty() && recording && *recording, {i}});
+    groups.push_back(
+        {path, one_path, named[i].options->layout.empty() && recording && *recording, {i}});
   }
   return groups;
 }

@@ -160,7 +160,7 @@ Result<RecordedStream> survey_clip(const SurveyJob& job, const std::string& path
 template <class Frames>
 Passes<Frames> device_passes(DevicePasses<Frames> passes,
                              typename DevicePass<Frames>::Header header, std::string path,
-                             std::shared_ptr<std::optional<Findings>> late) {
+                             const std::shared_ptr<std::optional<Findings>>& late) {
   struct Reading {
     DevicePass<Frames> pass;
     decltype(sizes_of(Frames())) sizes;
@@ -224,7 +224,8 @@ Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named
   stream.name = job.options->name;
   stream.format = "recording";
   stream.survey = made.survey;
-  stream.stamps = std::move(made.stamps);
+  // Nodes are never a take's grid, whose rows are counted by these (align/plan.cpp).
+  if (!std::holds_alternative<ImuHeader>(made.header)) stream.stamps = std::move(made.stamps);
   stream.findings = std::move(made.findings);
   stream.late_findings = std::make_shared<std::optional<Findings>>();
   std::visit(

@@ -50,9 +50,9 @@ struct OpenedChunk {
 /// Safe to use from several threads at once.
 class StoredChunks {
  public:
-  /// Bytes of memory that the cache takes: a lab of seven devices fills it in some 100 s, and align
-  /// reads its streams within two slabs of each other (align/slabs.h).
-  static constexpr std::size_t most_cached = std::size_t{24} << 20;
+  /// Bytes of memory that the cache takes: a lab of seven devices fills it in some 280 s. align
+  /// reads its streams within two slabs of each other, at most 240 s (align/slabs.h).
+  static constexpr std::size_t most_cached = std::size_t{64} << 20;
 
   struct File {
     std::string path;

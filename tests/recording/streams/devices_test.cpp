@@ -121,6 +121,21 @@ TEST_CASE("a recording's manifest has its devices: mocap's grid first, nodes as 
   CHECK(recording->streams.size() == 4);
 }
 
+TEST_CASE("a recording that a manifest spells in two ways is one file") {
+  const FreshFolder folder;
+  RecordedLab lab(20261123);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 2.0);
+  lab.add_mocap(NoitomForm::new_header, "udp", 2.0);
+  folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  Manifest manifest;
+  manifest.streams = {stream_named("mocap", "take.mcap"), stream_named("kinect", "./take.mcap")};
+  const auto recording = open_recording(files, manifest, folder.path() + "/");
+  REQUIRE(recording);
+  CHECK(recording->shared_files.size() == 1);
+  CHECK(recording->streams[0].shared_file == recording->streams[1].shared_file);
+}
+
 TEST_CASE("a wall clock that is set while recording is told by the recording's survey") {
   const FreshFolder folder;
   PosixFiles files;
