@@ -79,7 +79,7 @@ Result<void> add_table(const toml::key& key, const toml::table& table, SettingsF
 
 Result<SettingsFile> settings_of(const toml::table& all, SettingsFile file) {
   for (const auto& [key, node] : all) {
-    if (key == "device" && node.is_table()) continue;  // a lab's: io/lab_toml.h reads them
+    if (key == "device" && node.is_table()) continue;  // a lab's: documents/lab_toml.h reads them
     if (node.is_array_of_tables()) {
       return no_table(file.path, node, "[" + shown(key.str()) + "]");
     }

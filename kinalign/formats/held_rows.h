@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows that wait until their stamps are settled (io/row_stamps.h).
+// Rows that wait until their stamps are settled (formats/row_stamps.h).
 #pragma once
 
 #include "kinalign/formats/row_stamps.h"

@@ -13,7 +13,7 @@
 
 namespace kinalign {
 
-constexpr std::int64_t furthest_stamp_ns = 4'000'000'000'000'000'000;  // see io/reader.h
+constexpr std::int64_t furthest_stamp_ns = 4'000'000'000'000'000'000;  // see formats/reader.h
 
 /// How a time column counts.
 struct TimeScale {

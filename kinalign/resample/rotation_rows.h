@@ -9,7 +9,7 @@
 namespace kinalign {
 
 /// Rotations [N,4] at times `at` of the curve through `knots` [T,4] at `times` (see
-/// motion/rotation_spline.h and motion/slerp.h).
+/// motion/interpolation/: rotation_spline.h, slerp.h).
 std::vector<double> rotations_at(RotationCurve curve, std::span<const double> times,
                                  std::span<const double> knots, std::span<const double> at);
 

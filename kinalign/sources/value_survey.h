@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a stream's values are like, from the pass that surveys its stamps: enough to see a unit that
 // can't be right, orientations that belong to another node, and that hardly anything can be used.
-// BVHs are judged by their rest pose instead (bvh_size.cpp).
+// BVHs are judged by their rest pose instead (formats/bvh/size.cpp).
 #pragma once
 
 #include "kinalign/core/error.h"

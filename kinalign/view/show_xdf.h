@@ -17,8 +17,8 @@ struct ShownXdf {
 };
 
 /// Log times are the recorder's clock, on which XDF knows no date: stamps with the stream's clock
-/// offsets (xdf_clock.h). Publish times are the stamps as they stand. Each stream's header is an
-/// attachment. Messages stand in the order of the file.
+/// offsets (formats/xdf/xdf.h). Publish times are the stamps as they stand. Each stream's header is
+/// an attachment. Messages stand in the order of the file.
 Result<ShownXdf> show_xdf(FileSystem& files, const std::string& from, const std::string& out,
                           Overwrite overwrite, const Progress& progress = {});
 

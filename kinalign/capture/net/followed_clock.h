@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clock of a device that pings, followed while it is recorded: for the screen. Takes get theirs
-// from all exchanges, afterwards (clock/device_clock.h).
+// from all exchanges, afterwards (clock/offline/device_clock.h).
 #pragma once
 
 #include "kinalign/capture/net/sender_clock.h"

@@ -17,7 +17,8 @@ namespace {
 /// A sample is so much older than its frame at most; else it is told by the piece before.
 constexpr Duration oldest_sample = std::chrono::seconds(2);
 
-/// Chosen: twice what a stated rate may be off (io/counted_clock.h). A wild counter has any.
+/// Chosen: twice what a stated rate may be off (recording/streams/counted_clock.h). A wild counter
+/// has any.
 constexpr double most_drift_ppm = 20'000.0;
 
 /// Pieces of which nothing answered, told by their arrivals.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads any table that a layout declares (io/layout.h, docs/formats/layouts.md).
+// Reads any table that a layout declares (formats/table/layout.h, docs/formats/layouts.md).
 #pragma once
 
 #include "kinalign/formats/reader.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a Kinect's sender and the host say to each other: docs/formats/kinect_stream.md. The two
-// encodings of it are kinect_binary.h and kinect_lines.h.
+// encodings of it are binary.h and lines.h.
 #pragma once
 
 #include "kinalign/motion/kinect_joints.h"

@@ -114,7 +114,7 @@ class AcceptedFrames {
 };
 
 /// Where requests leave on a steady timer their number plays the part of a counter: the earliest
-/// arrivals tell it, less the least half of a round trip (clock/clockless.h).
+/// arrivals tell it, less the least half of a round trip (clock/offline/clockless.h).
 void clockless_clock(std::span<const ClocklessExchange> exchanges, const DeviceWish& wish,
                      HeardDevice& heard) {
   const auto least = least_one_way_delay(exchanges);

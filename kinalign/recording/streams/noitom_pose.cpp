@@ -11,7 +11,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t noitom_joints = 59, telling_joint = 10;
-constexpr double largest = 1e15;  // as in a BVH's rows (bvh_rows.cpp)
+constexpr double largest = 1e15;  // as in a BVH's rows (formats/bvh/rows.cpp)
 constexpr std::string_view both =
     "the stream does not say which of Noitom's two 59-joint hierarchies it follows, legacy (Axis "
     "Neuron: joint 10 is Spine3) or Studio (Axis Studio: joint 10 is Neck)";
