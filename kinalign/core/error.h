@@ -13,8 +13,9 @@
 
 namespace kinalign {
 
-/// What went wrong, for code that gives advice. Code asks for the kind and never searches the words
-/// of a message. There is a kind only for what some code asks for; any other error is `other`.
+/// The kind of an error, for code that gives advice. That code asks for the kind and never searches
+/// the words of a message. There is a kind only for what some code asks for; any other error is
+/// `other`.
 enum class ErrorKind : std::uint8_t {
   other,
   interrupted,           // the user stopped the job

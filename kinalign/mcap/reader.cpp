@@ -12,18 +12,6 @@ namespace {
 
 constexpr std::size_t most_findings = 200;
 
-struct RecordHead {
-  McapOp op{};
-  std::uint64_t length = 0;
-};
-/// Absent: fewer bytes than a head has.
-std::optional<RecordHead> head_of(std::string_view bytes) {
-  LittleEndianReader from(octets(bytes));
-  const auto op = static_cast<McapOp>(from.take<std::uint8_t>());
-  const auto length = from.take<std::uint64_t>();
-  return from.complete() ? std::optional(RecordHead{op, length}) : std::nullopt;
-}
-
 constexpr std::size_t longest_chunk_head = mcap_record_head + McapChunkView::fields + 4;
 
 }  // namespace
@@ -70,7 +58,7 @@ std::optional<McapRecord> McapReader::next() {
 std::optional<McapRecord> McapReader::next_in_chunk() {
   while (chunk_taken_ < chunk_.size()) {
     const std::string_view bytes = std::string_view(chunk_).substr(chunk_taken_);
-    const auto head = head_of(bytes);
+    const auto head = decode_mcap_head(bytes);
     const bool whole = head && head->length <= bytes.size() - mcap_record_head;
     if (!whole && in_torn_chunk_) break;
     std::optional<McapRecord> record;
@@ -140,7 +128,7 @@ std::optional<McapRecord> McapReader::next_in_file() {
 /// What stands here. Says what is damaged, and goes behind it.
 McapReader::Stand McapReader::look() {
   const std::string_view bytes = rest();
-  const auto head = head_of(bytes);
+  const auto head = decode_mcap_head(bytes);
   if (head && head->op == McapOp{}) {
     lose("a record", "a byte 0");
     return Stand::damaged;
@@ -158,7 +146,7 @@ McapReader::Stand McapReader::look() {
 /// The whole record that stands here; absent where it is of no use, or damaged.
 std::optional<McapRecord> McapReader::read_record() {
   record_at_ = offset_;
-  const RecordHead head = *head_of(rest());
+  const McapRecordHead head = *decode_mcap_head(rest());
   const std::string_view whole = rest().substr(0, mcap_record_head + head.length);
   record_size_ = whole.size();
   const std::string_view content = whole.substr(mcap_record_head);
@@ -240,7 +228,7 @@ void McapReader::end_in_record() {
     return;
   }
   const std::string_view bytes = rest();
-  const auto chunk = head_of(bytes) && head_of(bytes)->op == McapOp::chunk
+  const auto chunk = decode_mcap_head(bytes) && decode_mcap_head(bytes)->op == McapOp::chunk
                          ? decode_mcap_chunk(bytes.substr(mcap_record_head))
                          : std::nullopt;
   say(Severity::warning, "a whole record", "the file's end in the midst of one",
@@ -267,7 +255,7 @@ void McapReader::find_chunk() {
     skip(std::min(candidate, rest().size()));
     const std::string_view bytes = rest();
     if (bytes.size() < longest_chunk_head && !ended_) return;
-    const auto head = head_of(bytes);
+    const auto head = decode_mcap_head(bytes);
     const auto chunk = head ? decode_mcap_chunk(bytes.substr(mcap_record_head)) : std::nullopt;
     const bool likely = chunk && head->length <= most_record && tried_ < most_tried &&
                         chunk->head.uncompressed_size <= most_record &&

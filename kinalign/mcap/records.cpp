@@ -193,6 +193,13 @@ std::optional<McapRecord> decode_mcap_record(McapOp op, std::string_view content
   return std::nullopt;
 }
 
+std::optional<McapRecordHead> decode_mcap_head(std::string_view bytes) {
+  LittleEndianReader from(octets(bytes));
+  const auto op = static_cast<McapOp>(from.take<std::uint8_t>());
+  const auto length = from.take<std::uint64_t>();
+  return from.complete() ? std::optional(McapRecordHead{op, length}) : std::nullopt;
+}
+
 std::optional<McapChunkView> decode_mcap_chunk(std::string_view content) {
   LittleEndianReader from(octets(content));
   McapChunkView chunk;

@@ -147,6 +147,14 @@ struct McapChunkView {
   /// Of the content, as it should be.
   std::uint64_t size() const { return fields + head.compression.size() + stored_size; }
 };
+/// What a record begins with.
+struct McapRecordHead {
+  McapOp op{};
+  std::uint64_t length = 0;  // of the content, bytes
+};
+/// Absent where `bytes` are fewer than a head has.
+std::optional<McapRecordHead> decode_mcap_head(std::string_view bytes);
+
 /// Absent where the head does not fit into `content`.
 std::optional<McapChunkView> decode_mcap_chunk(std::string_view content);
 

@@ -270,7 +270,7 @@ Result<bool> is_recording(FileSystem& files, const std::string& path) {
   const InputFile file = KA_TRY(InputFile::open(files, path));
   std::array<char, mcap_magic.size()> head{};
   const std::size_t got = KA_TRY(file.read_at(0, head));
-  return std::string_view(head.data(), got) == mcap_magic;
+  return looks_like_recording(std::string_view(head.data(), got));
 }
 
 }  // namespace kinalign

@@ -10,6 +10,7 @@
 
 #include "kinalign/align/plan.h"
 #include "kinalign/documents/report_json.h"
+#include "kinalign/formats/row_stamps.h"
 #include "kinalign/formats/unknown_file.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/streams/recording_source.h"
@@ -70,7 +71,7 @@ Usage describe_verb_options(AlignVerb& o) {
   return usage;
 }
 
-/// What to align, and the recording where it had to be opened to know that.
+/// The manifest to align by. `recording` is set where a recording was opened to make the manifest.
 struct ToAlign {
   Manifest manifest;
   std::shared_ptr<RecordingSource> recording{};
@@ -142,17 +143,18 @@ Result<void> check_reference(const AlignVerb& o, const Manifest& manifest, const
 
 /// The start that lays a skeleton or points beside the others, where none of it overlaps them.
 std::string start_advice(const AlignVerb& o, const Recording& recording, const Manifest& manifest) {
-  constexpr std::int64_t most = 4'000'000'000'000'000'000;
   for (const RecordedStream& s : recording.streams) {
     Time first = Time::min(), last = Time::max();
     for (const RecordedStream& other : recording.streams) {
       if (&other == &s) continue;
-      first = std::max(first, take_time(other.clock, other.survey.first));
-      last = std::min(last, take_time(other.clock, other.survey.last));
+      first = std::max(first, first_of(other));
+      last = std::min(last, last_of(other));
     }
-    const Time own = take_time(s.clock, s.survey.first);
-    const bool apart = own > last || take_time(s.clock, s.survey.last) < first;
-    const auto near = [](Time t) { return to_ns(t) > -most && to_ns(t) < most; };
+    const Time own = first_of(s);
+    const bool apart = own > last || last_of(s) < first;
+    const auto near = [](Time t) {
+      return to_ns(t) > -furthest_stamp_ns && to_ns(t) < furthest_stamp_ns;
+    };
     const bool told = near(own) && near(first);
     const bool quick = o.manifest.empty();
     const bool placed = s.step_ns || std::holds_alternative<PointInput>(s.data);

@@ -51,7 +51,7 @@ class BvhWords {
     return word;
   }
 
-  /// What is left of the line, without a brace at its end: a name may hold blanks.
+  /// The line's rest, without a brace at its end: a name may hold blanks.
   std::string_view rest_of_line() {
     const std::size_t begin = at_;
     while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != '{') ++at_;
@@ -361,7 +361,7 @@ void BvhHead::forget_text() {
 
 std::string BvhHead::alone() const {
   const std::string head = text_.substr(0, rows_);
-  // Behind it are only the words Frames and Frame Time.
+  // The word MOTION is the last one of its kind: only Frames and Frame Time stand behind it.
   const std::size_t motion = lower(head).rfind("motion");
   return head.substr(0, motion) + "MOTION\nFrames: 0\nFrame Time: " + hierarchy.frame_time + "\n";
 }

@@ -181,7 +181,7 @@ bool is(Path path, std::initializer_list<std::string_view> names) {
   return std::equal(path.begin(), path.end(), names.begin(), names.end());
 }
 
-/// Of two names of one format the usual one first.
+/// The first name of a format is the usual one.
 constexpr std::array<std::pair<std::string_view, XdfFormat>, 9> formats{
     {{"int8", XdfFormat::int8},
      {"int16", XdfFormat::int16},

@@ -73,11 +73,6 @@ class Surveyor {
 
 }  // namespace
 
-Result<bool> is_xdf(FileSystem& files, const std::string& path) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  return looks_like_xdf(KA_TRY(file.next()));
-}
-
 Result<Findings> read_xdf(FileSystem& files, const std::string& path, const Progress& progress,
                           const std::function<Result<void>(const XdfItem&)>& take) {
   InputFile input = KA_TRY(InputFile::open(files, path));

@@ -148,9 +148,6 @@ std::vector<XdfClockLine> fit_xdf_clock(std::span<const XdfClockOffset> offsets)
 /// near, the later one counts. Without lines the stamp is unchanged.
 double corrected_xdf_stamp(std::span<const XdfClockLine> lines, double stamp);
 
-/// Looks at the first bytes of a file.
-Result<bool> is_xdf(FileSystem& files, const std::string& path);
-
 /// All items of a file, in its order, and what was wrong with it. Fails where `take` does.
 Result<Findings> read_xdf(FileSystem& files, const std::string& path, const Progress& progress,
                           const std::function<Result<void>(const XdfItem&)>& take);

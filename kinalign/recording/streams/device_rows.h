@@ -32,6 +32,11 @@ struct RecordedMessage {
   bool is_exchange() const { return channel->protocol == exchange_encoding; }
 };
 
+/// The arrival of a message that was logged at `log_time`, ns of UTC.
+inline HostTime arrival_of(std::uint64_t log_time, Duration utc_minus_host) {
+  return HostTime{Duration{static_cast<std::int64_t>(log_time)} - utc_minus_host};
+}
+
 /// Which device of a recording.
 struct DeviceChoice {
   std::string stream;

@@ -170,8 +170,7 @@ class Scan {
   }
 
   void hear(DeviceChannel& from, const McapMessage& message) {
-    const auto log = Duration{static_cast<std::int64_t>(message.log_time)};
-    const HostTime arrival{log - state_.utc_minus_host()};
+    const HostTime arrival = arrival_of(message.log_time, state_.utc_minus_host());
     if (from.sender) state_.senders[from.raw.stream].hear(*from.sender, arrival);
     const std::uint32_t step = message.sequence - from.last_number.value_or(message.sequence - 1);
     from.last_number = message.sequence;

@@ -128,16 +128,11 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceWish& wish) {
 Result<std::unique_ptr<DeviceListener>> listen_again(const ScannedRecording& state,
                                                      const Chosen& chosen, ListenVariant variant) {
   Listening listening(variant);
-  std::map<std::uint16_t, const RawChannel*> raw;
-  for (const DeviceChannel* one : chosen.channels) {
-    listening.define(one->id, one->raw);
-    raw[one->id] = &one->raw;
-  }
+  for (const DeviceChannel* one : chosen.channels) listening.define(one->id, one->raw);
   MessagePass pass(state.chunks, chosen.ids());
   const auto take = [&](const ChunkMessage& message) -> Result<void> {
-    const auto log = Duration{static_cast<std::int64_t>(message.log_time)};
-    listening.take({raw[message.channel], message.channel, HostTime{log - state.utc_minus_host()},
-                    message.data});
+    listening.take({&state.channels.at(message.channel).raw, message.channel,
+                    arrival_of(message.log_time, state.utc_minus_host()), message.data});
     return {};
   };
   while (KA_TRY(pass.next_chunk(take))) {
@@ -246,9 +241,8 @@ Result<bool> DevicePass<Frames>::next(Frames& block) {
   block = {};
   while (block.size() == 0 && !ended_) {
     const auto take = [&](const ChunkMessage& message) {
-      const auto log = Duration{static_cast<std::int64_t>(message.log_time)};
       return rows_->take({&channels_->at(message.channel), message.channel,
-                          HostTime{log - utc_minus_host_}, message.data},
+                          arrival_of(message.log_time, utc_minus_host_), message.data},
                          block);
     };
     if (KA_TRY(messages_.next_chunk(take))) continue;

@@ -4,7 +4,6 @@
 #include "kinalign/core/unchanged.h"
 #include "kinalign/mcap/chunk.h"
 #include "kinalign/mcap/reader.h"
-#include "kinalign/wire/little_endian_reader.h"
 
 #include <algorithm>
 
@@ -36,15 +35,12 @@ std::vector<ChunkMessage> messages_in(std::string_view records,
   std::vector<ChunkMessage> messages;
   std::uint32_t place = 0;
   auto skipped = left_out.begin();
-  while (records.size() >= mcap_record_head) {
-    LittleEndianReader head(octets(records));
-    const auto op = static_cast<McapOp>(head.take<std::uint8_t>());
-    const auto length = head.take<std::uint64_t>();
-    if (op == McapOp{} || length > records.size() - mcap_record_head) break;
-    const std::string_view content = records.substr(mcap_record_head, length);
-    records.remove_prefix(mcap_record_head + length);
-    if (op != McapOp::message) continue;
-    const auto record = decode_mcap_record(op, content);
+  while (const auto head = decode_mcap_head(records)) {
+    if (head->op == McapOp{} || head->length > records.size() - mcap_record_head) break;
+    const std::string_view content = records.substr(mcap_record_head, head->length);
+    records.remove_prefix(mcap_record_head + head->length);
+    if (head->op != McapOp::message) continue;
+    const auto record = decode_mcap_record(head->op, content);
     if (!record) continue;
     const std::uint32_t here = place++;
     if (skipped != left_out.end() && *skipped == here) {
