@@ -250,6 +250,14 @@ Result<void> SlabMaker::for_each(std::size_t jobs,
 }
 
 Result<void> SlabMaker::read_rest(const std::function<Result<void>()>& go) {
+  for (StreamRows& stream : state_->streams) {
+    KA_TRY(std::visit(
+        [](auto& rows) -> Result<void> {
+          if constexpr (requires { rows.read_to_end(); }) return rows.read_to_end();
+          return {};
+        },
+        stream));
+  }
   return read_side_by_side(state_->rests, go);
 }
 

@@ -43,68 +43,64 @@ struct ResampleCount {
 /// Neighbours of each row of a grid in a stream, on rising stamps.
 struct Neighbours {
   std::vector<std::size_t> left;             // [n] last sample at or before the row
+  std::vector<std::size_t> known_by;         // [n] the same; outside the stream the nearest sample
   std::vector<std::int64_t> nearest_raw_ns;  // [n] at most farthest_nearest_ns
 };
 /// Rows outside the stream have left = stamps.size().
 Neighbours find_neighbours(std::span<const std::int64_t> stamps,
                            std::span<const std::int64_t> grid);
 
-class PointResampler {
+/// What the resamplers of all three kinds share.
+template <class Frames>
+class Resampler {
  public:
-  PointResampler(Pass<PointFrames> pass, const TimeModel& clock, const ResampleRule& rule)
-      : window_(std::move(pass), clock, rule.gap_count(), rule.taken),
-        clock_(&clock),
-        rule_(rule) {}
-
-  /// Rows at the grid's stamps (ns, rising, from call to call too).
-  Result<void> rows(std::span<const std::int64_t> grid, PointRows& out);
   const ResampleCount& content() const { return count_; }
   StreamCounts counts() const { return window_.counts(); }
+  /// After the last rows, so that counts are of all samples up to the take's end.
+  Result<void> read_to_end() { return window_.move(rule_.end_ns, rule_.end_ns, rule_.reach()); }
 
- private:
-  Window<PointFrames> window_;
+ protected:
+  /// `taken`: the step by which samples that were held back are told.
+  Resampler(Pass<Frames> pass, const TimeModel& clock, const ResampleRule& rule, TakenStep taken)
+      : window_(std::move(pass), clock, rule.gap_count(), taken), clock_(&clock), rule_(rule) {}
+
+  Window<Frames> window_;
   const TimeModel* clock_;
   ResampleRule rule_;
   ResampleCount count_;
 };
 
+class PointResampler : public Resampler<PointFrames> {
+ public:
+  PointResampler(Pass<PointFrames> pass, const TimeModel& clock, const ResampleRule& rule)
+      : Resampler(std::move(pass), clock, rule, rule.taken) {}
+
+  /// Rows at the grid's stamps (ns, rising, from call to call too).
+  Result<void> rows(std::span<const std::int64_t> grid, PointRows& out);
+};
+
 /// The nodes of one stream, which share their stamps, as columns `first_node`.. of a group.
-class ImuResampler {
+class ImuResampler : public Resampler<ImuSamples> {
  public:
   ImuResampler(Pass<ImuSamples> pass, const TimeModel& clock, const ResampleRule& rule,
                const ImuContent& content)
-      : window_(std::move(pass), clock, rule.gap_count(), rule.taken),
-        clock_(&clock),
-        rule_(rule),
-        content_(content) {}
+      : Resampler(std::move(pass), clock, rule, rule.taken), content_(content) {}
 
   /// Vectors are turned into the world before they are interpolated, if `to_world`: in a turning
   /// sensor's space a spline would bend what is straight.
   Result<void> rows(std::span<const std::int64_t> grid, bool to_world, ImuRows& out);
-  const ResampleCount& content() const { return count_; }
-  StreamCounts counts() const { return window_.counts(); }
 
  private:
-  Window<ImuSamples> window_;
-  const TimeModel* clock_;
-  ResampleRule rule_;
   ImuContent content_;
-  ResampleCount count_;
 };
 
-class ClipResampler {
+class ClipResampler : public Resampler<ClipFrames> {
  public:
   ClipResampler(Pass<ClipFrames> pass, const TimeModel& clock, const ResampleRule& rule)
-      : window_(std::move(pass), clock, rule.gap_count()), clock_(&clock), rule_(rule) {}
+      : Resampler(std::move(pass), clock, rule, {}) {}
 
   /// Fills all but the global positions.
   Result<void> rows(std::span<const std::int64_t> grid, ClipRows& out);
-  StreamCounts counts() const { return window_.counts(); }
-
- private:
-  Window<ClipFrames> window_;
-  const TimeModel* clock_;
-  ResampleRule rule_;
 };
 
 }  // namespace kinalign

@@ -65,8 +65,8 @@ Result<void> ClipResampler::rows(std::span<const std::int64_t> grid, ClipRows& o
   Neighbours near = find_neighbours(stamps, grid);
   const bool known = any_known(*clock_);
   for (std::size_t r = 0; known && r < grid.size(); ++r) {
-    const std::size_t at = std::min(near.left[r], stamps.size() - 1);
-    out.distance.time_interval_ns.push_back(interval_ns(*clock_, window_.rows.stamps[at]));
+    out.distance.time_interval_ns.push_back(
+        interval_ns(*clock_, window_.rows.stamps[near.known_by[r]]));
   }
   out.distance.nearest_raw_ns = std::move(near.nearest_raw_ns);
   return {};

@@ -150,9 +150,9 @@ Result<void> ImuResampler::rows(std::span<const std::int64_t> grid, bool to_worl
   const Neighbours near = find_neighbours(stamps, grid);
   const bool known = any_known(*clock_);
   for (std::size_t r = 0; known && r < grid.size(); ++r) {
-    const std::size_t at = std::min(near.left[r], stamps.size() - 1);
     auto& intervals = out.distance.time_interval_ns;
-    intervals.insert(intervals.end(), nodes, interval_ns(*clock_, window_.rows.stamps[at]));
+    intervals.insert(intervals.end(), nodes,
+                     interval_ns(*clock_, window_.rows.stamps[near.known_by[r]]));
   }
   return {};
 }

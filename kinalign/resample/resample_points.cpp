@@ -97,6 +97,7 @@ Neighbours find_neighbours(std::span<const std::int64_t> stamps,
     while (k + 1 < stamps.size() && stamps[k + 1] <= row) ++k;
     const bool outside = stamps.empty() || row < stamps.front() || row > stamps.back();
     out.left.push_back(outside ? stamps.size() : k);
+    out.known_by.push_back(k);
     std::int64_t nearest = farthest_nearest_ns;
     for (std::size_t i = k; i < std::min(k + 2, stamps.size()); ++i) {
       nearest = std::min(nearest, std::abs(row - stamps[i]));
@@ -126,7 +127,7 @@ Result<void> PointResampler::rows(std::span<const std::int64_t> grid, PointRows&
   for (std::size_t r = 0; r < grid.size(); ++r) {
     const std::size_t left = near.left[r];
     if (known) {
-      const Time stamp = window_.rows.stamps[std::min(left, stamps.size() - 1)];
+      const Time stamp = window_.rows.stamps[near.known_by[r]];
       out.distance.time_interval_ns.push_back(interval_ns(*clock_, stamp));
     }
     if (left == stamps.size()) continue;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples of a stream around the rows being made: a stream is pulled block by block, stamps
-// that do not rise (motion/stamps.h) are dropped, samples that were held back on their way too, and
-// what lies behind is forgotten.
+// The samples of a stream around the rows being made. A stream is pulled block by block. Samples
+// whose time on the take's axis does not rise (motion/stamps.h) are dropped, and so are samples
+// that were held back on their way. What lies behind is forgotten. Rows and counts do not depend on
+// how the stream is cut into blocks.
 #pragma once
 
 #include "kinalign/motion/stamps.h"
@@ -69,8 +70,8 @@ struct Reach {
 
 /// Stretches within a span in which nothing was seen.
 struct GapCount {
-  std::int64_t limit_ns = 0;              // longer ones count
-  std::int64_t begin_ns = 0, end_ns = 0;  // of the take
+  std::int64_t limit_ns = 0;                              // longer ones count
+  std::int64_t begin_ns = INT64_MIN, end_ns = INT64_MAX;  // of the take; else all of the stream
   std::uint64_t gaps = 0;
   std::int64_t time_ns = 0;  // sum of their lengths within the span
 
@@ -81,7 +82,7 @@ struct GapCount {
   }
 };
 
-/// What was pulled of a stream so far.
+/// What was pulled of a stream so far, up to the take's end (gaps.end_ns).
 struct StreamCounts {
   GapCount gaps;
   std::uint64_t held_back = 0;  // samples left out, as the next came on their heels
@@ -123,7 +124,7 @@ class Window {
   std::vector<std::int64_t> time_ns;  // [rows] on the take's axis, strictly rising
 
   StreamCounts counts() const {
-    StreamCounts out{gaps_, held_back_, lines_.result()};
+    StreamCounts out{gaps_, held_back_, at_end_ ? *at_end_ : lines_.result()};
     if (!near_counts_) out.arrivals.near = held_back_;
     return out;
   }
@@ -208,12 +209,13 @@ class Window {
       first = next;
     };
     for (; i < block_.size(); ++i) {
-      const StampFate fate = rule_.judge(block_.stamps[i]);
+      const Time at = take_time(*clock_, block_.stamps[i]);
+      const StampFate fate = rule_.judge(at);
       if (fate != StampFate::kept && fate != StampFate::replaces) {
         flush(i + 1);
         continue;
       }
-      const std::int64_t t = to_ns(take_time(*clock_, block_.stamps[i]));
+      const std::int64_t t = to_ns(at);
       if (fate == StampFate::replaces) {
         flush(i);
         take_back();
@@ -252,7 +254,7 @@ class Window {
   /// The row at `late` was held back, as that in `seen_` shows: what both have in them goes. Behind
   /// it may be rows of others.
   void leave_out(std::int64_t late) {
-    ++held_back_;
+    if (late <= gaps_.end_ns) ++held_back_;
     const std::size_t row = first_not_before(late), width = seen_.size();
     if (row == time_ns.size() || time_ns[row] != late) return;
     bool whole = late == last_seen_;
@@ -276,6 +278,7 @@ class Window {
     if (!was_seen) return;
     if (before_[0].in_line) lines_.take_back();
     restore();
+    if (last_seen_ <= gaps_.end_ns) at_end_.reset();
   }
 
   void drop_last_row() {
@@ -289,6 +292,7 @@ class Window {
     before_[0] = {last_seen_, gaps_, line.has_value()};
     if (last_seen_) gaps_.add(*last_seen_, t);
     last_seen_ = t;
+    if (!at_end_ && t > gaps_.end_ns) at_end_ = lines_.result();
     if (line) lines_.add(*line, t, seen_);
   }
 
@@ -304,7 +308,8 @@ class Window {
   std::vector<std::uint8_t> seen_;  // [columns] of the row being taken
   StampRule rule_;
   ArrivalLines lines_;
-  bool near_counts_;  // of the reference: rows held back stay
+  std::optional<Arrivals> at_end_;  // what lines_ had when the first row behind the take's end came
+  bool near_counts_;                // of the reference: rows held back stay
   GapCount gaps_;
   std::uint64_t held_back_ = 0;
   std::optional<std::int64_t> last_seen_;  // stamp of the last row added with anything in it

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A take is made in slabs from windows of its streams; neither may show in it. The truth here is
 // one spline through all samples at once.
+#include "tests/align/same_take.h"
 #include "tests/align/streams.h"
+#include "tests/seeds.h"
 
 #include "kinalign/align/align.h"
 #include "kinalign/motion/interpolation/rotation_spline.h"
@@ -188,4 +190,50 @@ TEST_CASE("distances to raw samples are told up to ten seconds") {
   CHECK(nearest[1000] == 10'000 * ms - 2970 * ms);
   CHECK(nearest[3000] == 10'000 * ms);
   CHECK(nearest[5500] == 5'000 * ms);
+}
+
+namespace {
+
+/// A Kinect of 150 s with samples that were held back, a pause of 15 s, and a clock that begins
+/// anew up to 4 s too early.
+RecordedStream troubled_kinect(std::mt19937_64& random, PointStream& kinect) {
+  std::vector<Time> stamps;
+  for (std::int64_t t = 0; t < 150'000 * ms; t += 33 * ms) {
+    if (t > 40'000 * ms && t < 55'000 * ms) continue;
+    const bool held_back = random() % 20 == 0;
+    stamps.push_back(utc_time(t + (held_back ? 32 * ms : 0)));
+  }
+  kinect = points({"a"}, stamps, wander);
+  RecordedStream out = recorded("kinect", kinect);
+  TimeModelPiece first, second;
+  first.half_width = Duration{ms};
+  second.begin = utc_time(static_cast<std::int64_t>(60'000 + random() % 60'000) * ms);
+  second.offset = Duration{-static_cast<std::int64_t>(random() % 4'000) * ms};
+  out.clock.pieces = {first, second};
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("how a stream is cut into blocks shows in no row and no count") {
+  for (const auto seed : fresh_seeds(10)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    PointStream kinect;
+    const RecordedStream other = troubled_kinect(random, kinect);
+    // The grid ends in a pause, so that the take goes on behind its last row but one.
+    std::vector<Time> rows = every(10 * ms, 12'000);
+    rows.push_back(utc_time(130'000 * ms));
+    const RecordedStream points_a = recorded("points", points({"a"}, rows, wander));
+    const auto aligned = [&](std::size_t size) {
+      Recording recording;
+      recording.streams = {points_a, read_in_blocks(other, kinect.frames, size)};
+      auto take = align(recording, own_space());
+      REQUIRE(take);
+      return *std::move(take);
+    };
+    const Take whole = aligned(kinect.frames.size());
+    CHECK(whole.report.streams[1].held_back > 0);
+    for (const std::size_t size : {1U, 7U, 500U}) check_same(aligned(size), whole);
+  }
 }

@@ -57,9 +57,9 @@ class RecordedLab {
     }
   };
 
-  /// Fifteen frames a second from `from` to `to`, two samples in each, answered.
+  /// `frames_hz` frames a second from `from` to `to`, two samples in each, answered.
   void add_node(std::uint32_t id, std::uint32_t boot_id, Counter counter, double from, double to,
-                const std::string& place = "") {
+                const std::string& place = "", double frames_hz = 15.0) {
     const auto us = [&](double t) { return static_cast<std::uint64_t>(1e6 * counter.at(t)); };
     const RawChannel raw{"imu", "kinalign-node", "udp", "10.0.0.7:5005", std::to_string(id), place};
     const std::string topic = "/imu/" + std::to_string(id);
@@ -69,14 +69,15 @@ class RecordedLab {
     const auto exchanges = channel(described);
     std::optional<Exchange::Echo> echo;
     std::uint32_t sequence = 0;
-    for (double t = from; t < to; t += 1.0 / 15.0) {
+    const auto step_us = static_cast<std::uint32_t>(0.5e6 / frames_hz);  // between samples
+    for (double t = from; t < to; t += 1.0 / frames_hz) {
       NodeFrame frame;
       frame.origin = {id, boot_id, sequence++};
       frame.n_tx_us = us(t);
       frame.sample_count = 2;
       for (std::size_t i = 0; i < 2; ++i) {
         NodeSample& sample = frame.samples[i];
-        sample.age_us = i == 0 ? 40'000 : 7'000;
+        sample.age_us = i == 0 ? 7'000 + step_us : 7'000;
         sample.has_acceleration = sample.has_angular_velocity = sample.gravity_included = true;
         sample.acceleration = {static_cast<float>(t - 1e-6 * sample.age_us), 9.8F, 0.0F};
       }
@@ -84,7 +85,7 @@ class RecordedLab {
       const auto bytes = encode(frame, nullptr, room);
       const double arrival = t + way();
       const NodeTime n{std::chrono::microseconds(frame.n_tx_us)};
-      add(exchanges, arrival, to_bytes({0, {boot_id, n, host(arrival), echo}}));
+      add(exchanges, {0, {boot_id, n, host(arrival), echo}}, arrival);
       add(frames, arrival, std::string(text_of(bytes)));
       const double sent = arrival + 0.0003;
       echo = {NodeTime{std::chrono::microseconds(us(sent + way()))}, host(sent)};
@@ -133,6 +134,7 @@ class RecordedLab {
     McapChannel described = to_channel("/kinect/exchange", raw);
     described.message_encoding = exchange_encoding;
     const auto exchanges = channel(described);
+    sleep_at_s_ = std::min(sleep_at_s_, sender.sleep_at_s);
     for (std::uint32_t k = 0; k < 30.0 * to; ++k) {
       const double t = k / 30.0, taken = t + least_s + way() / 4.0, sent = taken + 0.0001;
       KinectFrame frame;
@@ -143,6 +145,10 @@ class RecordedLab {
       KinectBody body;
       body.id = 72057594037927936;
       body.states.fill(2);
+      for (std::size_t q = 1; q < body.positions.size(); ++q) {
+        const auto place = static_cast<double>(q);
+        body.positions[q] = static_cast<float>(0.3 * std::sin(place) + 0.1 * std::sin(t + place));
+      }
       body.positions[0] = static_cast<float>(t);
       frame.bodies = {body};
       const auto bytes = encode_kinect_binary(frame);
@@ -157,9 +163,8 @@ class RecordedLab {
     for (double t = 0.01; t < to; t += 0.25) {
       const double arrival = t + way(), answered = arrival + 0.0002;
       const NodeTime n = kinect_sender_time(ticks(sender, t));
-      const std::uint32_t epoch = arrival >= sender.sleep_at_s ? 1 : 0;
       if (t >= sender.sleep_at_s && t - 0.25 < sender.sleep_at_s) echo.reset();
-      add(exchanges, arrival, to_bytes({epoch, {77, n, host(arrival), echo}}));
+      add(exchanges, {0, {77, n, host(arrival), echo}}, arrival);
       echo = {kinect_sender_time(ticks(sender, answered + way())), host(answered)};
     }
   }
@@ -171,8 +176,8 @@ class RecordedLab {
 
   /// 125 frames a second whose root's x is the time, in metres; each `lost`th is lost.
   void add_mocap(NoitomForm form, const std::string& transport, double to, std::uint32_t lost = 0,
-                 const std::string& sender = "10.0.0.3:7012") {
-    skeleton_ = noitom_chain("Spine3", false);
+                 const std::string& sender = "10.0.0.3:7012", bool displacement = false) {
+    skeleton_ = noitom_chain("Spine3", displacement);
     const auto frames =
         channel(to_channel("/mocap/raw/" + sender, {"mocap", "noitom", transport, sender, "", ""}));
     double last = 0.0;
@@ -183,7 +188,11 @@ class RecordedLab {
       frame.form = form;
       frame.name = "Char01";
       if (form == NoitomForm::new_header) frame.frame_index = 4'294'967'000U + k;  // wraps
-      frame.values.assign(noitom_values(false, false), 0.0F);
+      frame.displacement = displacement;
+      frame.values.resize(noitom_values(displacement, false));
+      for (std::size_t q = 1; q < frame.values.size(); ++q) {
+        frame.values[q] = static_cast<float>(10.0 * std::sin(t + static_cast<double>(q)));
+      }
       frame.values[0] = static_cast<float>(100.0 * t);
       std::vector<std::uint8_t> bytes;
       REQUIRE(append_noitom(frame, bytes));
@@ -253,9 +262,10 @@ class RecordedLab {
     double from = -1e9, to = 1e9;
     std::string first = "take.mcap";
     McapCompression compression = McapCompression::zstd;
+    double chunk_s = 0.5;
   };
   std::string file(bool closed = true) { return file(Part{}, closed); }
-  /// The file, its messages in the order of arrival, half a second in a chunk.
+  /// The file, its messages in the order of arrival.
   std::string file(const Part& part, bool closed = true) {
     std::stable_sort(messages_.begin(), messages_.end(),
                      [](const Message& a, const Message& b) { return a.arrival < b.arrival; });
@@ -269,14 +279,14 @@ class RecordedLab {
     for (auto message = messages_.begin(); message != messages_.end();) {
       const double begin = message->arrival;
       McapChunkContent content;
-      for (; message != messages_.end() && message->arrival < begin + 0.5; ++message) {
+      for (; message != messages_.end() && message->arrival < begin + part.chunk_s; ++message) {
         const std::uint16_t id = message->channel;
         const std::uint32_t number = numbers[id]++;
         if (message->arrival < part.from || message->arrival >= part.to) continue;
         if (!content.messages().contains(id)) define(channels_[id - 1U], content);
         const auto log =
             static_cast<std::uint64_t>(utc_begin + std::llround(1e9 * message->arrival));
-        content.add(McapMessage{id, number, log, log, message->data});
+        content.add(McapMessage{id, number, log, log, data_of(*message)});
       }
       if (!content.empty()) REQUIRE(writer.write(store(content, part.compression)));
     }
@@ -313,6 +323,9 @@ class RecordedLab {
     }
   }
 
+  /// Exchanges that arrive from `from` to `to` say another epoch of the host than they are of.
+  void mistake_epoch(double from, double to) { mistaken_ = {from, to}; }
+
   /// Messages come by twos in one, when the later one was to come.
   void join_pairs() {
     std::vector<Message> joined;
@@ -328,8 +341,8 @@ class RecordedLab {
     std::vector<Message> cut;
     for (const Message& one : messages_) {
       const std::size_t half = one.data.size() / 2;
-      cut.push_back({one.channel, one.arrival, one.data.substr(0, half)});
-      cut.push_back({one.channel, one.arrival, one.data.substr(half)});
+      cut.push_back({one.channel, one.arrival, one.data.substr(0, half), std::nullopt});
+      cut.push_back({one.channel, one.arrival, one.data.substr(half), std::nullopt});
     }
     messages_ = std::move(cut);
   }
@@ -343,6 +356,7 @@ class RecordedLab {
     std::uint16_t channel = 0;
     double arrival = 0.0;
     std::string data;
+    std::optional<RecordedExchange> exchange;  // its arrival and epoch are the message's
   };
   std::uint16_t channel(McapChannel described) {
     described.id = static_cast<std::uint16_t>(channels_.size() + 1);
@@ -355,7 +369,21 @@ class RecordedLab {
     content.add(channel);
   }
   void add(std::uint16_t channel, double arrival, std::string data) {
-    messages_.push_back({channel, arrival, std::move(data)});
+    messages_.push_back({channel, arrival, std::move(data), std::nullopt});
+  }
+  void add(std::uint16_t channel, const RecordedExchange& exchange, double arrival) {
+    messages_.push_back({channel, arrival, "", exchange});
+  }
+  /// What the recorder writes of it.
+  std::string data_of(const Message& message) const {
+    if (!message.exchange) return message.data;
+    RecordedExchange recorded = *message.exchange;
+    const bool is_behind = message.arrival >= sleep_at_s_;
+    const bool is_mistaken =
+        message.arrival >= mistaken_.first && message.arrival < mistaken_.second;
+    recorded.epoch = is_behind != is_mistaken ? 1 : 0;
+    recorded.exchange.h_rx = host(message.arrival);
+    return to_bytes(recorded);
   }
   /// Of a packet: 1.5 ms and more, seldom much more.
   double way() { return 0.0015 + std::exponential_distribution<double>(250.0)(random_); }
@@ -365,6 +393,8 @@ class RecordedLab {
   std::vector<Message> messages_;
   std::optional<std::uint16_t> marks_;  // their channel
   std::string skeleton_;
+  double sleep_at_s_ = 1e9;  // of the host
+  std::pair<double, double> mistaken_{1e9, 1e9};
 };
 
 }  // namespace kinalign

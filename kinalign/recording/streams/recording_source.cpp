@@ -185,6 +185,23 @@ Findings judge_missing(const ScannedRecording& state, const Chosen& chosen) {
            "damage in the file, or a recording that went on in another part", ""}};
 }
 
+/// Where a clock begins anew, samples that were still on their way may lie in front of those
+/// before.
+Findings judge_order(const std::string& file, const DeviceStream& stream) {
+  StampSurveyor on_axis;
+  for (const Time stamp : *stream.stamps) {
+    const Time at = take_time(stream.clock, stamp);
+    on_axis.add({&at, 1});
+  }
+  const std::uint64_t rising = on_axis.result().kept();
+  if (rising >= stream.survey.kept()) return {};
+  return {{Severity::warning,
+           Error{file, 0, "samples whose times rise",
+                 fmt::format("{} that step back", stream.survey.kept() - rising)},
+           "the device's clock began anew there; these samples were left out",
+           "look for a restart of the device or a sleep of the recording computer"}};
+}
+
 /// Reads as far as the header needs; to the end where there are no rows, which may have a reason.
 template <class Frames>
 Result<typename DevicePass<Frames>::Header> header_of(const DevicePasses<Frames>& passes,
@@ -209,6 +226,7 @@ Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chos
   out.stamps = stamps;
   out.clock = heard.device->clock.time;
   out.findings = judge_missing(state, chosen);
+  append(out.findings, judge_order(wish.file.path, out));
   append(out.findings, heard.device->findings);
   out.skeleton_path = wish.skeleton.empty() ? "" : wish.options.skeleton;
 

@@ -155,6 +155,31 @@ TEST_CASE("frames of a Kinect that were overtaken in the network stand where the
   CHECK(errors.most < 31.5);
 }
 
+TEST_CASE("samples whose time steps back where a clock begins anew are told and counted") {
+  const FreshFolder folder;
+  PosixFiles files;
+  RecordedLab lab(20261126);
+  lab.add_kinect({100.0, 20.0, 10.0, 3.0}, {7.0, -15.0, 10.0, 3.0}, 0.030, 20.0);
+  lab.mistake_epoch(10.2, 11.2);
+  const RecordedStream stream =
+      opened(files, stream_named("kinect", folder.write("take.mcap", lab.file())));
+  std::int64_t last = INT64_MIN;
+  std::uint64_t rising = 0;
+  for (const Time stamp : *stream.stamps) {
+    const std::int64_t t = to_ns(take_time(stream.clock, stamp));
+    if (t <= last) continue;
+    last = t;
+    ++rising;
+  }
+  const std::uint64_t back = stream.survey.kept() - rising;
+  CHECK(back > 0);
+  const auto told = warnings(stream);
+  CHECK(std::count_if(told.begin(), told.end(), [&](const std::string& text) {
+          return text.find("samples whose times rise, found " + std::to_string(back) +
+                           " that step back") != std::string::npos;
+        }) == 1);
+}
+
 TEST_CASE("rows that too many have overtaken are left out, never out of order, and that is told") {
   const FreshFolder folder;
   PosixFiles files;

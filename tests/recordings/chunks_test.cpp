@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same messages in chunks of other sizes are the same recording.
+#include "tests/align/same_take.h"
+#include "tests/folder.h"
+#include "tests/recording/recorded_lab.h"
+#include "tests/seeds.h"
+
+#include "kinalign/align/align.h"
+#include "kinalign/recording/survey_parts.h"
+#include "kinalign/sources/open_recording.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+using namespace kinalign::test;
+
+namespace {
+
+/// A node, a Kinect and mocap. Of 60 messages in a row eight are held
+/// back. The computer that records sleeps for `slept_s`.
+RecordedLab troubled_lab(std::uint64_t seed, double slept_s) {
+  RecordedLab lab(seed);
+  RecordedLab::Counter sensor{100.0, 20.0}, sender{7.0, -15.0};
+  if (slept_s > 0.0) sensor.sleep_at_s = sender.sleep_at_s = 10.0;
+  sensor.slept_s = sender.slept_s = slept_s;
+  lab.add_mocap(NoitomForm::new_header, "udp", 20.0);
+  lab.add_kinect(sensor, sender, 0.030, 20.0);
+  lab.add_node(12, 1, {3.0, 10.0}, 0.1, 19.0);
+  lab.hold_back(60, 0.2, 8);
+  return lab;
+}
+
+Take aligned(const std::string& bytes) {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string path = folder.write("take.mcap", bytes);
+  const auto survey = survey_parts(files, *parts_from(files, path, {}), {});
+  REQUIRE(survey);
+  auto manifest = manifest_of(*survey, "take.mcap");
+  REQUIRE(manifest);
+  manifest->spaces["kinect"].method = "none";
+  const auto recording = open_recording(files, *manifest, folder.path() + "/");
+  REQUIRE(recording);
+  auto take = align(*recording, *manifest);
+  if (!take) FAIL(to_string(take.error()));
+  return *std::move(take);
+}
+
+}  // namespace
+
+TEST_CASE("a take does not depend on the size of its recording's chunks") {
+  for (const auto seed : fresh_seeds(3)) {
+    for (const double slept_s : {0.0, 3.0, 30.0}) {
+      CAPTURE(seed);
+      CAPTURE(slept_s);
+      RecordedLab lab = troubled_lab(seed, slept_s);
+      RecordedLab::Part whole, small, large;
+      small.chunk_s = 0.002;
+      large.chunk_s = 1e9;
+      const Take take = aligned(lab.file(whole));
+      check_same(aligned(lab.file(small)), take);
+      check_same(aligned(lab.file(large)), take);
+    }
+  }
+}
