@@ -6,12 +6,15 @@
 #include "kinalign/align/align.h"
 #include "kinalign/formats/take/take_hdf5.h"
 
+#include <malloc.h>
+
 #include <optional>
 
 namespace kinalign {
 
 Result<AlignmentReport> align_to_file(const Call& call, const Recording& recording,
                                       const Manifest& manifest, const TakeTarget& target) {
+  malloc_trim(0);  // what opening the recording has freed goes back to the system
   std::optional<TakeWriter> writer;
   TakeSink sink;
   sink.begin = [&](const TakeHeader& header) -> Result<void> {

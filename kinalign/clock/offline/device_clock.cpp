@@ -21,22 +21,42 @@ constexpr Duration oldest_sample = std::chrono::seconds(2);
 /// has any.
 constexpr double most_drift_ppm = 20'000.0;
 
+/// The exchanges of one life, as places in all of them. An hour of a device is 20 MB of exchanges,
+/// so they are copied only where other lives stand between them.
+HostFromNode fit_one_way(std::span<const Exchange> exchanges, std::span<const std::size_t> life) {
+  if (life.empty()) return {};
+  if (life.back() - life.front() + 1 == life.size()) {
+    return fit_one_way_clock(exchanges.subspan(life.front(), life.size()));
+  }
+  std::vector<Exchange> heard;
+  heard.reserve(life.size());
+  for (const std::size_t i : life) heard.push_back(exchanges[i]);
+  return fit_one_way_clock(heard);
+}
+
 /// Pieces of which nothing answered, told by their arrivals.
 HostFromNode with_one_way(HostFromNode model, std::span<const Exchange> exchanges) {
   HostFromNode out;
   out.doubtful = std::move(model.doubtful);
-  std::unordered_map<BootKey, std::vector<Exchange>> lives;
-  for (const Exchange& e : exchanges) lives[e.boot].push_back(e);
+  std::unordered_map<BootKey, std::vector<std::size_t>> lives;  // of which nothing answered
+  for (const ClockPieceModel& piece : model.pieces) {
+    if (piece.knots.empty()) lives[piece.boot];
+  }
+  for (std::size_t i = 0; i < exchanges.size(); ++i) {
+    const auto life = lives.find(exchanges[i].boot);
+    if (life != lives.end()) life->second.push_back(i);
+  }
   for (ClockPieceModel& piece : model.pieces) {
     if (!piece.knots.empty()) {
       out.pieces.push_back(std::move(piece));
       continue;
     }
-    std::vector<Exchange> heard;
-    const std::vector<Exchange>& life = lives[piece.boot];
-    std::copy_if(life.begin(), life.end(), std::back_inserter(heard),
-                 [&](const Exchange& e) { return piece.first <= e.h_rx && e.h_rx <= piece.last; });
-    HostFromNode told = fit_one_way_clock(heard);
+    std::vector<std::size_t> heard;
+    const std::vector<std::size_t>& life = lives[piece.boot];
+    std::copy_if(life.begin(), life.end(), std::back_inserter(heard), [&](std::size_t i) {
+      return piece.first <= exchanges[i].h_rx && exchanges[i].h_rx <= piece.last;
+    });
+    HostFromNode told = fit_one_way(exchanges, heard);
     std::move(told.pieces.begin(), told.pieces.end(), std::back_inserter(out.pieces));
   }
   return out;

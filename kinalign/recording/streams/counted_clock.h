@@ -40,7 +40,7 @@ struct CountedClock {
 };
 
 /// `stated_step_ns`, 0 where nobody says: believed while the arrivals are within 1 % of it.
-CountedClock counted_clock(const std::vector<CountedFrame>& frames, double stated_step_ns,
+CountedClock counted_clock(std::vector<CountedFrame> frames, double stated_step_ns,
                            Duration utc_minus_host, const std::string& file);
 
 NodeTime counter_of(const CountedFrame& frame, double step_ns);

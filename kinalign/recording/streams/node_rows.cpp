@@ -12,7 +12,9 @@
 
 #include <fmt/format.h>
 
+#include <deque>
 #include <utility>
+#include <vector>
 
 namespace kinalign {
 
@@ -115,7 +117,7 @@ class AcceptedFrames {
 
 /// Where requests leave on a steady timer their number plays the part of a counter: the earliest
 /// arrivals tell it, less the least half of a round trip (clock/offline/clockless.h).
-void clockless_clock(std::span<const ClocklessExchange> exchanges, const DeviceWish& wish,
+void clockless_clock(const std::vector<ClocklessExchange>& exchanges, const DeviceWish& wish,
                      HeardDevice& heard) {
   const auto least = least_one_way_delay(exchanges);
   std::vector<CountedFrame> requests;
@@ -123,7 +125,7 @@ void clockless_clock(std::span<const ClocklessExchange> exchanges, const DeviceW
     if (e.t6) continue;
     requests.push_back({e.boot, number_of(e), e.t2 - least.value_or(Duration{0})});
   }
-  count_clock(requests, 0.0, wish, heard);
+  count_clock(std::move(requests), 0.0, wish, heard);
   if (least) return;
   heard.findings.push_back(
       {Severity::warning, Error{wish.file.path, 0, "confirms of a node without a counter", "none"},
@@ -156,9 +158,10 @@ class NodeListener final : public DeviceListener {
     }
     const auto frame = frames_.take(message);
     if (!frame) return;
-    const std::int64_t at = frame->n_tx ? frame->n_tx->time_since_epoch().count() : frame->number;
-    heard_.push_back({frame->life, at, message.arrival,
-                      static_cast<std::uint32_t>(frame->sample_count), frame->n_tx.has_value()});
+    const bool has_counter = frame->n_tx.has_value();
+    const std::size_t exchanges = has_counter ? exchanges_.size() : clockless_.size();
+    heard_.push_back({message.arrival, static_cast<std::uint32_t>(exchanges - 1),
+                      static_cast<std::uint8_t>(frame->sample_count), has_counter});
     for (std::size_t i = 0; i < frame->sample_count; ++i) {
       const NodeSample& sample = frame->samples[i];
       ages_us_.push_back(sample.age_us);
@@ -176,12 +179,11 @@ class NodeListener final : public DeviceListener {
     }
     heard.content = content_;
     if (exchanges_.empty()) {
-      clockless_clock(clockless_, wish, heard);
+      clockless_clock({clockless_.begin(), clockless_.end()}, wish, heard);
     } else {
-      heard.clock = device_clock(exchanges_, heard.utc_minus_host);
+      const std::vector<Exchange> exchanges(exchanges_.begin(), exchanges_.end());
+      heard.clock = device_clock(exchanges, heard.utc_minus_host);
     }
-    exchanges_ = {};
-    clockless_ = {};
     return {};
   }
 
@@ -190,9 +192,15 @@ class NodeListener final : public DeviceListener {
     auto age_us = ages_us_.begin();
     for (const HeardFrame& one : heard_) {
       AcceptedFrame frame;
-      frame.life = one.life;
-      frame.number = one.at;
-      if (one.has_counter) frame.n_tx = NodeTime{Duration{one.at}};
+      if (one.has_counter) {
+        const Exchange& accepted = exchanges_[one.exchange];
+        frame.life = accepted.boot;
+        frame.n_tx = accepted.n_tx;
+      } else {
+        const ClocklessExchange& accepted = clockless_[one.exchange];
+        frame.life = accepted.boot;
+        frame.number = number_of(accepted);
+      }
       for (std::uint32_t i = 0; i < one.samples; ++i) {
         const auto stamp = stamp_of_sample(heard, frame, *age_us++, one.arrival);
         if (stamp) stamps.add(*stamp, true);
@@ -204,17 +212,17 @@ class NodeListener final : public DeviceListener {
 
  private:
   struct HeardFrame {
-    BootKey life = 0;
-    std::int64_t at = 0;  // the counter when it was sent, ns, or the number of the request
     HostTime arrival{};
-    std::uint32_t samples = 0;
+    std::uint32_t exchange = 0;  // that accepted it: its place in exchanges_ or clockless_
+    std::uint8_t samples = 0;
     bool has_counter = false;
   };
+  // Deques, since a vector that grows has up to twice the room that it needs.
   AcceptedFrames frames_;
-  std::vector<HeardFrame> heard_;
-  std::vector<std::uint32_t> ages_us_;  // of all samples, frame after frame
-  std::vector<Exchange> exchanges_;
-  std::vector<ClocklessExchange> clockless_;
+  std::deque<HeardFrame> heard_;
+  std::deque<std::uint32_t> ages_us_;  // of all samples, frame after frame
+  std::deque<Exchange> exchanges_;
+  std::deque<ClocklessExchange> clockless_;
   ImuContent content_;
 };
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -216,7 +217,7 @@ class FrameKeys {
     }
   }
 
-  std::vector<Key> keys_;
+  std::deque<Key> keys_;  // a vector that grows has up to twice the room that it needs
 };
 
 /// Rows of such frames, in the order of their numbers: what was overtaken in a network is put where
@@ -300,10 +301,10 @@ class NumberedRows : public DeviceRows<Frames> {
 };
 
 /// The clock of frames that are numbered. A rate that the options state wins over `step_ns`.
-inline void count_clock(const std::vector<CountedFrame>& frames, double step_ns,
-                        const DeviceWish& wish, HeardDevice& heard) {
+inline void count_clock(std::vector<CountedFrame> frames, double step_ns, const DeviceWish& wish,
+                        HeardDevice& heard) {
   const double rate = wish.options.rate_hz;
-  CountedClock clock = counted_clock(frames, rate > 0.0 ? 1e9 / rate : step_ns,
+  CountedClock clock = counted_clock(std::move(frames), rate > 0.0 ? 1e9 / rate : step_ns,
                                      heard.utc_minus_host, wish.file.path);
   append(heard.findings, clock.findings);
   heard.step_ns = clock.step_ns;
