@@ -6,6 +6,7 @@ apps/cli. It may also include the files of the folders it stands in, but not the
 parent never includes its child. No two rooms use each other in a circle. Other programs (apps/*, tools,
 fuzz, bench) may include what their kinalign_* libraries reach, firmware the room wire alone, and
 firmware/node nothing else of ours; tests any room. Heavy libraries stand in .cpp files only: see HEAVY.
+A room's folder holds at most MOST_FILES files: what grows beyond them is two rooms.
 """
 import pathlib
 import re
@@ -15,7 +16,9 @@ ROOT = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else __file__ + "/../..").r
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.M)
 HEAVY = ("toml++/", "nlohmann/", "hdf5.h", "H5", "zip.h", "openssl/", "CLI/", "Eigen/")
 HEADERS_MAY = ("Eigen/Core", "Eigen/Geometry", "nlohmann/json_fwd.hpp")
-ENDINGS = {".h", ".cpp"}
+ENDINGS = {".h", ".hpp", ".cpp"}
+HEADERS = {".h", ".hpp"}
+MOST_FILES = 32
 OURS = ("kinalign", "apps", "firmware", "tests", "tools", "bench", "fuzz")
 
 
@@ -50,9 +53,8 @@ def rooms():
             sys.exit(f"{folder}/CMakeLists.txt: expected kinalign_room of this folder, found {call[1]}")
         uses[call[1]] = words_after("USES", call[2])
     for room in uses:
-        parent = room.rpartition("/")[0]
-        if parent in uses:
-            uses[room].append(parent)
+        above = [str(folder) for folder in pathlib.PurePath(room).parents if str(folder) in uses]
+        uses[room] += above[:1]  # the nearest, which uses the next
     return uses
 
 
@@ -95,7 +97,7 @@ def faults(paths, own, allowed, uses):
         for quote, name in INCLUDE.findall(path.read_text(errors="replace")):
             place = path.relative_to(ROOT)
             top, folder = name.split("/")[0], name.rpartition("/")[0]
-            if path.suffix == ".h" and name.startswith(HEAVY) and name not in HEADERS_MAY:
+            if path.suffix in HEADERS and name.startswith(HEAVY) and name not in HEADERS_MAY:
                 yield f"{place}: <{name}> is heavy: only a .cpp file may include it"
             if quote == '"' and top not in OURS:
                 yield f"{place}: \"{name}\": expected a path from the repository's root"
@@ -122,6 +124,9 @@ def main():
     for room in uses:
         folder = folder_of(room)
         found += faults(sources(ROOT / folder, deep=False), folder, below(room, uses), uses)
+        files = sum(path.is_file() for path in (ROOT / folder).iterdir())
+        if files > MOST_FILES:
+            found.append(f"{folder}: expected at most {MOST_FILES} files, found {files}: make a room of some that go together")
     folders = {str(p.parent.relative_to(ROOT)) for p in sources(ROOT / "kinalign", deep=True)}
     for folder in sorted(folders - set(map(folder_of, uses))):
         found.append(f"{folder}: no room: expected a CMakeLists.txt with kinalign_room")

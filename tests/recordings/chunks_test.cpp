@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same messages in chunks of other sizes are the same recording.
 #include "tests/align/same_take.h"
+#include "tests/counting_files.h"
 #include "tests/folder.h"
 #include "tests/recording/recorded_lab.h"
 #include "tests/seeds.h"
@@ -30,20 +31,27 @@ RecordedLab troubled_lab(std::uint64_t seed, double slept_s) {
   return lab;
 }
 
-Take aligned(const std::string& bytes) {
-  const FreshFolder folder;
-  PosixFiles files;
-  const std::string path = folder.write("take.mcap", bytes);
+/// Aligns take.mcap of the folder onto the stream named, or the first.
+Take aligned(FileSystem& files, const FreshFolder& folder, const std::string& reference) {
+  const std::string path = folder / "take.mcap";
   const auto survey = survey_parts(files, *parts_from(files, path, {}), {});
   REQUIRE(survey);
   auto manifest = manifest_of(*survey, "take.mcap");
   REQUIRE(manifest);
   manifest->spaces["kinect"].method = "none";
+  manifest->align.reference = reference;
   const auto recording = open_recording(files, *manifest, folder.path() + "/");
   REQUIRE(recording);
   auto take = align(*recording, *manifest);
   if (!take) FAIL(to_string(take.error()));
   return *std::move(take);
+}
+
+Take aligned(const std::string& bytes) {
+  const FreshFolder folder;
+  PosixFiles files;
+  folder.write("take.mcap", bytes);
+  return aligned(files, folder, "");
 }
 
 }  // namespace
@@ -61,5 +69,24 @@ TEST_CASE("a take does not depend on the size of its recording's chunks") {
       check_same(aligned(lab.file(small)), take);
       check_same(aligned(lab.file(large)), take);
     }
+  }
+}
+
+TEST_CASE("whatever stream is the reference, a recording is read thrice at most") {
+  const FreshFolder folder;
+  RecordedLab lab(20261126);
+  const double seconds = 500.0;  // more than the cache holds (recording/streams/stored_chunks.h)
+  lab.add_mocap(NoitomForm::new_header, "udp", seconds, 0, "10.0.0.3:7012", true);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, seconds);
+  lab.add_node(12, 1, {3.0, 10.0}, 0.1, seconds, "", 50.0);
+  const std::string bytes = lab.file();
+  folder.write("take.mcap", bytes);
+  for (const std::string reference : {"mocap", "kinect"}) {
+    CAPTURE(reference);
+    CountingFiles files;
+    const Take take = aligned(files, folder, reference);
+    CHECK(take.report.frames > 14'000);
+    CHECK(static_cast<double>(files.bytes) < 3.2 * static_cast<double>(bytes.size()));
+    CHECK(static_cast<double>(files.bytes) > 1.5 * static_cast<double>(bytes.size()));
   }
 }

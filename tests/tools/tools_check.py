@@ -66,6 +66,30 @@ def a_child_may_include_its_parent_and_not_the_other_way_round(folder):
 
 
 @case
+def a_child_of_a_child_may_include_both_parents_also_beyond_a_folder_that_is_no_room(folder):
+    house(folder)
+    put(folder, "kinalign/io/d.h", "")
+    put(folder, "kinalign/io/far/bvh/CMakeLists.txt", "kinalign_room(io/far/bvh SOURCES e.cpp)\n")
+    put(folder, "kinalign/io/far/bvh/e.hpp", '#include "kinalign/io/d.h"\n')
+    put(folder, "kinalign/io/far/bvh/deep/CMakeLists.txt", "kinalign_room(io/far/bvh/deep)\n")
+    put(folder, "kinalign/io/far/bvh/deep/f.h",
+        '#include "kinalign/io/far/bvh/e.hpp"\n#include "kinalign/io/d.h"\n')
+    assert includes(folder) == (0, "\n"), includes(folder)
+
+
+@case
+def a_room_of_too_many_files_is_told_to_be_divided(folder):
+    house(folder)
+    for i in range(29):
+        put(folder, f"kinalign/io/f{i}.h", "")
+    assert includes(folder) == (0, "\n"), includes(folder)
+    put(folder, "kinalign/io/g.h", "")
+    put(folder, "kinalign/io/h.h", "")
+    code, text = includes(folder)
+    assert code == 1 and text.startswith("kinalign/io: expected at most 32 files, found 33"), text
+
+
+@case
 def siblings_include_each_other_only_by_uses(folder):
     house(folder)
     put(folder, "kinalign/io/bvh/CMakeLists.txt", "kinalign_room(io/bvh)\n")

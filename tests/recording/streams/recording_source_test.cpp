@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/recording/streams/recording_source.h"
 
+#include "tests/counting_files.h"
 #include "tests/recording/streams/recorded_streams.h"
 
 #include <doctest/doctest.h>
@@ -314,24 +315,6 @@ TEST_CASE("a Kinect's stamps hold where the host slept or its raw clock went bac
 }
 
 namespace {
-
-/// Counts the bytes that are read.
-class CountingFiles : public PosixFiles {
- public:
-  ssize_t read(int fd, void* data, std::size_t size) override {
-    return counted(PosixFiles::read(fd, data, size));
-  }
-  ssize_t read_at(int fd, void* data, std::size_t size, off_t at) override {
-    return counted(PosixFiles::read_at(fd, data, size, at));
-  }
-  std::uint64_t bytes = 0;
-
- private:
-  ssize_t counted(ssize_t got) {
-    bytes += static_cast<std::uint64_t>(std::max<ssize_t>(got, 0));
-    return got;
-  }
-};
 
 /// Mocap, a Kinect and five nodes.
 std::string seven_devices(const FreshFolder& folder, double seconds) {
