@@ -216,7 +216,7 @@ Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) 
 
 Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named,
                                    const std::shared_ptr<RecordingSource>& recording) {
-  DeviceStream made = KA_TRY(recording->stream(*job.options, named));
+  DeviceStream made = KA_TRY(recording->stream(*job.options, named, *job.progress));
   SurveyedFile out;
   out.recording = recording;
   out.clock = std::move(made.clock);

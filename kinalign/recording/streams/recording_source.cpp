@@ -124,9 +124,16 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceWish& wish) {
                        ErrorKind::no_rows_in_recording});
 }
 
+/// Fails where the user wants no more.
+Result<void> report_chunk(const Progress& progress, const MessagePass& pass) {
+  if (go_on(progress, "reading", pass.done(), pass.all())) return {};
+  return Failure(interruption());
+}
+
 /// Goes once more over the messages of a device that the first pass did not listen to as a whole.
 Result<std::unique_ptr<DeviceListener>> listen_again(const ScannedRecording& state,
-                                                     const Chosen& chosen, ListenVariant variant) {
+                                                     const Chosen& chosen, ListenVariant variant,
+                                                     const Progress& progress) {
   Listening listening(variant);
   for (const DeviceChannel* one : chosen.channels) listening.define(one->id, one->raw);
   MessagePass pass(state.chunks, chosen.ids());
@@ -135,14 +142,14 @@ Result<std::unique_ptr<DeviceListener>> listen_again(const ScannedRecording& sta
                     arrival_of(message.log_time, state.utc_minus_host()), message.data});
     return {};
   };
-  while (KA_TRY(pass.next_chunk(take))) {
-  }
+  while (KA_TRY(pass.next_chunk(take))) KA_TRY(report_chunk(progress, pass));
   return listening.release();
 }
 
 /// The listener of the first pass where it has heard the same channels, else that of another pass.
 Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, const Chosen& chosen,
-                                                    ListenVariant variant) {
+                                                    ListenVariant variant,
+                                                    const Progress& progress) {
   const RawChannel& first = *chosen.first;
   const DeviceKey key{first.stream, first.node, first.node.empty() ? host_of(first.sender) : "",
                       variant};
@@ -150,7 +157,7 @@ Result<std::unique_ptr<DeviceListener>> listener_of(ScannedRecording& state, con
   const bool is_same = found != state.listening.end() && !found->second.is_released() &&
                        found->second.channels() == chosen.ids();
   if (is_same) return found->second.release();
-  return listen_again(state, chosen, variant);
+  return listen_again(state, chosen, variant, progress);
 }
 
 struct Heard {
@@ -160,7 +167,8 @@ struct Heard {
 };
 
 /// Fails where no rows could be made of the device.
-Result<Heard> hear(ScannedRecording& state, const Chosen& chosen, const DeviceWish& wish) {
+Result<Heard> hear(ScannedRecording& state, const Chosen& chosen, const DeviceWish& wish,
+                   const Progress& progress) {
   const DeviceProtocol protocol = KA_TRY(protocol_of(*chosen.first, wish));
   HeardDevice heard;
   heard.channel = *chosen.first;
@@ -168,7 +176,7 @@ Result<Heard> hear(ScannedRecording& state, const Chosen& chosen, const DeviceWi
   if (attached != state.attachments.end()) heard.skeleton = attached->second;
   if (!wish.skeleton.empty()) heard.skeleton = wish.skeleton;
   heard.utc_minus_host = state.utc_minus_host();
-  auto listener = KA_TRY(listener_of(state, chosen, {wish.trackers, wish.body}));
+  auto listener = KA_TRY(listener_of(state, chosen, {wish.trackers, wish.body}, progress));
   KA_TRY(listener->finish(wish, heard));
   return Heard{std::make_shared<const HeardDevice>(std::move(heard)), std::move(listener),
                protocol};
@@ -205,17 +213,17 @@ Findings judge_order(const std::string& file, const DeviceStream& stream) {
 /// Reads as far as the header needs; to the end where there are no rows, which may have a reason.
 template <class Frames>
 Result<typename DevicePass<Frames>::Header> header_of(const DevicePasses<Frames>& passes,
-                                                      bool any_rows) {
+                                                      bool any_rows, const Progress& progress) {
   DevicePass<Frames> pass = passes();
   Frames block;
   while (pass.header() == nullptr || !any_rows) {
-    if (!KA_TRY(pass.next(block))) break;
+    if (!KA_TRY(pass.next(block, progress))) break;
   }
   return *pass.header();
 }
 
 Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chosen,
-                               const DeviceWish& wish, Heard heard) {
+                               const DeviceWish& wish, Heard heard, const Progress& progress) {
   DeviceStream out;
   auto stamps = std::make_shared<std::vector<Time>>();
   heard.listener->stamp_rows(*heard.device, [&](Time stamp) { stamps->push_back(stamp); });
@@ -244,7 +252,7 @@ Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chos
           return DevicePass<Frames>(MessagePass(chunks, ids), shared, device->utc_minus_host,
                                     std::get<std::unique_ptr<DeviceRows<Frames>>>(std::move(rows)));
         };
-        out.header = KA_TRY(header_of(passes, !stamps->empty()));
+        out.header = KA_TRY(header_of(passes, !stamps->empty(), progress));
         out.passes = passes;
         return {};
       },
@@ -255,7 +263,7 @@ Result<DeviceStream> stream_of(const ScannedRecording& state, const Chosen& chos
 }  // namespace
 
 template <class Frames>
-Result<bool> DevicePass<Frames>::next(Frames& block) {
+Result<bool> DevicePass<Frames>::next(Frames& block, const Progress& progress) {
   block = {};
   while (block.size() == 0 && !ended_) {
     const auto take = [&](const ChunkMessage& message) {
@@ -263,7 +271,10 @@ Result<bool> DevicePass<Frames>::next(Frames& block) {
                           arrival_of(message.log_time, utc_minus_host_), message.data},
                          block);
     };
-    if (KA_TRY(messages_.next_chunk(take))) continue;
+    if (KA_TRY(messages_.next_chunk(take))) {
+      KA_TRY(report_chunk(progress, messages_));
+      continue;
+    }
     ended_ = true;
     KA_TRY(rows_->finish(block));
   }
@@ -298,7 +309,8 @@ MessagePass RecordingSource::messages_of(std::vector<std::uint16_t> channels) co
   return {state_->chunks, std::move(channels)};
 }
 
-Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const StreamFile& file) {
+Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const StreamFile& file,
+                                             const Progress& progress) {
   DeviceWish wish = KA_TRY(wish_of(options, file));
   if (!options.skeleton.empty()) {
     wish.skeleton = KA_TRY(read_bvh_head(*state_->files, options.skeleton));
@@ -317,12 +329,13 @@ Result<DeviceStream> RecordingSource::stream(const StreamOptions& options, const
   for (const DeviceChoice& choice : choices(wish.choice, senders)) {
     wish.choice = choice;
     const Chosen chosen = KA_TRY(choose(*state_, wish));
-    auto heard = hear(*state_, chosen, wish);
+    auto heard = hear(*state_, chosen, wish, progress);
     if (!heard) {
+      if (is_interruption(heard.error())) return Failure(heard.error());
       if (!why) why = with_senders(heard.error(), choice.sender, senders);
       continue;
     }
-    DeviceStream out = KA_TRY(stream_of(*state_, chosen, wish, *std::move(heard)));
+    DeviceStream out = KA_TRY(stream_of(*state_, chosen, wish, *std::move(heard), progress));
     append(out.findings, judge_senders(wish, any_sender, senders));
     return out;
   }

@@ -42,8 +42,9 @@ class DevicePass {
         utc_minus_host_(utc_minus_host),
         rows_(std::move(rows)) {}
 
-  /// Replaces the block by the next one; false behind the last.
-  Result<bool> next(Frames& block);
+  /// Replaces the block by the next one; false behind the last. `progress` is told of each chunk,
+  /// since many may have no row.
+  Result<bool> next(Frames& block, const Progress& progress = {});
   /// nullptr while the first row has not come that has to say it.
   const Header* header() const { return rows_->header(); }
   /// Complete after the last block.
@@ -102,7 +103,8 @@ class RecordingSource {
   /// the file's node, says which inertial node, select["sender"] and select["body"] (of mocap the
   /// avatar, of a SlimeVR tracker the sensor) which of several. A tracker's node is its address.
   /// Not to be called on two threads at once.
-  Result<DeviceStream> stream(const StreamOptions& options, const StreamFile& file);
+  Result<DeviceStream> stream(const StreamOptions& options, const StreamFile& file,
+                              const Progress& progress = {});
 
   const std::vector<JsonChannel>& json_channels() const;
   MessagePass messages_of(std::vector<std::uint16_t> channels) const;

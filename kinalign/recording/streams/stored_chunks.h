@@ -98,6 +98,9 @@ class MessagePass {
   using Take = std::function<Result<void>(const ChunkMessage&)>;
   /// Hands on the messages of the next chunk that has any; false behind the last one.
   Result<bool> next_chunk(const Take& take);
+  /// Chunks that lie behind it, of how many.
+  std::size_t done() const { return next_; }
+  std::size_t all() const { return chunks_->size(); }
 
  private:
   std::shared_ptr<const StoredChunks> chunks_;

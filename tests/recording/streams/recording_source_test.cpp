@@ -400,3 +400,26 @@ TEST_CASE("a recording that changes after it was opened is read no further") {
   REQUIRE_FALSE(read);
   CHECK(read.error().found == "one that changed");
 }
+
+TEST_CASE("a second pass over a recording says how far it is, and stops when it is told to") {
+  const FreshFolder folder;
+  RecordedLab lab(20261126);
+  lab.add_kinect({100.0, 20.0}, {7.0, -15.0}, 0.030, 20.0);
+  const std::string path = folder.write("take.mcap", lab.file());
+  PosixFiles files;
+  const auto source = RecordingSource::open(files, path, RecordingSource::Devices::unheard);
+  REQUIRE(source);
+  const StreamOptions kinect = stream_named("kinect", path);
+  std::uint64_t calls = 0;
+  const Progress count = [&calls](std::string_view, std::uint64_t done, std::uint64_t all) {
+    CHECK(done <= all);
+    ++calls;
+    return true;
+  };
+  CHECK((*source)->stream(kinect, kinect.files.front(), count));
+  CHECK(calls > 10);  // chunks of half a second
+  const Progress stop = [](std::string_view, std::uint64_t, std::uint64_t) { return false; };
+  const auto stopped = (*source)->stream(kinect, kinect.files.front(), stop);
+  REQUIRE_FALSE(stopped);
+  CHECK(is_interruption(stopped.error()));
+}
