@@ -121,10 +121,14 @@ class Walk {
     }
     if (next == plain_.size()) return {};
     const std::string& further = plain_[next];
-    const bool config = usage_.positionals.empty() && further.ends_with(".toml");
-    return wrong(
-        "", "no further word" + (config ? " (did you mean --config " + shown(further) + "?)" : ""),
-        shown(further));
+    std::string advice;
+    if (!usage_.positionals.empty()) {
+      advice = usage_.positionals.back().if_more;
+    } else if (further.ends_with(".toml")) {
+      advice = "did you mean --config " + shown(further) + "?";
+    }
+    return wrong("", "no further word" + (advice.empty() ? "" : " (" + advice + ")"),
+                 shown(further));
   }
 
   static Result<void> place_word(const Positional& place, const std::string& word) {

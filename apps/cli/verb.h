@@ -37,6 +37,7 @@ struct Positional {
   std::vector<std::string>* words;
   std::size_t least = 1, most = 1;
   std::vector<std::string> choices{};  // empty: any text
+  std::string if_more{};               // what to do where more than `most` are given
 };
 
 /// What a verb takes. The pointers lead into the verb's own options.

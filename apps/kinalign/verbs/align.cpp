@@ -61,7 +61,11 @@ Usage describe_verb_options(AlignVerb& o) {
   Usage usage;
   usage.positionals = {{"RECORDING",
                         "what `record` wrote, or a recording.toml: streams, files, clocks",
-                        &o.manifest, 0, 1}};
+                        &o.manifest,
+                        0,
+                        1,
+                        {},
+                        "several files: --mocap a.bvh --kinect b.csv --imu waist=c.csv"}};
   usage.flags = o.quick.fields();
   usage.flags.push_back({"slerp", "the same as --rotations slerp", &o.slerp});
   usage.settings = describe(o.options);

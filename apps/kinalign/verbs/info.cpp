@@ -20,8 +20,13 @@ struct Info {
 
 Usage describe_info(Info& o) {
   Usage usage;
-  usage.positionals = {
-      {"FILE", "a take, a recording, a recording.toml, an XDF or a stream's file", &o.file}};
+  usage.positionals = {{"FILE",
+                        "a take, a recording, a recording.toml, an XDF or a stream's file",
+                        &o.file,
+                        1,
+                        1,
+                        {},
+                        "one file at a time; check reads several"}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     KA_TRY(o.stream.stream({}));

@@ -76,6 +76,14 @@ TEST_CASE("a word too many is refused by name") {
         "expected no further word, found 10");
 }
 
+TEST_CASE("a word too many is refused with what to do instead") {
+  std::vector<std::string> file;
+  Usage usage;
+  usage.positionals = {{"FILE", "a file", &file, 1, 1, {}, "one at a time"}};
+  CHECK(to_string(parse_words({"a", "b"}, usage, {}).error()) ==
+        "expected no further word (one at a time), found b");
+}
+
 TEST_CASE("a TOML file as a word too many is taken for what --config names") {
   const auto parsed = parse_words({"lab.toml"}, {}, {});
   REQUIRE_FALSE(parsed);
