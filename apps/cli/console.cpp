@@ -44,9 +44,11 @@ bool progress_wanted(const Surroundings& surroundings, const Common& common) {
          !(common.json && surroundings.out_is_terminal);
 }
 
-/// Files are read by bytes, all else goes by frames.
+/// These go by bytes, comparing by takes, all else by frames.
 std::string rate_text(std::string_view what, double per_s) {
-  if (what != "reading") return fmt::format("{:.0f} frames/s", per_s);
+  const bool by_bytes = what.starts_with("reading") || what == "hashing" || what == "building";
+  if (what == "comparing") return fmt::format("{:.0f} takes/s", per_s);
+  if (!by_bytes) return fmt::format("{:.0f} frames/s", per_s);
   if (per_s >= 1e9) return fmt::format("{:.1f} GB/s", per_s / 1e9);
   if (per_s >= 1e6) return fmt::format("{:.1f} MB/s", per_s / 1e6);
   return fmt::format("{:.1f} kB/s", per_s / 1e3);
@@ -130,7 +132,9 @@ void Console::print_json(std::string_view object, int version) {
 void Console::put_json(std::string_view object, int version) {
   const std::string_view members = object.substr(object.find('{') + 1);
   const bool none = members.find_first_not_of(" \n") == members.find('}');
-  put(fmt::format("{{\"schema\": \"kinalign.{}/{}\"{}{}\n", verb_, version, none ? "" : ", ",
+  std::string name = verb_;
+  std::replace(name.begin(), name.end(), ' ', '.');
+  put(fmt::format("{{\"schema\": \"kinalign.{}/{}\"{}{}\n", name, version, none ? "" : ", ",
                   members.substr(std::min(members.find_first_not_of(" \n"), members.size()))));
 }
 

@@ -105,15 +105,17 @@ Pass<PointFrames> stamps_alone(std::shared_ptr<const std::vector<Time>> stamps) 
 }
 
 /// Rows of the grid: by arithmetic for a fixed step, all that were kept where nothing is cut, else
-/// by the reference's stamps, for which it is read where they are not known. A clock of several
-/// pieces may step back between them, and rows that do not rise then are no rows of the grid.
+/// by the reference's stamps, for which it is read where they are not known. The survey judged the
+/// device's stamps: on the take's axis a drift, or a clock of several pieces, may keep other rows.
 Result<std::uint64_t> count_rows(const RecordedStream& reference, const AlignPlan& plan) {
   if (reference.step_ns) {
     return first_frame(reference, *reference.step_ns, plan.end, true) -
            first_frame(reference, *reference.step_ns, plan.begin, false);
   }
   const bool is_uncut = first_of(reference) >= plan.begin && last_of(reference) <= plan.end;
-  if (is_uncut && reference.clock.pieces.size() == 1) {
+  const bool is_shifted_only =
+      reference.clock.pieces.size() == 1 && reference.clock.pieces.front().drift_ppm == 0.0;
+  if (is_uncut && is_shifted_only) {
     return reference.survey.kept();
   }
   if (reference.stamps) return count_in_span(stamps_alone(reference.stamps), reference, plan);

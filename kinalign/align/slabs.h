@@ -36,7 +36,8 @@ class SlabMaker {
   /// Points are in their own space yet. With two jobs the reference is read one slab ahead.
   Result<void> for_each(std::size_t jobs, const std::function<Result<void>(TakeSlab&)>& use);
 
-  /// Reads on to the take's end, and to the end of streams whose late findings come with that.
+  /// Reads on to the take's end; streams that have findings only after their last row, to their
+  /// end.
   Result<void> read_rest(const std::function<Result<void>()>& go);
 
   /// Of a stream, as in the recording, so far: what the grid can't carry, and what was counted.

@@ -43,7 +43,7 @@ struct ResampleCount {
 /// Neighbours of each row of a grid in a stream, on rising stamps.
 struct Neighbours {
   std::vector<std::size_t> left;             // [n] last sample at or before the row
-  std::vector<std::size_t> known_by;         // [n] the same; outside the stream the nearest sample
+  std::vector<std::size_t> known_by;         // [n] as left; outside the stream the nearest sample
   std::vector<std::int64_t> nearest_raw_ns;  // [n] at most farthest_nearest_ns
 };
 /// Rows outside the stream have left = stamps.size().
@@ -60,7 +60,7 @@ class Resampler {
   Result<void> read_to_end() { return window_.move(rule_.end_ns, rule_.end_ns, rule_.reach()); }
 
  protected:
-  /// `taken`: the step by which samples that were held back are told.
+  /// `taken`: the device's step, by which late samples are found.
   Resampler(Pass<Frames> pass, const TimeModel& clock, const ResampleRule& rule, TakenStep taken)
       : window_(std::move(pass), clock, rule.gap_count(), taken), clock_(&clock), rule_(rule) {}
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The samples of a stream around the rows being made. A stream is pulled block by block. Samples
 // whose time on the take's axis does not rise (motion/stamps.h) are dropped, and so are samples
-// that were held back on their way. What lies behind is forgotten. Rows and counts do not depend on
-// how the stream is cut into blocks.
+// that were stamped late (resample/arrival_lines.h). Samples that no later row needs are dropped,
+// too. Rows and counts do not depend on how the stream is cut into blocks.
 #pragma once
 
 #include "kinalign/motion/stamps.h"
@@ -71,14 +71,16 @@ struct Reach {
 /// Stretches within a span in which nothing was seen.
 struct GapCount {
   std::int64_t limit_ns = 0;                              // longer ones count
-  std::int64_t begin_ns = INT64_MIN, end_ns = INT64_MAX;  // of the take; else all of the stream
+  std::int64_t begin_ns = INT64_MIN, end_ns = INT64_MAX;  // of the take; by default no limits
   std::uint64_t gaps = 0;
   std::int64_t time_ns = 0;  // sum of their lengths within the span
 
+  /// What lies after the take's end counts for nothing: how much is read there must not show.
   void add(std::int64_t from, std::int64_t to) {
-    if (to - from <= limit_ns || to <= begin_ns || from >= end_ns) return;
+    to = std::min(to, end_ns);
+    if (from >= to || to - from <= limit_ns || to <= begin_ns) return;
     ++gaps;
-    time_ns += std::min(to, end_ns) - std::max(from, begin_ns);
+    time_ns += to - std::max(from, begin_ns);
   }
 };
 
@@ -125,6 +127,8 @@ class Window {
 
   StreamCounts counts() const {
     StreamCounts out{gaps_, held_back_, at_end_ ? *at_end_ : lines_.result()};
+    const bool has_end = gaps_.end_ns != INT64_MAX;
+    if (has_end && last_seen_) out.gaps.add(*last_seen_, gaps_.end_ns);
     if (!near_counts_) out.arrivals.near = held_back_;
     return out;
   }
@@ -185,9 +189,11 @@ class Window {
     return open ? first_not_before(*open) : time_ns.size();
   }
 
-  /// Drops while pulling, where it is worth the move: a stretch without rows may be long.
+  /// Drops while pulling, where it is worth the move: a stretch without rows may be long. Samples
+  /// in front of `from` are still to come: what they may need stays.
   void forget(std::int64_t from, const Reach& reach) {
-    if (!time_ns.empty() && time_ns[time_ns.size() / 2] < from) drop_before(from, reach);
+    if (time_ns.empty() || time_ns[time_ns.size() / 2] >= from) return;
+    drop_before(std::min(from, time_ns.back()), reach);
   }
 
   /// Until the last row can't be taken back any more.
@@ -308,7 +314,7 @@ class Window {
   std::vector<std::uint8_t> seen_;  // [columns] of the row being taken
   StampRule rule_;
   ArrivalLines lines_;
-  std::optional<Arrivals> at_end_;  // what lines_ had when the first row behind the take's end came
+  std::optional<Arrivals> at_end_;  // lines_.result() before the first row after the take's end
   bool near_counts_;                // of the reference: rows held back stay
   GapCount gaps_;
   std::uint64_t held_back_ = 0;

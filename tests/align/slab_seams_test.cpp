@@ -237,3 +237,57 @@ TEST_CASE("how a stream is cut into blocks shows in no row and no count") {
     for (const std::size_t size : {1U, 7U, 500U}) check_same(aligned(size), whole);
   }
 }
+
+TEST_CASE("a reference with a drift and rows out of order has the rows that were counted") {
+  for (double drift = 0.5; drift < 60.0; drift += 1.37) {
+    CAPTURE(drift);
+    std::vector<Time> stamps = every(10 * ms, 500);
+    // Four usual steps ahead: the limit beyond which a stamp counts as wild.
+    std::rotate(stamps.begin() + 220, stamps.begin() + 223, stamps.begin() + 224);
+    Recording recording;
+    recording.streams = {recorded("points", points({"a"}, stamps, wander)),
+                         recorded("kinect", points({"a"}, every(33 * ms, 200, -500 * ms), wander))};
+    recording.streams[0].clock.pieces.front().begin = stamps.front();
+    recording.streams[0].clock.pieces.front().drift_ppm = drift;
+    const auto take = align(recording, own_space());
+    if (!take) FAIL_CHECK(to_string(take.error()));
+  }
+}
+
+TEST_CASE("a joint that is out of view across the take's end is a gap in blocks of any size") {
+  PointStream kinect = points({"a"}, every(33 * ms, 1000), wander);
+  for (std::size_t t = 0; t < 1000; ++t) {
+    if (t * 33 > 8'000 && t * 33 < 22'000) kinect.frames.state[t] = Tracking::missing;
+  }
+  const RecordedStream other = recorded("kinect", kinect);
+  for (const std::size_t size : {1U, 7U, 100U, 1000U}) {
+    CAPTURE(size);
+    Recording recording;
+    recording.streams = {recorded("points", points({"a"}, every(10 * ms, 1001), wander)),
+                         read_in_blocks(other, kinect.frames, size)};
+    const auto take = align(recording, own_space());
+    REQUIRE(take);
+    CHECK(take->report.streams[1].gaps == 1);
+    CHECK(take->report.streams[1].gap_time_ns == 10'000 * ms - 242 * 33 * ms);
+  }
+}
+
+TEST_CASE(
+    "a slow stream that begins long before the take has the same rows in blocks of any size") {
+  for (const std::int64_t step_ms : {500, 1000, 2000, 5000}) {
+    CAPTURE(step_ms);
+    const PointStream kinect =
+        points({"a"}, every(step_ms * ms, static_cast<std::size_t>(90'000 / step_ms), -60'000 * ms),
+               wander);
+    const RecordedStream other = recorded("kinect", kinect);
+    const auto aligned = [&](std::size_t size) {
+      Recording recording;
+      recording.streams = {recorded("points", points({"a"}, every(10 * ms, 2000), wander)),
+                           read_in_blocks(other, kinect.frames, size)};
+      auto take = align(recording, own_space());
+      REQUIRE(take);
+      return *std::move(take);
+    };
+    check_same(aligned(1), aligned(kinect.frames.size()));
+  }
+}

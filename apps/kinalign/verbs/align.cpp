@@ -59,13 +59,14 @@ Result<void> check_use(const AlignVerb& o, const Common& common, const Sources& 
 
 Usage describe_verb_options(AlignVerb& o) {
   Usage usage;
-  usage.positionals = {{"RECORDING",
-                        "what `record` wrote, or a recording.toml: streams, files, clocks",
-                        &o.manifest,
-                        0,
-                        1,
-                        {},
-                        "several files: --mocap a.bvh --kinect b.csv --imu waist=c.csv"}};
+  usage.positionals = {
+      {"RECORDING",
+       "what `record` wrote, or a recording.toml: streams, files, clocks",
+       &o.manifest,
+       0,
+       1,
+       {},
+       "give single files by flags: --mocap a.bvh --kinect b.csv --imu waist=c.csv"}};
   usage.flags = o.quick.fields();
   usage.flags.push_back({"slerp", "the same as --rotations slerp", &o.slerp});
   usage.settings = describe(o.options);

@@ -26,7 +26,7 @@ Usage describe_info(Info& o) {
                         1,
                         1,
                         {},
-                        "one file at a time; check reads several"}};
+                        "info reads one file; kinalign check reads several"}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     KA_TRY(o.stream.stream({}));

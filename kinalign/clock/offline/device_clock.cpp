@@ -21,8 +21,8 @@ constexpr Duration oldest_sample = std::chrono::seconds(2);
 /// has any.
 constexpr double most_drift_ppm = 20'000.0;
 
-/// The exchanges of one life, as places in all of them. An hour of a device is 20 MB of exchanges,
-/// so they are copied only where other lives stand between them.
+/// `life`: indexes into `exchanges`, of one life. An hour of a device is 20 MB of exchanges, so
+/// they are not copied where they are neighbours.
 HostFromNode fit_one_way(std::span<const Exchange> exchanges, std::span<const std::size_t> life) {
   if (life.empty()) return {};
   if (life.back() - life.front() + 1 == life.size()) {
@@ -34,11 +34,11 @@ HostFromNode fit_one_way(std::span<const Exchange> exchanges, std::span<const st
   return fit_one_way_clock(heard);
 }
 
-/// Pieces of which nothing answered, told by their arrivals.
+/// Pieces without replies get their clock from the arrivals alone.
 HostFromNode with_one_way(HostFromNode model, std::span<const Exchange> exchanges) {
   HostFromNode out;
   out.doubtful = std::move(model.doubtful);
-  std::unordered_map<BootKey, std::vector<std::size_t>> lives;  // of which nothing answered
+  std::unordered_map<BootKey, std::vector<std::size_t>> lives;  // without replies
   for (const ClockPieceModel& piece : model.pieces) {
     if (piece.knots.empty()) lives[piece.boot];
   }

@@ -213,7 +213,7 @@ class NodeListener final : public DeviceListener {
  private:
   struct HeardFrame {
     HostTime arrival{};
-    std::uint32_t exchange = 0;  // that accepted it: its place in exchanges_ or clockless_
+    std::uint32_t exchange = 0;  // index of its exchange, in exchanges_ or clockless_
     std::uint8_t samples = 0;
     bool has_counter = false;
   };

@@ -124,9 +124,9 @@ Result<Chosen> choose(const ScannedRecording& state, const DeviceWish& wish) {
                        ErrorKind::no_rows_in_recording});
 }
 
-/// Fails where the user wants no more.
+/// Fails if the user pressed Ctrl-C.
 Result<void> report_chunk(const Progress& progress, const MessagePass& pass) {
-  if (go_on(progress, "reading", pass.done(), pass.all())) return {};
+  if (go_on(progress, "reading again", pass.done(), pass.all())) return {};
   return Failure(interruption());
 }
 
@@ -193,8 +193,7 @@ Findings judge_missing(const ScannedRecording& state, const Chosen& chosen) {
            "damage in the file, or a recording that went on in another part", ""}};
 }
 
-/// Where a clock begins anew, samples that were still on their way may lie in front of those
-/// before.
+/// After a clock has restarted, delayed samples can get earlier times than the samples before them.
 Findings judge_order(const std::string& file, const DeviceStream& stream) {
   StampSurveyor on_axis;
   for (const Time stamp : *stream.stamps) {
@@ -206,8 +205,9 @@ Findings judge_order(const std::string& file, const DeviceStream& stream) {
   return {{Severity::warning,
            Error{file, 0, "samples whose times rise",
                  fmt::format("{} that step back", stream.survey.kept() - rising)},
-           "the device's clock began anew there; these samples were left out",
-           "look for a restart of the device or a sleep of the recording computer"}};
+           "align leaves them out",
+           "look for a restart of the device, or a sleep of the recording computer, with samples "
+           "still in the network"}};
 }
 
 /// Reads as far as the header needs; to the end where there are no rows, which may have a reason.

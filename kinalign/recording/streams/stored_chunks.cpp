@@ -60,7 +60,9 @@ StoredChunks::StoredChunks(FileSystem& files, std::vector<File> parts,
     : files_(&files),
       parts_(std::move(parts)),
       chunks_(std::move(chunks)),
-      open_files_(parts_.size()) {}
+      open_files_(parts_.size()) {
+  for (const StoredChunk& chunk : chunks_) bytes_ += chunk.size;
+}
 
 Result<std::shared_ptr<const OpenedChunk>> StoredChunks::open(std::size_t k) const {
   const std::lock_guard lock(mutex_);
@@ -106,6 +108,7 @@ Result<bool> MessagePass::next_chunk(const Take& take) {
   };
   while (next_ < chunks_->size()) {
     const std::size_t k = next_++;
+    done_ += (*chunks_)[k].size;
     const auto& there = (*chunks_)[k].channels;
     if (std::none_of(there.begin(), there.end(), is_mine)) continue;
     const auto chunk = KA_TRY(chunks_->open(k));

@@ -62,6 +62,7 @@ class StoredChunks {
   StoredChunks(FileSystem& files, std::vector<File> parts, std::vector<StoredChunk> chunks);
 
   std::size_t size() const { return chunks_.size(); }
+  std::uint64_t bytes() const { return bytes_; }  // of all chunks in the files
   const StoredChunk& operator[](std::size_t k) const { return chunks_[k]; }
   /// Fails where the file has changed since it was indexed.
   Result<std::shared_ptr<const OpenedChunk>> open(std::size_t k) const;
@@ -76,6 +77,7 @@ class StoredChunks {
   FileSystem* files_;
   std::vector<File> parts_;
   std::vector<StoredChunk> chunks_;
+  std::uint64_t bytes_ = 0;
   mutable std::mutex mutex_;
   mutable std::vector<std::optional<InputFile>> open_files_;  // by part
   mutable std::list<Cached> cache_;                           // used last first
@@ -98,14 +100,15 @@ class MessagePass {
   using Take = std::function<Result<void>(const ChunkMessage&)>;
   /// Hands on the messages of the next chunk that has any; false behind the last one.
   Result<bool> next_chunk(const Take& take);
-  /// Chunks that lie behind it, of how many.
-  std::size_t done() const { return next_; }
-  std::size_t all() const { return chunks_->size(); }
+  /// Bytes of the chunks that it has passed, and of all chunks.
+  std::uint64_t done() const { return done_; }
+  std::uint64_t all() const { return chunks_->bytes(); }
 
  private:
   std::shared_ptr<const StoredChunks> chunks_;
   std::vector<std::uint16_t> channels_;  // rising
   std::size_t next_ = 0;
+  std::uint64_t done_ = 0;
 };
 
 }  // namespace kinalign
