@@ -45,10 +45,22 @@ std::vector<std::string> values_of(const Field& field) {
   return {names.begin(), names.end()};
 }
 
+/// The first words of all verbs.
 std::string verb_names(const std::vector<Verb>& verbs) {
   std::vector<std::string> names;
-  names.reserve(verbs.size());
-  for (const Verb& verb : verbs) names.push_back(verb.page.name);
+  for (const Verb& verb : verbs) {
+    if (group_of(verb.page.name).empty()) names.push_back(verb.page.name);
+  }
+  for (const std::string& group : groups_of(verbs)) names.push_back(group);
+  return joined(names);
+}
+
+/// The second words of a group's verbs.
+std::string names_in(const std::string& group, const std::vector<Verb>& verbs) {
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs) {
+    if (group_of(verb.page.name) == group) names.push_back(verb.page.name.substr(group.size() + 1));
+  }
   return joined(names);
 }
 
@@ -75,25 +87,43 @@ std::string bash_script(const std::vector<Verb>& verbs) {
     cases += fmt::format("    '{} '*) [[ $word == -* ]] && words='{}' || words='{}' ;;\n",
                          page.name, joined(words), choices);
   });
+  std::string groups;
+  for (const std::string& group : groups_of(verbs)) {
+    groups += fmt::format(
+        "  if [ \"$verb\" = {0} ] && [ \"$COMP_CWORD\" -gt 1 ]; then\n"
+        "    first=2 verb=\"{0} ${{COMP_WORDS[2]}}\" words='{1}'\n  fi\n",
+        group, names_in(group, verbs));
+  }
   return fmt::format(
       "# bash completion of kinalign\n_kinalign() {{\n"
       "  local word=${{COMP_WORDS[COMP_CWORD]}} words='{} --help --version'\n"
-      "  [ \"$COMP_CWORD\" -gt 1 ] && case \"${{COMP_WORDS[1]}} ${{COMP_WORDS[COMP_CWORD-1]}}\" "
+      "  local first=1 verb=${{COMP_WORDS[1]}}\n{}"
+      "  [ \"$COMP_CWORD\" -gt \"$first\" ] && case \"$verb ${{COMP_WORDS[COMP_CWORD-1]}}\" "
       "in\n"
       "{}  esac\n"
       "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n}}\n"
       "complete -o default -F _kinalign kinalign\n",
-      verb_names(verbs), cases);
+      verb_names(verbs), groups, cases);
 }
 
 std::string zsh_script(const std::vector<Verb>& verbs) {
   std::string list;
   for (const Verb& verb : verbs) {
+    if (!group_of(verb.page.name).empty()) continue;
     list += fmt::format("    '{}:{}'\n", verb.page.name, quotable(verb.page.summary));
+  }
+  std::string groups;
+  for (const std::string& group : groups_of(verbs)) {
+    list += fmt::format("    '{}:{}'\n", group, names_in(group, verbs));
+    groups += fmt::format(
+        "  if [[ $verb == {0} ]]; then\n    if (( CURRENT == 2 )); then\n      compadd {1}\n"
+        "      return\n    fi\n    verb=\"{0} $words[2]\"\n    shift words\n    (( CURRENT-- ))\n"
+        "  fi\n",
+        group, names_in(group, verbs));
   }
   std::string cases;
   for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
-    cases += fmt::format("    {}) _arguments", page.name);
+    cases += fmt::format("    '{}') _arguments", page.name);
     for (const Field& field : fields) {
       const std::string many =
           std::holds_alternative<std::vector<std::string>*>(field.value) ? "*" : "";
@@ -115,19 +145,36 @@ std::string zsh_script(const std::vector<Verb>& verbs) {
   return fmt::format(
       "#compdef kinalign\n_kinalign() {{\n  local -a verbs=(\n{}  )\n"
       "  if (( CURRENT == 2 )); then\n    _describe verb verbs\n    return\n  fi\n"
-      "  local verb=$words[2]\n  shift words\n  (( CURRENT-- ))\n  case $verb in\n{}  esac\n}}\n"
+      "  local verb=$words[2]\n  shift words\n  (( CURRENT-- ))\n{}  case $verb in\n{}  esac\n}}\n"
       "if [ \"$funcstack[1]\" = _kinalign ]; then\n  _kinalign \"$@\"\nelse\n"
       "  compdef _kinalign kinalign\nfi\n",
-      list, cases);
+      list, groups, cases);
 }
 
 std::string fish_script(const std::vector<Verb>& verbs) {
   std::string text = "# fish completion of kinalign\n";
+  for (const std::string& group : groups_of(verbs)) {
+    text += fmt::format("complete -c kinalign -n __fish_use_subcommand -a {} -d '{}'\n", group,
+                        names_in(group, verbs));
+  }
   for_each_verb(verbs, [&](const Page& page, const Usage& usage, const Fields& fields) {
-    text += fmt::format("complete -c kinalign -n __fish_use_subcommand -a {} -d '{}'\n", page.name,
-                        quotable(page.summary));
-    const std::string within =
-        fmt::format("complete -c kinalign -n '__fish_seen_subcommand_from {}'", page.name);
+    const std::string group = group_of(page.name);
+    const std::string word = group.empty() ? page.name : page.name.substr(group.size() + 1);
+    std::string within =
+        fmt::format("complete -c kinalign -n '__fish_seen_subcommand_from {}'", word);
+    if (group.empty()) {
+      text += fmt::format("complete -c kinalign -n __fish_use_subcommand -a {} -d '{}'\n", word,
+                          quotable(page.summary));
+    } else {
+      text += fmt::format(
+          "complete -c kinalign -n '__fish_seen_subcommand_from {}; and not "
+          "__fish_seen_subcommand_from {}' -a {} -d '{}'\n",
+          group, names_in(group, verbs), word, quotable(page.summary));
+      within = fmt::format(
+          "complete -c kinalign -n '__fish_seen_subcommand_from {}; and "
+          "__fish_seen_subcommand_from {}'",
+          group, word);
+    }
     for (const Field& field : fields) {
       text += fmt::format("{} -l {}", within, flag_of(field.name).substr(2));
       const std::string values = joined(values_of(field));

@@ -34,6 +34,16 @@ std::string lines_of(const Fields& fields, const std::string& head) {
   return text;
 }
 
+/// "init, add, build": a group's verbs without its name.
+std::string words_of(const std::string& group, const std::vector<Verb>& verbs) {
+  std::string text;
+  for (const Verb& verb : verbs) {
+    if (group_of(verb.page.name) != group) continue;
+    text += (text.empty() ? "" : ", ") + verb.page.name.substr(group.size() + 1);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {
@@ -80,13 +90,30 @@ std::string usage_line(const Page& page, const Usage& usage) {
   return line + " [FLAGS]";
 }
 
+std::string group_page(const std::string& group, const std::vector<Verb>& verbs) {
+  std::string text = fmt::format("usage  kinalign {} VERB ...\n\nverbs\n", group);
+  for (const Verb& verb : verbs) {
+    if (group_of(verb.page.name) == group) text += line_of(verb.page.name, verb.page.summary);
+  }
+  return text + "\n" +
+         line_of(fmt::format("kinalign {} VERB --help", group), "a verb's page, with examples");
+}
+
 std::string overview(const std::vector<Verb>& verbs) {
   std::string text = "  kinalign align demo/recording.toml -o demo/mine.h5\n";
   const bool aligns = std::any_of(verbs.begin(), verbs.end(),
                                   [](const Verb& verb) { return verb.page.name == "align"; });
   if (!aligns) text = "  kinalign config\n";
   text += "\nAligns motion capture, Kinect v2 and IMU recordings.\n\nverbs\n";
-  for (const Verb& verb : verbs) text += line_of(verb.page.name, verb.page.summary);
+  std::string listed;  // the group in which the verb before stands
+  for (const Verb& verb : verbs) {
+    const std::string group = group_of(verb.page.name);
+    if (group.empty()) text += line_of(verb.page.name, verb.page.summary);
+    if (!group.empty() && group != listed) {
+      text += line_of(group + " ...", "verbs of its own: " + words_of(group, verbs));
+    }
+    listed = group;
+  }
   text += "\n";
   text += line_of("kinalign VERB --help", "a verb's page, with examples");
   text += line_of("kinalign --version", "the version");

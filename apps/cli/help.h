@@ -17,8 +17,10 @@ std::string wrapped(std::string_view text, std::size_t indent, std::size_t width
 /// "0.1.0"
 std::string program_version();
 
-/// The list of verbs.
+/// The list of verbs; a group of them is one line.
 std::string overview(const std::vector<Verb>& verbs);
+/// The verbs of one group: "dataset".
+std::string group_page(const std::string& group, const std::vector<Verb>& verbs);
 
 /// One verb's page; its first line is an example that works.
 std::string help_page(const Page& page, const Usage& usage);

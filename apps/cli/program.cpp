@@ -155,19 +155,38 @@ int unknown_verb(const std::vector<Verb>& verbs, const std::string& word,
   return wrong_use;
 }
 
+/// Puts the words of a verb that stands in a group together: "dataset", "build" to "dataset build".
+void join_group(const std::vector<Verb>& verbs, std::vector<std::string>& words) {
+  if (words.size() < 2) return;
+  const std::vector<std::string> groups = groups_of(verbs);
+  const bool is_group = std::find(groups.begin(), groups.end(), words.front()) != groups.end();
+  const bool is_flag = words[1].starts_with('-');
+  if (!is_group || is_flag) return;
+  words.front() += " " + words[1];
+  words.erase(words.begin() + 1);
+}
+
 }  // namespace
 
-int run_program(const std::vector<Verb>& verbs, const std::vector<std::string>& words,
+int run_program(const std::vector<Verb>& verbs, const std::vector<std::string>& given,
                 const Surroundings& surroundings) {
+  std::vector<std::string> words = given;
   if (words.empty()) return say(overview(verbs), wrong_use, surroundings);
-  std::string name = words.front();
+  if (words.front() == "--version") {
+    return say("kinalign " + program_version() + "\n", done, surroundings);
+  }
+  const auto is_help = [](const std::string& word) { return word == "--help" || word == "-h"; };
+  const bool help = is_help(words.front()) || words.front() == "help";
+  if (help && words.size() == 1) return say(overview(verbs), done, surroundings);
+  if (help) words.erase(words.begin());
+  join_group(verbs, words);
+  const std::string name = words.front();
   std::vector<std::string> rest(words.begin() + 1, words.end());
-  if (name == "--version") return say("kinalign " + program_version() + "\n", done, surroundings);
-  const bool help = name == "--help" || name == "-h" || name == "help";
-  if (help && rest.empty()) return say(overview(verbs), done, surroundings);
-  if (help) {
-    name = rest.front();
-    rest = {"--help"};
+  if (help) rest = {"--help"};
+  const std::vector<std::string> groups = groups_of(verbs);
+  if (std::find(groups.begin(), groups.end(), name) != groups.end()) {
+    const bool asked = !rest.empty() && is_help(rest.front());
+    return say(group_page(name, verbs), asked ? done : wrong_use, surroundings);
   }
   const auto verb = std::find_if(verbs.begin(), verbs.end(),
                                  [&](const Verb& one) { return one.page.name == name; });

@@ -3,6 +3,7 @@
 
 #include "apps/cli/field_text.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace kinalign {
@@ -17,6 +18,21 @@ void copy_value(const Field& from, const Field& onto) {
 }
 
 }  // namespace
+
+std::string group_of(const std::string& verb_name) {
+  const auto blank = verb_name.find(' ');
+  return blank == std::string::npos ? "" : verb_name.substr(0, blank);
+}
+
+std::vector<std::string> groups_of(const std::vector<Verb>& verbs) {
+  std::vector<std::string> groups;
+  for (const Verb& verb : verbs) {
+    const std::string group = group_of(verb.page.name);
+    if (group.empty() || std::find(groups.begin(), groups.end(), group) != groups.end()) continue;
+    groups.push_back(group);
+  }
+  return groups;
+}
 
 void describe_verb(const Verb& verb, const std::function<void(const Usage&)>& use) {
   const auto look = [&](const Usage& usage) {

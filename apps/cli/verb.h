@@ -85,7 +85,7 @@ struct Call {
 
 /// A verb as people see it.
 struct Page {
-  std::string name;                 // "align"
+  std::string name;                 // "align"; of a group of verbs "dataset build"
   std::string summary;              // one line, for the list of verbs
   std::string text;                 // what more there is to know; may be empty
   std::vector<Example> examples;    // the first one opens the help page
@@ -116,6 +116,12 @@ Verb make_verb(Page page, Usage (*describe)(Options&), Result<int> (*run)(Option
             return run(options, made);
           }};
 }
+
+/// "dataset" of "dataset build"; empty for a verb of its own.
+std::string group_of(const std::string& verb_name);
+
+/// The groups of verbs, in the order of their first verbs.
+std::vector<std::string> groups_of(const std::vector<Verb>& verbs);
 
 /// The description of a verb's options with their standard values, while `use` looks at it.
 void describe_verb(const Verb& verb, const std::function<void(const Usage&)>& use);

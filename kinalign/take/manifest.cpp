@@ -24,6 +24,16 @@ const StreamOptions& options_of(const Manifest& manifest, const std::string& str
   return defaults;
 }
 
+std::vector<std::string*> paths_in(Manifest& manifest) {
+  std::vector<std::string*> paths;
+  for (StreamOptions& stream : manifest.streams) {
+    for (StreamFile& file : stream.files) paths.push_back(&file.path);
+    if (stream.own_layout()) paths.push_back(&stream.layout);
+    if (!stream.skeleton.empty()) paths.push_back(&stream.skeleton);
+  }
+  return paths;
+}
+
 Result<void> check_stream_name(const std::string& name) {
   constexpr std::array<std::string_view, 7> taken{
       "time_ns", "seconds", "t0_ns", "report_json", "parameters_json", ".", ".."};

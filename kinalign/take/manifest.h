@@ -87,6 +87,9 @@ struct Manifest {
 /// The stream's options; the defaults where the manifest has none.
 const StreamOptions& options_of(const Manifest& manifest, const std::string& stream);
 
+/// Where it names files: those of the streams, layouts of the user's own and skeletons.
+std::vector<std::string*> paths_in(Manifest& manifest);
+
 /// Fails where a take could not have a group of that name.
 Result<void> check_stream_name(const std::string& name);
 

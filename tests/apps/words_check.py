@@ -13,15 +13,20 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import cases
 from cases import Skip, case, done_with, kinalign, main
 
-FLAG = re.compile(r"^  (?:-\w, )?(--[\w-]+)(?: ([\w|=]+))?", re.M)
+FLAG = re.compile(r"^  (?:-\w, )?(--[\w-]+)(?: ([\w|=-]+))?", re.M)
 
 
 def verbs():
-    return re.findall(r"^  ([\w-]+)  +\w", done_with(0, "help")[0].split("\nverbs\n")[1], re.M)
+    """All verbs in the order of the help page; those of a group with two words."""
+    all_of_them = []
+    for name, group in re.findall(r"^  ([\w-]+)( \.\.\.)?  +\w", done_with(0, "help")[0].split("\nverbs\n")[1], re.M):
+        listed = done_with(0, name, "--help")[0].split("\nverbs\n")[1] if group else ""
+        all_of_them += re.findall(rf"^  ({name} [\w-]+)  +\w", listed, re.M) if group else [name]
+    return all_of_them
 
 
 def page(verb):
-    return done_with(0, verb, "--help")[0]
+    return done_with(0, *verb.split(), "--help")[0]
 
 
 def flags(verb):
@@ -55,7 +60,8 @@ def the_man_page_has_every_verb_with_the_flags_of_its_help_page(folder):
     assert not re.search(r"(?<!\\)-", roff), "roff makes a hyphen of a minus sign, which nobody can type"
     text = roff.replace("\\-", "-")
     everywhere = set(re.findall(r"^\.B .*?(--[\w-]+)", sections(text, ".SH")["FLAGS OF EVERY VERB"], re.M))
-    of_verbs = {name.strip('"').split()[1]: part for name, part in sections(text, ".SS").items()}
+    of_verbs = {re.match(r"kinalign ([a-z-]+(?: [a-z-]+)?) ", name.strip('"') + " ")[1]: part
+                for name, part in sections(text, ".SS").items()}
     assert list(of_verbs) == verbs(), list(of_verbs)
     for verb, part in of_verbs.items():
         own = set(re.findall(r"^\.B (?:-\w, )?(--[\w-]+)", part, re.M))
@@ -80,13 +86,13 @@ def what_man_shows_can_be_typed_as_it_stands(folder):
 def bash_offers_the_flags_of_the_help_page_and_the_choices_that_the_program_takes(folder):
     for verb in verbs():
         taken = flags(verb)
-        every, *values = offered_by_bash(folder, (verb, "--"), *((verb, flag, "") for flag in taken))
+        every, *values = offered_by_bash(folder, (*verb.split(), "--"), *((*verb.split(), flag, "") for flag in taken))
         assert every == set(taken) | {"--help"}, (verb, every)
         for (flag, behind), offered in zip(taken.items(), values, strict=True):
             if "|" in behind:
                 assert offered == set(behind.split("|")), f"{verb} {flag}: {offered}, not {behind}"
             for word in offered if "|" in behind else ():
-                done_with(0, verb, flag, word, "--help")  # words in front of --help are judged
+                done_with(0, *verb.split(), flag, word, "--help")  # words in front of --help are judged
 
 
 @case
@@ -100,9 +106,10 @@ def what_stands_behind_a_flag_says_what_it_is(_):
 def zsh_and_fish_offer_the_same_flags(folder):
     zsh, fish = (done_with(0, "completion", shell)[0] for shell in ("zsh", "fish"))
     for verb in verbs():
-        arguments = zsh.split(f"\n    {verb}) _arguments")[1].split(";;")[0]
+        arguments = zsh.split(f"\n    '{verb}') _arguments")[1].split(";;")[0]
         assert set(re.findall(r"'\*?(--[\w-]+)\[", arguments)) == set(flags(verb)), verb
-        lines = [l for l in fish.splitlines() if f"__fish_seen_subcommand_from {verb}'" in l]
+        of_verb = "; and ".join(f"__fish_seen_subcommand_from {word}" for word in verb.split())
+        lines = [l for l in fish.splitlines() if f" '{of_verb}'" in l]
         assert {f"--{name}" for l in lines for name in re.findall(r" -l ([\w-]+)", l)} == set(flags(verb)), verb
     if shutil.which("fish"):
         (folder / "kinalign.fish").write_text(fish)
@@ -118,7 +125,7 @@ def a_word_that_is_no_choice_is_refused_with_those_of_the_help_page(folder):
         for flag, behind in flags(verb).items():
             if "|" not in behind:
                 continue
-            _, err = done_with(2, verb, flag, "neither")
+            _, err = done_with(2, *verb.split(), flag, "neither")
             *most, last = behind.split("|")
             assert err.startswith(f"kinalign {verb}: {flag}: expected {', '.join(most)} or {last}, found neither"), err
 

@@ -158,16 +158,6 @@ Result<void> keep_inputs(const std::string& out, const std::vector<std::string>&
 
 namespace {
 
-/// Where a manifest names files: the streams' own and layouts.
-std::vector<std::string*> paths_in(Manifest& manifest) {
-  std::vector<std::string*> paths;
-  for (StreamOptions& stream : manifest.streams) {
-    for (StreamFile& file : stream.files) paths.push_back(&file.path);
-    if (stream.own_layout()) paths.push_back(&stream.layout);
-  }
-  return paths;
-}
-
 /// The one spelling of a path: its folder's, without links, and the file's own name, which may be a
 /// link. A folder that is not there is only brought into order.
 std::string place_of(const std::string& path) {

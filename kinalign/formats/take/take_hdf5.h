@@ -14,6 +14,9 @@
 
 namespace kinalign {
 
+/// What takes of this program say as their software: "kinalign 0.1.0".
+std::string take_software();
+
 /// Writes one take. Nothing stands at `path` until finish() has succeeded. The same header, slabs
 /// and report give the same bytes.
 class TakeWriter {

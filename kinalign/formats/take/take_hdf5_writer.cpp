@@ -116,7 +116,7 @@ bool put_root_attributes(hid_t root, const TakeHeader& header) {
   for (const TakeGroup& group : header.groups) names.push_back(group.name);
   const int reversed = 1;
   return hdf5::put_text(root, "format", "kinalign.take/1") &&
-         hdf5::put_text(root, "software", "kinalign " KINALIGN_VERSION) &&
+         hdf5::put_text(root, "software", take_software()) &&
          hdf5::put_text(root, "subject", header.subject) &&
          hdf5::put_text(root, "action", header.action) &&
          hdf5::put_text(root, "axes", "right-handed, y up") &&
@@ -234,6 +234,8 @@ TakeWriter::TakeWriter(std::unique_ptr<State> state) : state_(std::move(state)) 
 TakeWriter::TakeWriter(TakeWriter&& other) noexcept = default;
 TakeWriter& TakeWriter::operator=(TakeWriter&& other) noexcept = default;
 TakeWriter::~TakeWriter() = default;
+
+std::string take_software() { return "kinalign " KINALIGN_VERSION; }
 
 Result<TakeWriter> TakeWriter::create(FileSystem& files, std::string path, Overwrite overwrite,
                                       const TakeHeader& header) {

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/add.h"
+
+#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/verbs.h"
+
+#include <nlohmann/json.hpp>
+
+namespace kinalign {
+
+namespace {
+
+struct Add {
+  std::vector<std::string> folder, files;
+  std::string subject, action;
+  bool copy = false;
+};
+
+Usage describe_add(Add& o) {
+  Usage usage;
+  usage.positionals = {
+      folder_word(o.folder),
+      {"FILE", "recordings, recording.toml files or takes", &o.files, 1, 1'000'000}};
+  usage.flags = {
+      {"subject", "who it is (default: as the file says)", &o.subject, 0.0, 0.0, {}, "ID"},
+      {"action", "which action it is (default: as the file says)", &o.action, 0.0, 0.0, {}, "ID"},
+      {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
+  return usage;
+}
+
+Result<int> run_add(Add& o, Call& call) {
+  const std::string folder = folder_of(o.folder);
+  FileSystem& files = call.surroundings.files;
+  const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
+  call.console.if_it_fails([folder](const Error&) -> std::vector<std::string> {
+    return {"what was added before it is in the data set; it can be said again"};
+  });
+  auto json = nlohmann::ordered_json::array();
+  for (const std::string& path : o.files) {
+    const AddRequest request{path, o.subject, o.action, o.copy};
+    const Added added =
+        KA_TRY(add_take(files, folder, catalogue, request, call.console.progress()));
+    call.console.print(harmless(path + (added.was_there ? " is there already: " : ": ") +
+                                to_string(added.name) + "\n"));
+    json.push_back(
+        {{"file", path}, {"name", to_string(added.name)}, {"was_there", added.was_there}});
+  }
+  call.console.print("see    kinalign dataset build " + harmless(folder) + "\n");
+  call.console.print_json(nlohmann::ordered_json{{"added", json}}.dump(
+      1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  return 0;
+}
+
+}  // namespace
+
+Verb dataset_add_verb() {
+  return make_verb<Add>(
+      {.name = "dataset add",
+       .summary = "take recordings, manifests or takes into a data set",
+       .text = "Each gets the next free run of its subject and action. Raw files stay where they "
+               "are; with --copy the "
+               "data set has them itself. Takes are made by `kinalign dataset build`.",
+       .examples =
+           {{"kinalign dataset add walks takes/03_S1A02_01.mcap", "what `record` wrote"},
+            {"kinalign dataset add walks demo/recording.toml --subject 01 --action S1A01 --copy",
+             "raw files of other programs, copied"}},
+       .common = {"json"}},
+      describe_add, run_add);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/build.h"
+
+#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/dataset/share.h"
+#include "apps/kinalign/verbs.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace kinalign {
+
+namespace {
+
+struct Build {
+  std::vector<std::string> folder;
+  bool all = false;
+  std::int64_t index_offset = 0;
+};
+
+Usage describe_build(Build& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.folder)};
+  usage.flags = {
+      {"all", "make every take again", &o.all},
+      {"index_offset", "added to the number of a job in a Slurm array, whose numbers are limited",
+       &o.index_offset, 0.0, 1e9}};
+  return usage;
+}
+
+std::string_view words_of(BuildReason reason) {
+  switch (reason) {
+    case BuildReason::first:
+      return "new";
+    case BuildReason::changed_parameters:
+      return "its parameters changed";
+    case BuildReason::changed_inputs:
+      return "its raw files changed";
+    case BuildReason::asked:
+      return "--all";
+    case BuildReason::no_summary:
+      return "to be summarised";
+    case BuildReason::up_to_date:
+      break;
+  }
+  return "up to date";
+}
+
+std::string counted(std::size_t count, std::string_view one) {
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+}
+
+Result<int> show_plan(const BuildPlan& plan, Call& call) {
+  auto json = nlohmann::ordered_json::array();
+  for (const BuildJob& job : plan.jobs) {
+    call.console.print(fmt::format("{}  {}\n", to_string(job.name), words_of(job.reason)));
+    json.push_back({{"name", to_string(job.name)},
+                    {"reason", words_of(job.reason)},
+                    {"bytes", job.input_bytes}});
+  }
+  call.console.print(fmt::format("{} to make, {} up to date\n", counted(plan.jobs.size(), "take"),
+                                 plan.up_to_date));
+  call.console.print_json(
+      nlohmann::ordered_json{{"to_make", json}, {"up_to_date", plan.up_to_date}}.dump());
+  return 0;
+}
+
+Result<int> run_build(Build& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string folder = folder_of(o.folder);
+  const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
+  BuildOptions options;
+  options.jobs = call.jobs;
+  options.all = o.all;
+  options.share = KA_TRY(share_of(call.surroundings.variable, o.index_offset));
+  const Progress progress = call.console.progress();
+  const BuildPlan plan = KA_TRY(plan_build(files, folder, catalogue, options, progress));
+  if (call.common.dry_run) return show_plan(plan, call);
+  std::size_t made = 0, failed = 0, flawed = 0;
+  auto json = nlohmann::ordered_json::array();
+  KA_TRY(build(files, folder, catalogue, plan.jobs, options, progress, [&](const Built& one) {
+    const std::string name = to_string(one.name);
+    if (!one.summary) {
+      ++failed;
+      call.console.print(
+          harmless(fmt::format("failed  {}: {}\n", name, to_string(one.summary.error()))));
+      json.push_back({{"name", name}, {"failed", to_string(one.summary.error())}});
+      return;
+    }
+    ++made;
+    flawed += one.summary->verdict() == "good" ? 0 : 1;
+    call.console.detail(
+        fmt::format("{}: {} frames, {}", name, one.summary->frames, one.summary->verdict()));
+    json.push_back(
+        {{"name", name}, {"frames", one.summary->frames}, {"verdict", one.summary->verdict()}});
+  }));
+  if (options.share.size == 1) KA_TRY(open_index(folder, call));
+  const std::string share =
+      options.share.size == 1
+          ? ""
+          : fmt::format(", share {} of {}", options.share.rank + 1, options.share.size);
+  call.console.print(harmless(
+      fmt::format("{}: {} made{}, {} up to date{}\n", folder, counted(made, "take"),
+                  failed > 0 ? fmt::format(", {} failed", failed) : "", plan.up_to_date, share)));
+  if (flawed > 0)
+    call.console.print(
+        fmt::format("  {} with findings; worst first: kinalign dataset list {} --verdict bad\n",
+                    counted(flawed, "take"), harmless(folder)));
+  call.console.print(fmt::format("see    kinalign dataset tables {}\n", harmless(folder)));
+  call.console.print_json(nlohmann::ordered_json{
+      {"made", made},
+      {"failed", failed},
+      {"up_to_date", plan.up_to_date},
+      {"takes", json}}.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  return failed > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+Verb dataset_build_verb() {
+  return make_verb<Build>(
+      {.name = "dataset build",
+       .summary = "align all that is new or changed in a data set",
+       .text = "A take is made again where its manifest, [align] of dataset.toml or the bytes of a "
+               "raw file changed. A "
+               "build that was stopped goes on where it was. Under Slurm or MPI each process makes "
+               "its share "
+               "(docs/formats/dataset.md).",
+       .examples = {{"kinalign dataset build walks", "with all processors"},
+                    {"kinalign dataset build walks --dry-run", "says what it would make, and why"},
+                    {"srun -n 8 kinalign dataset build walks --jobs 1",
+                     "eight processes of a cluster"}},
+       .common = {"json", "dry_run", "jobs"}},
+      describe_build, run_build);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/core/files.h"
+#include "kinalign/dataset/catalogue.h"
+#include "kinalign/dataset/take_name.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <system_error>
+
+namespace kinalign {
+
+namespace {
+
+struct Init {
+  std::vector<std::string> folder;
+  std::string template_name = "empty", name;
+};
+
+Usage describe_init(Init& o) {
+  Usage usage;
+  usage.positionals = {{"FOLDER", "the new data set, or a folder that is to be one", &o.folder}};
+  usage.flags = {{"template", "what dataset.toml begins with", &o.template_name, 0.0, 0.0,
+                  catalogue_template_names()},
+                 {"name",
+                  "what the data set is called (default: as its folder)",
+                  &o.name,
+                  0.0,
+                  0.0,
+                  {},
+                  "NAME"}};
+  return usage;
+}
+
+Result<int> run_init(Init& o, Call& call) {
+  const std::string folder = folder_of(o.folder);
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (fault) return Failure(Error{folder, 0, "a folder that can be made", fault.message()});
+  const std::string own = std::filesystem::weakly_canonical(folder, fault).filename().string();
+  const std::string path = folder + "/" + std::string(catalogue_file);
+  OutputFile out = KA_TRY(OutputFile::create(call.surroundings.files, path, Overwrite::no));
+  KA_TRY(out.write(KA_TRY(catalogue_template(o.template_name, o.name.empty() ? own : o.name))));
+  KA_TRY(out.commit());
+  call.console.print(harmless(path +
+                              ": a new data set. Say there who was recorded, doing what; then\n"
+                              "  kinalign dataset add " +
+                              folder + " TAKE.mcap ...\n"));
+  call.console.print_json(nlohmann::ordered_json{{"written", path}}.dump());
+  return 0;
+}
+
+}  // namespace
+
+Verb dataset_init_verb() {
+  return make_verb<Init>(
+      {.name = "dataset init",
+       .summary = "make a folder a data set",
+       .text = "Writes dataset.toml: the name, the licence, people by pseudonyms, classes of "
+               "actions and actions. "
+               "The template hfut-mmd has the paper's 12 people, 6 classes and 34 actions.",
+       .examples = {{"kinalign dataset init walks", "an empty one"},
+                    {"kinalign dataset init hfut --template hfut-mmd",
+                     "with the paper's catalogue"}},
+       .common = {"json"}},
+      describe_init, run_init);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/field_text.h"
+#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/core/nearest_name.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace kinalign {
+
+namespace {
+
+constexpr const char* usual_columns =
+    "name,subject,class,action,frames,seconds,kinect,imu,residual_cm,verdict";
+
+/// What both verbs have.
+struct Shown {
+  std::vector<std::string> folder;
+  std::string columns = usual_columns, sort, format = "text";
+  std::int64_t limit = 0;
+};
+
+Fields fields_of(Shown& o) {
+  return {{"columns", "comma-separated, or all", &o.columns, 0.0, 0.0, {}, "COLUMNS"},
+          {"sort",
+           "a column; with a - at its end the greatest first: frames-",
+           &o.sort,
+           0.0,
+           0.0,
+           {},
+           "COLUMN"},
+          {"limit", "rows at most; 0: all", &o.limit, 0.0, 1e12},
+          format_field(o.format)};
+}
+
+struct List {
+  Shown shown;
+  std::string subject, class_id, action, verdict;
+  std::vector<std::string> modality;
+};
+
+struct Query {
+  Shown shown;
+  std::vector<std::string> words;
+};
+
+std::vector<std::string> column_names() {
+  std::vector<std::string> names;
+  for (const TableColumn& column : DatasetIndex::columns()) names.push_back(column.key);
+  return names;
+}
+
+Result<std::string> checked_column(const std::string& name) {
+  const std::vector<std::string> known = column_names();
+  if (std::find(known.begin(), known.end(), name) != known.end()) return name;
+  Error error = unknown_name(name, "a column", known);
+  error.file = "--columns";
+  return Failure(std::move(error));
+}
+
+/// "name, frames" of "name,frames".
+Result<std::string> chosen_columns(const std::string& text) {
+  if (text == "all") return fmt::format("{}", fmt::join(column_names(), ", "));
+  std::string out;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    out += (out.empty() ? "" : ", ") + KA_TRY(checked_column(text.substr(at, comma - at)));
+    at = comma + 1;
+  }
+  return out;
+}
+
+/// The SELECT of these rows; `where`: empty for all.
+Result<std::string> select_text(const Shown& o, const std::string& where) {
+  std::string sql = "select " + KA_TRY(chosen_columns(o.columns)) + " from takes";
+  if (!where.empty()) sql += " where " + where;
+  if (!o.sort.empty()) {
+    const bool down = o.sort.ends_with('-');
+    sql += " order by " + KA_TRY(checked_column(o.sort.substr(0, o.sort.size() - (down ? 1 : 0)))) +
+           (down ? " desc" : "") + ", name";
+  } else {
+    sql += " order by name";
+  }
+  if (o.limit > 0) sql += fmt::format(" limit {}", o.limit);
+  return sql;
+}
+
+Result<int> show(const Shown& o, const std::string& sql, const std::vector<Cell>& values,
+                 Call& call) {
+  const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
+  const Table table = KA_TRY(index.select(sql, values));
+  print_table(table, o.format, "takes", call);
+  return index.findings().empty() ? 0 : 1;
+}
+
+Usage describe_list(List& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.shown.folder)};
+  usage.flags = {
+      {"subject", "takes of this person", &o.subject, 0.0, 0.0, {}, "ID"},
+      {"class", "takes of this class of actions", &o.class_id, 0.0, 0.0, {}, "ID"},
+      {"action", "takes of this action", &o.action, 0.0, 0.0, {}, "ID"},
+      {"modality",
+       "takes that have it; may be repeated",
+       &o.modality,
+       0.0,
+       0.0,
+       {"mocap", "kinect", "imu"}},
+      {"verdict", "takes of this verdict", &o.verdict, 0.0, 0.0, {"good", "usable", "bad"}}};
+  const Fields shown = fields_of(o.shown);
+  usage.flags.insert(usage.flags.end(), shown.begin(), shown.end());
+  return usage;
+}
+
+Result<int> run_list(List& o, Call& call) {
+  std::string where;
+  std::vector<Cell> values;
+  const auto want = [&](const std::string& column, const std::string& value) {
+    if (value.empty()) return;
+    where += (where.empty() ? "" : " and ") + column + " = ?";
+    values.emplace_back(value);
+  };
+  want("subject", o.subject);
+  want("class", o.class_id);
+  want("action", o.action);
+  want("verdict", o.verdict);
+  for (const std::string& modality : o.modality) {
+    where += (where.empty() ? "" : " and ") + modality + " > 0";
+  }
+  return show(o.shown, KA_TRY(select_text(o.shown, where)), values, call);
+}
+
+Usage describe_query(Query& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.shown.folder),
+                       {"CONDITION", "of SQL, or a whole SELECT", &o.words}};
+  usage.flags = fields_of(o.shown);
+  return usage;
+}
+
+bool is_select(std::string_view text) {
+  const auto begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string_view::npos) return false;
+  std::string word(text.substr(begin, 6));
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word == "select" || word.starts_with("with ");
+}
+
+Result<int> run_query(Query& o, Call& call) {
+  const std::string& words = o.words.front();
+  call.console.if_it_fails([](const Error&) -> std::vector<std::string> {
+    return {"columns of takes: " + fmt::format("{}", fmt::join(column_names(), ", ")),
+            "streams has the columns take, name, modality, columns, valid, inferred, gaps, gap_s, "
+            "interval_ms, nodes"};
+  });
+  const std::string sql =
+      is_select(words) ? words : KA_TRY(select_text(o.shown, "(" + words + ")"));
+  return show(o.shown, sql, {}, call);
+}
+
+}  // namespace
+
+Verb dataset_list_verb() {
+  return make_verb<List>(
+      {.name = "dataset list",
+       .summary = "the takes of a data set, by person, class, action, modality or verdict",
+       .text = "",
+       .examples = {{"kinalign dataset list walks", "all of them"},
+                    {"kinalign dataset list walks --class S2 --modality imu --sort frames-",
+                     "Baduanjin with nodes, the longest first"},
+                    {"kinalign dataset list walks --columns name,worst --verdict bad",
+                     "what is wrong with the bad ones"}},
+       .common = {"json"}},
+      describe_list, run_list);
+}
+
+Verb dataset_query_verb() {
+  return make_verb<Query>(
+      {.name = "dataset query",
+       .summary = "ask the index of a data set in SQL",
+       .text = "A condition on the columns of `takes`, or a whole SELECT of `takes` and `streams`. "
+               "Nothing can be "
+               "changed by it.",
+       .examples = {{"kinalign dataset query walks \"class = 'S2' and frames > 6000\"",
+                     "the takes for which that holds"},
+                    {"kinalign dataset query walks \"select subject, sum(seconds) / 60 as minutes "
+                     "from takes group by subject\" --format csv",
+                     "minutes of each person"}},
+       .common = {"json"}},
+      describe_query, run_query);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/tables.h"
+
+#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/verbs.h"
+
+#include <array>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+struct Tables {
+  std::vector<std::string> folder;
+  std::string table = "all", format = "text";
+};
+
+using Make = Result<Table> (*)(const DatasetIndex&);
+constexpr std::array<std::pair<const char*, Make>, 4> tables{{{"subjects", table_by_subject},
+                                                              {"classes", table_by_class},
+                                                              {"modalities", table_by_modalities},
+                                                              {"data_sets", table_of_data_sets}}};
+
+Usage describe_tables(Tables& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.folder)};
+  usage.flags = {{"table",
+                  "which",
+                  &o.table,
+                  0.0,
+                  0.0,
+                  {"all", "subjects", "classes", "modalities", "data_sets"}},
+                 format_field(o.format)};
+  return usage;
+}
+
+Result<int> run_tables(Tables& o, Call& call) {
+  const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
+  std::string text, json;
+  for (const auto& [name, make] : tables) {
+    if (o.table != "all" && o.table != name) continue;
+    const Table table = KA_TRY(make(index));
+    const auto format = table_format(o.format).value_or(TableFormat::text);
+    text += (text.empty() ? "" : "\n") + written(table, format);
+    json += (json.empty() ? "\"" : ", \"") + std::string(name) +
+            "\": " + written(table, TableFormat::json);
+  }
+  if (call.console.prints_json()) {
+    call.console.print_json("{" + json + "}");
+  } else {
+    call.console.put(harmless(text));
+  }
+  return index.findings().empty() ? 0 : 1;
+}
+
+}  // namespace
+
+Verb dataset_tables_verb() {
+  return make_verb<Tables>(
+      {.name = "dataset tables",
+       .summary = "the paper's tables of a data set: frames by people and by classes",
+       .text = "subjects is the paper's table 6, classes its table 7, data_sets its table 1 with "
+               "this data set in the "
+               "last row; modalities says which were recorded together.",
+       .examples = {{"kinalign dataset tables walks", "all four"},
+                    {"kinalign dataset tables walks --table classes --format latex",
+                     "for a paper"}},
+       .common = {"json"}},
+      describe_tables, run_tables);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/build.h"
+
+#include "kinalign/align/align.h"
+#include "kinalign/core/file_version.h"
+#include "kinalign/core/hash.h"
+#include "kinalign/core/parallel.h"
+#include "kinalign/dataset/scan.h"
+#include "kinalign/documents/manifest_toml.h"
+#include "kinalign/documents/report_json.h"
+#include "kinalign/formats/take/guarded.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/sources/open_recording.h"
+#include "kinalign/take/remembered_path.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_manifest = std::size_t{4} << 20;
+
+std::string place(const std::string& folder, const TakeName& name, TakeFile file) {
+  return folder + "/" + path_of(name, file);
+}
+
+std::string folder_of(const std::string& folder, const TakeName& name) {
+  return folder + "/sub-" + name.subject + "/";
+}
+
+/// Hash and length of a file as it is now.
+Result<InputFacts> facts_of(FileSystem& files, const std::string& path, const Progress& progress) {
+  InputFile file = KA_TRY(InputFile::open(files, path));
+  Sha256 hash;
+  std::uint64_t bytes = 0;
+  for (;;) {
+    const std::string_view piece = KA_TRY(file.next());
+    if (piece.empty()) return InputFacts{std::string(file_name(path)), hash.hex(), bytes};
+    hash.update(piece);
+    bytes += piece.size();
+    if (!go_on(progress, "hashing", bytes, file.size())) return Failure(interruption(path));
+  }
+}
+
+/// An input where it lies, and as the take names it.
+struct Input {
+  std::string name, path;
+};
+
+/// The files that a manifest names and, of those that a take was made of, those beside them that
+/// only the take names: the further files of a recording.
+std::vector<Input> inputs_of(Manifest manifest, const std::string& base,
+                             const std::vector<InputFacts>& known) {
+  std::vector<Input> out;
+  const auto has = [&out](const std::string& name) {
+    return std::any_of(out.begin(), out.end(), [&](const Input& one) { return one.name == name; });
+  };
+  for (const std::string* path : paths_in(manifest)) {
+    const std::string name = remembered_path(*path);
+    if (!has(name)) out.push_back({name, path_in(base, *path)});
+  }
+  const std::string beside(out.empty() ? base : kinalign::folder(out.front().path));
+  for (const InputFacts& input : known) {
+    if (!has(input.name)) out.push_back({input.name, beside + std::string(file_name(input.name))});
+  }
+  return out;
+}
+
+/// Whether each input still has the bytes that the take was made of. One that is older than the
+/// summary and as long as it was is not read.
+Result<bool> same_inputs(FileSystem& files, const std::vector<Input>& inputs,
+                         const TakeSummary& summary, std::int64_t made_ns,
+                         const Progress& progress) {
+  if (inputs.size() != summary.inputs.size()) return false;
+  for (const Input& input : inputs) {
+    const auto known =
+        std::find_if(summary.inputs.begin(), summary.inputs.end(),
+                     [&](const InputFacts& facts) { return facts.name == input.name; });
+    const auto version = version_of(input.path);
+    if (known == summary.inputs.end() || !version || version->size != known->bytes) return false;
+    if (version->changed_ns < made_ns) continue;
+    if (KA_TRY(facts_of(files, input.path, progress)).sha256 != known->sha256) return false;
+  }
+  return true;
+}
+
+/// A take of the data set, before it is known whether it has to be made.
+struct Candidate {
+  TakeName name;
+  TakeFiles files;
+  Manifest manifest;  // empty where the take came without one
+  std::vector<Input> inputs;
+  std::optional<TakeSummary> summary;
+  std::uint64_t bytes = 0;  // of the inputs, or of the take that has none
+};
+
+/// Why a take has to be made, and of how many bytes.
+class Planner {
+ public:
+  Planner(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
+          const BuildOptions& options, const Progress& progress)
+      : files_(files),
+        folder_(folder),
+        catalogue_(catalogue),
+        options_(options),
+        progress_(progress) {}
+
+  /// A take with the bytes of what it is made of.
+  Result<Candidate> look(const TakeName& name, const TakeFiles& there) const {
+    Candidate out{name, there, {}, {}, there.summary ? known(name) : std::nullopt, 0};
+    if (!there.manifest) {  // it came without raw files
+      out.bytes = size_of(place(folder_, name, TakeFile::take));
+      return out;
+    }
+    out.manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
+    out.inputs = inputs_of(out.manifest, folder_of(folder_, name),
+                           out.summary ? out.summary->inputs : std::vector<InputFacts>{});
+    for (const Input& input : out.inputs) out.bytes += size_of(input.path);
+    return out;
+  }
+
+  Result<BuildReason> judge(const Candidate& one) const {
+    if (!one.files.manifest) {
+      const bool same = one.summary && one.summary->bytes == one.bytes;
+      return same ? BuildReason::up_to_date : BuildReason::no_summary;
+    }
+    if (!one.summary || !one.files.take) return BuildReason::first;
+    if (options_.all) return BuildReason::asked;
+    if (recipe_of(one.manifest) != one.summary->recipe) return BuildReason::changed_parameters;
+    if (size_of(place(folder_, one.name, TakeFile::take)) != one.summary->bytes) {
+      return BuildReason::first;
+    }
+    const auto made = version_of(place(folder_, one.name, TakeFile::summary));
+    const bool same = KA_TRY(
+        same_inputs(files_, one.inputs, *one.summary, made ? made->changed_ns : 0, progress_));
+    return same ? BuildReason::up_to_date : BuildReason::changed_inputs;
+  }
+
+ private:
+  static std::uint64_t size_of(const std::string& path) {
+    const auto version = version_of(path);
+    return version ? version->size : 0;
+  }
+
+  std::optional<TakeSummary> known(const TakeName& name) const {
+    auto summary = read_summary(files_, folder_, name);
+    return summary ? std::optional(*std::move(summary)) : std::nullopt;
+  }
+
+  FileSystem& files_;
+  const std::string& folder_;
+  const Catalogue& catalogue_;
+  const BuildOptions& options_;
+  const Progress& progress_;
+};
+
+/// How far all jobs are together, in bytes of their inputs.
+class BuildProgress {
+ public:
+  BuildProgress(const Progress& progress, const std::vector<BuildJob>& jobs)
+      : progress_(progress), done_(jobs.size(), 0) {
+    for (const BuildJob& job : jobs) all_ += job.input_bytes;
+  }
+
+  /// For job i: the first half is reading, the second aligning.
+  Progress part(std::size_t i, std::uint64_t bytes) {
+    return [this, i, bytes](std::string_view what, std::uint64_t done, std::uint64_t total) {
+      const double share =
+          total == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(total);
+      const double half = what == "aligning" ? 0.5 + 0.5 * share : 0.5 * share;
+      return reach(i, static_cast<std::uint64_t>(half * static_cast<double>(bytes)));
+    };
+  }
+
+  /// False: the user wants no more.
+  bool reach(std::size_t i, std::uint64_t bytes) {
+    const std::lock_guard lock(mutex_);
+    sum_ += bytes - std::min(bytes, done_[i]);
+    done_[i] = std::max(bytes, done_[i]);
+    stopped_ = stopped_ || !go_on(progress_, "building", sum_, all_);
+    return !stopped_;
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  const Progress& progress_;
+  std::mutex mutex_;
+  std::vector<std::uint64_t> done_;
+  std::uint64_t sum_ = 0, all_ = 0;
+  bool stopped_ = false;
+};
+
+class Builder {
+ public:
+  Builder(FileSystem& files, const std::string& folder, const Catalogue& catalogue)
+      : files_(files), folder_(folder), catalogue_(catalogue) {}
+
+  Result<TakeSummary> make(const BuildJob& job, const Progress& progress) {
+    const Manifest manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, job.name));
+    const Recording recording = KA_TRY(
+        open_recording(files_, manifest, folder_of(folder_, job.name), {progress, 1, nullptr}));
+    const std::string path = place(folder_, job.name, TakeFile::take);
+    std::optional<TakeWriter> writer;
+    TakeHeader header;
+    TakeSink sink;
+    sink.begin = [&](const TakeHeader& of_take) -> Result<void> {
+      header = of_take;
+      const std::lock_guard lock(hdf5_);
+      writer.emplace(KA_TRY(TakeWriter::create(files_, path, Overwrite::yes, header)));
+      return {};
+    };
+    sink.rows = [&](const TakeSlab& slab) { return writer->append(slab); };
+    const AlignmentReport report = KA_TRY(align(recording, manifest, sink, progress, 1));
+    {
+      const std::lock_guard lock(hdf5_);
+      KA_TRY(writer->finish(report));
+    }
+    TakeSummary summary = KA_TRY(summary_of(header, report_json(report)));
+    summary.software = take_software();
+    return keep(job.name, std::move(summary));
+  }
+
+  /// Of a take that came as it is. In a child process: before other threads begin.
+  Result<TakeSummary> summarise(const BuildJob& job) {
+    const std::string path = place(folder_, job.name, TakeFile::take);
+    const Error blame{path, 0, "a take that HDF5 can read", ""};
+    const std::string json = KA_TRY(run_guarded(GuardLimits{}, blame, [&]() -> Result<std::string> {
+      TakeReader reader = KA_TRY(TakeReader::open(files_, path));
+      TakeSummary made = KA_TRY(summary_of(reader.header(), KA_TRY(reader.report_json())));
+      made.software = reader.software();
+      return summary_json(made);
+    }));
+    return keep(job.name, KA_TRY(parse_summary_json(json, path)));
+  }
+
+ private:
+  /// Writes the summary beside the take.
+  Result<TakeSummary> keep(const TakeName& name, TakeSummary summary) {
+    const InputFacts facts = KA_TRY(facts_of(files_, place(folder_, name, TakeFile::take), {}));
+    summary.sha256 = facts.sha256;
+    summary.bytes = facts.bytes;
+    OutputFile out =
+        KA_TRY(OutputFile::create(files_, place(folder_, name, TakeFile::summary), Overwrite::yes));
+    KA_TRY(out.write(summary_json(summary)));
+    KA_TRY(out.commit());
+    return summary;
+  }
+
+  FileSystem& files_;
+  const std::string& folder_;
+  const Catalogue& catalogue_;
+  std::mutex hdf5_;  // the library is not safe to use from several threads
+};
+
+}  // namespace
+
+Result<Manifest> take_manifest(FileSystem& files, const std::string& folder,
+                               const Catalogue& catalogue, const TakeName& name) {
+  const std::string path = place(folder, name, TakeFile::manifest);
+  Manifest manifest = KA_TRY(read_manifest(KA_TRY(read_whole(files, path, most_manifest)),
+                                           path_of(name, TakeFile::manifest), catalogue.align));
+  manifest.subject = name.subject;
+  manifest.action = name.action;
+  return manifest;
+}
+
+Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
+                             const Catalogue& catalogue, const BuildOptions& options,
+                             const Progress& progress) {
+  const Planner planner(files, folder, catalogue, options, progress);
+  std::vector<Candidate> takes;
+  for (const auto& [name, there] : KA_TRY(scan_takes(folder))) {
+    auto looked = planner.look(name, there);
+    // What is wrong with a manifest is told when its take is made: it stops no other.
+    takes.push_back(looked ? *std::move(looked) : Candidate{name, there, {}, {}, {}, 0});
+  }
+  std::stable_sort(takes.begin(), takes.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.bytes > b.bytes; });
+  std::vector<std::uint64_t> loads(options.share.size, 0);
+  BuildPlan plan;
+  std::uint64_t seen = 0;
+  for (const Candidate& one : takes) {
+    const auto least = std::min_element(loads.begin(), loads.end());
+    *least += one.bytes + 1;
+    if (static_cast<std::size_t>(least - loads.begin()) != options.share.rank) continue;
+    const BuildReason reason = KA_TRY(planner.judge(one));
+    if (!go_on(progress, "comparing", ++seen, takes.size())) return Failure(interruption());
+    if (reason == BuildReason::up_to_date) {
+      ++plan.up_to_date;
+    } else {
+      plan.jobs.push_back({one.name, one.bytes, reason});
+    }
+  }
+  return plan;
+}
+
+Result<void> build(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
+                   const std::vector<BuildJob>& jobs, const BuildOptions& options,
+                   const Progress& progress, const std::function<void(const Built&)>& done) {
+  Builder builder(files, folder, catalogue);
+  BuildProgress all(progress, jobs);
+  for (std::size_t i = 0; i < jobs.size() && !all.stopped(); ++i) {
+    if (jobs[i].reason != BuildReason::no_summary) continue;
+    done({jobs[i].name, builder.summarise(jobs[i])});
+    all.reach(i, jobs[i].input_bytes);
+  }
+  std::mutex telling;
+  parallel_for(jobs.size(), options.jobs, [&](std::size_t i) {
+    if (all.stopped() || jobs[i].reason == BuildReason::no_summary) return;
+    Built built{jobs[i].name, builder.make(jobs[i], all.part(i, jobs[i].input_bytes))};
+    all.reach(i, jobs[i].input_bytes);
+    if (!built.summary && is_interruption(built.summary.error())) return;
+    const std::lock_guard lock(telling);
+    done(built);
+  });
+  return all.stopped() ? Failure(interruption()) : Result<void>{};
+}
+
+}  // namespace kinalign

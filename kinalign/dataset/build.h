@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes out of raw files: each manifest of a data set is aligned into the take beside it, unless
+// that take was made of the same bytes with the same parameters already.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/dataset/catalogue.h"
+#include "kinalign/dataset/take_name.h"
+#include "kinalign/dataset/take_summary.h"
+#include "kinalign/take/report.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// A share of the work: this process is one of `size`, from 0.
+struct BuildShare {
+  std::size_t rank = 0, size = 1;
+};
+
+struct BuildOptions {
+  std::size_t jobs = 1;  // takes at once
+  BuildShare share;
+  bool all = false;  // also those that are up to date
+};
+
+enum class BuildReason { up_to_date, first, changed_parameters, changed_inputs, asked, no_summary };
+
+struct BuildJob {
+  TakeName name;
+  std::uint64_t input_bytes = 0;
+  BuildReason reason = BuildReason::first;
+};
+
+/// What a share has to do, longest first.
+struct BuildPlan {
+  std::vector<BuildJob> jobs;
+  std::uint64_t up_to_date = 0;  // takes of the share
+};
+
+struct Built {
+  TakeName name;
+  Result<TakeSummary> summary;
+};
+
+/// Divides all takes among the shares, longest first, each to the share that has the least so far:
+/// the same in every process. Those of the own share are compared with their manifests: by the
+/// parameters, and by the inputs, whose bytes are hashed only where one is newer than the summary.
+Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
+                             const Catalogue& catalogue, const BuildOptions& options,
+                             const Progress& progress);
+
+/// Makes takes and their summaries; each file appears as a whole. `done` is called after each, from
+/// one thread at a time; a take that fails stops no other. Fails where the user stops it.
+Result<void> build(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
+                   const std::vector<BuildJob>& jobs, const BuildOptions& options,
+                   const Progress& progress, const std::function<void(const Built&)>& done);
+
+/// The manifest of a take as it is aligned: with what dataset.toml says of [align], and with the
+/// subject and the action of the take's name.
+Result<Manifest> take_manifest(FileSystem& files, const std::string& folder,
+                               const Catalogue& catalogue, const TakeName& name);
+
+}  // namespace kinalign

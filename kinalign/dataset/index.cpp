@@ -1,0 +1,465 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/index.h"
+
+#include "kinalign/core/file_version.h"
+#include "kinalign/dataset/scan.h"
+#include "kinalign/dataset/sqlite.h"
+#include "kinalign/dataset/take_summary.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <system_error>
+
+namespace kinalign {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_toml = std::size_t{16} << 20;
+/// A change that follows within this time may leave a folder's date as it was.
+constexpr std::int64_t racy_ns = 2'000'000'000;
+
+/// Raised with every change of the tables: an index of another number is made anew.
+constexpr std::int64_t layout = 1;
+
+/// What is not of `take` stands in the view as a query of its own: SQLite asks for it only where a
+/// statement uses the column, while it goes through every join of a sum.
+constexpr const char* make_tables = R"(
+create table catalogue(version text not null);
+create table folder(path text primary key, changed_ns integer not null);
+create table subject(id text primary key, sex text, height_cm real, weight_kg real, handedness text);
+create table class(id text primary key, name text);
+create table action(id text primary key, class text, name text);
+create table take(
+  id integer primary key, name text not null unique, subject text not null, class text,
+  action text not null, run integer not null, frames integer not null, seconds real,
+  rate_hz real, mocap integer not null, kinect integer not null, imu integer not null,
+  verdict text not null, errors integer, warnings integer, residual_cm real, kinect_valid real,
+  imu_valid real, inferred real, gap_s real, kinect_ms real, imu_ms real, begin_ns integer,
+  bytes integer);
+create table detail(id integer primary key, folder text not null, changed_ns integer, size integer,
+  worst text, software text, recipe text, sha256 text);
+create table stream(take integer not null, name text, modality text, columns integer, valid real,
+  inferred real, gaps integer, gap_s real, interval_ms real, nodes text);
+create index take_by_action on take(subject, class, action);
+create index take_by_subject on take(subject, frames, mocap, kinect, imu);
+create index take_by_class on take(class, frames, mocap, kinect, imu);
+create index take_by_verdict on take(verdict, frames);
+create index stream_by_take on stream(take);
+create view takes as select name, subject, (select sex from subject where id = take.subject) as sex,
+  (select height_cm from subject where id = take.subject) as height_cm, class,
+  (select name from class where id = take.class) as class_name, action,
+  (select name from action where id = take.action) as action_name, run, frames, seconds, rate_hz,
+  mocap, kinect, imu, verdict, errors, warnings, residual_cm, kinect_valid, imu_valid, inferred,
+  gap_s, kinect_ms, imu_ms, begin_ns, bytes,
+  (select weight_kg from subject where id = take.subject) as weight_kg,
+  (select handedness from subject where id = take.subject) as handedness,
+  (select worst from detail where id = take.id) as worst,
+  (select software from detail where id = take.id) as software,
+  (select recipe from detail where id = take.id) as recipe,
+  (select sha256 from detail where id = take.id) as sha256 from take;
+create view streams as select take.name as take, stream.name, modality, columns, valid,
+  stream.inferred, gaps, stream.gap_s, interval_ms, nodes from stream join take on take.id = stream.take;
+)";
+
+std::int64_t now_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::int64_t whole(std::uint64_t value) { return static_cast<std::int64_t>(value); }
+
+Cell maybe(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
+
+/// When the entries of a folder last changed; -1 where it is not there.
+std::int64_t changed_ns(const std::string& folder) {
+  struct stat facts {};
+  if (::stat(folder.c_str(), &facts) != 0) return -1;
+  return facts.st_mtim.tv_sec * 1'000'000'000 + facts.st_mtim.tv_nsec;
+}
+
+/// What all streams of one modality have together, for a column of `takes`.
+template <class Value, class Fold>
+std::optional<double> over(const TakeSummary& take, Modality modality, Value value, Fold fold) {
+  std::optional<double> out;
+  for (const StreamSummary& stream : take.streams) {
+    if (stream.modality != modality) continue;
+    const std::optional<double> one = value(stream);
+    if (one) out = out ? fold(*out, *one) : *one;
+  }
+  return out;
+}
+
+std::optional<double> least_valid(const TakeSummary& take, Modality modality) {
+  return over(
+      take, modality, [](const StreamSummary& s) { return std::optional(s.valid); },
+      [](double a, double b) { return std::min(a, b); });
+}
+
+std::optional<double> widest_ms(const TakeSummary& take, Modality modality) {
+  return over(
+      take, modality,
+      [](const StreamSummary& s) {
+        return s.interval_ns ? std::optional(1e-6 * static_cast<double>(*s.interval_ns))
+                             : std::nullopt;
+      },
+      [](double a, double b) { return std::max(a, b); });
+}
+
+std::vector<Cell> take_cells(std::int64_t id, const TakeName& name, const TakeSummary& take,
+                             const Catalogue& catalogue) {
+  const Action* action = find_action(catalogue, name.action);
+  const auto frames_of = [&](Modality modality) {
+    return take.has(modality) ? whole(take.frames) : std::int64_t{0};
+  };
+  double gap_s = 0.0, inferred = 0.0;
+  for (const StreamSummary& stream : take.streams) {
+    gap_s += stream.gap_s;
+    inferred = std::max(inferred, stream.inferred);
+  }
+  return {id,
+          to_string(name),
+          name.subject,
+          action == nullptr ? Cell() : Cell(action->class_id),
+          name.action,
+          std::int64_t{name.run},
+          whole(take.frames),
+          take.seconds(),
+          take.rate_hz,
+          frames_of(Modality::mocap),
+          frames_of(Modality::kinect),
+          frames_of(Modality::imu),
+          std::string(take.verdict()),
+          whole(take.errors),
+          whole(take.warnings),
+          take.residual_m ? Cell(100.0 * *take.residual_m) : Cell(),
+          maybe(least_valid(take, Modality::kinect)),
+          maybe(least_valid(take, Modality::imu)),
+          inferred,
+          gap_s,
+          maybe(widest_ms(take, Modality::kinect)),
+          maybe(widest_ms(take, Modality::imu)),
+          take.begin_ns,
+          whole(take.bytes)};
+}
+
+std::string places(std::size_t count) {
+  std::string text = "?";
+  for (std::size_t i = 1; i < count; ++i) text += ",?";
+  return text;
+}
+
+/// A summary's file as the index remembers it.
+struct Known {
+  std::int64_t id = 0, changed_ns = 0, size = 0;
+};
+
+struct FolderChanges {
+  std::set<std::string> changed, gone;
+};
+
+struct Found {
+  TakeName name;
+  std::int64_t changed_ns = 0, size = 0;
+};
+
+}  // namespace
+
+Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder) {
+  const std::string path = folder + "/" + std::string(catalogue_file);
+  if (!fs::exists(folder)) return Failure(Error{folder, 0, "the folder of a data set", "none"});
+  if (!fs::exists(path)) {
+    return Failure(Error{folder, 0, "the folder of a data set, with a dataset.toml in it",
+                         "none; kinalign dataset init makes one"});
+  }
+  return read_catalogue(KA_TRY(read_whole(files, path, most_toml)), path);
+}
+
+struct DatasetIndex::State {
+  FileSystem* files = nullptr;
+  std::string folder;
+  Catalogue catalogue;
+  Findings findings;
+  sqlite::Database database;
+
+  Result<void> make(bool in_memory);
+  Result<bool> has_tables() const;
+  Result<void> refresh();
+  std::string catalogue_version() const;
+  Result<bool> has_catalogue() const;
+  Result<void> refresh_catalogue();
+  Result<FolderChanges> folder_changes() const;
+  Result<void> refresh_folder(const std::string& name);
+  Result<void> forget_folder(const std::string& name);
+  Result<void> put(const Found& found, const TakeSummary& take);
+  Result<std::map<std::string, Known>> known_in(const std::string& name) const;
+};
+
+Result<bool> DatasetIndex::State::has_tables() const {
+  auto version = KA_TRY(database.prepare("pragma user_version"));
+  return KA_TRY(version.step()) && std::get<std::int64_t>(version.at(0)) == layout;
+}
+
+/// Opens the index, and makes its tables where they are not those of this program.
+Result<void> DatasetIndex::State::make(bool in_memory) {
+  const std::string path = in_memory ? ":memory:" : folder + "/" + std::string(index_file);
+  std::error_code fault;
+  if (!in_memory) fs::create_directory(folder + "/" + std::string(cache_folder), fault);
+  database = KA_TRY(sqlite::Database::open(
+      path, in_memory ? sqlite::Access::in_memory : sqlite::Access::read_write));
+  if (!in_memory) {
+    KA_TRY(database.run(
+        "pragma journal_mode=wal; pragma synchronous=normal; pragma mmap_size=1073741824;"));
+  }
+  if (KA_TRY(has_tables())) return {};
+  KA_TRY(database.run("begin immediate"));
+  if (!KA_TRY(has_tables())) {  // another process may have made them meanwhile
+    auto old = KA_TRY(database.prepare("select count(*) from sqlite_master"));
+    const bool is_other = KA_TRY(old.step()) && std::get<std::int64_t>(old.at(0)) > 0;
+    if (is_other) return Failure(Error{path, 0, "an index of this version", "another one"});
+    KA_TRY(database.run(make_tables));
+    KA_TRY(database.run(fmt::format("pragma user_version={}", layout)));
+  }
+  return database.run("commit");
+}
+
+Result<std::map<std::string, Known>> DatasetIndex::State::known_in(const std::string& name) const {
+  auto rows =
+      KA_TRY(database.prepare("select take.name, take.id, changed_ns, size from detail join take "
+                              "using(id) where folder = ?"));
+  KA_TRY(rows.bind({name}));
+  std::map<std::string, Known> out;
+  while (KA_TRY(rows.step())) {
+    out[std::get<std::string>(rows.at(0))] = {std::get<std::int64_t>(rows.at(1)),
+                                              std::get<std::int64_t>(rows.at(2)),
+                                              std::get<std::int64_t>(rows.at(3))};
+  }
+  return out;
+}
+
+Result<void> DatasetIndex::State::put(const Found& found, const TakeSummary& take) {
+  auto next = KA_TRY(database.prepare("select coalesce(max(id), 0) + 1 from take"));
+  KA_TRY(next.step());
+  const auto id = std::get<std::int64_t>(next.at(0));
+  const std::vector<Cell> cells = take_cells(id, found.name, take, catalogue);
+  KA_TRY(
+      KA_TRY(database.prepare("insert into take values(" + places(cells.size()) + ")")).run(cells));
+  KA_TRY(KA_TRY(database.prepare("insert into detail values(?,?,?,?,?,?,?,?)"))
+             .run({id, "sub-" + found.name.subject, found.changed_ns, found.size, take.worst,
+                   take.software, take.recipe, take.sha256}));
+  auto add = KA_TRY(database.prepare("insert into stream values(?,?,?,?,?,?,?,?,?,?)"));
+  for (const StreamSummary& stream : take.streams) {
+    const auto modality = modality_names[static_cast<std::size_t>(stream.modality)];
+    KA_TRY(add.run(
+        {id, stream.name, std::string(modality), whole(stream.columns), stream.valid,
+         stream.inferred, whole(stream.gaps), stream.gap_s,
+         stream.interval_ns ? Cell(1e-6 * static_cast<double>(*stream.interval_ns)) : Cell(),
+         fmt::format("{}", fmt::join(stream.nodes, " "))}));
+  }
+  return {};
+}
+
+Result<void> DatasetIndex::State::forget_folder(const std::string& name) {
+  for (const char* sql :
+       {"delete from stream where take in (select id from detail where folder = ?)",
+        "delete from take where id in (select id from detail where folder = ?)",
+        "delete from detail where folder = ?", "delete from folder where path = ?"}) {
+    KA_TRY(KA_TRY(database.prepare(sql)).run({name}));
+  }
+  return {};
+}
+
+Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
+  const std::int64_t began = now_ns();
+  const std::int64_t changed = changed_ns(folder + "/" + name);
+  std::map<std::string, Known> known = KA_TRY(known_in(name));
+  auto drop = KA_TRY(database.prepare("delete from take where id = ?"));
+  auto drop_detail = KA_TRY(database.prepare("delete from detail where id = ?"));
+  auto drop_streams = KA_TRY(database.prepare("delete from stream where take = ?"));
+  const auto forget = [&](const Known& one) -> Result<void> {
+    KA_TRY(drop.run({one.id}));
+    KA_TRY(drop_detail.run({one.id}));
+    return drop_streams.run({one.id});
+  };
+  std::error_code fault;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder + "/" + name, fault)) {
+    const std::string path = name + "/" + entry.path().filename().string();
+    const auto parsed = parse_take_path(path);
+    if (!parsed || parsed->second != TakeFile::summary) continue;
+    const auto version = version_of(entry.path().string());
+    if (!version) continue;
+    const auto old = known.find(to_string(parsed->first));
+    if (old != known.end() && old->second.changed_ns == version->changed_ns &&
+        old->second.size == whole(version->size)) {
+      known.erase(old);
+      continue;
+    }
+    if (old != known.end()) {
+      KA_TRY(forget(old->second));
+      known.erase(old);
+    }
+    const auto take = read_summary(*files, folder, parsed->first);
+    if (take) {
+      KA_TRY(put({parsed->first, version->changed_ns, whole(version->size)}, *take));
+    } else {
+      findings.push_back({Severity::error, take.error(), "the take is in no list",
+                          "kinalign dataset build makes it again"});
+    }
+  }
+  for (const auto& [gone, one] : known) KA_TRY(forget(one));
+  const bool settled = findings.empty() && changed < began - racy_ns;
+  return KA_TRY(database.prepare("insert or replace into folder values(?,?)"))
+      .run({name, settled ? changed : std::int64_t{0}});
+}
+
+/// Which dataset.toml the index has.
+std::string DatasetIndex::State::catalogue_version() const {
+  const auto version = version_of(folder + "/" + std::string(catalogue_file));
+  if (!version) return "";
+  return fmt::format("{} {} {}", version->number, version->size, version->changed_ns);
+}
+
+Result<bool> DatasetIndex::State::has_catalogue() const {
+  auto known = KA_TRY(database.prepare("select version from catalogue"));
+  return KA_TRY(known.step()) && std::get<std::string>(known.at(0)) == catalogue_version();
+}
+
+Result<void> DatasetIndex::State::refresh_catalogue() {
+  KA_TRY(database.run(
+      "delete from catalogue; delete from subject; delete from class; delete from action;"));
+  auto subject = KA_TRY(database.prepare("insert into subject values(?,?,?,?,?)"));
+  for (const Subject& s : catalogue.subjects) {
+    KA_TRY(subject.run({s.id, s.sex, maybe(s.height_cm), maybe(s.weight_kg), s.handedness}));
+  }
+  auto one_class = KA_TRY(database.prepare("insert into class values(?,?)"));
+  for (const ActionClass& c : catalogue.classes) KA_TRY(one_class.run({c.id, c.name}));
+  auto action = KA_TRY(database.prepare("insert into action values(?,?,?)"));
+  for (const Action& a : catalogue.actions) KA_TRY(action.run({a.id, a.class_id, a.name}));
+  KA_TRY(database.run("update take set class = (select class from action where id = take.action)"));
+  return KA_TRY(database.prepare("insert into catalogue values(?)")).run({catalogue_version()});
+}
+
+/// Folders whose entries have changed since they were read, and those that have gone.
+Result<FolderChanges> DatasetIndex::State::folder_changes() const {
+  FolderChanges out;
+  std::map<std::string, std::int64_t> known;
+  auto rows = KA_TRY(database.prepare("select path, changed_ns from folder"));
+  while (KA_TRY(rows.step())) {
+    known[std::get<std::string>(rows.at(0))] = std::get<std::int64_t>(rows.at(1));
+  }
+  std::error_code fault;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("sub-") || !is_label(name.substr(4)) || !entry.is_directory()) continue;
+    const auto old = known.find(name);
+    const bool same = old != known.end() && old->second == changed_ns(entry.path().string());
+    if (!same) out.changed.insert(name);
+    if (old != known.end()) known.erase(old);
+  }
+  for (const auto& [name, when] : known) out.gone.insert(name);
+  return out;
+}
+
+Result<void> DatasetIndex::State::refresh() {
+  const FolderChanges folders = KA_TRY(folder_changes());
+  const bool same_catalogue = KA_TRY(has_catalogue());
+  if (same_catalogue && folders.changed.empty() && folders.gone.empty()) return {};
+  KA_TRY(database.run("begin immediate"));
+  if (!same_catalogue) KA_TRY(refresh_catalogue());
+  for (const std::string& name : folders.gone) KA_TRY(forget_folder(name));
+  for (const std::string& name : folders.changed) KA_TRY(refresh_folder(name));
+  return database.run("commit");
+}
+
+DatasetIndex::DatasetIndex(std::unique_ptr<State> state) : state_(std::move(state)) {}
+DatasetIndex::DatasetIndex(DatasetIndex&&) noexcept = default;
+DatasetIndex& DatasetIndex::operator=(DatasetIndex&&) noexcept = default;
+DatasetIndex::~DatasetIndex() = default;
+
+Result<DatasetIndex> DatasetIndex::open(FileSystem& files, const std::string& folder) {
+  Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
+  const std::string path = folder + "/" + std::string(index_file);
+  Result<void> done;
+  // As it is; made anew, since it is only a cache; in memory, where nothing can be written.
+  for (const int attempt : {0, 1, 2}) {
+    auto state = std::make_unique<State>();
+    state->files = &files;
+    state->folder = folder;
+    state->catalogue = catalogue;
+    if (attempt == 1) {
+      for (const char* ending : {"", "-wal", "-shm"}) files.remove((path + ending).c_str());
+    }
+    done = state->make(attempt == 2);
+    if (done) done = state->refresh();
+    if (done) return DatasetIndex(std::move(state));
+  }
+  return Failure(done.error());
+}
+
+const Catalogue& DatasetIndex::catalogue() const { return state_->catalogue; }
+const Findings& DatasetIndex::findings() const { return state_->findings; }
+
+const std::vector<TableColumn>& DatasetIndex::columns() {
+  static const std::vector<TableColumn> all{{"name", "take"},
+                                            {"subject", "subject"},
+                                            {"sex", "sex"},
+                                            {"height_cm", "height, cm"},
+                                            {"class", "class"},
+                                            {"class_name", "class"},
+                                            {"action", "action"},
+                                            {"action_name", "action"},
+                                            {"run", "run"},
+                                            {"frames", "frames"},
+                                            {"seconds", "s", 1},
+                                            {"rate_hz", "Hz", 1},
+                                            {"mocap", "mocap"},
+                                            {"kinect", "Kinect"},
+                                            {"imu", "IMU"},
+                                            {"verdict", "verdict"},
+                                            {"errors", "errors"},
+                                            {"warnings", "warnings"},
+                                            {"residual_cm", "residual, cm", 1},
+                                            {"kinect_valid", "Kinect valid", 3},
+                                            {"imu_valid", "IMU valid", 3},
+                                            {"inferred", "inferred", 3},
+                                            {"gap_s", "gaps, s", 2},
+                                            {"kinect_ms", "Kinect ± ms", 1},
+                                            {"imu_ms", "IMU ± ms", 1},
+                                            {"begin_ns", "begin, ns"},
+                                            {"bytes", "bytes"},
+                                            {"weight_kg", "weight, kg", 1},
+                                            {"handedness", "hand"},
+                                            {"worst", "worst finding"},
+                                            {"software", "software"},
+                                            {"recipe", "recipe"},
+                                            {"sha256", "SHA-256"}};
+  return all;
+}
+
+Result<Table> DatasetIndex::select(const std::string& sql, const std::vector<Cell>& values) const {
+  auto rows = KA_TRY(state_->database.prepare_reading(sql));
+  KA_TRY(rows.bind(values));
+  Table out;
+  for (std::size_t c = 0; c < rows.columns(); ++c) {
+    const std::string name = rows.column_name(c);
+    const auto known = std::find_if(columns().begin(), columns().end(),
+                                    [&](const TableColumn& one) { return one.key == name; });
+    out.columns.push_back(known == columns().end() ? TableColumn{name, name, 3} : *known);
+  }
+  while (KA_TRY(rows.step())) {
+    auto& row = out.rows.emplace_back();
+    for (std::size_t c = 0; c < rows.columns(); ++c) row.push_back(rows.at(c));
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// SQLite's C interface with owners and errors (sqlite.org/c3ref/intro.html).
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/view/table.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace kinalign::sqlite {
+
+class Database;
+
+/// One statement, run as often as wanted.
+class Statement {
+ public:
+  /// Values for its '?', in their order.
+  Result<void> bind(const std::vector<Cell>& values);
+  /// The next row; false behind the last, and then it can be bound anew.
+  Result<bool> step();
+  /// Steps once through a statement that gives no row.
+  Result<void> run(const std::vector<Cell>& values);
+
+  std::size_t columns() const;
+  std::string column_name(std::size_t column) const;
+  Cell at(std::size_t column) const;
+
+ private:
+  friend class Database;
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  sqlite3* database_ = nullptr;
+};
+
+enum class Access { read_write, in_memory };
+
+class Database {
+ public:
+  /// Waits up to ten seconds where another process writes.
+  static Result<Database> open(const std::string& path, Access access);
+
+  Result<void> run(const std::string& sql);  // any number of statements
+  Result<Statement> prepare(const std::string& sql) const;
+  /// As prepare(), but fails for all that is not reading.
+  Result<Statement> prepare_reading(const std::string& sql) const;
+
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const;
+  };
+  std::unique_ptr<sqlite3, Close> database_;
+  std::string path_;
+};
+
+}  // namespace kinalign::sqlite

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/take_summary.h"
+
+#include "kinalign/core/hash.h"
+#include "kinalign/documents/parameters_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <map>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view schema = "kinalign.take_summary/1";
+
+struct StreamOf {
+  StreamSummary operator()(const ClipGroup& group) const {
+    return stream(Modality::mocap, group.skeleton.joints());
+  }
+  StreamSummary operator()(const PointGroup& group) const {
+    return stream(Modality::kinect, group.joint_names.size());
+  }
+  StreamSummary operator()(const ImuGroup& group) const {
+    StreamSummary out = stream(Modality::imu, group.node_names.size());
+    out.nodes = group.node_names;
+    return out;
+  }
+  static StreamSummary stream(Modality modality, std::size_t columns) {
+    StreamSummary out;
+    out.modality = modality;
+    out.columns = columns;
+    return out;
+  }
+};
+
+/// Sums over the reports of a group: each stream of nodes has one of its own.
+struct Sums {
+  std::uint64_t samples = 0, invalid = 0, inferred = 0;
+};
+
+/// Adds what a stream's report says to its group.
+void add_report(const Json& report, StreamSummary& stream, Sums& sums) {
+  sums.samples += report.at("samples").get<std::uint64_t>();
+  sums.invalid += report.at("invalid").get<std::uint64_t>();
+  sums.inferred += report.at("inferred").get<std::uint64_t>();
+  stream.gaps += report.at("gaps").get<std::uint64_t>();
+  stream.gap_s += 1e-9 * report.at("gap_time_ns").get<double>();
+  if (report.contains("worst_interval_ns")) {
+    const auto widest = report["worst_interval_ns"].get<std::int64_t>();
+    stream.interval_ns = std::max(stream.interval_ns.value_or(0), widest);
+  }
+}
+
+void add_streams(const Json& report, TakeSummary& out) {
+  std::map<std::string, Sums> sums;
+  for (const Json& one : report.at("streams")) {
+    const auto name = one.at("stream").get<std::string>();
+    const auto stream = std::find_if(out.streams.begin(), out.streams.end(),
+                                     [&](const StreamSummary& s) { return s.name == name; });
+    if (stream != out.streams.end()) add_report(one, *stream, sums[name]);
+  }
+  for (StreamSummary& stream : out.streams) {
+    const Sums& of = sums[stream.name];
+    if (of.samples == 0) continue;  // the reference, which is not resampled
+    const auto all = static_cast<double>(of.samples);
+    stream.valid = 1.0 - static_cast<double>(of.invalid) / all;
+    stream.inferred = static_cast<double>(of.inferred) / all;
+  }
+}
+
+void add_findings(const Json& report, TakeSummary& out) {
+  for (const Json& finding : report.at("findings")) {
+    const auto severity = finding.at("severity").get<std::string>();
+    out.errors += severity == "error" ? 1 : 0;
+    out.warnings += severity == "warning" ? 1 : 0;
+    if (!out.worst.empty() || severity == "note") continue;  // worst first
+    out.worst = "expected " + finding.at("expected").get<std::string>() + ", found " +
+                finding.at("found").get<std::string>();
+  }
+}
+
+void add_residual(const Json& report, TakeSummary& out) {
+  for (const Json& space : report.at("spaces")) {
+    out.residual_m = std::max(out.residual_m.value_or(0.0), space.at("after_m").get<double>());
+  }
+}
+
+Json stream_json(const StreamSummary& stream) {
+  Json out = {{"name", stream.name},
+              {"modality", modality_names[static_cast<std::size_t>(stream.modality)]},
+              {"columns", stream.columns},
+              {"valid", stream.valid},
+              {"inferred", stream.inferred},
+              {"gaps", stream.gaps},
+              {"gap_s", stream.gap_s}};
+  if (stream.interval_ns) out["interval_ns"] = *stream.interval_ns;
+  if (!stream.nodes.empty()) out["nodes"] = stream.nodes;
+  return out;
+}
+
+StreamSummary stream_from(const Json& json) {
+  StreamSummary out;
+  out.name = json.at("name").get<std::string>();
+  const auto modality = json.at("modality").get<std::string>();
+  const auto* const found = std::find(modality_names.begin(), modality_names.end(), modality);
+  out.modality =
+      static_cast<Modality>(found == modality_names.end() ? 0 : found - modality_names.begin());
+  out.columns = json.at("columns").get<std::uint64_t>();
+  out.valid = json.at("valid").get<double>();
+  out.inferred = json.at("inferred").get<double>();
+  out.gaps = json.at("gaps").get<std::uint64_t>();
+  out.gap_s = json.at("gap_s").get<double>();
+  if (json.contains("interval_ns")) out.interval_ns = json["interval_ns"].get<std::int64_t>();
+  if (json.contains("nodes")) out.nodes = json["nodes"].get<std::vector<std::string>>();
+  return out;
+}
+
+TakeSummary summary_from(const Json& json) {
+  TakeSummary out;
+  out.subject = json.at("subject").get<std::string>();
+  out.action = json.at("action").get<std::string>();
+  out.frames = json.at("frames").get<std::uint64_t>();
+  out.rate_hz = json.at("rate_hz").get<double>();
+  out.begin_ns = json.at("begin_ns").get<std::int64_t>();
+  out.end_ns = json.at("end_ns").get<std::int64_t>();
+  if (json.contains("residual_m")) out.residual_m = json["residual_m"].get<double>();
+  out.errors = json.at("errors").get<std::uint64_t>();
+  out.warnings = json.at("warnings").get<std::uint64_t>();
+  out.worst = json.at("worst").get<std::string>();
+  out.software = json.at("software").get<std::string>();
+  out.recipe = json.at("recipe").get<std::string>();
+  out.sha256 = json.at("sha256").get<std::string>();
+  out.bytes = json.at("bytes").get<std::uint64_t>();
+  for (const Json& stream : json.at("streams")) out.streams.push_back(stream_from(stream));
+  for (const Json& input : json.at("inputs")) {
+    out.inputs.push_back({input.at("name").get<std::string>(),
+                          input.at("sha256").get<std::string>(),
+                          input.at("bytes").get<std::uint64_t>()});
+  }
+  return out;
+}
+
+}  // namespace
+
+bool TakeSummary::has(Modality modality) const {
+  return std::any_of(streams.begin(), streams.end(),
+                     [modality](const StreamSummary& s) { return s.modality == modality; });
+}
+
+std::string recipe_of(const Manifest& manifest) {
+  Sha256 hash;
+  hash.update(parameters_json(without_folders(manifest)));
+  return hash.hex();
+}
+
+Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report_json) {
+  TakeSummary out;
+  out.subject = header.subject;
+  out.action = header.action;
+  out.frames = header.frames;
+  out.recipe = recipe_of(header.parameters);
+  try {
+    const Json report = Json::parse(report_json);
+    const auto reference = report.at("reference").get<std::string>();
+    out.rate_hz = report.at("rate_hz").get<double>();
+    out.begin_ns = report.at("begin_ns").get<std::int64_t>();
+    out.end_ns = report.at("end_ns").get<std::int64_t>();
+    for (const TakeGroup& group : header.groups) {
+      StreamSummary stream = std::visit(StreamOf{}, group.kind);
+      stream.name = group.name;
+      if (group.name == reference) stream.modality = Modality::mocap;
+      out.streams.push_back(std::move(stream));
+      for (const InputFacts& input : group.files) {
+        if (std::find(out.inputs.begin(), out.inputs.end(), input) == out.inputs.end()) {
+          out.inputs.push_back(input);
+        }
+      }
+    }
+    add_streams(report, out);
+    add_findings(report, out);
+    add_residual(report, out);
+  } catch (const Json::exception& fault) {
+    return Failure(Error{"", 0, "a report of the schema kinalign.report/1", fault.what()});
+  }
+  return out;
+}
+
+std::string summary_json(const TakeSummary& s) {
+  Json out = {{"schema", schema},        {"subject", s.subject},   {"action", s.action},
+              {"frames", s.frames},      {"rate_hz", s.rate_hz},   {"begin_ns", s.begin_ns},
+              {"end_ns", s.end_ns},      {"verdict", s.verdict()}, {"errors", s.errors},
+              {"warnings", s.warnings},  {"worst", s.worst},       {"streams", Json::array()},
+              {"inputs", Json::array()}, {"software", s.software}, {"recipe", s.recipe},
+              {"sha256", s.sha256},      {"bytes", s.bytes}};
+  if (s.residual_m) out["residual_m"] = *s.residual_m;
+  for (const StreamSummary& stream : s.streams) out["streams"].push_back(stream_json(stream));
+  for (const InputFacts& input : s.inputs) {
+    out["inputs"].push_back(
+        {{"name", input.name}, {"sha256", input.sha256}, {"bytes", input.bytes}});
+  }
+  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<TakeSummary> parse_summary_json(std::string_view json, const std::string& file) {
+  try {
+    const Json parsed = Json::parse(json);
+    if (parsed.at("schema").get<std::string>() != schema) {
+      return Failure(Error{file, 0, "the schema " + std::string(schema),
+                           shown(parsed["schema"].get<std::string>())});
+    }
+    return summary_from(parsed);
+  } catch (const Json::exception& fault) {
+    return Failure(
+        Error{file, 0, "a summary of a take (" + std::string(schema) + ")", shown(fault.what())});
+  }
+}
+
+}  // namespace kinalign

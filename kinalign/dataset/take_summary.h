@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is known of a take without opening it: the JSON file beside it (docs/formats/dataset.md),
+// schema kinalign.take_summary/1. Everything in it follows from the take's bytes.
+#pragma once
+
+#include "kinalign/dataset/take_name.h"
+#include "kinalign/take/take.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+/// As the paper counts its frames (tables 6 and 7).
+enum class Modality : std::uint8_t { mocap, kinect, imu };
+inline constexpr std::array<std::string_view, 3> modality_names{"mocap", "kinect", "imu"};
+
+/// A group of the take.
+struct StreamSummary {
+  std::string name;
+  Modality modality = Modality::mocap;  // the reference and skeletons; other points; nodes
+  std::uint64_t columns = 0;            // joints or nodes
+  double valid = 1.0, inferred = 0.0;   // shares of rows x columns
+  std::uint64_t gaps = 0;
+  double gap_s = 0.0;                       // sum of their lengths
+  std::optional<std::int64_t> interval_ns;  // the widest half-width; absent: nothing is known
+  std::vector<std::string> nodes;           // of nodes: where they are worn
+};
+
+struct TakeSummary {
+  std::string subject, action;  // as the take says
+  std::uint64_t frames = 0;     // rows
+  double rate_hz = 0.0;
+  std::int64_t begin_ns = 0, end_ns = 0;  // first and last row, UTC
+  std::vector<StreamSummary> streams;
+  std::optional<double> residual_m;        // of the worst stream that was moved, rms, at the end
+  std::uint64_t errors = 0, warnings = 0;  // findings
+  std::string worst;                       // the first finding of the greatest severity, in words
+  std::string software;                    // that made it: "kinalign 0.1.0"
+  std::string recipe;                      // SHA-256 of all parameters: recipe_of()
+  std::vector<InputFacts> inputs;          // in the order of the streams
+  std::string sha256;                      // of the take's file
+  std::uint64_t bytes = 0;                 // of it
+
+  /// Errors make a take bad, warnings usable, nothing good.
+  std::string_view verdict() const { return errors > 0 ? "bad" : warnings > 0 ? "usable" : "good"; }
+  double seconds() const { return rate_hz > 0.0 ? static_cast<double>(frames) / rate_hz : 0.0; }
+  bool has(Modality modality) const;
+};
+
+/// SHA-256 of what makes a take besides the bytes of its inputs.
+std::string recipe_of(const Manifest& manifest);
+
+/// `report_json`: of the take, see report_json.h. Hash, length and software are left empty.
+Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report_json);
+
+std::string summary_json(const TakeSummary& summary);
+/// Reads what summary_json() wrote; `file` appears in messages. Unknown keys are passed over.
+Result<TakeSummary> parse_summary_json(std::string_view json, const std::string& file);
+
+}  // namespace kinalign

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/view/table.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, TableFormat>, 5> formats{
+    {{"text", TableFormat::text},
+     {"markdown", TableFormat::markdown},
+     {"latex", TableFormat::latex},
+     {"csv", TableFormat::csv},
+     {"json", TableFormat::json}}};
+
+/// "2,961,581".
+std::string grouped(std::string digits) {
+  const std::size_t first = digits.starts_with('-') ? 1 : 0;
+  const std::size_t point = std::min(digits.find('.'), digits.size());
+  for (std::size_t at = point; at > first + 3;) {
+    at -= 3;
+    digits.insert(at, ",");
+  }
+  return digits;
+}
+
+std::string for_people(const Cell& cell, const TableColumn& column) {
+  if (const auto* whole = std::get_if<std::int64_t>(&cell))
+    return grouped(fmt::format("{}", *whole));
+  if (const auto* number = std::get_if<double>(&cell)) {
+    return grouped(fmt::format("{:.{}f}", *number, column.decimals));
+  }
+  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  return "–";
+}
+
+std::string replaced(std::string_view text,
+                     const std::vector<std::pair<char, std::string_view>>& by) {
+  std::string out;
+  for (const char c : text) {
+    const auto found =
+        std::find_if(by.begin(), by.end(), [c](const auto& p) { return p.first == c; });
+    if (found == by.end()) {
+      out += c;
+    } else {
+      out += found->second;
+    }
+  }
+  return out;
+}
+
+std::string for_markdown(std::string_view text) {
+  return replaced(text, {{'|', "\\|"}, {'\n', " "}, {'<', "&lt;"}, {'*', "\\*"}, {'_', "\\_"}});
+}
+
+std::string for_latex(std::string_view text) {
+  return replaced(text, {{'\\', "\\textbackslash{}"},
+                         {'&', "\\&"},
+                         {'%', "\\%"},
+                         {'$', "\\$"},
+                         {'#', "\\#"},
+                         {'_', "\\_"},
+                         {'{', "\\{"},
+                         {'}', "\\}"},
+                         {'~', "\\textasciitilde{}"},
+                         {'^', "\\textasciicircum{}"},
+                         {'\n', " "}});
+}
+
+/// Code points, which is the width on a terminal but for East Asian letters.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+/// Whether a column has numbers only, which stand at the right.
+std::vector<bool> numeric(const Table& table) {
+  std::vector<bool> out;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    bool any = false, text = false;
+    for (const auto& row : table.rows) {
+      text = text || std::holds_alternative<std::string>(row[c]);
+      any = any || !std::holds_alternative<std::monostate>(row[c]);
+    }
+    out.push_back(any && !text);
+  }
+  return out;
+}
+
+std::string text_of(const Table& table) {
+  const std::vector<bool> right = numeric(table);
+  std::vector<std::vector<std::string>> lines(1);
+  for (const TableColumn& column : table.columns) lines[0].push_back(column.title);
+  for (const auto& row : table.rows) {
+    lines.emplace_back();
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      lines.back().push_back(for_people(row[c], table.columns[c]));
+    }
+  }
+  std::vector<std::size_t> widths(table.columns.size(), 0);
+  for (const auto& line : lines) {
+    for (std::size_t c = 0; c < line.size(); ++c)
+      widths[c] = std::max(widths[c], width_of(line[c]));
+  }
+  std::string out = table.caption.empty() ? "" : table.caption + "\n";
+  for (const auto& line : lines) {
+    std::string text;
+    for (std::size_t c = 0; c < line.size(); ++c) {
+      const std::string room(widths[c] - width_of(line[c]), ' ');
+      text += (c == 0 ? "" : "  ") + (right[c] ? room + line[c] : line[c] + room);
+    }
+    out += text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+  }
+  return out;
+}
+
+std::string markdown_of(const Table& table) {
+  const std::vector<bool> right = numeric(table);
+  std::string out = table.caption.empty() ? "" : for_markdown(table.caption) + "\n\n";
+  out += "|";
+  for (const TableColumn& column : table.columns) out += " " + for_markdown(column.title) + " |";
+  out += "\n|";
+  for (std::size_t c = 0; c < table.columns.size(); ++c) out += right[c] ? " ---: |" : " --- |";
+  for (const auto& row : table.rows) {
+    out += "\n|";
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      out += " " + for_markdown(for_people(row[c], table.columns[c])) + " |";
+    }
+  }
+  return out + "\n";
+}
+
+/// A row of LaTeX's tabular.
+template <class Text>
+std::string latex_row(std::size_t columns, Text text) {
+  std::string out;
+  for (std::size_t c = 0; c < columns; ++c) out += (c == 0 ? "" : " & ") + for_latex(text(c));
+  return out + " \\\\\n";
+}
+
+std::string latex_of(const Table& table) {
+  std::string places;
+  for (const bool right : numeric(table)) places += right ? 'r' : 'l';
+  const std::size_t columns = table.columns.size();
+  std::string out = "\\begin{table}\n\\centering\n";
+  if (!table.caption.empty()) out += "\\caption{" + for_latex(table.caption) + "}\n";
+  out += "\\begin{tabular}{" + places + "}\n\\hline\n";
+  out += latex_row(columns, [&](std::size_t c) { return table.columns[c].title; }) + "\\hline\n";
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    if (table.has_sum && r + 1 == table.rows.size()) out += "\\hline\n";
+    out += latex_row(columns,
+                     [&](std::size_t c) { return for_people(table.rows[r][c], table.columns[c]); });
+  }
+  return out + "\\hline\n\\end{tabular}\n\\end{table}\n";
+}
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  return "\"" + replaced(text, {{'"', "\"\""}}) + "\"";
+}
+
+std::string csv_of(const Table& table) {
+  std::string out;
+  for (const TableColumn& column : table.columns) {
+    out += (out.empty() ? "" : ",") + csv_cell(column.key);
+  }
+  for (const auto& row : table.rows) {
+    out += "\n";
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (c > 0) out += ",";
+      if (const auto* text = std::get_if<std::string>(&row[c])) out += csv_cell(*text);
+      if (const auto* whole = std::get_if<std::int64_t>(&row[c])) out += fmt::format("{}", *whole);
+      if (const auto* number = std::get_if<double>(&row[c])) out += fmt::format("{}", *number);
+    }
+  }
+  return out + "\n";
+}
+
+nlohmann::ordered_json json_cell(const Cell& cell) {
+  return std::visit(
+      [](const auto& value) -> nlohmann::ordered_json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
+          return nullptr;
+        else
+          return value;
+      },
+      cell);
+}
+
+std::string json_of(const Table& table) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const auto& row : table.rows) {
+    nlohmann::ordered_json object = nlohmann::ordered_json::object();
+    for (std::size_t c = 0; c < row.size(); ++c) object[table.columns[c].key] = json_cell(row[c]);
+    rows.push_back(std::move(object));
+  }
+  return rows.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::optional<TableFormat> table_format(std::string_view name) {
+  for (const auto& [known, format] : formats) {
+    if (known == name) return format;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> table_format_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, format] : formats) names.emplace_back(name);
+  return names;
+}
+
+std::string written(const Table& table, TableFormat format) {
+  switch (format) {
+    case TableFormat::text:
+      return text_of(table);
+    case TableFormat::markdown:
+      return markdown_of(table);
+    case TableFormat::latex:
+      return latex_of(table);
+    case TableFormat::csv:
+      return csv_of(table);
+    case TableFormat::json:
+      break;
+  }
+  return json_of(table);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A data set from raw files to the paper's tables.
+dataset_check.py BUILD_FOLDER [CASE...]"""
+import csv
+import hashlib
+import io
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from cases import DEMO, PROGRAM, case, kinalign, law, main
+
+import hfut
+
+
+def done(*words, code=0, **how):
+    """A call that ends with this code; its stdout."""
+    ran = kinalign("dataset", *words, **how)
+    said = law(ran, ("dataset", *words))
+    assert ran.returncode == code, said
+    return ran.stdout.decode()
+
+
+def answer(*words, **how):
+    return json.loads(done(*words, "--json", **how))
+
+
+def recorded(folder, seconds, takes=1, seed=1):
+    """Manifests of raw files."""
+    subprocess.run([DEMO, folder, "--seconds", f"{seconds:.9f}", "--takes", str(takes), "--seed", str(seed)], check=True)
+    return sorted(folder.rglob("recording.toml"))
+
+
+def without(manifest, stream):
+    """Takes a stream out of a manifest."""
+    parts = manifest.read_text().split("\n[")
+    manifest.write_text("\n[".join(p for p in parts if not p.startswith((f"stream.{stream}", f"space.{stream}"))))
+
+
+def small_set(folder, takes=3, seconds=3):
+    """A data set of some takes, not built yet."""
+    done("init", folder / "set", "--template", "hfut-mmd")
+    for i, manifest in enumerate(recorded(folder / "raw", seconds, takes)):
+        done("add", folder / "set", manifest, "--subject", f"{i % 12:02}", "--action", f"S2A{i % 8 + 1:02}")
+    return folder / "set"
+
+
+def contents(folder):
+    """Hash of every file, but for the cache."""
+    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest()
+            for p in sorted(folder.rglob("*")) if p.is_file() and ".kinalign" not in p.parts}
+
+
+@case
+def a_catalogue_of_the_papers_composition_prints_its_tables_from_takes_on_disk(folder):
+    takes = hfut.composition(divisor=100, longest=2_000)
+    takes = [take for take in takes if take[2] >= 60]  # a second of raw files at least
+    assert len(takes) > 20, takes
+    done("init", folder / "set", "--template", "hfut-mmd")
+    for i, (subject, action, frames, kinect, imu) in enumerate(takes):
+        manifest, = recorded(folder / f"raw{i}", frames / 60, seed=i)
+        for stream, wanted in (("kinect", kinect), ("imu", imu)):
+            if not wanted:
+                without(manifest, stream)
+        done("add", folder / "set", manifest, "--subject", subject, "--action", action)
+    assert answer("build", folder / "set", seconds=600)["made"] == len(takes)
+    tables = answer("tables", folder / "set")
+    by_class = hfut.sums(takes, lambda take: take[1][:2])
+    rows = {row["class"]: [row["mocap"], row["kinect"], row["imu"]] for row in tables["classes"][:-1]}
+    assert rows == by_class, (rows, by_class)
+    heights = {person: height for ids, _, height, *_ in hfut.PEOPLE for person in ids}
+    sexes = {person: sex for ids, sex, *_ in hfut.PEOPLE for person in ids}
+    by_person = hfut.sums(takes, lambda take: (sexes[take[0]], heights[take[0]]))
+    rows = {(row["sex"], row["height_cm"]): [row["mocap"], row["kinect"], row["imu"]] for row in tables["subjects"][:-1]}
+    assert rows == by_person, (rows, by_person)
+    order = [(row["height_cm"], row["sex"]) for row in tables["subjects"][:-1]]
+    assert order == sorted(order), order
+    total = [sum(column) for column in zip(*by_class.values())]
+    for name in ("classes", "subjects"):
+        last = tables[name][-1]
+        assert [last["mocap"], last["kinect"], last["imu"]] == total, last
+    own = tables["data_sets"][-1]
+    assert (own["frames"], own["clips"]) == (sum(total), len(takes)), own
+    together = {row["modalities"]: (row["takes"], row["frames"]) for row in tables["modalities"][:-1]}
+    all_three = [take for take in takes if take[3] and take[4]]
+    assert together["mocap + Kinect + IMU"] == (len(all_three), sum(take[2] for take in all_three)), together
+    latex = done("tables", folder / "set", "--table", "classes", "--format", "latex")
+    assert "Baduanjin" in latex and f"{total[0]:,}" in latex, latex
+
+
+@case
+def a_build_makes_what_is_new_or_changed_and_nothing_else(folder):
+    data = small_set(folder)
+    assert answer("build", data)["made"] == 3
+    first = contents(data)
+    assert answer("build", data) == {"schema": "kinalign.dataset.build/1", "made": 0, "failed": 0, "up_to_date": 3,
+                                     "takes": []}
+    raw = sorted((folder / "raw").rglob("kinect.csv"))[0]
+    text = raw.read_text()
+    raw.write_text(text.replace("1", "1", 1))  # the same bytes, a new date
+    assert answer("build", data)["made"] == 0
+    lines = text.splitlines(keepends=True)
+    raw.write_text("".join(lines[:-1]))
+    plan = answer("build", data, "--dry-run")
+    assert [(one["name"], one["reason"]) for one in plan["to_make"]] == [
+        ("sub-00_task-S2A01_run-01", "its raw files changed")], plan
+    assert answer("build", data)["made"] == 1
+    raw.write_text(text)
+    (data / "dataset.toml").write_text((data / "dataset.toml").read_text() + "\n[align]\nrotations = \"slerp\"\n")
+    plan = answer("build", data, "--dry-run")
+    assert {one["reason"] for one in plan["to_make"]} == {"its parameters changed"}, plan
+    assert len(plan["to_make"]) == 3
+    text = (data / "dataset.toml").read_text()
+    (data / "dataset.toml").write_text(text.replace("\n[align]\nrotations = \"slerp\"\n", ""))
+    assert answer("build", data)["made"] == 1
+    assert contents(data) == first
+
+
+@case
+def the_index_is_only_a_cache(folder):
+    data = small_set(folder)
+    done("build", data)
+    listed, first = done("list", data, "--columns", "all"), contents(data)
+    shutil.rmtree(data / ".kinalign")
+    assert done("list", data, "--columns", "all") == listed
+    (data / ".kinalign/index.sqlite").write_bytes(b"no index at all" * 100)
+    assert done("list", data, "--columns", "all") == listed
+    for summary in data.rglob("*_take.json"):
+        summary.unlink()
+    assert done("list", data).count("\n") == 1
+    done("build", data)
+    assert done("list", data, "--columns", "all") == listed
+    assert contents(data) == first
+    if os.geteuid() != 0:
+        shutil.rmtree(data / ".kinalign")
+        data.chmod(0o555)
+        assert done("list", data, "--columns", "all") == listed
+
+
+@case
+def lists_and_queries_answer_in_text_csv_and_json_and_change_nothing(folder):
+    data = small_set(folder, takes=5)
+    done("build", data)
+    rows = list(csv.DictReader(io.StringIO(done("list", data, "--format", "csv", "--columns", "name,subject,frames"))))
+    assert [row["subject"] for row in rows] == ["00", "01", "02", "03", "04"], rows
+    assert {row["frames"] for row in rows} == {"180"}, rows
+    found = answer("query", data, "subject in ('01', '03') and frames > 100")["takes"]
+    assert [row["subject"] for row in found] == ["01", "03"], found
+    found = answer("list", data, "--subject", "02", "--modality", "imu", "--class", "S2")["takes"]
+    assert [row["name"] for row in found] == ["sub-02_task-S2A03_run-01"], found
+    assert answer("list", data, "--class", "S3")["takes"] == []
+    sums = answer("query", data, "select class, sum(frames) as frames from takes group by class")["takes"]
+    assert sums == [{"class": "S2", "frames": 900}], sums
+    nodes = answer("query", data, "select distinct nodes from streams where modality = 'imu'")["takes"]
+    assert nodes[0]["nodes"].split() == ["ankle_left", "ankle_right", "waist", "wrist_left", "wrist_right"] or \
+        len(nodes[0]["nodes"].split()) == 5, nodes
+    for harm in ("frames > 1); delete from take; --", "with x as (select 1) delete from take", "select load_extension('x')",
+                 "pragma user_version = 9", "select * from nothing", "frames >", ""):
+        done("query", data, harm, code=3)
+    assert len(answer("list", data)["takes"]) == 5
+
+
+@case
+def a_fault_of_one_take_is_named_and_stops_no_other(folder):
+    data = small_set(folder)
+    bad = sorted((folder / "raw").rglob("mocap.bvh"))[1]
+    bad.write_text(bad.read_text()[:500])
+    manifest = next(data.glob("sub-02/*_recording.toml"))
+    manifest.write_text("nonsense = 1\n" + manifest.read_text())
+    said = answer("build", data, code=1)
+    assert (said["made"], said["failed"]) == (1, 2), said
+    failed, other = sorted((one for one in said["takes"] if "failed" in one), key=lambda one: one["name"])
+    assert other["name"] == "sub-02_task-S2A03_run-01" and "_recording.toml:1: " in other["failed"], other
+    assert failed["name"] == "sub-01_task-S2A02_run-01" and "mocap.bvh" in failed["failed"], failed
+    said = done("build", data, code=1)
+    assert "failed  sub-01_task-S2A02_run-01: " in said, said
+    assert len(answer("list", data)["takes"]) == 1
+
+
+@case
+def wrong_use_is_told_with_what_to_do(folder):
+    done("init", folder / "set")
+    assert b"dataset.toml" in kinalign("dataset", "init", folder / "set").stderr
+    manifest, = recorded(folder / "raw", 2)
+    for words, wanted in ((("add", folder / "set", manifest, "--subject", "07", "--action", "x"), b"[subject.07]"),
+                          (("add", folder / "set", manifest.with_name("kinect.csv")), b"a recording"),
+                          (("list", folder / "raw"), b"kinalign dataset init"),
+                          (("list", folder / "none"), b"folder"),
+                          (("list", folder / "set", "--columns", "frame"), b"frames")):
+        ran = kinalign("dataset", *words)
+        assert ran.returncode == 3 and wanted in ran.stderr, ran.stderr
+
+
+@case
+def raw_files_come_along_where_that_is_asked_for(folder):
+    done("init", folder / "set", "--template", "hfut-mmd")
+    manifest, = recorded(folder / "raw", 3)
+    done("add", folder / "set", manifest, "--subject", "01", "--action", "S1A01", "--copy")
+    shutil.rmtree(folder / "raw")
+    done("build", folder / "set")
+    first = contents(folder / "set")
+    shutil.move(folder / "set", folder / "moved")
+    assert answer("build", folder / "moved")["made"] == 0
+    done("build", folder / "moved", "--all")
+    assert contents(folder / "moved") == first
+    assert str(folder).encode() not in b"".join(p.read_bytes() for p in (folder / "moved/sub-01").iterdir())
+
+
+@case
+def what_was_added_once_is_not_added_twice_and_takes_come_as_they_are(folder):
+    data = small_set(folder, takes=1)
+    manifest = next((folder / "raw").rglob("recording.toml"))
+    again = answer("add", data, manifest, "--subject", "00", "--action", "S2A01")["added"]
+    assert again == [{"file": str(manifest), "name": "sub-00_task-S2A01_run-01", "was_there": True}], again
+    done("build", data)
+    take = next(data.rglob("*_take.h5"))
+    done("init", folder / "other", "--template", "hfut-mmd")
+    done("add", folder / "other", take)
+    done("build", folder / "other")
+    copied = next((folder / "other").rglob("*_take.h5"))
+    assert copied.read_bytes() == take.read_bytes()
+    summary = "_take.json"
+    assert next((folder / "other").rglob("*" + summary)).read_bytes() == next(data.rglob("*" + summary)).read_bytes()
+    assert answer("build", folder / "other")["up_to_date"] == 1
+
+
+@case
+def two_that_add_at_once_get_runs_of_their_own(folder):
+    done("init", folder / "set", "--template", "hfut-mmd")
+    manifests = recorded(folder / "raw", 1, takes=12)
+    running = [subprocess.Popen([PROGRAM, "dataset", "add", folder / "set", m, "--subject", "01", "--action", "S1A01"],
+                                stdout=subprocess.DEVNULL) for m in manifests]
+    assert [one.wait() for one in running] == [0] * 12
+    names = sorted(p.name for p in (folder / "set/sub-01").iterdir())
+    assert names == [f"sub-01_task-S1A01_run-{k:02}_recording.toml" for k in range(1, 13)], names
+
+
+@case
+def threads_and_shares_and_kills_change_no_byte(folder):
+    data = small_set(folder, takes=7, seconds=4)
+    plain = shutil.copytree(data, folder / "plain")
+    done("build", plain, "--jobs", "1")
+    wanted = contents(plain)
+    for jobs in (2, 4):
+        other = shutil.copytree(data, folder / f"jobs{jobs}")
+        done("build", other, "--jobs", str(jobs))
+        assert contents(other) == wanted, jobs
+    for size in (2, 3):
+        other = shutil.copytree(data, folder / f"ranks{size}")
+        made = [answer("build", other, env={"RANK": str(rank), "WORLD_SIZE": str(size)})["made"] for rank in range(size)]
+        assert sum(made) == 7 and min(made) > 0, made
+        assert contents(other) == wanted, size
+    killed = shutil.copytree(data, folder / "killed")
+    times = random.Random(1)
+    for _ in range(50):
+        running = subprocess.Popen([PROGRAM, "dataset", "build", killed, "--all"], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
+        time.sleep(times.uniform(0, 0.5))
+        running.send_signal(signal.SIGKILL)
+        running.wait()
+    done("build", killed)
+    left = {name for name in contents(killed) if name not in wanted}
+    assert not left, left
+    assert contents(killed) == wanted
+
+
+@case
+def two_builds_at_once_lose_nothing(folder):
+    data = small_set(folder, takes=6)
+    plain = shutil.copytree(data, folder / "plain")
+    done("build", plain)
+    running = [subprocess.Popen([PROGRAM, "dataset", "build", data], stdout=subprocess.DEVNULL) for _ in range(2)]
+    assert [one.wait() for one in running] == [0, 0]
+    assert contents(data) == contents(plain)
+    assert len(answer("list", data)["takes"]) == 6
+
+
+if __name__ == "__main__":
+    sys.exit(main())
