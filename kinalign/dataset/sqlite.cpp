@@ -130,7 +130,10 @@ Result<Statement> Database::prepare_reading(const std::string& sql) const {
   sqlite3_set_authorizer(database_.get(), &allow_reading, nullptr);
   auto made = prepare(sql);
   sqlite3_set_authorizer(database_.get(), nullptr, nullptr);
-  if (!made && made.error().found == "not authorized") {
+  const bool is_denied = !made && made.error().found == "not authorized";
+  const bool is_other =
+      made && (made->columns() == 0 || sqlite3_stmt_readonly(made->statement_.get()) == 0);
+  if (is_denied || is_other) {
     return Failure(Error{"", 0, "a SELECT, which changes nothing", "another statement"});
   }
   return made;
