@@ -22,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_manifest = std::size_t{4} << 20;
-
 template <class One>
 std::vector<std::string> ids_of(const std::vector<One>& all) {
   std::vector<std::string> ids;

@@ -3,15 +3,14 @@
 
 #include "kinalign/align/align.h"
 #include "kinalign/core/file_version.h"
-#include "kinalign/core/hash.h"
 #include "kinalign/core/parallel.h"
 #include "kinalign/dataset/scan.h"
+#include "kinalign/dataset/summarise.h"
+#include "kinalign/dataset/take_inputs.h"
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/documents/report_json.h"
-#include "kinalign/formats/take/guarded.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/sources/open_recording.h"
-#include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
 #include <map>
@@ -22,8 +21,6 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_manifest = std::size_t{4} << 20;
-
 std::string place(const std::string& folder, const TakeName& name, TakeFile file) {
   return folder + "/" + path_of(name, file);
 }
@@ -32,68 +29,12 @@ std::string folder_of(const std::string& folder, const TakeName& name) {
   return folder + "/sub-" + name.subject + "/";
 }
 
-/// Hash and length of a file as it is now.
-Result<InputFacts> facts_of(FileSystem& files, const std::string& path, const Progress& progress) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  Sha256 hash;
-  std::uint64_t bytes = 0;
-  for (;;) {
-    const std::string_view piece = KA_TRY(file.next());
-    if (piece.empty()) return InputFacts{std::string(file_name(path)), hash.hex(), bytes};
-    hash.update(piece);
-    bytes += piece.size();
-    if (!go_on(progress, "hashing", bytes, file.size())) return Failure(interruption(path));
-  }
-}
-
-/// An input where it lies, and as the take names it.
-struct Input {
-  std::string name, path;
-};
-
-/// The files that a manifest names and, of those that a take was made of, those beside them that
-/// only the take names: the further files of a recording.
-std::vector<Input> inputs_of(Manifest manifest, const std::string& base,
-                             const std::vector<InputFacts>& known) {
-  std::vector<Input> out;
-  const auto has = [&out](const std::string& name) {
-    return std::any_of(out.begin(), out.end(), [&](const Input& one) { return one.name == name; });
-  };
-  for (const std::string* path : paths_in(manifest)) {
-    const std::string name = remembered_path(*path);
-    if (!has(name)) out.push_back({name, path_in(base, *path)});
-  }
-  const std::string beside(out.empty() ? base : kinalign::folder(out.front().path));
-  for (const InputFacts& input : known) {
-    if (!has(input.name)) out.push_back({input.name, beside + std::string(file_name(input.name))});
-  }
-  return out;
-}
-
-/// Whether each input still has the bytes that the take was made of. One that is older than the
-/// summary and as long as it was is not read.
-Result<bool> same_inputs(FileSystem& files, const std::vector<Input>& inputs,
-                         const TakeSummary& summary, std::int64_t made_ns,
-                         const Progress& progress) {
-  if (inputs.size() != summary.inputs.size()) return false;
-  for (const Input& input : inputs) {
-    const auto known =
-        std::find_if(summary.inputs.begin(), summary.inputs.end(),
-                     [&](const InputFacts& facts) { return facts.name == input.name; });
-    const auto version = version_of(input.path);
-    if (known == summary.inputs.end() || !version || version->size != known->bytes) return false;
-    if (version->changed_ns < made_ns) continue;
-    if (KA_TRY(facts_of(files, input.path, progress)).sha256 != known->sha256) return false;
-  }
-  return true;
-}
-
 /// A take of the data set, before it is known whether it has to be made.
 struct Candidate {
   TakeName name;
   TakeFiles files;
   Manifest manifest;  // empty where the take came without one
-  std::vector<Input> inputs;
+  std::vector<TakeInput> inputs;
   std::optional<TakeSummary> summary;
   std::uint64_t bytes = 0;  // of the inputs, or of the take that has none
 };
@@ -119,7 +60,7 @@ class Planner {
     out.manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
     out.inputs = inputs_of(out.manifest, folder_of(folder_, name),
                            out.summary ? out.summary->inputs : std::vector<InputFacts>{});
-    for (const Input& input : out.inputs) out.bytes += size_of(input.path);
+    for (const TakeInput& input : out.inputs) out.bytes += size_of(input.path);
     return out;
   }
 
@@ -226,15 +167,7 @@ class Builder {
 
   /// Of a take that came as it is. In a child process: before other threads begin.
   Result<TakeSummary> summarise(const BuildJob& job) {
-    const std::string path = place(folder_, job.name, TakeFile::take);
-    const Error blame{path, 0, "a take that HDF5 can read", ""};
-    const std::string json = KA_TRY(run_guarded(GuardLimits{}, blame, [&]() -> Result<std::string> {
-      TakeReader reader = KA_TRY(TakeReader::open(files_, path));
-      TakeSummary made = KA_TRY(summary_of(reader.header(), KA_TRY(reader.report_json())));
-      made.software = reader.software();
-      return summary_json(made);
-    }));
-    return keep(job.name, KA_TRY(parse_summary_json(json, path)));
+    return keep(job.name, KA_TRY(summarise_takes(files_, folder_, {job.name}).front()));
   }
 
  private:
@@ -261,7 +194,7 @@ class Builder {
 Result<Manifest> take_manifest(FileSystem& files, const std::string& folder,
                                const Catalogue& catalogue, const TakeName& name) {
   const std::string path = place(folder, name, TakeFile::manifest);
-  Manifest manifest = KA_TRY(read_manifest(KA_TRY(read_whole(files, path, most_manifest)),
+  Manifest manifest = KA_TRY(read_manifest(KA_TRY(read_whole(files, path, longest_manifest)),
                                            path_of(name, TakeFile::manifest), catalogue.align));
   manifest.subject = name.subject;
   manifest.action = name.action;

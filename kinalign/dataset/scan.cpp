@@ -10,8 +10,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_summary = std::size_t{1} << 20;
-
 }  // namespace
 
 Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder) {

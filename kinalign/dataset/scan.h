@@ -11,6 +11,10 @@
 
 namespace kinalign {
 
+/// Longer files of these kinds are refused.
+inline constexpr std::size_t longest_summary = std::size_t{1} << 20;
+inline constexpr std::size_t longest_manifest = std::size_t{4} << 20;
+
 struct TakeFiles {
   bool manifest = false, take = false, summary = false;
 };

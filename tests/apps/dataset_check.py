@@ -272,6 +272,50 @@ def threads_and_shares_and_kills_change_no_byte(folder):
 
 
 @case
+def verify_finds_any_byte_that_was_altered_and_what_belongs_to_nothing(folder):
+    data = small_set(folder, takes=2)
+    done("build", data)
+    found = answer("verify", data)
+    assert {one["severity"] for one in found["findings"]} <= {"note"} and found["takes"] == 2, found
+    answer("verify", data, "--deep")
+    random_byte = random.Random(7)
+    for path in sorted(data.glob("sub-*/*")):
+        if path.name.endswith("_recording.toml"):
+            continue
+        bytes_ = path.read_bytes()
+        for _ in range(12):
+            at = random_byte.randrange(len(bytes_))
+            path.write_bytes(bytes_[:at] + bytes([bytes_[at] ^ (1 << random_byte.randrange(8))]) + bytes_[at + 1:])
+            ran = kinalign("dataset", "verify", data, "--json")
+            assert ran.returncode == 1, (path.name, at, ran.stdout[-500:], ran.stderr)
+            assert any(one["severity"] == "error" and one["file"].startswith(f"{path.parent.name}/")
+                       for one in json.loads(ran.stdout)["findings"]), (path.name, at, ran.stdout)
+        path.write_bytes(bytes_[:-1])
+        assert kinalign("dataset", "verify", data).returncode == 1, path
+        path.write_bytes(bytes_)
+    (data / "sub-00/notes.txt").write_text("x")
+    (data / "old").mkdir()
+    said = answer("verify", data)
+    assert {one["file"] for one in said["findings"] if "does not know" in one["found"]} == {"sub-00/notes.txt", "old"}, said
+    manifest = next(data.glob("sub-01/*_recording.toml"))
+    manifest.write_text(manifest.read_text().replace("[align]\n", "[align]\nrotations = \"slerp\"\n"))
+    raw = sorted((folder / "raw").rglob("kinect.csv"))
+    text = raw[0].read_text()
+    raw[0].unlink()
+    said = answer("verify", data, code=1)
+    wrong = {(one["severity"], one["file"].split("/")[0], one["expected"].split(" that")[0]) for one in said["findings"]
+             if one["severity"] != "note"}
+    assert wrong == {("warning", "sub-01", "the parameters"), ("warning", "sub-00", "the raw file kinect.csv")}, wrong
+    raw[0].write_text(text.replace("0", "1", 1))
+    assert kinalign("dataset", "verify", data).returncode == 1  # the parameters
+    said = answer("verify", data, "--deep", code=1)
+    assert any("raw files" in one["expected"] and one["severity"] == "error" for one in said["findings"]), said
+    next(data.glob("sub-01/*_take.h5")).unlink()
+    said = answer("verify", data, code=1)
+    assert any(one["expected"] == "a take beside it" for one in said["findings"]), said
+
+
+@case
 def two_builds_at_once_lose_nothing(folder):
     data = small_set(folder, takes=6)
     plain = shutil.copytree(data, folder / "plain")

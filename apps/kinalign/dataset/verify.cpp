@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/verify.h"
+
+#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/documents/report_json.h"
+
+#include <fmt/format.h>
+
+namespace kinalign {
+
+namespace {
+
+struct Verify {
+  std::vector<std::string> folder;
+  bool deep = false;
+};
+
+Usage describe_verify(Verify& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.folder)};
+  usage.flags = {
+      {"deep", "read every row of the takes and every byte of the raw files, too", &o.deep}};
+  return usage;
+}
+
+Result<int> run_verify(Verify& o, Call& call) {
+  const std::string folder = folder_of(o.folder);
+  FileSystem& files = call.surroundings.files;
+  const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
+  const Verified found =
+      KA_TRY(verify(files, folder, catalogue, {call.jobs, o.deep}, call.console.progress()));
+  std::size_t serious = 0;
+  for (const Finding& one : found.findings) {
+    if (one.severity != Severity::note) ++serious;
+    const std::string word(to_string(one.severity));
+    call.console.print(
+        call.console.paint(colour_of(one.severity), word) + "  " +
+        harmless(to_string(one.what) + (one.repair.empty() ? "" : ": " + one.repair)) + "\n");
+  }
+  call.console.print(
+      harmless(fmt::format("{}: {} takes, {:.1f} MB read, {}\n", folder, found.takes,
+                           1e-6 * static_cast<double>(found.bytes),
+                           serious == 0 ? "nothing wrong" : fmt::format("{} faults", serious))));
+  call.console.print_json(fmt::format("{{\"takes\": {}, \"bytes\": {}, \"findings\": {}}}",
+                                      found.takes, found.bytes, findings_json(found.findings)));
+  return serious == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+Verb dataset_verify_verb() {
+  return make_verb<Verify>(
+      {.name = "dataset verify",
+       .summary = "whether a data set is whole: every byte of its takes is read",
+       .text = "Compares each take with its SHA-256 and its summary, names with dataset.toml, "
+               "manifests with what the takes "
+               "were made of, and names files that belong to nothing. Exit code 1 where something "
+               "is wrong; notes alone are "
+               "exit code 0.",
+       .examples = {{"kinalign dataset verify walks", "after a copy, or once a year"},
+                    {"kinalign dataset verify walks --deep",
+                     "stamps, bones and units of every row, and the raw files"}},
+       .common = {"json", "jobs"}},
+      describe_verify, run_verify);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/summarise.h"
+
+#include "kinalign/dataset/contents.h"
+#include "kinalign/formats/take/guarded.h"
+#include "kinalign/formats/take/take_hdf5.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string take_path(const std::string& folder, const TakeName& name) {
+  return folder + "/" + path_of(name, TakeFile::take);
+}
+
+Json error_json(const Error& error) {
+  return {{"file", error.file},
+          {"line", error.line},
+          {"expected", error.expected},
+          {"found", error.found}};
+}
+
+Error error_from(const Json& json) {
+  return {json.at("file").get<std::string>(), json.at("line").get<std::int64_t>(),
+          json.at("expected").get<std::string>(), json.at("found").get<std::string>()};
+}
+
+Result<TakeSummary> summarise(FileSystem& files, const std::string& path) {
+  const TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  TakeSummary made = KA_TRY(summary_of(reader.header(), KA_TRY(reader.report_json())));
+  made.software = reader.software();
+  return made;
+}
+
+/// A line for each take: its summary, or what is wrong with it.
+std::string line_of(FileSystem& files, const std::string& path) {
+  const auto made = summarise(files, path);
+  const Json line =
+      made ? Json{{"summary", summary_json(*made)}} : Json{{"error", error_json(made.error())}};
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<TakeSummary> from_line(std::string_view line, const std::string& path) {
+  const Json json = Json::parse(line);
+  if (json.contains("error")) return Failure(error_from(json["error"]));
+  return parse_summary_json(json.at("summary").get<std::string>(), path);
+}
+
+Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can read", ""}; }
+
+}  // namespace
+
+std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::string& folder,
+                                                 const std::vector<TakeName>& names) {
+  std::vector<Result<TakeSummary>> out;
+  while (out.size() < names.size()) {
+    const std::size_t first = out.size();
+    std::string text;  // of a line that has not ended
+    const auto work = [&](const GuardSend& send) -> Result<void> {
+      for (std::size_t i = first; i < names.size(); ++i) {
+        KA_TRY(send(line_of(files, take_path(folder, names[i]))));
+      }
+      return {};
+    };
+    const auto receive = [&](std::string_view bytes) -> Result<void> {
+      text += bytes;
+      for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
+        out.push_back(
+            from_line(std::string_view(text).substr(0, end), take_path(folder, names[out.size()])));
+        text.erase(0, end + 1);
+      }
+      return {};
+    };
+    auto done = run_guarded(GuardLimits{}, blame(take_path(folder, names[first])), work, receive);
+    if (done || out.size() == names.size()) continue;
+    done.error().file = take_path(folder, names[out.size()]);
+    out.push_back(Failure(std::move(done).error()));
+  }
+  return out;
+}
+
+Result<Findings> check_rows(FileSystem& files, const std::string& folder, const TakeName& name) {
+  const std::string path = take_path(folder, name);
+  const std::string text =
+      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&]() -> Result<std::string> {
+        TakeReader reader = KA_TRY(TakeReader::open(files, path));
+        const TakeSummary summary =
+            KA_TRY(summary_of(reader.header(), KA_TRY(reader.report_json())));
+        ContentCheck check(reader.header(), summary.rate_hz);
+        TakeSlab slab;
+        while (KA_TRY(reader.next(slab))) check.add(slab);
+        Json all = Json::array();
+        for (const Finding& finding : check.findings(path_of(name, TakeFile::take))) {
+          Json one = error_json(finding.what);
+          one["severity"] = static_cast<int>(finding.severity);
+          all.push_back(std::move(one));
+        }
+        return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+      }));
+  Findings out;
+  for (const Json& one : Json::parse(text)) {
+    out.push_back({static_cast<Severity>(one.at("severity").get<int>()), error_from(one), "", ""});
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Summaries out of the takes themselves, and what is wrong with their rows.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/dataset/take_summary.h"
+
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// The summary of each take of a data set, in the order of `names`, without hash and length. HDF5
+/// can crash on a hostile file: takes are opened in a child process (formats/take/guarded.h), so no
+/// other thread may run. A take on which the child ends is a failure, the others are read all the
+/// same.
+std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::string& folder,
+                                                 const std::vector<TakeName>& names);
+
+/// What ContentCheck finds in all rows of a take; in a child process, too.
+Result<Findings> check_rows(FileSystem& files, const std::string& folder, const TakeName& name);
+
+}  // namespace kinalign

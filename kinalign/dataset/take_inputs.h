@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The raw files of a take: where they lie, and whether they are still those that it was made of.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/dataset/take_summary.h"
+#include "kinalign/take/manifest.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// Hash and length of a file as it is now, under its own name.
+Result<InputFacts> facts_of(FileSystem& files, const std::string& path, const Progress& progress);
+
+/// A raw file where it lies, and as the take names it.
+struct TakeInput {
+  std::string name, path;
+};
+
+/// The files that a manifest in `base` (ending in '/') names and, of `known`, the further files of
+/// a recording, which only the take names and which lie beside the first.
+std::vector<TakeInput> inputs_of(Manifest manifest, const std::string& base,
+                                 const std::vector<InputFacts>& known);
+
+/// Whether each input still has the bytes that the take was made of. One that is older than the
+/// summary, made at `made_ns`, and as long as it was is not read.
+Result<bool> same_inputs(FileSystem& files, const std::vector<TakeInput>& inputs,
+                         const TakeSummary& summary, std::int64_t made_ns,
+                         const Progress& progress);
+
+}  // namespace kinalign

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/verify.h"
+
+#include "kinalign/core/hash.h"
+#include "kinalign/core/parallel.h"
+#include "kinalign/dataset/build.h"
+#include "kinalign/dataset/scan.h"
+#include "kinalign/dataset/summarise.h"
+#include "kinalign/dataset/take_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What may lie in the folder beside the takes.
+constexpr std::array<std::string_view, 8> known_names{"dataset.toml", "README.md", "LICENSE",
+                                                      "LICENCE",      "CHANGES",   "sourcedata",
+                                                      "splits",       "windows"};
+
+/// A file whose bytes are to be read.
+struct ToHash {
+  std::string path, sha256, name;  // `name`: for messages
+  std::uint64_t bytes = 0;
+};
+
+class Verifier {
+ public:
+  Verifier(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
+           const VerifyOptions& options, const Progress& progress)
+      : files_(files),
+        folder_(folder),
+        catalogue_(catalogue),
+        options_(options),
+        progress_(progress) {}
+
+  Result<Verified> run() {
+    takes_ = KA_TRY(scan_takes(folder_));
+    check_catalogue();
+    KA_TRY(check_summaries());
+    for (const auto& [name, there] : takes_) check_take(name, there);
+    KA_TRY(check_names());
+    KA_TRY(check_hashes());
+    std::stable_sort(
+        out_.findings.begin(), out_.findings.end(), [](const Finding& a, const Finding& b) {
+          return a.severity != b.severity ? a.severity > b.severity : a.what.file < b.what.file;
+        });
+    return std::move(out_);
+  }
+
+ private:
+  void tell(Severity severity, const std::string& file, std::string expected, std::string found,
+            std::string repair = "") {
+    out_.findings.push_back(
+        {severity, Error{file, 0, std::move(expected), std::move(found)}, "", std::move(repair)});
+  }
+
+  /// What dataset.toml leaves open.
+  void check_catalogue() {
+    const std::string file(catalogue_file);
+    const std::array<std::pair<const char*, const std::string*>, 3> texts{
+        {{"licence", &catalogue_.licence},
+         {"contact", &catalogue_.contact},
+         {"description", &catalogue_.description}}};
+    for (const auto& [key, text] : texts) {
+      if (text->empty()) tell(Severity::note, file, key, "none");
+    }
+    for (const Subject& one : catalogue_.subjects) {
+      if (one.sex.empty() || !one.height_cm) {
+        tell(Severity::note, file, "sex and height_cm of subject " + one.id, "not both");
+      }
+    }
+  }
+
+  /// Each summary has to be what its take says.
+  Result<void> check_summaries() {
+    std::vector<TakeName> names;
+    for (const auto& [name, there] : takes_) {
+      if (there.take) names.push_back(name);
+    }
+    const auto made = summarise_takes(files_, folder_, names);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!made[i]) {
+        Error error = made[i].error();
+        error.file = path_of(names[i], TakeFile::take);
+        out_.findings.push_back({Severity::error, std::move(error), "", ""});
+      } else {
+        compare_summary(names[i], *made[i]);
+      }
+      if (options_.deep && made[i]) KA_TRY(check_contents(names[i]));
+      if (!go_on(progress_, "comparing", i + 1, names.size())) return Failure(interruption());
+    }
+    return {};
+  }
+
+  Result<void> check_contents(const TakeName& name) {
+    const auto found = check_rows(files_, folder_, name);
+    if (found) {
+      append(out_.findings, *found);
+      return {};
+    }
+    if (is_interruption(found.error())) return Failure(found.error());
+    tell(Severity::error, path_of(name, TakeFile::take), found.error().expected,
+         found.error().found);
+    return {};
+  }
+
+  void compare_summary(const TakeName& name, TakeSummary made) {
+    const std::string file = path_of(name, TakeFile::summary);
+    const std::string again = "kinalign dataset build makes it again, once it is removed";
+    const auto text = read_whole(files_, folder_ + "/" + file, longest_summary);
+    const auto said = text ? parse_summary_json(*text, file) : Failure(text.error());
+    if (!said) {
+      tell(Severity::error, file, "a summary of the take", "none that can be read", again);
+      return;
+    }
+    made.sha256 = said->sha256;
+    made.bytes = said->bytes;
+    if (summary_json(made) != *text) {
+      tell(Severity::error, file, "what the take says", "something else", again);
+    }
+    if (made.subject != name.subject || made.action != name.action) {
+      tell(Severity::error, path_of(name, TakeFile::take), "subject and action as in its name",
+           made.subject + " and " + made.action);
+    }
+    hashes_.push_back({folder_ + "/" + path_of(name, TakeFile::take), said->sha256,
+                       path_of(name, TakeFile::take), said->bytes});
+    summaries_.emplace(name, *said);
+  }
+
+  void check_take(const TakeName& name, const TakeFiles& there) {
+    if (!there.take) {
+      tell(Severity::error, path_of(name, there.manifest ? TakeFile::manifest : TakeFile::summary),
+           "a take beside it", "none", there.manifest ? "kinalign dataset build" : "");
+    }
+    if (find_subject(catalogue_, name.subject) == nullptr) {
+      tell(Severity::warning, path_of(name, TakeFile::take), "a subject of dataset.toml",
+           name.subject);
+    }
+    if (find_action(catalogue_, name.action) == nullptr) {
+      tell(Severity::warning, path_of(name, TakeFile::take), "an action of dataset.toml",
+           name.action);
+    }
+    const auto summary = summaries_.find(name);
+    if (there.manifest && summary != summaries_.end()) check_manifest(name, summary->second);
+  }
+
+  void check_manifest(const TakeName& name, const TakeSummary& summary) {
+    const std::string file = path_of(name, TakeFile::manifest), build = "kinalign dataset build";
+    const auto manifest = take_manifest(files_, folder_, catalogue_, name);
+    if (!manifest) {
+      out_.findings.push_back({Severity::error, manifest.error(), "", ""});
+      return;
+    }
+    if (recipe_of(*manifest) != summary.recipe) {
+      tell(Severity::warning, file, "the parameters that the take was made with", "others", build);
+    }
+    for (const TakeInput& input :
+         inputs_of(*manifest, folder_ + "/sub-" + name.subject + "/", summary.inputs)) {
+      check_input(file, input, summary);
+    }
+  }
+
+  void check_input(const std::string& manifest, const TakeInput& input,
+                   const TakeSummary& summary) {
+    const auto known = std::find_if(summary.inputs.begin(), summary.inputs.end(),
+                                    [&](const InputFacts& one) { return one.name == input.name; });
+    std::error_code fault;
+    const auto size = fs::file_size(input.path, fault);
+    if (fault) {
+      tell(Severity::warning, manifest, "the raw file " + input.name, "none there",
+           "the take can't be made again without it");
+    } else if (known == summary.inputs.end() || known->bytes != size) {
+      tell(Severity::warning, manifest, "the raw file " + input.name + " that the take was made of",
+           "another one", "kinalign dataset build");
+    } else if (options_.deep) {
+      hashes_.push_back({input.path, known->sha256, manifest, size});
+    }
+  }
+
+  /// Files that belong to nothing.
+  Result<void> check_names() {
+    std::error_code fault;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_, fault)) {
+      const std::string name = entry.path().filename().string();
+      const bool is_known =
+          std::find(known_names.begin(), known_names.end(), name) != known_names.end();
+      if (is_known || name.starts_with('.')) continue;
+      const bool is_person =
+          name.starts_with("sub-") && is_label(name.substr(4)) && entry.is_directory();
+      if (!is_person) {
+        tell(Severity::note, name, "a file or folder of a data set",
+             "one that kinalign does not know");
+        continue;
+      }
+      for (const fs::directory_entry& file : fs::directory_iterator(entry.path(), fault)) {
+        const std::string path = name + "/" + file.path().filename().string();
+        if (!parse_take_path(path)) {
+          tell(Severity::note, path, "a file of a take", "one that kinalign does not know");
+        }
+      }
+    }
+    if (fault) return Failure(Error{folder_, 0, "folders that can be read", fault.message()});
+    return {};
+  }
+
+  Result<void> check_hashes() {
+    std::uint64_t all = 0;
+    for (const ToHash& one : hashes_) all += one.bytes;
+    std::mutex mutex;
+    std::uint64_t done = 0;
+    bool is_stopped = false;
+    parallel_for(hashes_.size(), options_.jobs, [&](std::size_t i) {
+      const ToHash& one = hashes_[i];
+      std::uint64_t before = 0;
+      const Progress part = [&](std::string_view, std::uint64_t so_far, std::uint64_t) {
+        const std::lock_guard lock(mutex);
+        done += so_far - before;
+        before = so_far;
+        is_stopped = is_stopped || !go_on(progress_, "hashing", done, all);
+        return !is_stopped;
+      };
+      const auto facts = facts_of(files_, one.path, part);
+      const std::lock_guard lock(mutex);
+      if (facts) out_.bytes += facts->bytes;
+      if (facts && facts->sha256 == one.sha256) return;
+      if (!facts && is_interruption(facts.error())) return;
+      tell(Severity::error, one.name,
+           one.name.ends_with(".toml") ? "raw files that the take was made of: " + one.path
+                                       : "bytes of the SHA-256 " + one.sha256.substr(0, 12) + "...",
+           facts ? facts->sha256.substr(0, 12) + "..." : facts.error().found);
+    });
+    out_.takes = takes_.size();
+    return is_stopped ? Failure(interruption()) : Result<void>{};
+  }
+
+  FileSystem& files_;
+  const std::string& folder_;
+  const Catalogue& catalogue_;
+  const VerifyOptions& options_;
+  const Progress& progress_;
+  std::map<TakeName, TakeFiles> takes_;
+  std::map<TakeName, TakeSummary> summaries_;
+  std::vector<ToHash> hashes_;
+  Verified out_;
+};
+
+}  // namespace
+
+Result<Verified> verify(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
+                        const VerifyOptions& options, const Progress& progress) {
+  return Verifier(files, folder, catalogue, options, progress).run();
+}
+
+}  // namespace kinalign
