@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/split.h"
+
+#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/dataset/scan.h"
+#include "kinalign/documents/report_json.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t longest_split = std::size_t{64} << 20;
+
+struct SplitVerb {
+  std::vector<std::string> folder;
+  SplitOptions options;
+  std::string check;
+};
+
+Usage describe_split(SplitVerb& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.folder)};
+  usage.flags = {
+      {"by", "how takes are divided", &o.options.by, 0.0, 0.0, split_methods()},
+      {"test", "share of the frames for the test", &o.options.test, 0.0, 1.0},
+      {"validation", "share of the frames for validation", &o.options.validation, 0.0, 1.0},
+      {"stratified", "of takes: each class is divided by itself", &o.options.stratified},
+      {"seed", "of the random numbers", &o.options.seed, 0.0, 9e15},
+      {"check", "look at a split that is there instead", &o.check, 0.0, 0.0, {}, "FILE"}};
+  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+    if (o.options.test + o.options.validation >= 1.0) {
+      return Failure(Error{"--test", 0, "shares that leave something for training", "all of it"});
+    }
+    if (!o.check.empty() == common.out.empty()) return {};
+    return Failure(Error{"-o", 0, "-o FILE for a new split, or --check FILE",
+                         o.check.empty() ? "neither" : "both"});
+  };
+  return usage;
+}
+
+Result<std::vector<SplitTake>> takes_of(FileSystem& files, const std::string& folder) {
+  std::vector<SplitTake> takes;
+  for (const auto& [name, there] : KA_TRY(scan_takes(folder))) {
+    if (there.take && there.summary)
+      takes.push_back({name, KA_TRY(read_summary(files, folder, name))});
+  }
+  return takes;
+}
+
+Table table_of(const Split& split, const std::vector<SplitTake>& takes) {
+  std::map<TakeName, std::uint64_t> frames;
+  for (const SplitTake& take : takes) frames[take.name] = take.summary.frames;
+  Table table;
+  table.columns = {
+      {"part", "part"}, {"takes", "takes"}, {"people", "people"}, {"frames", "frames"}};
+  for (const SplitPart& part : split.parts) {
+    std::uint64_t sum = 0;
+    std::map<std::string, int> people;
+    for (const TakeName& name : part.takes) {
+      sum += frames[name];
+      ++people[name.subject];
+    }
+    table.rows.push_back({part.name, static_cast<std::int64_t>(part.takes.size()),
+                          static_cast<std::int64_t>(people.size()),
+                          static_cast<std::int64_t>(sum)});
+  }
+  return table;
+}
+
+Result<int> run_split(SplitVerb& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string folder = folder_of(o.folder);
+  const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
+  const std::vector<SplitTake> takes = KA_TRY(takes_of(files, folder));
+  const std::string file = o.check.empty() ? call.common.out : o.check;
+  Split split;
+  if (o.check.empty()) {
+    split = KA_TRY(make_split(takes, catalogue, o.options));
+  } else {
+    split = KA_TRY(parse_split_json(KA_TRY(read_whole(files, o.check, longest_split)), o.check));
+  }
+  const Findings findings = check_split(split, takes, file);
+  int code = 0;
+  for (const Finding& one : findings) {
+    code = one.severity == Severity::error ? 1 : code;
+    call.console.print(
+        harmless(std::string(to_string(one.severity)) + "  " + to_string(one.what) + "\n"));
+  }
+  if (o.check.empty()) {
+    OutputFile out = KA_TRY(OutputFile::create(files, file, call.common.overwrite()));
+    KA_TRY(out.write(split_json(split, takes)));
+    KA_TRY(out.commit());
+    call.console.wrote(file);
+  }
+  const Table table = table_of(split, takes);
+  call.console.print(written(table, TableFormat::text));
+  call.console.print_json(fmt::format("{{\"parts\": {}, \"findings\": {}}}",
+                                      written(table, TableFormat::json), findings_json(findings)));
+  return code;
+}
+
+}  // namespace
+
+Verb dataset_split_verb() {
+  return make_verb<SplitVerb>(
+      {.name = "dataset split",
+       .summary = "divide takes for training and test, and look for leaks",
+       .text = "subject: nobody is in two parts. take: whole takes at random. leave-one-out: a "
+               "part for each person. "
+               "hfut-denoise and hfut-imu are the paper's two. A split in which the same take, or "
+               "the same bytes under two "
+               "names, stand in two parts is refused with exit code 1; so are people where they "
+               "have to be apart.",
+       .examples = {{"kinalign dataset split walks --by subject --test 0.2 --seed 7 -o "
+                     "walks/splits/people.json",
+                     "a fifth of the frames, of people who are not in the training"},
+                    {"kinalign dataset split walks --check walks/splits/people.json",
+                     "whether it still holds"}},
+       .common = {"out", "force", "json"}},
+      describe_split, run_split);
+}
+
+}  // namespace kinalign

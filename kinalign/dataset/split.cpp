@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/split.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view split_schema = "kinalign.split/1";
+
+/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t below(std::uint64_t end) {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+    return (z ^ (z >> 31U)) % end;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// What stays together: a take, or all takes of a person.
+struct Unit {
+  std::vector<const SplitTake*> takes;
+  std::uint64_t frames = 0;
+};
+
+using Units = std::vector<Unit>;
+
+Units units_of(const std::vector<const SplitTake*>& takes, bool by_subject) {
+  std::map<std::string, Unit> units;
+  for (const SplitTake* take : takes) {
+    Unit& unit = units[by_subject ? take->name.subject : to_string(take->name)];
+    unit.takes.push_back(take);
+    unit.frames += take->summary.frames;
+  }
+  Units out;
+  for (auto& [key, unit] : units) out.push_back(std::move(unit));
+  return out;
+}
+
+void shuffle(Units& units, Random& random) {
+  for (std::size_t i = units.size(); i > 1; --i) std::swap(units[i - 1], units[random.below(i)]);
+}
+
+/// Moves units off the end of `from` until `to` has that many frames, as near as that goes.
+void move_share(Units& from, std::uint64_t frames, std::vector<TakeName>& to) {
+  std::uint64_t moved = 0;
+  while (!from.empty() && moved + from.back().frames / 2 < frames) {
+    moved += from.back().frames;
+    for (const SplitTake* take : from.back().takes) to.push_back(take->name);
+    from.pop_back();
+  }
+}
+
+/// Divides the units at random.
+void divide(Units units, const SplitOptions& options, Random& random,
+            std::vector<SplitPart>& parts) {
+  std::uint64_t frames = 0;
+  for (const Unit& unit : units) frames += unit.frames;
+  shuffle(units, random);
+  const auto share = [frames](double of) {
+    return static_cast<std::uint64_t>(of * static_cast<double>(frames));
+  };
+  move_share(units, share(options.test), parts[2].takes);
+  move_share(units, share(options.validation), parts[1].takes);
+  for (const Unit& unit : units) {
+    for (const SplitTake* take : unit.takes) parts[0].takes.push_back(take->name);
+  }
+}
+
+std::string class_of(const SplitTake& take, const Catalogue& catalogue) {
+  const Action* action = find_action(catalogue, take.name.action);
+  return action == nullptr ? "" : action->class_id;
+}
+
+using Wanted = std::function<bool(const SplitTake&)>;
+
+std::vector<const SplitTake*> chosen(const std::vector<SplitTake>& takes, const Wanted& wanted) {
+  std::vector<const SplitTake*> out;
+  for (const SplitTake& take : takes) {
+    if (wanted(take)) out.push_back(&take);
+  }
+  return out;
+}
+
+/// At random, each class by itself where that is asked for.
+std::vector<SplitPart> random_parts(const std::vector<const SplitTake*>& takes,
+                                    const Catalogue& catalogue, const SplitOptions& options,
+                                    bool by_subject) {
+  std::vector<SplitPart> parts{{"train", {}}, {"validation", {}}, {"test", {}}};
+  Random random(static_cast<std::uint64_t>(options.seed));
+  std::map<std::string, std::vector<const SplitTake*>> strata;
+  for (const SplitTake* take : takes) {
+    // People do many classes: they are divided as a whole.
+    const bool apart = options.stratified && !by_subject;
+    strata[apart ? class_of(*take, catalogue) : ""].push_back(take);
+  }
+  for (const auto& [key, of_class] : strata) {
+    divide(units_of(of_class, by_subject), options, random, parts);
+  }
+  if (options.validation == 0.0) parts.erase(parts.begin() + 1);
+  return parts;
+}
+
+std::vector<SplitPart> a_part_each(const std::vector<SplitTake>& takes) {
+  std::map<std::string, SplitPart> parts;
+  for (const SplitTake& take : takes) {
+    SplitPart& part = parts[take.name.subject];
+    part.name = take.name.subject;
+    part.takes.push_back(take.name);
+  }
+  std::vector<SplitPart> out;
+  for (auto& [id, part] : parts) out.push_back(std::move(part));
+  return out;
+}
+
+std::vector<SplitPart> imu_parts(const std::vector<SplitTake>& takes, const Catalogue& catalogue) {
+  std::vector<SplitPart> parts{{"train", {}}, {"test", {}}};
+  for (const SplitTake& take : takes) {
+    if (!take.summary.has(Modality::imu)) continue;
+    const std::string of = class_of(take, catalogue);
+    parts[of == "S2" || of == "S3" || of == "S5" ? 0 : 1].takes.push_back(take.name);
+  }
+  return parts;
+}
+
+bool is_man_of_175(const SplitTake& take, const Catalogue& catalogue) {
+  const Subject* subject = find_subject(catalogue, take.name.subject);
+  return subject != nullptr && subject->sex == "m" && subject->height_cm == 175.0;
+}
+
+const SplitTake* find_take(const std::vector<SplitTake>& takes, const TakeName& name) {
+  const auto found = std::find_if(takes.begin(), takes.end(),
+                                  [&](const SplitTake& one) { return one.name == name; });
+  return found == takes.end() ? nullptr : &*found;
+}
+
+/// Who or what stands in which parts.
+using Places = std::map<std::string, std::set<std::string>>;
+
+struct Seen {
+  Places names, contents, subjects;
+};
+
+std::string listed(const std::set<std::string>& parts) {
+  return fmt::format("{}", fmt::join(parts, " and "));
+}
+
+}  // namespace
+
+std::vector<std::string> split_methods() {
+  return {"subject", "take", "leave-one-out", "hfut-denoise", "hfut-imu"};
+}
+
+Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& catalogue,
+                         const SplitOptions& options) {
+  Split out{options, {}};
+  if (options.by == "leave-one-out") {
+    out.parts = a_part_each(takes);
+  } else if (options.by == "hfut-imu") {
+    out.parts = imu_parts(takes, catalogue);
+  } else {
+    const bool denoise = options.by == "hfut-denoise";
+    const auto wanted = [&](const SplitTake& take) {
+      return !denoise || (is_man_of_175(take, catalogue) && take.summary.has(Modality::kinect));
+    };
+    out.parts = random_parts(chosen(takes, wanted), catalogue, options, options.by == "subject");
+  }
+  for (SplitPart& part : out.parts) {
+    std::sort(part.takes.begin(), part.takes.end());
+    if (!part.takes.empty()) continue;
+    return Failure(Error{"", 0, "takes for the part " + part.name,
+                         "none (of " + std::to_string(takes.size()) + " takes in all)"});
+  }
+  if (out.parts.size() < 2)
+    return Failure(Error{"", 0, "takes of two people at least", "of fewer"});
+  return out;
+}
+
+Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
+                     const std::string& file) {
+  Findings out;
+  const auto tell = [&](Severity severity, std::string expected, std::string found) {
+    out.push_back({severity, Error{file, 0, std::move(expected), std::move(found)}, "", ""});
+  };
+  Seen seen;
+  for (const SplitPart& part : split.parts) {
+    for (const TakeName& name : part.takes) {
+      const SplitTake* take = find_take(takes, name);
+      if (take == nullptr) {
+        tell(Severity::error, "takes of the data set", to_string(name));
+        continue;
+      }
+      seen.names[to_string(name)].insert(part.name);
+      seen.subjects[name.subject].insert(part.name);
+      seen.contents[take->summary.sha256].insert(part.name);
+      for (const InputFacts& input : take->summary.inputs) {
+        seen.contents[input.sha256].insert(part.name);
+      }
+    }
+  }
+  for (const auto& [name, parts] : seen.names) {
+    if (parts.size() > 1)
+      tell(Severity::error, "each take in one part", name + " in " + listed(parts));
+  }
+  for (const auto& [hash, parts] : seen.contents) {
+    if (parts.size() < 2) continue;
+    tell(Severity::error, "the same bytes in one part only",
+         "SHA-256 " + hash.substr(0, 12) + "... in " + listed(parts));
+  }
+  const bool apart = split.options.by == "subject" || split.options.by == "leave-one-out";
+  for (const auto& [subject, parts] : seen.subjects) {
+    if (parts.size() < 2) continue;
+    tell(apart ? Severity::error : Severity::note, "each person in one part",
+         "subject " + subject + " in " + listed(parts));
+  }
+  return out;
+}
+
+std::string split_json(const Split& split, const std::vector<SplitTake>& takes) {
+  const SplitOptions& o = split.options;
+  Json out = {{"schema", split_schema},     {"by", o.by},     {"test", o.test},
+              {"validation", o.validation}, {"seed", o.seed}, {"stratified", o.stratified},
+              {"parts", Json::array()}};
+  for (const SplitPart& part : split.parts) {
+    Json one = {{"name", part.name}, {"takes", Json::array()}};
+    for (const TakeName& name : part.takes) {
+      const SplitTake* take = find_take(takes, name);
+      one["takes"].push_back(
+          {{"name", to_string(name)}, {"sha256", take == nullptr ? "" : take->summary.sha256}});
+    }
+    out["parts"].push_back(std::move(one));
+  }
+  return out.dump(1) + "\n";
+}
+
+Result<Split> parse_split_json(std::string_view json, const std::string& file) {
+  const auto wrong = [&](const std::string& found) {
+    return Failure(Error{file, 0, "a split (" + std::string(split_schema) + ")", shown(found)});
+  };
+  try {
+    const Json parsed = Json::parse(json);
+    if (parsed.at("schema").get<std::string>() != split_schema)
+      return wrong(parsed["schema"].get<std::string>());
+    Split out;
+    out.options = {parsed.at("by").get<std::string>(), parsed.at("test").get<double>(),
+                   parsed.at("validation").get<double>(), parsed.at("seed").get<std::int64_t>(),
+                   parsed.at("stratified").get<bool>()};
+    for (const Json& part : parsed.at("parts")) {
+      SplitPart& made = out.parts.emplace_back();
+      made.name = part.at("name").get<std::string>();
+      for (const Json& take : part.at("takes")) {
+        const auto name = parse_take_name(take.at("name").get<std::string>());
+        if (!name) return wrong(take["name"].get<std::string>());
+        made.takes.push_back(*name);
+      }
+    }
+    return out;
+  } catch (const Json::exception& fault) {
+    return wrong(fault.what());
+  }
+}
+
+}  // namespace kinalign
