@@ -4,9 +4,9 @@
 namespace kinalign {
 
 std::vector<Verb> all_verbs() {
-  return {align_verb(),  info_verb(),       check_verb(),    convert_verb(),     rebuild_verb(),
-          record_verb(), recover_verb(),    simulate_verb(), time_server_verb(), node_key_verb(),
-          config_verb(), completion_verb(), man_verb()};
+  return {align_verb(),    info_verb(),   check_verb(),      report_verb(),   convert_verb(),
+          rebuild_verb(),  record_verb(), recover_verb(),    simulate_verb(), time_server_verb(),
+          node_key_verb(), config_verb(), completion_verb(), man_verb()};
 }
 
 }  // namespace kinalign
