@@ -91,6 +91,7 @@ Parts parts_of(const TakePage& page) {
   parts["verdicts"] = verdict_items(page);
   parts["worst_title"] = worst_title(page);
   parts["worst"] = worst_items(page);
+  parts["numbers"] = numbers_list(page);
   parts["legend"] = legend(page);
   parts["player_caption"] = player_caption(page);
   parts["time_table"] = time_table(page);

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 // Steps to which series are rounded: below what any of the devices can tell.
 constexpr double second_step = 1e-4, metre_step = 5e-4, rate_step = 0.01, acceleration_step = 0.02;
-constexpr double angle_step = 1e-3, rotation_step = 1.0 / 2048.0;
+constexpr double angle_step = 2e-5, rotation_step = 1.0 / 2048.0;
 
 std::string_view name_of(PageKind kind) {
   if (kind == PageKind::clip) return "clip";

@@ -39,9 +39,9 @@ std::string row(std::string_view cell, const std::vector<std::string>& cells) {
 std::string table(const std::vector<std::string>& heads, const std::string& rows,
                   std::string_view caption) {
   return fmt::format(
-      "<div class=\"scroll\"><table><caption>{}</caption><thead>{}</thead><tbody>{}</tbody></table>"
-      "</div>",
-      caption, row("th", heads), rows);
+      "<figure><div class=\"scroll\"><table><thead>{}</thead><tbody>{}</tbody></table></div>"
+      "<figcaption>{}</figcaption></figure>",
+      row("th", heads), rows, caption);
 }
 
 std::string stream_name(const StreamReport& s) {
@@ -158,6 +158,37 @@ std::string worst_items(const TakePage& page) {
     const std::string who = concern.stream + (named ? "" : " " + concern.part);
     const std::string small = concern.quality == Quality::good ? " (within the limits)" : "";
     out += fmt::format("<li>{}: {}{}</li>", escaped(who), escaped(concern.what), small);
+  }
+  return out;
+}
+
+std::string numbers_list(const TakePage& page) {
+  std::string out;
+  const auto add = [&out](const std::string& number, const std::string& what) {
+    out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", escaped(number), escaped(what));
+  };
+  for (const PageSpace& space : page.spaces) {
+    add(cm(space.report.after_m) + " cm",
+        space.report.stream + " from " + space.report.onto + ", rms");
+  }
+  std::optional<std::int64_t> widest;
+  for (const StreamReport& s : page.report.streams) {
+    if (s.worst_interval_ns) widest = std::max(widest.value_or(0), *s.worst_interval_ns);
+  }
+  if (widest && *widest > 0) {
+    add(fmt::format("± {:.1f} ms", 1e-6 * static_cast<double>(*widest)), "certain time, at worst");
+  }
+  for (const StreamReport& s : page.report.streams) {
+    if (kind_of_stream(page, s.stream) != "points" || s.samples == 0) continue;
+    add(share_or_zero(s.samples - s.invalid, s.samples), s.stream + " joints valid");
+    add(share_or_zero(s.inferred, s.samples), s.stream + " joints inferred");
+  }
+  const auto worst = std::max_element(
+      page.nodes.begin(), page.nodes.end(),
+      [](const NodeFigures& a, const NodeFigures& b) { return a.rate_rms < b.rate_rms; });
+  if (worst != page.nodes.end() && worst->has_rate) {
+    add(fmt::format("{:.1f}°/s", worst->rate_rms * degrees),
+        "worst node (" + worst->node + ") from its bone, rms");
   }
   return out;
 }
@@ -339,10 +370,10 @@ std::string node_table(const TakePage& page) {
     rows +=
         row("td", {node.node, "=" + node.joint, number(node.has_rate, node.rate_rms * degrees, 1),
                    number(node.has_rate, node.rate_correlation, 3),
-                   node.lag_s ? fmt::format("{:+.0f}", 1e3 * *node.lag_s) : "",
+                   node.lag_s ? fmt::format("{:+.1f}", 1e3 * *node.lag_s) : "",
                    number(node.has_acceleration, node.acceleration_rms, 2),
                    number(node.has_acceleration, node.acceleration_correlation, 3),
-                   number(node.has_orientation, node.orientation_rms * degrees, 1)});
+                   number(node.has_orientation, node.orientation_rms * degrees, 2)});
   }
   return table({"node", "=bone", "angular velocity, rms / °/s", "its correlation", "lag / ms",
                 "acceleration, rms / m/s²", "its correlation", "orientation, rms / °"},

@@ -15,6 +15,7 @@ Quality quality_of(const TakePage& page);  // of the worst stream
 std::string verdict_items(const TakePage& page);
 std::string worst_items(const TakePage& page);
 std::string worst_title(const TakePage& page);
+std::string numbers_list(const TakePage& page);  // the few figures of the first screen
 std::string legend(const TakePage& page);
 std::string player_caption(const TakePage& page);
 std::string time_table(const TakePage& page);

@@ -7,25 +7,62 @@ import { select } from "d3-selection";
 
 export const margin = { top: 8, right: 12, bottom: 36, left: 52 };
 
-/// Calls draw(svg, width) now, and when the width of the figure's box changes.
-export function drawn(id, draw) {
+const redraws = [];
+
+/// Draws all figures again, for paper or for the screen.
+export function redrawAll() {
+  for (const redraw of redraws) redraw();
+}
+
+/// A column of A4 or Letter, or half of one, in CSS pixels.
+const paperWidth = (box) => (box.closest(".pair") === null ? 690 : 335);
+
+/// Calls draw(svg, width) now, and when the width of the figure's box changes. `seen` is called when
+/// the figure comes into view; `visible()` says whether it is. While a take plays, figures out of view
+/// stay as they are.
+export function drawn(id, draw, seen = () => {}) {
   const box = document.querySelector(`#${id} .plot`);
-  if (box === null) return { redraw() {} };
+  if (box === null) return { redraw() {}, visible: () => false };
   const svg = select(box).append("svg").attr("role", "img");
   const caption = document.querySelector(`#${id} figcaption`);
   if (caption !== null) svg.attr("aria-label", caption.textContent.trim());
   let width = 0;
   const redraw = () => {
-    width = Math.max(280, Math.round(box.clientWidth));
+    const printing = document.documentElement.classList.contains("printing");
+    width = printing ? paperWidth(box) : Math.max(280, Math.round(box.clientWidth));
     svg.selectAll("*").remove();
     const height = draw(svg, width);
     svg.attr("viewBox", `0 0 ${width} ${height}`).attr("height", height);
   };
   redraw();
+  redraws.push(redraw);
   new ResizeObserver(() => {
-    if (Math.abs(box.clientWidth - width) > 1 && box.clientWidth > 0) redraw();
+    const printing = document.documentElement.classList.contains("printing");
+    if (!printing && Math.abs(box.clientWidth - width) > 1 && box.clientWidth > 0) redraw();
   }).observe(box);
-  return { redraw };
+  let visible = false;
+  new IntersectionObserver((entries) => {
+    visible = entries[entries.length - 1].isIntersecting;
+    if (visible) seen();
+  }).observe(box);
+  return { redraw, visible: () => visible };
+}
+
+/// Something that moves over a figure: an element of its own, so that the figure is not painted again.
+export function marker(id, kind) {
+  const box = document.querySelector(`#${id} .plot`), made = document.createElement("div");
+  made.className = kind;
+  if (box !== null) box.append(made);
+  return {
+    size(top, height) {
+      made.style.top = `${top}px`;
+      made.style.height = `${height}px`;
+    },
+    move(x, y, shown) {
+      made.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      made.style.visibility = shown ? "visible" : "hidden";
+    },
+  };
 }
 
 const hatchName = (svg, kind) => `hatch-${kind}-${svg.node().closest("figure").id}`;
@@ -100,31 +137,29 @@ export class TimeView {
     this.show(middle - ((b - a) / 2) * factor, middle + ((b - a) / 2) * factor);
   }
   moveCursors() {
-    for (const chart of this.charts) if (chart.place) chart.place();
+    for (const chart of this.charts) if (chart.place && chart.visible()) chart.place();
   }
   /// draw(svg, at, x) fills the plot and returns nothing; `height` is the plot's own.
   add(id, height, draw) {
-    const chart = { place: null };
-    chart.redraw = drawn(id, (svg, width) => {
+    const chart = { place: null, visible: () => false }, line = marker(id, "cursor");
+    const made = drawn(id, (svg, width) => {
       const own = typeof height === "function" ? height() : height;
       const at = { left: margin.left, top: margin.top, width: width - margin.left - margin.right, height: own };
       const x = scaleLinear(this.domain, [at.left, at.left + at.width]);
       draw(svg, at, x);
-      chart.place = this.cursor(svg, at, x);
+      line.size(at.top, at.height);
+      chart.place = () => {
+        const now = this.clock.now, [a, b] = this.domain;
+        line.move(x(now), 0, now >= a && now <= b);
+      };
+      chart.place();
       this.follow(svg, at, x);
       return own + margin.top + margin.bottom;
-    }).redraw;
+    }, () => chart.place && chart.place());
+    chart.redraw = made.redraw;
+    chart.visible = made.visible;
     this.charts.push(chart);
     return chart;
-  }
-  cursor(svg, at, x) {
-    const line = svg.append("line").attr("class", "cursor").attr("y1", at.top).attr("y2", at.top + at.height);
-    const placed = () => {
-      const now = this.clock.now, [a, b] = this.domain;
-      line.attr("x1", x(now)).attr("x2", x(now)).attr("visibility", now >= a && now <= b ? "visible" : "hidden");
-    };
-    placed();
-    return placed;
   }
   follow(svg, at, x) {
     const node = svg.node();

@@ -1,6 +1,6 @@
 // A take's page: reads the data, draws the figures, joins the player and the keyboard to one clock.
 // SPDX-License-Identifier: Apache-2.0
-import { TimeView } from "./chart.js";
+import { redrawAll, TimeView } from "./chart.js";
 import { PageClock } from "./clock.js";
 import { readTake } from "./data.js";
 import { nodeFigures } from "./node_figures.js";
@@ -33,7 +33,10 @@ function controls(take, clock, player) {
   clock.listen(told);
   told();
   for (const button of box.querySelectorAll("[data-view]")) {
-    button.addEventListener("click", () => player && player.look(button.dataset.view));
+    button.addEventListener("click", (event) => {
+      if (player) player.look(button.dataset.view);
+      if (event.detail > 0) button.blur();  // by mouse: the space bar still plays
+    });
   }
   for (const tick of box.querySelectorAll("[data-part]")) {
     tick.addEventListener("change", () => player && player.toggle(tick.dataset.part, tick.checked));
@@ -102,6 +105,14 @@ function main() {
   stateFigure(take);
   boneFigure(take);
   nodeFigures(take, nodes);
+  const paper = (on) => () => {
+    document.documentElement.classList.toggle("printing", on);
+    if (player) player.recolour();
+    if (player && on) player.copyForPaper();
+    redrawAll();
+  };
+  addEventListener("beforeprint", paper(true));
+  addEventListener("afterprint", paper(false));
   document.body.dataset.ready = "true";
 }
 

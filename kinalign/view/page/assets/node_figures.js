@@ -19,7 +19,7 @@ function compared(take, view, id, label, of) {
     const first = rowAt(take.seconds, view.domain[0]), last = rowAt(take.seconds, view.domain[1]);
     const step = Math.max(1, Math.floor((last - first) / (3 * at.width)));
     const { valid, curves } = of();
-    let low = 0, high = 0.01;
+    let low = Infinity, high = -Infinity;
     const lines = curves.map(({ kind, value }) => {
       const points = [];
       for (let k = first; k <= last; k += step) {
@@ -34,6 +34,9 @@ function compared(take, view, id, label, of) {
       }
       return { kind, points };
     });
+    if (low > high) [low, high] = [0, 1];
+    // From zero, unless that would hide what changes: gravity is in an acceleration.
+    if (low > 0 && high - low > 0.3 * high) low = 0;
     const y = scaleLinear([low, high], [at.top + at.height, at.top]).nice(4);
     axes(svg, at, x, y, { x: "time / s", y: label });
     for (const { kind, points } of lines) {

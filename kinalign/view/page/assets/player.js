@@ -3,7 +3,7 @@
 // last seen.
 // SPDX-License-Identifier: Apache-2.0
 import {
-  AmbientLight, BufferGeometry, Color, CylinderBufferGeometry, DirectionalLight, Float32BufferAttribute, Group, InstancedMesh,
+  AmbientLight, BufferGeometry, Color, CylinderBufferGeometry, DirectionalLight, EdgesGeometry, Float32BufferAttribute, Group, InstancedMesh,
   LineBasicMaterial, LineSegments, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Points, Quaternion,
   Scene, ShaderMaterial, Vector3, WebGLRenderer, BoxBufferGeometry, DoubleSide,
 } from "three";
@@ -212,7 +212,6 @@ class Floor3D {
     this.grid = new LineBasicMaterial();
     this.zone = new LineBasicMaterial();
     this.fill = new MeshBasicMaterial({ transparent: true, opacity: 0.08, side: DoubleSide, depthWrite: false });
-    this.box = new MeshLambertMaterial();
     this.zones = new Group();
     const points = [], half = 6, cx = Math.round(middle[0]), cz = Math.round(middle[2]);
     for (let i = -half; i <= half; ++i) {
@@ -240,14 +239,14 @@ class Floor3D {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new Float32BufferAttribute(faces, 3));
     this.zones.add(new Mesh(geometry, this.fill));
-    const kinect = new Mesh(new BoxBufferGeometry(0.25, 0.07, 0.07), this.box);
+    const kinect = new LineSegments(new EdgesGeometry(new BoxBufferGeometry(0.25, 0.07, 0.07)), this.zone);
     kinect.position.set(...camera);
     kinect.lookAt(camera[0] + forward[0], camera[1], camera[2] + forward[2]);
     this.zones.add(kinect);
   }
   colour(c) {
     this.grid.color.copy(c.faint);
-    for (const part of [this.zone, this.fill, this.box]) part.color.copy(c.points);
+    for (const part of [this.zone, this.fill]) part.color.copy(c.points);
   }
 }
 
@@ -258,7 +257,7 @@ class Orbit {
     this.target = new Vector3();
     this.azimuth = 0;
     this.height = 0.12;
-    this.distance = 4.2;
+    this.distance = 3.7;
     const pointers = new Map();
     canvas.addEventListener("pointerdown", (event) => {
       pointers.set(event.pointerId, event);
@@ -307,8 +306,8 @@ export class Player {
     this.canvas = canvas;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
     this.scene = new Scene();
-    this.scene.add(new AmbientLight(0xffffff, 0.75));
-    const sun = new DirectionalLight(0xffffff, 0.45);
+    this.scene.add(new AmbientLight(0xffffff, 0.88));
+    const sun = new DirectionalLight(0xffffff, 0.3);
     sun.position.set(1, 3, 2);
     this.scene.add(sun);
     const drawnBodies = take.bodies.filter((body) => body.in_take_space);
@@ -327,7 +326,6 @@ export class Player {
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     clock.listen(() => this.show());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.recolour());
-    matchMedia("print").addEventListener("change", () => this.recolour());
     this.show();
   }
   /// Of the root joint of the first body, or where it was last seen.
@@ -355,6 +353,15 @@ export class Player {
     if (this.axes) this.axes.colour(c);
     this.floor.colour(c);
     this.draw();
+  }
+  /// A copy for paper: what WebGL draws now is shown only later, which is too late for a printer.
+  copyForPaper() {
+    const copy = this.canvas.parentElement.querySelector(".paper") ?? document.createElement("canvas");
+    copy.className = "paper";
+    copy.width = this.canvas.width;
+    copy.height = this.canvas.height;
+    copy.getContext("2d").drawImage(this.canvas, 0, 0);
+    this.canvas.after(copy);
   }
   resize() {
     const box = this.canvas.parentElement, width = box.clientWidth, height = box.clientHeight;

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { scaleLinear } from "d3-scale";
 
-import { addHatches, axes, bars, drawn, hatch, margin, path } from "./chart.js";
+import { addHatches, axes, bars, drawn, hatch, margin, marker, path } from "./chart.js";
 import { boxOf, drawBody } from "./bodies.js";
 import { beforeMove, distance, place, rowAt, stateOf } from "./data.js";
 
@@ -66,7 +66,9 @@ export function table5(take, clock) {
   clock.listen(() => {
     touched = touched || clock.now > 0;
     const now = rowAt(take.seconds, clock.now);
-    if (!touched || now === row) return;
+    if (!touched || now === row || !figure.visible()) return;
+    // Drawing four skeletons takes longer than a frame of the player: ten times a second will do.
+    if (clock.playing && Math.abs(take.seconds[now] - take.seconds[row]) < 0.1 * clock.speed) return;
     row = now;
     figure.redraw();
     tell();
@@ -89,7 +91,7 @@ export function residualByJoint(take) {
   drawn("residual", (svg, width) => {
     const most = Math.max(...space.joints.map((j) => j.after_m)) * 100;
     const names = space.joints.map((j) => j.joint);
-    return bars(svg, width, names, scaleLinear([0, 1.1 * most]), { x: "distance, rms / cm" }, (i, y, height, x) => {
+    return bars(svg, width, names, scaleLinear().domain([0, 1.1 * most]), { x: "distance, rms / cm" }, (i, y, height, x) => {
       const value = 100 * space.joints[i].after_m;
       svg.append("rect").attr("class", "fill points").attr("x", x(0)).attr("y", y).attr("width", x(value) - x(0)).attr("height", height);
       svg.append("text").attr("class", "value").attr("x", x(value) + 4).attr("y", y + height / 2).attr("dy", "0.35em").text(value.toFixed(1));
@@ -163,16 +165,13 @@ export function floorFigure(take, clock) {
   seen.forEach(include);
   if (floor) [[0, 0], [-floor.largest[1] * 0.6, floor.largest[1]], [floor.largest[1] * 0.6, floor.largest[1]]].forEach(include);
   const pad = 0.4;
-  let dots = null, to = null;
+  let to = null;
+  const dots = bodies.map((body) => marker("floor", `now ${body.kind}`));
   const now = () => {
     const row = rowAt(take.seconds, clock.now);
-    ways.forEach((way, i) => {
-      const p = way[row];
-      dots[i].attr("visibility", p === null ? "hidden" : "visible");
-      if (p !== null) dots[i].attr("cx", to(p)[0]).attr("cy", to(p)[1]);
-    });
+    ways.forEach((way, i) => dots[i].move(...(way[row] === null ? [0, 0] : to(way[row])), way[row] !== null));
   };
-  drawn("floor", (svg, width) => {
+  const figure = drawn("floor", (svg, width) => {
     const span = [high[0] - low[0] + 2 * pad, high[1] - low[1] + 2 * pad];
     const plot = Math.min(width - margin.left - margin.right, 560);
     const scale = Math.min(plot / span[0], 380 / span[1]);
@@ -184,11 +183,10 @@ export function floorFigure(take, clock) {
     if (floor) drawZones(svg, floor, to);
     const lines = { clip: "line clip", points: "line thin points" };
     ways.forEach((way, i) => svg.append("path").attr("class", lines[bodies[i].kind]).attr("d", path(way.map((p) => (p === null ? null : to(p))))));
-    dots = bodies.map((body) => svg.append("circle").attr("class", `now ${body.kind}`).attr("r", 5));
     now();
     return at.top + at.height + margin.bottom;
-  });
-  clock.listen(now);
+  }, () => to && now());
+  clock.listen(() => figure.visible() && now());
 }
 
 function drawZones(svg, floor, to) {
@@ -222,7 +220,7 @@ export function stateFigure(take) {
   const most = Math.max(1, ...shares.map((s) => s.inferred + s.missing));
   drawn("states", (svg, width) => {
     addHatches(svg);
-    return bars(svg, width, order.map((j) => body.joint_names[j]), scaleLinear([0, 1.15 * most]), { x: "of all rows / %" }, (i, y, height, x) => {
+    return bars(svg, width, order.map((j) => body.joint_names[j]), scaleLinear().domain([0, 1.15 * most]), { x: "of all rows / %" }, (i, y, height, x) => {
       const s = shares[order[i]];
       svg.append("rect").attr("fill", hatch(svg, "points")).attr("x", x(0)).attr("y", y).attr("width", x(s.inferred) - x(0)).attr("height", height);
       svg.append("rect").attr("class", "lane-box points").attr("x", x(s.inferred)).attr("y", y).attr("width", x(s.missing) - x(0)).attr("height", height);
@@ -240,7 +238,7 @@ export function boneFigure(take) {
   const most = 100 * Math.max(...order.map((b) => 3 * b.deviation_m));
   const name = (b) => take.bodies[b.body].joint_names[b.joint];
   drawn("bones", (svg, width) =>
-    bars(svg, width, order.map(name), scaleLinear([-most, most]), { x: "length minus its mean / cm" }, (i, y, height, x) => {
+    bars(svg, width, order.map(name), scaleLinear().domain([-most, most]), { x: "length minus its mean / cm" }, (i, y, height, x) => {
       const b = order[i], clamp = (v) => Math.max(-most, Math.min(most, v)), middle = y + height / 2;
       const shortest = clamp(100 * (b.shortest_m - b.mean_m)), longest = clamp(100 * (b.longest_m - b.mean_m));
       svg.append("path").attr("class", "line thin points").attr("d", `M${x(shortest)} ${middle}H${x(longest)}`);

@@ -139,7 +139,8 @@ export function figure7(take, view) {
   const state = { joint: usual ?? 0, axis: 1 };
   const gap = longestGap(curve, state.joint);
   const middle = gap ? gap.middle : Math.min(detail.begin_s + 3, take.length_s / 2);
-  if (take.length_s > 6) view.show(middle - 3, middle + 3);
+  const half = Math.min(3, Math.max(1, document.querySelector("#figure7 .plot").clientWidth / 300));
+  if (take.length_s > 2 * half) view.show(middle - half, middle + half);
   const letters = ["x", "y (up)", "z"];
   const chart = view.add("figure7", 260, (svg, at, x) => {
     const [begin, end] = view.domain;
