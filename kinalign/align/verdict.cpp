@@ -132,6 +132,13 @@ std::string words_of(const Concern& concern) {
   return named ? concern.what : concern.part + ": " + concern.what;
 }
 
+/// The heaviest concern decides.
+void settle(Verdict& verdict) {
+  std::stable_sort(verdict.concerns.begin(), verdict.concerns.end(), heavier);
+  verdict.quality = verdict.concerns.front().quality;
+  verdict.reason = words_of(verdict.concerns.front());
+}
+
 }  // namespace
 
 std::string_view to_string(Quality quality) {
@@ -159,14 +166,17 @@ Verdict verdict_of(const AlignmentReport& report, const std::string& stream,
   for (const Finding& finding : report.findings) {
     if (is_about(finding, report, stream, files)) add_finding(finding, stream, verdict.concerns);
   }
-  std::stable_sort(verdict.concerns.begin(), verdict.concerns.end(), heavier);
   if (verdict.concerns.empty()) {
     verdict.reason = stream == report.reference ? "the reference, complete" : "complete";
-    return verdict;
+  } else {
+    settle(verdict);
   }
-  verdict.quality = verdict.concerns.front().quality;
-  verdict.reason = words_of(verdict.concerns.front());
   return verdict;
+}
+
+void add_concern(Concern concern, Verdict& verdict) {
+  verdict.concerns.push_back(std::move(concern));
+  settle(verdict);
 }
 
 std::vector<Concern> worst_of(const std::vector<Verdict>& verdicts, std::size_t most) {

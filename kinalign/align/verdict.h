@@ -40,6 +40,9 @@ struct Verdict {
 Verdict verdict_of(const AlignmentReport& report, const std::string& stream,
                    const std::vector<InputFacts>& files);
 
+/// One more concern, of what the report does not know.
+void add_concern(Concern concern, Verdict& verdict);
+
 /// The heaviest concerns of all, at most `most`, none that weighs nothing.
 std::vector<Concern> worst_of(const std::vector<Verdict>& verdicts, std::size_t most);
 

@@ -79,6 +79,13 @@ Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
   return out;
 }
 
+/// The space that the positions of joints say they are in.
+Result<std::string> read_space(const hdf5::Checked& file, hid_t group) {
+  const Handle positions(H5Dopen2(group, "positions", H5P_DEFAULT), H5Dclose);
+  if (!positions.good()) return hdf5::failure(file.bytes(), "an array positions");
+  return file.text_attribute(positions.id(), "space");
+}
+
 Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string name) {
   TakeGroup out;
   out.name = std::move(name);
@@ -96,6 +103,7 @@ Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string
     return Failure(Error{file.bytes().path(), 0, "a kind of stream: clip, points or imu",
                          "\"" + shown(kind) + "\""});
   }
+  if (kind != "imu") out.space = KA_TRY(read_space(file, group));
   return out;
 }
 
@@ -132,7 +140,9 @@ struct TakeReader::State {
     return finite(values) ? Result<void>() : bad_value(input.path(), "finite numbers", column.name);
   }
   Result<void> check(const Found& column, std::span<const std::int64_t> values) const {
-    const bool good = std::none_of(values.begin(), values.end(), [](auto v) { return v < 0; });
+    const std::int64_t least = column.name == "time_interval_ns" ? no_interval : 0;
+    const bool good =
+        std::none_of(values.begin(), values.end(), [least](auto v) { return v < least; });
     return good ? Result<void>() : bad_value(input.path(), "times from 0 on", column.name);
   }
   template <class Flag>

@@ -87,6 +87,9 @@ BodyFigures::BodyFigures(const TakeGroup& group, std::size_t body) : number_(bod
     body_.kind = PageKind::points;
     body_.joint_names = std::get<PointGroup>(group.kind).joint_names;
     body_.parents = point_parents(body_.joint_names);
+    const bool bones = std::any_of(body_.parents.begin(), body_.parents.end(),
+                                   [](int parent) { return parent >= 0; });
+    body_.colour = bones ? PageColour::kinect : PageColour::mocap;
     joints_ = body_.joint_names.size();
     bones_.resize(joints_);
   }

@@ -18,10 +18,10 @@ LaneFigures::LaneFigures(const TakeGroup& group, std::size_t bins) {
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
     joints_ = clip->skeleton.joints();
   } else if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
-    lane.kind = PageKind::points;
+    lane.colour = PageColour::kinect;
     joints_ = points->joint_names.size();
   } else {
-    lane.kind = PageKind::imu;
+    lane.colour = PageColour::imu;
     parts = std::get<ImuGroup>(group.kind).node_names;
   }
   for (const std::string& part : parts) {

@@ -7,7 +7,6 @@
 #include <Eigen/SVD>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <string_view>
@@ -23,34 +22,35 @@ constexpr std::size_t fewest_rows = 20;  // to compare anything
 
 // ---- by name
 
+/// Words of a node's name, and joints by the usual names: "*" stands for the side.
 struct Wear {
-  std::array<std::string_view, 4> words;  // of a node's name
-  std::array<std::string_view, 3> turns;  // joints, "*" stands for the side
-  std::array<std::string_view, 3> place;
+  std::vector<std::string_view> words, turns, place;
 };
-constexpr std::array<Wear, 9> wears{{
-    {{"waist", "pelvis", "hips", "hip"}, {"Hips", "Pelvis", "hip"}, {"Hips", "Pelvis", "hip"}},
-    {{"wrist", "forearm", "lowerarm", "hand"},
-     {"*ForeArm", "*Forearm", "*LowerArm"},
-     {"*Hand", "*Wrist", "*ForeArm"}},
-    {{"ankle", "shank", "shin", "lowerleg"},
-     {"*Leg", "*LowerLeg", "*Knee"},
-     {"*Foot", "*Ankle", "*Leg"}},
-    {{"upperarm", "elbow", "arm", "shoulder"},
-     {"*Arm", "*UpperArm", "*Shoulder"},
-     {"*Arm", "*UpperArm", "*Shoulder"}},
-    {{"thigh", "upperleg", "knee", "leg"},
-     {"*UpLeg", "*UpperLeg", "*Hip"},
-     {"*UpLeg", "*UpperLeg", "*Hip"}},
-    {{"foot", "shoe", "toe", "foot"}, {"*Foot", "*Ankle", "*Foot"}, {"*Foot", "*Ankle", "*Foot"}},
-    {{"head", "head", "head", "head"}, {"Head", "head", "Head"}, {"Head", "head", "Head"}},
-    {{"chest", "sternum", "torso", "spine"},
-     {"Spine3", "Spine2", "Chest"},
-     {"Spine3", "Spine2", "Chest"}},
-    {{"back", "trunk", "back", "trunk"},
-     {"Spine2", "Spine1", "Spine"},
-     {"Spine2", "Spine1", "Spine"}},
-}};
+
+const std::vector<Wear>& wears() {
+  static const std::vector<Wear> all{
+      {{"waist", "pelvis", "hips"}, {"Hips", "Pelvis", "hip"}, {"Hips", "Pelvis", "hip"}},
+      {{"wrist", "forearm", "lowerarm", "lowarm", "hand"},
+       {"*ForeArm", "*Forearm", "*LowerArm", "*Elbow"},
+       {"*Hand", "*Wrist", "*ForeArm"}},
+      {{"ankle", "shank", "shin", "lowerleg", "lowleg"},
+       {"*Leg", "*LowerLeg", "*Knee"},
+       {"*Foot", "*Ankle", "*Leg"}},
+      {{"foot", "shoe", "toe"}, {"*Foot", "*Ankle"}, {"*Foot", "*Ankle"}},
+      {{"upperarm", "uparm", "elbow", "arm", "shoulder"},
+       {"*Arm", "*UpperArm", "*Shoulder"},
+       {"*Arm", "*UpperArm", "*Shoulder"}},
+      {{"thigh", "upperleg", "upleg", "knee", "leg", "hip"},
+       {"*UpLeg", "*UpperLeg", "*Hip"},
+       {"*UpLeg", "*UpperLeg", "*Hip"}},
+      {{"head"}, {"Head"}, {"Head"}},
+      {{"chest", "sternum", "torso", "spine"},
+       {"Spine3", "Spine2", "Chest"},
+       {"Spine3", "Spine2", "Chest"}},
+      {{"back", "trunk"}, {"Spine2", "Spine1", "Spine"}, {"Spine2", "Spine1", "Spine"}},
+  };
+  return all;
+}
 
 /// "Wrist_L": "wristl".
 std::string plain(const std::string& name) {
@@ -63,14 +63,18 @@ std::string plain(const std::string& name) {
   return out;
 }
 
-/// "Left", "Right", or empty.
+/// "Left", "Right", or empty: of "wrist_left", "L_Foot", "shank_r".
 std::string_view side_of(const std::string& name) {
   const std::string text = plain(name);
-  if (text.find("left") != std::string::npos) return "Left";
-  if (text.find("right") != std::string::npos) return "Right";
-  if (name.ends_with("_l") || name.ends_with("_L") || name.starts_with("l_")) return "Left";
-  if (name.ends_with("_r") || name.ends_with("_R") || name.starts_with("r_")) return "Right";
-  return "";
+  const auto has = [&](std::string_view word, std::string_view letters) {
+    const auto is_letter = [letters](char c) { return letters.find(c) != std::string_view::npos; };
+    if (text.find(word) != std::string::npos) return true;
+    if (name.size() < 2) return false;
+    return (is_letter(name.front()) && name[1] == '_') ||
+           (is_letter(name.back()) && name[name.size() - 2] == '_');
+  };
+  if (has("left", "lL")) return "Left";
+  return has("right", "rR") ? "Right" : "";
 }
 
 std::optional<std::size_t> joint_called(std::span<const std::string_view> patterns,
@@ -194,7 +198,7 @@ struct SignalFit {
 std::optional<WornOn> worn_on(const std::string& node, const std::vector<std::string>& joints) {
   const std::string text = plain(node);
   const std::string_view side = side_of(node);
-  for (const Wear& wear : wears) {
+  for (const Wear& wear : wears()) {
     const bool here = std::any_of(wear.words.begin(), wear.words.end(), [&](std::string_view word) {
       return text.find(word) != std::string::npos;
     });
@@ -308,16 +312,36 @@ std::size_t NodeCompare::candidate_of(std::size_t node) const {
   std::size_t best = 0;
   double most = -2.0;
   for (std::size_t c = group_.node_names.size(); c < candidates_.size(); ++c) {
-    Correlation alike;
-    for (const Kept& row : kept_) {
-      if (row.bones.empty() || !row.nodes[node].valid) continue;
-      alike.add(row.nodes[node].rate.norm(), row.bones[c].rate.norm());
-    }
-    if (alike.value() <= most) continue;
-    most = alike.value();
+    const double here = alike(node, c);
+    if (here <= most) continue;
+    most = here;
     best = c;
   }
   return best;
+}
+
+/// Correlation of the magnitudes of the angular velocities.
+double NodeCompare::alike(std::size_t node, std::size_t candidate) const {
+  Correlation sums;
+  for (const Kept& row : kept_) {
+    if (row.bones.empty() || !row.nodes[node].valid) continue;
+    sums.add(row.nodes[node].rate.norm(), row.bones[candidate].rate.norm());
+  }
+  return sums.value();
+}
+
+std::string NodeCompare::more_like(std::size_t node) const {
+  constexpr double clearly = 0.1, sure = 0.8;
+  if (!named_[node] || !group_.content.angular_velocity) return "";
+  const double own = alike(node, node);
+  for (std::size_t other = 0; other < named_.size(); ++other) {
+    if (other == node || !named_[other]) continue;
+    const double there = alike(node, other);
+    if (there > sure && there > own + clearly) {
+      return skeleton_.joint_names[candidates_[other].turns];
+    }
+  }
+  return "";
 }
 
 namespace {
@@ -389,6 +413,7 @@ NodeFigures NodeCompare::compare(std::size_t node, double kept_step_s) const {
   out.node = group_.node_names[node];
   out.joint = skeleton_.joint_names[candidates_[c].turns];
   out.joint_by_name = named_[node].has_value();
+  out.more_like = more_like(node);
   out.has_gravity = group_.content.gravity;
   for (const Kept& row : kept_) {
     out.valid.push_back(known(row) ? 1 : 0);

@@ -76,7 +76,9 @@ class NodeCompare {
     std::vector<BoneReading> bones;  // [candidates_]; empty: not known
   };
   void settle_next();
+  double alike(std::size_t node, std::size_t candidate) const;
   std::size_t candidate_of(std::size_t node) const;
+  std::string more_like(std::size_t node) const;
   NodeFigures compare(std::size_t node, double kept_step_s) const;
 
   ImuGroup group_;

@@ -118,7 +118,8 @@ void put_flags(const TakePage& page, Parts& parts) {
   parts["resampled"] = lane([](const PageLane& l) { return l.resampled; });
   parts["interval"] = lane([](const PageLane& l) { return l.interval_known; });
   parts["bins"] = page.lanes.empty() ? "0" : std::to_string(page.lanes.front().tracked.size());
-  parts["points"] = lane([](const PageLane& l) { return l.kind == PageKind::points; });
+  parts["points"] = flag(std::any_of(page.bodies.begin(), page.bodies.end(),
+                                     [](const PageBody& b) { return b.kind == PageKind::points; }));
   parts["pairs"] = flag(!page.spaces.empty() && !page.spaces.front().pairs.empty());
   parts["zones"] = flag(!page.floors.empty());
   parts["bones"] = flag(!page.bones.empty());

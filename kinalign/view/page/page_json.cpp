@@ -18,10 +18,7 @@ using Json = nlohmann::ordered_json;
 constexpr double second_step = 1e-4, metre_step = 5e-4, rate_step = 0.01, acceleration_step = 0.02;
 constexpr double angle_step = 2e-5, rotation_step = 1.0 / 2048.0;
 
-std::string_view name_of(PageKind kind) {
-  if (kind == PageKind::clip) return "clip";
-  return kind == PageKind::points ? "points" : "imu";
-}
+std::string_view name_of(PageKind kind) { return kind == PageKind::clip ? "clip" : "points"; }
 
 double rounded(double x, double step) {
   const double y = std::round(x / step);
@@ -56,6 +53,7 @@ Json body_json(const PageBody& body) {
   const std::size_t joints = body.joint_names.size();
   return {{"name", body.name},
           {"kind", name_of(body.kind)},
+          {"colour", to_string(body.colour)},
           {"joint_names", body.joint_names},
           {"parents", body.parents},
           {"in_take_space", body.in_take_space},
@@ -109,7 +107,7 @@ Json bone_json(const BoneLength& bone) {
 Json lane_json(const PageLane& lane) {
   Json out{{"stream", lane.stream},
            {"part", lane.part},
-           {"kind", name_of(lane.kind)},
+           {"colour", to_string(lane.colour)},
            {"resampled", lane.resampled},
            {"interval_known", lane.interval_known},
            {"tracked", bins_json(lane.tracked, 1.0, 1e-3)},
@@ -169,6 +167,11 @@ Json list_json(const Items& items, ToJson to_json) {
 }
 
 }  // namespace
+
+std::string_view to_string(PageColour colour) {
+  if (colour == PageColour::mocap) return "mocap";
+  return colour == PageColour::kinect ? "kinect" : "imu";
+}
 
 std::string page_json(const TakePage& page) {
   Json marks = Json::array();

@@ -2,6 +2,7 @@
 #include "kinalign/view/page/page_text.h"
 
 #include "kinalign/view/page/page_html.h"
+#include "kinalign/view/page/page_json.h"
 #include "kinalign/view/report_words.h"
 
 #include <fmt/format.h>
@@ -16,13 +17,17 @@ namespace {
 
 constexpr double degrees = 180.0 / std::numbers::pi;
 
-std::string_view kind_of_stream(const TakePage& page, const std::string& stream) {
+std::string_view colour_of_stream(const TakePage& page, const std::string& stream) {
   for (const PageLane& lane : page.lanes) {
-    if (lane.stream != stream) continue;
-    if (lane.kind == PageKind::points) return "points";
-    return lane.kind == PageKind::clip ? "clip" : "imu";
+    if (lane.stream == stream) return to_string(lane.colour);
   }
-  return "imu";
+  return to_string(PageColour::imu);
+}
+
+const PageBody* body_called(const TakePage& page, const std::string& name) {
+  const auto found = std::find_if(page.bodies.begin(), page.bodies.end(),
+                                  [&name](const PageBody& body) { return body.name == name; });
+  return found == page.bodies.end() ? nullptr : &*found;
 }
 
 /// A row of cells; the ones that begin with '=' hold words.
@@ -90,12 +95,6 @@ std::string how_moved(const PageSpace& space) {
          "every frame, so that the root has no residual";
 }
 
-const PageBody* first_of(const TakePage& page, PageKind kind) {
-  const auto found = std::find_if(page.bodies.begin(), page.bodies.end(),
-                                  [kind](const PageBody& body) { return body.kind == kind; });
-  return found == page.bodies.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 std::string facts_text(const TakePage& page) {
@@ -139,7 +138,7 @@ std::string verdict_items(const TakePage& page) {
     out += fmt::format(
         "<li class=\"{}\"><span class=\"stream\">{}</span><span class=\"mark {}\">{}</span><span "
         "class=\"reason\">{}</span></li>",
-        kind_of_stream(page, verdict.stream), escaped(verdict.stream), to_string(verdict.quality),
+        colour_of_stream(page, verdict.stream), escaped(verdict.stream), to_string(verdict.quality),
         to_string(verdict.quality), escaped(verdict.reason));
   }
   return out;
@@ -179,7 +178,10 @@ std::string numbers_list(const TakePage& page) {
     add(fmt::format("± {:.1f} ms", 1e-6 * static_cast<double>(*widest)), "certain time, at worst");
   }
   for (const StreamReport& s : page.report.streams) {
-    if (kind_of_stream(page, s.stream) != "points" || s.samples == 0) continue;
+    const PageBody* body = body_called(page, s.stream);
+    if (body == nullptr || body->kind != PageKind::points || s.stream == page.report.reference) {
+      continue;
+    }
     add(share_or_zero(s.samples - s.invalid, s.samples), s.stream + " joints valid");
     add(share_or_zero(s.inferred, s.samples), s.stream + " joints inferred");
   }
@@ -195,13 +197,14 @@ std::string numbers_list(const TakePage& page) {
 
 std::string legend(const TakePage& page) {
   std::string out;
+  bool points = false;
   for (const PageBody& body : page.bodies) {
     if (!body.in_take_space) continue;
-    const bool points = body.kind == PageKind::points;
-    out += fmt::format("<span><i class=\"{}\"></i>{}</span>", points ? "points" : "clip",
+    points = points || body.kind == PageKind::points;
+    out += fmt::format("<span><i class=\"{}\"></i>{}</span>", to_string(body.colour),
                        escaped(body.name));
-    if (points) out += "<span><i class=\"ring\"></i>inferred, or last seen there</span>";
   }
+  if (points) out += "<span><i class=\"ring\"></i>inferred, or last seen there</span>";
   if (!page.spaces.empty()) out += "<span><i class=\"residual\"></i>residual</span>";
   if (!page.nodes.empty()) out += "<span><i class=\"imu\"></i>nodes' axes</span>";
   return out;
@@ -334,15 +337,14 @@ std::string zone_table(const TakePage& page) {
 }
 
 std::string bones_caption(const TakePage& page) {
-  const PageBody* body = first_of(page, PageKind::points);
-  if (body == nullptr) return "";
+  if (page.bones.empty()) return "";
   return fmt::format(
       "How constant the bones of {} are, which should not change: one deviation to each side "
       "(bar), shortest and longest (line, cut at three deviations of the worst bone), each bone by "
       "the joint at its end, over the rows in which both ends are tracked. A mocap skeleton's "
       "bones "
       "are constant by construction.",
-      escaped(body->name));
+      escaped(page.bodies[page.bones.front().body].name));
 }
 
 std::string node_text(const TakePage& page) {

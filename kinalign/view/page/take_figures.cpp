@@ -68,11 +68,13 @@ struct TakeFigures::State {
   void plan_details();
   void plan_nodes();
   void judge();
+  void judge_nodes();
   void add_detail(const TakeSlab& slab, std::size_t row, double at, GroupFigures& body);
   void add_raw_samples(PageDetail& detail) const;
   void add_row(const TakeSlab& slab, std::size_t row);
   std::size_t bin_of(double seconds) const;
   double kept_step_s() const;
+  void colour();
 };
 
 std::optional<std::size_t> TakeFigures::State::body_called(const std::string& name) const {
@@ -132,7 +134,9 @@ void TakeFigures::State::plan_nodes() {
   std::optional<std::size_t> clip, nodes;
   for (std::size_t g = header.groups.size(); g-- > 0;) {
     const TakeGroup& group = header.groups[g];
-    if (std::holds_alternative<ClipGroup>(group.kind) && group.space == "take") clip = g;
+    // A skeleton that stays in its own space turns like its nodes all the same.
+    const bool better = !clip || group.space == "take";
+    if (std::holds_alternative<ClipGroup>(group.kind) && better) clip = g;
     if (std::holds_alternative<ImuGroup>(group.kind)) nodes = g;
   }
   if (!clip || !nodes) return;
@@ -148,7 +152,20 @@ void TakeFigures::State::judge() {
     page.verdicts.push_back(verdict_of(page.report, group.name, group.files));
     page.inputs.insert(page.inputs.end(), group.files.begin(), group.files.end());
   }
-  page.worst = worst_of(page.verdicts, 3);
+}
+
+/// What the nodes' bones say against them.
+void TakeFigures::State::judge_nodes() {
+  const std::string& stream = header.groups[node_group].name;
+  const auto verdict = std::find_if(page.verdicts.begin(), page.verdicts.end(),
+                                    [&](const Verdict& v) { return v.stream == stream; });
+  for (const NodeFigures& node : page.nodes) {
+    if (node.more_like.empty()) continue;
+    add_concern(
+        {stream, node.node, "turns more like " + node.more_like + " than like " + node.joint, 2.0,
+         Quality::usable},
+        *verdict);
+  }
 }
 
 std::size_t TakeFigures::State::bin_of(double s) const {
@@ -220,6 +237,16 @@ double TakeFigures::State::kept_step_s() const {
   return static_cast<double>(page.seconds.back()) / static_cast<double>(page.seconds.size() - 1);
 }
 
+/// After the bodies and the lanes are in the page.
+void TakeFigures::State::colour() {
+  for (const PageSpace& space : page.spaces) page.bodies[space.onto].colour = PageColour::mocap;
+  for (PageLane& lane : page.lanes) {
+    for (const PageBody& body : page.bodies) {
+      if (body.name == lane.stream) lane.colour = body.colour;
+    }
+  }
+}
+
 TakeFigures::TakeFigures(const TakeHeader& header, const AlignmentReport& report,
                          TakeFigureOptions options)
     : state_(std::make_unique<State>()) {
@@ -259,12 +286,17 @@ TakePage TakeFigures::finish() {
     s.page.joint_states.push_back(body.figures.take_states());
     s.page.bodies.push_back(body.figures.take_body());
   }
+  s.colour();
   for (GroupFigures& body : s.bodies) {
     if (!body.detail) continue;
     s.page.details.push_back(body.detail->finish());
     s.add_raw_samples(s.page.details.back());
   }
-  if (s.compare) s.page.nodes = s.compare->finish(s.kept_step_s());
+  if (s.compare) {
+    s.page.nodes = s.compare->finish(s.kept_step_s());
+    s.judge_nodes();
+  }
+  s.page.worst = worst_of(s.page.verdicts, 3);
   return std::move(s.page);
 }
 

@@ -17,13 +17,17 @@
 
 namespace kinalign {
 
-/// What colours say: mocap red, Kinect green, nodes blue.
-enum class PageKind { clip, points, imu };
+enum class PageKind { clip, points };
+
+/// The paper's: mocap red, Kinect green, nodes blue. Points are red where others were moved onto
+/// them, and where their joints are not a Kinect's: both are a reference.
+enum class PageColour { mocap, kinect, imu };
 
 /// A skeleton, or points, over the rows kept.
 struct PageBody {
   std::string name;  // the take's group
   PageKind kind = PageKind::clip;
+  PageColour colour = PageColour::mocap;
   std::vector<std::string> joint_names;  // [J], of a clip with its longer end sites
   std::vector<int> parents;              // [J] -1: none
   std::vector<float> positions;          // [K,J,3] m, zeros where missing
@@ -93,7 +97,7 @@ struct JointStates {
 /// A stream's samples over time, in equal bins of the take.
 struct PageLane {
   std::string stream, part;  // "imu", "waist"
-  PageKind kind = PageKind::clip;
+  PageColour colour = PageColour::mocap;
   bool resampled = false;
   bool interval_known = false;
   std::vector<float> tracked, inferred;  // [bins] shares of rows x joints; the rest is missing
@@ -105,6 +109,7 @@ struct PageLane {
 struct NodeFigures {
   std::string node, joint;    // "wrist_left", "LeftForeArm"
   bool joint_by_name = true;  // else the joint that turns most like the node
+  std::string more_like;      // another node\'s joint that turns clearly more like this node
   std::uint64_t rows = 0;     // compared
   bool has_rate = false, has_acceleration = false, has_orientation = false;
   bool has_gravity = false;

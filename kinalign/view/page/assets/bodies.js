@@ -16,11 +16,11 @@ export function drawBody(g, body, row, to) {
     const sure = state === 2 && stateOf(body, row, parent) === 2;
     (sure ? solid : dashed).push(`M${p[0].toFixed(1)} ${p[1].toFixed(1)}L${q[0].toFixed(1)} ${q[1].toFixed(1)}`);
   }
-  g.append("path").attr("class", `bone ${body.kind}`).attr("d", solid.join(""));
-  g.append("path").attr("class", `bone dashed ${body.kind}`).attr("d", dashed.join(""));
-  g.append("path").attr("class", `joint ${body.kind}`)
+  g.append("path").attr("class", `bone ${body.colour}`).attr("d", solid.join(""));
+  g.append("path").attr("class", `bone dashed ${body.colour}`).attr("d", dashed.join(""));
+  g.append("path").attr("class", `joint ${body.colour}`)
     .attr("d", full.map((p) => `M${p[0].toFixed(1)} ${p[1].toFixed(1)}h0`).join(""));
-  g.append("path").attr("class", `rings ${body.kind}`)
+  g.append("path").attr("class", `rings ${body.colour}`)
     .attr("d", hollow.map((p) => `M${(p[0] - 2.5).toFixed(1)} ${p[1].toFixed(1)}a2.5 2.5 0 1 0 5 0a2.5 2.5 0 1 0 -5 0`).join(""));
 }
 

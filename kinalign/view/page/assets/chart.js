@@ -70,7 +70,7 @@ const hatchName = (svg, kind) => `hatch-${kind}-${svg.node().closest("figure").i
 /// Hatched and hollow fills that CSS colours, of each kind of stream.
 export function addHatches(svg) {
   const defs = svg.append("defs");
-  for (const kind of ["clip", "points", "imu"]) {
+  for (const kind of ["mocap", "kinect", "imu"]) {
     const pattern = defs.append("pattern").attr("id", hatchName(svg, kind))
       .attr("width", 5).attr("height", 5).attr("patternUnits", "userSpaceOnUse").attr("patternTransform", "rotate(45)");
     pattern.append("line").attr("y2", 5).attr("class", `stroke ${kind}`).attr("stroke-width", 3);

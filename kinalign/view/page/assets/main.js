@@ -81,13 +81,12 @@ function keyboard(take, clock, player, speed) {
 }
 
 function makePlayer(take, clock) {
-  const box = document.getElementById("player");
-  try {
-    return new Player(box.querySelector("canvas"), take, clock);
-  } catch (error) {
+  const box = document.getElementById("player"), probe = document.createElement("canvas");
+  if (probe.getContext("webgl") === null || !take.bodies.some((body) => body.in_take_space)) {
     box.classList.add("without-webgl");
     return null;
   }
+  return new Player(box.querySelector("canvas"), take, clock);
 }
 
 function main() {

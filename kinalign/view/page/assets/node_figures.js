@@ -20,7 +20,7 @@ function compared(take, view, id, label, of) {
     const step = Math.max(1, Math.floor((last - first) / (3 * at.width)));
     const { valid, curves } = of();
     let low = Infinity, high = -Infinity;
-    const lines = curves.map(({ kind, value }) => {
+    const lines = curves.map(({ colour, value }) => {
       const points = [];
       for (let k = first; k <= last; k += step) {
         if (valid[k] === 0) {
@@ -32,15 +32,15 @@ function compared(take, view, id, label, of) {
         high = Math.max(high, v);
         points.push([take.seconds[k], v]);
       }
-      return { kind, points };
+      return { colour, points };
     });
     if (low > high) [low, high] = [0, 1];
     // From zero, unless that would hide what changes: gravity is in an acceleration.
     if (low > 0 && high - low > 0.3 * high) low = 0;
     const y = scaleLinear([low, high], [at.top + at.height, at.top]).nice(4);
     axes(svg, at, x, y, { x: "time / s", y: label });
-    for (const { kind, points } of lines) {
-      svg.append("path").attr("class", `line ${kind === "clip" ? "thin" : ""} ${kind}`)
+    for (const { colour, points } of lines) {
+      svg.append("path").attr("class", `line ${colour === "mocap" ? "thin" : ""} ${colour}`)
         .attr("d", path(points.map((p) => (p === null ? null : [x(p[0]), y(p[1])]))));
     }
   });
@@ -54,8 +54,8 @@ export function nodeFigures(take, view) {
   const both = (ours, theirs, factor) => () => ({
     valid: node().valid,
     curves: [
-      { kind: "clip", value: (k) => factor * part()(node()[theirs], k) },
-      { kind: "imu", value: (k) => factor * part()(node()[ours], k) },
+      { colour: "mocap", value: (k) => factor * part()(node()[theirs], k) },
+      { colour: "imu", value: (k) => factor * part()(node()[ours], k) },
     ],
   });
   if (nodes[0].rate) compared(take, view, "node-rate", "°/s", both("rate", "mocap_rate", degrees));
@@ -63,7 +63,7 @@ export function nodeFigures(take, view) {
   if (nodes[0].orientation_error) {
     compared(take, view, "node-orientation", "°", () => ({
       valid: node().valid,
-      curves: [{ kind: "imu", value: (k) => degrees * node().orientation_error[k] }],
+      curves: [{ colour: "imu", value: (k) => degrees * node().orientation_error[k] }],
     }));
   }
   const redraw = () => view.show(...view.domain);

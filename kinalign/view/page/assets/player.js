@@ -12,7 +12,7 @@ import { place, rowAt, stateOf, turned } from "./data.js";
 import { facing } from "./space_figures.js";
 
 const up = new Vector3(0, 1, 0);
-const colourNames = ["--clip", "--points", "--imu", "--ink", "--faint", "--paper", "--residual"];
+const colourNames = ["--mocap", "--kinect", "--imu", "--ink", "--faint", "--paper", "--residual"];
 
 /// The page's colours as CSS has them now.
 function colours() {
@@ -112,8 +112,8 @@ class Body3D {
     this.dots = new JointDots(body.joints, scene);
   }
   colour(c) {
-    for (const part of [this.bones, this.unsure]) part.material.color.copy(c[this.body.kind]);
-    this.dots.material.uniforms.colour.value.copy(c[this.body.kind]);
+    for (const part of [this.bones, this.unsure]) part.material.color.copy(c[this.body.colour]);
+    this.dots.material.uniforms.colour.value.copy(c[this.body.colour]);
   }
   show(row) {
     const { body } = this;
@@ -246,7 +246,7 @@ class Floor3D {
   }
   colour(c) {
     this.grid.color.copy(c.faint);
-    for (const part of [this.zone, this.fill]) part.color.copy(c.points);
+    for (const part of [this.zone, this.fill]) part.color.copy(c.kinect);
   }
 }
 
@@ -314,7 +314,8 @@ export class Player {
     this.bodies = drawnBodies.map((body) => new Body3D(body, take.rows, this.scene));
     this.followed = drawnBodies[0];
     this.residuals = new Residuals3D(take, this.scene);
-    this.axes = take.nodes.length > 0 ? new Axes3D(take, this.scene) : null;
+    const worn = take.nodes.length > 0 && take.bodies[take.node_body].in_take_space;
+    this.axes = worn ? new Axes3D(take, this.scene) : null;
     const height = floorHeight(take);
     this.floor = new Floor3D(take, height, this.followed ? this.centre(0) : [0, 0, 0], this.scene);
     this.middleHeight = height + 0.92;

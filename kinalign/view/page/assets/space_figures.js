@@ -93,7 +93,7 @@ export function residualByJoint(take) {
     const names = space.joints.map((j) => j.joint);
     return bars(svg, width, names, scaleLinear().domain([0, 1.1 * most]), { x: "distance, rms / cm" }, (i, y, height, x) => {
       const value = 100 * space.joints[i].after_m;
-      svg.append("rect").attr("class", "fill points").attr("x", x(0)).attr("y", y).attr("width", x(value) - x(0)).attr("height", height);
+      svg.append("rect").attr("class", "fill kinect").attr("x", x(0)).attr("y", y).attr("width", x(value) - x(0)).attr("height", height);
       svg.append("text").attr("class", "value").attr("x", x(value) + 4).attr("y", y + height / 2).attr("dy", "0.35em").text(value.toFixed(1));
     });
   });
@@ -136,8 +136,8 @@ export function residualOverTime(take, view) {
     const y = scaleLinear([0, high], [at.top + at.height, at.top]).nice(4);
     axes(svg, at, x, y, { x: "time / s", y: "distance / cm" });
     const line = (list) => path(list.map((p) => (p === null ? null : [x(p[0]), y(p[1])])));
-    svg.append("path").attr("class", "line thin faint points").attr("d", line(points.worst));
-    svg.append("path").attr("class", "line points").attr("d", line(points.rms));
+    svg.append("path").attr("class", "line thin faint kinect").attr("d", line(points.worst));
+    svg.append("path").attr("class", "line kinect").attr("d", line(points.rms));
   });
 }
 
@@ -166,7 +166,7 @@ export function floorFigure(take, clock) {
   if (floor) [[0, 0], [-floor.largest[1] * 0.6, floor.largest[1]], [floor.largest[1] * 0.6, floor.largest[1]]].forEach(include);
   const pad = 0.4;
   let to = null;
-  const dots = bodies.map((body) => marker("floor", `now ${body.kind}`));
+  const dots = bodies.map((body) => marker("floor", `now ${body.colour}`));
   const now = () => {
     const row = rowAt(take.seconds, clock.now);
     ways.forEach((way, i) => dots[i].move(...(way[row] === null ? [0, 0] : to(way[row])), way[row] !== null));
@@ -181,8 +181,8 @@ export function floorFigure(take, clock) {
     to = ([a, b]) => [x(a), y(b)];
     axes(svg, at, x, y, { x: "to the right / m", y: floor ? "from the Kinect / m" : "z / m", yTicks: Math.ceil(span[1]) });
     if (floor) drawZones(svg, floor, to);
-    const lines = { clip: "line clip", points: "line thin points" };
-    ways.forEach((way, i) => svg.append("path").attr("class", lines[bodies[i].kind]).attr("d", path(way.map((p) => (p === null ? null : to(p))))));
+    const lines = { mocap: "line mocap", kinect: "line thin kinect" };
+    ways.forEach((way, i) => svg.append("path").attr("class", lines[bodies[i].colour]).attr("d", path(way.map((p) => (p === null ? null : to(p))))));
     now();
     return at.top + at.height + margin.bottom;
   }, () => to && now());
@@ -203,13 +203,14 @@ function drawZones(svg, floor, to) {
       .text(`${name === "best" ? "best" : "largest"} ${near} to ${far} m`);
   }
   const [kx, ky] = to([0, 0]);
-  svg.append("rect").attr("class", "fill points").attr("x", kx - 8).attr("y", ky - 3).attr("width", 16).attr("height", 6);
+  svg.append("rect").attr("class", "fill kinect").attr("x", kx - 8).attr("y", ky - 3).attr("width", 16).attr("height", 6);
   svg.append("text").attr("class", "name").attr("x", kx + 12).attr("y", ky + 4).text("Kinect");
 }
 
 /// Joint by joint: measured, guessed, missing.
 export function stateFigure(take) {
-  const body = take.bodies.find((b) => b.kind === "points");
+  const points = take.bodies.filter((b) => b.kind === "points");
+  const body = points.find((b) => b.colour === "kinect") ?? points[0];
   if (!body) return;
   const counts = take.joint_states[take.bodies.indexOf(body)];
   const shares = counts.map((c) => {
@@ -222,8 +223,8 @@ export function stateFigure(take) {
     addHatches(svg);
     return bars(svg, width, order.map((j) => body.joint_names[j]), scaleLinear().domain([0, 1.15 * most]), { x: "of all rows / %" }, (i, y, height, x) => {
       const s = shares[order[i]];
-      svg.append("rect").attr("fill", hatch(svg, "points")).attr("x", x(0)).attr("y", y).attr("width", x(s.inferred) - x(0)).attr("height", height);
-      svg.append("rect").attr("class", "lane-box points").attr("x", x(s.inferred)).attr("y", y).attr("width", x(s.missing) - x(0)).attr("height", height);
+      svg.append("rect").attr("fill", hatch(svg, "kinect")).attr("x", x(0)).attr("y", y).attr("width", x(s.inferred) - x(0)).attr("height", height);
+      svg.append("rect").attr("class", "lane-box kinect").attr("x", x(s.inferred)).attr("y", y).attr("width", x(s.missing) - x(0)).attr("height", height);
       svg.append("text").attr("class", "value").attr("x", x(s.inferred + s.missing) + 4).attr("y", y + height / 2).attr("dy", "0.35em")
         .text((s.inferred + s.missing).toFixed(1));
     });
@@ -241,9 +242,9 @@ export function boneFigure(take) {
     bars(svg, width, order.map(name), scaleLinear().domain([-most, most]), { x: "length minus its mean / cm" }, (i, y, height, x) => {
       const b = order[i], clamp = (v) => Math.max(-most, Math.min(most, v)), middle = y + height / 2;
       const shortest = clamp(100 * (b.shortest_m - b.mean_m)), longest = clamp(100 * (b.longest_m - b.mean_m));
-      svg.append("path").attr("class", "line thin points").attr("d", `M${x(shortest)} ${middle}H${x(longest)}`);
+      svg.append("path").attr("class", "line thin kinect").attr("d", `M${x(shortest)} ${middle}H${x(longest)}`);
       const d = 100 * b.deviation_m;
-      svg.append("rect").attr("class", "fill points").attr("x", x(-d)).attr("y", y).attr("width", x(d) - x(-d)).attr("height", height)
+      svg.append("rect").attr("class", "fill kinect").attr("x", x(-d)).attr("y", y).attr("width", x(d) - x(-d)).attr("height", height)
         .append("title").text(`${(100 * b.mean_m).toFixed(1)} ± ${d.toFixed(1)} cm`);
     }),
   );

@@ -16,8 +16,8 @@ export function laneFigure(take, view) {
     const bins = lanes.length > 0 ? lanes[0].tracked.length : 0, step = take.length_s / Math.max(1, bins);
     lanes.forEach((lane, l) => {
       const top = at.top + l * row + 12, height = row - 14;
-      svg.append("rect").attr("class", `lane-box ${lane.kind}`).attr("x", at.left).attr("y", top).attr("width", at.width).attr("height", height);
-      for (const [shares, below, fill] of [[lane.tracked, null, null], [lane.inferred, lane.tracked, hatch(svg, lane.kind)]]) {
+      svg.append("rect").attr("class", `lane-box ${lane.colour}`).attr("x", at.left).attr("y", top).attr("width", at.width).attr("height", height);
+      for (const [shares, below, fill] of [[lane.tracked, null, null], [lane.inferred, lane.tracked, hatch(svg, lane.colour)]]) {
         let d = "";
         for (let b = 0; b < bins; ++b) {
           const from = Math.max(at.left, x(b * step)), to = Math.min(at.left + at.width, x((b + 1) * step));
@@ -27,7 +27,7 @@ export function laneFigure(take, view) {
         }
         const bar = svg.append("path").attr("d", d);
         if (fill) bar.attr("fill", fill);
-        else bar.attr("class", `fill ${lane.kind}`);
+        else bar.attr("class", `fill ${lane.colour}`);
       }
       svg.append("text").attr("class", "name over").attr("x", at.left + 2).attr("y", top - 3).text(laneName(lane));
     });
@@ -54,8 +54,8 @@ export function distanceFigure(take, view) {
           const t = (b + 0.5) * step;
           return t < view.domain[0] || t > view.domain[1] || lane.tracked[b] + lane.inferred[b] === 0 ? null : [x(t), y(Math.min(v, 1000))];
         });
-      svg.append("path").attr("class", `line ${lane.kind}`).attr("d", path(points(lane.nearest_raw_ms)));
-      if (lane.interval_known) svg.append("path").attr("class", `line dashed ${lane.kind}`).attr("d", path(points(lane.interval_ms)));
+      svg.append("path").attr("class", `line ${lane.colour}`).attr("d", path(points(lane.nearest_raw_ms)));
+      if (lane.interval_known) svg.append("path").attr("class", `line dashed ${lane.colour}`).attr("d", path(points(lane.interval_ms)));
     }
   });
 }
@@ -168,12 +168,12 @@ export function figure7(take, view) {
       inside.append("rect").attr("class", "gap").attr("x", x(from)).attr("width", Math.max(1, x(to) - x(from))).attr("y", at.top).attr("height", at.height);
     }
     const line = (points) => path(points.map(([t, v]) => (v === null ? null : [x(t), y(v)])));
-    inside.append("path").attr("class", "line thin clip").attr("d", line(theirs));
-    inside.append("path").attr("class", "line points").attr("d", line(ours));
+    inside.append("path").attr("class", "line thin mocap").attr("d", line(theirs));
+    inside.append("path").attr("class", "line kinect").attr("d", line(ours));
     const spacing = at.width / Math.max(1, raw.length), size = spacing > 6 ? 3 : spacing > 2 ? 2 : 1.2;
     const placed = (wanted) => raw.filter((r) => r[2] === wanted).map((r) => [x(r[0]), y(r[1])]);
-    inside.append("path").attr("class", "dots points").attr("stroke-width", 2 * size).attr("d", dots(placed(2)));
-    inside.append("path").attr("class", "rings points").attr("d", rings(placed(1), size + 0.5));
+    inside.append("path").attr("class", "dots kinect").attr("stroke-width", 2 * size).attr("d", dots(placed(2)));
+    inside.append("path").attr("class", "rings kinect").attr("d", rings(placed(1), size + 0.5));
   });
   chooser("figure7", "Joint", names, state.joint, (joint) => {
     state.joint = joint;
