@@ -79,11 +79,10 @@ Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
   return out;
 }
 
-/// The space that the positions of joints say they are in.
-Result<std::string> read_space(const hdf5::Checked& file, hid_t group) {
+/// The space that the positions of joints say they are in; the take's where they say none.
+std::string space_of(const hdf5::Checked& file, hid_t group) {
   const Handle positions(H5Dopen2(group, "positions", H5P_DEFAULT), H5Dclose);
-  if (!positions.good()) return hdf5::failure(file.bytes(), "an array positions");
-  return file.text_attribute(positions.id(), "space");
+  return file.text_attribute(positions.id(), "space").value_or("take");
 }
 
 Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string name) {
@@ -103,7 +102,6 @@ Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string
     return Failure(Error{file.bytes().path(), 0, "a kind of stream: clip, points or imu",
                          "\"" + shown(kind) + "\""});
   }
-  if (kind != "imu") out.space = KA_TRY(read_space(file, group));
   return out;
 }
 
@@ -189,7 +187,9 @@ Result<void> TakeReader::State::read_header() {
     const Handle group(H5Gopen2(root, name.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group.good()) return hdf5::failure(bytes, "a group for each stream");
     header.groups.push_back(KA_TRY(read_group(checked, group.id(), name)));
-    KA_TRY(find_columns(group.id(), header.groups.back(), row_bytes));
+    TakeGroup& what = header.groups.back();
+    KA_TRY(find_columns(group.id(), what, row_bytes));
+    if (!std::holds_alternative<ImuGroup>(what.kind)) what.space = space_of(checked, group.id());
   }
   constexpr std::uint64_t slab_bytes = std::uint64_t{16} << 20;
   slab_rows = std::clamp<std::uint64_t>(slab_bytes / row_bytes, 1, 4096);
