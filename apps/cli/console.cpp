@@ -130,7 +130,8 @@ void Console::print_json(std::string_view object, int version) {
 void Console::put_json(std::string_view object, int version) {
   const std::string_view members = object.substr(object.find('{') + 1);
   const bool none = members.find_first_not_of(" \n") == members.find('}');
-  put(fmt::format("{{\"schema\": \"kinalign.{}/{}\"{}{}\n", verb_, version, none ? "" : ", ",
+  put(fmt::format("{{\"schema\": \"kinalign.{}/{}\"{}{}\n", json_name_.empty() ? verb_ : json_name_,
+                  version, none ? "" : ", ",
                   members.substr(std::min(members.find_first_not_of(" \n"), members.size()))));
 }
 

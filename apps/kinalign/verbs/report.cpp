@@ -257,6 +257,7 @@ Result<Written> write_page(const std::string& take, const TakeFigureOptions& opt
 Result<int> run(Report& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& take = o.take.front();
+  call.console.name_json("report_page");
   if (KA_TRY(kind_of_file(files, take)) != FileKind::take) {
     return call.console.refuse(
         Error{take, 0, "a take (kinalign align makes one)", "a file of another kind"});

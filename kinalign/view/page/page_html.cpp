@@ -128,7 +128,7 @@ void put_flags(const TakePage& page, Parts& parts) {
   parts["rate"] = any_node(page, [](const NodeFigures& n) { return n.has_rate; });
   parts["acceleration"] = any_node(page, [](const NodeFigures& n) { return n.has_acceleration; });
   parts["orientation"] = any_node(page, [](const NodeFigures& n) { return n.has_orientation; });
-  parts["axes"] = parts["orientation"];
+  parts["axes"] = flag(has_axes(page));
   const std::string gravity = any_node(page, [](const NodeFigures& n) { return n.has_gravity; });
   parts["gravity"] = gravity.empty() ? ", gravity removed" : ", gravity included";
   parts["rest"] = gravity.empty() ? "0" : "9.8 m/s²";

@@ -195,6 +195,12 @@ std::string numbers_list(const TakePage& page) {
   return out;
 }
 
+bool has_axes(const TakePage& page) {
+  return !page.bodies.empty() && page.bodies[page.node_body].in_take_space &&
+         std::any_of(page.nodes.begin(), page.nodes.end(),
+                     [](const NodeFigures& n) { return n.has_orientation; });
+}
+
 std::string legend(const TakePage& page) {
   std::string out;
   bool points = false;
@@ -206,7 +212,7 @@ std::string legend(const TakePage& page) {
   }
   if (points) out += "<span><i class=\"ring\"></i>inferred, or last seen there</span>";
   if (!page.spaces.empty()) out += "<span><i class=\"residual\"></i>residual</span>";
-  if (!page.nodes.empty()) out += "<span><i class=\"imu\"></i>nodes' axes</span>";
+  if (has_axes(page)) out += "<span><i class=\"imu\"></i>nodes' axes</span>";
   return out;
 }
 
@@ -216,9 +222,9 @@ std::string player_caption(const TakePage& page) {
   if (!page.floors.empty()) {
     text += " On the floor: the Kinect's best zone (filled) and its largest.";
   }
-  const bool has_axes = std::any_of(page.nodes.begin(), page.nodes.end(),
-                                    [](const NodeFigures& n) { return n.has_orientation; });
-  if (has_axes) text += " Each node's x, y and z axes are dark to light, thin where it is invalid.";
+  if (has_axes(page)) {
+    text += " Each node's x, y and z axes are dark to light, thin where it is invalid.";
+  }
   return text;
 }
 

@@ -16,6 +16,7 @@ std::string verdict_items(const TakePage& page);
 std::string worst_items(const TakePage& page);
 std::string worst_title(const TakePage& page);
 std::string numbers_list(const TakePage& page);  // the few figures of the first screen
+bool has_axes(const TakePage& page);             // the player shows the nodes'
 std::string legend(const TakePage& page);
 std::string player_caption(const TakePage& page);
 std::string time_table(const TakePage& page);

@@ -150,7 +150,10 @@ void TakeFigures::State::plan_nodes() {
 void TakeFigures::State::judge() {
   for (const TakeGroup& group : header.groups) {
     page.verdicts.push_back(verdict_of(page.report, group.name, group.files));
-    page.inputs.insert(page.inputs.end(), group.files.begin(), group.files.end());
+    for (const InputFacts& file : group.files) {
+      const auto known = std::find(page.inputs.begin(), page.inputs.end(), file);
+      if (known == page.inputs.end()) page.inputs.push_back(file);
+    }
   }
 }
 

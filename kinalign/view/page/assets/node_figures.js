@@ -58,10 +58,10 @@ export function nodeFigures(take, view) {
       { colour: "imu", value: (k) => factor * part()(node()[ours], k) },
     ],
   });
-  if (nodes[0].rate) compared(take, view, "node-rate", "°/s", both("rate", "mocap_rate", degrees));
-  if (nodes[0].acceleration) compared(take, view, "node-acceleration", "m/s²", both("acceleration", "mocap_acceleration", 1));
+  if (nodes[0].rate) compared(take, view, "node-rate", "rate / (°/s)", both("rate", "mocap_rate", degrees));
+  if (nodes[0].acceleration) compared(take, view, "node-acceleration", "acc. / (m/s²)", both("acceleration", "mocap_acceleration", 1));
   if (nodes[0].orientation_error) {
-    compared(take, view, "node-orientation", "°", () => ({
+    compared(take, view, "node-orientation", "angle / °", () => ({
       valid: node().valid,
       curves: [{ colour: "imu", value: (k) => degrees * node().orientation_error[k] }],
     }));

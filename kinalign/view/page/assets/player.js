@@ -241,6 +241,7 @@ class Floor3D {
     this.zones.add(new Mesh(geometry, this.fill));
     const kinect = new LineSegments(new EdgesGeometry(new BoxBufferGeometry(0.25, 0.07, 0.07)), this.zone);
     kinect.position.set(...camera);
+    this.kinect = kinect;
     kinect.lookAt(camera[0] + forward[0], camera[1], camera[2] + forward[2]);
     this.zones.add(kinect);
   }
@@ -392,6 +393,9 @@ export class Player {
   draw() {
     if (!this.orbit) return;
     this.orbit.place();
+    // From where the Kinect stands its box would hide the person.
+    const kinect = this.floor.kinect;
+    if (kinect) kinect.visible = kinect.position.distanceTo(this.orbit.camera.position) > 2;
     this.renderer.render(this.scene, this.orbit.camera);
     this.frames += 1;
     this.canvas.dataset.frames = this.frames;

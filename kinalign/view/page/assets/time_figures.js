@@ -46,7 +46,7 @@ export function distanceFigure(take, view) {
   const largest = Math.max(1, ...lanes.flatMap((lane) => [...lane.nearest_raw_ms, ...(lane.interval_ms ?? [])]));
   view.add("distance", 150, (svg, at, x) => {
     const y = scaleLinear([0, Math.min(largest, 1000)], [at.top + at.height, at.top]).nice(4);
-    axes(svg, at, x, y, { x: "time / s", y: "ms" });
+    axes(svg, at, x, y, { x: "time / s", y: "distance / ms" });
     const bins = lanes[0].tracked.length, step = take.length_s / bins;
     for (const lane of lanes) {
       const points = (values) =>
