@@ -127,11 +127,6 @@ bool heavier(const Concern& a, const Concern& b) {
   return a.weight > b.weight;
 }
 
-std::string words_of(const Concern& concern) {
-  const bool named = concern.part.empty() || concern.what.find(concern.part) != std::string::npos;
-  return named ? concern.what : concern.part + ": " + concern.what;
-}
-
 /// The heaviest concern decides.
 void settle(Verdict& verdict) {
   std::stable_sort(verdict.concerns.begin(), verdict.concerns.end(), heavier);
@@ -140,6 +135,11 @@ void settle(Verdict& verdict) {
 }
 
 }  // namespace
+
+std::string words_of(const Concern& concern) {
+  const bool named = concern.part.empty() || concern.what.find(concern.part) != std::string::npos;
+  return named ? concern.what : concern.part + ": " + concern.what;
+}
 
 std::string_view to_string(Quality quality) {
   switch (quality) {

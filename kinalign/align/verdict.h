@@ -26,6 +26,9 @@ struct Concern {
   Quality quality = Quality::good;
 };
 
+/// "ankle_left: 4.9 % of samples invalid"
+std::string words_of(const Concern& concern);
+
 struct Verdict {
   std::string stream;
   Quality quality = Quality::good;

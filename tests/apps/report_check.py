@@ -54,6 +54,9 @@ class Browser:
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.cdp("Emulation.setEmulatedMedia", features=[scheme])
         self.driver.get(pathlib.Path(page).as_uri())
+        end = time.monotonic() + 20
+        while self.js("return document.body.dataset.ready") != "true" and time.monotonic() < end:
+            time.sleep(0.05)
 
     def __enter__(self):
         return self

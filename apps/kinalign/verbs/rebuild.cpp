@@ -85,7 +85,7 @@ struct Comparison {
 };
 
 Result<Comparison> compare(const std::string& take, const Result<Recording>& recording,
-                        const Origin& origin, Call& call) {
+                           const Origin& origin, Call& call) {
   Comparison out;
   if (!recording) {
     if (interrupted()) return Failure(recording.error());
@@ -120,8 +120,7 @@ int say(const std::string& take, const Comparison& found, const Origin& origin, 
     text = fmt::format("{}: differs from byte {} on\n", take, *found.difference);
     json["first_difference"] = *found.difference;
   } else if (found.failure) {
-    text =
-        fmt::format("{}: differs: cannot be made again: {}\n", take, to_string(*found.failure));
+    text = fmt::format("{}: differs: cannot be made again: {}\n", take, to_string(*found.failure));
     json["failure"] = to_string(*found.failure);
   }
   for (const std::string& name : found.changed) text += "  " + changed_line(name) + "\n";

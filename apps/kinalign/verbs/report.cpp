@@ -104,7 +104,8 @@ Result<std::string> page_text(const std::string& path, TakeReader& reader,
                                  {"reason", verdict.reason}});
   }
   for (const Concern& concern : page.worst) {
-    about["worst"].push_back({{"stream", concern.stream}, {"what", concern.what}});
+    about["worst"].push_back(
+        {{"stream", concern.stream}, {"part", concern.part}, {"what", words_of(concern)}});
   }
   const std::string html = KA_TRY(page_html(page));
   return json_text(about) + "\n" + html;

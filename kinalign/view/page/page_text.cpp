@@ -153,10 +153,9 @@ std::string worst_title(const TakePage& page) {
 std::string worst_items(const TakePage& page) {
   std::string out;
   for (const Concern& concern : page.worst) {
-    const bool named = concern.part.empty() || concern.what.find(concern.part) != std::string::npos;
-    const std::string who = concern.stream + (named ? "" : " " + concern.part);
     const std::string small = concern.quality == Quality::good ? " (within the limits)" : "";
-    out += fmt::format("<li>{}: {}{}</li>", escaped(who), escaped(concern.what), small);
+    out += fmt::format("<li>{}: {}{}</li>", escaped(concern.stream), escaped(words_of(concern)),
+                       small);
   }
   return out;
 }
@@ -426,7 +425,7 @@ std::string thinning_text(const TakePage& page) {
   return fmt::format(
       "The page holds every {}th row of the take ({} of {}), so that it stays small. Tables, "
       "bones, "
-      "zones and figures 2 and 3 count all rows.",
+      "zones and figures 2 and 3 count all rows. The player moves straight from row to row.",
       page.stride, grouped(page.seconds.size()), grouped(page.report.frames));
 }
 

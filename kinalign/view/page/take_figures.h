@@ -16,8 +16,8 @@ namespace kinalign {
 
 struct TakeFigureOptions {
   /// The page keeps at most so many numbers of all bodies and nodes together: every stride-th row.
-  /// 4.2 million make a page of less than 6 MB, measured on ten minutes of the demo.
-  std::uint64_t most_numbers = 4'200'000;
+  /// 4.5 million make a page of less than 6 MB, measured on ten minutes of the demo.
+  std::uint64_t most_numbers = 4'500'000;
   double detail_begin_s = 0.0;  // of the detail, from the first row
   double detail_length_s = 60.0;
   std::size_t bins = 240;  // of each lane

@@ -91,6 +91,14 @@ export function place(body, row, joint) {
   return [body.positions[i], body.positions[i + 1], body.positions[i + 2]];
 }
 
+/// `share` of the way to the next row, where the joint is there in both.
+export function placeBetween(body, row, joint, share) {
+  const here = place(body, row, joint);
+  if (share === 0 || stateOf(body, row, joint) === 0 || stateOf(body, row + 1, joint) === 0) return here;
+  const next = place(body, row + 1, joint);
+  return here.map((v, k) => v + share * (next[k] - v));
+}
+
 /// 0 missing, 1 inferred, 2 tracked.
 export function stateOf(body, row, joint) {
   return body.state[row * body.joints + joint];

@@ -89,21 +89,30 @@ function makePlayer(take, clock) {
   return new Player(box.querySelector("canvas"), take, clock);
 }
 
-function main() {
+const pause = () => new Promise((resolve) => setTimeout(resolve));
+
+/// Step by step, so that the verdict is there first, then the player, then the figures.
+async function main() {
+  await pause();
   const take = readTake(), clock = new PageClock(take.length_s);
   const whole = new TimeView(clock), detail = new TimeView(clock), nodes = new TimeView(clock);
   const player = makePlayer(take, clock);
   controls(take, clock, player);
-  laneFigure(take, whole);
-  distanceFigure(take, whole);
-  figure7(take, detail);
-  table5(take, clock);
-  residualByJoint(take);
-  residualOverTime(take, whole);
-  floorFigure(take, clock);
-  stateFigure(take);
-  boneFigure(take);
-  nodeFigures(take, nodes);
+  for (const figure of [
+    () => laneFigure(take, whole),
+    () => distanceFigure(take, whole),
+    () => figure7(take, detail),
+    () => table5(take, clock),
+    () => residualByJoint(take),
+    () => residualOverTime(take, whole),
+    () => floorFigure(take, clock),
+    () => stateFigure(take),
+    () => boneFigure(take),
+    () => nodeFigures(take, nodes),
+  ]) {
+    await pause();
+    figure();
+  }
   const paper = (on) => () => {
     document.documentElement.classList.toggle("printing", on);
     if (player) player.recolour();

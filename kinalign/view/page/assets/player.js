@@ -8,7 +8,7 @@ import {
   Scene, ShaderMaterial, Vector3, WebGLRenderer, BoxBufferGeometry, DoubleSide,
 } from "three";
 
-import { place, rowAt, stateOf, turned } from "./data.js";
+import { place, placeBetween, rowAt, stateOf, turned } from "./data.js";
 import { facing } from "./space_figures.js";
 
 const up = new Vector3(0, 1, 0);
@@ -115,8 +115,8 @@ class Body3D {
     for (const part of [this.bones, this.unsure]) part.material.color.copy(c[this.body.colour]);
     this.dots.material.uniforms.colour.value.copy(c[this.body.colour]);
   }
-  show(row) {
-    const { body } = this;
+  show(row, share) {
+    const { body } = this, at = (j) => placeBetween(body, row, j, share);
     for (const part of [this.bones, this.unsure, this.dots]) part.begin();
     for (let j = 0; j < body.joints; ++j) {
       const state = stateOf(body, row, j);
@@ -125,11 +125,11 @@ class Body3D {
         if (last >= 0) this.dots.add(place(body, last, j), true);
         continue;
       }
-      const p = place(body, row, j), parent = body.parents[j];
+      const p = at(j), parent = body.parents[j];
       if (body.kind === "points") this.dots.add(p, state === 1);
       if (parent < 0 || stateOf(body, row, parent) === 0) continue;
       const sure = state === 2 && stateOf(body, row, parent) === 2;
-      (sure ? this.bones : this.unsure).add(p, place(body, row, parent));
+      (sure ? this.bones : this.unsure).add(p, at(parent));
     }
     for (const part of [this.bones, this.unsure, this.dots]) part.end();
   }
@@ -141,12 +141,13 @@ class Residuals3D {
     this.take = take;
     this.sticks = new Sticks(take.spaces.reduce((n, s) => n + s.pairs.length, 0), 0.005, scene);
   }
-  show(row) {
+  show(row, share) {
     this.sticks.begin();
     for (const space of this.take.spaces) {
       const ours = this.take.bodies[space.body], theirs = this.take.bodies[space.onto];
       for (const [a, b] of space.pairs) {
-        if (stateOf(ours, row, a) !== 0 && stateOf(theirs, row, b) !== 0) this.sticks.add(place(ours, row, a), place(theirs, row, b));
+        if (stateOf(ours, row, a) === 0 || stateOf(theirs, row, b) === 0) continue;
+        this.sticks.add(placeBetween(ours, row, a, share), placeBetween(theirs, row, b, share));
       }
     }
     this.sticks.end();
@@ -165,11 +166,11 @@ class Axes3D {
     this.parts.forEach((part, i) => part.material.color.copy(c.imu).lerp(c.paper, 0.32 * i));
     this.hollow.material.color.copy(c.imu);
   }
-  show(row) {
+  show(row, share) {
     for (const part of [...this.parts, this.hollow]) part.begin();
     for (const { node, joint } of this.nodes) {
       if (joint < 0) continue;
-      const from = this.middleOf(row, joint), q = node.axes.subarray(4 * row, 4 * row + 4);
+      const from = this.middleOf(row, joint, share), q = node.axes.subarray(4 * row, 4 * row + 4);
       [[0.16, 0, 0], [0, 0.16, 0], [0, 0, 0.16]].forEach((axis, i) => {
         const to = turned(q, axis).map((v, k) => v + from[k]);
         (node.valid[row] ? this.parts[i] : this.hollow).add(from, to);
@@ -178,10 +179,10 @@ class Axes3D {
     for (const part of [...this.parts, this.hollow]) part.end();
   }
   /// Half way along the bone that begins at the joint.
-  middleOf(row, joint) {
-    const child = this.body.parents.indexOf(joint), a = place(this.body, row, joint);
+  middleOf(row, joint, share) {
+    const child = this.body.parents.indexOf(joint), a = placeBetween(this.body, row, joint, share);
     if (child < 0) return a;
-    const b = place(this.body, row, child);
+    const b = placeBetween(this.body, row, child, share);
     return a.map((v, k) => (v + b[k]) / 2);
   }
 }
@@ -377,18 +378,21 @@ export class Player {
     this.draw();
   }
   show() {
-    const row = rowAt(this.take.seconds, this.clock.now);
-    if (row !== this.row) {
-      this.row = row;
-      for (const body of this.bodies) body.show(row);
-      this.residuals.show(row);
-      if (this.axes) this.axes.show(row);
-      if (this.followed) {
-        const [x, , z] = this.centre(row);
-        this.orbit.target.set(x, this.middleHeight, z);
-      }
-      this.draw();
+    const { seconds, stride, rows } = this.take, row = rowAt(seconds, this.clock.now);
+    // Where the page leaves out rows, joints move straight from one that is there to the next.
+    const apart = row + 1 < rows ? seconds[row + 1] - seconds[row] : 0;
+    const share = stride > 1 && apart > 0 ? Math.min(1, (this.clock.now - seconds[row]) / apart) : 0;
+    if (row === this.row && share === this.share) return;
+    this.row = row;
+    this.share = share;
+    for (const body of this.bodies) body.show(row, share);
+    this.residuals.show(row, share);
+    if (this.axes) this.axes.show(row, share);
+    if (this.followed) {
+      const [x, , z] = this.centre(row);
+      this.orbit.target.set(x, this.middleHeight, z);
     }
+    this.draw();
   }
   draw() {
     if (!this.orbit) return;
