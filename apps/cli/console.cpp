@@ -132,7 +132,7 @@ void Console::print_json(std::string_view object, int version) {
 void Console::put_json(std::string_view object, int version) {
   const std::string_view members = object.substr(object.find('{') + 1);
   const bool none = members.find_first_not_of(" \n") == members.find('}');
-  std::string name = verb_;
+  std::string name = json_name_.empty() ? verb_ : json_name_;
   std::replace(name.begin(), name.end(), ' ', '.');
   put(fmt::format("{{\"schema\": \"kinalign.{}/{}\"{}{}\n", name, version, none ? "" : ", ",
                   members.substr(std::min(members.find_first_not_of(" \n"), members.size()))));

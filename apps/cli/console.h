@@ -43,6 +43,8 @@ class Console {
   /// What --json asks for: `object` is the text "{...}" of a JSON object, which gets
   /// "schema": "kinalign.<verb>/<version>" as its first member. Silent without --json.
   void print_json(std::string_view object, int version = 1);
+  /// Another name for <verb>: the schema kinalign.report is that of the report in a take.
+  void name_json(std::string name) { json_name_ = std::move(name); }
   /// Whether print_json() prints anything: what is told each second is made only then.
   bool prints_json() const { return common_.json; }
 
@@ -114,7 +116,7 @@ class Console {
 
   const Surroundings& surroundings_;
   const Common& common_;
-  std::string verb_;
+  std::string verb_, json_name_;
   Advice advice_;
   bool refused_ = false;
   bool colour_out_ = false, colour_err_ = false, progress_ = false;

@@ -11,6 +11,7 @@ namespace kinalign {
 Verb align_verb();
 Verb info_verb();
 Verb check_verb();
+Verb report_verb();
 Verb convert_verb();
 Verb rebuild_verb();
 Verb record_verb();

@@ -163,3 +163,32 @@ TEST_CASE("bytes that are no UTF-8 are shown as such: the report stays JSON") {
   const Findings findings{{Severity::note, {"k\xff.csv", 0, "a", "b"}, "", ""}};
   CHECK(findings_json(findings).find("\"file\": \"k\xef\xbf\xbd.csv\"") != std::string::npos);
 }
+
+TEST_CASE("a report reads back as it was written") {
+  const std::string text = report_json(small_report());
+  const auto report = parse_report_json(text, "take.h5");
+  REQUIRE(report);
+  CHECK(report_json(*report) == text);
+}
+
+TEST_CASE("what is not of its type in a report keeps its default, and no text is an error") {
+  const auto report = parse_report_json(
+      R"({"frames": -1, "rate_hz": "60", "begin_ns": 1e300, "streams": [7, {"stream": "a\u001b",
+          "stamps": {"samples": 2, "duplicates": 3}, "samples": 1, "invalid": 9}],
+          "spaces": [{"rotation": [0, 0, 0, 0], "joints": {}}], "findings": 3, "marks": [null]})",
+      "take.h5");
+  REQUIRE(report);
+  CHECK(report->frames == 0);
+  CHECK(report->rate_hz == 0.0);
+  CHECK(to_ns(report->begin) == 0);
+  REQUIRE(report->streams.size() == 2);
+  CHECK(report->streams[1].stream == "a?");
+  CHECK(report->streams[1].survey.kept() == 2);
+  CHECK(report->streams[1].invalid == 1);
+  REQUIRE(report->spaces.size() == 1);
+  CHECK(report->spaces[0].transform.rotation.w() == 1.0);
+  CHECK(report->findings.empty());
+  const auto none = parse_report_json("not JSON", "take.h5");
+  REQUIRE(!none);
+  CHECK(to_string(none.error()) == "take.h5: expected a report as JSON, found a text that is none");
+}

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 #include <optional>
 
@@ -54,22 +53,10 @@ const Json& list_at(const Json& json, const char* key) {
   return json[key];
 }
 
-/// A stamp as calendars have it, to the millisecond.
-std::string date_text(std::int64_t ns) {
-  const std::int64_t ms = (ns + 500'000) / 1'000'000;
-  const std::time_t whole = ms / 1000;
-  std::tm parts{};
-  ::gmtime_r(&whole, &parts);
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", parts.tm_year + 1900,
-                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
-                     ms % 1000);
-}
-
 /// The take's span; devices without a calendar count from near zero.
 std::string span_text(const Json& report) {
-  constexpr std::int64_t year_ns = 32'000'000'000'000'000;
   const std::int64_t begin = stamp_at(report, "begin_ns"), end = stamp_at(report, "end_ns");
-  if (begin < year_ns || end < begin) {
+  if (!is_date(begin) || end < begin) {
     return fmt::format("  from {:.3f} to {:.3f} s, no date known\n",
                        1e-9 * static_cast<double>(begin), 1e-9 * static_cast<double>(end));
   }

@@ -6,9 +6,8 @@
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/align_job.h"
 #include "apps/kinalign/verbs/inputs.h"
+#include "apps/kinalign/verbs/take_origin.h"
 
-#include "kinalign/documents/parameters_json.h"
-#include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <fmt/format.h>
@@ -47,56 +46,6 @@ Usage describe_rebuild(Rebuild& o) {
   return usage;
 }
 
-/// What a take says of its making; read in a child process.
-struct Origin {
-  std::string software;
-  Manifest parameters;
-  std::vector<InputFacts> files;
-};
-
-Result<std::string> origin_json(FileSystem& files, const std::string& path) {
-  const TakeReader reader = KA_TRY(TakeReader::open(files, path));
-  nlohmann::json out{{"software", reader.software()},
-                     {"parameters", parameters_json(reader.header().parameters)},
-                     {"files", nlohmann::json::array()}};
-  for (const TakeGroup& group : reader.header().groups) {
-    for (const InputFacts& file : group.files) out["files"].push_back({file.name, file.sha256});
-  }
-  return json_text(out);
-}
-
-Result<Origin> origin_of(FileSystem& files, const std::string& path) {
-  const std::string text =
-      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return origin_json(files, path); }));
-  try {  // what a child says is not trusted either
-    const auto json = nlohmann::json::parse(text);
-    Origin origin;
-    origin.software = json.at("software").get<std::string>();
-    origin.parameters = KA_TRY(parse_parameters_json(json.at("parameters").get<std::string>()));
-    for (const auto& file : json.at("files")) {
-      origin.files.push_back({file.at(0).get<std::string>(), file.at(1).get<std::string>(), 0});
-    }
-    return origin;
-  } catch (const nlohmann::json::exception&) {
-    return Failure(Error{path, 0, "a take that says how it was made", "another answer"});
-  }
-}
-
-/// Inputs whose bytes are not those of the take's making.
-std::vector<std::string> changed_inputs(const Origin& origin, const Recording& recording) {
-  std::vector<std::string> changed;
-  for (const RecordedStream& stream : recording.streams) {
-    for (const InputFacts& file : stream.files) {
-      const bool same = std::any_of(
-          origin.files.begin(), origin.files.end(),
-          [&file](const InputFacts& f) { return f.name == file.name && f.sha256 == file.sha256; });
-      const bool named = std::find(changed.begin(), changed.end(), file.name) != changed.end();
-      if (!same && !named) changed.push_back(file.name);
-    }
-  }
-  return changed;
-}
-
 /// A folder that goes with everything in it.
 class Scratch {
  public:
@@ -128,16 +77,16 @@ class Scratch {
 };
 
 /// What --verify found; all empty: the same bytes from the same inputs.
-struct Verdict {
+struct Comparison {
   std::optional<std::uint64_t> difference;  // the first byte that differs
   std::optional<Error> failure;             // why it can't be made again
   std::vector<std::string> changed;         // inputs
   bool same() const { return !difference && !failure; }
 };
 
-Result<Verdict> compare(const std::string& take, const Result<Recording>& recording,
-                        const Origin& origin, Call& call) {
-  Verdict out;
+Result<Comparison> compare(const std::string& take, const Result<Recording>& recording,
+                           const Origin& origin, Call& call) {
+  Comparison out;
   if (!recording) {
     if (interrupted()) return Failure(recording.error());
     out.failure = recording.error();
@@ -161,22 +110,21 @@ std::string changed_line(const std::string& name) {
   return harmless(name + " is not the file that the take was made from");
 }
 
-int say(const std::string& take, const Verdict& verdict, const Origin& origin, Call& call) {
+int say(const std::string& take, const Comparison& found, const Origin& origin, Call& call) {
   nlohmann::ordered_json json{{"take", take},
-                              {"same", verdict.same()},
+                              {"same", found.same()},
                               {"software", origin.software},
-                              {"changed_inputs", verdict.changed}};
+                              {"changed_inputs", found.changed}};
   std::string text = fmt::format("{}: every byte agrees\n", take);
-  if (verdict.difference) {
-    text = fmt::format("{}: differs from byte {} on\n", take, *verdict.difference);
-    json["first_difference"] = *verdict.difference;
-  } else if (verdict.failure) {
-    text =
-        fmt::format("{}: differs: cannot be made again: {}\n", take, to_string(*verdict.failure));
-    json["failure"] = to_string(*verdict.failure);
+  if (found.difference) {
+    text = fmt::format("{}: differs from byte {} on\n", take, *found.difference);
+    json["first_difference"] = *found.difference;
+  } else if (found.failure) {
+    text = fmt::format("{}: differs: cannot be made again: {}\n", take, to_string(*found.failure));
+    json["failure"] = to_string(*found.failure);
   }
-  for (const std::string& name : verdict.changed) text += "  " + changed_line(name) + "\n";
-  if (verdict.difference && verdict.changed.empty()) {
+  for (const std::string& name : found.changed) text += "  " + changed_line(name) + "\n";
+  if (found.difference && found.changed.empty()) {
     text += fmt::format(
         "  the inputs are the same; the take was changed, or another version than {} "
         "remade it\n",
@@ -184,7 +132,7 @@ int say(const std::string& take, const Verdict& verdict, const Origin& origin, C
   }
   call.console.print(harmless(text));
   call.console.print_json(json_text(json));
-  return verdict.same() ? 0 : 1;
+  return found.same() ? 0 : 1;
 }
 
 Result<int> write_again(const Recording& recording, const Origin& origin, Call& call) {

@@ -79,6 +79,12 @@ Result<ImuGroup> read_imu(const hdf5::Checked& file, hid_t group) {
   return out;
 }
 
+/// The space that the positions of joints say they are in; the take's where they say none.
+std::string space_of(const hdf5::Checked& file, hid_t group) {
+  const Handle positions(H5Dopen2(group, "positions", H5P_DEFAULT), H5Dclose);
+  return file.text_attribute(positions.id(), "space").value_or("take");
+}
+
 Result<TakeGroup> read_group(const hdf5::Checked& file, hid_t group, std::string name) {
   TakeGroup out;
   out.name = std::move(name);
@@ -132,7 +138,9 @@ struct TakeReader::State {
     return finite(values) ? Result<void>() : bad_value(input.path(), "finite numbers", column.name);
   }
   Result<void> check(const Found& column, std::span<const std::int64_t> values) const {
-    const bool good = std::none_of(values.begin(), values.end(), [](auto v) { return v < 0; });
+    const std::int64_t least = column.name == "time_interval_ns" ? no_interval : 0;
+    const bool good =
+        std::none_of(values.begin(), values.end(), [least](auto v) { return v < least; });
     return good ? Result<void>() : bad_value(input.path(), "times from 0 on", column.name);
   }
   template <class Flag>
@@ -179,7 +187,9 @@ Result<void> TakeReader::State::read_header() {
     const Handle group(H5Gopen2(root, name.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group.good()) return hdf5::failure(bytes, "a group for each stream");
     header.groups.push_back(KA_TRY(read_group(checked, group.id(), name)));
-    KA_TRY(find_columns(group.id(), header.groups.back(), row_bytes));
+    TakeGroup& what = header.groups.back();
+    KA_TRY(find_columns(group.id(), what, row_bytes));
+    if (!std::holds_alternative<ImuGroup>(what.kind)) what.space = space_of(checked, group.id());
   }
   constexpr std::uint64_t slab_bytes = std::uint64_t{16} << 20;
   slab_rows = std::clamp<std::uint64_t>(slab_bytes / row_bytes, 1, 4096);

@@ -56,6 +56,20 @@ Result<std::string> read_through(const std::string& path) {
 
 }  // namespace
 
+TEST_CASE("the space of positions and samples of unknown time read back") {
+  const FreshFolder folder;
+  Take take = sample_take(5);
+  take.header.groups[1].space = "kinect";
+  std::get<PointRows>(take.all.rows[1]).distance.time_interval_ns[2] = -1;  // not known
+  write_or_fail(folder / "t.h5", take);
+  PosixFiles files;
+  const auto read = read_take(files, folder / "t.h5");
+  REQUIRE(read);
+  CHECK(read->header.groups[0].space == "take");
+  CHECK(read->header.groups[1].space == "kinect");
+  CHECK(std::get<PointRows>(read->all.rows[1]).distance.time_interval_ns[2] == -1);
+}
+
 TEST_CASE("a take that was written reads the same") {
   const FreshFolder folder;
   for (const std::size_t frames : {0U, 1U, 5U, 9000U}) {

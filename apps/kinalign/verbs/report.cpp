@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/inputs.h"
+#include "apps/kinalign/verbs/take_origin.h"
+
+#include "kinalign/documents/report_json.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/recording/beside.h"
+#include "kinalign/sources/formats.h"
+#include "kinalign/sources/open_recording.h"
+#include "kinalign/view/page/page_html.h"
+#include "kinalign/view/page/take_figures.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double detail_length_s = 60.0;
+constexpr double no_detail_s = -1.0;  // the verb chooses
+
+struct Report {
+  std::vector<std::string> take;
+  std::string inputs;
+  double detail_s = no_detail_s;
+  bool open = false;
+};
+
+Usage describe_report(Report& o) {
+  Usage usage;
+  usage.positionals = {{"TAKE", "a take that kinalign wrote", &o.take}};
+  usage.flags = {{"inputs",
+                  "folder of the files that the take was made from, for the raw samples (default: "
+                  "the take's own, where they lie there)",
+                  &o.inputs},
+                 {"detail-s",
+                  "where the 60 s of raw samples begin, s from the first row (default: around the "
+                  "longest gap)",
+                  &o.detail_s, no_detail_s, 1e9},
+                 {"open", "show the page with xdg-open", &o.open}};
+  usage.check = [](const Common& common, const Sources&) -> Result<void> {
+    if (common.out.ends_with(".html") || common.out.ends_with(".htm")) return {};
+    return Failure(Error{"-o", 0, "the page's file name, as in -o take.html",
+                         common.out.empty() ? "none" : shown(common.out)});
+  };
+  return usage;
+}
+
+// ---- in a child process: what HDF5 reads
+
+/// Calls use(reader, report) of the take.
+template <class Use>
+Result<std::string> with_take(FileSystem& files, const std::string& path, Use use) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  const std::string json = KA_TRY(reader.report_json());
+  const AlignmentReport report = KA_TRY(parse_report_json(json, path));
+  return use(reader, report);
+}
+
+/// Where a detail of a long take is worth most, as JSON: "begin_s" and the first row's stamp, and
+/// the names of the streams of points.
+Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& report) {
+  nlohmann::json out{{"begin_ns", to_ns(report.begin)}, {"begin_s", 0.0}};
+  out["points"] = nlohmann::json::array();
+  for (const TakeGroup& group : reader.header().groups) {
+    if (std::holds_alternative<PointGroup>(group.kind)) out["points"].push_back(group.name);
+  }
+  const double length = seconds(report.end - report.begin);
+  if (length <= detail_length_s || out["points"].empty()) return json_text(out);
+  LongestGap gap;
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) gap.add(slab);
+  const double begin = gap.middle_s().value_or(0.0) - 0.5 * detail_length_s;
+  out["begin_s"] = std::clamp(begin, 0.0, length - detail_length_s);
+  return json_text(out);
+}
+
+/// A line of JSON about the page, then the page.
+Result<std::string> page_text(const std::string& path, TakeReader& reader,
+                              const AlignmentReport& report, const TakeFigureOptions& options) {
+  TakeFigures figures(reader.header(), report, options);
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) figures.add(slab);
+  TakePage page = figures.finish();
+  page.file = file_name(path);
+  page.software = reader.software();
+  nlohmann::ordered_json about{{"verdicts", nlohmann::ordered_json::array()},
+                               {"worst", nlohmann::ordered_json::array()},
+                               {"stride", page.stride}};
+  for (const Verdict& verdict : page.verdicts) {
+    about["verdicts"].push_back({{"stream", verdict.stream},
+                                 {"quality", std::string(to_string(verdict.quality))},
+                                 {"reason", verdict.reason}});
+  }
+  for (const Concern& concern : page.worst) {
+    about["worst"].push_back(
+        {{"stream", concern.stream}, {"part", concern.part}, {"what", words_of(concern)}});
+  }
+  const std::string html = KA_TRY(page_html(page));
+  return json_text(about) + "\n" + html;
+}
+
+// ---- the raw samples of figure 7
+
+struct Outline {
+  Time begin{};
+  double detail_begin_s = 0.0;
+  std::vector<std::string> points;
+};
+
+Result<Outline> outline_of(FileSystem& files, const std::string& path, double wanted_s) {
+  const std::string text = KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] {
+    return with_take(files, path, [](TakeReader& reader, const AlignmentReport& report) {
+      return outline_json(reader, report);
+    });
+  }));
+  try {  // what a child says is not trusted
+    const auto json = nlohmann::json::parse(text);
+    Outline out;
+    out.begin = utc_time(json.at("begin_ns").get<std::int64_t>());
+    out.detail_begin_s = wanted_s >= 0.0 ? wanted_s : json.at("begin_s").get<double>();
+    out.points = json.at("points").get<std::vector<std::string>>();
+    return out;
+  } catch (const nlohmann::json::exception&) {
+    return Failure(Error{path, 0, "a take that says when it begins", "another answer"});
+  }
+}
+
+/// The samples of a stream within the detail, stamps on the take's axis.
+Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outline) {
+  const auto& input = std::get<PointInput>(stream.data);
+  const std::size_t joints = input.joint_names.size();
+  const double end_s = outline.detail_begin_s + detail_length_s;
+  RawPoints out{stream.name, {}};
+  const Pass<PointFrames> pass = KA_TRY(input.passes());
+  PointFrames block;
+  while (KA_TRY(pass(block))) {
+    for (std::size_t t = 0; t < block.size(); ++t) {
+      const Time at = take_time(stream.clock, block.stamps[t]);
+      const double s = seconds(at - outline.begin);
+      if (s < outline.detail_begin_s || s > end_s) continue;
+      out.frames.stamps.push_back(at);
+      const auto cell = static_cast<std::ptrdiff_t>(t * joints);
+      const auto count = static_cast<std::ptrdiff_t>(joints);
+      const auto places = block.positions.begin() + 3 * cell;
+      out.frames.positions.insert(out.frames.positions.end(), places, places + 3 * count);
+      const auto states = block.state.begin() + cell;
+      out.frames.state.insert(out.frames.state.end(), states, states + count);
+    }
+  }
+  return out;
+}
+
+/// Of all streams of points. Fails where an input is missing or is another one than the take's.
+Result<std::vector<RawPoints>> read_raw(Call& call, const Origin& origin, const Outline& outline,
+                                        const std::string& base) {
+  Manifest manifest = origin.parameters;
+  std::erase_if(manifest.streams, [&outline](const StreamOptions& stream) {
+    return std::find(outline.points.begin(), outline.points.end(), stream.name) ==
+           outline.points.end();
+  });
+  std::vector<RawPoints> out;
+  if (manifest.streams.empty()) return out;
+  FileSystem& files = call.surroundings.files;
+  for (const std::string& file : files_named(manifest, base)) {
+    KA_TRY(InputFile::open(files, file));
+  }
+  const Recording recording =
+      KA_TRY(open_recording(files, manifest, base, {call.console.progress(), call.jobs}));
+  const std::vector<std::string> changed = changed_inputs(origin, recording);
+  if (!changed.empty()) {
+    return Failure(Error{changed.front(), 0, "the file that the take was made from", "another"});
+  }
+  for (const RecordedStream& stream : recording.streams) {
+    if (std::holds_alternative<PointInput>(stream.data)) {
+      out.push_back(KA_TRY(raw_points(stream, outline)));
+    }
+  }
+  return out;
+}
+
+// ---- the verb
+
+std::string size_text(std::size_t bytes) {
+  return fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(bytes));
+}
+
+/// What was written, in a few lines.
+std::string said(const std::string& out, std::size_t bytes, const nlohmann::ordered_json& about,
+                 Call& call) {
+  std::string streams;
+  for (const auto& verdict : about["verdicts"]) {
+    const auto quality = verdict["quality"].get<std::string>();
+    const Colour colour =
+        quality == "good" ? Colour::good : (quality == "bad" ? Colour::bad : Colour::warning);
+    streams += (streams.empty() ? "" : ", ") + harmless(verdict["stream"].get<std::string>()) +
+               " " + call.console.paint(colour, quality);
+  }
+  std::string text = fmt::format("{}: {}, {}\n", harmless(out), size_text(bytes), streams);
+  for (const auto& worst : about["worst"]) {
+    text += "  " +
+            harmless(worst["stream"].get<std::string>() + ": " + worst["what"].get<std::string>()) +
+            "\n";
+  }
+  return text;
+}
+
+/// Starts xdg-open; the page is there whatever becomes of it.
+void show(const std::string& out, Call& call) {
+  std::string program = "xdg-open", path = out;
+  char* words[] = {program.data(), path.data(), nullptr};
+  posix_spawn_file_actions_t quiet;
+  ::posix_spawn_file_actions_init(&quiet);
+  for (const int fd : {0, 1, 2}) {
+    ::posix_spawn_file_actions_addopen(&quiet, fd, "/dev/null", O_RDWR, 0);
+  }
+  pid_t child = 0;
+  const int failed = ::posix_spawnp(&child, program.c_str(), &quiet, nullptr, words, environ);
+  ::posix_spawn_file_actions_destroy(&quiet);
+  int status = 0;
+  if (failed != 0 || ::waitpid(child, &status, 0) < 0 || status != 0) {
+    call.console.note(harmless("kinalign report: xdg-open could not show " + out));
+  }
+}
+
+struct Written {
+  std::size_t bytes = 0;
+  nlohmann::ordered_json about;
+};
+
+Result<Written> write_page(const std::string& take, const TakeFigureOptions& options, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  OutputFile out = KA_TRY(OutputFile::create(files, call.common.out, call.common.overwrite()));
+  const std::string text = KA_TRY(run_guarded(GuardLimits{}, blame(take), [&] {
+    return with_take(files, take, [&](TakeReader& reader, const AlignmentReport& report) {
+      return page_text(take, reader, report, options);
+    });
+  }));
+  const std::size_t line = text.find('\n');
+  const std::string_view html = std::string_view(text).substr(line + 1);
+  Written written{html.size(), nlohmann::ordered_json::parse(text.substr(0, line))};
+  KA_TRY(out.write(html));
+  KA_TRY(out.commit());
+  return written;
+}
+
+Result<int> run(Report& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string& take = o.take.front();
+  call.console.name_json("report_page");
+  if (KA_TRY(kind_of_file(files, take)) != FileKind::take) {
+    return call.console.refuse(
+        Error{take, 0, "a take (kinalign align makes one)", "a file of another kind"});
+  }
+  call.console.if_it_fails(
+      [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
+  const Origin origin = KA_TRY(origin_of(files, take));
+  std::string base = o.inputs.empty() ? std::string(folder(take)) : o.inputs;
+  if (!base.empty() && !base.ends_with('/')) base += '/';
+  std::vector<std::string> inputs = files_named(origin.parameters, base);
+  inputs.push_back(take);
+  KA_TRY(keep_inputs(call.common.out, inputs));
+  const Outline outline = KA_TRY(outline_of(files, take, o.detail_s));
+  TakeFigureOptions options;
+  options.detail_begin_s = outline.detail_begin_s;
+  options.detail_length_s = detail_length_s;
+  auto raw = read_raw(call, origin, outline, base);
+  if (!raw && (!o.inputs.empty() || interrupted())) return Failure(std::move(raw).error());
+  if (raw) options.raw = std::move(*raw);
+  const bool has_raw = !options.raw.empty();
+  const Written written = KA_TRY(write_page(take, options, call));
+  call.console.wrote(call.common.out);
+  call.console.print(said(call.common.out, written.bytes, written.about, call));
+  nlohmann::ordered_json json{{"path", call.common.out}, {"bytes", written.bytes}};
+  json.update(written.about);
+  json["raw_samples"] = has_raw;
+  call.console.print_json(json_text(json));
+  if (o.open) show(call.common.out, call);
+  const auto& verdicts = written.about["verdicts"];
+  return std::any_of(verdicts.begin(), verdicts.end(),
+                     [](const auto& verdict) { return verdict["quality"] == "bad"; })
+             ? 1
+             : 0;
+}
+
+}  // namespace
+
+Verb report_verb() {
+  return make_verb<Report>(
+      {.name = "report",
+       .summary = "a page for a take",
+       .text =
+           "One HTML file that loads nothing: a verdict for each stream, figures of time, space "
+           "and "
+           "nodes, and a 3D player. Raw samples stand in it where the take's inputs can be read. "
+           "Exit code 1 where a stream is bad.",
+       .examples = {{"kinalign report demo/take.h5 -o demo/report.html", "open it in a browser"},
+                    {"kinalign report demo/take.h5 -o demo/report.html --force --open",
+                     "opens it at once"},
+                    {"kinalign report demo/take.h5 -o demo/report.html --force --json",
+                     "path, size, verdicts"}},
+       .common = {"out", "force", "json", "jobs"}},
+      describe_report, run);
+}
+
+}  // namespace kinalign

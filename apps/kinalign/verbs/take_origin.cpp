@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/verbs/take_origin.h"
+
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/describe_file.h"
+
+#include "kinalign/documents/parameters_json.h"
+#include "kinalign/formats/take/guarded.h"
+#include "kinalign/formats/take/take_hdf5.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+Result<std::string> origin_json(FileSystem& files, const std::string& path) {
+  const TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  nlohmann::json out{{"software", reader.software()},
+                     {"parameters", parameters_json(reader.header().parameters)},
+                     {"files", nlohmann::json::array()}};
+  for (const TakeGroup& group : reader.header().groups) {
+    for (const InputFacts& file : group.files) out["files"].push_back({file.name, file.sha256});
+  }
+  return json_text(out);
+}
+
+}  // namespace
+
+Result<Origin> origin_of(FileSystem& files, const std::string& path) {
+  const std::string text =
+      KA_TRY(run_guarded(GuardLimits{}, blame(path), [&] { return origin_json(files, path); }));
+  try {  // what a child says is not trusted either
+    const auto json = nlohmann::json::parse(text);
+    Origin origin;
+    origin.software = json.at("software").get<std::string>();
+    origin.parameters = KA_TRY(parse_parameters_json(json.at("parameters").get<std::string>()));
+    for (const auto& file : json.at("files")) {
+      origin.files.push_back({file.at(0).get<std::string>(), file.at(1).get<std::string>(), 0});
+    }
+    return origin;
+  } catch (const nlohmann::json::exception&) {
+    return Failure(Error{path, 0, "a take that says how it was made", "another answer"});
+  }
+}
+
+std::vector<std::string> changed_inputs(const Origin& origin, const Recording& recording) {
+  std::vector<std::string> changed;
+  for (const RecordedStream& stream : recording.streams) {
+    for (const InputFacts& file : stream.files) {
+      const bool same = std::any_of(
+          origin.files.begin(), origin.files.end(),
+          [&file](const InputFacts& f) { return f.name == file.name && f.sha256 == file.sha256; });
+      const bool named = std::find(changed.begin(), changed.end(), file.name) != changed.end();
+      if (!same && !named) changed.push_back(file.name);
+    }
+  }
+  return changed;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a take says of its making, and whether the inputs are still those.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/take/manifest.h"
+#include "kinalign/take/recording.h"
+
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct Origin {
+  std::string software;
+  Manifest parameters;
+  std::vector<InputFacts> files;  // without their sizes
+};
+
+/// Reads the take in a child process.
+Result<Origin> origin_of(FileSystem& files, const std::string& path);
+
+/// Inputs whose bytes are not those of the take's making.
+std::vector<std::string> changed_inputs(const Origin& origin, const Recording& recording);
+
+}  // namespace kinalign

@@ -1,0 +1,79 @@
+// A node's signals against those that the mocap implies at its bone.
+// SPDX-License-Identifier: Apache-2.0
+import { scaleLinear } from "d3-scale";
+
+import { axes, chooser, path, zoomButtons } from "./chart.js";
+import { rowAt } from "./data.js";
+
+const degrees = 180 / Math.PI;
+const choices = [
+  ["magnitude", (v, k) => Math.hypot(v[3 * k], v[3 * k + 1], v[3 * k + 2])],
+  ["x", (v, k) => v[3 * k]],
+  ["y", (v, k) => v[3 * k + 1]],
+  ["z", (v, k) => v[3 * k + 2]],
+];
+
+/// Two curves over time; null where the node has nothing.
+function compared(take, view, id, label, of) {
+  view.add(id, 150, (svg, at, x) => {
+    const first = rowAt(take.seconds, view.domain[0]), last = rowAt(take.seconds, view.domain[1]);
+    const step = Math.max(1, Math.floor((last - first) / (3 * at.width)));
+    const { valid, curves } = of();
+    let low = Infinity, high = -Infinity;
+    const lines = curves.map(({ colour, value }) => {
+      const points = [];
+      for (let k = first; k <= last; k += step) {
+        if (valid[k] === 0) {
+          points.push(null);
+          continue;
+        }
+        const v = value(k);
+        low = Math.min(low, v);
+        high = Math.max(high, v);
+        points.push([take.seconds[k], v]);
+      }
+      return { colour, points };
+    });
+    if (low > high) [low, high] = [0, 1];
+    // From zero, unless that would hide what changes: gravity is in an acceleration.
+    if (low > 0 && high - low > 0.3 * high) low = 0;
+    const y = scaleLinear([low, high], [at.top + at.height, at.top]).nice(4);
+    axes(svg, at, x, y, { x: "time / s", y: label });
+    for (const { colour, points } of lines) {
+      svg.append("path").attr("class", `line ${colour === "mocap" ? "thin" : ""} ${colour}`)
+        .attr("d", path(points.map((p) => (p === null ? null : [x(p[0]), y(p[1])]))));
+    }
+  });
+}
+
+export function nodeFigures(take, view) {
+  const nodes = take.nodes.filter((node) => node.rate || node.acceleration || node.orientation_error);
+  if (nodes.length === 0) return;
+  const chosen = { node: 0, part: 0 };
+  const node = () => nodes[chosen.node], part = () => choices[chosen.part][1];
+  const both = (ours, theirs, factor) => () => ({
+    valid: node().valid,
+    curves: [
+      { colour: "mocap", value: (k) => factor * part()(node()[theirs], k) },
+      { colour: "imu", value: (k) => factor * part()(node()[ours], k) },
+    ],
+  });
+  if (nodes[0].rate) compared(take, view, "node-rate", "rate / (°/s)", both("rate", "mocap_rate", degrees));
+  if (nodes[0].acceleration) compared(take, view, "node-acceleration", "acc. / (m/s²)", both("acceleration", "mocap_acceleration", 1));
+  if (nodes[0].orientation_error) {
+    compared(take, view, "node-orientation", "angle / °", () => ({
+      valid: node().valid,
+      curves: [{ colour: "imu", value: (k) => degrees * node().orientation_error[k] }],
+    }));
+  }
+  const redraw = () => view.show(...view.domain);
+  chooser("node-rate", "Node", nodes.map((n) => `${n.node} on ${n.joint}`), 0, (i) => {
+    chosen.node = i;
+    redraw();
+  });
+  chooser("node-rate", "Part", choices.map((c) => c[0]), 0, (i) => {
+    chosen.part = i;
+    redraw();
+  });
+  zoomButtons("node-rate", view);
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Streams over time, in equal bins of a take: how much of each was measured, how far from raw
+// samples, how certain its stamps are.
+#pragma once
+
+#include "kinalign/take/take.h"
+#include "kinalign/view/page/take_page.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace kinalign {
+
+/// The lanes of one group: one, or one for each node.
+class LaneFigures {
+ public:
+  LaneFigures(const TakeGroup& group, std::size_t bins);
+
+  void add(const std::variant<ClipRows, PointRows, ImuRows>& rows, std::size_t row,
+           std::size_t bin);
+  std::vector<PageLane> finish();
+
+ private:
+  struct Counts {
+    std::uint64_t all = 0, tracked = 0, inferred = 0;
+  };
+  void add_distance(const SampleDistance& distance, std::size_t sample, std::size_t lane,
+                    std::size_t bin);
+
+  std::size_t joints_ = 0;  // of a body
+  std::vector<PageLane> lanes_;
+  std::vector<std::vector<Counts>> counts_;  // [lanes][bins]
+};
+
+}  // namespace kinalign

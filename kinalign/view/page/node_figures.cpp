@@ -1,0 +1,480 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/view/page/node_figures.h"
+
+#include "kinalign/motion/rotation.h"
+#include "kinalign/view/page/body_figures.h"
+
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double standard_gravity = 9.80665;  // m/s2
+constexpr double half_window_s = 0.05;  // keeps 8 Hz and less, half of what a node of 15 Hz has
+constexpr double most_lag_s = 0.25;
+constexpr std::size_t fewest_rows = 20;  // to compare anything
+
+// ---- by name
+
+/// Words of a node's name, and joints by the usual names: "*" stands for the side.
+struct Wear {
+  std::vector<std::string_view> words, turns, place;
+};
+
+const std::vector<Wear>& wears() {
+  static const std::vector<Wear> all{
+      {{"waist", "pelvis", "hips"}, {"Hips", "Pelvis", "hip"}, {"Hips", "Pelvis", "hip"}},
+      {{"wrist", "forearm", "lowerarm", "lowarm", "hand"},
+       {"*ForeArm", "*Forearm", "*LowerArm", "*Elbow"},
+       {"*Hand", "*Wrist", "*ForeArm"}},
+      {{"ankle", "shank", "shin", "lowerleg", "lowleg"},
+       {"*Leg", "*LowerLeg", "*Knee"},
+       {"*Foot", "*Ankle", "*Leg"}},
+      {{"foot", "shoe", "toe"}, {"*Foot", "*Ankle"}, {"*Foot", "*Ankle"}},
+      {{"upperarm", "uparm", "elbow", "arm", "shoulder"},
+       {"*Arm", "*UpperArm", "*Shoulder"},
+       {"*Arm", "*UpperArm", "*Shoulder"}},
+      {{"thigh", "upperleg", "upleg", "knee", "leg", "hip"},
+       {"*UpLeg", "*UpperLeg", "*Hip"},
+       {"*UpLeg", "*UpperLeg", "*Hip"}},
+      {{"head"}, {"Head"}, {"Head"}},
+      {{"chest", "sternum", "torso", "spine"},
+       {"Spine3", "Spine2", "Chest"},
+       {"Spine3", "Spine2", "Chest"}},
+      {{"back", "trunk"}, {"Spine2", "Spine1", "Spine"}, {"Spine2", "Spine1", "Spine"}},
+  };
+  return all;
+}
+
+/// "Wrist_L": "wristl".
+std::string plain(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  return out;
+}
+
+/// "Left", "Right", or empty: of "wrist_left", "L_Foot", "shank_r".
+std::string_view side_of(const std::string& name) {
+  const std::string text = plain(name);
+  const auto has = [&](std::string_view word, std::string_view letters) {
+    const auto is_letter = [letters](char c) { return letters.find(c) != std::string_view::npos; };
+    if (text.find(word) != std::string::npos) return true;
+    if (name.size() < 2) return false;
+    return (is_letter(name.front()) && name[1] == '_') ||
+           (is_letter(name.back()) && name[name.size() - 2] == '_');
+  };
+  if (has("left", "lL")) return "Left";
+  return has("right", "rR") ? "Right" : "";
+}
+
+std::optional<std::size_t> joint_called(std::span<const std::string_view> patterns,
+                                        std::string_view side,
+                                        const std::vector<std::string>& joints) {
+  for (const std::string_view pattern : patterns) {
+    std::string name(pattern);
+    if (name.front() == '*') {
+      if (side.empty()) continue;
+      name = std::string(side) + name.substr(1);
+    }
+    const auto found = std::find(joints.begin(), joints.end(), name);
+    if (found != joints.end()) return static_cast<std::size_t>(found - joints.begin());
+  }
+  return std::nullopt;
+}
+
+// ---- fits
+
+/// The rotation R with the largest sum of to . R from, where `cross` is the sum of to * from^T
+/// (Wahba's problem; Markley 1988).
+Quat best_rotation(const Eigen::Matrix3d& cross) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double turn = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+  const Eigen::Matrix3d rotation = svd.matrixU() *
+                                   Vec3(1.0, 1.0, turn < 0.0 ? -1.0 : 1.0).asDiagonal() *
+                                   svd.matrixV().transpose();
+  return Quat(rotation).normalized();
+}
+
+using Matrix4 = Eigen::Matrix4d;
+
+/// p * q as a matrix of p times the parts w,x,y,z of q.
+Matrix4 left_of(const Quat& p) {
+  Matrix4 m;
+  m << p.w(), -p.x(), -p.y(), -p.z(), p.x(), p.w(), -p.z(), p.y(), p.y(), p.z(), p.w(), -p.x(),
+      p.z(), -p.y(), p.x(), p.w();
+  return m;
+}
+
+/// q * p as a matrix of p times the parts of q.
+Matrix4 right_of(const Quat& p) {
+  Matrix4 m;
+  m << p.w(), -p.x(), -p.y(), -p.z(), p.x(), p.w(), p.z(), -p.y(), p.y(), -p.z(), p.w(), p.x(),
+      p.z(), p.y(), -p.x(), p.w();
+  return m;
+}
+
+Quat quat_of(const Eigen::Vector4d& v) { return Quat(v[0], v[1], v[2], v[3]).normalized(); }
+
+struct OrientationPair {
+  Quat node, bone;
+};
+
+/// Constant rotations of the world and of the sensor: node = world * bone * sensor.
+struct OrientationFit {
+  Quat world = Quat::Identity(), sensor = Quat::Identity();
+  Quat predicted(const Quat& bone) const { return world * bone * sensor; }
+};
+
+/// Minimises the sum of |world^-1 node - bone sensor|^2 over both unit quaternions: the largest
+/// singular value of a 4 x 4 matrix. The signs of the quaternions are settled by three rounds.
+OrientationFit fit_orientation(std::vector<OrientationPair> pairs) {
+  OrientationFit fit;
+  for (int round = 0; round < 3; ++round) {
+    Matrix4 sum = Matrix4::Zero();
+    for (const OrientationPair& p : pairs) sum += left_of(p.bone).transpose() * right_of(p.node);
+    const Eigen::JacobiSVD<Matrix4> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    fit.world = quat_of(svd.matrixV().col(0)).conjugate();
+    fit.sensor = quat_of(svd.matrixU().col(0));
+    // With the sensor's sign chosen so, the sum of node . (world bone sensor) is positive.
+    bool flipped = false;
+    for (OrientationPair& p : pairs) {
+      if (p.node.dot(fit.predicted(p.bone)) >= 0.0) continue;
+      p.node.coeffs() = -p.node.coeffs();
+      flipped = true;
+    }
+    if (!flipped) break;
+  }
+  return fit;
+}
+
+/// Sums for Pearson's correlation.
+struct Correlation {
+  double n = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+  void add(double a, double b) { n += 1, x += a, y += b, xx += a * a, yy += b * b, xy += a * b; }
+  double value() const {
+    const double vx = n * xx - x * x, vy = n * yy - y * y;
+    return vx > 0.0 && vy > 0.0 ? (n * xy - x * y) / std::sqrt(vx * vy) : 0.0;
+  }
+};
+
+/// Weights of values at `times` for the first two coefficients of a parabola: slope and bend at 0.
+struct Weights {
+  std::vector<double> slope, bend;
+};
+Weights parabola(std::span<const double> times) {
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  for (const double t : times) {
+    const Vec3 powers(1.0, t, t * t);
+    normal += powers * powers.transpose();
+  }
+  const Eigen::Matrix3d inverse = normal.inverse();
+  Weights out;
+  for (const double t : times) {
+    const Vec3 weights = inverse * Vec3(1.0, t, t * t);
+    out.slope.push_back(weights[1]);
+    out.bend.push_back(2.0 * weights[2]);
+  }
+  return out;
+}
+
+/// A signal of a node against its bone's, over the rows where both are known.
+struct SignalFit {
+  std::vector<float> node, bone;  // [K,3]; the bone's in the node's space
+  double rms = 0.0, correlation = 0.0;
+};
+
+}  // namespace
+
+std::optional<WornOn> worn_on(const std::string& node, const std::vector<std::string>& joints) {
+  const std::string text = plain(node);
+  const std::string_view side = side_of(node);
+  for (const Wear& wear : wears()) {
+    const bool here = std::any_of(wear.words.begin(), wear.words.end(), [&](std::string_view word) {
+      return text.find(word) != std::string::npos;
+    });
+    if (!here) continue;
+    const auto turns = joint_called(wear.turns, side, joints);
+    const auto place = joint_called(wear.place, side, joints);
+    if (turns && place) return WornOn{*turns, *place};
+  }
+  return std::nullopt;
+}
+
+std::vector<NodeReading> node_readings(const ImuGroup& group, const ImuRows& rows,
+                                       std::size_t row) {
+  const std::size_t nodes = group.node_names.size();
+  std::vector<NodeReading> out(nodes);
+  for (std::size_t s = 0; s < nodes; ++s) {
+    const std::size_t at = row * nodes + s;
+    out[s].valid = rows.valid[at] != 0;
+    if (!out[s].valid) continue;
+    if (group.content.orientation) out[s].orientation = quat(rows.orientation, at).normalized();
+    if (group.content.angular_velocity) out[s].rate = vec3(rows.angular_velocity, at);
+    if (group.content.acceleration) out[s].acceleration = vec3(rows.acceleration, at);
+  }
+  if (group.root_node.empty() || !group.content.orientation) return out;
+  const auto root = static_cast<std::size_t>(
+      std::find(group.node_names.begin(), group.node_names.end(), group.root_node) -
+      group.node_names.begin());
+  if (root >= nodes) return out;
+  for (std::size_t s = 0; s < nodes; ++s) {
+    NodeReading& node = out[s];
+    if (s == root || !node.valid || !out[root].valid) continue;
+    const Quat to_node = node.orientation.conjugate();  // from the root's space
+    node.rate = to_node * node.rate;
+    node.acceleration = to_node * (node.acceleration + out[root].acceleration);
+    node.orientation = out[root].orientation * node.orientation;
+  }
+  return out;
+}
+
+BoneReading bone_reading(std::span<const TimedPose* const> poses, std::size_t middle,
+                         const WornOn& bone) {
+  std::vector<double> times;
+  for (const TimedPose* p : poses) times.push_back(p->seconds - poses[middle]->seconds);
+  const Weights weights = parabola(times);
+  BoneReading out;
+  out.rotation = poses[middle]->pose.rotations[bone.turns];
+  const Vec3 here = poses[middle]->pose.positions[bone.place];
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const GlobalPose& pose = poses[i]->pose;
+    out.rate +=
+        weights.slope[i] * rotation_vector(out.rotation.conjugate() * pose.rotations[bone.turns]);
+    out.acceleration += weights.bend[i] * (pose.positions[bone.place] - here);
+  }
+  out.acceleration = out.rotation.conjugate() * out.acceleration;
+  return out;
+}
+
+NodeCompare::NodeCompare(const ImuGroup& group, const Skeleton& skeleton, double rate_hz)
+    : group_(group),
+      skeleton_(skeleton),
+      half_window_(
+          static_cast<std::size_t>(std::clamp(std::llround(half_window_s * rate_hz), 1LL, 200LL))),
+      longest_step_s_(rate_hz > 0.0 ? 3.0 / rate_hz : 1.0) {
+  bool all_named = true;
+  for (const std::string& node : group.node_names) {
+    named_.push_back(worn_on(node, skeleton.joint_names));
+    candidates_.push_back(named_.back().value_or(WornOn{}));
+    all_named = all_named && named_.back();
+  }
+  for (std::size_t j = 0; !all_named && j < skeleton.joints(); ++j) candidates_.push_back({j, j});
+}
+
+void NodeCompare::add(double seconds, const ClipRows& clip, const ImuRows& nodes, std::size_t row,
+                      bool keep) {
+  Waiting& now = waiting_.emplace_back();
+  now.pose.seconds = seconds;
+  pose_of_row(skeleton_, clip, row, now.pose.pose);
+  now.known = clip.valid.empty() || clip.valid[row] != 0;
+  now.keep = keep;
+  if (keep) now.nodes = node_readings(group_, nodes, row);
+  while (waiting_.size() > next_ + half_window_) settle_next();
+  while (next_ > half_window_) {
+    waiting_.pop_front();
+    --next_;
+  }
+}
+
+void NodeCompare::settle_next() {
+  const std::size_t middle = next_++;
+  Waiting& row = waiting_[middle];
+  if (!row.keep) return;
+  Kept& kept = kept_.emplace_back();
+  kept.nodes = std::move(row.nodes);
+  const std::size_t first = middle - std::min(middle, half_window_);
+  const std::size_t last = std::min(middle + half_window_, waiting_.size() - 1);
+  std::vector<const TimedPose*> poses;
+  for (std::size_t i = first; i <= last; ++i) {
+    if (!waiting_[i].known) return;
+    const double step = poses.empty() ? 0.0 : waiting_[i].pose.seconds - poses.back()->seconds;
+    if (step > longest_step_s_) return;
+    poses.push_back(&waiting_[i].pose);
+  }
+  if (poses.size() < 3) return;
+  for (const WornOn& bone : candidates_) {
+    kept.bones.push_back(bone_reading(poses, middle - first, bone));
+  }
+}
+
+std::size_t NodeCompare::candidate_of(std::size_t node) const {
+  if (named_[node]) return node;
+  std::size_t best = 0;
+  double most = -2.0;
+  for (std::size_t c = group_.node_names.size(); c < candidates_.size(); ++c) {
+    const double here = alike(node, c);
+    if (here <= most) continue;
+    most = here;
+    best = c;
+  }
+  return best;
+}
+
+/// Correlation of the magnitudes of the angular velocities.
+double NodeCompare::alike(std::size_t node, std::size_t candidate) const {
+  Correlation sums;
+  for (const Kept& row : kept_) {
+    if (row.bones.empty() || !row.nodes[node].valid) continue;
+    sums.add(row.nodes[node].rate.norm(), row.bones[candidate].rate.norm());
+  }
+  return sums.value();
+}
+
+std::string NodeCompare::more_like(std::size_t node) const {
+  constexpr double clearly = 0.1, sure = 0.8;
+  if (!named_[node] || !group_.content.angular_velocity) return "";
+  const double own = alike(node, node);
+  for (std::size_t other = 0; other < named_.size(); ++other) {
+    if (other == node || !named_[other]) continue;
+    const double there = alike(node, other);
+    if (there > sure && there > own + clearly) {
+      return skeleton_.joint_names[candidates_[other].turns];
+    }
+  }
+  return "";
+}
+
+namespace {
+
+/// `of_node(row)` and `of_bone(row)` are vectors; rows that are not `known` have zeros.
+template <class Rows, class Known, class OfNode, class OfBone>
+SignalFit fit_signal(const Rows& rows, Known known, OfNode of_node, OfBone of_bone) {
+  SignalFit out;
+  Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
+  for (const auto& row : rows) {
+    if (known(row)) cross += of_node(row) * of_bone(row).transpose();
+  }
+  const Quat turn = best_rotation(cross);
+  Correlation alike;
+  double squares = 0.0;
+  for (const auto& row : rows) {
+    const Vec3 node = known(row) ? of_node(row) : Vec3::Zero();
+    const Vec3 bone = known(row) ? Vec3(turn * of_bone(row)) : Vec3::Zero();
+    put_vector(out.node, node);
+    put_vector(out.bone, bone);
+    if (!known(row)) continue;
+    alike.add(node.norm(), bone.norm());
+    squares += (node - bone).squaredNorm();
+  }
+  out.correlation = alike.value();
+  out.rms = alike.n > 0.0 ? std::sqrt(squares / alike.n) : 0.0;
+  return out;
+}
+
+double length_at(const std::vector<float>& vectors, std::size_t k) {
+  const std::size_t i = 3 * k;
+  return std::hypot(static_cast<double>(vectors[i]), static_cast<double>(vectors[i + 1]),
+                    static_cast<double>(vectors[i + 2]));
+}
+
+/// The shift of `node` against `bone` at which their magnitudes agree best, by the parabola through
+/// the best one and its neighbours. Absent where rows are too far apart to tell.
+std::optional<double> lag_of(const SignalFit& signal, const std::vector<std::uint8_t>& known,
+                             double step_s) {
+  const auto most = static_cast<std::ptrdiff_t>(std::floor(most_lag_s / step_s));
+  const auto rows = static_cast<std::ptrdiff_t>(known.size());
+  if (most < 3 || rows < 4 * most) return std::nullopt;
+  std::vector<double> alike;
+  for (std::ptrdiff_t lag = -most; lag <= most; ++lag) {
+    Correlation sums;
+    for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(0, -lag);
+         k < rows - std::max<std::ptrdiff_t>(0, lag); ++k) {
+      const auto bone = static_cast<std::size_t>(k), node = static_cast<std::size_t>(k + lag);
+      if (known[bone] == 0 || known[node] == 0) continue;
+      sums.add(length_at(signal.node, node), length_at(signal.bone, bone));
+    }
+    alike.push_back(sums.value());
+  }
+  const auto best = std::max_element(alike.begin(), alike.end());
+  if (best == alike.begin() || best + 1 == alike.end() || *best < 0.5) return std::nullopt;
+  const double left = *(best - 1), right = *(best + 1), bend = left - 2.0 * *best + right;
+  const double shift = bend < 0.0 ? 0.5 * (left - right) / bend : 0.0;
+  return (static_cast<double>(best - alike.begin() - most) + shift) * step_s;
+}
+
+}  // namespace
+
+NodeFigures NodeCompare::compare(std::size_t node, double kept_step_s) const {
+  const std::size_t c = candidate_of(node);
+  const auto known = [node](const Kept& row) {
+    return !row.bones.empty() && row.nodes[node].valid;
+  };
+  NodeFigures out;
+  out.node = group_.node_names[node];
+  out.joint = skeleton_.joint_names[candidates_[c].turns];
+  out.joint_by_name = named_[node].has_value();
+  out.more_like = more_like(node);
+  out.has_gravity = group_.content.gravity;
+  for (const Kept& row : kept_) {
+    out.valid.push_back(known(row) ? 1 : 0);
+    out.rows += out.valid.back();
+  }
+  const bool enough = out.rows >= fewest_rows;
+  if (group_.content.angular_velocity && enough) {
+    SignalFit fit = fit_signal(
+        kept_, known, [node](const Kept& row) -> const Vec3& { return row.nodes[node].rate; },
+        [c](const Kept& row) -> const Vec3& { return row.bones[c].rate; });
+    out.has_rate = true;
+    out.rate_rms = fit.rms;
+    out.rate_correlation = fit.correlation;
+    out.lag_s = lag_of(fit, out.valid, kept_step_s);
+    out.rate = std::move(fit.node);
+    out.mocap_rate = std::move(fit.bone);
+  }
+  if (group_.content.acceleration && enough) {
+    const bool with_gravity = group_.content.gravity;
+    SignalFit fit = fit_signal(
+        kept_, known,
+        [node](const Kept& row) -> const Vec3& { return row.nodes[node].acceleration; },
+        [c, with_gravity](const Kept& row) -> Vec3 {
+          const BoneReading& bone = row.bones[c];
+          if (!with_gravity) return bone.acceleration;
+          return bone.acceleration + bone.rotation.conjugate() * Vec3(0.0, standard_gravity, 0.0);
+        });
+    out.has_acceleration = true;
+    out.acceleration_rms = fit.rms;
+    out.acceleration_correlation = fit.correlation;
+    out.acceleration = std::move(fit.node);
+    out.mocap_acceleration = std::move(fit.bone);
+  }
+  if (group_.content.orientation && enough) {
+    std::vector<OrientationPair> pairs;
+    for (const Kept& row : kept_) {
+      if (known(row)) pairs.push_back({row.nodes[node].orientation, row.bones[c].rotation});
+    }
+    const OrientationFit fit = fit_orientation(std::move(pairs));
+    double squares = 0.0;
+    for (const Kept& row : kept_) {
+      const Quat& q = row.nodes[node].orientation;
+      const double off = known(row) ? fit.predicted(row.bones[c].rotation).angularDistance(q) : 0.0;
+      squares += off * off;
+      out.orientation_error.push_back(static_cast<float>(off));
+      const Quat axes = row.nodes[node].valid ? fit.world.conjugate() * q : Quat::Identity();
+      for (const double x : {axes.w(), axes.x(), axes.y(), axes.z()}) {
+        out.axes.push_back(static_cast<float>(x));
+      }
+    }
+    out.has_orientation = true;
+    out.orientation_rms = std::sqrt(squares / static_cast<double>(out.rows));
+  }
+  return out;
+}
+
+std::vector<NodeFigures> NodeCompare::finish(double kept_step_s) {
+  while (next_ < waiting_.size()) settle_next();
+  std::vector<NodeFigures> out;
+  for (std::size_t s = 0; s < group_.node_names.size(); ++s) out.push_back(compare(s, kept_step_s));
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/view/page/page_json.h"
+
+#include "kinalign/view/page/packed_series.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Steps to which series are rounded: below what any of the devices can tell.
+constexpr double second_step = 1e-4, metre_step = 5e-4, rate_step = 0.01, acceleration_step = 0.02;
+constexpr double angle_step = 2e-5, rotation_step = 1.0 / 2048.0;
+
+std::string_view name_of(PageKind kind) { return kind == PageKind::clip ? "clip" : "points"; }
+
+double rounded(double x, double step) {
+  const double y = std::round(x / step);
+  return std::isfinite(y) ? y / std::round(1.0 / step) : 0.0;
+}
+
+Json series(const std::vector<float>& values, std::size_t columns, double step) {
+  return {{"rows", columns == 0 ? 0 : values.size() / columns},
+          {"columns", columns},
+          {"step", step},
+          {"packed", packed_series(values, columns, step)}};
+}
+
+Json series(const std::vector<std::uint8_t>& values, std::size_t columns) {
+  return {{"rows", columns == 0 ? 0 : values.size() / columns},
+          {"columns", columns},
+          {"step", 1},
+          {"packed", packed_series(std::span(values), columns)}};
+}
+
+Json vector_json(const Vec3& v) {
+  return {rounded(v.x(), 1e-6), rounded(v.y(), 1e-6), rounded(v.z(), 1e-6)};
+}
+
+Json bins_json(const std::vector<float>& bins, double factor, double step) {
+  Json out = Json::array();
+  for (const float x : bins) out.push_back(rounded(factor * static_cast<double>(x), step));
+  return out;
+}
+
+Json body_json(const PageBody& body) {
+  const std::size_t joints = body.joint_names.size();
+  return {{"name", body.name},
+          {"kind", name_of(body.kind)},
+          {"colour", to_string(body.colour)},
+          {"joint_names", body.joint_names},
+          {"parents", body.parents},
+          {"in_take_space", body.in_take_space},
+          {"positions", series(body.positions, 3 * joints, metre_step)},
+          {"state", series(body.state, joints)}};
+}
+
+Json space_json(const PageSpace& space) {
+  const Quat& q = space.report.transform.rotation;
+  Json joints = Json::array();
+  for (const JointResidual& joint : space.report.joints) {
+    joints.push_back({{"joint", joint.joint},
+                      {"onto", joint.onto},
+                      {"rows", joint.rows},
+                      {"before_m", rounded(joint.before_m, 1e-5)},
+                      {"after_m", rounded(joint.after_m, 1e-5)}});
+  }
+  return {{"stream", space.report.stream},
+          {"onto_stream", space.report.onto},
+          {"method", space.report.method},
+          {"body", space.body},
+          {"onto", space.onto},
+          {"pairs", space.pairs},
+          {"once_per_take", space.once_per_take},
+          {"rotation", {q.w(), q.x(), q.y(), q.z()}},
+          {"translation", vector_json(space.report.transform.translation)},
+          {"before_m", rounded(space.report.before_m, 1e-5)},
+          {"after_m", rounded(space.report.after_m, 1e-5)},
+          {"joints", std::move(joints)}};
+}
+
+Json floor_json(const PageFloor& floor) {
+  return {{"body", floor.body},
+          {"camera", vector_json(floor.camera)},
+          {"forward", vector_json(floor.forward)},
+          {"best", {best_near_m, best_far_m}},
+          {"largest", {largest_near_m, largest_far_m}},
+          {"field_deg", field_deg}};
+}
+
+Json bone_json(const BoneLength& bone) {
+  return {{"body", bone.body},
+          {"joint", bone.joint},
+          {"rows", bone.rows},
+          {"mean_m", rounded(bone.mean_m, 1e-5)},
+          {"deviation_m", rounded(bone.deviation_m, 1e-5)},
+          {"shortest_m", rounded(bone.shortest_m, 1e-5)},
+          {"longest_m", rounded(bone.longest_m, 1e-5)}};
+}
+
+Json lane_json(const PageLane& lane) {
+  Json out{{"stream", lane.stream},
+           {"part", lane.part},
+           {"colour", to_string(lane.colour)},
+           {"resampled", lane.resampled},
+           {"interval_known", lane.interval_known},
+           {"tracked", bins_json(lane.tracked, 1.0, 1e-3)},
+           {"inferred", bins_json(lane.inferred, 1.0, 1e-3)}};
+  if (lane.resampled) out["nearest_raw_ms"] = bins_json(lane.nearest_raw_s, 1e3, 0.1);
+  if (lane.interval_known) out["interval_ms"] = bins_json(lane.interval_s, 1e3, 0.01);
+  return out;
+}
+
+Json node_json(const NodeFigures& node) {
+  Json out{{"node", node.node},
+           {"joint", node.joint},
+           {"gravity", node.has_gravity},
+           {"valid", series(node.valid, 1)}};
+  if (node.has_rate) {
+    out["rate"] = series(node.rate, 3, rate_step);
+    out["mocap_rate"] = series(node.mocap_rate, 3, rate_step);
+  }
+  if (node.has_acceleration) {
+    out["acceleration"] = series(node.acceleration, 3, acceleration_step);
+    out["mocap_acceleration"] = series(node.mocap_acceleration, 3, acceleration_step);
+  }
+  if (node.has_orientation) {
+    out["orientation_error"] = series(node.orientation_error, 1, angle_step);
+    out["axes"] = series(node.axes, 4, rotation_step);
+  }
+  return out;
+}
+
+Json detail_json(const TakePage& page, const PageDetail& detail) {
+  const std::size_t joints = page.bodies[detail.body].joint_names.size();
+  Json out{{"body", detail.body},
+           {"begin_s", rounded(detail.begin_s, 1e-4)},
+           {"end_s", rounded(detail.end_s, 1e-4)},
+           {"near_seconds", series(detail.near_seconds, 1, second_step)},
+           {"has_raw", detail.has_raw}};
+  if (!detail.seconds.empty()) {
+    const std::size_t pairs = detail.onto_positions.size() / detail.seconds.size() / 3;
+    out["seconds"] = series(detail.seconds, 1, second_step);
+    out["positions"] = series(detail.positions, 3 * joints, metre_step);
+    out["state"] = series(detail.state, joints);
+    out["onto_positions"] = series(detail.onto_positions, 3 * pairs, metre_step);
+  }
+  if (detail.has_raw) {
+    out["raw_seconds"] = series(detail.raw_seconds, 1, second_step);
+    out["raw_positions"] = series(detail.raw_positions, 3 * joints, metre_step);
+    out["raw_state"] = series(detail.raw_state, joints);
+  }
+  return out;
+}
+
+template <class Items, class ToJson>
+Json list_json(const Items& items, ToJson to_json) {
+  Json out = Json::array();
+  for (const auto& item : items) out.push_back(to_json(item));
+  return out;
+}
+
+}  // namespace
+
+std::string_view to_string(PageColour colour) {
+  if (colour == PageColour::mocap) return "mocap";
+  return colour == PageColour::kinect ? "kinect" : "imu";
+}
+
+std::string page_json(const TakePage& page) {
+  Json marks = Json::array();
+  for (const TakeMark& mark : page.report.marks) {
+    const double at = seconds(mark.at - page.report.begin);
+    marks.push_back({{"seconds", rounded(at, 1e-3)}, {"kind", mark.kind}, {"text", mark.text}});
+  }
+  const Json out{{"file", page.file},
+                 {"stride", page.stride},
+                 {"rate_hz", page.report.rate_hz},
+                 {"length_s", rounded(seconds(page.report.end - page.report.begin), 1e-4)},
+                 {"seconds", series(page.seconds, 1, second_step)},
+                 {"bodies", list_json(page.bodies, body_json)},
+                 {"spaces", list_json(page.spaces, space_json)},
+                 {"floors", list_json(page.floors, floor_json)},
+                 {"bones", list_json(page.bones, bone_json)},
+                 {"joint_states", list_json(page.joint_states,
+                                            [](const JointStates& s) { return Json(s.counts); })},
+                 {"lanes", list_json(page.lanes, lane_json)},
+                 {"node_body", page.node_body},
+                 {"nodes", list_json(page.nodes, node_json)},
+                 {"details", list_json(page.details,
+                                       [&](const PageDetail& d) { return detail_json(page, d); })},
+                 {"marks", std::move(marks)}};
+  std::string text = out.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/view/report_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+namespace kinalign {
+
+std::string grouped(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {
+    text.insert(static_cast<std::size_t>(at), 1, ',');
+  }
+  return text;
+}
+
+double take_seconds(std::int64_t begin_ns, std::int64_t end_ns, double rate_hz) {
+  const double last = rate_hz > 0.0 ? 1.0 / rate_hz : 0.0;
+  return 1e-9 * (static_cast<double>(end_ns) - static_cast<double>(begin_ns)) + last;
+}
+
+std::string duration_text(double s) {
+  constexpr double shown_as_minute = 59.995, longest = 1e15;
+  if (!(s >= shown_as_minute)) return fmt::format("{:.2f} s", s);
+  const auto whole = static_cast<std::int64_t>(std::min(s + 0.005, longest));
+  return whole < 3600
+             ? fmt::format("{} min {:02} s", whole / 60, whole % 60)
+             : fmt::format("{} h {:02} min {:02} s", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string share_text(std::uint64_t part, std::uint64_t whole) {
+  if (part == 0 || whole == 0) return "";
+  const double percent = 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+  return percent < 0.05 ? "< 0.1 %" : fmt::format("{:.1f} %", percent);
+}
+
+std::string clock_text(const std::optional<std::int64_t>& interval_ns, bool counted) {
+  if (!interval_ns)
+    return counted ? "counted stamps of unknown accuracy" : "stamps of unknown accuracy";
+  if (*interval_ns == 0) return counted ? "counted stamps, shared clock" : "shared clock";
+  return fmt::format("{}± {:.1f} ms", counted ? "counted stamps " : "",
+                     1e-6 * static_cast<double>(*interval_ns));
+}
+
+std::string date_text(std::int64_t ns) {
+  const std::int64_t ms = (ns + 500'000) / 1'000'000;
+  const std::time_t whole = ms / 1000;
+  std::tm parts{};
+  ::gmtime_r(&whole, &parts);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", parts.tm_year + 1900,
+                     parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec,
+                     ms % 1000);
+}
+
+bool is_date(std::int64_t ns) {
+  constexpr std::int64_t year_ns = 32'000'000'000'000'000;
+  return ns >= year_ns;
+}
+
+}  // namespace kinalign

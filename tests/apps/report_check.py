@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pages of takes, in headless Chromium. report_check.py BUILD_FOLDER [CASE...]
+
+Needs chromium, chromium-driver and python3-selenium; without them the cases that look at a page are skipped.
+"""
+import base64
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import h5py
+import numpy as np
+import samples
+from cases import BUILD, Skip, case, demo, done_with, in_time, kinalign, main, refused, wrong
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.keys import Keys
+except ImportError:
+    webdriver = None
+
+DRIVER, CHROMIUM = pathlib.Path("/usr/bin/chromedriver"), pathlib.Path("/usr/bin/chromium")
+DATA_JS = pathlib.Path(__file__).parent.parent.parent / "kinalign/view/page/assets/data.js"
+FIGURES = ("lanes", "distance", "figure7", "table5", "residual", "residual-time", "floor", "states", "bones", "node-rate",
+           "node-acceleration", "node-orientation")
+
+
+class Browser:
+    """Chromium with a page; software draws its WebGL, and no name of a host resolves."""
+
+    def __init__(self, page, width=1400, dark=False, webgl=True):
+        if webdriver is None or not DRIVER.exists() or not CHROMIUM.exists():
+            raise Skip("no chromium, chromium-driver or python3-selenium")
+        options = Options()
+        options.binary_location = str(CHROMIUM)
+        for flag in ("--headless=new", "--no-sandbox", "--hide-scrollbars", "--host-resolver-rules=MAP * ~NOTFOUND",
+                     f"--window-size={width},900"):
+            options.add_argument(flag)
+        for flag in ("--use-angle=swiftshader", "--enable-unsafe-swiftshader") if webgl else ("--disable-3d-apis",):
+            options.add_argument(flag)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        try:
+            self.driver = webdriver.Chrome(options=options, service=Service(str(DRIVER)))
+        except Exception as why:  # noqa: BLE001 - whatever keeps a browser from starting
+            raise Skip(f"Chromium does not start: {str(why).splitlines()[0]}") from why
+        self.driver.set_script_timeout(60)
+        self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=844, deviceScaleFactor=1, mobile=width < 500)
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self.cdp("Emulation.setEmulatedMedia", features=[scheme])
+        self.driver.get(pathlib.Path(page).as_uri())
+        end = time.monotonic() + 20
+        while self.js("return document.body.dataset.ready") != "true" and time.monotonic() < end:
+            time.sleep(0.05)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.driver.quit()
+
+    def cdp(self, command, **arguments):
+        return self.driver.execute_cdp_cmd(command, arguments)
+
+    def js(self, script, *arguments):
+        return self.driver.execute_script(script, *arguments)
+
+    def seconds(self):
+        return float(self.js("return document.getElementById('player').dataset.seconds"))
+
+    def press(self, *keys):
+        body = self.driver.find_element("tag name", "body")
+        for key in keys:
+            body.send_keys(key)
+
+    def faults(self):
+        """Messages of the console that are no hints, and requests for anything but the page."""
+        said = [line["message"] for line in self.driver.get_log("browser") if line["level"] != "INFO"]
+        for line in self.driver.get_log("performance"):
+            message = json.loads(line["message"])["message"]
+            if message["method"] != "Network.requestWillBeSent":
+                continue
+            url = message["params"]["request"]["url"]
+            if url.startswith(("data:", "chrome:", "about:")) or url == self.driver.current_url:
+                continue
+            said.append(f"request: {url}")
+        return said
+
+
+def page_of(folder, seconds=4, **how):
+    """The demo's page; skipped where kinalign was built without what a page needs."""
+    demo(folder, seconds)
+    done_with(0, "align", folder / "recording.toml", "-o", folder / "take.h5")
+    done = kinalign("report", folder / "take.h5", "-o", folder / "report.html", **how)
+    if b"built with esbuild" in done.stderr:
+        raise Skip("kinalign was built without esbuild, libjs-three or node-d3")
+    assert done.returncode == 0, done.stderr
+    return folder / "report.html"
+
+
+def data_of(page):
+    return json.loads(re.search(r'<script type="application/json" id="take">(.*?)</script>', page.read_text(), re.S)[1])
+
+
+@case
+def a_page_shows_every_figure_without_an_error_or_a_request(folder):
+    page = page_of(folder)
+    with Browser(page) as browser:
+        assert browser.js("return document.body.dataset.ready") == "true", browser.faults()
+        for figure in FIGURES:
+            marks = browser.js("return document.querySelectorAll('#' + arguments[0] + ' svg path, svg rect').length", figure)
+            assert marks > 3, f"{figure}: {marks} marks"
+            assert browser.js("return document.querySelector('#' + arguments[0] + ' figcaption').textContent.length", figure) > 30
+            text = browser.js("return document.querySelector('#' + arguments[0] + ' svg').outerHTML", figure)
+            assert "NaN" not in text and "Infinity" not in text, figure
+        assert browser.faults() == []
+
+
+@case
+def the_player_draws_and_moves_and_its_keys_work(folder):
+    with Browser(page_of(folder, seconds=8)) as browser:
+        drawn = "return Number(document.querySelector('#player canvas').dataset.frames)"
+        assert browser.js(drawn) > 0
+        before, frames, start = browser.seconds(), browser.js(drawn), time.monotonic()
+        browser.press(Keys.SPACE)
+        time.sleep(2)
+        assert browser.js("return document.getElementById('player').dataset.playing") == "true"
+        browser.press(Keys.SPACE)
+        elapsed = time.monotonic() - start
+        moved, frames = browser.seconds() - before, browser.js(drawn) - frames
+        assert 0.5 < moved <= elapsed + 0.1, (moved, elapsed)
+        in_time(frames / elapsed > 10, f"{frames / elapsed:.0f} frames a second")
+        now = browser.seconds()
+        browser.press(Keys.ARROW_RIGHT)
+        assert abs(browser.seconds() - now - 1 / 60) < 2e-3
+        browser.press(Keys.ARROW_LEFT, Keys.ARROW_LEFT)
+        assert abs(browser.seconds() - now + 1 / 60) < 2e-3
+        pictures = []
+        for key in "123":
+            browser.press(key)
+            pictures.append(browser.js("return document.querySelector('#player canvas').toDataURL()"))
+        assert len(set(pictures)) == 3, "front, side and top look alike"
+        assert browser.faults() == []
+
+
+@case
+def dark_and_narrow_pages_fit_and_differ(folder):
+    page = page_of(folder)
+    paper = {}
+    for width in (390, 1400):
+        for dark in (False, True):
+            with Browser(page, width, dark) as browser:
+                wide = browser.js("return document.documentElement.scrollWidth")
+                assert wide <= width, f"{wide} px wide in {width}"
+                paper[dark] = browser.js("return getComputedStyle(document.querySelector('section')).backgroundColor")
+                assert browser.faults() == []
+    assert paper[False] != paper[True], paper
+
+
+@case
+def a_printed_page_is_light_and_has_its_picture(folder):
+    with Browser(page_of(folder), dark=True) as browser:
+        pdf = base64.b64decode(browser.cdp("Page.printToPDF", printBackground=True)["data"])
+        assert pdf.startswith(b"%PDF") and len(pdf) > 50_000
+        assert browser.js("return document.querySelector('#player .paper') !== null")
+        assert not browser.js("return document.documentElement.classList.contains('printing')")
+        assert browser.faults() == []
+
+
+@case
+def without_webgl_the_page_says_so_and_everything_else_works(folder):
+    with Browser(page_of(folder), webgl=False) as browser:
+        assert browser.js("return document.body.dataset.ready") == "true"
+        notice = "return getComputedStyle(document.querySelector('.no-webgl')).display"
+        assert browser.js(notice) == "block"
+        browser.press(Keys.ARROW_RIGHT)
+        assert browser.seconds() > 0
+        assert browser.js("return document.querySelectorAll('#figure7 svg path').length") > 3
+        assert browser.faults() == []
+
+
+@case
+def the_script_reads_the_rows_of_the_take(folder):
+    page = page_of(folder)
+    packed = data_of(page)
+    source = DATA_JS.read_text().replace("export ", "")
+    with h5py.File(folder / "take.h5") as take, Browser(page) as browser:
+        browser.driver.get("about:blank")
+        for body in packed["bodies"]:
+            rows = take[body["name"]]
+            wanted = rows["positions"][:]
+            if "valid" in rows:
+                wanted = np.where(rows["valid"][:][:, :, None] == 1, wanted, 0)
+            read = browser.js(source + "; return Array.from(unpacked(arguments[0]))", body["positions"])
+            joints = wanted.shape[1]
+            read = np.array(read).reshape(len(wanted), len(body["joint_names"]), 3)[:, :joints]
+            assert np.abs(read - wanted).max() < 0.00026, np.abs(read - wanted).max()
+        node = packed["nodes"][1]
+        read = browser.js(source + "; return Array.from(unpacked(arguments[0]))", node["rate"])
+        # In the root node's space the take holds the same vectors turned: their lengths are kept.
+        wanted = np.linalg.norm(take["imu/angular_velocity"][:, 1], axis=1)
+        read = np.linalg.norm(np.array(read).reshape(-1, 3), axis=1)
+        assert np.abs(read - wanted).max() < 0.01, np.abs(read - wanted).max()
+
+
+@case
+def names_that_hold_scripts_run_none(folder):
+    attack = "<script>document.title='hit'</script>"
+    image = "<img/src=x/onerror=document.title='hit'>"
+    samples.recording(folder)
+    (folder / "mocap.bvh").write_text(samples.bvh(30).replace("Hips", image))
+    (folder / "kinect.csv").write_text(samples.kinect(30))
+    (folder / "imu.csv").write_text(samples.imu(30))
+    text = (folder / "recording.toml").read_text().replace('subject = "S01"', f"subject = {json.dumps(attack)}")
+    text = f"action = {json.dumps(image)}\n{text}onto_root = {json.dumps(image)}\n"
+    (folder / "recording.toml").write_text(text)
+    done = kinalign("align", folder / "recording.toml", "-o", folder / "take.h5")
+    assert done.returncode in (0, 1), done.stderr
+    done = kinalign("report", folder / "take.h5", "-o", folder / "report.html")
+    if done.returncode == 3:
+        raise Skip("kinalign was built without esbuild, libjs-three or node-d3")
+    with Browser(folder / "report.html") as browser:
+        assert browser.js("return document.body.dataset.ready") == "true"
+        assert browser.driver.title.startswith("take.h5: "), browser.driver.title
+        assert image in browser.js("return document.body.innerText")
+        assert browser.faults() == []
+
+
+@case
+def a_page_says_what_it_is_and_overwrites_nothing(folder):
+    page = page_of(folder)
+    first = page.read_bytes()
+    assert len(first) < 2_000_000
+    out, _ = done_with(0, "report", folder / "take.h5", "-o", page, "--force", "--json")
+    said = json.loads(out)
+    assert said["schema"] == "kinalign.report_page/1"
+    assert (said["path"], said["bytes"], said["raw_samples"]) == (str(page), len(first), True)
+    assert [v["stream"] for v in said["verdicts"]] == ["mocap", "kinect", "imu"]
+    assert {v["quality"] for v in said["verdicts"]} <= {"good", "usable", "bad"}
+    assert page.read_bytes() == first, "the same take gives other bytes"
+    refused("report", folder / "take.h5", "-o", page, naming=str(page))
+    assert page.read_bytes() == first
+    wrong("report", folder / "take.h5", says="-o: expected the page's file name, as in -o take.html, found none")
+    wrong("report", folder / "mocap.bvh", "-o", folder / "b.html",
+          says=f"{folder / 'mocap.bvh'}: expected a take (kinalign align makes one), found a file of another kind")
+    (folder / "input.html").write_bytes((folder / "take.h5").read_bytes())
+    refused("report", folder / "input.html", "-o", folder / "input.html", "--force", naming=str(folder / "input.html"))
+
+
+@case
+def without_its_inputs_a_take_has_a_page_too_and_says_so(folder):
+    page = page_of(folder)
+    assert "read from the take's inputs" in page.read_text()
+    alone = folder / "alone"
+    alone.mkdir()
+    (alone / "take.h5").write_bytes((folder / "take.h5").read_bytes())
+    out, _ = done_with(0, "report", alone / "take.h5", "-o", alone / "report.html", "--json")
+    assert json.loads(out)["raw_samples"] is False
+    assert "since the inputs were not read" in (alone / "report.html").read_text()
+    done_with(0, "report", alone / "take.h5", "-o", alone / "report.html", "--force", "--inputs", folder)
+    assert (alone / "report.html").read_bytes() == page.read_bytes()
+    text = (folder / "kinect.csv").read_text()
+    (folder / "kinect.csv").write_text(text.replace("0.1", "0.2", 1))
+    first = refused("report", alone / "take.h5", "-o", alone / "b.html", "--inputs", folder, naming="kinect.csv")
+    assert "expected the file that the take was made from, found another" in first
+    assert not (alone / "b.html").exists()
+
+
+@case
+def a_hostile_take_is_an_error(folder):
+    page_of(folder)
+    whole = (folder / "take.h5").read_bytes()
+    for size in (600, len(whole) // 3, len(whole) - 9):
+        (folder / "torn.h5").write_bytes(whole[:size])
+        done = kinalign("report", folder / "torn.h5", "-o", folder / "torn.html")
+        assert done.returncode in (2, 3), done
+        assert not (folder / "torn.html").exists()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
