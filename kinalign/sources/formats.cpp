@@ -3,6 +3,7 @@
 
 #include "kinalign/core/unchanged.h"
 #include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/c3d/c3d.h"
 #include "kinalign/formats/imu/opensim_sto.h"
 #include "kinalign/formats/imu/xsens_text.h"
 #include "kinalign/formats/points/ntu_skeleton.h"
@@ -66,7 +67,7 @@ Result<AnyReader> make_ui_prmd(const Source& source) {
                                               [file] { return file->next(); }));
 }
 
-constexpr std::array<Format, 6> formats{{
+constexpr std::array<Format, 7> formats{{
     {"bvh", by_content<looks_like_bvh>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_bvh_reader(bvh_options(s.options), s.file.path));
@@ -78,6 +79,10 @@ constexpr std::array<Format, 6> formats{{
     {"trc", by_content<looks_like_trc>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_trc_reader(s.options, s.file.path));
+     }},
+    {"c3d", by_content<looks_like_c3d>,
+     [](const Source& s) -> Result<AnyReader> {
+       return AnyReader(make_c3d_reader(s.options, s.file.path));
      }},
     {"xsens", by_content<looks_like_xsens_text>,
      [](const Source& s) -> Result<AnyReader> {
