@@ -6,6 +6,7 @@
 #include "kinalign/formats/c3d/c3d.h"
 #include "kinalign/formats/imu/opensim_sto.h"
 #include "kinalign/formats/imu/xsens_text.h"
+#include "kinalign/formats/mvnx/mvnx.h"
 #include "kinalign/formats/points/ntu_skeleton.h"
 #include "kinalign/formats/points/trc.h"
 #include "kinalign/formats/points/ui_prmd_files.h"
@@ -67,7 +68,20 @@ Result<AnyReader> make_ui_prmd(const Source& source) {
                                               [file] { return file->next(); }));
 }
 
-constexpr std::array<Format, 7> formats{{
+/// The body's segments, unless the user selects the sensors.
+Result<AnyReader> make_mvnx(const Source& source) {
+  const auto part = source.options.select.find("part");
+  if (part == source.options.select.end() || part->second == "segments") {
+    return AnyReader(make_mvnx_reader(source.options, source.file.path));
+  }
+  if (part->second == "sensors") {
+    return AnyReader(make_mvnx_sensor_reader(source.options, source.file.path));
+  }
+  return Failure(Error{source.file.path, 0, "select part = segments or sensors",
+                       shown(part->second)});
+}
+
+constexpr std::array<Format, 8> formats{{
     {"bvh", by_content<looks_like_bvh>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_bvh_reader(bvh_options(s.options), s.file.path));
@@ -84,6 +98,7 @@ constexpr std::array<Format, 7> formats{{
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_c3d_reader(s.options, s.file.path));
      }},
+    {"mvnx", by_content<looks_like_mvnx>, make_mvnx, "part"},
     {"xsens", by_content<looks_like_xsens_text>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_xsens_text_reader(s.options, s.file.path, s.file.node));

@@ -202,3 +202,18 @@ TEST_CASE("a file is opened once for its kind, and a bad disk is told as such") 
     CHECK(kind.error().kind == ErrorKind::unreadable_disk);
   }
 }
+
+TEST_CASE("select takes the sensors of an MVNX file instead of its segments") {
+  PosixFiles files;
+  const auto made = [&files](const std::string& part) -> Result<std::size_t> {
+    StreamOptions options;
+    if (!part.empty()) options.select["part"] = part;
+    const auto format = KA_TRY(find_format(files, options, {"a.mvnx", ""}, "<mvnx version=\"4\">"));
+    return KA_TRY(format.make()).index();  // of AnyReader: clip, points, nodes
+  };
+  CHECK(made("").value() == 0);
+  CHECK(made("segments").value() == 0);
+  CHECK(made("sensors").value() == 2);
+  CHECK(to_string(made("props").error()) ==
+        "a.mvnx: expected select part = segments or sensors, found props");
+}

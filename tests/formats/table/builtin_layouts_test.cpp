@@ -103,7 +103,7 @@ TEST_CASE("every format and layout can be asked for by its name, and nothing els
   }
   const std::string message = found("", "kinekt").error;
   CHECK(message.starts_with(
-      "recording.csv: expected a layout's path (*.toml) or one of bvh, trc, c3d, xsens, sto, ntu, "
+      "recording.csv: expected a layout's path (*.toml) or one of bvh, trc, c3d, mvnx, xsens, sto, ntu, "
       "ui_prmd_kinect, imu, "));
   CHECK(message.ends_with(", found 'kinekt'"));
   CHECK(found("", "there is none.toml").error ==
