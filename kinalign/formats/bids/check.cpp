@@ -258,22 +258,15 @@ std::set<std::string> subjects_of(const BidsListing& listing) {
   return out;
 }
 
-void check_participants(BidsCheck& check) {
-  const std::string path = "participants.tsv";
-  if (!check.listing.has(path)) return check.warning(path, "this file", "none");
-  const auto table = check.table_of(path);
-  if (!table) return;
-  if (table->columns.empty() || table->columns.front() != "participant_id") {
-    return check.error(path, "participant_id as the first column",
-                       table->columns.empty() ? "none" : shown(table->columns.front()), 1);
-  }
+/// Rows of participants.tsv against the folders.
+void check_participant_rows(const std::string& path, const TsvTable& table, BidsCheck& check) {
   const std::set<std::string> subjects = subjects_of(check.listing);
   std::set<std::string> listed;
-  for (std::size_t i = 0; i < table->rows.size(); ++i) {
-    const auto& row = table->rows[i];
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& row = table.rows[i];
     const auto line = static_cast<std::int64_t>(i) + 2;
-    if (row.size() != table->columns.size()) {
-      check.error(path, fmt::format("{} cells", table->columns.size()), std::to_string(row.size()),
+    if (row.size() != table.columns.size()) {
+      check.error(path, fmt::format("{} cells", table.columns.size()), std::to_string(row.size()),
                   line);
     }
     if (!listed.insert(row.front()).second) {
@@ -286,12 +279,22 @@ void check_participants(BidsCheck& check) {
   for (const std::string& subject : subjects) {
     if (!listed.contains(subject)) check.error(path, "a row of " + shown(subject), "none");
   }
-  const auto json =
-      check.listing.has("participants.json") ? check.json_of("participants.json") : std::nullopt;
+}
+
+void check_participants(BidsCheck& check) {
+  const std::string path = "participants.tsv", described = "participants.json";
+  if (!check.listing.has(path)) return check.warning(path, "this file", "none");
+  const auto table = check.table_of(path);
+  if (!table) return;
+  if (table->columns.empty() || table->columns.front() != "participant_id") {
+    return check.error(path, "participant_id as the first column",
+                       table->columns.empty() ? "none" : shown(table->columns.front()), 1);
+  }
+  check_participant_rows(path, *table, check);
+  const auto json = check.listing.has(described) ? check.json_of(described) : std::nullopt;
   for (std::size_t c = 1; c < table->columns.size(); ++c) {
     if (json && json->contains(table->columns[c])) continue;
-    check.warning("participants.json", "a description of the column " + shown(table->columns[c]),
-                  "none");
+    check.warning(described, "a description of the column " + shown(table->columns[c]), "none");
   }
 }
 

@@ -130,6 +130,25 @@ std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& chec
   return *channels;
 }
 
+/// Names and SpatialAxes of the reference frames in a channels.json; axes that are none are told.
+std::set<std::string> described_frames(const std::string& path, BidsCheck& check) {
+  std::set<std::string> out;
+  const auto json = check.json_of(path);
+  if (!json) return out;
+  const FoundJson frame = json->value("reference_frame", FoundJson::object());
+  const FoundJson levels = frame.is_object() ? frame.value("Levels", FoundJson::object()) : frame;
+  if (!levels.is_object()) return out;
+  for (const auto& [name, level] : levels.items()) {
+    out.insert(name);
+    const auto letters = level.is_object() ? level.find("SpatialAxes") : level.end();
+    if (letters == level.end() || !letters->is_string()) continue;
+    const std::string text = letters->get<std::string>();
+    if (text == "n/a" || axes_of_letters(text)) continue;
+    check.warning(path, "SpatialAxes of three letters A or P, L or R, S or I", shown(text));
+  }
+  return out;
+}
+
 /// Each reference frame stands in channels.json.
 void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>& channels,
                   BidsCheck& check) {
@@ -140,30 +159,12 @@ void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>&
   if (frames.empty()) return;
   const auto paths = check.inherited(motion_tsv, "channels.json");
   std::set<std::string> described;
-  for (const std::string& path : paths) {
-    const auto json = check.json_of(path);
-    if (!json) continue;
-    const FoundJson levels = json->value("reference_frame", FoundJson::object()).is_object()
-                                 ? json->value("reference_frame", FoundJson::object())
-                                       .value("Levels", FoundJson::object())
-                                 : FoundJson::object();
-    for (const auto& [name, level] : levels.items()) {
-      described.insert(name);
-      const std::string letters =
-          level.is_object() && level.contains("SpatialAxes") && level["SpatialAxes"].is_string()
-              ? level["SpatialAxes"].get<std::string>()
-              : "";
-      const bool unknown = letters.empty() || letters == "n/a";
-      if (!unknown && !axes_of_letters(letters)) {
-        check.warning(path, "SpatialAxes of three letters A or P, L or R, S or I", shown(letters));
-      }
-    }
-  }
-  const std::string where =
-      paths.empty() ? motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.json" : paths.back();
-  for (const std::string& frame : frames) {
-    if (!described.contains(frame))
-      check.warning(where, "the reference frame " + shown(frame), "none");
+  for (const std::string& path : paths) described.merge(described_frames(path, check));
+  const std::string beside = motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.json";
+  for (const std::string& one : frames) {
+    if (described.contains(one)) continue;
+    check.warning(paths.empty() ? beside : paths.back(), "the reference frame " + shown(one),
+                  "none");
   }
 }
 

@@ -35,7 +35,10 @@ class Entries {
 
   std::size_t at() const { return at_; }
   bool has(std::size_t bytes) const { return bytes <= section_.size() - at_; }
-  std::int8_t i8() { return static_cast<std::int8_t>(section_[at_++]); }
+  int i8() {
+    const int byte = section_[at_++];
+    return byte < 128 ? byte : byte - 256;
+  }
   std::uint8_t u8() { return section_[at_++]; }
   std::uint16_t u16() {
     at_ += 2;
@@ -90,6 +93,41 @@ bool take_values(Entries& entries, C3dParameter& out) {
 
 constexpr std::size_t most_parameters = 10'000;  // programs write some hundred
 
+/// A group may follow its parameters.
+struct Groups {
+  std::map<int, std::string> names;
+  std::vector<int> of_parameter;
+};
+
+enum class Taken { entry, last, outside, bad_values };
+
+/// One group or one parameter, and on to the next entry.
+Taken take_entry(Entries& entries, Groups& groups, std::vector<C3dParameter>& parameters) {
+  if (!entries.has(2)) return Taken::last;
+  const auto length = static_cast<std::size_t>(std::abs(entries.i8()));
+  const int id = entries.i8();
+  if (length == 0) return Taken::last;
+  if (!entries.has(length + 2)) return Taken::outside;
+  std::string name = in_capitals(entries.bytes(length));
+  const std::size_t offset_at = entries.at();
+  const std::size_t offset = entries.u16();
+  if (id < 0) {
+    groups.names[-id] = std::move(name);
+  } else {
+    parameters.emplace_back().name = std::move(name);
+    groups.of_parameter.push_back(id);
+    if (!take_values(entries, parameters.back())) return Taken::bad_values;
+  }
+  if (offset == 0) {
+    entries.go_to(entries.size());
+    return Taken::entry;
+  }
+  const std::size_t next = offset_at + offset;
+  if (offset < 2 || next > entries.size()) return Taken::outside;
+  entries.go_to(next);
+  return Taken::entry;
+}
+
 std::string_view trimmed_end(std::string_view text) {
   const auto last = text.find_last_not_of(std::string_view(" \0\t", 3));
   return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
@@ -116,42 +154,24 @@ Result<C3dParameters> C3dParameters::parse(std::span<const std::uint8_t> section
   }
   C3dParameters out;
   out.processor_ = static_cast<C3dProcessor>(section[3]);
-  std::map<int, std::string> groups;
-  std::vector<int> group_of;  // [parameters]: a group may follow its parameters
+  Groups groups;
   Entries entries(section, out.processor_);
-  while (entries.has(2)) {
+  for (;;) {
     const std::size_t entry = entries.at();
-    const auto length = static_cast<std::size_t>(std::abs(static_cast<int>(entries.i8())));
-    const int id = entries.i8();
-    if (length == 0) break;
-    if (!entries.has(length + 2)) return refuse("C3D parameters inside their section", entry);
-    std::string name = in_capitals(entries.bytes(length));
-    const std::size_t offset_at = entries.at();
-    const std::size_t offset = entries.u16();
-    if (id < 0) {
-      groups[-id] = std::move(name);
-    } else {
-      C3dParameter parameter;
-      parameter.name = std::move(name);
-      if (!take_values(entries, parameter)) {
-        return refuse("the values of parameter " + shown(parameter.name) + " inside the section",
-                      entry);
-      }
-      if (out.parameters_.size() == most_parameters) {
-        return refuse(fmt::format("at most {} C3D parameters", most_parameters), entry);
-      }
-      out.parameters_.push_back(std::move(parameter));
-      group_of.push_back(id);
+    const Taken taken = take_entry(entries, groups, out.parameters_);
+    if (taken == Taken::last) break;
+    if (taken == Taken::outside) return refuse("C3D parameters inside their section", entry);
+    if (taken == Taken::bad_values) {
+      return refuse(
+          "the values of parameter " + shown(out.parameters_.back().name) + " inside the section",
+          entry);
     }
-    if (offset == 0) break;
-    const std::size_t next = offset_at + offset;
-    if (offset < 2 || next > entries.size()) {
-      return refuse("C3D parameters inside their section", entry);
+    if (out.parameters_.size() > most_parameters) {
+      return refuse(fmt::format("at most {} C3D parameters", most_parameters), entry);
     }
-    entries.go_to(next);
   }
-  for (std::size_t i = 0; i < group_of.size(); ++i) {
-    out.parameters_[i].group = groups[group_of[i]];
+  for (std::size_t i = 0; i < out.parameters_.size(); ++i) {
+    out.parameters_[i].group = groups.names[groups.of_parameter[i]];
   }
   return out;
 }

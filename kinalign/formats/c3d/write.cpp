@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t longest_name = 120;  // 255 of them fit into one parameter
 constexpr std::size_t names_a_parameter = 255;
 constexpr std::size_t most_blocks = 255;  // of parameters
+constexpr double millimetres = 1000.0;
 constexpr std::size_t most_held = std::size_t{1} << 20;
 
 void put_float(double value, std::string& out) {
@@ -35,17 +36,18 @@ class Section {
   void integers(int group, std::string_view name, const std::vector<std::uint16_t>& values) {
     std::string data;
     for (const std::uint16_t value : values) append_little(value, data);
-    array(group, name, 2, values.size(), data);
+    numbers(group, name, 2, data);
   }
 
   void floats(int group, std::string_view name, const std::vector<double>& values) {
     std::string data;
     for (const double value : values) put_float(value, data);
-    array(group, name, 4, values.size(), data);
+    numbers(group, name, 4, data);
   }
 
   void text(int group, std::string_view name, std::string_view text) {
-    array(group, name, -1, text.size(), std::string(text), true);
+    begin(group, name);
+    end(head(-1, {text.size()}) + std::string(text));
   }
 
   /// All as long as the longest, filled with blanks.
@@ -74,11 +76,11 @@ class Section {
     return out;
   }
 
-  void array(int group, std::string_view name, int type, std::size_t count, const std::string& data,
-             bool is_text = false) {
+  /// Of `type` bytes a number; a single one has no dimension.
+  void numbers(int group, std::string_view name, int type, const std::string& data) {
+    const std::size_t count = data.size() / static_cast<std::size_t>(type);
     begin(group, name);
-    const bool one_number = count == 1 && !is_text;
-    end(head(type, one_number ? std::vector<std::size_t>{} : std::vector{count}) + data);
+    end(head(type, count == 1 ? std::vector<std::size_t>{} : std::vector{count}) + data);
   }
 
   void begin(int id, std::string_view name) {
@@ -146,6 +148,15 @@ std::string header_of(const C3dPoints& points, std::uint16_t data_block) {
   return out;
 }
 
+/// Four numbers: x, y, z with z up, and the residual.
+void put_point(const double* ours, Tracking state, std::string& out) {
+  const bool missing = state == Tracking::missing;
+  for (const double coordinate : {ours[0], -ours[2], ours[1]}) {
+    put_float(missing ? 0.0 : millimetres * coordinate, out);
+  }
+  put_float(missing ? -1.0 : 0.0, out);
+}
+
 Failure refuse(std::string expected, std::string found) {
   return Failure(Error{"", 0, std::move(expected), std::move(found)});
 }
@@ -195,12 +206,7 @@ Result<void> C3dWriter::append(const PointFrames& frames) {
                     fmt::format("frame {} off by {:.3g} s", written_ + 1, off));
     }
     for (std::size_t i = t * points_; i < (t + 1) * points_; ++i) {
-      const bool missing = frames.state[i] == Tracking::missing;
-      const double* ours = &frames.positions[3 * i];
-      for (const double coordinate : {ours[0], -ours[2], ours[1]}) {  // z up
-        put_float(missing ? 0.0 : 1e3 * coordinate, bytes_);
-      }
-      put_float(missing ? -1.0 : 0.0, bytes_);
+      put_point(&frames.positions[3 * i], frames.state[i], bytes_);
     }
     ++written_;
     if (bytes_.size() < most_held) continue;

@@ -82,6 +82,7 @@ struct XmlFeed::State {
     self.text.append(text, static_cast<std::size_t>(size));
     if (self.text.size() > longest) self.stop({"", 0, "texts of 1 MiB at most", "a longer one"});
   }
+  // NOLINTNEXTLINE(readability-function-size): Expat's signature
   static void entity(void* data, const char* name, int, const char*, int, const char*, const char*,
                      const char*, const char*) {
     of(data).stop({"", 0, "a document without entities of its own", shown(name)});

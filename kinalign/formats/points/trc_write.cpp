@@ -16,6 +16,24 @@ Failure refuse(std::string expected, std::string found) {
   return Failure(Error{"", 0, std::move(expected), std::move(found)});
 }
 
+/// Six lines: keys and facts, names, labels, an empty one.
+Result<void> put_head(const TrcHead& head, TextOut& out) {
+  const std::string file = fits_a_cell(head.file) ? head.file : "points.trc";
+  const std::string rate = fmt::format("{}", head.rate_hz);
+  const std::size_t markers = head.names.size();
+  out.text(
+      "PathFileType\t4\t(X/Y/Z)\t" + file +
+      "\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
+      "OrigNumFrames\n");
+  out.text(
+      fmt::format("{0}\t{0}\t{1}\t{2}\tmm\t{0}\t1\t{1}\nFrame#\tTime", rate, head.frames, markers));
+  for (const std::string& name : head.names) out.text("\t" + name + "\t\t");
+  out.text("\n\t");
+  for (std::size_t j = 1; j <= markers; ++j) out.text(fmt::format("\tX{0}\tY{0}\tZ{0}", j));
+  out.text("\n");
+  return out.end_line();
+}
+
 }  // namespace
 
 TrcWriter::TrcWriter(const TrcHead& head, TextOut& out)
@@ -27,25 +45,7 @@ Result<TrcWriter> TrcWriter::begin(const TrcHead& head, TextOut& out) {
     if (!fits_a_cell(name)) return refuse("names of markers for a TRC without tabs", shown(name));
   }
   if (!(head.rate_hz > 0.0)) return refuse("a rate for a TRC", fmt::format("{}", head.rate_hz));
-  out.text("PathFileType\t4\t(X/Y/Z)\t" +
-           std::string(fits_a_cell(head.file) ? head.file : "points.trc"));
-  KA_TRY(out.end_line());
-  out.text(
-      "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
-      "OrigNumFrames");
-  KA_TRY(out.end_line());
-  const std::string rate = fmt::format("{}", head.rate_hz);
-  out.text(fmt::format("{}\t{}\t{}\t{}\tmm\t{}\t1\t{}", rate, rate, head.frames, head.names.size(),
-                       rate, head.frames));
-  KA_TRY(out.end_line());
-  out.text("Frame#\tTime");
-  for (const std::string& name : head.names) out.text("\t" + name + "\t\t");
-  KA_TRY(out.end_line());
-  out.text("\t");
-  for (std::size_t j = 1; j <= head.names.size(); ++j)
-    out.text(fmt::format("\tX{0}\tY{0}\tZ{0}", j));
-  KA_TRY(out.end_line());
-  KA_TRY(out.end_line());
+  KA_TRY(put_head(head, out));
   return TrcWriter(head, out);
 }
 
