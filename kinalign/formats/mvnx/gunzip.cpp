@@ -44,11 +44,12 @@ Result<void> Gunzip::feed(std::string_view piece,
       s.next_out = reinterpret_cast<Bytef*>(text.data());
       s.avail_out = static_cast<uInt>(text.size());
       status = inflate(&s, Z_NO_FLUSH);
+      // What was unpacked before the damage is handed on first, however the file is cut.
+      const std::size_t made = text.size() - s.avail_out;
+      if (made > 0) KA_TRY(use({text.data(), made}));
       if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
         return Failure(Error{"", 0, "a whole gzip archive", "damaged bytes"});
       }
-      const std::size_t made = text.size() - s.avail_out;
-      if (made > 0) KA_TRY(use({text.data(), made}));
     } while (status != Z_STREAM_END && (s.avail_in > 0 || s.avail_out == 0));
     state_->complete = status == Z_STREAM_END;
     piece.remove_prefix(given - s.avail_in);

@@ -67,3 +67,18 @@ TEST_CASE("a cut archive is not complete, a damaged one is an error") {
   CHECK(unpacked(packed + "rest", 1000).error ==
         "expected a whole gzip archive, found damaged bytes");
 }
+
+TEST_CASE("the text before damage is the same wherever the archive is cut") {
+  for (const std::uint64_t seed : fresh_seeds(50)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    std::string text(2000, ' ');
+    for (char& c : text) c = static_cast<char>('a' + random() % 20);
+    std::string packed = gzip(text);
+    packed[12 + random() % (packed.size() - 12)] ^= static_cast<char>(1 + random() % 255);
+    const auto whole = unpacked(packed, packed.size());
+    const auto cut = unpacked(packed, 1 + random() % 40);
+    CHECK(cut.text == whole.text);
+    CHECK(cut.error == whole.error);
+  }
+}
