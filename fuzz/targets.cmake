@@ -2,7 +2,8 @@
 # One target for each thing that reads bytes, from files/<name>_fuzz.cpp or packets/<name>_fuzz.cpp: a libFuzzer
 # program here, a replay of kept inputs in the tests. node_receive: what a node makes of its port; node_clock: what a
 # clock makes of a node.
-set(KINALIGN_FUZZ_FILES bvh dataset layout manifest mcap ntu_skeleton opensim_sto parameters_json recording table take_hdf5 trc
+set(KINALIGN_FUZZ_FILES bids bids_check bvh c3d dataset layout manifest mcap mvnx ntu_skeleton opensim_sto
+  parameters_json recording table take_hdf5 trc
   truth_json ui_prmd_kinect xdf xsens_text)
 set(KINALIGN_FUZZ_PACKETS chrony_tracking clockless kinect_stream marks node_clock node_desk node_frame node_receive
   node_reply noitom_stream ntp_packet ntp_responder slimevr_desk slimevr_packet xsens_mvn)

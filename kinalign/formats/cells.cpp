@@ -152,4 +152,8 @@ std::vector<std::string> split_cells(std::string_view line, char delimiter) {
   return cells;
 }
 
+bool fits_a_cell(std::string_view name) {
+  return !name.empty() && name.find_first_of("\t\r\n") == std::string_view::npos;
+}
+
 }  // namespace kinalign

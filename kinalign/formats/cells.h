@@ -66,4 +66,7 @@ std::string_view trimmed(std::string_view text);
 /// A cell that says that there is no value: empty, "nan" in any letters.
 bool says_missing(std::string_view cell);
 
+/// A name that can stand in a cell of tab-separated text: not empty, no tab, no line end.
+bool fits_a_cell(std::string_view name);
+
 }  // namespace kinalign

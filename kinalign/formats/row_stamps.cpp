@@ -76,6 +76,18 @@ std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale) 
   return units * scale.unit_ns + (decimal.minus ? -fraction : fraction);
 }
 
+std::string seconds_text(std::int64_t ns) {
+  constexpr std::size_t fraction_digits = 9;
+  const std::uint64_t size =
+      ns < 0 ? 0 - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
+  std::string digits = std::to_string(size);
+  if (digits.size() <= fraction_digits) digits.insert(0, fraction_digits + 1 - digits.size(), '0');
+  digits.insert(digits.size() - fraction_digits, ".");
+  digits.erase(digits.find_last_not_of('0') + 1);
+  if (digits.ends_with('.')) digits.pop_back();
+  return ns < 0 ? "-" + digits : digits;
+}
+
 std::int64_t stamp_at_rate(std::uint64_t index, double rate_hz) {
   constexpr double furthest =
       4.5e18;  // refused as a stamp, and still added to one without overflow

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +27,9 @@ constexpr std::int64_t year_1_s = 62'135'596'800;  // from 0001-01-01 to 1970-01
 /// "1642700852075.903" at 1 ms -> ns, by integers; with an exponent through a double. Empty where
 /// that is no number or lies outside +-4e18 ns.
 std::optional<std::int64_t> parse_stamp(std::string_view text, TimeScale scale);
+
+/// ns -> "-12.345": seconds, exact, without zeros at the end. parse_stamp reads the same ns again.
+std::string seconds_text(std::int64_t ns);
 
 /// Index and rate -> ns from the first row.
 std::int64_t stamp_at_rate(std::uint64_t index, double rate_hz);

@@ -2,9 +2,12 @@
 #include "kinalign/sources/formats.h"
 
 #include "kinalign/core/unchanged.h"
+#include "kinalign/formats/bids/system.h"
 #include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/c3d/c3d.h"
 #include "kinalign/formats/imu/opensim_sto.h"
 #include "kinalign/formats/imu/xsens_text.h"
+#include "kinalign/formats/mvnx/mvnx.h"
 #include "kinalign/formats/points/ntu_skeleton.h"
 #include "kinalign/formats/points/trc.h"
 #include "kinalign/formats/points/ui_prmd_files.h"
@@ -66,7 +69,43 @@ Result<AnyReader> make_ui_prmd(const Source& source) {
                                               [file] { return file->next(); }));
 }
 
-constexpr std::array<Format, 6> formats{{
+/// A tracking system of BIDS-Motion, whatever its rows are; the files beside it say what they mean.
+bool is_bids(std::string_view, std::string_view path) { return named_as_bids_motion(path); }
+
+Result<std::vector<std::string>> bids_files(const Source& source) {
+  KA_TRY(read_bids_system(*source.files, source.file.path));
+  return bids_sidecar_paths(*source.files, source.file.path);
+}
+
+/// Points where there are positions, unless the user selects nodes.
+Result<AnyReader> make_bids(const Source& source) {
+  const BidsSystem system = KA_TRY(read_bids_system(*source.files, source.file.path));
+  const auto kind = source.options.select.find("kind");
+  const bool chosen = kind != source.options.select.end();
+  if (chosen && kind->second != "points" && kind->second != "nodes") {
+    return Failure(
+        Error{source.file.path, 0, "select kind = points or nodes", shown(kind->second)});
+  }
+  if (chosen ? kind->second == "points" : has_positions(system)) {
+    return AnyReader(KA_TRY(make_bids_point_reader(system, source.options, source.file.path)));
+  }
+  return AnyReader(KA_TRY(make_bids_node_reader(system, source.options, source.file.path)));
+}
+
+/// The body's segments, unless the user selects the sensors.
+Result<AnyReader> make_mvnx(const Source& source) {
+  const auto part = source.options.select.find("part");
+  if (part == source.options.select.end() || part->second == "segments") {
+    return AnyReader(make_mvnx_reader(source.options, source.file.path));
+  }
+  if (part->second == "sensors") {
+    return AnyReader(make_mvnx_sensor_reader(source.options, source.file.path));
+  }
+  return Failure(
+      Error{source.file.path, 0, "select part = segments or sensors", shown(part->second)});
+}
+
+constexpr std::array<Format, 9> formats{{
     {"bvh", by_content<looks_like_bvh>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_bvh_reader(bvh_options(s.options), s.file.path));
@@ -79,6 +118,11 @@ constexpr std::array<Format, 6> formats{{
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_trc_reader(s.options, s.file.path));
      }},
+    {"c3d", by_content<looks_like_c3d>,
+     [](const Source& s) -> Result<AnyReader> {
+       return AnyReader(make_c3d_reader(s.options, s.file.path));
+     }},
+    {"mvnx", by_content<looks_like_mvnx>, make_mvnx, "part"},
     {"xsens", by_content<looks_like_xsens_text>,
      [](const Source& s) -> Result<AnyReader> {
        return AnyReader(make_xsens_text_reader(s.options, s.file.path, s.file.node));
@@ -93,6 +137,7 @@ constexpr std::array<Format, 6> formats{{
      },
      "body"},
     {"ui_prmd_kinect", is_ui_prmd, make_ui_prmd, "", ui_prmd_files},
+    {"bids", is_bids, make_bids, "kind", bids_files},
 }};
 
 Result<AnyReader> make_table_reader(const TableLayout& layout, const Source& source) {

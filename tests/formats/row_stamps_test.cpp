@@ -190,3 +190,19 @@ TEST_CASE("a stamp that start_ns moves beyond time is an error, not another stam
   CHECK(to_string(beyond.error()) ==
         "expected a stamp inside +-4e18 ns, found 4000000000000000000 ns");
 }
+
+TEST_CASE("seconds are written exactly and read again to the same nanosecond") {
+  CHECK(seconds_text(0) == "0");
+  CHECK(seconds_text(10'000'000) == "0.01");
+  CHECK(seconds_text(-1) == "-0.000000001");
+  CHECK(seconds_text(12'000'000'000) == "12");
+  CHECK(seconds_text(1'790'000'000'016'666'667) == "1790000000.016666667");
+  constexpr TimeScale in_seconds{1'000'000'000, 0};
+  for (const std::uint64_t seed : fresh_seeds(1000)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const auto ns = static_cast<std::int64_t>(random() >> (1 + random() % 60)) % furthest_stamp_ns;
+    CHECK(parse_stamp(seconds_text(ns), in_seconds) == ns);
+    CHECK(parse_stamp(seconds_text(-ns), in_seconds) == -ns);
+  }
+}

@@ -202,3 +202,50 @@ TEST_CASE("a file is opened once for its kind, and a bad disk is told as such") 
     CHECK(kind.error().kind == ErrorKind::unreadable_disk);
   }
 }
+
+TEST_CASE("select takes the sensors of an MVNX file instead of its segments") {
+  PosixFiles files;
+  const auto made = [&files](const std::string& part) -> Result<std::size_t> {
+    StreamOptions options;
+    if (!part.empty()) options.select["part"] = part;
+    const auto format = KA_TRY(find_format(files, options, {"a.mvnx", ""}, "<mvnx version=\"4\">"));
+    return KA_TRY(format.make()).index();  // of AnyReader: clip, points, nodes
+  };
+  CHECK(made("").value() == 0);
+  CHECK(made("segments").value() == 0);
+  CHECK(made("sensors").value() == 2);
+  CHECK(to_string(made("props").error()) ==
+        "a.mvnx: expected select part = segments or sensors, found props");
+}
+
+TEST_CASE(
+    "a tracking system of BIDS-Motion leads to the files beside it, and may be read as nodes") {
+  const FreshFolder folder;
+  PosixFiles files;
+  const std::string stem = "sub-1/motion/sub-1_task-a_tracksys-b_";
+  const std::string path = folder.write(stem + "motion.tsv", "1\t2\t3\t1\t0\t0\t0\n");
+  CHECK(found(path).error == (folder / (stem + "channels.tsv")) +
+                                 ": expected a readable file, found No such file or directory");
+  const std::string channels =
+      folder.write(stem + "channels.tsv",
+                   "name\tcomponent\ttype\ttracked_"
+                   "point\tunits\na\tx\tPOS\tP\tm\nb\ty\tPOS\tP\tm\nc\tz\tPOS\tP\tm\n"
+                   "d\tquat_w\tORNT\tP\tn/a\ne\tquat_x\tORNT\tP\tn/a\nf\tquat_y\tORNT\tP\tn/a\n"
+                   "g\tquat_z\tORNT\tP\tn/a\n");
+  const std::string json = folder.write(stem + "motion.json", "{\"SamplingFrequency\": 50}");
+  CHECK(found(path).name == "bids");
+  CHECK(found(path).further == std::vector{channels, json});
+  const std::string scans = folder.write("sub-1/sub-1_scans.tsv", "filename\n");
+  CHECK(found(path).further == std::vector{channels, json, scans});
+  const auto made = [&](const std::string& kind) -> Result<std::size_t> {
+    StreamOptions options;
+    if (!kind.empty()) options.select["kind"] = kind;
+    const auto format = KA_TRY(find_format(files, options, {path, ""}, ""));
+    return KA_TRY(format.make()).index();  // of AnyReader: clip, points, nodes
+  };
+  CHECK(made("").value() == 1);
+  CHECK(made("points").value() == 1);
+  CHECK(made("nodes").value() == 2);
+  CHECK(to_string(made("clip").error()) ==
+        path + ": expected select kind = points or nodes, found clip");
+}

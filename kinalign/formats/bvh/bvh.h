@@ -5,11 +5,11 @@
 #include "kinalign/core/files.h"
 #include "kinalign/core/progress.h"
 #include "kinalign/formats/clip_survey.h"
+#include "kinalign/formats/file_sink.h"
 #include "kinalign/formats/reader.h"
 #include "kinalign/take/manifest.h"
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -114,7 +114,7 @@ Result<BvhFile> read_bvh(std::string_view text, std::string_view name, const Bvh
 Result<ClipSurvey> survey_bvh(FileSystem& files, const std::string& path, const BvhOptions& options,
                               const Progress& progress);
 
-using TextSink = std::function<Result<void>(std::string_view)>;
+using TextSink = FileSink;
 
 /// Writes `values` in the file's decimals: read, write, read gives every channel exactly. A Clip
 /// made elsewhere gets its channels from bvh_from_clip first; nothing else computes on angles.

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/bids/channels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::array<std::string_view, 10> bids_types{
+    "ACCEL", "ANGACCEL", "GYRO", "JNTANG", "LATENCY", "MAGN", "MISC", "ORNT", "POS", "VEL"};
+constexpr std::array<std::string_view, 8> bids_components{"x",      "y",      "z",      "quat_x",
+                                                          "quat_y", "quat_z", "quat_w", "n/a"};
+constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
+constexpr std::array<const char*, 4> quaternion_names{"quat_w", "quat_x", "quat_y", "quat_z"};
+
+struct Unit {
+  std::string_view type, unit;
+  double scale;
+};
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr std::array<Unit, 17> bids_units{{{"POS", "m", 1.0},
+                                           {"POS", "cm", 0.01},
+                                           {"POS", "mm", 0.001},
+                                           {"VEL", "m/s", 1.0},
+                                           {"ACCEL", "m/s^2", 1.0},
+                                           {"ACCEL", "g", 9.80665},
+                                           {"GYRO", "rad/s", 1.0},
+                                           {"GYRO", "deg/s", degree},
+                                           {"ANGACCEL", "rad/s^2", 1.0},
+                                           {"ANGACCEL", "deg/s^2", degree},
+                                           {"ORNT", "rad", 1.0},
+                                           {"ORNT", "deg", degree},
+                                           {"ORNT", "n/a", 1.0},
+                                           {"JNTANG", "rad", 1.0},
+                                           {"JNTANG", "deg", degree},
+                                           {"LATENCY", "s", 1.0},
+                                           {"LATENCY", "seconds", 1.0}}};
+
+/// Channels of one tracked point and type.
+template <std::size_t n>
+void add(const std::string& point, const std::array<const char*, n>& parts, const BidsChannel& like,
+         std::vector<BidsChannel>& out) {
+  for (const char* part : parts) {
+    BidsChannel channel = like;
+    channel.name = fmt::format("{}_{}_{}", point, like.type, part);
+    channel.component = part;
+    channel.tracked_point = point;
+    channel.placement = point;
+    out.push_back(std::move(channel));
+  }
+}
+
+BidsChannel kind(const char* type, const char* unit, const char* frame) {
+  BidsChannel out;
+  out.type = type;
+  out.units = unit;
+  out.reference_frame = frame;
+  return out;
+}
+
+void add_channels(const Skeleton& skeleton, std::vector<BidsChannel>& out) {
+  for (const std::string& joint : skeleton.joint_names) {
+    add(joint, axis_names, kind("POS", "m", "global"), out);
+    add(joint, quaternion_names, kind("ORNT", "n/a", "global"), out);
+  }
+}
+
+void add_channels(const PointHeader& points, std::vector<BidsChannel>& out) {
+  for (const std::string& point : points.joint_names) {
+    add(point, axis_names, kind("POS", "m", "global"), out);
+  }
+}
+
+void add_channels(const ImuHeader& nodes, std::vector<BidsChannel>& out) {
+  for (const std::string& node : nodes.node_names) {
+    if (nodes.content.orientation) add(node, quaternion_names, kind("ORNT", "n/a", "global"), out);
+    if (nodes.content.acceleration) add(node, axis_names, kind("ACCEL", "m/s^2", "sensor"), out);
+    if (nodes.content.angular_velocity) add(node, axis_names, kind("GYRO", "rad/s", "sensor"), out);
+  }
+}
+
+/// To the right, forwards and up: a right-handed space.
+std::optional<Vec3> direction(char letter) {
+  switch (letter) {
+    case 'R':
+      return Vec3(1, 0, 0);
+    case 'L':
+      return Vec3(-1, 0, 0);
+    case 'A':
+      return Vec3(0, 1, 0);
+    case 'P':
+      return Vec3(0, -1, 0);
+    case 'S':
+      return Vec3(0, 0, 1);
+    case 'I':
+      return Vec3(0, 0, -1);
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::vector<BidsChannel> bids_channels(const BidsSource& source) {
+  std::vector<BidsChannel> out{{"latency", "n/a", "LATENCY", "n/a", "s", "n/a", "n/a"}};
+  std::visit([&out](const auto& one) { add_channels(one, out); }, source);
+  return out;
+}
+
+TsvTable channels_table(std::span<const BidsChannel> channels) {
+  TsvTable out{
+      {"name", "component", "type", "tracked_point", "units", "placement", "reference_frame"}, {}};
+  for (const BidsChannel& c : channels) {
+    out.rows.push_back(
+        {c.name, c.component, c.type, c.tracked_point, c.units, c.placement, c.reference_frame});
+  }
+  return out;
+}
+
+Result<std::vector<BidsChannel>> channels_of(const TsvTable& table, std::string_view file) {
+  constexpr std::array<std::pair<const char*, std::string BidsChannel::*>, 7> fields{
+      {{"name", &BidsChannel::name},
+       {"component", &BidsChannel::component},
+       {"type", &BidsChannel::type},
+       {"tracked_point", &BidsChannel::tracked_point},
+       {"units", &BidsChannel::units},
+       {"placement", &BidsChannel::placement},
+       {"reference_frame", &BidsChannel::reference_frame}}};
+  constexpr std::size_t needed = 5;
+  std::vector<BidsChannel> out(table.rows.size());
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const auto column = table.column(fields[f].first);
+    if (!column && f < needed) {
+      return Failure(
+          Error{std::string(file), 1, std::string("a column ") + fields[f].first, "none"});
+    }
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const bool there = column && *column < table.rows[i].size();
+      out[i].*fields[f].second = there ? table.rows[i][*column] : "n/a";
+    }
+  }
+  return out;
+}
+
+bool is_bids_type(std::string_view type) {
+  return std::find(bids_types.begin(), bids_types.end(), type) != bids_types.end();
+}
+
+bool is_bids_component(std::string_view component) {
+  return std::find(bids_components.begin(), bids_components.end(), component) !=
+         bids_components.end();
+}
+
+double unit_scale(std::string_view type, std::string_view unit) {
+  for (const Unit& known : bids_units) {
+    if (known.type == type && known.unit == unit) return known.scale;
+  }
+  return 0.0;
+}
+
+std::optional<Axes> axes_of_letters(std::string_view letters) {
+  if (letters.size() != 3) return std::nullopt;
+  Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();
+  bool all = true;
+  int up = 0;  // the axis that points up, from 1, negative: down
+  for (int k = 0; k < 3; ++k) {
+    const auto points_to = direction(letters[static_cast<std::size_t>(k)]);
+    all = all && points_to.has_value();
+    if (!points_to) continue;
+    directions.col(k) = *points_to;
+    if (points_to->z() != 0.0) up = points_to->z() > 0.0 ? k + 1 : -(k + 1);
+  }
+  const double hand = directions.determinant();
+  if (up == 0 || (all && hand == 0.0)) return std::nullopt;
+  constexpr std::array<Axes, 3> upwards{{{-2, 1, 3}, {1, 2, 3}, {1, 3, -2}}},
+      downwards{{{2, -1, 3}, {1, -2, -3}, {1, -3, 2}}};
+  const auto index = static_cast<std::size_t>(std::abs(up) - 1);
+  Axes out = up > 0 ? upwards[index] : downwards[index];
+  if (all && hand < 0.0) out[2] = -out[2];  // a left-handed space
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: Apache-2.0
+// The data set as a whole: places and names of files, and the tables about all of them.
+#include "kinalign/formats/bids/check.h"
+
+#include "kinalign/core/files.h"
+#include "kinalign/formats/bids/check_context.h"
+#include "kinalign/formats/bids/json_text.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t largest_text = std::size_t{16} << 20;
+
+template <std::size_t n>
+bool contains(const std::array<std::string_view, n>& all, std::string_view one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+constexpr std::array<std::string_view, 14> top_files{"dataset_description.json",
+                                                     "README",
+                                                     "README.md",
+                                                     "README.rst",
+                                                     "README.txt",
+                                                     "CHANGES",
+                                                     "LICENSE",
+                                                     "CITATION.cff",
+                                                     "participants.tsv",
+                                                     "participants.json",
+                                                     "samples.tsv",
+                                                     "samples.json",
+                                                     "scans.json",
+                                                     "sessions.json"};
+constexpr std::array<std::string_view, 5> top_folders{"sourcedata", "derivatives", "code",
+                                                      "stimuli", "phenotype"};
+constexpr std::array<std::string_view, 12> other_types{
+    "anat", "beh", "dwi", "eeg", "fmap", "func", "ieeg", "meg", "micr", "nirs", "perf", "pet"};
+constexpr std::array<std::string_view, 10> motion_endings{
+    "motion.tsv",  "motion.json",   "channels.tsv", "channels.json", "events.tsv",
+    "events.json", "physio.tsv.gz", "physio.json",  "stim.tsv.gz",   "stim.json"};
+constexpr std::array<std::string_view, 4> inherited_endings{"motion.json", "channels.json",
+                                                            "channels.tsv", "events.json"};
+constexpr std::array<std::string_view, 8> entity_order{"sub", "ses", "task",      "tracksys",
+                                                       "acq", "run", "recording", "desc"};
+
+std::vector<std::string_view> parts_of(std::string_view path) {
+  std::vector<std::string_view> out;
+  for (;;) {
+    const auto slash = path.find('/');
+    out.push_back(path.substr(0, slash));
+    if (slash == std::string_view::npos) return out;
+    path.remove_prefix(slash + 1);
+  }
+}
+
+/// '*' stands for any characters but '/'.
+bool matches_wildcard(std::string_view pattern, std::string_view text) {
+  if (pattern.empty()) return text.empty();
+  if (pattern.front() != '*') {
+    return !text.empty() && pattern.front() == text.front() &&
+           matches_wildcard(pattern.substr(1), text.substr(1));
+  }
+  pattern.remove_prefix(1);
+  for (std::size_t i = 0;; ++i) {
+    if (matches_wildcard(pattern, text.substr(i))) return true;
+    if (i == text.size() || text[i] == '/') return false;
+  }
+}
+
+/// As .gitignore: a name anywhere, a path from the top, or a folder with all below it.
+bool is_ignored(const std::vector<std::string>& patterns, std::string_view path) {
+  for (std::string_view pattern : patterns) {
+    if (pattern.starts_with('/')) pattern.remove_prefix(1);
+    if (pattern.ends_with('/')) pattern.remove_suffix(1);
+    const bool anywhere = pattern.find('/') == std::string_view::npos;
+    std::string_view before;
+    for (const std::string_view part : parts_of(path)) {
+      before = path.substr(0, static_cast<std::size_t>(part.data() + part.size() - path.data()));
+      if (matches_wildcard(pattern, anywhere ? part : before)) return true;
+    }
+  }
+  return false;
+}
+
+std::vector<std::string> ignore_patterns(BidsCheck& check) {
+  std::vector<std::string> out;
+  if (!check.listing.has(".bidsignore")) return out;
+  const auto text = check.text_of(".bidsignore");
+  constexpr std::size_t longest_pattern = 200, most_patterns = 1000;
+  for (const auto& row : read_tsv("pattern\n" + text.value_or("")).rows) {
+    const std::string& pattern = row.front();
+    const bool good = !pattern.empty() && pattern.front() != '#' &&
+                      pattern.size() <= longest_pattern &&
+                      std::count(pattern.begin(), pattern.end(), '*') <= 3;
+    if (good && out.size() < most_patterns) out.push_back(pattern);
+  }
+  return out;
+}
+
+/// Letters and digits, and '+', which BIDS 1.11 adds.
+bool is_label(std::string_view label) {
+  std::string without(label);
+  std::erase(without, '+');
+  return !label.empty() && (without.empty() || is_bids_label(without));
+}
+
+/// Entities of a name: known, in BIDS' order, with good labels.
+void check_entities(const std::string& path, const BidsName& name, BidsCheck& check) {
+  std::size_t next = 0;
+  for (const auto& [key, label] : name.entities) {
+    const auto* const known = std::find(entity_order.begin() + next, entity_order.end(), key);
+    if (known == entity_order.end()) {
+      check.error(path, "entities sub, ses, task, tracksys, acq, run in this order", shown(key));
+      return;
+    }
+    next = static_cast<std::size_t>(known - entity_order.begin()) + 1;
+    if (!is_label(label)) check.error(path, "letters and digits for " + key, shown(label));
+    const bool digits =
+        std::all_of(label.begin(), label.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (key == "run" && !digits) check.error(path, "digits for run", shown(label));
+  }
+}
+
+struct Place {
+  std::string subject, session;  // labels of the folders
+};
+
+/// A file below sub-.../, or sub-.../ses-.../.
+void check_file_name(const std::string& path, const Place& place, std::string_view type,
+                     BidsCheck& check) {
+  const auto name = parse_bids_name(file_name(path));
+  if (!name) {
+    check.error(path, "a name of key-label parts and a suffix",
+                std::string(shown(file_name(path))));
+    return;
+  }
+  check_entities(path, *name, check);
+  if (name->label("sub") != place.subject) {
+    check.error(path, "sub-" + place.subject + ", as the folder is called",
+                "sub-" + shown(name->label("sub")));
+  }
+  if (name->label("ses") != place.session) {
+    check.error(path,
+                place.session.empty() ? "no ses, as there is no folder of one"
+                                      : "ses-" + place.session + ", as the folder is called",
+                "ses-" + shown(name->label("ses")));
+  }
+  if (type != "motion") return;
+  if (!contains(motion_endings, name->ending)) {
+    check.error(path, "motion.tsv, motion.json, channels.tsv, channels.json or events.tsv",
+                shown(name->ending));
+    return;
+  }
+  const bool of_system =
+      name->ending.starts_with("motion.") || name->ending.starts_with("channels.");
+  if (name->label("task").empty()) check.error(path, "a task", "none");
+  if (of_system && name->label("tracksys").empty()) check.error(path, "a tracksys", "none");
+}
+
+/// A file that stands in a subject's or session's own folder.
+bool is_table_of_subject(std::string_view ending) {
+  return ending == "scans.tsv" || ending == "scans.json" || ending == "sessions.tsv" ||
+         ending == "sessions.json";
+}
+
+void check_subject_path(const std::string& path, std::vector<std::string_view> parts,
+                        BidsCheck& check) {
+  Place place{std::string(parts.front().substr(4)), ""};
+  if (!is_label(place.subject))
+    check.error(path, "letters and digits for sub", shown(place.subject));
+  parts.erase(parts.begin());
+  if (parts.size() > 1 && parts.front().starts_with("ses-")) {
+    place.session = parts.front().substr(4);
+    if (!is_label(place.session))
+      check.error(path, "letters and digits for ses", shown(place.session));
+    parts.erase(parts.begin());
+  }
+  if (parts.size() == 1) {
+    const auto name = parse_bids_name(parts.front());
+    if (name && (is_table_of_subject(name->ending) || contains(inherited_endings, name->ending))) {
+      check_file_name(path, place, "", check);
+    } else {
+      check.error(path, "scans.tsv, sessions.tsv or an inherited file in a subject's folder",
+                  "another file");
+    }
+    return;
+  }
+  if (parts.size() == 2 && parts.front() == "motion")
+    return check_file_name(path, place, "motion", check);
+  if (contains(other_types, parts.front())) return;
+  check.error(path, "a folder of a data type of BIDS, such as motion", shown(parts.front()));
+}
+
+void check_path(const std::string& path, BidsCheck& check) {
+  const auto parts = parts_of(path);
+  const std::string_view first = parts.front();
+  if (first.starts_with('.')) return;
+  if (parts.size() > 1 && first.starts_with("sub-")) return check_subject_path(path, parts, check);
+  if (parts.size() > 1) {
+    if (!contains(top_folders, first)) {
+      check.error(path, "a folder sub-..., sourcedata, derivatives, code, stimuli or phenotype",
+                  shown(first));
+    }
+    return;
+  }
+  if (contains(top_files, first)) return;
+  const auto name = parse_bids_name(first);
+  if (name && contains(inherited_endings, name->ending)) return check_entities(path, *name, check);
+  check.error(path, "a file that BIDS knows; others belong into sourcedata/ or .bidsignore",
+              shown(first));
+}
+
+void check_description(BidsCheck& check) {
+  const std::string path = "dataset_description.json";
+  if (!check.listing.has(path)) return check.error(path, "this file", "none");
+  const auto json = check.json_of(path);
+  if (!json) return;
+  const auto text = [&](const char* key) {
+    const auto found = json->find(key);
+    return found != json->end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  for (const char* key : {"Name", "BIDSVersion"}) {
+    if (text(key).empty()) check.error(path, std::string("a text ") + key, "none");
+  }
+  const std::string type = json->contains("DatasetType") ? text("DatasetType") : "raw";
+  if (type != "raw" && type != "derivative") {
+    check.error(path, "DatasetType raw or derivative", shown(type));
+  }
+  if (type == "derivative" && !json->contains("GeneratedBy")) {
+    check.error(path, "GeneratedBy, as a derivative has it", "none");
+  }
+  if (const auto authors = json->find("Authors"); authors != json->end() && !authors->is_array()) {
+    check.error(path, "an array of Authors", "another value");
+  }
+  if (!json->contains("License")) check.warning(path, "a License", "none");
+}
+
+void check_readme(BidsCheck& check) {
+  for (const char* name : {"README", "README.md", "README.rst", "README.txt"}) {
+    if (check.listing.has(name)) return;
+  }
+  check.warning("README", "this file", "none");
+}
+
+std::set<std::string> subjects_of(const BidsListing& listing) {
+  std::set<std::string> out;
+  for (const std::string& path : listing.paths) {
+    if (path.starts_with("sub-")) out.insert(path.substr(0, path.find('/')));
+  }
+  return out;
+}
+
+/// Rows of participants.tsv against the folders.
+void check_participant_rows(const std::string& path, const TsvTable& table, BidsCheck& check) {
+  const std::set<std::string> subjects = subjects_of(check.listing);
+  std::set<std::string> listed;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto& row = table.rows[i];
+    const auto line = static_cast<std::int64_t>(i) + 2;
+    if (row.size() != table.columns.size()) {
+      check.error(path, fmt::format("{} cells", table.columns.size()), std::to_string(row.size()),
+                  line);
+    }
+    if (!listed.insert(row.front()).second) {
+      check.error(path, "each participant once", shown(row.front()) + " again", line);
+    }
+    if (!subjects.contains(row.front())) {
+      check.warning(path, "a folder of each participant", "none of " + shown(row.front()), line);
+    }
+  }
+  for (const std::string& subject : subjects) {
+    if (!listed.contains(subject)) check.error(path, "a row of " + shown(subject), "none");
+  }
+}
+
+void check_participants(BidsCheck& check) {
+  const std::string path = "participants.tsv", described = "participants.json";
+  if (!check.listing.has(path)) return check.warning(path, "this file", "none");
+  const auto table = check.table_of(path);
+  if (!table) return;
+  if (table->columns.empty() || table->columns.front() != "participant_id") {
+    return check.error(path, "participant_id as the first column",
+                       table->columns.empty() ? "none" : shown(table->columns.front()), 1);
+  }
+  check_participant_rows(path, *table, check);
+  const auto json = check.listing.has(described) ? check.json_of(described) : std::nullopt;
+  for (std::size_t c = 1; c < table->columns.size(); ++c) {
+    if (json && json->contains(table->columns[c])) continue;
+    check.warning(described, "a description of the column " + shown(table->columns[c]), "none");
+  }
+}
+
+void check_scans(const std::string& path, BidsCheck& check) {
+  const auto table = check.table_of(path);
+  if (!table) return;
+  const auto file = table->column("filename"), time = table->column("acq_time");
+  if (!file) return check.error(path, "a column filename", "none", 1);
+  const std::string above(folder(path));
+  std::set<std::string> listed;
+  for (std::size_t i = 0; i < table->rows.size(); ++i) {
+    const auto& row = table->rows[i];
+    const auto line = static_cast<std::int64_t>(i) + 2;
+    if (row.size() != table->columns.size()) {
+      check.error(path, fmt::format("{} cells", table->columns.size()), std::to_string(row.size()),
+                  line);
+      continue;
+    }
+    if (!check.listing.has(above + row[*file]))
+      check.error(path, "a file that is there", shown(row[*file]), line);
+    listed.insert(above + row[*file]);
+    if (time && row[*time] != "n/a" && !is_acq_time(row[*time])) {
+      check.error(path, "acq_time YYYY-MM-DDThh:mm:ss[.000000][Z]", shown(row[*time]), line);
+    }
+  }
+  for (const std::string& one : check.listing.paths) {
+    if (one.starts_with(above + "motion/") && one.ends_with("_motion.tsv") &&
+        !listed.contains(one)) {
+      check.warning(path, "a row of each motion.tsv", "none of " + std::string(file_name(one)));
+    }
+  }
+}
+
+/// A sidecar that describes nothing is a motion.tsv that was lost or misnamed.
+void check_orphans(const std::string& path, BidsCheck& check) {
+  for (const std::string_view ending : {"motion.json", "channels.tsv"}) {
+    if (path.find("/motion/") == std::string::npos || !path.ends_with("_" + std::string(ending)))
+      continue;
+    const std::string data = path.substr(0, path.size() - ending.size()) + "motion.tsv";
+    if (!check.listing.has(data)) {
+      check.error(path, "motion.tsv beside it", "none");
+    }
+  }
+}
+
+}  // namespace
+
+void BidsCheck::error(const std::string& path, std::string expected, std::string found,
+                      std::int64_t line) {
+  findings.push_back({Severity::error, Error{path, line, std::move(expected), std::move(found)},
+                      "the data set is not valid BIDS", ""});
+}
+
+void BidsCheck::warning(const std::string& path, std::string expected, std::string found,
+                        std::int64_t line) {
+  findings.push_back({Severity::warning, Error{path, line, std::move(expected), std::move(found)},
+                      "BIDS recommends it", ""});
+}
+
+std::optional<std::string> BidsCheck::text_of(const std::string& path) {
+  std::string text;
+  const auto read = listing.read(path, [&](std::string_view piece) -> Result<void> {
+    text += piece;
+    if (text.size() <= largest_text) return {};
+    return Failure(Error{path, 0, "a file of at most 16 MiB", "a larger one"});
+  });
+  if (read) return text;
+  Error what = read.error();
+  what.file = path;
+  findings.push_back({Severity::error, std::move(what), "the file can't be checked", ""});
+  return std::nullopt;
+}
+
+std::optional<TsvTable> BidsCheck::table_of(const std::string& path) {
+  const auto text = text_of(path);
+  if (!text) return std::nullopt;
+  return read_tsv(*text);
+}
+
+std::optional<Json> BidsCheck::json_of(const std::string& path) {
+  const auto text = text_of(path);
+  if (!text) return std::nullopt;
+  auto json = parse_bids_json(*text, path);
+  if (json) return *std::move(json);
+  error(path, json.error().expected, json.error().found);
+  return std::nullopt;
+}
+
+std::vector<std::string> BidsCheck::inherited(const std::string& path,
+                                              std::string_view ending) const {
+  const auto own = parse_bids_name(file_name(path));
+  std::vector<std::string> out;
+  if (!own) return out;
+  for (const std::string& other : listing.paths) {
+    if (!other.ends_with(ending) || !path.starts_with(folder(other))) continue;
+    const auto name = parse_bids_name(file_name(other));
+    if (!name || name->ending != ending) continue;
+    const bool holds =
+        std::all_of(name->entities.begin(), name->entities.end(),
+                    [&](const auto& entity) { return own->label(entity.first) == entity.second; });
+    if (holds) out.push_back(other);
+  }
+  std::stable_sort(out.begin(), out.end(), [](const std::string& a, const std::string& b) {
+    return folder(a).size() < folder(b).size();
+  });
+  return out;
+}
+
+Findings check_bids(const BidsListing& listing) {
+  BidsCheck check(listing);
+  check_description(check);
+  check_readme(check);
+  check_participants(check);
+  const auto ignored = ignore_patterns(check);
+  bool motion = false;
+  for (const std::string& path : listing.paths) {
+    if (is_ignored(ignored, path)) continue;
+    check_path(path, check);
+    if (!path.starts_with("sub-")) continue;
+    check_orphans(path, check);
+    if (path.ends_with("_scans.tsv")) check_scans(path, check);
+    if (path.ends_with("_motion.tsv") && path.find("/motion/") != std::string::npos) {
+      check_bids_system(path, check);
+      motion = true;
+    }
+  }
+  if (!motion) check.error("sub-*/motion", "a motion.tsv", "none");
+  return std::move(check.findings);
+}
+
+}  // namespace kinalign

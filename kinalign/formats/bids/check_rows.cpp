@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every cell of a motion.tsv. A fault that repeats is one finding, with the line of its first.
+#include "kinalign/core/lines.h"
+#include "kinalign/core/numbers.h"
+#include "kinalign/formats/bids/channels.h"
+#include "kinalign/formats/bids/check_context.h"
+#include "kinalign/formats/cells.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace kinalign {
+
+namespace {
+
+/// How often, and where first.
+struct Repeated {
+  std::uint64_t times = 0;
+  std::int64_t line = 0;
+  std::string first;
+
+  void add(std::int64_t at, std::string_view what) {
+    if (times++ > 0) return;
+    line = at;
+    first = shown(what);
+  }
+  std::string found() const {
+    return times == 1 ? first : fmt::format("{}, and {} more", first, times - 1);
+  }
+};
+
+class RowsCheck {
+ public:
+  explicit RowsCheck(const std::vector<BidsChannel>& channels) : channels_(channels) {
+    std::map<std::string, std::array<std::size_t, 4>> quaternions;
+    std::map<std::string, std::size_t> parts;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      if (channels[c].type == "LATENCY" && !latency_) latency_ = c;
+      if (channels[c].type != "ORNT" || !channels[c].component.starts_with("quat_")) continue;
+      const std::size_t part = parts[channels[c].tracked_point]++;
+      if (part < 4) quaternions[channels[c].tracked_point][part] = c;
+    }
+    for (const auto& [point, columns] : quaternions) {
+      if (parts[point] == 4) quaternions_.push_back(columns);
+    }
+  }
+
+  Result<void> use(std::string_view line, std::int64_t number) {
+    if (line.empty()) {
+      blank_.add(number, "an empty line");
+      return {};
+    }
+    values_.clear();
+    const bool first = summary.rows == 0 && names_.times == 0;
+    std::size_t texts = 0;
+    for (std::string_view rest = line;;) {
+      const auto tab = rest.find('\t');
+      texts += read_cell(rest.substr(0, tab), number) ? 0 : 1;
+      if (tab == std::string_view::npos) break;
+      rest.remove_prefix(tab + 1);
+    }
+    if (first &&
+        2 * texts > values_.size()) {  // a line of names, which the other faults would repeat
+      names_.add(number, line.substr(0, line.find('\t')));
+      no_number_ = {};
+      return {};
+    }
+    ++summary.rows;
+    check_length(number);
+    if (values_.size() == channels_.size()) check_values(number);
+    return {};
+  }
+
+  void report(const std::string& path, BidsCheck& check) const {
+    const auto tell = [&](const Repeated& fault, const std::string& expected) {
+      if (fault.times > 0) check.error(path, expected, fault.found(), fault.line);
+    };
+    tell(names_, "rows of numbers: motion.tsv has no line of names");
+    tell(blank_, "no empty lines");
+    tell(lengths_, fmt::format("rows of {} cells, as the first has", width_));
+    if (!channels_.empty() && width_ > 0 && width_ != channels_.size()) {
+      check.error(path, fmt::format("{} columns, as channels.tsv has rows", channels_.size()),
+                  std::to_string(width_));
+    }
+    tell(nan_, "n/a for what is missing");
+    tell(no_number_, "a number or n/a");
+    tell(latencies_, "latencies that rise");
+    if (quaternion_.times > 0) {
+      check.warning(path, "quaternions of length 1", quaternion_.found(), quaternion_.line);
+    }
+    if (summary.rows == 0) check.error(path, "rows of samples", "none");
+  }
+
+  BidsRowsSummary summary;
+
+ private:
+  /// Whether it is a number or says that there is none.
+  bool read_cell(std::string_view cell, std::int64_t line) {
+    double value = NAN;
+    bool good = true;
+    if (cell != "n/a") {
+      if (says_missing(cell)) {
+        nan_.add(line, cell.empty() ? "an empty cell" : cell);
+      } else if (!parse_number(cell, value) || !std::isfinite(value)) {
+        no_number_.add(line, cell);
+        value = NAN;
+        good = false;
+      }
+    }
+    values_.push_back(value);
+    return good;
+  }
+
+  void check_length(std::int64_t line) {
+    if (width_ == 0) width_ = values_.size();
+    if (values_.size() != width_) lengths_.add(line, std::to_string(values_.size()));
+  }
+
+  void check_values(std::int64_t line) {
+    if (latency_) {
+      const double latency = values_[*latency_];
+      if (!std::isfinite(latency) ||
+          (summary.last_latency_s && latency <= *summary.last_latency_s)) {
+        latencies_.add(line, fmt::format("{}", latency));
+      }
+      if (std::isfinite(latency)) {
+        if (!summary.first_latency_s) summary.first_latency_s = latency;
+        summary.last_latency_s = latency;
+        ++summary.latencies;
+      }
+    }
+    for (const auto& columns : quaternions_) {
+      double square = 0.0;
+      for (const std::size_t c : columns) square += values_[c] * values_[c];
+      if (std::isfinite(square) && std::abs(std::sqrt(square) - 1.0) > 0.02) {
+        quaternion_.add(line, fmt::format("{:.4g}", std::sqrt(square)));
+      }
+    }
+  }
+
+  const std::vector<BidsChannel>& channels_;
+  std::optional<std::size_t> latency_;
+  std::vector<std::array<std::size_t, 4>> quaternions_;
+  std::vector<double> values_;  // of a row; NaN: missing
+  std::size_t width_ = 0;
+  Repeated names_, blank_, lengths_, nan_, no_number_, latencies_, quaternion_;
+};
+
+}  // namespace
+
+BidsRowsSummary check_bids_rows(const std::string& path, const std::vector<BidsChannel>& channels,
+                                BidsCheck& check) {
+  RowsCheck rows(channels);
+  LineSplitter lines;
+  const auto use = [&](std::string_view line) { return rows.use(line, lines.number()); };
+  auto read =
+      check.listing.read(path, [&](std::string_view piece) { return lines.feed(piece, use); });
+  if (read) read = lines.finish(use);
+  if (!read) {
+    Error what = read.error();
+    what.file = path;
+    check.findings.push_back({Severity::error, std::move(what), "the file can't be checked", ""});
+    return rows.summary;
+  }
+  rows.report(path, check);
+  return rows.summary;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+// One tracking system: channels.tsv, channels.json, motion.json and motion.tsv against each other.
+#include "kinalign/core/files.h"
+#include "kinalign/formats/bids/channels.h"
+#include "kinalign/formats/bids/check_context.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+using FoundJson = nlohmann::ordered_json;
+
+bool is_one_of(std::string_view text, std::initializer_list<std::string_view> all) {
+  return std::find(all.begin(), all.end(), text) != all.end();
+}
+
+/// Which components a type can have.
+bool fits(const BidsChannel& channel) {
+  const bool axis = is_one_of(channel.component, {"x", "y", "z"});
+  if (channel.type == "ORNT") return axis || channel.component.starts_with("quat_");
+  if (is_one_of(channel.type, {"POS", "VEL", "ACCEL", "ANGACCEL", "GYRO", "MAGN"})) return axis;
+  if (channel.type == "LATENCY") return channel.component == "n/a";
+  return true;
+}
+
+std::string in_capitals(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+    return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  });
+  return text;
+}
+
+void check_columns(const std::string& path, const TsvTable& table, BidsCheck& check) {
+  constexpr std::array<const char*, 5> needed{"name", "component", "type", "tracked_point",
+                                              "units"};
+  for (std::size_t c = 0; c < needed.size(); ++c) {
+    if (c < table.columns.size() && table.columns[c] == needed[c]) continue;
+    check.error(path, fmt::format("{} as column {}", needed[c], c + 1),
+                c < table.columns.size() ? shown(table.columns[c]) : "none", 1);
+  }
+  const std::set<std::string> names(table.columns.begin(), table.columns.end());
+  if (names.size() != table.columns.size())
+    check.error(path, "columns of different names", "one twice", 1);
+}
+
+void check_channel(const std::string& path, std::int64_t line, const BidsChannel& channel,
+                   BidsCheck& check) {
+  if (!is_bids_type(channel.type)) {
+    const bool lower = is_bids_type(in_capitals(channel.type));
+    check.error(path, lower ? "types in capitals" : "a type of BIDS, such as POS or GYRO",
+                shown(channel.type), line);
+    return;
+  }
+  if (!is_bids_component(channel.component)) {
+    check.error(path, "component x, y, z, quat_x, quat_y, quat_z, quat_w or n/a",
+                shown(channel.component), line);
+  } else if (!fits(channel)) {
+    check.error(path, "a component of " + channel.type, shown(channel.component), line);
+  }
+  const bool free_unit = is_one_of(channel.type, {"MAGN", "MISC", "VEL"});
+  if (channel.units.empty() || (!free_unit && unit_scale(channel.type, channel.units) == 0.0)) {
+    check.warning(path, "a unit of " + channel.type, shown(channel.units), line);
+  }
+  const bool quaternion = channel.component.starts_with("quat_");
+  if (channel.type == "ORNT" && quaternion != (channel.units == "n/a")) {
+    check.warning(path, quaternion ? "the unit n/a of a quaternion" : "rad or deg of an angle",
+                  shown(channel.units), line);
+  }
+}
+
+/// All three axes, or all four parts of a quaternion, of each tracked point and type.
+void check_groups(const std::string& path, const std::vector<BidsChannel>& channels,
+                  BidsCheck& check) {
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> groups;
+  for (const BidsChannel& c : channels) {
+    if (c.component != "n/a" && is_bids_type(c.type))
+      groups[{c.tracked_point, c.type}].insert(c.component);
+  }
+  for (const auto& [key, parts] : groups) {
+    const auto quaternion = static_cast<std::size_t>(
+        std::count_if(parts.begin(), parts.end(),
+                      [](const std::string& part) { return part.starts_with("quat_"); }));
+    if (quaternion == 0 || quaternion == 4) continue;
+    check.error(path, "all four parts of the quaternion of " + shown(key.first),
+                std::to_string(quaternion));
+  }
+}
+
+void check_status(const std::string& path, const TsvTable& table, BidsCheck& check) {
+  const auto status = table.column("status");
+  if (!status) return;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    if (table.rows[i].size() <= *status) continue;
+    if (is_one_of(table.rows[i][*status], {"good", "bad", "n/a"})) continue;
+    check.error(path, "status good or bad", shown(table.rows[i][*status]),
+                static_cast<std::int64_t>(i) + 2);
+  }
+}
+
+std::vector<BidsChannel> check_channels(const std::string& path, BidsCheck& check) {
+  const auto table = check.table_of(path);
+  if (!table) return {};
+  check_columns(path, *table, check);
+  const auto channels = channels_of(*table, path);
+  if (!channels) return {};
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < channels->size(); ++i) {
+    const auto line = static_cast<std::int64_t>(i) + 2;
+    if (table->rows[i].size() != table->columns.size()) {
+      check.error(path, fmt::format("{} cells", table->columns.size()),
+                  std::to_string(table->rows[i].size()), line);
+      continue;
+    }
+    check_channel(path, line, (*channels)[i], check);
+    if (!names.insert((*channels)[i].name).second) {
+      check.error(path, "channels of different names", shown((*channels)[i].name) + " again", line);
+    }
+  }
+  check_status(path, *table, check);
+  check_groups(path, *channels, check);
+  return *channels;
+}
+
+/// Names and SpatialAxes of the reference frames in a channels.json; axes that are none are told.
+std::set<std::string> described_frames(const std::string& path, BidsCheck& check) {
+  std::set<std::string> out;
+  const auto json = check.json_of(path);
+  if (!json) return out;
+  const FoundJson frame = json->value("reference_frame", FoundJson::object());
+  const FoundJson levels = frame.is_object() ? frame.value("Levels", FoundJson::object()) : frame;
+  if (!levels.is_object()) return out;
+  for (const auto& [name, level] : levels.items()) {
+    out.insert(name);
+    const auto letters = level.is_object() ? level.find("SpatialAxes") : level.end();
+    if (letters == level.end() || !letters->is_string()) continue;
+    const std::string text = letters->get<std::string>();
+    if (text == "n/a" || axes_of_letters(text)) continue;
+    check.warning(path, "SpatialAxes of three letters A or P, L or R, S or I", shown(text));
+  }
+  return out;
+}
+
+/// Each reference frame stands in channels.json.
+void check_frames(const std::string& motion_tsv, const std::vector<BidsChannel>& channels,
+                  BidsCheck& check) {
+  std::set<std::string> frames;
+  for (const BidsChannel& c : channels) frames.insert(c.reference_frame);
+  frames.erase("n/a");
+  frames.erase("");
+  if (frames.empty()) return;
+  const auto paths = check.inherited(motion_tsv, "channels.json");
+  std::set<std::string> described;
+  for (const std::string& path : paths) described.merge(described_frames(path, check));
+  const std::string beside = motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.json";
+  for (const std::string& one : frames) {
+    if (described.contains(one)) continue;
+    check.warning(paths.empty() ? beside : paths.back(), "the reference frame " + shown(one),
+                  "none");
+  }
+}
+
+/// Keys of all motion.json that hold for the file, the nearest one's last.
+std::optional<FoundJson> merged_json(const std::string& motion_tsv, BidsCheck& check) {
+  const auto paths = check.inherited(motion_tsv, "motion.json");
+  if (paths.empty()) {
+    check.error(motion_tsv.substr(0, motion_tsv.size() - 3) + "json", "this file", "none");
+    return std::nullopt;
+  }
+  FoundJson all = FoundJson::object();
+  for (const std::string& path : paths) {
+    const auto json = check.json_of(path);
+    if (!json) return std::nullopt;
+    all.update(*json);
+  }
+  return all;
+}
+
+class FactsCheck {
+ public:
+  FactsCheck(std::string path, const FoundJson& json, BidsCheck& check)
+      : path_(std::move(path)), json_(json), check_(check) {}
+
+  std::optional<double> number(const char* key) const {
+    const auto found = json_.find(key);
+    if (found == json_.end()) return std::nullopt;
+    if (found->is_number()) return found->get<double>();
+    check_.error(path_, std::string("a number ") + key, "another value");
+    return std::nullopt;
+  }
+  std::string text(const char* key) const {
+    const auto found = json_.find(key);
+    return found != json_.end() && found->is_string() ? found->get<std::string>() : "";
+  }
+
+  void count(const std::string& key, std::size_t is) const {
+    const auto stated = number(key.c_str());
+    if (stated && *stated != static_cast<double>(is)) {
+      check_.error(path_, fmt::format("{} {}", key, is), fmt::format("{}", *stated));
+    }
+  }
+
+  void names(std::string_view task) const {
+    const std::string name = text("TaskName");
+    std::string label;
+    for (const char c : name) {
+      if (is_bids_label(std::string_view(&c, 1))) label += c;
+    }
+    if (name.empty()) {
+      check_.error(path_, "a TaskName", "none");
+    } else if (label != task) {
+      check_.warning(path_, "a TaskName that gives the label " + shown(task), shown(name));
+    }
+    if (text("TrackingSystemName").empty()) check_.warning(path_, "a TrackingSystemName", "none");
+  }
+
+  void counts(const std::vector<BidsChannel>& channels) const {
+    std::map<std::string, std::size_t> of_type;
+    std::set<std::string> points;
+    for (const BidsChannel& c : channels) {
+      ++of_type[c.type];
+      if (c.tracked_point != "n/a") points.insert(c.tracked_point);
+    }
+    count("MotionChannelCount", channels.size());
+    count("TrackedPointsCount", points.size());
+    for (const char* type :
+         {"POS", "ORNT", "ACCEL", "GYRO", "MAGN", "LATENCY", "JNTANG", "VEL", "ANGACCEL"}) {
+      count(std::string(type) + "ChannelCount", of_type[type]);
+    }
+    count("MISCChannelCount", of_type["MISC"]);
+    count("MiscChannelCount", of_type["MISC"]);
+  }
+
+  void times(const BidsRowsSummary& rows) const {
+    const auto rate = number("SamplingFrequency");
+    if (!rate || !(*rate > 0.0)) {
+      check_.error(path_, "a SamplingFrequency above 0", rate ? fmt::format("{}", *rate) : "none");
+      return;
+    }
+    const auto n = static_cast<double>(rows.rows);
+    const auto duration = number("RecordingDuration");
+    if (duration && rows.rows > 0 &&
+        std::abs(*duration - n / *rate) > 0.02 * n / *rate + 2.0 / *rate) {
+      check_.warning(path_,
+                     fmt::format("a RecordingDuration of {} rows at {:g} Hz, {:.6g} s", rows.rows,
+                                 *rate, n / *rate),
+                     fmt::format("{:g}", *duration));
+    }
+    const auto effective = number("SamplingFrequencyEffective");
+    if (!effective || !rows.last_latency_s || *rows.last_latency_s <= *rows.first_latency_s) return;
+    const double by_latency =
+        static_cast<double>(rows.latencies - 1) / (*rows.last_latency_s - *rows.first_latency_s);
+    if (std::abs(*effective - by_latency) <= 0.01 * by_latency) return;
+    check_.warning(
+        path_,
+        fmt::format("a SamplingFrequencyEffective of {:.6g}, as the latencies say", by_latency),
+        fmt::format("{:g}", *effective));
+  }
+
+ private:
+  std::string path_;
+  const FoundJson& json_;
+  BidsCheck& check_;
+};
+
+}  // namespace
+
+void check_bids_system(const std::string& motion_tsv, BidsCheck& check) {
+  const auto tables = check.inherited(motion_tsv, "channels.tsv");
+  std::vector<BidsChannel> channels;
+  if (tables.empty()) {
+    check.error(motion_tsv.substr(0, motion_tsv.size() - 10) + "channels.tsv", "this file", "none");
+  } else {
+    channels = check_channels(tables.back(), check);
+    check_frames(motion_tsv, channels, check);
+  }
+  const BidsRowsSummary rows = check_bids_rows(motion_tsv, channels, check);
+  const auto json = merged_json(motion_tsv, check);
+  if (!json) return;
+  const FactsCheck facts(check.inherited(motion_tsv, "motion.json").back(), *json, check);
+  const auto name = parse_bids_name(file_name(motion_tsv));
+  facts.names(name ? name->label("task") : "");
+  if (!channels.empty()) facts.counts(channels);
+  facts.times(rows);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files of a whole BIDS data set: what it is, who took part, when each file began.
+#pragma once
+
+#include "kinalign/formats/bids/tsv_table.h"
+#include "kinalign/wire/time.h"
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kinalign {
+
+struct BidsDataset {
+  std::string name, license;
+  std::vector<std::string> authors;
+  /// A derivative (aligned, cleaned) names the program that made it; empty: raw data.
+  std::string generated_by, generated_by_version;
+};
+
+/// dataset_description.json
+std::string dataset_description_json(const BidsDataset& dataset);
+
+/// A column of participants.tsv behind participant_id.
+struct BidsColumn {
+  std::string name, description, units;
+  std::map<std::string, std::string> levels;  // value -> meaning
+};
+
+struct BidsParticipants {
+  std::vector<BidsColumn> columns;
+  std::vector<std::pair<std::string, std::vector<std::string>>> rows;  // subject's label, cells
+};
+std::string participants_tsv(const BidsParticipants& participants);
+std::string participants_json(const BidsParticipants& participants);
+
+/// A row of scans.tsv: the file's path below the subject's (or session's) folder, its onset.
+using BidsScan = std::pair<std::string, Time>;
+std::string scans_tsv(const std::vector<BidsScan>& scans);
+
+}  // namespace kinalign

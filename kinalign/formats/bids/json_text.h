@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// JSON files of a BIDS data set, to and from text. No exception leaves these functions.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+/// Indented by two, with a line end; bytes that are no UTF-8 become U+FFFD.
+std::string bids_json_text(const nlohmann::ordered_json& json);
+
+/// Fails where the text is no JSON object.
+Result<nlohmann::ordered_json> parse_bids_json(std::string_view text, std::string_view file);
+
+}  // namespace kinalign

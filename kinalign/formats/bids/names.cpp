@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/bids/names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+
+namespace kinalign {
+
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+struct TimeParts {
+  std::chrono::sys_days day;
+  std::chrono::seconds of_day{};
+  std::chrono::nanoseconds fraction{};
+};
+
+/// The digits at `at`, which must be as many; -1 where they are none.
+int digits_at(std::string_view text, std::size_t at, std::size_t count) {
+  if (text.size() < at + count) return -1;
+  int value = 0;
+  for (const char c : text.substr(at, count)) {
+    if (!is_digit(c)) return -1;
+    value = 10 * value + (c - '0');
+  }
+  return value;
+}
+
+/// ".25" as nanoseconds; digits behind the ninth are cut off.
+std::optional<std::chrono::nanoseconds> fraction_of(std::string_view text) {
+  if (text.empty()) return std::chrono::nanoseconds{0};
+  if (text.size() < 2 || text[0] != '.') return std::nullopt;
+  text.remove_prefix(1);
+  if (!std::all_of(text.begin(), text.end(), is_digit)) return std::nullopt;
+  std::int64_t ns = 0;
+  for (std::size_t i = 0; i < 9; ++i) ns = 10 * ns + (i < text.size() ? text[i] - '0' : 0);
+  return std::chrono::nanoseconds{ns};
+}
+
+std::optional<TimeParts> time_parts_of(std::string_view text) {
+  constexpr std::size_t whole = 19;  // YYYY-MM-DDThh:mm:ss
+  if (text.ends_with('Z')) text.remove_suffix(1);
+  if (text.size() < whole) return std::nullopt;
+  const bool separated =
+      text[4] == '-' && text[7] == '-' && text[10] == 'T' && text[13] == ':' && text[16] == ':';
+  const int year = digits_at(text, 0, 4), month = digits_at(text, 5, 2),
+            day = digits_at(text, 8, 2), hour = digits_at(text, 11, 2),
+            minute = digits_at(text, 14, 2), second = digits_at(text, 17, 2);
+  const auto fraction = fraction_of(text.substr(whole));
+  if (!separated || !fraction || year < 0 || hour < 0 || hour > 23 || minute < 0 || minute > 59 ||
+      second < 0 || second > 60 || month < 0 || day < 0) {
+    return std::nullopt;
+  }
+  const std::chrono::year_month_day date{std::chrono::year{year},
+                                         std::chrono::month{static_cast<unsigned>(month)},
+                                         std::chrono::day{static_cast<unsigned>(day)}};
+  if (!date.ok()) return std::nullopt;
+  return TimeParts{std::chrono::sys_days{date},
+                   std::chrono::seconds{3600 * hour + 60 * minute + second}, *fraction};
+}
+
+}  // namespace
+
+bool is_bids_label(std::string_view text) {
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](char c) { return is_digit(c) || is_letter(c); });
+}
+
+Result<void> check_labels(const BidsEntities& e) {
+  const auto check = [](const char* what, const std::string& label, bool needed) -> Result<void> {
+    if (is_bids_label(label) || (label.empty() && !needed)) return {};
+    return Failure(Error{"", 0, fmt::format("letters and digits for BIDS' {}", what),
+                         "'" + shown(label) + "'"});
+  };
+  KA_TRY(check("sub", e.subject, true));
+  KA_TRY(check("ses", e.session, false));
+  KA_TRY(check("task", e.task, true));
+  KA_TRY(check("tracksys", e.system, true));
+  KA_TRY(check("acq", e.acquisition, false));
+  if (std::all_of(e.run.begin(), e.run.end(), is_digit)) return {};
+  return Failure(Error{"", 0, "digits for BIDS' run", "'" + shown(e.run) + "'"});
+}
+
+std::string bids_stem(const BidsEntities& e) {
+  std::string out;
+  const auto add = [&out](const char* key, const std::string& label) {
+    if (!label.empty()) out += std::string(out.empty() ? "" : "_") + key + "-" + label;
+  };
+  add("sub", e.subject);
+  add("ses", e.session);
+  add("task", e.task);
+  add("tracksys", e.system);
+  add("acq", e.acquisition);
+  add("run", e.run);
+  return out;
+}
+
+std::string bids_subject_folder(const BidsEntities& e) {
+  return "sub-" + e.subject + "/" + (e.session.empty() ? "" : "ses-" + e.session + "/");
+}
+
+std::string bids_path(const BidsEntities& e, std::string_view ending) {
+  return bids_subject_folder(e) + "motion/" + bids_stem(e) + "_" + std::string(ending);
+}
+
+std::string bids_scans_path(const BidsEntities& e) {
+  return bids_subject_folder(e) + "sub-" + e.subject +
+         (e.session.empty() ? "" : "_ses-" + e.session) + "_scans.tsv";
+}
+
+std::string_view BidsName::label(std::string_view key) const {
+  for (const auto& [name, label] : entities) {
+    if (name == key) return label;
+  }
+  return {};
+}
+
+std::optional<BidsName> parse_bids_name(std::string_view file_name) {
+  BidsName out;
+  for (;;) {
+    const auto end = file_name.find('_');
+    if (end == std::string_view::npos) {
+      out.ending = file_name;
+      if (file_name.empty() || file_name.find('-') != std::string_view::npos) return std::nullopt;
+      return out;
+    }
+    const std::string_view part = file_name.substr(0, end);
+    const auto dash = part.find('-');
+    if (dash == std::string_view::npos || dash == 0 || dash + 1 == part.size()) return std::nullopt;
+    out.entities.emplace_back(part.substr(0, dash), part.substr(dash + 1));
+    file_name.remove_prefix(end + 1);
+  }
+}
+
+std::string acq_time_text(Time time) {
+  const std::int64_t ns = to_ns(time);
+  constexpr std::int64_t second = 1'000'000'000, day_seconds = 86'400;
+  std::int64_t seconds = ns / second, below = ns % second;
+  if (below < 0) {
+    below += second;
+    --seconds;
+  }
+  std::int64_t days = seconds / day_seconds, of_day = seconds % day_seconds;
+  if (of_day < 0) {
+    of_day += day_seconds;
+    --days;
+  }
+  const std::chrono::year_month_day date{std::chrono::sys_days{std::chrono::days{days}}};
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                     of_day / 3600, of_day / 60 % 60, of_day % 60, below / 1000);
+}
+
+std::optional<Time> parse_acq_time(std::string_view text) {
+  const auto parts = time_parts_of(text);
+  if (!parts) return std::nullopt;
+  const int year = static_cast<int>(std::chrono::year_month_day{parts->day}.year());
+  if (year < 1850 || year > 2090) return std::nullopt;
+  const std::chrono::nanoseconds whole = parts->day.time_since_epoch() + parts->of_day;
+  return Time{whole + parts->fraction};
+}
+
+bool is_acq_time(std::string_view text) { return time_parts_of(text).has_value(); }
+
+}  // namespace kinalign

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of a motion.tsv as points or as nodes.
+#include "kinalign/core/numbers.h"
+#include "kinalign/formats/bids/system.h"
+#include "kinalign/formats/cells.h"
+#include "kinalign/formats/held_rows.h"
+#include "kinalign/formats/imu_converter.h"
+#include "kinalign/formats/named_lines.h"
+#include "kinalign/formats/point_rows.h"
+#include "kinalign/formats/row_stamps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double largest_number = 1e15;
+constexpr TimeScale latency_seconds{1'000'000'000, 0};
+
+Failure refuse(std::string expected, std::string found) {
+  return Failure(Error{"", 0, std::move(expected), std::move(found)});
+}
+
+/// Columns of one quantity of a tracked point, in the order of our arrays.
+template <std::size_t n>
+struct Quantity {
+  std::array<std::size_t, n> columns{};
+  std::array<double, n> scales{};
+  std::string frame;
+};
+
+template <std::size_t n>
+std::optional<Quantity<n>> find_quantity(const BidsSystem& system, std::string_view point,
+                                         std::string_view type,
+                                         const std::array<const char*, n>& components) {
+  Quantity<n> out;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto found =
+        std::find_if(system.channels.begin(), system.channels.end(), [&](const auto& c) {
+          return c.tracked_point == point && c.type == type && c.component == components[k];
+        });
+    if (found == system.channels.end()) return std::nullopt;
+    out.columns[k] = static_cast<std::size_t>(found - system.channels.begin());
+    out.scales[k] = unit_scale(type, found->units);
+    out.frame = found->reference_frame;
+  }
+  return out;
+}
+
+constexpr std::array<const char*, 3> xyz{"x", "y", "z"};
+constexpr std::array<const char*, 4> wxyz{"quat_w", "quat_x", "quat_y", "quat_z"};
+
+/// In the order of their first channels.
+std::vector<std::string> tracked_points(const BidsSystem& system) {
+  std::vector<std::string> out;
+  std::set<std::string> known;
+  for (const BidsChannel& channel : system.channels) {
+    if (known.insert(channel.tracked_point).second) out.push_back(channel.tracked_point);
+  }
+  return out;
+}
+
+/// Ours from a reference frame, y up where nothing is known of it. Empty where its letters are no
+/// axes.
+std::optional<Axes> axes_of_frame(const BidsSystem& system, const std::string& frame) {
+  const auto letters = system.letters.find(frame);
+  if (letters == system.letters.end() || letters->second == "n/a") return y_up;
+  return axes_of_letters(letters->second);
+}
+
+Result<Axes> space_of(const BidsSystem& system, const std::string& frame,
+                      const StreamOptions& options) {
+  const auto axes = axes_of_frame(system, frame);
+  if (!axes && options.up.empty()) {
+    return refuse("SpatialAxes of three letters, one of them S or I, or up",
+                  shown(system.letters.at(frame)));
+  }
+  return axes_of(axes.value_or(y_up), options);
+}
+
+/// Lines of numbers; of each wanted column the value, or that it is missing.
+class BidsRows {
+ public:
+  BidsRows(const BidsSystem& system, const StreamOptions& options, std::string_view file)
+      : values(system.channels.size()),
+        missing(system.channels.size()),
+        lines(file),
+        stamps(false, 1.0, {}),
+        wanted_(system.channels.size()) {
+    const auto latency = std::find_if(system.channels.begin(), system.channels.end(),
+                                      [](const BidsChannel& c) { return c.type == "LATENCY"; });
+    if (latency != system.channels.end()) {
+      latency_ = static_cast<std::size_t>(latency - system.channels.begin());
+    }
+    onset_ns_ = system.onset ? to_ns(*system.onset) : 0;
+    const double rate = options.rate_hz > 0.0 ? options.rate_hz : system.rate_hz;
+    auto start = options.start_ns;
+    if (!start && !latency_ && system.onset) start = onset_ns_;
+    stamps = RowStamps(latency_.has_value(), rate, start);
+  }
+
+  template <std::size_t n>
+  void want(const Quantity<n>& quantity) {
+    for (const std::size_t column : quantity.columns) wanted_[column] = true;
+  }
+
+  /// False for an empty line.
+  Result<bool> read(std::string_view line) {
+    if (trimmed(line).empty()) return false;
+    std::size_t c = 0;
+    for (;; ++c) {
+      const auto tab = line.find('\t');
+      if (c < values.size()) KA_TRY(read_cell(trimmed(line.substr(0, tab)), c));
+      if (tab == std::string_view::npos) break;
+      line.remove_prefix(tab + 1);
+    }
+    if (c + 1 == values.size()) return true;
+    return refuse(fmt::format("{} cells, as channels.tsv has rows", values.size()),
+                  std::to_string(c + 1));
+  }
+
+  Result<Time> next_stamp() {
+    std::int64_t ns = 0;
+    if (latency_ && __builtin_add_overflow(onset_ns_, latency_ns_, &ns)) {
+      return refuse("a stamp inside +-4e18 ns", "a later one");
+    }
+    return stamps.next(ns);
+  }
+
+  std::vector<double> values;
+  std::vector<std::uint8_t> missing;
+  NamedLines lines;
+  RowStamps stamps;
+  std::uint64_t nan_cells = 0;
+
+ private:
+  Result<void> read_cell(std::string_view cell, std::size_t c) {
+    if (latency_ && c == *latency_) {
+      const auto ns = parse_stamp(cell, latency_seconds);
+      if (!ns) return refuse("a latency in seconds", shown(cell));
+      latency_ns_ = *ns;
+      return {};
+    }
+    if (!wanted_[c]) return {};
+    missing[c] = cell == "n/a" || says_missing(cell) ? 1 : 0;
+    if (missing[c] != 0) {
+      nan_cells += cell == "n/a" ? 0 : 1;
+      values[c] = 0.0;
+      return {};
+    }
+    if (parse_number(cell, values[c]) && std::abs(values[c]) < largest_number) return {};
+    return refuse("a number or n/a; motion.tsv has no line of names", shown(cell));
+  }
+
+  std::vector<bool> wanted_;
+  std::optional<std::size_t> latency_;
+  std::int64_t latency_ns_ = 0, onset_ns_ = 0;
+};
+
+/// What both readers share; Base is PointReader or ImuReader.
+template <class Base>
+class BidsReader : public Base {
+ public:
+  using Frames = typename Base::Frames;
+
+  BidsReader(const BidsSystem& system, const StreamOptions& options, std::string_view file)
+      : rows_(system, options, file) {}
+
+  Result<void> feed(std::string_view piece, Frames& out) override {
+    return rows_.lines.feed(piece, [&](std::string_view line) { return use(line, out); });
+  }
+
+  Result<void> finish(Frames& out) override {
+    KA_TRY(
+        rows_.lines.finish([&](std::string_view line) { return use(line, out); }, this->findings));
+    rows_.stamps.settle();
+    this->counted = rows_.stamps.counted();
+    held_.release(rows_.stamps, out);
+    const std::string& file = rows_.lines.file();
+    if (rows_.stamps.stuck()) this->findings.push_back(stuck_finding(file, rows_.stamps));
+    if (rows_.nan_cells > 0) {
+      this->findings.push_back(
+          {Severity::warning,
+           Error{file, 0, "n/a for what is missing",
+                 fmt::format("{} cells that are empty or nan", rows_.nan_cells)},
+           "they are missing", "write n/a: validators of BIDS refuse others"});
+    }
+    report(file);
+    return {};
+  }
+
+ protected:
+  virtual void append_row(Frames& out) = 0;
+  virtual void report(const std::string&) {}
+  BidsRows& rows() { return rows_; }
+
+ private:
+  Result<void> use(std::string_view line, Frames& out) {
+    if (!KA_TRY(rows_.read(line))) return {};
+    Frames& target = held_.target(rows_.stamps, out);
+    target.stamps.push_back(KA_TRY(rows_.next_stamp()));
+    append_row(target);
+    held_.release(rows_.stamps, out);
+    return {};
+  }
+
+  BidsRows rows_;
+  HeldRows<Frames> held_;
+};
+
+struct TrackedPoint {
+  std::string name;
+  Quantity<3> places;
+};
+
+class BidsPointReader final : public BidsReader<PointReader> {
+ public:
+  BidsPointReader(const BidsSystem& system, const StreamOptions& options, std::string_view file,
+                  std::vector<TrackedPoint> points, const Axes& axes)
+      : BidsReader(system, options, file),
+        points_(std::move(points)),
+        units_(point_units({axes, 1.0}, options)),
+        raw_(3 * points_.size()),
+        states_(points_.size()) {
+    for (const TrackedPoint& point : points_) {
+      header_.joint_names.push_back(point.name);
+      rows().want(point.places);
+    }
+    if (options.metres_per_unit > 0.0) {
+      for (TrackedPoint& point : points_) point.places.scales = {1.0, 1.0, 1.0};
+    }
+  }
+
+  const PointHeader* header() const override { return &header_; }
+
+ private:
+  void append_row(PointFrames& out) override {
+    for (std::size_t j = 0; j < points_.size(); ++j) {
+      bool there = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t column = points_[j].places.columns[k];
+        there = there && rows().missing[column] == 0;
+        raw_[3 * j + k] = points_[j].places.scales[k] * rows().values[column];
+      }
+      states_[j] = there ? Tracking::tracked : Tracking::missing;
+    }
+    append_points(units_, raw_.data(), states_, out);
+  }
+
+  std::vector<TrackedPoint> points_;
+  PointUnits units_;
+  std::vector<double> raw_;       // [J,3] of a row
+  std::vector<Tracking> states_;  // [J] of a row
+  PointHeader header_;
+};
+
+struct TrackedNode {
+  std::string name;
+  std::optional<Quantity<4>> orientation;
+  std::optional<Quantity<3>> acceleration, angular_velocity;
+};
+
+class BidsNodeReader final : public BidsReader<ImuReader> {
+ public:
+  BidsNodeReader(const BidsSystem& system, const StreamOptions& options, std::string_view file,
+                 std::vector<TrackedNode> nodes, const Axes& axes)
+      : BidsReader(system, options, file),
+        nodes_(std::move(nodes)),
+        samples_(ImuUnits{axes, 1.0, 1.0}) {
+    const auto all = [this](const auto& has) {
+      return std::all_of(nodes_.begin(), nodes_.end(), has);
+    };
+    header_.content = {all([](const TrackedNode& n) { return n.orientation.has_value(); }),
+                       all([](const TrackedNode& n) { return n.acceleration.has_value(); }),
+                       all([](const TrackedNode& n) { return n.angular_velocity.has_value(); }),
+                       true};
+    for (const TrackedNode& node : nodes_) {
+      header_.node_names.push_back(node.name);
+      if (header_.content.orientation) rows().want(*node.orientation);
+      if (header_.content.acceleration) rows().want(*node.acceleration);
+      if (header_.content.angular_velocity) rows().want(*node.angular_velocity);
+    }
+  }
+
+  const ImuHeader* header() const override { return &header_; }
+  const ImuContent& content() const { return header_.content; }
+
+ private:
+  void append_row(ImuSamples& out) override {
+    for (const TrackedNode& node : nodes_) {
+      bool valid = true;
+      std::array<double, 4> turn{};
+      std::array<double, 3> force{}, rate{};
+      if (header_.content.orientation) take(*node.orientation, turn, valid);
+      if (header_.content.acceleration) take(*node.acceleration, force, valid);
+      if (header_.content.angular_velocity) take(*node.angular_velocity, rate, valid);
+      samples_.append({header_.content.orientation ? turn.data() : nullptr,
+                       header_.content.acceleration ? force.data() : nullptr,
+                       header_.content.angular_velocity ? rate.data() : nullptr, valid},
+                      out);
+    }
+  }
+
+  template <std::size_t n>
+  void take(const Quantity<n>& quantity, std::array<double, n>& out, bool& valid) {
+    for (std::size_t k = 0; k < n; ++k) {
+      valid = valid && rows().missing[quantity.columns[k]] == 0;
+      out[k] = quantity.scales[k] * rows().values[quantity.columns[k]];
+    }
+  }
+
+  void report(const std::string& file) override { samples_.report(file, findings); }
+
+  std::vector<TrackedNode> nodes_;
+  ImuConverter samples_;
+  ImuHeader header_;
+};
+
+/// Fails where a channel's unit is none that its type can have.
+template <std::size_t n>
+Result<void> check_unit(const BidsSystem& system, const Quantity<n>& quantity) {
+  for (std::size_t k = 0; k < n; ++k) {
+    if (quantity.scales[k] > 0.0) continue;
+    const BidsChannel& channel = system.channels[quantity.columns[k]];
+    return refuse("a unit of " + channel.type + " for channel " + shown(channel.name),
+                  shown(channel.units));
+  }
+  return {};
+}
+
+Failure in_channels(Error error, std::string_view file) {
+  if (error.file.empty()) error.file = std::string(file);
+  return Failure(std::move(error));
+}
+
+Result<std::unique_ptr<PointReader>> points_of(const BidsSystem& system,
+                                               const StreamOptions& options,
+                                               std::string_view file) {
+  std::vector<TrackedPoint> points;
+  for (const std::string& name : tracked_points(system)) {
+    const auto places = find_quantity(system, name, "POS", xyz);
+    if (!places) continue;
+    if (options.metres_per_unit <= 0.0) KA_TRY(check_unit(system, *places));
+    if (!points.empty() && points.front().places.frame != places->frame) {
+      return refuse("one reference_frame for all POS channels", shown(places->frame));
+    }
+    points.push_back({name, *places});
+  }
+  if (points.empty()) return refuse("POS channels x, y and z of a tracked point", "none");
+  const Axes axes = KA_TRY(space_of(system, points.front().places.frame, options));
+  return std::make_unique<BidsPointReader>(system, options, file, std::move(points), axes);
+}
+
+Result<std::unique_ptr<ImuReader>> nodes_of(const BidsSystem& system, const StreamOptions& options,
+                                            std::string_view file) {
+  std::vector<TrackedNode> nodes;
+  Axes axes = y_up;
+  for (const std::string& name : tracked_points(system)) {
+    TrackedNode node{name, find_quantity(system, name, "ORNT", wxyz),
+                     find_quantity(system, name, "ACCEL", xyz),
+                     find_quantity(system, name, "GYRO", xyz)};
+    if (node.acceleration) KA_TRY(check_unit(system, *node.acceleration));
+    if (node.angular_velocity) KA_TRY(check_unit(system, *node.angular_velocity));
+    if (node.orientation) axes = KA_TRY(space_of(system, node.orientation->frame, options));
+    if (node.orientation) node.orientation->scales = {1.0, 1.0, 1.0, 1.0};
+    if (node.orientation || node.acceleration || node.angular_velocity)
+      nodes.push_back(std::move(node));
+  }
+  if (nodes.empty()) return refuse("ORNT channels of a quaternion, ACCEL or GYRO channels", "none");
+  if (determinant(axes) != 1) {
+    return refuse("orientations in a right-handed space", "SpatialAxes of a left-handed one");
+  }
+  auto reader = std::make_unique<BidsNodeReader>(system, options, file, std::move(nodes), axes);
+  const ImuContent& content = reader->content();
+  if (content.orientation || content.acceleration || content.angular_velocity) return reader;
+  return refuse("ORNT, ACCEL or GYRO of every node", "nodes that have none in common");
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PointReader>> make_bids_point_reader(const BidsSystem& system,
+                                                            const StreamOptions& options,
+                                                            std::string_view file) {
+  auto made = points_of(system, options, file);
+  if (!made) return in_channels(std::move(made).error(), file);
+  return made;
+}
+
+Result<std::unique_ptr<ImuReader>> make_bids_node_reader(const BidsSystem& system,
+                                                         const StreamOptions& options,
+                                                         std::string_view file) {
+  auto made = nodes_of(system, options, file);
+  if (!made) return in_channels(std::move(made).error(), file);
+  return made;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/bids/system.h"
+
+#include "kinalign/formats/bids/json_text.h"
+#include "kinalign/formats/bids/names.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::string_view motion_ending = "motion.tsv";
+constexpr std::size_t largest_table = std::size_t{16} << 20, largest_json = std::size_t{1} << 20;
+
+struct SidecarPaths {
+  std::string channels_tsv, motion_json, channels_json, scans_tsv;  // the last may be empty
+};
+
+/// scans.tsv lies in the folder above motion/, and is named by subject and session.
+std::string scans_path_of(const std::string& path) {
+  const auto name = parse_bids_name(file_name(path));
+  std::string_view above = folder(path);
+  if (!name || !above.ends_with("motion/")) return "";
+  above.remove_suffix(std::string_view("motion/").size());
+  std::string out = std::string(above) + "sub-" + std::string(name->label("sub"));
+  if (!name->label("ses").empty()) out += "_ses-" + std::string(name->label("ses"));
+  return out + "_scans.tsv";
+}
+
+SidecarPaths paths_of(const std::string& path) {
+  const std::string stem = path.substr(0, path.size() - motion_ending.size());
+  return {stem + "channels.tsv", stem + "motion.json", stem + "channels.json", scans_path_of(path)};
+}
+
+bool is_there(FileSystem& files, const std::string& path) {
+  return !path.empty() && InputFile::open(files, path, 1).has_value();
+}
+
+Result<std::map<std::string, std::string>> read_letters(FileSystem& files,
+                                                        const std::string& path) {
+  std::map<std::string, std::string> out;
+  if (!is_there(files, path)) return out;
+  const auto json = KA_TRY(parse_bids_json(KA_TRY(read_whole(files, path, largest_json)), path));
+  const auto frame = json.find("reference_frame");
+  if (frame == json.end() || !frame->is_object()) return out;
+  const auto levels = frame->find("Levels");
+  if (levels == frame->end() || !levels->is_object()) return out;
+  for (const auto& [name, level] : levels->items()) {
+    if (!level.is_object()) continue;
+    const auto axes = level.find("SpatialAxes");
+    if (axes != level.end() && axes->is_string()) out[name] = axes->get<std::string>();
+  }
+  return out;
+}
+
+Result<double> read_rate(FileSystem& files, const std::string& path) {
+  const auto json = KA_TRY(parse_bids_json(KA_TRY(read_whole(files, path, largest_json)), path));
+  const auto rate = json.find("SamplingFrequency");
+  const bool number = rate != json.end() && rate->is_number();
+  const double hz = number ? rate->get<double>() : 0.0;
+  if (hz >= 1e-3 && hz <= 1e6) return hz;
+  return Failure(Error{path, 0, "a SamplingFrequency of 0.001 to 1,000,000",
+                       number ? std::to_string(hz) : "none"});
+}
+
+Result<std::optional<Time>> read_onset(FileSystem& files, const std::string& scans,
+                                       const std::string& path) {
+  std::optional<Time> out;
+  if (!is_there(files, scans)) return out;
+  const TsvTable table = read_tsv(KA_TRY(read_whole(files, scans, largest_table)));
+  const auto file = table.column("filename"), time = table.column("acq_time");
+  if (!file || !time) return out;
+  const std::string wanted = "motion/" + std::string(file_name(path));
+  for (const auto& row : table.rows) {
+    if (row.size() <= std::max(*file, *time) || row[*file] != wanted) continue;
+    out = parse_acq_time(row[*time]);
+  }
+  return out;
+}
+
+}  // namespace
+
+bool named_as_bids_motion(std::string_view path) {
+  const auto name = parse_bids_name(file_name(path));
+  return name && name->ending == motion_ending && !name->label("tracksys").empty();
+}
+
+bool has_positions(const BidsSystem& system) {
+  return std::any_of(system.channels.begin(), system.channels.end(),
+                     [](const BidsChannel& channel) { return channel.type == "POS"; });
+}
+
+std::vector<std::string> bids_sidecar_paths(FileSystem& files, const std::string& path) {
+  const SidecarPaths paths = paths_of(path);
+  std::vector<std::string> out;
+  for (const std::string* one :
+       {&paths.channels_tsv, &paths.motion_json, &paths.channels_json, &paths.scans_tsv}) {
+    if (is_there(files, *one)) out.push_back(*one);
+  }
+  return out;
+}
+
+Result<BidsSystem> read_bids_system(FileSystem& files, const std::string& path) {
+  if (!named_as_bids_motion(path)) {
+    return Failure(
+        Error{path, 0, "a name such as sub-01_task-walk_tracksys-suit_motion.tsv", "another name"});
+  }
+  const SidecarPaths paths = paths_of(path);
+  BidsSystem out;
+  const std::string channels = KA_TRY(read_whole(files, paths.channels_tsv, largest_table));
+  out.channels = KA_TRY(channels_of(read_tsv(channels), paths.channels_tsv));
+  out.rate_hz = KA_TRY(read_rate(files, paths.motion_json));
+  out.letters = KA_TRY(read_letters(files, paths.channels_json));
+  out.onset = KA_TRY(read_onset(files, paths.scans_tsv, path));
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// A small tab-separated table with a line of names: channels.tsv, participants.tsv, scans.tsv.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+struct TsvTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+
+  std::optional<std::size_t> column(std::string_view name) const;
+};
+
+/// Rows may be longer or shorter than the line of names; the last line may be empty.
+TsvTable read_tsv(std::string_view text);
+
+/// A cell for `text`: "n/a" where it is empty; tabs and line ends become blanks.
+std::string tsv_cell(std::string_view text);
+
+std::string write_tsv(const TsvTable& table);
+
+}  // namespace kinalign

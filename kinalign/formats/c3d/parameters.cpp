@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/c3d/parameters.h"
+
+#include "kinalign/wire/little_endian.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+namespace kinalign {
+
+namespace {
+
+/// VAX F: sign, 8 bits of exponent, 23 of fraction, in two little-endian halves, the upper one
+/// first; the value is 0.1fraction * 2^(exponent - 128).
+double vax_f32(const std::uint8_t* at) {
+  const std::uint32_t bits =
+      static_cast<std::uint32_t>(at[1]) << 24 | at[0] << 16 | at[3] << 8 | at[2];
+  const int exponent = static_cast<int>(bits >> 23 & 0xff);
+  if (exponent == 0) return 0.0;
+  const double fraction = std::ldexp(static_cast<double>(bits & 0x7f'ffff), -24) + 0.5;
+  const double value = std::ldexp(fraction, exponent - 128);
+  return (bits >> 31) != 0 ? -value : value;
+}
+
+/// Takes entries from the front of the section.
+class Entries {
+ public:
+  Entries(std::span<const std::uint8_t> section, C3dProcessor processor)
+      : section_(section), processor_(processor) {}
+
+  std::size_t at() const { return at_; }
+  bool has(std::size_t bytes) const { return bytes <= section_.size() - at_; }
+  int i8() {
+    const int byte = section_[at_++];
+    return byte < 128 ? byte : byte - 256;
+  }
+  std::uint8_t u8() { return section_[at_++]; }
+  std::uint16_t u16() {
+    at_ += 2;
+    return c3d_u16(processor_, &section_[at_ - 2]);
+  }
+  std::span<const std::uint8_t> bytes(std::size_t count) {
+    at_ += count;
+    return section_.subspan(at_ - count, count);
+  }
+  void go_to(std::size_t at) { at_ = at; }
+  std::size_t size() const { return section_.size(); }
+
+ private:
+  std::span<const std::uint8_t> section_;
+  C3dProcessor processor_;
+  std::size_t at_ = 4;
+};
+
+std::string in_capitals(std::span<const std::uint8_t> bytes) {
+  std::string out;
+  for (const std::uint8_t byte : bytes) {
+    const char c = static_cast<char>(byte);
+    out += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  }
+  return out;
+}
+
+std::size_t size_of(C3dType type) {
+  return static_cast<std::size_t>(std::abs(static_cast<int>(type)));
+}
+
+/// Type, dimensions and values; false where they reach beyond the section or are of no type.
+bool take_values(Entries& entries, C3dParameter& out) {
+  if (!entries.has(2)) return false;
+  const int type = entries.i8();
+  if (type != -1 && type != 1 && type != 2 && type != 4) return false;
+  out.type = static_cast<C3dType>(type);
+  const std::size_t dimensions = entries.u8();
+  if (!entries.has(dimensions)) return false;
+  std::size_t count = 1;
+  for (const std::uint8_t dimension : entries.bytes(dimensions)) {
+    out.dimensions.push_back(dimension);
+    count *= dimension;
+    if (count > entries.size()) return false;
+  }
+  const std::size_t bytes = count * size_of(out.type);
+  if (!entries.has(bytes)) return false;
+  const auto values = entries.bytes(bytes);
+  out.bytes.assign(values.begin(), values.end());
+  return true;
+}
+
+constexpr std::size_t most_parameters = 10'000;  // programs write some hundred
+
+/// A group may follow its parameters.
+struct Groups {
+  std::map<int, std::string> names;
+  std::vector<int> of_parameter;
+};
+
+enum class Taken { entry, last, outside, bad_values };
+
+/// One group or one parameter, and on to the next entry.
+Taken take_entry(Entries& entries, Groups& groups, std::vector<C3dParameter>& parameters) {
+  if (!entries.has(2)) return Taken::last;
+  const auto length = static_cast<std::size_t>(std::abs(entries.i8()));
+  const int id = entries.i8();
+  if (length == 0) return Taken::last;
+  if (!entries.has(length + 2)) return Taken::outside;
+  std::string name = in_capitals(entries.bytes(length));
+  const std::size_t offset_at = entries.at();
+  const std::size_t offset = entries.u16();
+  if (id < 0) {
+    groups.names[-id] = std::move(name);
+  } else {
+    parameters.emplace_back().name = std::move(name);
+    groups.of_parameter.push_back(id);
+    if (!take_values(entries, parameters.back())) return Taken::bad_values;
+  }
+  if (offset == 0) {
+    entries.go_to(entries.size());
+    return Taken::entry;
+  }
+  const std::size_t next = offset_at + offset;
+  if (offset < 2 || next > entries.size()) return Taken::outside;
+  entries.go_to(next);
+  return Taken::entry;
+}
+
+std::string_view trimmed_end(std::string_view text) {
+  const auto last = text.find_last_not_of(std::string_view(" \0\t", 3));
+  return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
+}
+
+}  // namespace
+
+double c3d_f32(C3dProcessor processor, const std::uint8_t* at) {
+  if (processor == C3dProcessor::dec) return vax_f32(at);
+  const std::span<const std::uint8_t> bytes(at, 4);
+  std::uint32_t bits = little_at<std::uint32_t>(bytes, 0);
+  if (processor == C3dProcessor::mips) bits = __builtin_bswap32(bits);
+  return static_cast<double>(std::bit_cast<float>(bits));
+}
+
+Result<C3dParameters> C3dParameters::parse(std::span<const std::uint8_t> section,
+                                           std::string_view file, std::uint64_t section_at) {
+  const auto refuse = [&](const std::string& expected, std::size_t at) {
+    return Failure(
+        Error{std::string(file), 0, expected, fmt::format("another at byte {}", section_at + at)});
+  };
+  if (section.size() < 4 || section[3] < 84 || section[3] > 86) {
+    return refuse("a C3D parameter section of processor 84, 85 or 86", 3);
+  }
+  C3dParameters out;
+  out.processor_ = static_cast<C3dProcessor>(section[3]);
+  Groups groups;
+  Entries entries(section, out.processor_);
+  for (;;) {
+    const std::size_t entry = entries.at();
+    const Taken taken = take_entry(entries, groups, out.parameters_);
+    if (taken == Taken::last) break;
+    if (taken == Taken::outside) return refuse("C3D parameters inside their section", entry);
+    if (taken == Taken::bad_values) {
+      return refuse(
+          "the values of parameter " + shown(out.parameters_.back().name) + " inside the section",
+          entry);
+    }
+    if (out.parameters_.size() > most_parameters) {
+      return refuse(fmt::format("at most {} C3D parameters", most_parameters), entry);
+    }
+  }
+  for (std::size_t i = 0; i < out.parameters_.size(); ++i) {
+    out.parameters_[i].group = groups.names[groups.of_parameter[i]];
+  }
+  return out;
+}
+
+const C3dParameter* C3dParameters::find(std::string_view group, std::string_view name) const {
+  const auto found = std::find_if(parameters_.begin(), parameters_.end(), [&](const auto& one) {
+    return one.group == group && one.name == name;
+  });
+  return found == parameters_.end() ? nullptr : &*found;
+}
+
+std::optional<double> C3dParameters::number(std::string_view group, std::string_view name,
+                                            std::size_t index) const {
+  const C3dParameter* found = find(group, name);
+  if (found == nullptr || found->type == C3dType::text) return std::nullopt;
+  const std::size_t size = size_of(found->type);
+  if (found->bytes.size() < (index + 1) * size) return std::nullopt;
+  const std::uint8_t* at = &found->bytes[index * size];
+  if (found->type == C3dType::byte) return *at;
+  if (found->type == C3dType::i16) return c3d_u16(processor_, at);
+  return c3d_f32(processor_, at);
+}
+
+std::vector<std::string> C3dParameters::texts(std::string_view group, std::string_view name) const {
+  const C3dParameter* found = find(group, name);
+  std::vector<std::string> out;
+  if (found == nullptr || found->type != C3dType::text || found->bytes.empty()) return out;
+  const std::size_t length = found->dimensions.empty() ? 1 : found->dimensions.front();
+  const std::string_view all(reinterpret_cast<const char*>(found->bytes.data()),
+                             found->bytes.size());
+  for (std::size_t at = 0; at < all.size(); at += length) {
+    out.emplace_back(trimmed_end(all.substr(at, length)));
+  }
+  return out;
+}
+
+std::vector<std::string> C3dParameters::all_texts(std::string_view group,
+                                                  std::string_view name) const {
+  std::vector<std::string> out = texts(group, name);
+  for (int k = 2;; ++k) {
+    const std::vector<std::string> more = texts(group, std::string(name) + std::to_string(k));
+    if (more.empty()) return out;
+    out.insert(out.end(), more.begin(), more.end());
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/mvnx/document.h"
+
+#include "kinalign/core/numbers.h"
+#include "kinalign/formats/cells.h"
+
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double largest_number = 1e15;
+constexpr std::size_t most_things = 20'000;  // segments, points, sensors and joints of one head
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+/// Numbers between blanks; none where anything else stands.
+std::vector<double> numbers_of(std::string_view text) {
+  std::vector<double> out;
+  const std::string ended(text);  // the character behind a number must be readable
+  const char* at = ended.data();
+  const char* end = at + ended.size();
+  for (;;) {
+    while (at < end && is_blank(*at)) ++at;
+    if (at == end) return out;
+    double value = 0.0;
+    at = parse_number(at, end, value);
+    if (at == nullptr || !(std::abs(value) < largest_number)) return {};
+    out.push_back(value);
+  }
+}
+
+std::optional<double> number_of(std::optional<std::string_view> text) {
+  double value = 0.0;
+  if (!text || !parse_number(trimmed(*text), value)) return std::nullopt;
+  return value;
+}
+
+/// "Pelvis/jL5S1"
+std::pair<std::string, std::string> place_of(std::string_view text) {
+  text = trimmed(text);
+  const auto slash = text.find('/');
+  if (slash == std::string_view::npos) return {std::string(text), ""};
+  return {std::string(text.substr(0, slash)), std::string(text.substr(slash + 1))};
+}
+
+struct Quantity {
+  std::string_view name;
+  std::vector<double> MvnxFrame::*array;
+};
+
+constexpr std::array<Quantity, 6> quantities{
+    {{"orientation", &MvnxFrame::orientation},
+     {"position", &MvnxFrame::position},
+     {"sensorOrientation", &MvnxFrame::sensor_orientation},
+     {"sensorAcceleration", &MvnxFrame::sensor_acceleration},
+     {"sensorFreeAcceleration", &MvnxFrame::sensor_free_acceleration},
+     {"sensorAngularVelocity", &MvnxFrame::sensor_angular_velocity}}};
+
+}  // namespace
+
+MvnxDocument::MvnxDocument(std::string_view file, UseFrame use)
+    : file_(file), use_(std::move(use)), xml_(std::string(file)) {}
+
+Result<void> MvnxDocument::feed(std::string_view piece) {
+  if (piece.empty()) return {};
+  if (!begun_) {
+    begun_ = true;
+    if (piece.front() == '\x1f') gunzip_.emplace();  // its second byte may come later
+  }
+  if (!gunzip_) return xml_.feed(piece, *this);
+  auto fed = gunzip_->feed(piece, [this](std::string_view text) { return xml_.feed(text, *this); });
+  if (!fed && fed.error().file.empty()) fed.error().file = file_;
+  return fed;
+}
+
+Result<void> MvnxDocument::finish(Findings& findings) {
+  if (subjects_ > 1) {
+    findings.push_back({Severity::warning,
+                        Error{file_, 0, "one subject", std::to_string(subjects_)},
+                        "the first one was read", "export a file for each subject"});
+  }
+  Result<void> ended = xml_.finish(*this);
+  if (ended && gunzip_ && !gunzip_->complete()) {
+    ended = Failure(Error{file_, 0, "a whole gzip archive", "the end of the file"});
+  }
+  if (ended) return {};
+  if (frames_ == 0) return ended;
+  findings.push_back({Severity::warning, std::move(ended).error(),
+                      "the file was cut: the frames before were read", ""});
+  return {};
+}
+
+Result<void> MvnxDocument::begin(std::string_view name, const XmlAttributes& attributes) {
+  if (!std::exchange(root_, true) && name != "mvnx") {
+    return Failure(Error{"", 0, "the element mvnx", shown(name)});
+  }
+  subjects_ += name == "subject" ? 1 : 0;
+  if (subjects_ != 1) return {};
+  if (name == "frame") {
+    begin_frame(attributes);
+    return {};
+  }
+  return in_frame_ ? Result<void>{} : begin_in_head(name, attributes);
+}
+
+Result<void> MvnxDocument::begin_in_head(std::string_view name, const XmlAttributes& attributes) {
+  const std::string label(attributes.find("label").value_or(""));
+  if (name == "subject") head_.rate_hz = number_of(attributes.find("frameRate")).value_or(0.0);
+  if (name == "segment") head_.segments.push_back({label, {}});
+  if (name == "sensor") head_.sensors.push_back(label);
+  if (name == "joint") head_.joints.emplace_back();
+  if (name == "point" && !head_.segments.empty()) {
+    head_.segments.back().points.push_back({label, Vec3::Zero()});
+  }
+  if (++things_ <= most_things) return {};
+  return Failure(Error{"", 0, "at most 20,000 elements before the first frame", "more"});
+}
+
+void MvnxDocument::begin_frame(const XmlAttributes& attributes) {
+  in_frame_ = true;
+  frame_ = {};
+  frame_.type = attributes.find("type").value_or("normal");
+  frame_.index = number_of(attributes.find("index"));
+  frame_.ms = number_of(attributes.find("time"));
+  frame_.unix_ms = number_of(attributes.find("ms"));
+  line_ = xml_.line();
+}
+
+Result<void> MvnxDocument::end(std::string_view name, std::string_view text) {
+  if (subjects_ != 1) return {};
+  if (!in_frame_) return end_in_head(name, text);
+  if (name != "frame") {
+    end_in_frame(name, text);
+    return {};
+  }
+  in_frame_ = false;
+  ++frames_;
+  auto used = use_(head_, frame_);
+  if (!used && used.error().file.empty()) {
+    used.error().file = file_;
+    used.error().line = line_;
+  }
+  return used;
+}
+
+Result<void> MvnxDocument::end_in_head(std::string_view name, std::string_view text) {
+  if (name == "pos_b" && !head_.segments.empty() && !head_.segments.back().points.empty()) {
+    const auto numbers = numbers_of(text);
+    if (numbers.size() != 3) {
+      return Failure(Error{"", 0, "three numbers in pos_b", shown(trimmed(text))});
+    }
+    head_.segments.back().points.back().place = Vec3(numbers[0], numbers[1], numbers[2]);
+  }
+  if (head_.joints.empty()) return {};
+  MvnxJoint& joint = head_.joints.back();
+  if (name == "connector1") std::tie(joint.parent, joint.parent_point) = place_of(text);
+  if (name == "connector2") std::tie(joint.child, joint.child_point) = place_of(text);
+  return {};
+}
+
+void MvnxDocument::end_in_frame(std::string_view name, std::string_view text) {
+  for (const Quantity& quantity : quantities) {
+    if (quantity.name == name) frame_.*quantity.array = numbers_of(text);
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an MVNX file says, in its own units and axes: head and frames. Layout: docs/formats/mvnx.md.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/formats/mvnx/gunzip.h"
+#include "kinalign/formats/mvnx/xml_feed.h"
+#include "kinalign/motion/arrays.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+struct MvnxPoint {
+  std::string label;
+  Vec3 place = Vec3::Zero();  // m, in the segment's space
+};
+
+struct MvnxSegment {
+  std::string label;
+  std::vector<MvnxPoint> points;
+};
+
+/// "Pelvis/jL5S1" and "L5/jL5S1".
+struct MvnxJoint {
+  std::string parent, parent_point, child, child_point;
+};
+
+struct MvnxHead {
+  double rate_hz = 0.0;  // 0: not stated
+  std::vector<MvnxSegment> segments;
+  std::vector<std::string> sensors;
+  std::vector<MvnxJoint> joints;
+};
+
+/// Arrays are empty where the frame lacks them, or where they hold anything but numbers below 1e15.
+struct MvnxFrame {
+  std::string type;                              // "normal", "identity", "tpose", "tpose-isb"
+  std::optional<double> index;                   // from 0
+  std::optional<double> ms, unix_ms;             // since the recording's first frame; since 1970
+  std::vector<double> orientation;               // [segments,4] w,x,y,z global_from_segment
+  std::vector<double> position;                  // [segments,3] m
+  std::vector<double> sensor_orientation;        // [sensors,4] global_from_sensor
+  std::vector<double> sensor_acceleration;       // [sensors,3] m/s2, in the sensor's space
+  std::vector<double> sensor_free_acceleration;  // [sensors,3] m/s2, global, without gravity
+  std::vector<double> sensor_angular_velocity;   // [sensors,3] rad/s, in the sensor's space
+};
+
+/// Fed a file in pieces, packed by gzip or not. Only the first subject is read.
+class MvnxDocument final : private XmlHandler {
+ public:
+  using UseFrame = std::function<Result<void>(const MvnxHead&, const MvnxFrame&)>;
+
+  /// `use` gets each frame, calibration poses too, in the order of the file.
+  MvnxDocument(std::string_view file, UseFrame use);
+
+  Result<void> feed(std::string_view piece);
+  /// The file has ended. Where it was cut behind its first frame, that is a finding.
+  Result<void> finish(Findings& findings);
+
+  const std::string& file() const { return file_; }
+
+ private:
+  Result<void> begin(std::string_view name, const XmlAttributes& attributes) override;
+  Result<void> end(std::string_view name, std::string_view text) override;
+  Result<void> begin_in_head(std::string_view name, const XmlAttributes& attributes);
+  void begin_frame(const XmlAttributes& attributes);
+  Result<void> end_in_head(std::string_view name, std::string_view text);
+  void end_in_frame(std::string_view name, std::string_view text);
+
+  std::string file_;
+  UseFrame use_;
+  std::optional<Gunzip> gunzip_;
+  XmlFeed xml_;
+  bool begun_ = false, root_ = false, in_frame_ = false;
+  std::size_t subjects_ = 0, things_ = 0;
+  std::uint64_t frames_ = 0;
+  std::int64_t line_ = 0;  // where the frame begins
+  MvnxHead head_;
+  MvnxFrame frame_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/mvnx/frame_stamps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double largest_index = 1e12;
+
+bool is_index(double x) { return x >= 0.0 && x < largest_index && x == std::floor(x); }
+
+}  // namespace
+
+Result<void> MvnxStamps::begin(const MvnxHead& head, const MvnxFrame& frame) {
+  rate_hz_ = options_.rate_hz > 0.0 ? options_.rate_hz : head.rate_hz;
+  if (!(rate_hz_ >= 1e-3) || !(rate_hz_ <= 1e6)) {
+    return Failure(Error{"", 0, "a frameRate of 0.001 to 1,000,000 Hz, or rate_hz",
+                         head.rate_hz == 0.0 ? "none" : fmt::format("{}", head.rate_hz)});
+  }
+  first_index_ = frame.index.value_or(0.0);
+  first_ms_ = frame.ms.value_or(0.0);
+  constexpr double furthest_ms = 1e-6 * static_cast<double>(furthest_stamp_ns);
+  const double unix_ms = frame.unix_ms.value_or(0.0);
+  const double start_ms = std::abs(unix_ms) < furthest_ms ? unix_ms : 0.0;
+  start_ns_ = options_.start_ns.value_or(std::llround(start_ms) * 1'000'000);
+  return {};
+}
+
+Result<std::optional<Time>> MvnxStamps::next(const MvnxHead& head, const MvnxFrame& frame) {
+  const double index = frame.index.value_or(last_index_ + 1.0);
+  if (!is_index(index)) {
+    return Failure(Error{"", 0, "a frame's index", fmt::format("{}", index)});
+  }
+  if (!first_index_) KA_TRY(begin(head, frame));
+  if (index <= last_index_) {
+    ++not_rising_;
+    return std::optional<Time>();
+  }
+  if (last_index_ >= 0.0) missing_ += static_cast<std::uint64_t>(index - last_index_ - 1.0);
+  last_index_ = index;
+  const double since = index - *first_index_;
+  if (frame.ms) {
+    const double off = 1e-3 * (*frame.ms - first_ms_) - since / rate_hz_;
+    largest_off_s_ = std::max(largest_off_s_, std::abs(off));
+  }
+  std::int64_t ns = 0;
+  const bool overflow = __builtin_add_overflow(
+      start_ns_, stamp_at_rate(static_cast<std::uint64_t>(since), rate_hz_), &ns);
+  if (overflow || ns > furthest_stamp_ns || ns < -furthest_stamp_ns) {
+    return Failure(Error{"", 0, "a stamp inside +-4e18 ns", fmt::format("frame {}", index)});
+  }
+  return std::optional(utc_time(ns));
+}
+
+void MvnxStamps::report(const std::string& file, Findings& findings) const {
+  if (not_rising_ > 0) {
+    findings.push_back(
+        {Severity::warning,
+         Error{file, 0, "frames whose index rises", fmt::format("{} others", not_rising_)},
+         "they were left out", ""});
+  }
+  if (missing_ > 0) {
+    findings.push_back({Severity::note,
+                        Error{file, 0, "each frame", fmt::format("{} missing indices", missing_)},
+                        "they are a gap", ""});
+  }
+  // Milliseconds are rounded, to half of one at each end.
+  if (largest_off_s_ > 0.001 + 1.5 / std::max(rate_hz_, 1e-3)) {
+    findings.push_back({Severity::warning,
+                        Error{file, 0, fmt::format("times of frameRate {:g}", rate_hz_),
+                              fmt::format("times off by up to {:.3g} s", largest_off_s_)},
+                        "frames were stamped by their index and the rate",
+                        "find out which is true: gaps and splines go by it"});
+  }
+}
+
+}  // namespace kinalign

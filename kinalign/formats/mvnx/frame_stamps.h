@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stamps of an MVNX file's frames: by their index and the frame rate, from the first frame's time
+// of day. The file's own milliseconds are rounded, so they are only compared.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/formats/mvnx/document.h"
+#include "kinalign/formats/row_stamps.h"
+#include "kinalign/take/manifest.h"
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace kinalign {
+
+class MvnxStamps {
+ public:
+  explicit MvnxStamps(const StreamOptions& options) : options_(options) {}
+
+  /// Empty, and counted, where the frame's index does not rise. Fails where there is no rate, and
+  /// where a stamp lies outside +-4e18 ns.
+  Result<std::optional<Time>> next(const MvnxHead& head, const MvnxFrame& frame);
+  void report(const std::string& file, Findings& findings) const;
+
+ private:
+  Result<void> begin(const MvnxHead& head, const MvnxFrame& frame);
+
+  StreamOptions options_;
+  double rate_hz_ = 0.0;
+  std::optional<double> first_index_;
+  double first_ms_ = 0.0, last_index_ = -1.0;
+  std::int64_t start_ns_ = 0;
+  std::uint64_t not_rising_ = 0, missing_ = 0;
+  double largest_off_s_ = 0.0;
+};
+
+}  // namespace kinalign

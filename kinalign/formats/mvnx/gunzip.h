@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// A gzip file (RFC 1952) unpacked in pieces.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <functional>
+#include <memory>
+#include <string_view>
+
+namespace kinalign {
+
+bool looks_like_gzip(std::string_view head);
+
+class Gunzip {
+ public:
+  Gunzip();
+  ~Gunzip();
+  Gunzip(const Gunzip&) = delete;
+  Gunzip& operator=(const Gunzip&) = delete;
+
+  /// Calls `use(text)` for pieces of at most 64 KiB. Fails, without a place, where the bytes are
+  /// damaged, and where `use` does.
+  Result<void> feed(std::string_view piece,
+                    const std::function<Result<void>(std::string_view)>& use);
+
+  /// The last archive in the file is complete.
+  bool complete() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// Segments of an MVNX file as a skeleton and its motion.
+#include "kinalign/formats/axes.h"
+#include "kinalign/formats/mvnx/document.h"
+#include "kinalign/formats/mvnx/frame_stamps.h"
+#include "kinalign/formats/mvnx/mvnx.h"
+#include "kinalign/formats/point_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+/// Global places and turns of all segments in our axes; a segment's own axes are turned with the
+/// space, so that a segment at rest has no rotation.
+struct GlobalPose {
+  std::vector<Vec3> places;
+  std::vector<Quat> turns;
+};
+
+/// What a frame is turned and scaled by.
+struct MvnxUnits {
+  PointUnits units;
+  Quat turn;
+
+  explicit MvnxUnits(const StreamOptions& options)
+      : units(point_units({z_up, 1.0}, options)), turn(rotation_of(units.axes)) {}
+
+  Vec3 ours(const Vec3& file) const { return turned(units.axes, file.data()) * units.metres; }
+};
+
+/// Empty where the frame lacks a segment, or a quaternion's length is off by more than a hundredth.
+std::optional<GlobalPose> pose_of(const MvnxFrame& frame, std::size_t segments,
+                                  const MvnxUnits& units) {
+  if (frame.orientation.size() != 4 * segments || frame.position.size() != 3 * segments) return {};
+  GlobalPose out;
+  for (std::size_t k = 0; k < segments; ++k) {
+    const Quat q = quat(frame.orientation, k);
+    if (!(std::abs(q.norm() - 1.0) <= 0.01)) return std::nullopt;
+    out.turns.push_back((units.turn * q * units.turn.conjugate()).normalized());
+    out.places.push_back(units.ours(vec3(frame.position, k)));
+  }
+  return out;
+}
+
+/// The parent of each segment, by the joints; -1: a root.
+std::vector<int> parents_of(const MvnxHead& head) {
+  const auto index = [&](const std::string& label) {
+    const auto found = std::find_if(head.segments.begin(), head.segments.end(),
+                                    [&](const MvnxSegment& s) { return s.label == label; });
+    return found == head.segments.end() ? -1 : static_cast<int>(found - head.segments.begin());
+  };
+  std::vector<int> out(head.segments.size(), -1);
+  for (const MvnxJoint& joint : head.joints) {
+    const int child = index(joint.child);
+    if (child >= 0) out[static_cast<std::size_t>(child)] = index(joint.parent);
+  }
+  return out;
+}
+
+const MvnxPoint* point_named(const MvnxSegment& segment, const std::string& label) {
+  const auto found = std::find_if(segment.points.begin(), segment.points.end(),
+                                  [&](const MvnxPoint& p) { return p.label == label; });
+  return found == segment.points.end() ? nullptr : &*found;
+}
+
+/// From the parent's origin to the segment's, by the points that their joint connects.
+std::optional<Vec3> offset_by_points(const MvnxHead& head, std::size_t child, std::size_t parent) {
+  for (const MvnxJoint& joint : head.joints) {
+    if (joint.child != head.segments[child].label || joint.parent != head.segments[parent].label) {
+      continue;
+    }
+    const MvnxPoint* from = point_named(head.segments[parent], joint.parent_point);
+    const MvnxPoint* to = point_named(head.segments[child], joint.child_point);
+    if (from != nullptr && to != nullptr) return from->place - to->place;
+  }
+  return std::nullopt;
+}
+
+class MvnxReader final : public ClipReader {
+ public:
+  MvnxReader(const StreamOptions& options, std::string_view file)
+      : units_(options),
+        stamps_(options),
+        document_(file, [this](const MvnxHead& head, const MvnxFrame& frame) {
+          return use(head, frame);
+        }) {}
+  MvnxReader(const MvnxReader&) = delete;  // document_ knows where it lies
+  MvnxReader& operator=(const MvnxReader&) = delete;
+  ~MvnxReader() override = default;
+
+  Result<void> feed(std::string_view piece, ClipFrames& out) override {
+    out_ = &out;
+    return document_.feed(piece);
+  }
+
+  Result<void> finish(ClipFrames& out) override {
+    out_ = &out;
+    KA_TRY(document_.finish(findings));
+    const std::string& file = document_.file();
+    if (!header_) {
+      return Failure(
+          Error{file, 0, "a frame of type normal with all segments",
+                fmt::format("the end of the file behind {} incomplete ones", incomplete_)});
+    }
+    if (incomplete_ > 0) {
+      findings.push_back({Severity::warning,
+                          Error{file, 0, "orientation and position of all segments in each frame",
+                                fmt::format("{} frames without", incomplete_)},
+                          "they were left out", ""});
+    }
+    stamps_.report(file, findings);
+    return {};
+  }
+
+  const Skeleton* header() const override { return header_ ? &*header_ : nullptr; }
+
+ private:
+  Result<void> use(const MvnxHead& head, const MvnxFrame& frame) {
+    const auto pose = pose_of(frame, head.segments.size(), units_);
+    if (frame.type != "normal") {
+      keep_rest(frame.type, pose);
+      return {};
+    }
+    if (!pose) {
+      ++incomplete_;
+      return {};
+    }
+    const auto stamp = KA_TRY(stamps_.next(head, frame));
+    if (!stamp) return {};
+    if (!header_) KA_TRY(begin(head, *pose));
+    append(*pose, *stamp);
+    return {};
+  }
+
+  /// The identity pose is the best rest pose, a T-pose the second best.
+  void keep_rest(const std::string& type, const std::optional<GlobalPose>& pose) {
+    if (!pose || (rest_ && type != "identity")) return;
+    rest_ = pose;
+  }
+
+  Result<void> begin(const MvnxHead& head, const GlobalPose& first) {
+    if (head.segments.empty()) return Failure(Error{"", 0, "segments above the frames", "none"});
+    Skeleton skeleton;
+    skeleton.parents = parents_of(head);
+    const GlobalPose& rest = rest_ ? *rest_ : first;
+    for (std::size_t k = 0; k < head.segments.size(); ++k) {
+      skeleton.joint_names.push_back(head.segments[k].label);
+      skeleton.rest_offsets.push_back(rest_offset(head, skeleton.parents[k], k, rest));
+    }
+    add_end_sites(head, skeleton);
+    KA_TRY(validate(skeleton));
+    header_ = std::move(skeleton);
+    return {};
+  }
+
+  Vec3 rest_offset(const MvnxHead& head, int parent, std::size_t k, const GlobalPose& rest) const {
+    if (parent < 0) return rest.places[k];
+    const auto p = static_cast<std::size_t>(parent);
+    if (const auto offset = offset_by_points(head, k, p)) return units_.ours(*offset);
+    return rest.turns[p].conjugate() * (rest.places[k] - rest.places[p]);
+  }
+
+  /// A leaf ends at its first point that is no joint: MVN lists the tips first.
+  void add_end_sites(const MvnxHead& head, Skeleton& skeleton) const {
+    for (std::size_t k = 0; k < head.segments.size(); ++k) {
+      const auto& parents = skeleton.parents;
+      if (std::find(parents.begin(), parents.end(), static_cast<int>(k)) != parents.end()) continue;
+      for (const MvnxPoint& point : head.segments[k].points) {
+        if (!point.label.starts_with('p')) continue;
+        skeleton.end_sites.push_back({static_cast<int>(k), units_.ours(point.place)});
+        break;
+      }
+    }
+  }
+
+  void append(const GlobalPose& pose, Time stamp) {
+    const std::size_t segments = pose.places.size();
+    const std::size_t first = out_->size() * segments;
+    out_->stamps.push_back(stamp);
+    out_->local_positions.resize(3 * (first + segments));
+    out_->local_rotations.resize(4 * (first + segments));
+    for (std::size_t k = 0; k < segments; ++k) {
+      Vec3 place = pose.places[k];
+      Quat turn = pose.turns[k];
+      if (header_->parents[k] >= 0) {
+        const auto p = static_cast<std::size_t>(header_->parents[k]);
+        const Quat parent = pose.turns[p].conjugate();
+        place = parent * (place - pose.places[p]);
+        turn = (parent * turn).normalized();
+      }
+      vec3(out_->local_positions, first + k) = place;
+      put_quat(out_->local_rotations, first + k, turn);
+    }
+  }
+
+  MvnxUnits units_;
+  MvnxStamps stamps_;
+  MvnxDocument document_;
+  ClipFrames* out_ = nullptr;  // of the call in progress
+  std::optional<GlobalPose> rest_;
+  std::uint64_t incomplete_ = 0;
+  std::optional<Skeleton> header_;
+};
+
+}  // namespace
+
+std::unique_ptr<ClipReader> make_mvnx_reader(const StreamOptions& options, std::string_view file) {
+  return std::make_unique<MvnxReader>(options, file);
+}
+
+bool looks_like_mvnx(std::string_view head) {
+  constexpr std::size_t searched = 4096;
+  constexpr std::string_view element = "<mvnx";
+  if (!looks_like_gzip(head)) {
+    return head.starts_with('<') || head.starts_with("\xef\xbb\xbf<")
+               ? head.substr(0, searched).find(element) != std::string_view::npos
+               : false;
+  }
+  std::string text;
+  Gunzip gunzip;
+  // An error, or enough text, ends it.
+  const auto unpacked =
+      gunzip.feed(head.substr(0, searched), [&](std::string_view more) -> Result<void> {
+        text += more.substr(0, searched);
+        if (text.size() < searched) return {};
+        return Failure(Error{});
+      });
+  (void)unpacked;
+  return text.find(element) != std::string::npos;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sensors of an MVNX file as inertial nodes.
+#include "kinalign/formats/imu_converter.h"
+#include "kinalign/formats/mvnx/document.h"
+#include "kinalign/formats/mvnx/frame_stamps.h"
+#include "kinalign/formats/mvnx/mvnx.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+class MvnxSensorReader final : public ImuReader {
+ public:
+  MvnxSensorReader(const StreamOptions& options, std::string_view file)
+      : stamps_(options),
+        samples_(ImuUnits{axes_of(z_up, options), 1.0, 1.0}),
+        document_(file, [this](const MvnxHead& head, const MvnxFrame& frame) {
+          return use(head, frame);
+        }) {}
+  MvnxSensorReader(const MvnxSensorReader&) = delete;  // document_ knows where it lies
+  MvnxSensorReader& operator=(const MvnxSensorReader&) = delete;
+  ~MvnxSensorReader() override = default;
+
+  Result<void> feed(std::string_view piece, ImuSamples& out) override {
+    out_ = &out;
+    return document_.feed(piece);
+  }
+
+  Result<void> finish(ImuSamples& out) override {
+    out_ = &out;
+    KA_TRY(document_.finish(findings));
+    const std::string& file = document_.file();
+    if (!header_) {
+      return Failure(Error{file, 0, "a frame of type normal with sensors", "the end of the file"});
+    }
+    if (incomplete_ > 0) {
+      findings.push_back({Severity::warning,
+                          Error{file, 0, "what the first frame has of its sensors in each frame",
+                                fmt::format("{} frames without", incomplete_)},
+                          "their samples are invalid", ""});
+    }
+    samples_.report(file, findings);
+    stamps_.report(file, findings);
+    return {};
+  }
+
+  const ImuHeader* header() const override { return header_ ? &*header_ : nullptr; }
+
+ private:
+  Result<void> use(const MvnxHead& head, const MvnxFrame& frame) {
+    if (frame.type != "normal") return {};
+    if (!header_) KA_TRY(begin(head, frame));
+    const auto stamp = KA_TRY(stamps_.next(head, frame));
+    if (!stamp) return {};
+    out_->stamps.push_back(*stamp);
+    append(frame);
+    return {};
+  }
+
+  Result<void> begin(const MvnxHead& head, const MvnxFrame& frame) {
+    const std::size_t sensors = head.sensors.size();
+    const bool turn = sensors > 0 && frame.sensor_orientation.size() == 4 * sensors;
+    const bool force = frame.sensor_acceleration.size() == 3 * sensors;
+    free_ = !force && turn && frame.sensor_free_acceleration.size() == 3 * sensors;
+    const bool rate = frame.sensor_angular_velocity.size() == 3 * sensors;
+    if (sensors == 0 || !(turn || force || rate)) {
+      return Failure(Error{"", 0, "sensors with orientation, acceleration or angular velocity",
+                           "none in the first frame"});
+    }
+    header_ = ImuHeader{head.sensors, {turn, force || free_, rate, !free_}};
+    return {};
+  }
+
+  void append(const MvnxFrame& frame) {
+    const std::size_t sensors = header_->node_names.size();
+    const ImuContent& content = header_->content;
+    const std::vector<double>& acceleration =
+        free_ ? frame.sensor_free_acceleration : frame.sensor_acceleration;
+    const bool whole =
+        (!content.orientation || frame.sensor_orientation.size() == 4 * sensors) &&
+        (!content.acceleration || acceleration.size() == 3 * sensors) &&
+        (!content.angular_velocity || frame.sensor_angular_velocity.size() == 3 * sensors);
+    incomplete_ += whole ? 0 : 1;
+    constexpr double zeros[4] = {};
+    for (std::size_t s = 0; s < sensors; ++s) {
+      const auto of = [&](const std::vector<double>& array, std::size_t parts) {
+        return whole ? &array[parts * s] : zeros;
+      };
+      RawImuSample raw{nullptr, nullptr, nullptr, whole};
+      Vec3 local = Vec3::Zero();
+      if (content.orientation) raw.orientation = of(frame.sensor_orientation, 4);
+      if (content.angular_velocity) raw.angular_velocity = of(frame.sensor_angular_velocity, 3);
+      if (content.acceleration) raw.acceleration = of(acceleration, 3);
+      if (free_ && whole) {
+        local = quat(frame.sensor_orientation, s).normalized().conjugate() *
+                Vec3(vec3(acceleration, s));
+        raw.acceleration = local.data();
+      }
+      samples_.append(raw, *out_);
+    }
+  }
+
+  MvnxStamps stamps_;
+  ImuConverter samples_;
+  MvnxDocument document_;
+  ImuSamples* out_ = nullptr;  // of the call in progress
+  bool free_ = false;          // accelerations are global and without gravity
+  std::uint64_t incomplete_ = 0;
+  std::optional<ImuHeader> header_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImuReader> make_mvnx_sensor_reader(const StreamOptions& options,
+                                                   std::string_view file) {
+  return std::make_unique<MvnxSensorReader>(options, file);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/mvnx/xml_feed.h"
+
+#include <expat.h>
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr int deepest = 64;
+constexpr std::size_t longest = std::size_t{1} << 20;
+
+std::string_view without_prefix(std::string_view name) {
+  const auto colon = name.find(':');
+  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+}  // namespace
+
+std::optional<std::string_view> XmlAttributes::find(std::string_view name) const {
+  for (const char* const* pair = pairs_; *pair != nullptr; pair += 2) {
+    if (name == pair[0]) return pair[1];
+  }
+  return std::nullopt;
+}
+
+struct XmlFeed::State {
+  std::string file;
+  XML_Parser parser = nullptr;
+  XmlHandler* handler = nullptr;
+  std::string text;
+  int depth = 0;
+  std::uint64_t fed = 0, last_event = 0;  // bytes
+  std::optional<Error> error;
+
+  std::int64_t line() const { return static_cast<std::int64_t>(XML_GetCurrentLineNumber(parser)); }
+
+  void stop(Error what) {
+    if (error) return;
+    if (what.file.empty()) {
+      what.file = file;
+      what.line = line();
+    }
+    error = std::move(what);
+    XML_StopParser(parser, XML_FALSE);
+  }
+  void check(Result<void> result) {
+    if (!result) stop(std::move(result).error());
+  }
+
+  static State& of(void* data) {
+    State& self = *static_cast<State*>(data);
+    self.last_event =
+        static_cast<std::uint64_t>(std::max<XML_Index>(XML_GetCurrentByteIndex(self.parser), 0));
+    return self;
+  }
+
+  static void begin(void* data, const char* name, const char** attributes) {
+    State& self = of(data);
+    if (self.error) return;
+    self.text.clear();
+    if (++self.depth > deepest) {
+      self.stop({"", 0, "elements nested 64 deep at most", "deeper ones"});
+      return;
+    }
+    self.check(self.handler->begin(without_prefix(name), XmlAttributes(attributes)));
+  }
+  static void end(void* data, const char* name) {
+    State& self = of(data);
+    if (self.error) return;
+    --self.depth;
+    self.check(self.handler->end(without_prefix(name), self.text));
+    self.text.clear();
+  }
+  static void characters(void* data, const char* text, int size) {
+    State& self = of(data);
+    if (self.error) return;
+    self.text.append(text, static_cast<std::size_t>(size));
+    if (self.text.size() > longest) self.stop({"", 0, "texts of 1 MiB at most", "a longer one"});
+  }
+  // NOLINTNEXTLINE(readability-function-size): Expat's signature
+  static void entity(void* data, const char* name, int, const char*, int, const char*, const char*,
+                     const char*, const char*) {
+    of(data).stop({"", 0, "a document without entities of its own", shown(name)});
+  }
+};
+
+XmlFeed::XmlFeed(std::string file) : state_(std::make_unique<State>()) {
+  state_->file = std::move(file);
+  state_->parser = XML_ParserCreate(nullptr);
+  if (state_->parser == nullptr) throw std::bad_alloc();
+  XML_SetUserData(state_->parser, state_.get());
+  XML_SetElementHandler(state_->parser, State::begin, State::end);
+  XML_SetCharacterDataHandler(state_->parser, State::characters);
+  XML_SetEntityDeclHandler(state_->parser, State::entity);
+}
+
+XmlFeed::~XmlFeed() { XML_ParserFree(state_->parser); }
+
+std::int64_t XmlFeed::line() const { return state_->line(); }
+
+Result<void> XmlFeed::parse(std::string_view piece, bool last, XmlHandler& handler) {
+  State& s = *state_;
+  s.handler = &handler;
+  const auto status =
+      XML_Parse(s.parser, piece.data(), static_cast<int>(piece.size()), last ? 1 : 0);
+  s.fed += piece.size();
+  if (s.error) return Failure(*s.error);
+  if (status == XML_STATUS_ERROR) {
+    return Failure(
+        Error{s.file, s.line(), "well-formed XML", XML_ErrorString(XML_GetErrorCode(s.parser))});
+  }
+  // Expat holds a tag or a comment until it is whole.
+  if (!last && s.fed - std::min(s.last_event, s.fed) > longest) {
+    return Failure(Error{s.file, s.line(), "tags and comments of 1 MiB at most", "a longer one"});
+  }
+  return {};
+}
+
+Result<void> XmlFeed::feed(std::string_view piece, XmlHandler& handler) {
+  constexpr std::size_t most = std::size_t{64} << 10;
+  for (; !piece.empty(); piece.remove_prefix(std::min(piece.size(), most))) {
+    KA_TRY(parse(piece.substr(0, most), false, handler));
+  }
+  return {};
+}
+
+Result<void> XmlFeed::finish(XmlHandler& handler) { return parse("", true, handler); }
+
+}  // namespace kinalign
