@@ -305,10 +305,10 @@ Verb report_verb() {
            "and "
            "nodes, and a 3D player. Raw samples stand in it where the take's inputs can be read. "
            "Exit code 1 where a stream is bad.",
-       .examples = {{"kinalign report demo/take.h5 -o demo/report.html", "open it in a browser"},
-                    {"kinalign report demo/take.h5 -o demo/report.html --force --open",
+       .examples = {{"kinalign report demo/take.h5 -o demo/page.html", "open it in a browser"},
+                    {"kinalign report demo/take.h5 -o demo/page.html --force --open",
                      "opens it at once"},
-                    {"kinalign report demo/take.h5 -o demo/report.html --force --json",
+                    {"kinalign report demo/take.h5 -o demo/page.html --force --json",
                      "path, size, verdicts"}},
        .common = {"out", "force", "json", "jobs"}},
       describe_report, run);

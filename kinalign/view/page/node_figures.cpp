@@ -404,69 +404,76 @@ std::optional<double> lag_of(const SignalFit& signal, const std::vector<std::uin
 
 }  // namespace
 
+void NodeCompare::compare_rate(const Pair& pair, double kept_step_s, NodeFigures& out) const {
+  SignalFit fit = fit_signal(
+      kept_, [&pair](const Kept& row) { return is_known(row, pair); },
+      [&pair](const Kept& row) -> const Vec3& { return row.nodes[pair.node].rate; },
+      [&pair](const Kept& row) -> const Vec3& { return row.bones[pair.candidate].rate; });
+  out.has_rate = true;
+  out.rate_rms = fit.rms;
+  out.rate_correlation = fit.correlation;
+  out.lag_s = lag_of(fit, out.valid, kept_step_s);
+  out.rate = std::move(fit.node);
+  out.mocap_rate = std::move(fit.bone);
+}
+
+void NodeCompare::compare_acceleration(const Pair& pair, NodeFigures& out) const {
+  const Vec3 up(0.0, group_.content.gravity ? standard_gravity : 0.0, 0.0);
+  SignalFit fit = fit_signal(
+      kept_, [&pair](const Kept& row) { return is_known(row, pair); },
+      [&pair](const Kept& row) -> const Vec3& { return row.nodes[pair.node].acceleration; },
+      [&pair, &up](const Kept& row) -> Vec3 {
+        const BoneReading& bone = row.bones[pair.candidate];
+        return bone.acceleration + bone.rotation.conjugate() * up;
+      });
+  out.has_acceleration = true;
+  out.acceleration_rms = fit.rms;
+  out.acceleration_correlation = fit.correlation;
+  out.acceleration = std::move(fit.node);
+  out.mocap_acceleration = std::move(fit.bone);
+}
+
+void NodeCompare::compare_orientation(const Pair& pair, NodeFigures& out) const {
+  std::vector<OrientationPair> pairs;
+  for (const Kept& row : kept_) {
+    if (!is_known(row, pair)) continue;
+    pairs.push_back({row.nodes[pair.node].orientation, row.bones[pair.candidate].rotation});
+  }
+  const OrientationFit fit = fit_orientation(std::move(pairs));
+  double squares = 0.0;
+  for (const Kept& row : kept_) {
+    const Quat& q = row.nodes[pair.node].orientation;
+    double off = 0.0;
+    if (is_known(row, pair)) {
+      off = fit.predicted(row.bones[pair.candidate].rotation).angularDistance(q);
+    }
+    squares += off * off;
+    out.orientation_error.push_back(static_cast<float>(off));
+    const Quat axes = fit.world.conjugate() * q;
+    for (const double x : {axes.w(), axes.x(), axes.y(), axes.z()}) {
+      out.axes.push_back(static_cast<float>(x));
+    }
+  }
+  out.has_orientation = true;
+  out.orientation_rms = std::sqrt(squares / static_cast<double>(out.rows));
+}
+
 NodeFigures NodeCompare::compare(std::size_t node, double kept_step_s) const {
-  const std::size_t c = candidate_of(node);
-  const auto known = [node](const Kept& row) {
-    return !row.bones.empty() && row.nodes[node].valid;
-  };
+  const Pair pair{node, candidate_of(node)};
   NodeFigures out;
   out.node = group_.node_names[node];
-  out.joint = skeleton_.joint_names[candidates_[c].turns];
+  out.joint = skeleton_.joint_names[candidates_[pair.candidate].turns];
   out.joint_by_name = named_[node].has_value();
   out.more_like = more_like(node);
   out.has_gravity = group_.content.gravity;
   for (const Kept& row : kept_) {
-    out.valid.push_back(known(row) ? 1 : 0);
+    out.valid.push_back(is_known(row, pair) ? 1 : 0);
     out.rows += out.valid.back();
   }
-  const bool enough = out.rows >= fewest_rows;
-  if (group_.content.angular_velocity && enough) {
-    SignalFit fit = fit_signal(
-        kept_, known, [node](const Kept& row) -> const Vec3& { return row.nodes[node].rate; },
-        [c](const Kept& row) -> const Vec3& { return row.bones[c].rate; });
-    out.has_rate = true;
-    out.rate_rms = fit.rms;
-    out.rate_correlation = fit.correlation;
-    out.lag_s = lag_of(fit, out.valid, kept_step_s);
-    out.rate = std::move(fit.node);
-    out.mocap_rate = std::move(fit.bone);
-  }
-  if (group_.content.acceleration && enough) {
-    const bool with_gravity = group_.content.gravity;
-    SignalFit fit = fit_signal(
-        kept_, known,
-        [node](const Kept& row) -> const Vec3& { return row.nodes[node].acceleration; },
-        [c, with_gravity](const Kept& row) -> Vec3 {
-          const BoneReading& bone = row.bones[c];
-          if (!with_gravity) return bone.acceleration;
-          return bone.acceleration + bone.rotation.conjugate() * Vec3(0.0, standard_gravity, 0.0);
-        });
-    out.has_acceleration = true;
-    out.acceleration_rms = fit.rms;
-    out.acceleration_correlation = fit.correlation;
-    out.acceleration = std::move(fit.node);
-    out.mocap_acceleration = std::move(fit.bone);
-  }
-  if (group_.content.orientation && enough) {
-    std::vector<OrientationPair> pairs;
-    for (const Kept& row : kept_) {
-      if (known(row)) pairs.push_back({row.nodes[node].orientation, row.bones[c].rotation});
-    }
-    const OrientationFit fit = fit_orientation(std::move(pairs));
-    double squares = 0.0;
-    for (const Kept& row : kept_) {
-      const Quat& q = row.nodes[node].orientation;
-      const double off = known(row) ? fit.predicted(row.bones[c].rotation).angularDistance(q) : 0.0;
-      squares += off * off;
-      out.orientation_error.push_back(static_cast<float>(off));
-      const Quat axes = row.nodes[node].valid ? fit.world.conjugate() * q : Quat::Identity();
-      for (const double x : {axes.w(), axes.x(), axes.y(), axes.z()}) {
-        out.axes.push_back(static_cast<float>(x));
-      }
-    }
-    out.has_orientation = true;
-    out.orientation_rms = std::sqrt(squares / static_cast<double>(out.rows));
-  }
+  if (out.rows < fewest_rows) return out;
+  if (group_.content.angular_velocity) compare_rate(pair, kept_step_s, out);
+  if (group_.content.acceleration) compare_acceleration(pair, out);
+  if (group_.content.orientation) compare_orientation(pair, out);
   return out;
 }
 

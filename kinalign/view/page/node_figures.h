@@ -79,6 +79,16 @@ class NodeCompare {
   double alike(std::size_t node, std::size_t candidate) const;
   std::size_t candidate_of(std::size_t node) const;
   std::string more_like(std::size_t node) const;
+  /// A node, and the bone that it is compared with.
+  struct Pair {
+    std::size_t node = 0, candidate = 0;
+  };
+  static bool is_known(const Kept& row, const Pair& pair) {
+    return !row.bones.empty() && row.nodes[pair.node].valid;
+  }
+  void compare_rate(const Pair& pair, double kept_step_s, NodeFigures& out) const;
+  void compare_acceleration(const Pair& pair, NodeFigures& out) const;
+  void compare_orientation(const Pair& pair, NodeFigures& out) const;
   NodeFigures compare(std::size_t node, double kept_step_s) const;
 
   ImuGroup group_;
