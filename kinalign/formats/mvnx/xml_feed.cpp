@@ -33,6 +33,8 @@ struct XmlFeed::State {
   XML_Parser parser = nullptr;
   XmlHandler* handler = nullptr;
   std::string text;
+  std::string start;  // of the document, until Expat has it
+  bool started = false;
   int depth = 0;
   std::uint64_t fed = 0, last_event = 0;  // bytes
   std::optional<Error> error;
@@ -121,7 +123,17 @@ Result<void> XmlFeed::parse(std::string_view piece, bool last, XmlHandler& handl
   return {};
 }
 
+/// Expat guesses the encoding by the bytes that it gets first, by one alone otherwise than by four.
 Result<void> XmlFeed::feed(std::string_view piece, XmlHandler& handler) {
+  constexpr std::size_t enough = 4;
+  State& s = *state_;
+  if (!s.started) {
+    const std::size_t some = std::min(piece.size(), enough - s.start.size());
+    s.start += piece.substr(0, some);
+    piece.remove_prefix(some);
+    if (s.start.size() < enough) return {};
+    KA_TRY(begin(handler));
+  }
   constexpr std::size_t most = std::size_t{64} << 10;
   for (; !piece.empty(); piece.remove_prefix(std::min(piece.size(), most))) {
     KA_TRY(parse(piece.substr(0, most), false, handler));
@@ -129,6 +141,14 @@ Result<void> XmlFeed::feed(std::string_view piece, XmlHandler& handler) {
   return {};
 }
 
-Result<void> XmlFeed::finish(XmlHandler& handler) { return parse("", true, handler); }
+Result<void> XmlFeed::begin(XmlHandler& handler) {
+  state_->started = true;
+  return parse(state_->start, false, handler);
+}
+
+Result<void> XmlFeed::finish(XmlHandler& handler) {
+  if (!state_->started) KA_TRY(begin(handler));
+  return parse("", true, handler);
+}
 
 }  // namespace kinalign

@@ -46,6 +46,7 @@ class XmlFeed {
 
  private:
   struct State;
+  Result<void> begin(XmlHandler& handler);
   Result<void> parse(std::string_view piece, bool last, XmlHandler& handler);
   std::unique_ptr<State> state_;
 };

@@ -57,6 +57,15 @@ TEST_CASE("elements come with attributes, text and without prefixes, wherever th
   }
 }
 
+TEST_CASE("a document has the same fault wherever its first bytes are cut") {
+  const std::string no_xml("0\0\7vnx=", 7);  // may be UTF-16, by its second byte
+  for (std::size_t piece = 1; piece <= no_xml.size(); ++piece) {
+    CAPTURE(piece);
+    CHECK(told(no_xml, piece).error == "x.mvnx:1: expected well-formed XML, found syntax error");
+  }
+  CHECK(told("<a").error == "x.mvnx:1: expected well-formed XML, found unclosed token");
+}
+
 TEST_CASE("a fault of the document or of the handler has its line") {
   CHECK(told("<a>\n<b>\n</a>").error == "x.mvnx:3: expected well-formed XML, found mismatched tag");
   CHECK(told("<a>\n<b>").error == "x.mvnx:2: expected well-formed XML, found no element found");
