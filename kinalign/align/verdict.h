@@ -37,9 +37,9 @@ struct Verdict {
   std::string reason;
 };
 
-/// Of a group of the take. `files`: the inputs of the group, by which findings name it. An error
-/// makes it bad, a warning usable. A finding of a file that several streams share counts for the
-/// stream that it names, or for all of them.
+/// Judges one group of the take. `files`: the inputs of the group, by which findings name it. An
+/// error makes it bad, a warning usable. A finding of a file that several streams share counts for
+/// the stream that it names, or for all of them.
 Verdict verdict_of(const AlignmentReport& report, const std::string& stream,
                    const std::vector<InputFacts>& files);
 

@@ -5,6 +5,7 @@
 #include "apps/kinalign/text/summary.h"
 
 #include "kinalign/core/error.h"
+#include "kinalign/documents/report_json.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -176,19 +177,6 @@ std::string finding_text(const Json& finding) {
                      text_at(finding, "meaning"));
 }
 
-/// A finding of the report, as alignment made it.
-Finding finding_of(const Json& finding) {
-  const std::string severity = text_at(finding, "severity");
-  Finding out;
-  if (severity == "note") out.severity = Severity::note;
-  if (severity == "error") out.severity = Severity::error;
-  out.what = {text_at(finding, "file"), static_cast<std::int64_t>(count_at(finding, "line")),
-              text_at(finding, "expected"), text_at(finding, "found")};
-  out.meaning = text_at(finding, "meaning");
-  out.repair = text_at(finding, "repair");
-  return out;
-}
-
 }  // namespace
 
 std::string mark_words(std::string_view kind, std::string_view text, double at_s,
@@ -205,13 +193,7 @@ std::string name_lines(const std::vector<std::string>& names) {
 }
 
 Result<Findings> report_findings(const std::string& report, const std::string& path) {
-  const Json json = Json::parse(report, nullptr, false);
-  if (json.is_discarded()) {
-    return Failure(Error{path, 0, "a report as JSON", "a text that is none"});
-  }
-  Findings out;
-  for (const Json& finding : list_at(json, "findings")) out.push_back(finding_of(finding));
-  return out;
+  return KA_TRY(parse_report_json(report, path)).findings;
 }
 
 std::string take_text(const std::string& json, Names names) {

@@ -68,7 +68,7 @@ Result<std::string> with_take(FileSystem& files, const std::string& path, Use us
   return use(reader, report);
 }
 
-/// Where a detail of a long take is worth most, as JSON: "begin_s" and the first row's stamp, and
+/// JSON with the begin of the detail of a long take ("begin_s"), the first row's stamp, and
 /// the names of the streams of points.
 Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& report) {
   nlohmann::json out{{"begin_ns", to_ns(report.begin)}, {"begin_s", 0.0}};
@@ -162,7 +162,7 @@ Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outlin
   return out;
 }
 
-/// Of all streams of points. Fails where an input is missing or is another one than the take's.
+/// The raw samples of all streams of points. Fails if an input is missing or is not the take's.
 Result<std::vector<RawPoints>> read_raw(Call& call, const Origin& origin, const Outline& outline,
                                         const std::string& base) {
   Manifest manifest = origin.parameters;
@@ -196,7 +196,7 @@ std::string size_text(std::size_t bytes) {
   return fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(bytes));
 }
 
-/// What was written, in a few lines.
+/// The lines that a user reads: file, size, verdicts, the worst things.
 std::string said(const std::string& out, std::size_t bytes, const nlohmann::ordered_json& about,
                  Call& call) {
   std::string streams;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a take says of its making, and whether the inputs are still those.
+// The parameters and inputs that a take was made from, and whether the inputs have changed.
 #pragma once
 
 #include "kinalign/core/files.h"

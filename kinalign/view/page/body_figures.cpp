@@ -13,7 +13,7 @@ namespace {
 /// Shorter end sites are fingertips: too small to see.
 constexpr double shortest_end_m = 0.04;
 
-/// What the joints of a stream of points hang on: known of a Kinect's alone.
+/// The parents of a Kinect's joints; other points have none.
 std::vector<int> point_parents(const std::vector<std::string>& names) {
   std::vector<int> parents(names.size(), -1);
   for (std::size_t j = 0; j < names.size(); ++j) {

@@ -50,7 +50,7 @@ class BodyFigures {
   std::size_t joints() const { return joints_; }
   PageBody take_body() { return std::move(body_); }
   JointStates take_states() { return std::move(states_); }
-  /// Of bones seen at least twice; a clip has none.
+  /// The bones that were seen at least twice; a clip has none.
   std::vector<BoneLength> bones() const;
 
  private:

@@ -41,7 +41,7 @@ class DetailFigures {
 /// How alignment moved a stream of points.
 struct RawMove {
   const SpaceReport* space = nullptr;  // nullptr: not at all
-  /// Of the paper's transform: the stream's root joint, and where the other body's root was.
+  /// For the paper's transform: the stream's root joint, and the places of the other body's root.
   std::size_t root = 0;
   const std::vector<float>* onto_seconds = nullptr;  // [K]
   std::vector<Vec3> onto_root;                       // [K] m

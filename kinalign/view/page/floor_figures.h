@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a Kinect stands in a take's space, and the paper's zones on the floor before it (section
+// A Kinect's place in a take's space, and the paper's zones on the floor before it (section
 // 2.2: best 0.8 to 3.5 m, largest 0.5 to 4.5 m; 70 degrees across).
 #pragma once
 

@@ -23,8 +23,7 @@ struct WornOn {
   std::size_t turns = 0, place = 0;
 };
 
-/// By the usual names of nodes and joints ("wrist_left", "LeftForeArm"); absent where they say
-/// nothing.
+/// The usual names of nodes and joints decide ("wrist_left", "LeftForeArm"); absent for others.
 std::optional<WornOn> worn_on(const std::string& node, const std::vector<std::string>& joints);
 
 /// A node's values as it measured them, whatever the take's space: orientation of the sensor in the
@@ -38,7 +37,7 @@ struct NodeReading {
 /// Row `row` of a group, its step into the root node's space undone.
 std::vector<NodeReading> node_readings(const ImuGroup& group, const ImuRows& rows, std::size_t row);
 
-/// What a bone does at one time: in its own space, but for the rotation itself.
+/// A bone at one time; its rate and acceleration are in its own space.
 struct BoneReading {
   Quat rotation = Quat::Identity();                       // of the bone, in the take's space
   Vec3 rate = Vec3::Zero(), acceleration = Vec3::Zero();  // rad/s; m/s2 with gravity

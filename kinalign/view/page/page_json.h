@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page's script reads: names and figures as JSON, long series packed (packed_series.h).
+// The JSON that a page's script reads: names and figures, and long series packed (packed_series.h).
 #pragma once
 
 #include "kinalign/view/page/take_page.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a page says in words and tables: each function gives HTML.
+// The words and tables of a page. Each function gives HTML.
 #pragma once
 
 #include "kinalign/view/page/take_page.h"

@@ -157,7 +157,7 @@ void TakeFigures::State::judge() {
   }
 }
 
-/// What the nodes' bones say against them.
+/// Adds a concern for each node that turns like another node's bone.
 void TakeFigures::State::judge_nodes() {
   const std::string& stream = header.groups[node_group].name;
   const auto verdict = std::find_if(page.verdicts.begin(), page.verdicts.end(),
@@ -209,7 +209,7 @@ void TakeFigures::State::add_detail(const TakeSlab& slab, std::size_t r, double 
                    *JointRows::of(rows, body.figures.joints()), onto, r);
 }
 
-/// Of the bodies that the page has by now.
+/// Moves the raw samples of the detail's body; the page has its bodies by now.
 void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
   const PageBody& body = page.bodies[detail.body];
   const auto raw = std::find_if(options.raw.begin(), options.raw.end(),

@@ -47,7 +47,8 @@ struct PageDetail {
   /// Rows nearest to a raw sample, which stand for it where the inputs can't be read.
   std::vector<float> near_seconds;  // [N]
   float near_s = 0.0f;              // they are no further from it than this
-  /// Of the stream's input, moved into the body's space. Absent: no input could be read.
+  /// Raw samples of the stream's input, moved into the body's space; none if no input could be
+  /// read.
   bool has_raw = false;
   std::vector<float> raw_seconds;       // [R]
   std::vector<float> raw_positions;     // [R,J,3] m

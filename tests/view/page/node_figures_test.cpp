@@ -51,7 +51,7 @@ ClipRows clip_rows(const Arm& arm, const std::vector<double>& times) {
   return rows;
 }
 
-/// What a node on the forearm measures: strapped on by `sensor`, its world turned by `world`.
+/// A node on the forearm: strapped on by `sensor`, its world turned by `world`.
 struct Worn {
   Quat sensor = turn(Vec3(1, 2, 3).normalized(), 0.7);  // bone_from_sensor
   Quat world = turn(Vec3::UnitY(), 1.1);

@@ -115,7 +115,7 @@ export const dots = (points) => points.map((p) => `M${p[0].toFixed(1)} ${p[1].to
 export const rings = (points, r) =>
   points.map((p) => `M${(p[0] - r).toFixed(1)} ${p[1].toFixed(1)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`).join("");
 
-/// What several figures over time show alike.
+/// The stretch of time that several figures show together.
 export class TimeView {
   constructor(clock) {
     this.clock = clock;

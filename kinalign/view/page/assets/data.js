@@ -115,7 +115,7 @@ export function turned(q, v) {
   return [v[0] + w * tx + y * tz - z * ty, v[1] + w * ty + z * tx - x * tz, v[2] + w * tz + x * ty - y * tx];
 }
 
-/// Where the stream itself had a point that a rigid transform moved.
+/// Undoes the transform of a moved stream: the point as the stream itself had it.
 export function beforeMove(space, point) {
   const [w, x, y, z] = space.rotation, t = space.translation;
   return turned([w, -x, -y, -z], [point[0] - t[0], point[1] - t[1], point[2] - t[2]]);

@@ -187,7 +187,7 @@ class Axes3D {
   }
 }
 
-/// Where the feet are: 2 % of the rows have their lowest joint below it.
+/// The height of the floor: 2 % of the rows have their lowest joint below it.
 function floorHeight(take) {
   const body = take.bodies.find((b) => b.in_take_space && b.kind === "clip") ?? take.bodies[0];
   const lows = [];
@@ -331,7 +331,7 @@ export class Player {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.recolour());
     this.show();
   }
-  /// Of the root joint of the first body, or where it was last seen.
+  /// The place of the first body's root joint, now or when it was last seen.
   centre(row) {
     const last = this.bodies[0].seen[row * this.followed.joints];
     return place(this.followed, last >= 0 ? last : row, 0);
@@ -379,7 +379,7 @@ export class Player {
   }
   show() {
     const { seconds, stride, rows } = this.take, row = rowAt(seconds, this.clock.now);
-    // Where the page leaves out rows, joints move straight from one that is there to the next.
+    // If the page leaves out rows, joints move straight from one row of the page to the next.
     const apart = row + 1 < rows ? seconds[row + 1] - seconds[row] : 0;
     const share = stride > 1 && apart > 0 ? Math.min(1, (this.clock.now - seconds[row]) / apart) : 0;
     if (row === this.row && share === this.share) return;
