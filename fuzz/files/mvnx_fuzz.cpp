@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of segments and of sensors do not depend on the pieces.
-// Seeds: bvh/*.mvnx.gz
+// Rows of segments and of sensors do not depend on the pieces. What fails must fail in any pieces,
+// but perhaps with another message: Expat puts off a token that is not whole, so that damage of the
+// archive behind it may be told first. Seeds: bvh/*.mvnx.gz
 #include "fuzz/pieces.h"
 
 #include "kinalign/formats/mvnx/mvnx.h"
@@ -11,20 +12,29 @@ using namespace kinalign;
 
 namespace {
 
-void check_clip(std::string_view text) {
-  const std::size_t piece = 1 + text.size() % 61;
-  const auto whole = read_all(make_mvnx_reader({}, "f"), text);
-  const auto cut = read_in_pieces(make_mvnx_reader({}, "f"), text, piece);
-  if (whole.error != cut.error) std::abort();
-  if (whole.rows.stamps != cut.rows.stamps) std::abort();
-  if (whole.rows.local_positions != cut.rows.local_positions) std::abort();
-  if (whole.rows.local_rotations != cut.rows.local_rotations) std::abort();
-  const auto finite = [](double x) { return x - x == 0.0; };
-  const auto& places = whole.rows.local_positions;
-  if (!std::all_of(places.begin(), places.end(), finite)) std::abort();
-  const auto& stamps = whole.rows.stamps;
-  if (!std::is_sorted(stamps.begin(), stamps.end())) std::abort();
-  if (whole.has_header && !validate(whole.header)) std::abort();
+bool is_finite(double x) { return x - x == 0.0; }
+
+bool same_rows(const ClipFrames& a, const ClipFrames& b) {
+  return a.stamps == b.stamps && a.local_positions == b.local_positions &&
+         a.local_rotations == b.local_rotations;
+}
+
+bool is_good(const Skeleton& skeleton, const ClipFrames& rows) {
+  return validate(skeleton).has_value() &&
+         std::all_of(rows.local_positions.begin(), rows.local_positions.end(), is_finite) &&
+         std::all_of(rows.local_rotations.begin(), rows.local_rotations.end(), is_finite) &&
+         std::is_sorted(rows.stamps.begin(), rows.stamps.end());
+}
+bool is_good(const ImuHeader&, const ImuSamples& rows) { return sound(rows); }
+
+template <class MakeReader>
+void check(MakeReader make, std::string_view text) {
+  const auto whole = read_all(make(), text);
+  const auto cut = read_in_pieces(make(), text, 1 + text.size() % 61);
+  if (whole.error.empty() != cut.error.empty()) std::abort();
+  if (!whole.error.empty()) return;
+  if (!whole.has_header || !is_good(whole.header, whole.rows)) std::abort();
+  if (!same_rows(whole.rows, cut.rows)) std::abort();
 }
 
 }  // namespace
@@ -32,7 +42,7 @@ void check_clip(std::string_view text) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text = text_of(data, size);
   (void)looks_like_mvnx(text);
-  check_clip(text);
-  check_pieces([] { return make_mvnx_sensor_reader({}, "f"); }, text);
+  check([] { return make_mvnx_reader({}, "f"); }, text);
+  check([] { return make_mvnx_sensor_reader({}, "f"); }, text);
   return 0;
 }
