@@ -8,7 +8,6 @@
 
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/take_hdf5.h"
-#include "kinalign/recording/beside.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/sources/open_recording.h"
 #include "kinalign/view/page/page_html.h"
@@ -255,6 +254,30 @@ Result<Written> write_page(const std::string& take, const TakeFigureOptions& opt
   return written;
 }
 
+/// Text and JSON of what was written; the exit code.
+int say(const Written& written, bool has_raw, Call& call) {
+  const std::string& out = call.common.out;
+  call.console.wrote(out);
+  call.console.print(said(out, written.bytes, written.about, call));
+  nlohmann::ordered_json json{{"path", out}, {"bytes", written.bytes}};
+  json.update(written.about);
+  json["raw_samples"] = has_raw;
+  call.console.print_json(json_text(json));
+  const auto& verdicts = written.about["verdicts"];
+  const bool any_bad = std::any_of(verdicts.begin(), verdicts.end(),
+                                   [](const auto& verdict) { return verdict["quality"] == "bad"; });
+  return any_bad ? 1 : 0;
+}
+
+/// The raw samples that can be read. Without --inputs, a take whose inputs are elsewhere has none.
+Result<std::vector<RawPoints>> find_raw(const Report& o, Call& call, const Origin& origin,
+                                        const Outline& outline, const std::string& base) {
+  auto raw = read_raw(call, origin, outline, base);
+  const bool optional = o.inputs.empty() && !interrupted();
+  if (!raw && optional) return std::vector<RawPoints>{};
+  return raw;
+}
+
 Result<int> run(Report& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& take = o.take.front();
@@ -275,23 +298,11 @@ Result<int> run(Report& o, Call& call) {
   TakeFigureOptions options;
   options.detail_begin_s = outline.detail_begin_s;
   options.detail_length_s = detail_length_s;
-  auto raw = read_raw(call, origin, outline, base);
-  if (!raw && (!o.inputs.empty() || interrupted())) return Failure(std::move(raw).error());
-  if (raw) options.raw = std::move(*raw);
-  const bool has_raw = !options.raw.empty();
+  options.raw = KA_TRY(find_raw(o, call, origin, outline, base));
   const Written written = KA_TRY(write_page(take, options, call));
-  call.console.wrote(call.common.out);
-  call.console.print(said(call.common.out, written.bytes, written.about, call));
-  nlohmann::ordered_json json{{"path", call.common.out}, {"bytes", written.bytes}};
-  json.update(written.about);
-  json["raw_samples"] = has_raw;
-  call.console.print_json(json_text(json));
+  const int code = say(written, !options.raw.empty(), call);
   if (o.open) show(call.common.out, call);
-  const auto& verdicts = written.about["verdicts"];
-  return std::any_of(verdicts.begin(), verdicts.end(),
-                     [](const auto& verdict) { return verdict["quality"] == "bad"; })
-             ? 1
-             : 0;
+  return code;
 }
 
 }  // namespace
