@@ -85,6 +85,8 @@ Result<void> MvnxDocument::finish(Findings& findings) {
                         "the first one was read", "export a file for each subject"});
   }
   Result<void> ended = xml_.finish(*this);
+  // Expat puts off a token that is not whole, so other faults may show only now.
+  if (!ended && !xml_.ends_too_early()) return ended;
   if (ended && gunzip_ && !gunzip_->complete()) {
     ended = Failure(Error{file_, 0, "a whole gzip archive", "the end of the file"});
   }

@@ -105,6 +105,19 @@ XmlFeed::~XmlFeed() { XML_ParserFree(state_->parser); }
 
 std::int64_t XmlFeed::line() const { return state_->line(); }
 
+bool XmlFeed::ends_too_early() const {
+  if (state_->error) return false;
+  switch (XML_GetErrorCode(state_->parser)) {
+    case XML_ERROR_NO_ELEMENTS:
+    case XML_ERROR_UNCLOSED_TOKEN:
+    case XML_ERROR_UNCLOSED_CDATA_SECTION:
+    case XML_ERROR_PARTIAL_CHAR:
+      return true;
+    default:
+      return false;
+  }
+}
+
 Result<void> XmlFeed::parse(std::string_view piece, bool last, XmlHandler& handler) {
   State& s = *state_;
   s.handler = &handler;

@@ -42,6 +42,8 @@ class XmlFeed {
   Result<void> feed(std::string_view piece, XmlHandler& handler);
   /// The document has ended. Fails where its elements are not closed.
   Result<void> finish(XmlHandler& handler);
+  /// The failure is that the document ends too early; what stands there is well-formed.
+  bool ends_too_early() const;
   std::int64_t line() const;
 
  private:

@@ -172,6 +172,17 @@ TEST_CASE("a file that was cut gives its whole frames, with a finding") {
       std::vector<std::string>{"a.mvnx: expected a whole gzip archive, found the end of the file"});
 }
 
+TEST_CASE("a fault in the last bytes of a file is an error, in whatever pieces they come") {
+  const std::string text = mvnx_of(two_frames);
+  const std::string faulty = text.substr(0, text.rfind("</frames>")) + "<frame a=\"1\"b\"2\"";
+  for (std::size_t piece = 1; piece < 40; ++piece) {
+    CAPTURE(piece);
+    const auto read = read_in_pieces(make_mvnx_reader({}, "a.mvnx"), faulty, piece);
+    CHECK(read.error ==
+          "a.mvnx:17: expected well-formed XML, found not well-formed (invalid token)");
+  }
+}
+
 TEST_CASE("what is no motion of segments is an error with its line") {
   CHECK(read_mvnx("").error == "a.mvnx:1: expected well-formed XML, found no element found");
   CHECK(read_mvnx("<html/>").error == "a.mvnx:1: expected the element mvnx, found html");
