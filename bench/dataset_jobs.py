@@ -31,11 +31,6 @@ def timed(command, fine=(0,)):
     return done.stdout, wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def without(manifest, stream):
-    parts = manifest.read_text().split("\n[")
-    manifest.write_text("\n[".join(p for p in parts if not p.startswith((f"stream.{stream}", f"space.{stream}"))))
-
-
 def raw_files(build, folder, takes):
     """The manifest of each take's raw files."""
     manifests = []
@@ -47,7 +42,7 @@ def raw_files(build, folder, takes):
             timed([build / "tools/kinalign_demo_recording", place, "--seconds", f"{frames / 60:.9f}", "--seed", i])
             for stream, wanted in (("kinect", kinect), ("imu", imu)):
                 if not wanted:
-                    without(manifest, stream)
+                    hfut.without(manifest, stream)
         manifests.append(manifest)
     return manifests
 

@@ -78,6 +78,12 @@ def sums(takes, key):
     return out
 
 
+def without(manifest, stream):
+    """Takes a stream out of a manifest."""
+    parts = manifest.read_text().split("\n[")
+    manifest.write_text("\n[".join(p for p in parts if not p.startswith((f"stream.{stream}", f"space.{stream}"))))
+
+
 if __name__ == "__main__":
     whole = composition()
     heights = {person: (sex, height) for ids, sex, height, *_ in PEOPLE for person in ids}

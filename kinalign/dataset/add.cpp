@@ -84,7 +84,7 @@ std::string one_spelling(const std::string& path) {
   return fault ? path : whole.string();
 }
 
-/// What a manifest shall call a file: relative to `base` where it lies below the data set.
+/// A file's path in a manifest: relative to `base` where the file lies below the data set.
 std::string as_named(const std::string& path, const std::string& folder, const std::string& base) {
   const std::string whole = one_spelling(path), root = one_spelling(folder) + "/";
   if (!whole.starts_with(root)) return whole;
@@ -113,8 +113,8 @@ struct Adding {
 Result<std::vector<TakeName>> Adding::known(const std::string& subject,
                                             const std::string& action) const {
   std::vector<TakeName> names;
-  for (const auto& [name, there] : KA_TRY(scan_takes(folder))) {
-    if (name.subject == subject && name.action == action) names.push_back(name);
+  for (const auto& [name, there] : KA_TRY(scan_takes(folder, subject))) {
+    if (name.action == action) names.push_back(name);
   }
   return names;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a data set takes in: recordings, manifests and takes. Raw files stay where they are, or are
+// Recordings, manifests and takes are added to a data set. Raw files stay where they are, or are
 // copied below sourcedata/.
 #pragma once
 

@@ -10,6 +10,7 @@
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/sources/input_facts.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <algorithm>
@@ -165,7 +166,7 @@ class Builder {
     return keep(job.name, std::move(summary));
   }
 
-  /// Of a take that came as it is. In a child process: before other threads begin.
+  /// A take that was added as a take. A child process opens it: before other threads begin.
   Result<TakeSummary> summarise(const BuildJob& job) {
     return keep(job.name, KA_TRY(summarise_takes(files_, folder_, {job.name}).front()));
   }
@@ -173,7 +174,8 @@ class Builder {
  private:
   /// Writes the summary beside the take.
   Result<TakeSummary> keep(const TakeName& name, TakeSummary summary) {
-    const InputFacts facts = KA_TRY(facts_of(files_, place(folder_, name, TakeFile::take), {}));
+    const InputFacts facts =
+        KA_TRY(facts_of(files_, place(folder_, name, TakeFile::take), "hashing", {}));
     summary.sha256 = facts.sha256;
     summary.bytes = facts.bytes;
     OutputFile out =
@@ -208,7 +210,7 @@ Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
   std::vector<Candidate> takes;
   for (const auto& [name, there] : KA_TRY(scan_takes(folder))) {
     auto looked = planner.look(name, there);
-    // What is wrong with a manifest is told when its take is made: it stops no other.
+    // A faulty manifest is reported when its take is made, so that it stops no other take.
     takes.push_back(looked ? *std::move(looked) : Candidate{name, there, {}, {}, {}, 0});
   }
   std::stable_sort(takes.begin(), takes.end(),

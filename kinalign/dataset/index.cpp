@@ -158,6 +158,13 @@ std::string places(std::size_t count) {
   return text;
 }
 
+constexpr std::size_t take_columns = 24;
+
+/// Statements that add a take, prepared once for many.
+struct TakeInserts {
+  sqlite::Statement next_id, take, detail, stream;
+};
+
 /// A summary's file as the index remembers it.
 struct Known {
   std::int64_t id = 0, changed_ns = 0, size = 0;
@@ -200,7 +207,8 @@ struct DatasetIndex::State {
   Result<FolderChanges> folder_changes() const;
   Result<void> refresh_folder(const std::string& name);
   Result<void> forget_folder(const std::string& name);
-  Result<void> put(const Found& found, const TakeSummary& take);
+  Result<TakeInserts> inserts() const;
+  Result<void> put(const Found& found, const TakeSummary& take, TakeInserts& inserts);
   Result<std::map<std::string, Known>> known_in(const std::string& name) const;
 };
 
@@ -246,20 +254,25 @@ Result<std::map<std::string, Known>> DatasetIndex::State::known_in(const std::st
   return out;
 }
 
-Result<void> DatasetIndex::State::put(const Found& found, const TakeSummary& take) {
-  auto next = KA_TRY(database.prepare("select coalesce(max(id), 0) + 1 from take"));
-  KA_TRY(next.step());
-  const auto id = std::get<std::int64_t>(next.at(0));
-  const std::vector<Cell> cells = take_cells(id, found.name, take, catalogue);
-  KA_TRY(
-      KA_TRY(database.prepare("insert into take values(" + places(cells.size()) + ")")).run(cells));
-  KA_TRY(KA_TRY(database.prepare("insert into detail values(?,?,?,?,?,?,?,?)"))
-             .run({id, "sub-" + found.name.subject, found.changed_ns, found.size, take.worst,
-                   take.software, take.recipe, take.sha256}));
-  auto add = KA_TRY(database.prepare("insert into stream values(?,?,?,?,?,?,?,?,?,?)"));
+Result<TakeInserts> DatasetIndex::State::inserts() const {
+  return TakeInserts{
+      KA_TRY(database.prepare("select coalesce(max(id), 0) + 1 from take")),
+      KA_TRY(database.prepare("insert into take values(" + places(take_columns) + ")")),
+      KA_TRY(database.prepare("insert into detail values(?,?,?,?,?,?,?,?)")),
+      KA_TRY(database.prepare("insert into stream values(?,?,?,?,?,?,?,?,?,?)"))};
+}
+
+Result<void> DatasetIndex::State::put(const Found& found, const TakeSummary& take,
+                                      TakeInserts& inserts) {
+  KA_TRY(inserts.next_id.bind({}));
+  KA_TRY(inserts.next_id.step());
+  const auto id = std::get<std::int64_t>(inserts.next_id.at(0));
+  KA_TRY(inserts.take.run(take_cells(id, found.name, take, catalogue)));
+  KA_TRY(inserts.detail.run({id, "sub-" + found.name.subject, found.changed_ns, found.size,
+                             take.worst, take.software, take.recipe, take.sha256}));
   for (const StreamSummary& stream : take.streams) {
     const auto modality = modality_names[static_cast<std::size_t>(stream.modality)];
-    KA_TRY(add.run(
+    KA_TRY(inserts.stream.run(
         {id, stream.name, std::string(modality), whole(stream.columns), stream.valid,
          stream.inferred, whole(stream.gaps), stream.gap_s,
          stream.interval_ns ? Cell(1e-6 * static_cast<double>(*stream.interval_ns)) : Cell(),
@@ -282,6 +295,7 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
   const std::int64_t began = now_ns();
   const std::int64_t changed = changed_ns(folder + "/" + name);
   std::map<std::string, Known> known = KA_TRY(known_in(name));
+  TakeInserts add = KA_TRY(inserts());
   auto drop = KA_TRY(database.prepare("delete from take where id = ?"));
   auto drop_detail = KA_TRY(database.prepare("delete from detail where id = ?"));
   auto drop_streams = KA_TRY(database.prepare("delete from stream where take = ?"));
@@ -309,7 +323,7 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
     }
     const auto take = read_summary(*files, folder, parsed->first);
     if (take) {
-      KA_TRY(put({parsed->first, version->changed_ns, whole(version->size)}, *take));
+      KA_TRY(put({parsed->first, version->changed_ns, whole(version->size)}, *take, add));
     } else {
       findings.push_back({Severity::error, take.error(), "the take is in no list",
                           "kinalign dataset build makes it again"});

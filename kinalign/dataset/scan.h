@@ -21,6 +21,9 @@ struct TakeFiles {
 
 /// Fails where the folder, or one in it, can't be read.
 Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder);
+/// The same of one person alone, whose folder is there.
+Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder,
+                                                 const std::string& subject);
 
 Result<TakeSummary> read_summary(FileSystem& files, const std::string& folder,
                                  const TakeName& name);

@@ -142,10 +142,12 @@ bool is_man_of_175(const SplitTake& take, const Catalogue& catalogue) {
   return subject != nullptr && subject->sex == "m" && subject->height_cm == 175.0;
 }
 
-const SplitTake* find_take(const std::vector<SplitTake>& takes, const TakeName& name) {
-  const auto found = std::find_if(takes.begin(), takes.end(),
-                                  [&](const SplitTake& one) { return one.name == name; });
-  return found == takes.end() ? nullptr : &*found;
+using TakesByName = std::map<TakeName, const SplitTake*>;
+
+TakesByName by_name(const std::vector<SplitTake>& takes) {
+  TakesByName out;
+  for (const SplitTake& take : takes) out.emplace(take.name, &take);
+  return out;
 }
 
 /// Who or what stands in which parts.
@@ -196,18 +198,20 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
   const auto tell = [&](Severity severity, std::string expected, std::string found) {
     out.push_back({severity, Error{file, 0, std::move(expected), std::move(found)}, "", ""});
   };
+  const TakesByName known = by_name(takes);
   Seen seen;
   for (const SplitPart& part : split.parts) {
     for (const TakeName& name : part.takes) {
-      const SplitTake* take = find_take(takes, name);
-      if (take == nullptr) {
+      const auto found = known.find(name);
+      if (found == known.end()) {
         tell(Severity::error, "takes of the data set", to_string(name));
         continue;
       }
       seen.names[to_string(name)].insert(part.name);
       seen.subjects[name.subject].insert(part.name);
-      seen.contents[take->summary.sha256].insert(part.name);
-      for (const InputFacts& input : take->summary.inputs) {
+      const TakeSummary& summary = found->second->summary;
+      seen.contents[summary.sha256].insert(part.name);
+      for (const InputFacts& input : summary.inputs) {
         seen.contents[input.sha256].insert(part.name);
       }
     }
@@ -232,15 +236,16 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
 
 std::string split_json(const Split& split, const std::vector<SplitTake>& takes) {
   const SplitOptions& o = split.options;
+  const TakesByName known = by_name(takes);
   Json out = {{"schema", split_schema},     {"by", o.by},     {"test", o.test},
               {"validation", o.validation}, {"seed", o.seed}, {"stratified", o.stratified},
               {"parts", Json::array()}};
   for (const SplitPart& part : split.parts) {
     Json one = {{"name", part.name}, {"takes", Json::array()}};
     for (const TakeName& name : part.takes) {
-      const SplitTake* take = find_take(takes, name);
-      one["takes"].push_back(
-          {{"name", to_string(name)}, {"sha256", take == nullptr ? "" : take->summary.sha256}});
+      const auto take = known.find(name);
+      one["takes"].push_back({{"name", to_string(name)},
+                              {"sha256", take == known.end() ? "" : take->second->summary.sha256}});
     }
     out["parts"].push_back(std::move(one));
   }

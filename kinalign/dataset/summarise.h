@@ -18,7 +18,8 @@ namespace kinalign {
 std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::string& folder,
                                                  const std::vector<TakeName>& names);
 
-/// What ContentCheck finds in all rows of a take; in a child process, too.
-Result<Findings> check_rows(FileSystem& files, const std::string& folder, const TakeName& name);
+/// Findings of ContentCheck in all rows of a take at that rate; in a child process, too.
+Result<Findings> check_rows(FileSystem& files, const std::string& folder, const TakeName& name,
+                            double rate_hz);
 
 }  // namespace kinalign

@@ -2,25 +2,12 @@
 #include "kinalign/dataset/take_inputs.h"
 
 #include "kinalign/core/file_version.h"
-#include "kinalign/core/hash.h"
+#include "kinalign/sources/input_facts.h"
 #include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
 
 namespace kinalign {
-
-Result<InputFacts> facts_of(FileSystem& files, const std::string& path, const Progress& progress) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  Sha256 hash;
-  std::uint64_t bytes = 0;
-  for (;;) {
-    const std::string_view piece = KA_TRY(file.next());
-    if (piece.empty()) return InputFacts{std::string(file_name(path)), hash.hex(), bytes};
-    hash.update(piece);
-    bytes += piece.size();
-    if (!go_on(progress, "hashing", bytes, file.size())) return Failure(interruption(path));
-  }
-}
 
 std::vector<TakeInput> inputs_of(Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known) {
@@ -51,7 +38,8 @@ Result<bool> same_inputs(FileSystem& files, const std::vector<TakeInput>& inputs
     const auto version = version_of(input.path);
     if (known == summary.inputs.end() || !version || version->size != known->bytes) return false;
     if (version->changed_ns < made_ns) continue;
-    if (KA_TRY(facts_of(files, input.path, progress)).sha256 != known->sha256) return false;
+    if (KA_TRY(facts_of(files, input.path, "hashing", progress)).sha256 != known->sha256)
+      return false;
   }
   return true;
 }

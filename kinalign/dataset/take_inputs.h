@@ -13,9 +13,6 @@
 
 namespace kinalign {
 
-/// Hash and length of a file as it is now, under its own name.
-Result<InputFacts> facts_of(FileSystem& files, const std::string& path, const Progress& progress);
-
 /// A raw file where it lies, and as the take names it.
 struct TakeInput {
   std::string name, path;

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/verify.h"
 
-#include "kinalign/core/hash.h"
 #include "kinalign/core/parallel.h"
 #include "kinalign/dataset/build.h"
 #include "kinalign/dataset/scan.h"
 #include "kinalign/dataset/summarise.h"
 #include "kinalign/dataset/take_inputs.h"
+#include "kinalign/sources/input_facts.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <filesystem>
 #include <mutex>
-#include <optional>
 
 namespace kinalign {
 
@@ -23,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What may lie in the folder beside the takes.
+/// Names that may lie in the folder beside the takes.
 constexpr std::array<std::string_view, 8> known_names{"dataset.toml", "README.md", "LICENSE",
                                                       "LICENCE",      "CHANGES",   "sourcedata",
                                                       "splits",       "windows"};
@@ -97,14 +95,14 @@ class Verifier {
       } else {
         compare_summary(names[i], *made[i]);
       }
-      if (options_.deep && made[i]) KA_TRY(check_contents(names[i]));
+      if (options_.deep && made[i]) KA_TRY(check_contents(names[i], made[i]->rate_hz));
       if (!go_on(progress_, "comparing", i + 1, names.size())) return Failure(interruption());
     }
     return {};
   }
 
-  Result<void> check_contents(const TakeName& name) {
-    const auto found = check_rows(files_, folder_, name);
+  Result<void> check_contents(const TakeName& name, double rate_hz) {
+    const auto found = check_rows(files_, folder_, name, rate_hz);
     if (found) {
       append(out_.findings, *found);
       return {};
@@ -230,7 +228,7 @@ class Verifier {
         is_stopped = is_stopped || !go_on(progress_, "hashing", done, all);
         return !is_stopped;
       };
-      const auto facts = facts_of(files_, one.path, part);
+      const auto facts = facts_of(files_, one.path, "hashing", part);
       const std::lock_guard lock(mutex);
       if (facts) out_.bytes += facts->bytes;
       if (facts && facts->sha256 == one.sha256) return;

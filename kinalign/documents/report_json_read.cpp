@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A report back from its JSON. It may come from outside: a member that is not of its type is left
 // out, and control characters in texts become '?'.
+#include "kinalign/documents/json_values.h"
 #include "kinalign/documents/report_json.h"
 
 #include <nlohmann/json.hpp>
@@ -14,38 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_at(const Json& json, const char* key) {
-  if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
-  std::string text = json[key].get<std::string>();
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return text;
-}
-
-double number_at(const Json& json, const char* key) {
-  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return 0.0;
-  const auto number = json[key].get<double>();
-  return std::isfinite(number) ? number : 0.0;
-}
-
-std::uint64_t count_at(const Json& json, const char* key) {
-  if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned()) return 0;
-  return json[key].get<std::uint64_t>();
-}
-
 /// ns; 0 where none stands, or none that a take can have.
 std::int64_t ns_at(const Json& json, const char* key) {
-  constexpr std::int64_t furthest = 4'000'000'000'000'000'000;
-  if (!json.is_object() || !json.contains(key) || !json[key].is_number_integer()) return 0;
-  const auto ns = json[key].get<std::int64_t>();
-  return ns > furthest || ns < -furthest ? 0 : ns;
-}
-
-const Json& list_at(const Json& json, const char* key) {
-  static const Json none = Json::array();
-  if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return none;
-  return json[key];
+  return whole_at(json, key, 4'000'000'000'000'000'000);
 }
 
 template <std::size_t count>

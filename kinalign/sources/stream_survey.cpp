@@ -5,6 +5,7 @@
 #include "kinalign/core/unchanged.h"
 #include "kinalign/core/utf8.h"
 #include "kinalign/sources/formats.h"
+#include "kinalign/sources/input_facts.h"
 #include "kinalign/sources/value_survey.h"
 
 #include <fmt/format.h>
@@ -112,19 +113,6 @@ Result<RecordedStream> survey(const SurveyJob& job, InputFile file, std::string_
   return out;
 }
 
-Result<InputFacts> facts_of(FileSystem& files, const std::string& path, const Progress& progress) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
-  Sha256 hash;
-  std::uint64_t bytes = 0;
-  for (;;) {
-    const std::string_view piece = KA_TRY(file.next());
-    if (piece.empty()) return InputFacts{std::string(file_name(path)), hash.hex(), bytes};
-    bytes += piece.size();
-    hash.update(piece);
-    if (!go_on(progress, "reading", bytes, file.size())) return Failure(interruption(path));
-  }
-}
-
 /// A BVH stamped from a click on record and, where it is known, a click on stop.
 Findings judge_clicks(const StreamOptions& options, const RecordedStream& s) {
   if (!options.start_ns || !options.end_ns || !s.step_ns) return {};
@@ -208,7 +196,7 @@ Result<SurveyedFile> survey_file(const SurveyJob& job, const StreamFile& named) 
         reader));
   }
   for (const std::string& further : format.further_files) {
-    out.stream.files.push_back(KA_TRY(facts_of(*job.files, further, *job.progress)));
+    out.stream.files.push_back(KA_TRY(facts_of(*job.files, further, "reading", *job.progress)));
     out.paths.push_back(further);
   }
   return out;
@@ -243,7 +231,8 @@ Result<SurveyedFile> survey_device(const SurveyJob& job, const StreamFile& named
     out.paths.push_back(recording->parts()[i].path);
   }
   if (!made.skeleton_path.empty()) {
-    stream.files.push_back(KA_TRY(facts_of(*job.files, made.skeleton_path, *job.progress)));
+    stream.files.push_back(
+        KA_TRY(facts_of(*job.files, made.skeleton_path, "reading", *job.progress)));
     out.paths.push_back(made.skeleton_path);
   }
   return out;

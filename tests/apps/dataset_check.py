@@ -38,12 +38,6 @@ def recorded(folder, seconds, takes=1, seed=1):
     return sorted(folder.rglob("recording.toml"))
 
 
-def without(manifest, stream):
-    """Takes a stream out of a manifest."""
-    parts = manifest.read_text().split("\n[")
-    manifest.write_text("\n[".join(p for p in parts if not p.startswith((f"stream.{stream}", f"space.{stream}"))))
-
-
 def small_set(folder, takes=3, seconds=3):
     """A data set of some takes, not built yet."""
     done("init", folder / "set", "--template", "hfut-mmd")
@@ -68,7 +62,7 @@ def a_catalogue_of_the_papers_composition_prints_its_tables_from_takes_on_disk(f
         manifest, = recorded(folder / f"raw{i}", frames / 60, seed=i)
         for stream, wanted in (("kinect", kinect), ("imu", imu)):
             if not wanted:
-                without(manifest, stream)
+                hfut.without(manifest, stream)
         done("add", folder / "set", manifest, "--subject", subject, "--action", action)
     assert answer("build", folder / "set", seconds=600)["made"] == len(takes)
     tables = answer("tables", folder / "set")

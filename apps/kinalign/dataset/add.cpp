@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/add.h"
 
-#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/field_text.h"
-#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/dataset/table_output.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/core/nearest_name.h"
@@ -17,7 +18,7 @@ namespace {
 constexpr const char* usual_columns =
     "name,subject,class,action,frames,seconds,kinect,imu,residual_cm,verdict";
 
-/// What both verbs have.
+/// Flags of both verbs.
 struct Shown {
   std::vector<std::string> folder;
   std::string columns = usual_columns, sort, format = "text";

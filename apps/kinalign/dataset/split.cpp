@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/split.h"
 
-#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/dataset/scan.h"
 #include "kinalign/documents/report_json.h"
+#include "kinalign/view/table.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

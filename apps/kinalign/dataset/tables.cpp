@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/tables.h"
 
-#include "apps/kinalign/dataset/common.h"
+#include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/dataset/table_output.h"
 #include "apps/kinalign/verbs.h"
 
 #include <array>

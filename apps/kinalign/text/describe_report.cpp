@@ -5,6 +5,7 @@
 #include "apps/kinalign/text/summary.h"
 
 #include "kinalign/core/error.h"
+#include "kinalign/documents/json_values.h"
 #include "kinalign/documents/report_json.h"
 
 #include <fmt/format.h>
@@ -21,37 +22,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_at(const Json& json, const char* key) {
-  if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
-  std::string text = json[key].get<std::string>();
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
-  return text;
-}
-
-double number_at(const Json& json, const char* key) {
-  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return 0.0;
-  return json[key].get<double>();
-}
-
-std::uint64_t count_at(const Json& json, const char* key) {
-  if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned()) return 0;
-  return json[key].get<std::uint64_t>();
-}
-
 /// ns; 0 where none stands, or none that a take can have.
 std::int64_t stamp_at(const Json& json, const char* key) {
-  constexpr std::int64_t furthest = 9'200'000'000'000'000'000;
-  if (!json.is_object() || !json.contains(key) || !json[key].is_number_integer()) return 0;
-  const auto ns = json[key].get<std::int64_t>();
-  return ns > furthest || ns < -furthest ? 0 : ns;
-}
-
-const Json& list_at(const Json& json, const char* key) {
-  static const Json none = Json::array();
-  if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return none;
-  return json[key];
+  return whole_at(json, key, 9'200'000'000'000'000'000);
 }
 
 /// The take's span; devices without a calendar count from near zero.

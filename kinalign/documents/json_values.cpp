@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/documents/json_values.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
+  std::string text = json[key].get<std::string>();
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+double number_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number()) return 0.0;
+  const auto number = json[key].get<double>();
+  return std::isfinite(number) ? number : 0.0;
+}
+
+std::uint64_t count_at(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned()) return 0;
+  return json[key].get<std::uint64_t>();
+}
+
+std::int64_t whole_at(const Json& json, const char* key, std::int64_t furthest) {
+  if (!json.is_object() || !json.contains(key) || !json[key].is_number_integer()) return 0;
+  const auto whole = json[key].get<std::int64_t>();
+  return whole > furthest || whole < -furthest ? 0 : whole;
+}
+
+const Json& list_at(const Json& json, const char* key) {
+  static const Json none = Json::array();
+  if (!json.is_object() || !json.contains(key) || !json[key].is_array()) return none;
+  return json[key];
+}
+
+}  // namespace kinalign
