@@ -279,4 +279,9 @@ Result<Split> parse_split_json(std::string_view json, const std::string& file) {
   }
 }
 
+Result<Split> read_split(FileSystem& files, const std::string& path) {
+  constexpr std::size_t longest = std::size_t{64} << 20;
+  return parse_split_json(KA_TRY(read_whole(files, path, longest)), path);
+}
+
 }  // namespace kinalign

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/core/files.h"
 #include "kinalign/dataset/catalogue.h"
 #include "kinalign/dataset/take_summary.h"
 
@@ -56,5 +57,7 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
 /// Schema kinalign.split/1, with the SHA-256 of each take.
 std::string split_json(const Split& split, const std::vector<SplitTake>& takes);
 Result<Split> parse_split_json(std::string_view json, const std::string& file);
+/// Reads one from a file of at most 64 MiB.
+Result<Split> read_split(FileSystem& files, const std::string& path);
 
 }  // namespace kinalign

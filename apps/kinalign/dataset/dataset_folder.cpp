@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/dataset/dataset_folder.h"
 
+#include "kinalign/dataset/scan.h"
+
 namespace kinalign {
 
 Positional folder_word(std::vector<std::string>& folder) {
@@ -20,6 +22,19 @@ Result<DatasetIndex> open_index(const std::string& folder, Call& call) {
                                to_string(finding.what) + ": " + finding.meaning));
   }
   return index;
+}
+
+Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string& folder,
+                                           const DatasetIndex& index, const std::string& where) {
+  const std::string condition = where.empty() ? "" : " where (" + where + ")";
+  const Table names = KA_TRY(index.select("select name from takes" + condition + " order by name"));
+  std::vector<SplitTake> takes;
+  for (const auto& row : names.rows) {
+    const auto* text = std::get_if<std::string>(&row.front());
+    const auto name = text == nullptr ? std::nullopt : parse_take_name(*text);
+    if (name) takes.push_back({*name, KA_TRY(read_summary(files, folder, *name))});
+  }
+  return takes;
 }
 
 }  // namespace kinalign

@@ -4,7 +4,6 @@
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
-#include "kinalign/dataset/scan.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/view/table.h"
 
@@ -16,8 +15,6 @@
 namespace kinalign {
 
 namespace {
-
-constexpr std::size_t longest_split = std::size_t{64} << 20;
 
 struct SplitVerb {
   std::vector<std::string> folder;
@@ -46,15 +43,6 @@ Usage describe_split(SplitVerb& o) {
   return usage;
 }
 
-Result<std::vector<SplitTake>> takes_of(FileSystem& files, const std::string& folder) {
-  std::vector<SplitTake> takes;
-  for (const auto& [name, there] : KA_TRY(scan_takes(folder))) {
-    if (there.take && there.summary)
-      takes.push_back({name, KA_TRY(read_summary(files, folder, name))});
-  }
-  return takes;
-}
-
 Table table_of(const Split& split, const std::vector<SplitTake>& takes) {
   std::map<TakeName, std::uint64_t> frames;
   for (const SplitTake& take : takes) frames[take.name] = take.summary.frames;
@@ -78,14 +66,14 @@ Table table_of(const Split& split, const std::vector<SplitTake>& takes) {
 Result<int> run_split(SplitVerb& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
-  const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
-  const std::vector<SplitTake> takes = KA_TRY(takes_of(files, folder));
+  const DatasetIndex index = KA_TRY(open_index(folder, call));
+  const std::vector<SplitTake> takes = KA_TRY(built_takes(files, folder, index, ""));
   const std::string file = o.check.empty() ? call.common.out : o.check;
   Split split;
   if (o.check.empty()) {
-    split = KA_TRY(make_split(takes, catalogue, o.options));
+    split = KA_TRY(make_split(takes, index.catalogue(), o.options));
   } else {
-    split = KA_TRY(parse_split_json(KA_TRY(read_whole(files, o.check, longest_split)), o.check));
+    split = KA_TRY(read_split(files, o.check));
   }
   const Findings findings = check_split(split, takes, file);
   int code = 0;

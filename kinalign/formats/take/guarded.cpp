@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// From child to parent goes a sequence of messages: one letter ('d' data, 'e' an error, '.' done),
-// four bytes of length, that many bytes. The parent believes no length above `message_most`.
+// From child to parent goes a sequence of messages: one letter ('d' data, 'p' progress, 'e' an
+// error,
+// '.' done), four bytes of length, that many bytes. The parent believes no length above
+// `message_most`.
 #include "kinalign/formats/take/guarded.h"
-
-#include "kinalign/core/progress.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -92,8 +92,21 @@ void reset_signals() {
   ::signal(SIGPIPE, SIG_IGN);
 }
 
-[[noreturn]] void run_child(int pipe, const GuardLimits& limits,
-                            const std::function<Result<void>(const GuardSend&)>& work) {
+using Work = std::function<Result<void>(const GuardSend&, const Progress&)>;
+using Receive = std::function<Result<void>(std::string_view)>;
+
+/// How far a job is, as bytes of a message.
+struct Step {
+  std::uint64_t done = 0, total = 0;
+};
+
+std::string packed(const Step& step, std::string_view what) {
+  std::string out(sizeof step, '\0');
+  std::memcpy(out.data(), &step, sizeof step);
+  return out.append(what.substr(0, message_most / 8));
+}
+
+[[noreturn]] void run_child(int pipe, const GuardLimits& limits, const Work& work) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   reset_signals();
   set_limits(limits);
@@ -105,7 +118,10 @@ void reset_signals() {
     }
     return {};
   };
-  const Result<void> done = work(send_data);
+  const Progress tell = [pipe](std::string_view what, std::uint64_t done, std::uint64_t total) {
+    return send(pipe, 'p', packed(Step{done, total}, what));
+  };
+  const Result<void> done = work(send_data, tell);
   const bool told = done ? send(pipe, '.', "") : send(pipe, 'e', packed(done.error()));
   ::_exit(told ? 0 : 1);  // no destructors or buffers of the parent's
 }
@@ -185,8 +201,8 @@ std::string cause(int status, const GuardLimits& limits) {
 /// Takes messages apart as their bytes arrive.
 class Inbox {
  public:
-  explicit Inbox(const std::function<Result<void>(std::string_view)>& receive)
-      : receive_(receive) {}
+  Inbox(const Receive& receive, const Progress& progress)
+      : receive_(receive), progress_(progress) {}
 
   /// False: a message that no child of ours sends.
   Result<bool> take(std::string_view bytes) {
@@ -203,6 +219,7 @@ class Inbox {
       const auto body = std::string_view(pending_).substr(at + head_size, size);
       const char kind = pending_[at];
       if (kind == 'd') KA_TRY(receive_(body));
+      if (kind == 'p' && !pass_on(body)) return Failure(interruption());
       if (kind == 'e') error_ = unpacked(body);
       if (kind == '.') done_ = true;
       at += head_size + size;
@@ -216,7 +233,16 @@ class Inbox {
   const std::optional<Error>& error() const { return error_; }
 
  private:
-  const std::function<Result<void>(std::string_view)>& receive_;
+  /// False: the user wants no more.
+  bool pass_on(std::string_view body) const {
+    Step step;
+    if (body.size() < sizeof step) return true;
+    std::memcpy(&step, body.data(), sizeof step);
+    return go_on(progress_, body.substr(sizeof step), step.done, step.total);
+  }
+
+  const Receive& receive_;
+  const Progress& progress_;
   std::string pending_;
   std::optional<Error> error_;
   bool done_ = false, strange_ = false;
@@ -243,11 +269,8 @@ Result<bool> read_until_end(const Child& child, double wall_seconds, Inbox& inbo
   }
 }
 
-}  // namespace
-
-Result<void> run_guarded(const GuardLimits& limits, const Error& blame,
-                         const std::function<Result<void>(const GuardSend&)>& work,
-                         const std::function<Result<void>(std::string_view)>& receive) {
+Result<void> run(const GuardLimits& limits, const Error& blame, const Work& work,
+                 const Receive& receive, const Progress& progress) {
   int ends[2] = {-1, -1};
   if (::pipe2(ends, O_CLOEXEC) != 0) {
     return Failure(Error{"", 0, "a pipe to a child process", std::strerror(errno)});
@@ -264,7 +287,7 @@ Result<void> run_guarded(const GuardLimits& limits, const Error& blame,
     return Failure(Error{"", 0, "a child process", std::strerror(code)});
   }
   Child child(id, ends[0]);
-  Inbox inbox(receive);
+  Inbox inbox(receive, progress);
   if (!KA_TRY(read_until_end(child, limits.wall_seconds, inbox))) {
     const auto seconds = static_cast<std::int64_t>(limits.wall_seconds);
     return Failure(blamed(blame, "one that took more than " + std::to_string(seconds) + " s"));
@@ -276,11 +299,21 @@ Result<void> run_guarded(const GuardLimits& limits, const Error& blame,
                                                : cause(status, limits)));
 }
 
+}  // namespace
+
+Result<void> run_guarded(const GuardLimits& limits, const Error& blame,
+                         const std::function<Result<void>(const GuardSend&)>& work,
+                         const std::function<Result<void>(std::string_view)>& receive) {
+  const auto silent = [&](const GuardSend& send_data, const Progress&) { return work(send_data); };
+  return run(limits, blame, silent, receive, {});
+}
+
 Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
-                                const std::function<Result<std::string>()>& work) {
+                                const Progress& progress,
+                                const std::function<Result<std::string>(const Progress&)>& work) {
   std::string text;
-  const auto send_text = [&](const GuardSend& send_data) -> Result<void> {
-    const std::string result = KA_TRY(work());
+  const auto send_text = [&](const GuardSend& send_data, const Progress& tell) -> Result<void> {
+    const std::string result = KA_TRY(work(tell));
     return send_data(result);
   };
   const auto keep = [&](std::string_view bytes) -> Result<void> {
@@ -291,8 +324,13 @@ Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
     text += bytes;
     return {};
   };
-  KA_TRY(run_guarded(limits, blame, send_text, keep));
+  KA_TRY(run(limits, blame, send_text, keep, progress));
   return text;
+}
+
+Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
+                                const std::function<Result<std::string>()>& work) {
+  return run_guarded(limits, blame, {}, [&](const Progress&) { return work(); });
 }
 
 }  // namespace kinalign

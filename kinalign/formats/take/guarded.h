@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/core/progress.h"
 
 #include <cstdint>
 #include <functional>
@@ -34,5 +35,9 @@ Result<void> run_guarded(const GuardLimits& limits, const Error& blame,
 /// The same for work whose result is one text.
 Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
                                 const std::function<Result<std::string>()>& work);
+/// The same for long work. What it tells of its progress reaches `progress` here, which can end it.
+Result<std::string> run_guarded(const GuardLimits& limits, const Error& blame,
+                                const Progress& progress,
+                                const std::function<Result<std::string>(const Progress&)>& work);
 
 }  // namespace kinalign

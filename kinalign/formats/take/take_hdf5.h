@@ -43,10 +43,10 @@ class TakeWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Reads a take that TakeWriter wrote, in order of rows. Nothing in the file is trusted: types,
-/// shapes and places are held against each other and against the file's length before anything is
-/// allocated, numbers are finite, stamps rise. HDF5 itself can crash on a hostile file: open what
-/// is not known to be ours in a child process (guarded.h).
+/// Reads a take that TakeWriter wrote, in order of rows or any window of them. Nothing in the file
+/// is trusted: types, shapes and places are held against each other and against the file's length
+/// before anything is allocated, numbers are finite, stamps rise. HDF5 itself can crash on a
+/// hostile file: open what is not known to be ours in a child process (guarded.h).
 class TakeReader {
  public:
   static Result<TakeReader> open(FileSystem& files, std::string path);
@@ -61,6 +61,10 @@ class TakeReader {
   const std::string& software() const;
   /// Fills the next slab, of at most 4096 rows or 16 MiB; false at the end.
   Result<bool> next(TakeSlab& slab);
+  /// Fills `slab` with these rows, wherever next() is.
+  Result<void> read(std::uint64_t first, std::uint64_t count, TakeSlab& slab);
+  /// All stamps.
+  Result<std::vector<Time>> stamps();
   /// The report as it stands in the file, schema kinalign.report/1 (report_json.h).
   Result<std::string> report_json() const;
 

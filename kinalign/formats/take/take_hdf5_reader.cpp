@@ -126,13 +126,8 @@ struct TakeReader::State {
   Result<void> read_words(const hdf5::Checked& checked);
   Result<void> read_header();
   Result<void> find_columns(hid_t group, const TakeGroup& what, std::uint64_t& row_bytes);
-  Result<void> read_stamps(std::uint64_t count, std::vector<Time>& stamps);
-
-  template <class Value>
-  Result<void> read(const Found& column, std::uint64_t count, std::vector<Value>& values) {
-    values.resize(count * column.source.row_values);
-    return hdf5::read_rows(bytes, column.source, rows, count, values.data());
-  }
+  Result<void> read_stamps(std::uint64_t first, std::uint64_t count, std::vector<Time>& stamps);
+  Result<void> read_slab(std::uint64_t first, std::uint64_t count, TakeSlab& slab);
 
   Result<void> check(const Found& column, std::span<const double> values) const {
     return finite(values) ? Result<void>() : bad_value(input.path(), "finite numbers", column.name);
@@ -212,12 +207,33 @@ Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
   return {};
 }
 
-Result<void> TakeReader::State::read_stamps(std::uint64_t count, std::vector<Time>& stamps) {
+Result<void> TakeReader::State::read_stamps(std::uint64_t first, std::uint64_t count,
+                                            std::vector<Time>& stamps) {
   stamps.resize(count);
-  KA_TRY(hdf5::read_rows(bytes, time, rows, count, stamps.data()));
-  for (const Time stamp : stamps) {
-    if (stamp <= last) return bad_value(input.path(), "stamps that rise", "time_ns");
-    last = stamp;
+  KA_TRY(hdf5::read_rows(bytes, time, first, count, stamps.data()));
+  const auto falls = [](Time one, Time next) { return next <= one; };
+  if (std::adjacent_find(stamps.begin(), stamps.end(), falls) == stamps.end()) return {};
+  return bad_value(input.path(), "stamps that rise", "time_ns");
+}
+
+Result<void> TakeReader::State::read_slab(std::uint64_t first, std::uint64_t count,
+                                          TakeSlab& slab) {
+  slab.first = first;
+  slab.rows.resize(columns.size());
+  KA_TRY(read_stamps(first, count, slab.stamps));
+  for (std::size_t g = 0; g < columns.size(); ++g) {
+    AnyRows& group = slab.rows[g];
+    AnyRows kind = rows_for(header.groups[g]);
+    if (group.index() != kind.index()) group = std::move(kind);
+    auto column = columns[g].cbegin();
+    const auto use = [&](std::string_view name, auto& values) -> Result<void> {
+      values.clear();
+      if (column == columns[g].cend() || column->name != name) return {};
+      values.resize(count * column->source.row_values);
+      KA_TRY(hdf5::read_rows(bytes, column->source, first, count, values.data()));
+      return check(*column++, std::span(std::as_const(values)));
+    };
+    KA_TRY(std::visit([&](auto& one) { return for_each_row_array(one, use); }, group));
   }
   return {};
 }
@@ -247,24 +263,29 @@ Result<bool> TakeReader::next(TakeSlab& slab) {
   State& s = *state_;
   const std::uint64_t count = std::min(s.slab_rows, s.header.frames - s.rows);
   if (count == 0) return false;
-  slab.first = s.rows;
-  slab.rows.resize(s.columns.size());
-  KA_TRY(s.read_stamps(count, slab.stamps));
-  for (std::size_t g = 0; g < s.columns.size(); ++g) {
-    AnyRows& rows = slab.rows[g];
-    AnyRows kind = rows_for(s.header.groups[g]);
-    if (rows.index() != kind.index()) rows = std::move(kind);
-    auto column = s.columns[g].cbegin();
-    const auto use = [&](std::string_view name, auto& values) -> Result<void> {
-      values.clear();
-      if (column == s.columns[g].cend() || column->name != name) return {};
-      KA_TRY(s.read(*column, count, values));
-      return s.check(*column++, std::span(std::as_const(values)));
-    };
-    KA_TRY(std::visit([&](auto& one) { return for_each_row_array(one, use); }, rows));
+  KA_TRY(s.read_slab(s.rows, count, slab));
+  if (slab.stamps.front() <= s.last) {
+    return bad_value(s.input.path(), "stamps that rise", "time_ns");
   }
+  s.last = slab.stamps.back();
   s.rows += count;
   return true;
+}
+
+Result<void> TakeReader::read(std::uint64_t first, std::uint64_t count, TakeSlab& slab) {
+  const std::uint64_t frames = state_->header.frames;
+  if (first > frames || count > frames - first) {
+    return Failure(Error{state_->input.path(), 0,
+                         "rows " + std::to_string(first) + " to " + std::to_string(first + count),
+                         std::to_string(frames) + " rows"});
+  }
+  return state_->read_slab(first, count, slab);
+}
+
+Result<std::vector<Time>> TakeReader::stamps() {
+  std::vector<Time> all;
+  KA_TRY(state_->read_stamps(0, state_->header.frames, all));
+  return all;
 }
 
 Result<std::string> TakeReader::report_json() const {

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/windows/windows.h"
+
+#include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/dataset/split.h"
+#include "kinalign/view/table.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_parts = 255;
+constexpr std::size_t shown_takes = 5;
+
+struct Windows {
+  std::vector<std::string> folder;
+  WindowOptions options;
+  std::string split, where;
+};
+
+Usage describe_windows(Windows& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.folder)};
+  usage.flags = {
+      {"split", "parts, as `dataset split` wrote them", &o.split, 0.0, 0.0, {}, "FILE"},
+      {"where",
+       "takes for which this holds, as for `dataset query`",
+       &o.where,
+       0.0,
+       0.0,
+       {},
+       "SQL"},
+      {"stream",
+       "which stream; may be repeated (default: those that all takes have)",
+       &o.options.streams,
+       0.0,
+       0.0,
+       {},
+       "NAME"},
+      {"length", "rows of a window", &o.options.length, 2.0, 1e6},
+      {"step", "rows from one window to the next", &o.options.step, 1.0, 1e6},
+      {"rate", "rows a second; 0: the takes' own", &o.options.rate_hz, 0.0, 1e4, {}, "HZ"},
+      {"valid", "least share of valid cells of each stream", &o.options.valid, 0.0, 1.0}};
+  usage.check = [](const Common& common, const Sources&) -> Result<void> {
+    if (common.out.ends_with(".npz")) return {};
+    return Failure(Error{"-o", 0, "-o FILE.npz", common.out.empty() ? "none" : shown(common.out)});
+  };
+  return usage;
+}
+
+/// Puts each take of the split into its part; takes in no part go.
+Result<void> divide(const Split& split, const std::string& file, std::vector<SplitTake>& takes,
+                    WindowSource& source) {
+  if (split.parts.size() > most_parts) {
+    return Failure(Error{file, 0, "at most 255 parts", std::to_string(split.parts.size())});
+  }
+  std::map<TakeName, std::uint8_t> part_of;
+  source.parts.clear();
+  for (const SplitPart& part : split.parts) {
+    for (const TakeName& name : part.takes) {
+      part_of[name] = static_cast<std::uint8_t>(source.parts.size());
+    }
+    source.parts.push_back(part.name);
+  }
+  std::erase_if(takes, [&](const SplitTake& take) { return !part_of.contains(take.name); });
+  for (const SplitTake& take : takes) {
+    source.takes.push_back({take.name, "", take.summary, part_of.at(take.name)});
+  }
+  return {};
+}
+
+/// A split that no longer holds is refused: a network would be tested on what it has seen.
+Result<void> divide_by_file(const std::string& file, FileSystem& files,
+                            std::vector<SplitTake>& takes, WindowSource& source,
+                            const std::vector<SplitTake>& all) {
+  const Split split = KA_TRY(read_split(files, file));
+  for (const Finding& one : check_split(split, all, file)) {
+    if (one.severity == Severity::error) return Failure(one.what);
+  }
+  return divide(split, file, takes, source);
+}
+
+Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const DatasetIndex index = KA_TRY(open_index(folder, call));
+  const Catalogue& catalogue = index.catalogue();
+  WindowSource source{catalogue.name, catalogue.licence, catalogue.citation, {"all"}, {}};
+  auto takes = KA_TRY(built_takes(files, folder, index, o.where));
+  if (o.split.empty()) {
+    for (const SplitTake& take : takes) source.takes.push_back({take.name, "", take.summary, 0});
+  } else {
+    const auto all = KA_TRY(built_takes(files, folder, index, ""));
+    KA_TRY(divide_by_file(o.split, files, takes, source, all));
+  }
+  for (WindowTake& take : source.takes) {
+    const Action* action = find_action(catalogue, take.name.action);
+    if (action != nullptr) take.class_id = action->class_id;
+  }
+  return source;
+}
+
+void print(const WindowsMade& made, const WindowSource& source, Call& call) {
+  Table table;
+  table.columns = {{"part", "part"}, {"windows", "windows"}};
+  for (std::size_t part = 0; part < source.parts.size(); ++part) {
+    table.rows.push_back({source.parts[part], static_cast<std::int64_t>(made.windows[part])});
+  }
+  call.console.print(written(table, TableFormat::text));
+  if (made.too_little_valid > 0) {
+    call.console.print(fmt::format("note   {} windows left out: too little is valid (--valid)\n",
+                                   made.too_little_valid));
+  }
+  if (made.rows_left_out > 0) {
+    call.console.print(fmt::format(
+        "note   {} rows left out: in stretches shorter than half a window\n", made.rows_left_out));
+  }
+  auto left_out = nlohmann::ordered_json::array();
+  for (const LeftOut& one : made.takes_left_out) {
+    left_out.push_back({{"take", to_string(one.name)}, {"why", one.why}});
+    if (left_out.size() > shown_takes) continue;
+    call.console.print(
+        harmless(fmt::format("note   {} left out: {}\n", to_string(one.name), one.why)));
+  }
+  if (left_out.size() > shown_takes) {
+    call.console.print(
+        fmt::format("note   {} takes left out in all (--json has them)\n", left_out.size()));
+  }
+  call.console.print_json(nlohmann::ordered_json{
+      {"windows", made.windows},
+      {"parts", source.parts},
+      {"rows_left_out", made.rows_left_out},
+      {"windows_with_too_little_valid", made.too_little_valid},
+      {"takes_left_out",
+       left_out}}.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+Result<int> run_windows(Windows& o, Call& call) {
+  const std::string folder = folder_of(o.folder);
+  const WindowSource source = KA_TRY(source_of(o, folder, call));
+  const WindowsMade made =
+      KA_TRY(write_windows(call.surroundings.files, folder, source, o.options, call.common.out,
+                           call.common.overwrite(), call.console.progress()));
+  call.console.wrote(call.common.out);
+  print(made, source, call);
+  return 0;
+}
+
+}  // namespace
+
+Verb dataset_windows_verb() {
+  return make_verb<Windows>(
+      {.name = "dataset windows",
+       .summary = "arrays for training: windows of takes, with masks, in one NPZ",
+       .text = "The arrays are [window, row, column]; `manifest` in the file says what each column "
+               "is. No window crosses a gap. Padded rows and samples that were not measured are "
+               "0 in the arrays STREAM_valid.",
+       .examples =
+           {{"kinalign dataset windows walks -o walks.npz --split walks/splits/people.json",
+             "windows of 64 rows, each with its part of the split"},
+            {"kinalign dataset windows walks -o pairs.npz --where \"kinect > 0\" --stream mocap "
+             "--stream kinect --rate 30 --length 90 --step 45",
+             "pairs for cleaning a Kinect, 3 s at 30 Hz"}},
+       .common = {"out", "force", "json"}},
+      describe_windows, run_windows);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/windows/window_arrays.h"
+
+#include "kinalign/formats/take/take_hdf5.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The first arrays of the file, in this order.
+enum Fixed : std::size_t {
+  take_array,
+  part_array,
+  first_array,
+  time_array,
+  rows_array,
+  manifest_array
+};
+
+const std::vector<std::string>& names_of(const TakeGroup& group) {
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return clip->skeleton.joint_names;
+  if (const auto* points = std::get_if<PointGroup>(&group.kind)) return points->joint_names;
+  return std::get<ImuGroup>(group.kind).node_names;
+}
+
+/// How a take's stream differs from the windows' one of that name; empty where it is alike.
+std::string difference(const TakeGroup& group, const TakeGroup& other) {
+  if (group.kind.index() != other.kind.index())
+    return fmt::format("{} of another kind", group.name);
+  if (names_of(group) != names_of(other)) return fmt::format("other names in {}", group.name);
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
+    const auto& parents = std::get<ClipGroup>(other.kind).skeleton.parents;
+    return clip->skeleton.parents == parents ? ""
+                                             : fmt::format("another skeleton in {}", group.name);
+  }
+  if (const auto* imu = std::get_if<ImuGroup>(&group.kind)) {
+    const auto& one = std::get<ImuGroup>(other.kind);
+    const bool alike = imu->content == one.content && imu->root_node == one.root_node;
+    return alike ? "" : fmt::format("other quantities in {}", group.name);
+  }
+  return "";
+}
+
+/// The columns of a stream that windows have: all but what follows from others.
+std::vector<TakeColumn> window_columns(const TakeGroup& group) {
+  std::vector<TakeColumn> columns = columns_of(group, Precision::single);
+  std::erase_if(columns, [](const TakeColumn& one) { return one.name == "local_positions"; });
+  const auto is_valid = [](const TakeColumn& one) { return one.name == "valid"; };
+  if (std::none_of(columns.begin(), columns.end(), is_valid)) {
+    columns.push_back({"valid", Stored::uint8, {}, {{"values", "0 no, 1 yes"}}});
+  }
+  return columns;
+}
+
+/// "Hips.x": what each number of a row is.
+std::vector<std::string> labels_of(const TakeColumn& column,
+                                   const std::vector<std::string>& names) {
+  static const std::vector<std::string> none{""}, vector{".x", ".y", ".z"},
+      rotation{".w", ".x", ".y", ".z"};
+  if (column.shape.empty()) return {"row"};
+  const auto& parts = column.shape.size() == 1 ? none : column.shape[1] == 4 ? rotation : vector;
+  std::vector<std::string> out;
+  for (const std::string& name : names) {
+    for (const std::string& part : parts) out.push_back(name + part);
+  }
+  return out;
+}
+
+Json array_json(const TakeGroup& group, const TakeColumn& column) {
+  Json out{{"stream", group.name}, {"axes", {"window", "row", "column"}}};
+  for (const auto& [key, text] : column.facts) out[key] = text;
+  out["columns"] = labels_of(column, names_of(group));
+  return out;
+}
+
+Json take_json(const WindowTake& take, const std::vector<std::string>& parts) {
+  return {{"name", to_string(take.name)},  {"subject", take.name.subject},
+          {"action", take.name.action},    {"class", take.class_id},
+          {"part", parts[take.part]},      {"rate_hz", take.summary.rate_hz},
+          {"frames", take.summary.frames}, {"verdict", take.summary.verdict()},
+          {"sha256", take.summary.sha256}};
+}
+
+Json stream_json(const TakeGroup& group) {
+  Json out{{"name", group.name}, {"kind", kind_of(group)}, {"names", names_of(group)}};
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind))
+    out["parents"] = clip->skeleton.parents;
+  if (const auto* imu = std::get_if<ImuGroup>(&group.kind)) {
+    out["root_node"] = imu->root_node;
+    out["gravity"] = gravity_texts(*imu);
+  }
+  return out;
+}
+
+std::string manifest_json(const WindowSource& source, const WindowOptions& options,
+                          const WindowStreams& streams, const std::vector<WindowedTake>& takes) {
+  const double rate =
+      options.rate_hz > 0.0 ? options.rate_hz : source.takes[takes.front().index].summary.rate_hz;
+  Json out{{"schema", "kinalign.windows/1"}, {"software", take_software()},
+           {"dataset", source.name},         {"licence", source.licence},
+           {"citation", source.citation},    {"rate_hz", rate},
+           {"length", options.length},       {"step", options.step},
+           {"least_valid", options.valid},   {"parts", source.parts}};
+  for (const WindowedTake& take : takes) {
+    out["takes"].push_back(take_json(source.takes[take.index], source.parts));
+  }
+  for (const TakeGroup& group : streams.groups) {
+    out["streams"].push_back(stream_json(group));
+    for (const TakeColumn& column : window_columns(group)) {
+      out["arrays"][group.name + "_" + column.name] = array_json(group, column);
+    }
+  }
+  return out.dump(1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// All arrays of the file. `arrays` of fixed contents come with their bytes.
+struct Layout {
+  std::vector<NpzArray> arrays;
+  std::vector<std::pair<std::size_t, std::string>> contents;
+};
+
+void add_skeletons(const WindowStreams& streams, const std::vector<WindowedTake>& takes,
+                   Layout& layout) {
+  std::size_t skeleton = 0;
+  for (const TakeGroup& group : streams.groups) {
+    const auto* clip = std::get_if<ClipGroup>(&group.kind);
+    if (clip == nullptr) continue;
+    const auto& parents = clip->skeleton.parents;
+    layout.contents.emplace_back(layout.arrays.size(), bytes_of(std::span<const int>(parents)));
+    layout.arrays.push_back(npz_numbers(group.name + "_parents", Stored::int32, {parents.size()}));
+    std::string offsets;
+    for (const WindowedTake& take : takes) {
+      for (const Vec3& offset : take.rest_offsets[skeleton]) {
+        offsets += bytes_of(std::span<const double>(offset.data(), 3));
+      }
+    }
+    layout.contents.emplace_back(layout.arrays.size(), std::move(offsets));
+    layout.arrays.push_back(npz_numbers(group.name + "_rest_offsets", Stored::float64,
+                                        {takes.size(), parents.size(), 3}));
+    ++skeleton;
+  }
+}
+
+Layout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
+  Layout out;
+  out.arrays = {npz_numbers("take", Stored::int32, {windows}),
+                npz_numbers("part", Stored::uint8, {windows}),
+                npz_numbers("first", Stored::int64, {windows}),
+                npz_numbers("time_ns", Stored::int64, {windows}),
+                npz_numbers("rows", Stored::int32, {windows})};
+  NpzTexts text = npz_texts("manifest", {manifest});
+  text.array.shape.clear();  // a scalar
+  out.contents.emplace_back(out.arrays.size(), std::move(text.bytes));
+  out.arrays.push_back(std::move(text.array));
+  return out;
+}
+
+template <class Value>
+std::string one(Value value) {
+  return std::string(bytes_of(std::span<const Value>(&value, 1)));
+}
+
+}  // namespace
+
+Result<std::vector<std::size_t>> WindowStreams::find_in(const TakeHeader& header) const {
+  std::vector<std::size_t> out;
+  for (const TakeGroup& wanted : groups) {
+    const auto found = std::find_if(header.groups.begin(), header.groups.end(),
+                                    [&](const TakeGroup& g) { return g.name == wanted.name; });
+    if (found == header.groups.end()) {
+      return Failure(Error{"", 0, "a stream '" + shown(wanted.name) + "'", "none of that name"});
+    }
+    const std::string differs = difference(*found, wanted);
+    if (!differs.empty()) return Failure(Error{"", 0, "the first take's streams", shown(differs)});
+    out.push_back(static_cast<std::size_t>(found - header.groups.begin()));
+  }
+  return out;
+}
+
+Result<WindowFile> WindowFile::create(FileSystem& files, const std::string& path,
+                                      Overwrite overwrite, const WindowSource& source,
+                                      const WindowOptions& options, const WindowStreams& streams,
+                                      const std::vector<WindowedTake>& takes) {
+  std::uint64_t windows = 0;
+  for (const WindowedTake& take : takes) windows += take.places.size();
+  const auto length = static_cast<std::uint64_t>(options.length);
+  Layout layout = fixed_arrays(windows, manifest_json(source, options, streams, takes));
+  add_skeletons(streams, takes, layout);
+  std::vector<std::vector<Column>> columns;
+  for (const TakeGroup& group : streams.groups) {
+    auto& found = columns.emplace_back();
+    for (const TakeColumn& column : window_columns(group)) {
+      found.push_back({column.name, column.stored, layout.arrays.size()});
+      layout.arrays.push_back(npz_numbers(group.name + "_" + column.name, column.stored,
+                                          {windows, length, column.row_values()}));
+    }
+  }
+  WindowFile out(KA_TRY(NpzWriter::create(files, path, overwrite, layout.arrays)),
+                 std::move(columns));
+  for (const auto& [array, bytes] : layout.contents) KA_TRY(out.writer_.append(array, bytes));
+  return out;
+}
+
+Result<void> WindowFile::append(std::size_t take, std::uint8_t part,
+                                const std::vector<std::size_t>& groups, const WindowPlace& place,
+                                const TakeSlab& rows) {
+  KA_TRY(writer_.append(take_array, one(static_cast<int>(take))));
+  KA_TRY(writer_.append(part_array, one(part)));
+  KA_TRY(writer_.append(first_array, one(static_cast<std::int64_t>(place.first))));
+  KA_TRY(writer_.append(time_array, one(place.begin)));
+  KA_TRY(writer_.append(rows_array, one(static_cast<int>(place.rows))));
+  const std::vector<std::uint8_t> all_valid(rows.stamps.size(), 1);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto& columns = streams_[g];
+    const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
+      const auto column = std::find_if(columns.begin(), columns.end(),
+                                       [&](const Column& c) { return c.name == name; });
+      if (column == columns.end()) return {};
+      const auto put = [&](std::string_view bytes) { return writer_.append(column->array, bytes); };
+      const std::span given(values);
+      if constexpr (std::is_same_v<typename decltype(given)::value_type, double>) {
+        return numbers_.store(given, column->stored, put);
+      } else {
+        const bool is_empty = given.empty() && name == "valid";
+        return is_empty ? put(bytes_of(std::span(all_valid))) : put(bytes_of(given));
+      }
+    };
+    KA_TRY(std::visit([&](const auto& stream) { return for_each_row_array(stream, use); },
+                      rows.rows[groups[g]]));
+  }
+  return {};
+}
+
+}  // namespace kinalign

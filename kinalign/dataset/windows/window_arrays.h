@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arrays of a file of windows and what it says of them.
+#pragma once
+
+#include "kinalign/dataset/windows/window_places.h"
+#include "kinalign/dataset/windows/windows.h"
+#include "kinalign/formats/take/take_npz.h"
+
+#include <optional>
+
+namespace kinalign {
+
+/// The streams of all windows, as the first take has them.
+struct WindowStreams {
+  std::vector<TakeGroup> groups;
+
+  /// Which of a take's groups these are; fails, saying what is missing or another.
+  Result<std::vector<std::size_t>> find_in(const TakeHeader& header) const;
+};
+
+/// A take that windows come from.
+struct WindowedTake {
+  std::size_t index = 0;                        // of the source's takes
+  std::vector<std::size_t> groups;              // of the take, in the order of the streams
+  std::vector<std::vector<Vec3>> rest_offsets;  // of its skeletons
+  std::vector<WindowPlace> places;
+};
+
+class WindowFile {
+ public:
+  static Result<WindowFile> create(FileSystem& files, const std::string& path, Overwrite overwrite,
+                                   const WindowSource& source, const WindowOptions& options,
+                                   const WindowStreams& streams,
+                                   const std::vector<WindowedTake>& takes);
+  /// `rows`: a whole take's slab of the window's length. `take`: position in the file's list.
+  Result<void> append(std::size_t take, std::uint8_t part, const std::vector<std::size_t>& groups,
+                      const WindowPlace& place, const TakeSlab& rows);
+  Result<void> finish() { return writer_.finish(); }
+
+ private:
+  struct Column {
+    std::string name;
+    Stored stored;
+    std::size_t array;
+  };
+  WindowFile(NpzWriter writer, std::vector<std::vector<Column>> streams)
+      : writer_(std::move(writer)), streams_(std::move(streams)) {}
+
+  NpzWriter writer_;
+  std::vector<std::vector<Column>> streams_;
+  NumberStore numbers_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two passes over the takes: the first finds the windows that are kept, since an NPZ has the sizes
+// of its arrays at its beginning; the second writes them.
+#include "kinalign/dataset/windows/windows.h"
+
+#include "kinalign/dataset/windows/window_arrays.h"
+#include "kinalign/dataset/windows/window_rows.h"
+#include "kinalign/formats/take/guarded.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::set<std::string> streams_of(const WindowTake& take) {
+  std::set<std::string> out;
+  for (const StreamSummary& stream : take.summary.streams) out.insert(stream.name);
+  return out;
+}
+
+/// The streams that were asked for; without any, those that all takes have.
+Result<std::vector<std::string>> chosen_streams(const WindowSource& source,
+                                                const WindowOptions& options) {
+  if (!options.streams.empty()) return options.streams;
+  std::vector<std::string> out;
+  for (const StreamSummary& stream : source.takes.front().summary.streams) {
+    const bool everywhere =
+        std::all_of(source.takes.begin(), source.takes.end(),
+                    [&](const WindowTake& take) { return streams_of(take).contains(stream.name); });
+    if (everywhere) out.push_back(stream.name);
+  }
+  if (!out.empty()) return out;
+  return Failure(Error{"", 0, "a stream that all takes have, or --streams", "none"});
+}
+
+Result<void> check_rates(const WindowSource& source, const WindowOptions& options) {
+  if (options.rate_hz > 0.0) return {};
+  const double rate = source.takes.front().summary.rate_hz;
+  for (const WindowTake& take : source.takes) {
+    const double other = take.summary.rate_hz;
+    constexpr double tolerance = 0.005;
+    if (std::abs(other - rate) <= tolerance * rate) continue;
+    return Failure(
+        Error{"", 0, "takes of one rate, or --rate HZ",
+              fmt::format("{:g} Hz in {} and {:g} Hz in {}", rate,
+                          to_string(source.takes.front().name), other, to_string(take.name))});
+  }
+  return {};
+}
+
+/// The job of both passes.
+class Job {
+ public:
+  Job(FileSystem& files, const std::string& folder, const WindowSource& source,
+      const WindowOptions& options, const Progress& progress)
+      : files_(files),
+        folder_(folder),
+        source_(source),
+        options_(options),
+        progress_(progress),
+        grid_{static_cast<std::uint64_t>(options.length), static_cast<std::uint64_t>(options.step),
+              options.rate_hz} {
+    for (const WindowTake& take : source.takes) total_ += 2 * take.summary.frames;
+  }
+
+  Result<void> find(const std::vector<std::string>& names);
+  Result<void> write(const std::string& path, Overwrite overwrite);
+  WindowsMade made;
+
+ private:
+  Result<TakeReader> open(std::size_t take) const {
+    return TakeReader::open(files_,
+                            folder_ + "/" + path_of(source_.takes[take].name, TakeFile::take));
+  }
+  Result<void> set_streams(const std::vector<std::string>& names, const TakeHeader& header);
+  Result<WindowedTake> windowed(std::size_t take, TakeReader& reader);
+  Result<bool> is_valid(TakeReader& reader, const WindowPlace& place,
+                        const std::vector<std::size_t>& groups);
+  Result<void> done_with(std::size_t take);
+
+  FileSystem& files_;
+  const std::string& folder_;
+  const WindowSource& source_;
+  const WindowOptions& options_;
+  const Progress& progress_;
+  WindowGrid grid_;
+  WindowStreams streams_;
+  std::vector<WindowedTake> takes_;
+  TakeSlab raw_, window_;
+  std::uint64_t done_ = 0, total_ = 0;
+};
+
+Result<void> Job::done_with(std::size_t take) {
+  done_ += source_.takes[take].summary.frames;
+  return go_on(progress_, "windows", done_, total_) ? Result<void>() : Failure(interruption());
+}
+
+Result<void> Job::set_streams(const std::vector<std::string>& names, const TakeHeader& header) {
+  for (const std::string& name : names) {
+    const auto found = std::find_if(header.groups.begin(), header.groups.end(),
+                                    [&](const TakeGroup& g) { return g.name == name; });
+    if (found != header.groups.end()) streams_.groups.push_back(*found);
+  }
+  return {};
+}
+
+Result<bool> Job::is_valid(TakeReader& reader, const WindowPlace& place,
+                           const std::vector<std::size_t>& groups) {
+  KA_TRY(read_window(reader, place, grid_, raw_, window_));
+  return std::all_of(groups.begin(), groups.end(), [&](std::size_t group) {
+    return valid_share(window_, group, place.rows) >= options_.valid;
+  });
+}
+
+Result<WindowedTake> Job::windowed(std::size_t take, TakeReader& reader) {
+  WindowedTake out{take, KA_TRY(streams_.find_in(reader.header())), {}, {}};
+  for (const std::size_t group : out.groups) {
+    const auto* clip = std::get_if<ClipGroup>(&reader.header().groups[group].kind);
+    if (clip != nullptr) out.rest_offsets.push_back(clip->skeleton.rest_offsets);
+  }
+  const WindowPlaces found = place_windows(KA_TRY(reader.stamps()), grid_);
+  made.rows_left_out += found.rows_left_out;
+  for (const WindowPlace& place : found.places) {
+    const bool kept = options_.valid <= 0.0 || KA_TRY(is_valid(reader, place, out.groups));
+    if (kept) out.places.push_back(place);
+    if (!kept) ++made.too_little_valid;
+  }
+  return out;
+}
+
+Result<void> Job::find(const std::vector<std::string>& names) {
+  made.windows.assign(source_.parts.size(), 0);
+  for (std::size_t take = 0; take < source_.takes.size(); ++take) {
+    const WindowTake& of = source_.takes[take];
+    const auto there = streams_of(of);
+    const auto lacks = std::find_if(names.begin(), names.end(),
+                                    [&](const auto& name) { return !there.contains(name); });
+    if (lacks != names.end()) {
+      made.takes_left_out.push_back({of.name, "has no stream " + *lacks});
+      continue;
+    }
+    TakeReader reader = KA_TRY(open(take));
+    if (streams_.groups.empty()) KA_TRY(set_streams(names, reader.header()));
+    const auto fits = streams_.find_in(reader.header());
+    if (!fits) {
+      made.takes_left_out.push_back({of.name, fits.error().found});
+      continue;
+    }
+    WindowedTake found = KA_TRY(windowed(take, reader));
+    made.windows[of.part] += found.places.size();
+    if (found.places.empty()) {
+      made.takes_left_out.push_back({of.name, "has no window: too short, or too little is valid"});
+    } else {
+      takes_.push_back(std::move(found));
+    }
+    KA_TRY(done_with(take));
+  }
+  if (!takes_.empty()) return {};
+  return Failure(Error{folder_, 0, "a window in one of the takes at least",
+                       made.takes_left_out.empty() ? "none" : made.takes_left_out.front().why});
+}
+
+Result<void> Job::write(const std::string& path, Overwrite overwrite) {
+  WindowFile file =
+      KA_TRY(WindowFile::create(files_, path, overwrite, source_, options_, streams_, takes_));
+  for (std::size_t i = 0; i < takes_.size(); ++i) {
+    const WindowedTake& take = takes_[i];
+    TakeReader reader = KA_TRY(open(take.index));
+    for (const WindowPlace& place : take.places) {
+      KA_TRY(read_window(reader, place, grid_, raw_, window_));
+      KA_TRY(file.append(i, source_.takes[take.index].part, take.groups, place, window_));
+    }
+    KA_TRY(done_with(take.index));
+  }
+  return file.finish();
+}
+
+std::string text_of(const WindowsMade& made) {
+  Json out{{"windows", made.windows},
+           {"rows", made.rows_left_out},
+           {"invalid", made.too_little_valid},
+           {"left_out", Json::array()}};
+  for (const LeftOut& one : made.takes_left_out) {
+    out["left_out"].push_back({to_string(one.name), one.why});
+  }
+  return out.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Of the child's words, which are ours.
+WindowsMade made_from(const std::string& text) {
+  const Json json = Json::parse(text);
+  WindowsMade made{json.at("windows").get<std::vector<std::uint64_t>>(),
+                   json.at("rows").get<std::uint64_t>(),
+                   json.at("invalid").get<std::uint64_t>(),
+                   {}};
+  for (const Json& one : json.at("left_out")) {
+    made.takes_left_out.push_back(
+        {parse_take_name(one.at(0).get<std::string>()).value_or(TakeName{}), one.at(1)});
+  }
+  return made;
+}
+
+}  // namespace
+
+Result<WindowsMade> write_windows(FileSystem& files, const std::string& folder,
+                                  const WindowSource& source, const WindowOptions& options,
+                                  const std::string& path, Overwrite overwrite,
+                                  const Progress& progress) {
+  if (source.takes.empty()) return Failure(Error{folder, 0, "takes that are built", "none"});
+  const auto names = KA_TRY(chosen_streams(source, options));
+  KA_TRY(check_rates(source, options));
+  GuardLimits limits;
+  limits.cpu_seconds += 60 * source.takes.size();
+  limits.wall_seconds += 600.0 * static_cast<double>(source.takes.size());
+  const Error blame{folder, 0, "takes that HDF5 can read", ""};
+  const std::string text =
+      KA_TRY(run_guarded(limits, blame, progress, [&](const Progress& tell) -> Result<std::string> {
+        Job job(files, folder, source, options, tell);
+        KA_TRY(job.find(names));
+        KA_TRY(job.write(path, overwrite));
+        return text_of(job.made);
+      }));
+  return made_from(text);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Windows of a data set's takes as arrays for training: one NPZ (docs/windows.md), schema
+// kinalign.windows/1.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/options.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/dataset/take_name.h"
+#include "kinalign/dataset/take_summary.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct WindowOptions {
+  std::int64_t length = 64, step = 32;  // rows
+  double rate_hz = 0.0;                 // 0: the takes' own, which must be one
+  double valid = 0.5;                   // least share of valid cells, of each stream of a window
+  std::vector<std::string> streams;     // empty: those that all takes have
+};
+
+struct WindowTake {
+  TakeName name;
+  std::string class_id;
+  TakeSummary summary;
+  std::uint8_t part = 0;
+};
+
+struct WindowSource {
+  std::string name, licence, citation;  // of the data set
+  std::vector<std::string> parts;       // of the split; one, "all", without a split
+  std::vector<WindowTake> takes;
+};
+
+struct LeftOut {
+  TakeName name;
+  std::string why;
+};
+
+struct WindowsMade {
+  std::vector<std::uint64_t> windows;  // of each part
+  std::uint64_t rows_left_out = 0;     // of takes: in stretches shorter than half a window
+  std::uint64_t too_little_valid = 0;  // windows that were left out for that
+  std::vector<LeftOut> takes_left_out;
+};
+
+/// Writes `path`, in a child process since HDF5 can crash on a hostile file. Takes are left out
+/// that lack a stream, or whose joints or nodes are others than the first take's. Fails where rates
+/// differ and `rate_hz` is 0, where no stream is in all takes, and where no window is left.
+Result<WindowsMade> write_windows(FileSystem& files, const std::string& folder,
+                                  const WindowSource& source, const WindowOptions& options,
+                                  const std::string& path, Overwrite overwrite,
+                                  const Progress& progress);
+
+}  // namespace kinalign
