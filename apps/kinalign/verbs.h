@@ -26,6 +26,7 @@ Verb dataset_tables_verb();
 Verb dataset_verify_verb();
 Verb dataset_split_verb();
 Verb dataset_windows_verb();
+Verb dataset_export_verb();
 Verb time_server_verb();
 Verb node_key_verb();
 Verb config_verb();

@@ -12,12 +12,16 @@
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
 #include "kinalign/documents/report_json.h"
+#include "kinalign/formats/bids/check.h"
+#include "kinalign/formats/bids/listing.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/formats.h"
 
 #include <fmt/format.h>
+
+#include <filesystem>
 
 namespace kinalign {
 
@@ -31,7 +35,7 @@ struct Check {
 Usage describe_check(Check& o) {
   Usage usage;
   usage.positionals = {
-      {"FILE", "takes, recordings, recording.toml, XDF or streams' files", &o.files, 1, SIZE_MAX}};
+      {"FILE", "takes, recordings, recording.toml, XDF, streams' files or a BIDS folder", &o.files, 1, SIZE_MAX}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     KA_TRY(o.stream.stream({}));
@@ -175,7 +179,25 @@ Result<Checked> check_input(const Check& o, const std::string& path, Call& call)
   return out;
 }
 
+/// A folder of BIDS; a data set of ours has a verb of its own.
+Result<Checked> check_folder(const Check& o, const std::string& path, Call& call) {
+  namespace fs = std::filesystem;
+  KA_TRY(check_flags(o, path, nullptr, call));
+  if (fs::exists(path + "/dataset.toml")) {
+    return Failure(Error{path, 0, "kinalign dataset verify for a data set", "kinalign check"});
+  }
+  const BidsListing listing = KA_TRY(list_bids_folder(call.surroundings.files, path));
+  if (!listing.has("dataset_description.json")) {
+    return Failure(Error{path, 0, "a file, or a BIDS data set with dataset_description.json",
+                         "another folder", ErrorKind::directory});
+  }
+  Checked out{check_bids(listing), listing.paths.size()};
+  for (Finding& finding : out.findings) finding.what.file = path + "/" + finding.what.file;
+  return out;
+}
+
 Result<Checked> check_file(const Check& o, const std::string& path, Call& call) {
+  if (std::filesystem::is_directory(path)) return check_folder(o, path, call);
   switch (KA_TRY(kind_of_file(call.surroundings.files, path))) {
     case FileKind::recording:
       return check_recording(o, path, call);
@@ -227,7 +249,8 @@ Verb check_verb() {
            "its report says. Exit code 1 where there are warnings or errors, 3 where a file can't "
            "be used.",
        .examples = {{"kinalign check demo/mocap.bvh", "frames, unit, stamps"},
-                    {"kinalign check demo/*.csv --json", "many files, for programs"}},
+                    {"kinalign check demo/*.csv --json", "many files, for programs"},
+                    {"kinalign check walks_bids", "a whole BIDS-Motion data set"}},
        .common = {"json"}},
       describe_check, run);
 }

@@ -24,12 +24,6 @@ enum Fixed : std::size_t {
   manifest_array
 };
 
-const std::vector<std::string>& names_of(const TakeGroup& group) {
-  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return clip->skeleton.joint_names;
-  if (const auto* points = std::get_if<PointGroup>(&group.kind)) return points->joint_names;
-  return std::get<ImuGroup>(group.kind).node_names;
-}
-
 /// How a take's stream differs from the windows' one of that name; empty where it is alike.
 std::string difference(const TakeGroup& group, const TakeGroup& other) {
   if (group.kind.index() != other.kind.index())
@@ -59,24 +53,10 @@ std::vector<TakeColumn> window_columns(const TakeGroup& group) {
   return columns;
 }
 
-/// "Hips.x": what each number of a row is.
-std::vector<std::string> labels_of(const TakeColumn& column,
-                                   const std::vector<std::string>& names) {
-  static const std::vector<std::string> none{""}, vector{".x", ".y", ".z"},
-      rotation{".w", ".x", ".y", ".z"};
-  if (column.shape.empty()) return {"row"};
-  const auto& parts = column.shape.size() == 1 ? none : column.shape[1] == 4 ? rotation : vector;
-  std::vector<std::string> out;
-  for (const std::string& name : names) {
-    for (const std::string& part : parts) out.push_back(name + part);
-  }
-  return out;
-}
-
 Json array_json(const TakeGroup& group, const TakeColumn& column) {
   Json out{{"stream", group.name}, {"axes", {"window", "row", "column"}}};
   for (const auto& [key, text] : column.facts) out[key] = text;
-  out["columns"] = labels_of(column, names_of(group));
+  out["columns"] = labels_of(column, group);
   return out;
 }
 
@@ -88,14 +68,11 @@ Json take_json(const WindowTake& take, const std::vector<std::string>& parts) {
           {"sha256", take.summary.sha256}};
 }
 
-Json stream_json(const TakeGroup& group) {
-  Json out{{"name", group.name}, {"kind", kind_of(group)}, {"names", names_of(group)}};
-  if (const auto* clip = std::get_if<ClipGroup>(&group.kind))
-    out["parents"] = clip->skeleton.parents;
-  if (const auto* imu = std::get_if<ImuGroup>(&group.kind)) {
-    out["root_node"] = imu->root_node;
-    out["gravity"] = gravity_texts(*imu);
-  }
+/// Each take has bones of its own: they stand in an array.
+Json windows_stream_json(const TakeGroup& group) {
+  Json out = Json::parse(stream_json(group));
+  out.erase("rest_offsets");
+  out.erase("end_sites");
   return out;
 }
 
@@ -112,7 +89,7 @@ std::string manifest_json(const WindowSource& source, const WindowOptions& optio
     out["takes"].push_back(take_json(source.takes[take.index], source.parts));
   }
   for (const TakeGroup& group : streams.groups) {
-    out["streams"].push_back(stream_json(group));
+    out["streams"].push_back(windows_stream_json(group));
     for (const TakeColumn& column : window_columns(group)) {
       out["arrays"][group.name + "_" + column.name] = array_json(group, column);
     }

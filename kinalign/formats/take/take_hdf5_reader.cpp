@@ -194,8 +194,7 @@ Result<void> TakeReader::State::read_header() {
 Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
                                              std::uint64_t& row_bytes) {
   const hdf5::Checked checked(bytes);
-  const Precision precision =
-      header.parameters.align.store_double ? Precision::full : Precision::single;
+  const Precision precision = precision_of(header);
   auto& found = columns.emplace_back();
   for (const TakeColumn& column : columns_of(what, precision)) {
     std::vector<std::uint64_t> sizes{header.frames};

@@ -176,8 +176,7 @@ Result<void> TakeWriter::State::lay_out(const TakeHeader& header) {
       layout.whole(root, "t0_ns", {H5T_STD_I64LE, {}}, &zero, "ns since 1970-01-01T00:00:00 UTC"));
   const Handle t0(H5Dopen2(root, "t0_ns", H5P_DEFAULT), H5Dclose);
   start = {"t0_ns", Stored::int64, 8, H5Dget_offset(t0.id())};
-  const Precision precision =
-      header.parameters.align.store_double ? Precision::full : Precision::single;
+  const Precision precision = precision_of(header);
   for (const TakeGroup& group : header.groups) KA_TRY(lay_out(group, precision));
   KA_TRY(layout.text(root, "parameters_json", parameters_json(without_folders(header.parameters))));
   KA_TRY(layout.check());

@@ -3,6 +3,8 @@
 
 #include "kinalign/motion/targets.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -146,6 +148,46 @@ std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision) 
   if (group.resampled) out.push_back({"nearest_raw_ns", Stored::int64, times, time_facts});
   if (group.interval_known) out.push_back({"time_interval_ns", Stored::int64, times, time_facts});
   return out;
+}
+
+const std::vector<std::string>& names_of(const TakeGroup& group) {
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return clip->skeleton.joint_names;
+  if (const auto* points = std::get_if<PointGroup>(&group.kind)) return points->joint_names;
+  return std::get<ImuGroup>(group.kind).node_names;
+}
+
+std::vector<std::string> labels_of(const TakeColumn& column, const TakeGroup& group) {
+  if (column.shape.empty()) return {"row"};
+  constexpr std::string_view none[] = {""}, vector[] = {".x", ".y", ".z"},
+                             rotation[] = {".w", ".x", ".y", ".z"};
+  std::span<const std::string_view> parts(none);
+  if (column.shape.size() > 1)
+    parts = column.shape[1] == 4 ? std::span(rotation) : std::span<const std::string_view>(vector);
+  std::vector<std::string> out;
+  for (const std::string& name : names_of(group)) {
+    for (const std::string_view part : parts) out.push_back(name + std::string(part));
+  }
+  return out;
+}
+
+std::string stream_json(const TakeGroup& group) {
+  nlohmann::ordered_json out{
+      {"name", group.name}, {"kind", kind_of(group)}, {"names", names_of(group)}};
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
+    const auto vector = [](const Vec3& v) { return std::array{v.x(), v.y(), v.z()}; };
+    out["parents"] = clip->skeleton.parents;
+    for (const Vec3& offset : clip->skeleton.rest_offsets) {
+      out["rest_offsets"].push_back(vector(offset));
+    }
+    for (const EndSite& site : clip->skeleton.end_sites) {
+      out["end_sites"].push_back({{"parent", site.parent}, {"offset", vector(site.offset)}});
+    }
+  }
+  if (const auto* imu = std::get_if<ImuGroup>(&group.kind)) {
+    out["root_node"] = imu->root_node;
+    out["gravity"] = gravity_texts(*imu);
+  }
+  return out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 Result<void> validate(const TakeHeader& header) {

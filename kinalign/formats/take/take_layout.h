@@ -26,6 +26,9 @@ EndSiteArrays end_site_arrays(const Skeleton& skeleton);
 
 /// How numbers are stored; computed are they in double.
 enum class Precision { single, full };
+inline Precision precision_of(const TakeHeader& header) {
+  return header.parameters.align.store_double ? Precision::full : Precision::single;
+}
 
 enum class Stored : std::uint8_t { float32, float64, int64, int32, uint8 };
 
@@ -56,6 +59,14 @@ std::vector<std::string> gravity_texts(const ImuGroup& group);  // [S]
 
 /// The columns that a group's rows fill, in the order of for_each_row_array.
 std::vector<TakeColumn> columns_of(const TakeGroup& group, Precision precision);
+
+/// Joints or nodes.
+const std::vector<std::string>& names_of(const TakeGroup& group);
+/// What each number of a column's row is: "Hips.x"; "row" where there is one a row.
+std::vector<std::string> labels_of(const TakeColumn& column, const TakeGroup& group);
+/// The group without its samples, as JSON: name, kind, names; of a skeleton parents, rest_offsets
+/// and end_sites; of nodes root_node and gravity.
+std::string stream_json(const TakeGroup& group);
 
 /// Fails where a take of this header could not be told from another or not be read again: group
 /// and joint names that repeat, are empty, or hold '/' or NUL; a skeleton out of order.

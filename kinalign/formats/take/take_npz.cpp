@@ -84,20 +84,6 @@ std::string end_of_directory(std::uint64_t count, const Place& directory) {
   return record.u32(cut(directory.size)).u32(cut(directory.at)).u16(0).bytes();
 }
 
-/// numpy/lib/format.py, version 1.0: values begin at a multiple of 64.
-std::string npy_header(const NpzArray& array) {
-  std::string shape;
-  for (const std::uint64_t size : array.shape) shape += std::to_string(size) + ", ";
-  if (array.shape.size() > 1) shape.erase(shape.size() - 2);
-  if (array.shape.size() == 1) shape.pop_back();
-  std::string text =
-      "{'descr': '" + array.descr + "', 'fortran_order': False, 'shape': (" + shape + "), }";
-  constexpr std::size_t before = 10;
-  text.append(63 - (before + text.size()) % 64, ' ');
-  text += '\n';
-  return Record().text("\x93NUMPY").u16(1).u16(text.size()).text(text).bytes();
-}
-
 /// A byte that begins no character stands for itself.
 std::u32string characters(std::string_view text) {
   std::u32string out;
@@ -175,6 +161,19 @@ Result<void> check_names(const std::vector<NpzArray>& arrays, const std::string&
 
 }  // namespace
 
+std::string npy_header(const NpzArray& array) {
+  std::string shape;
+  for (const std::uint64_t size : array.shape) shape += std::to_string(size) + ", ";
+  if (array.shape.size() > 1) shape.erase(shape.size() - 2);
+  if (array.shape.size() == 1) shape.pop_back();
+  std::string text =
+      "{'descr': '" + array.descr + "', 'fortran_order': False, 'shape': (" + shape + "), }";
+  constexpr std::size_t before = 10;
+  text.append(63 - (before + text.size()) % 64, ' ');
+  text += '\n';
+  return Record().text("\x93NUMPY").u16(1).u16(text.size()).text(text).bytes();
+}
+
 std::uint64_t NpzArray::bytes() const {
   std::uint64_t total = value_bytes;
   for (const std::uint64_t size : shape) total *= size;
@@ -250,8 +249,7 @@ Result<TakeNpzWriter> TakeNpzWriter::create(FileSystem& files, std::string path,
                                             NpzNames names) {
   assert(names == NpzNames::by_stream || header.groups.size() == 1);
   KA_TRY(validate(header));
-  const Precision precision =
-      header.parameters.align.store_double ? Precision::full : Precision::single;
+  const Precision precision = precision_of(header);
   Members members;
   members.arrays.push_back(npz_numbers("time_ns", Stored::int64, {header.frames}));
   std::vector<std::vector<Column>> groups;

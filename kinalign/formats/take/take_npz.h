@@ -29,6 +29,10 @@ struct NpzArray {
   std::uint64_t bytes() const;
 };
 
+/// What stands in front of the values of a .npy file: numpy/lib/format.py, version 1.0. Values
+/// begin at a multiple of 64.
+std::string npy_header(const NpzArray& array);
+
 /// An array of numbers, and what numpy makes of a list of texts: UTF-32, padded with zeros.
 NpzArray npz_numbers(std::string name, Stored stored, std::vector<std::uint64_t> shape);
 struct NpzTexts {

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/export/export.h"
+
+#include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/dataset/export/release.h"
+#include "kinalign/documents/report_json.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <map>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t shown_streams = 8;
+
+struct Export {
+  std::vector<std::string> folder;
+  std::string format = "npz", where, split;
+  bool release = false;
+};
+
+std::vector<std::string> format_names() {
+  std::vector<std::string> out;
+  for (const ExportFormat& one : export_formats()) out.push_back(one.name);
+  return out;
+}
+
+Usage describe_export(Export& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.folder)};
+  usage.flags = {
+      {"format", "of the files", &o.format, 0.0, 0.0, format_names()},
+      {"where",
+       "takes for which this holds, as for `dataset query`",
+       &o.where,
+       0.0,
+       0.0,
+       {},
+       "SQL"},
+      {"split", "parts of shards, as `dataset split` wrote them", &o.split, 0.0, 0.0, {}, "FILE"},
+      {"release", "without dates and names; refused where a text gives a person away", &o.release}};
+  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+    if (common.out.empty())
+      return Failure(Error{"-o", 0, "-o FOLDER, which is not there yet", "none"});
+    if (o.split.empty() || o.format == "webdataset") return {};
+    return Failure(Error{"--split", 0, "--format webdataset, whose shards have parts", o.format});
+  };
+  return usage;
+}
+
+Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  ExportJob job{folder_of(o.folder), call.common.out, o.format, o.release, {}};
+  while (job.target.size() > 1 && job.target.ends_with('/')) job.target.pop_back();
+  std::map<TakeName, std::string> part_of;
+  if (!o.split.empty()) {
+    const Split split = KA_TRY(read_split(files, o.split));
+    for (const SplitPart& part : split.parts) {
+      for (const TakeName& name : part.takes) part_of[name] = part.name;
+    }
+  }
+  for (SplitTake& take : KA_TRY(built_takes(files, job.folder, index, o.where))) {
+    const auto part = part_of.find(take.name);
+    if (!o.split.empty() && part == part_of.end()) continue;
+    job.takes.push_back(
+        {take.name, std::move(take.summary), part == part_of.end() ? "takes" : part->second});
+  }
+  return job;
+}
+
+void print_findings(const Findings& findings, Call& call) {
+  for (const Finding& one : findings) {
+    call.console.print(
+        harmless(fmt::format("{}  {}\n", to_string(one.severity), to_string(one.what))));
+  }
+}
+
+bool has_error(const Findings& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& one) { return one.severity == Severity::error; });
+}
+
+/// A line for each reason, with the number of takes.
+nlohmann::ordered_json print_left_out(const ExportMade& made, Call& call) {
+  std::map<std::string, std::vector<std::string>> takes;
+  for (const LeftOutStream& one : made.left_out) takes[one.why].push_back(to_string(one.name));
+  std::size_t lines = 0;
+  for (const auto& [why, names] : takes) {
+    if (++lines > shown_streams) break;
+    call.console.print(harmless(fmt::format("lost   {} ({} {})\n", why, names.size(),
+                                            names.size() == 1 ? "take" : "takes")));
+  }
+  if (takes.size() > shown_streams) {
+    call.console.print(fmt::format("lost   {} kinds in all (--json has them)\n", takes.size()));
+  }
+  return takes;
+}
+
+Result<int> run_export(Export& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
+  const ExportJob job = KA_TRY(job_of(o, index, call));
+  Findings findings;
+  if (o.release) findings = look_for_people(index.catalogue(), job.folder + "/dataset.toml");
+  print_findings(findings, call);
+  if (has_error(findings)) {
+    call.console.print("nothing was written: a person could be known by what the errors name\n");
+    call.console.print_json(
+        fmt::format("{{\"files\": 0, \"findings\": {}}}", findings_json(findings)));
+    return 1;
+  }
+  const ExportMade made =
+      KA_TRY(export_takes(files, index.catalogue(), job, call.console.progress()));
+  call.console.print(harmless(fmt::format("{}: {} {}, {} {}\n", job.target, job.takes.size(),
+                                          job.takes.size() == 1 ? "take" : "takes", made.files,
+                                          made.files == 1 ? "file" : "files")));
+  const auto formats = export_formats();
+  const auto format = std::find_if(formats.begin(), formats.end(),
+                                   [&](const ExportFormat& one) { return one.name == o.format; });
+  call.console.print(fmt::format("lost   {}\n", format->lost));
+  const auto left_out = print_left_out(made, call);
+  print_findings(made.findings, call);
+  findings.insert(findings.end(), made.findings.begin(), made.findings.end());
+  call.console.print_json(
+      nlohmann::ordered_json{{"takes", job.takes.size()},
+                             {"files", made.files},
+                             {"format", o.format},
+                             {"lost", format->lost},
+                             {"left_out", left_out},
+                             {"findings", nlohmann::ordered_json::parse(findings_json(findings))}}
+          .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  return has_error(made.findings) ? 1 : 0;
+}
+
+std::string formats_text() {
+  std::string out;
+  for (const ExportFormat& one : export_formats()) {
+    out += fmt::format("{}{}: {}", out.empty() ? "" : ". ", one.name, one.title);
+  }
+  return out + ". What a format can't hold is said.";
+}
+
+}  // namespace
+
+Verb dataset_export_verb() {
+  return make_verb<Export>(
+      {.name = "dataset export",
+       .summary = "takes as files of other programs, in a new folder",
+       .text = formats_text(),
+       .examples =
+           {{"kinalign dataset export walks -o walks_c3d --format c3d --where \"class = 'S1'\"",
+             "points for a gait laboratory"},
+            {"kinalign dataset export walks -o walks_bids --format bids --release",
+             "for publication: no dates, no names of files"},
+            {"kinalign dataset export walks -o shards --format webdataset --split "
+             "walks/splits/people.json",
+             "train-000000.tar, test-000000.tar"}},
+       .common = {"out", "json"}},
+      describe_export, run_export);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/export/bids_export.h"
+
+#include "kinalign/core/progress.h"
+#include "kinalign/core/text_out.h"
+#include "kinalign/formats/bids/check.h"
+#include "kinalign/formats/bids/listing.h"
+#include "kinalign/formats/bids/motion_write.h"
+#include "kinalign/formats/bids/names.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/formats/take/take_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+namespace kinalign {
+
+namespace {
+
+/// A stream's name without what a label can't have: "kinect_2" is kinect2.
+std::string label_of(const std::string& stream) {
+  std::string out;
+  for (const char c : stream) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) out += c;
+  }
+  return out.empty() ? "stream" : out;
+}
+
+BidsSource source_of(const TakeGroup& group) {
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) return clip->skeleton;
+  if (const auto* points = std::get_if<PointGroup>(&group.kind)) {
+    return PointHeader{points->joint_names};
+  }
+  const auto& nodes = std::get<ImuGroup>(group.kind);
+  return ImuHeader{nodes.node_names, nodes.content};
+}
+
+std::string text_of(const Described* device, const char* key) {
+  if (device == nullptr) return "";
+  const auto found = device->texts.find(key);
+  return found == device->texts.end() ? "" : found->second;
+}
+
+/// What dataset.toml says of the device whose id is the stream's name.
+BidsSystemFacts facts_of(const Catalogue& catalogue, const ExportedTake& take,
+                         const TakeGroup& group) {
+  const auto device = std::find_if(catalogue.devices.begin(), catalogue.devices.end(),
+                                   [&](const Described& one) { return one.id == group.name; });
+  const Described* known = device == catalogue.devices.end() ? nullptr : &*device;
+  const Action* action = find_action(catalogue, take.name().action);
+  BidsSystemFacts facts;
+  facts.task_name = take.name().action;
+  facts.task_description = action == nullptr ? "" : action->name;
+  facts.system_name = group.name;
+  facts.rate_hz = take.rate_hz();
+  facts.manufacturer = text_of(known, "make");
+  facts.model = text_of(known, "model");
+  facts.software_versions = take_software();
+  return facts;
+}
+
+std::string number_text(const std::optional<double>& value) {
+  return value ? fmt::format("{:g}", *value) : "";
+}
+
+}  // namespace
+
+Result<void> BidsExport::write(const std::string& path, std::string_view text) {
+  const std::string whole = folder_ + "/" + path;
+  std::error_code failed;
+  std::filesystem::create_directories(std::filesystem::path(whole).parent_path(), failed);
+  OutputFile out = KA_TRY(OutputFile::create(files_, whole, Overwrite::no));
+  KA_TRY(out.write(text));
+  return out.commit();
+}
+
+Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, FilesMade& made) {
+  const TakeGroup& of = take.header().groups[group];
+  const BidsEntities entities{take.name().subject, "", take.name().action,
+                              label_of(of.name),   "", fmt::format("{}", take.name().run)};
+  const std::string motion = bids_path(entities, "motion.tsv");
+  std::error_code failed;
+  std::filesystem::create_directories(std::filesystem::path(folder_ + "/" + motion).parent_path(),
+                                      failed);
+  TextOut out = KA_TRY(TextOut::create(files_, folder_ + "/" + motion, Overwrite::no));
+  BidsMotionWriter writer(source_of(of), out);
+  const auto append = [&](const auto& rows) { return writer.append(rows); };
+  if (std::holds_alternative<ClipGroup>(of.kind)) KA_TRY(take.clip_frames(group, append));
+  if (std::holds_alternative<PointGroup>(of.kind)) KA_TRY(take.point_frames(group, append));
+  if (std::holds_alternative<ImuGroup>(of.kind)) KA_TRY(take.node_samples(group, append));
+  const BidsSidecars beside = writer.sidecars(facts_of(catalogue_, take, of));
+  KA_TRY(out.commit());
+  KA_TRY(write(bids_path(entities, "channels.tsv"), beside.channels_tsv));
+  KA_TRY(write(bids_path(entities, "channels.json"), beside.channels_json));
+  KA_TRY(write(bids_path(entities, "motion.json"), beside.motion_json));
+  const std::string below = bids_subject_folder(entities);
+  scans_[entities.subject].emplace_back(motion.substr(below.size()), beside.onset);
+  made.paths.push_back(folder_ + "/" + motion);
+  return {};
+}
+
+Result<FilesMade> BidsExport::add(ExportedTake& take) {
+  FilesMade made;
+  for (std::size_t g = 0; g < take.header().groups.size(); ++g) {
+    const auto done = add_system(take, g, made);
+    if (!done && is_interruption(done.error())) return Failure(done.error());
+    if (!done) made.failed.push_back(done.error());
+  }
+  return made;
+}
+
+BidsParticipants BidsExport::participants() const {
+  BidsParticipants out;
+  if (with_people_) {
+    out.columns = {
+        {"sex", "sex of the participant", "", {{"F", "female"}, {"M", "male"}, {"O", "other"}}},
+        {"height", "body height", "cm", {}},
+        {"weight", "body weight", "kg", {}},
+        {"handedness",
+         "handedness of the participant",
+         "",
+         {{"left", "left"}, {"right", "right"}, {"both", "ambidextrous"}}}};
+  }
+  for (const auto& [id, scans] : scans_) {
+    std::vector<std::string> cells;
+    if (with_people_) {
+      const Subject* person = find_subject(catalogue_, id);
+      const Subject known = person == nullptr ? Subject{} : *person;
+      const std::string sex = known.sex == "f"   ? "F"
+                              : known.sex == "m" ? "M"
+                              : known.sex == "x" ? "O"
+                                                 : "";
+      cells = {sex, number_text(known.height_cm), number_text(known.weight_kg), known.handedness};
+    }
+    out.rows.emplace_back(id, std::move(cells));
+  }
+  return out;
+}
+
+Result<Findings> BidsExport::finish() {
+  BidsDataset description;
+  description.name = catalogue_.name;
+  description.license = catalogue_.licence;
+  const std::string software = take_software();
+  description.generated_by = software.substr(0, software.find(' '));
+  description.generated_by_version = software.substr(software.find(' ') + 1);
+  KA_TRY(write("dataset_description.json", dataset_description_json(description)));
+  KA_TRY(write("README", fmt::format("{}\n\n{}\n\nAligned and exported by {}.\n", catalogue_.name,
+                                     catalogue_.description, software)));
+  const BidsParticipants people = participants();
+  KA_TRY(write("participants.tsv", participants_tsv(people)));
+  KA_TRY(write("participants.json", participants_json(people)));
+  for (auto& [subject, scans] : scans_) {
+    std::sort(scans.begin(), scans.end());
+    KA_TRY(write(bids_scans_path({subject, "", "", "", "", ""}), scans_tsv(scans)));
+  }
+  return check_bids(KA_TRY(list_bids_folder(files_, folder_)));
+}
+
+}  // namespace kinalign

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole data set as BIDS-Motion (docs/formats/bids.md), take by take, then what stands above.
+#pragma once
+
+#include "kinalign/dataset/catalogue.h"
+#include "kinalign/dataset/export/exported_take.h"
+#include "kinalign/dataset/export/take_files.h"
+#include "kinalign/formats/bids/dataset.h"
+
+#include <map>
+
+namespace kinalign {
+
+class BidsExport {
+ public:
+  /// `folder`: of the new data set. `with_people`: height, weight and the like in participants.tsv.
+  BidsExport(FileSystem& files, std::string folder, const Catalogue& catalogue, bool with_people)
+      : files_(files),
+        folder_(std::move(folder)),
+        catalogue_(catalogue),
+        with_people_(with_people) {}
+
+  /// A tracking system for each stream.
+  Result<FilesMade> add(ExportedTake& take);
+  /// The description, participants and scans. Then all is read again and checked.
+  Result<Findings> finish();
+
+ private:
+  Result<void> write(const std::string& path, std::string_view text);
+  Result<void> add_system(ExportedTake& take, std::size_t group, FilesMade& made);
+  BidsParticipants participants() const;
+
+  FileSystem& files_;
+  std::string folder_;
+  const Catalogue& catalogue_;
+  bool with_people_;
+  std::map<std::string, std::vector<BidsScan>> scans_;  // of each subject
+};
+
+}  // namespace kinalign

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/export/csv_write.h"
+
+#include "kinalign/core/text_out.h"
+#include "kinalign/formats/take/take_layout.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// RFC 4180: a name with a comma, a quote or a line end stands in quotes.
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
+std::string head_of(const TakeGroup& group, Precision precision) {
+  std::string out = "time_ns";
+  for (const TakeColumn& column : columns_of(group, precision)) {
+    for (const std::string& label : labels_of(column, group)) {
+      out += "," + quoted(column.name + (label == "row" ? "" : "." + label));
+    }
+  }
+  return out;
+}
+
+/// The numbers of one row of an array, in the shortest form that gives them again.
+template <class Value>
+void put_row(const std::vector<Value>& values, std::size_t row, std::size_t rows,
+             Precision precision, std::string& text) {
+  const std::size_t width = values.size() / rows;
+  for (std::size_t k = row * width; k < (row + 1) * width; ++k) {
+    text += ',';
+    if constexpr (!std::is_same_v<Value, double>) {
+      fmt::format_to(std::back_inserter(text), "{}", static_cast<std::int64_t>(values[k]));
+    } else if (precision == Precision::full) {
+      fmt::format_to(std::back_inserter(text), "{}", values[k]);
+    } else {
+      fmt::format_to(std::back_inserter(text), "{}", static_cast<float>(values[k]));
+    }
+  }
+}
+
+Result<void> put_slab(const TakeSlab& slab, std::size_t group, Precision precision, TextOut& out) {
+  std::string text;
+  for (std::size_t row = 0; row < slab.stamps.size(); ++row) {
+    text = std::to_string(slab.stamps[row].time_since_epoch().count());
+    const auto use = [&](std::string_view, const auto& values) -> Result<void> {
+      put_row(values, row, slab.stamps.size(), precision, text);
+      return {};
+    };
+    KA_TRY(std::visit([&](const auto& rows) { return for_each_row_array(rows, use); },
+                      slab.rows[group]));
+    out.text(text);
+    KA_TRY(out.end_line());
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> write_stream_csv(ExportedTake& take, std::size_t group, FileSystem& files,
+                              const std::string& path) {
+  const Precision precision = precision_of(take.header());
+  TextOut out = KA_TRY(TextOut::create(files, path, Overwrite::no));
+  out.text(head_of(take.header().groups[group], precision));
+  KA_TRY(out.end_line());
+  KA_TRY(take.rows([&](const TakeSlab& slab) { return put_slab(slab, group, precision, out); }));
+  return out.commit();
+}
+
+std::string streams_json(const TakeHeader& header) {
+  Json out{{"subject", header.subject}, {"action", header.action}, {"frames", header.frames}};
+  for (const TakeGroup& group : header.groups) {
+    Json stream = Json::parse(stream_json(group));
+    for (const TakeColumn& column : columns_of(group, precision_of(header))) {
+      Json& array = stream["arrays"][column.name] = Json::object();
+      for (const auto& [key, text] : column.facts) array[key] = text;
+    }
+    out["streams"].push_back(std::move(stream));
+  }
+  return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<void> write_streams_json(ExportedTake& take, FileSystem& files, const std::string& path) {
+  OutputFile out = KA_TRY(OutputFile::create(files, path, Overwrite::no));
+  KA_TRY(out.write(streams_json(take.header())));
+  return out.commit();
+}
+
+}  // namespace kinalign

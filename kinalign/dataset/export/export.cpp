@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/export/export.h"
+
+#include "kinalign/dataset/export/bids_export.h"
+#include "kinalign/dataset/export/release.h"
+#include "kinalign/dataset/export/shard_export.h"
+#include "kinalign/dataset/export/take_files.h"
+#include "kinalign/documents/report_json.h"
+#include "kinalign/formats/take/guarded.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace kinalign {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Collects what was made; then it goes to the parent as a text.
+struct Made {
+  std::uint64_t files = 0;
+  Json left_out = Json::array();
+  Findings findings;
+
+  void add(const TakeName& name, const FilesMade& made) {
+    files += made.paths.size();
+    for (const std::string& why : made.left_out) left_out.push_back({to_string(name), why});
+    for (const Error& error : made.failed) {
+      findings.push_back({Severity::error, error, "it was not written", ""});
+    }
+  }
+};
+
+/// The take as it is, or without names and dates.
+Result<FilesMade> copy_take(ExportedTake& take, FileSystem& files, const std::string& from,
+                            const std::string& to, bool release) {
+  if (!release) {
+    OutputFile out = KA_TRY(OutputFile::create(files, to, Overwrite::no));
+    InputFile in = KA_TRY(InputFile::open(files, from));
+    for (auto piece = KA_TRY(in.next()); !piece.empty(); piece = KA_TRY(in.next())) {
+      KA_TRY(out.write(piece));
+    }
+    KA_TRY(out.commit());
+    return FilesMade{{to}, {}, {}};
+  }
+  TakeHeader header = take.header();
+  AlignmentReport report = KA_TRY(parse_report_json(KA_TRY(take.report_json()), from));
+  hide_names(header, report);
+  const Duration moved = take.first() - report.begin;
+  report.begin += moved;
+  report.end += moved;
+  TakeWriter writer = KA_TRY(TakeWriter::create(files, to, Overwrite::no, header));
+  KA_TRY(take.rows([&](const TakeSlab& slab) { return writer.append(slab); }));
+  KA_TRY(writer.finish(report));
+  return FilesMade{{to}, {"marks, and the names of raw files"}, {}};
+}
+
+class Exporting {
+ public:
+  Exporting(FileSystem& files, const Catalogue& catalogue, const ExportJob& job, std::string folder)
+      : files_(files),
+        catalogue_(catalogue),
+        job_(job),
+        folder_(std::move(folder)),
+        bids_(files, folder_, catalogue, !job.release),
+        shards_(files, folder_) {}
+
+  Result<void> run(const Progress& progress);
+  Made made;
+
+ private:
+  Result<FilesMade> write(ExportedTake& take, const ExportTake& of, const std::string& path);
+  Result<void> finish();
+
+  FileSystem& files_;
+  const Catalogue& catalogue_;
+  const ExportJob& job_;
+  std::string folder_;
+  BidsExport bids_;
+  ShardExport shards_;
+};
+
+Result<FilesMade> Exporting::write(ExportedTake& take, const ExportTake& of,
+                                   const std::string& path) {
+  if (job_.format == "bids") return bids_.add(take);
+  if (job_.format == "webdataset") {
+    const Action* action = find_action(catalogue_, of.name.action);
+    return shards_.add(take, {action == nullptr ? "" : action->class_id, of.part});
+  }
+  const std::string folder = folder_ + "/sub-" + of.name.subject;
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) return Failure(Error{folder, 0, "a folder that can be made", failed.message()});
+  if (job_.format == "take") {
+    return copy_take(take, files_, path, folder_ + "/" + path_of(of.name, TakeFile::take),
+                     job_.release);
+  }
+  const auto& formats = take_formats();
+  const auto format = std::find_if(formats.begin(), formats.end(),
+                                   [&](const TakeFormat& one) { return one.name == job_.format; });
+  return format->write(take, files_, path, folder + "/" + to_string(of.name));
+}
+
+Result<void> Exporting::finish() {
+  if (job_.format == "bids") {
+    for (Finding& finding : KA_TRY(bids_.finish())) made.findings.push_back(std::move(finding));
+  }
+  if (job_.format == "webdataset") made.add({}, KA_TRY(shards_.finish()));
+  if (job_.format == "take") {
+    constexpr std::size_t longest = std::size_t{4} << 20;
+    const std::string toml(catalogue_file);
+    OutputFile out = KA_TRY(OutputFile::create(files_, folder_ + "/" + toml, Overwrite::no));
+    KA_TRY(out.write(KA_TRY(read_whole(files_, job_.folder + "/" + toml, longest))));
+    KA_TRY(out.commit());
+  }
+  return {};
+}
+
+Result<void> Exporting::run(const Progress& progress) {
+  std::uint64_t done = 0, total = 0;
+  for (const ExportTake& take : job_.takes) total += take.summary.frames;
+  for (const ExportTake& of : job_.takes) {
+    const std::string path = job_.folder + "/" + path_of(of.name, TakeFile::take);
+    ExportedTake take =
+        KA_TRY(ExportedTake::open(files_, path, of.name, of.summary.rate_hz, job_.release));
+    made.add(of.name, KA_TRY(write(take, of, path)));
+    done += of.summary.frames;
+    if (!go_on(progress, "exporting", done, total)) return Failure(interruption());
+  }
+  return finish();
+}
+
+std::string text_of(const Made& made) {
+  return Json{{"files", made.files},
+              {"left_out", made.left_out},
+              {"findings", Json::parse(findings_json(made.findings))}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<ExportMade> made_from(const std::string& text) {
+  const Json json = Json::parse(text);
+  ExportMade made;
+  made.files = json.at("files").get<std::uint64_t>();
+  for (const Json& one : json.at("left_out")) {
+    made.left_out.push_back(
+        {parse_take_name(one.at(0).get<std::string>()).value_or(TakeName{}), one.at(1)});
+  }
+  // Findings are read as those of a report.
+  const Json report{{"findings", json.at("findings")}};
+  made.findings = KA_TRY(parse_report_json(report.dump(), "")).findings;
+  return made;
+}
+
+/// A folder that is removed unless it is kept.
+class PartFolder {
+ public:
+  static Result<PartFolder> make(const std::string& target) {
+    if (fs::exists(fs::symlink_status(target))) {
+      return Failure(Error{target, 0, "a folder that is not there yet", "one that is"});
+    }
+    std::error_code failed;
+    const auto above = fs::path(target).parent_path();
+    if (!above.empty()) fs::create_directories(above, failed);
+    const std::string path = target + ".part";
+    if (fs::exists(fs::symlink_status(path))) {
+      return Failure(Error{path, 0, "no export that goes on or was broken off (remove it)", "one"});
+    }
+    KA_TRY(make_new_folder(path));
+    return PartFolder(path);
+  }
+  PartFolder(PartFolder&& other) noexcept : path(std::exchange(other.path, {})) {}
+  PartFolder& operator=(PartFolder&&) = delete;
+  PartFolder(const PartFolder&) = delete;
+  PartFolder& operator=(const PartFolder&) = delete;
+  ~PartFolder() {
+    std::error_code ignored;
+    if (!path.empty()) fs::remove_all(path, ignored);
+  }
+
+  Result<void> keep_as(const std::string& target) {
+    std::error_code failed;
+    fs::rename(path, target, failed);
+    if (failed) return Failure(Error{target, 0, "a folder that can be made", failed.message()});
+    path.clear();
+    return {};
+  }
+
+  std::string path;
+
+ private:
+  explicit PartFolder(std::string made) : path(std::move(made)) {}
+};
+
+}  // namespace
+
+std::vector<ExportFormat> export_formats() {
+  std::vector<ExportFormat> out;
+  for (const TakeFormat& one : take_formats()) {
+    out.push_back({std::string(one.name), std::string(one.title), std::string(one.lost)});
+  }
+  out.push_back({"bids", "BIDS-Motion, checked when it is written",
+                 "bones and local rotations; inferred against tracked; intervals; gravity"});
+  out.push_back(
+      {"webdataset", "tar shards, a sample for each take", "the report and the parameters"});
+  out.push_back(
+      {"take", "a data set of its own: dataset.toml and the takes", "manifests and raw files"});
+  return out;
+}
+
+Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, const ExportJob& job,
+                                const Progress& progress) {
+  if (job.takes.empty()) return Failure(Error{job.folder, 0, "takes that are built", "none"});
+  PartFolder part = KA_TRY(PartFolder::make(job.target));
+  GuardLimits limits;
+  limits.cpu_seconds += 600 * job.takes.size();
+  limits.wall_seconds += 3600.0 * static_cast<double>(job.takes.size());
+  const Error blame{job.folder, 0, "takes that HDF5 can read", ""};
+  const std::string text =
+      KA_TRY(run_guarded(limits, blame, progress, [&](const Progress& tell) -> Result<std::string> {
+        Exporting exporting(files, catalogue, job, part.path);
+        KA_TRY(exporting.run(tell));
+        return text_of(exporting.made);
+      }));
+  KA_TRY(part.keep_as(job.target));
+  return made_from(text);
+}
+
+}  // namespace kinalign

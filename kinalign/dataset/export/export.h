@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// A data set's takes as files of other programs.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/dataset/catalogue.h"
+#include "kinalign/dataset/take_summary.h"
+
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct ExportTake {
+  TakeName name;
+  TakeSummary summary;
+  std::string part;  // of a split; names shards
+};
+
+struct ExportJob {
+  std::string folder;    // of the data set
+  std::string target;    // a new folder
+  std::string format;    // in export_formats()
+  bool release = false;  // dates are moved to the year 2000, names of raw files are hidden
+  std::vector<ExportTake> takes;
+};
+
+struct ExportFormat {
+  std::string name, title;
+  std::string lost;  // what the format does not hold
+};
+std::vector<ExportFormat> export_formats();
+
+struct LeftOutStream {
+  TakeName name;
+  std::string why;
+};
+
+struct ExportMade {
+  std::uint64_t files = 0;
+  std::vector<LeftOutStream> left_out;
+  Findings findings;  // streams that could not be written; of BIDS what our check finds
+};
+
+/// Writes into `target` + ".part", which then becomes `target`. Nothing stands at `target` before;
+/// where it fails, nothing is left. Runs in a child process, since HDF5 can crash on a hostile
+/// file.
+Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, const ExportJob& job,
+                                const Progress& progress);
+
+}  // namespace kinalign

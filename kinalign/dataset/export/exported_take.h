@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// A take on its way into files of other programs: its rows as their writers want them.
+#pragma once
+
+#include "kinalign/dataset/take_name.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/motion/clip.h"
+#include "kinalign/motion/streams.h"
+
+#include <functional>
+#include <string>
+
+namespace kinalign {
+
+class ExportedTake {
+ public:
+  /// `without_date`: stamps are moved so that the first one is 2000-01-01T00:00:00Z.
+  static Result<ExportedTake> open(FileSystem& files, const std::string& path, TakeName name,
+                                   double rate_hz, bool without_date);
+
+  const TakeName& name() const { return name_; }
+  const TakeHeader& header() const { return reader_.header(); }
+  double rate_hz() const { return rate_hz_; }
+  Time first() const { return first_; }  // stamp of the first row, moved
+  Result<std::string> report_json() const { return reader_.report_json(); }
+
+  /// All rows from the front, slab by slab; may be called again.
+  Result<void> rows(const std::function<Result<void>(const TakeSlab&)>& use);
+
+  /// The same of one group, of its kind. Points are missing where they are not valid; so are the
+  /// joints of a skeleton, as points, in rows that are not valid. Frames of a skeleton have no such
+  /// mark and are handed on as they are.
+  Result<void> clip_frames(std::size_t group,
+                           const std::function<Result<void>(const ClipFrames&)>& use);
+  Result<void> point_frames(std::size_t group,
+                            const std::function<Result<void>(const PointFrames&)>& use);
+  Result<void> node_samples(std::size_t group,
+                            const std::function<Result<void>(const ImuSamples&)>& use);
+
+ private:
+  ExportedTake(TakeReader reader, TakeName name, double rate_hz)
+      : reader_(std::move(reader)), name_(std::move(name)), rate_hz_(rate_hz) {}
+
+  TakeReader reader_;
+  TakeName name_;
+  double rate_hz_;
+  Time first_{};
+  Duration moved_{};
+  TakeSlab slab_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/export/release.h"
+
+#include "kinalign/core/files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <regex>
+
+namespace kinalign {
+
+namespace {
+
+struct Pattern {
+  const char* what;
+  std::regex text;
+};
+
+const std::array<Pattern, 4>& patterns() {
+  static const std::array<Pattern, 4> all{{
+      {"an e-mail address", std::regex("[^\\s@]+@[^\\s@]+\\.[a-zA-Z]{2,}")},
+      {"a hardware address", std::regex("([0-9A-Fa-f]{2}[:-]){5}[0-9A-Fa-f]{2}")},
+      {"a date", std::regex("(19|20)\\d\\d[-/.]?(0[1-9]|1[0-2])[-/.]?(0[1-9]|[12]\\d|3[01])|"
+                            "\\b\\d{1,2}[./]\\d{1,2}[./](19|20)?\\d\\d\\b")},
+      {"a telephone number", std::regex("\\+?\\d[\\d /()-]{7,}\\d")},
+  }};
+  return all;
+}
+
+/// Three letters and no digit: "maria", unlike "s03" and "07".
+bool reads_like_a_name(const std::string& id) {
+  const auto is = [](int (*kind)(int)) {
+    return [kind](char c) { return kind(static_cast<unsigned char>(c)) != 0; };
+  };
+  return std::count_if(id.begin(), id.end(), is(std::isalpha)) >= 3 &&
+         std::none_of(id.begin(), id.end(), is(std::isdigit));
+}
+
+bool names_a_device(std::string key) {
+  std::transform(key.begin(), key.end(), key.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array<std::string_view, 6> words{"serial",  "mac",   "imei",
+                                                  "address", "owner", "host"};
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return key.find(word) != std::string::npos; });
+}
+
+class Look {
+ public:
+  explicit Look(const std::string& file) : file_(file) {}
+
+  void add(Severity severity, const std::string& where, std::string found, std::string repair) {
+    findings.push_back(
+        {severity,
+         Error{file_, 0, fmt::format("{} that tells nobody who it is", where), std::move(found)},
+         "", std::move(repair)});
+  }
+
+  void text(const std::string& where, const std::string& value) {
+    for (const Pattern& pattern : patterns()) {
+      std::smatch match;
+      if (!std::regex_search(value, match, pattern.text)) continue;
+      add(Severity::error, where, fmt::format("{}: \"{}\"", pattern.what, shown(match.str())),
+          "take it out of dataset.toml");
+      return;
+    }
+  }
+
+  Findings findings;
+
+ private:
+  const std::string& file_;
+};
+
+void look_at_devices(const std::vector<Described>& all, const char* table, Look& look) {
+  for (const Described& one : all) {
+    for (const auto& [key, value] : one.texts) {
+      const std::string where = fmt::format("{}.{}.{}", table, one.id, key);
+      if (names_a_device(key) && !value.empty()) {
+        look.add(Severity::error, where, fmt::format("\"{}\"", shown(value)),
+                 "take it out of dataset.toml: it leads to a lab and a day");
+      } else {
+        look.text(where, value);
+      }
+    }
+  }
+}
+
+/// Who has a height or a weight of their own is known by it.
+void look_at_measures(const std::vector<Subject>& people, const char* what,
+                      std::optional<double> Subject::*measure, Look& look) {
+  for (const Subject& person : people) {
+    if (!(person.*measure)) continue;
+    const auto same = std::count_if(people.begin(), people.end(), [&](const Subject& other) {
+      return other.*measure == person.*measure;
+    });
+    if (same > 1) continue;
+    look.add(Severity::note, fmt::format("subject.{}.{}", person.id, what),
+             fmt::format("{:g}, which nobody else here has", *(person.*measure)),
+             "round it, or leave it out");
+  }
+}
+
+}  // namespace
+
+Findings look_for_people(const Catalogue& catalogue, const std::string& file) {
+  Look look(file);
+  for (const Subject& person : catalogue.subjects) {
+    if (reads_like_a_name(person.id)) {
+      look.add(Severity::error, "a subject's id", fmt::format("\"{}\"", shown(person.id)),
+               "give a number: kinalign dataset rename");
+    }
+    look.text(fmt::format("subject.{}.consent", person.id), person.consent);
+    if (!person.consent.empty()) {
+      look.add(Severity::warning, fmt::format("subject.{}.consent", person.id),
+               fmt::format("free text: \"{}\"", shown(person.consent)), "read it before others do");
+    }
+  }
+  look_at_measures(catalogue.subjects, "height_cm", &Subject::height_cm, look);
+  look_at_measures(catalogue.subjects, "weight_kg", &Subject::weight_kg, look);
+  look_at_devices(catalogue.devices, "device", look);
+  look_at_devices(catalogue.rigs, "rig", look);
+  for (const ActionClass& one : catalogue.classes) look.text("class." + one.id + ".name", one.name);
+  for (const Action& one : catalogue.actions) look.text("action." + one.id + ".name", one.name);
+  look.text("description", catalogue.description);
+  std::stable_sort(look.findings.begin(), look.findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+  return look.findings;
+}
+
+void hide_names(TakeHeader& header, AlignmentReport& report) {
+  std::map<std::string, std::string> names;  // of raw files, by their names before
+  const auto hidden = [&](const std::string& name, const std::string& stream, std::size_t number) {
+    const std::string_view file = file_name(name);
+    const std::size_t dot = file.rfind('.');
+    const std::string ending(dot == std::string_view::npos ? "" : file.substr(dot));
+    auto& to = names[name];
+    if (to.empty())
+      to = number == 0 ? stream + ending : fmt::format("{}_{}{}", stream, number + 1, ending);
+    return to;
+  };
+  for (TakeGroup& group : header.groups) {
+    for (std::size_t i = 0; i < group.files.size(); ++i) {
+      group.files[i].name = hidden(group.files[i].name, group.name, i);
+    }
+  }
+  for (StreamOptions& stream : header.parameters.streams) {
+    for (std::size_t i = 0; i < stream.files.size(); ++i) {
+      stream.files[i].path = hidden(stream.files[i].path, stream.name, i);
+    }
+  }
+  report.marks.clear();
+  for (Finding& finding : report.findings) {
+    for (const auto& [from, to] : names) {
+      for (std::string* text : {&finding.what.file, &finding.what.expected, &finding.what.found,
+                                &finding.meaning, &finding.repair}) {
+        for (std::size_t at = text->find(from); !from.empty() && at != std::string::npos;
+             at = text->find(from, at + to.size())) {
+          text->replace(at, from.size(), to);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/export/shard_export.h"
+
+#include "kinalign/dataset/export/csv_write.h"
+#include "kinalign/formats/take/take_npz.h"
+
+#include <nlohmann/json.hpp>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A member of a sample, in memory.
+struct Npy {
+  std::string ending, bytes;
+};
+
+/// The members without their values.
+std::vector<Npy> heads_of(const TakeHeader& header) {
+  std::vector<Npy> out;
+  const auto add = [&](const std::string& name, Stored stored, std::vector<std::uint64_t> shape) {
+    shape.insert(shape.begin(), header.frames);
+    out.push_back({name + ".npy", npy_header(npz_numbers(name, stored, shape))});
+  };
+  add("time_ns", Stored::int64, {});
+  for (const TakeGroup& group : header.groups) {
+    for (const TakeColumn& column : columns_of(group, precision_of(header))) {
+      add(group.name + "_" + column.name, column.stored, column.shape);
+    }
+  }
+  return out;
+}
+
+/// Values behind their heads; arrays that a stream leaves empty have no member.
+Result<void> add_values(const TakeHeader& header, const TakeSlab& slab, NumberStore& numbers,
+                        std::vector<Npy>& members) {
+  members.front().bytes += bytes_of(std::span<const Time>(slab.stamps));
+  auto member = members.begin() + 1;
+  for (std::size_t g = 0; g < header.groups.size(); ++g) {
+    const auto columns = columns_of(header.groups[g], precision_of(header));
+    auto column = columns.begin();
+    const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
+      if (column == columns.end() || column->name != name) return {};
+      std::string& bytes = (member++)->bytes;
+      const Stored stored = (column++)->stored;
+      const std::span given(values);
+      if constexpr (std::is_same_v<typename decltype(given)::value_type, double>) {
+        return numbers.store(given, stored, [&bytes](std::string_view piece) -> Result<void> {
+          bytes += piece;
+          return {};
+        });
+      } else {
+        bytes += bytes_of(given);
+        return {};
+      }
+    };
+    KA_TRY(
+        std::visit([&](const auto& rows) { return for_each_row_array(rows, use); }, slab.rows[g]));
+  }
+  return {};
+}
+
+std::string sample_json(const ExportedTake& take, const SampleFacts& facts) {
+  Json out{{"name", to_string(take.name())},
+           {"class", facts.class_id},
+           {"part", facts.part},
+           {"rate_hz", take.rate_hz()}};
+  out.update(Json::parse(streams_json(take.header())));
+  out["subject"] = take.name().subject;
+  out["action"] = take.name().action;
+  return out.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+struct ShardExport::Shard {
+  explicit Shard(OutputFile file) : out(std::move(file)) {}
+
+  OutputFile out;
+  std::uint64_t bytes = 0;
+  ShardWriter writer{[this](std::string_view piece) {
+    bytes += piece.size();
+    return out.write(piece);
+  }};
+};
+
+Result<ShardExport::Shard*> ShardExport::shard_of(const std::string& part) {
+  auto& shard = open_[part];
+  if (!shard) {
+    const std::string path = folder_ + "/" + shard_name(part, numbers_[part]++);
+    shard = std::make_shared<Shard>(KA_TRY(OutputFile::create(files_, path, Overwrite::no)));
+  }
+  return shard.get();
+}
+
+Result<void> ShardExport::end(Shard& shard, FilesMade& made) {
+  KA_TRY(shard.writer.finish());
+  KA_TRY(shard.out.commit());
+  made.paths.push_back(shard.out.path());
+  return {};
+}
+
+Result<FilesMade> ShardExport::add(ExportedTake& take, const SampleFacts& facts) {
+  std::vector<Npy> members = heads_of(take.header());
+  NumberStore numbers;
+  KA_TRY(take.rows(
+      [&](const TakeSlab& slab) { return add_values(take.header(), slab, numbers, members); }));
+  members.push_back({"json", sample_json(take, facts)});
+  std::vector<ShardMember> views;
+  for (const Npy& one : members) views.push_back({one.ending, one.bytes});
+  Shard* shard = KA_TRY(shard_of(facts.part));
+  KA_TRY(shard->writer.add(to_string(take.name()), views));
+  FilesMade made;
+  if (shard->bytes >= shard_bytes_) {
+    KA_TRY(end(*shard, made));
+    open_.erase(facts.part);
+  }
+  return made;
+}
+
+Result<FilesMade> ShardExport::finish() {
+  FilesMade made;
+  for (auto& [part, shard] : open_) KA_TRY(end(*shard, made));
+  open_.clear();
+  return made;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes as samples of WebDataset shards: docs/formats/webdataset.md.
+#pragma once
+
+#include "kinalign/dataset/export/exported_take.h"
+#include "kinalign/dataset/export/take_files.h"
+#include "kinalign/formats/tar/shard_write.h"
+
+#include <map>
+#include <memory>
+
+namespace kinalign {
+
+/// What a sample's JSON says of a take beside its streams.
+struct SampleFacts {
+  std::string class_id, part;
+};
+
+class ShardExport {
+ public:
+  /// A shard ends behind the sample with which it reaches `shard_bytes`.
+  ShardExport(FileSystem& files, std::string folder,
+              std::uint64_t shard_bytes = std::uint64_t{256} << 20)
+      : files_(files), folder_(std::move(folder)), shard_bytes_(shard_bytes) {}
+
+  /// A sample: each array as STREAM_ARRAY.npy, time_ns.npy, and json. Shards are named by the
+  /// take's part: train-000000.tar. A take is held in memory.
+  Result<FilesMade> add(ExportedTake& take, const SampleFacts& facts);
+  Result<FilesMade> finish();
+
+ private:
+  struct Shard;
+  Result<Shard*> shard_of(const std::string& part);
+  Result<void> end(Shard& shard, FilesMade& made);
+
+  FileSystem& files_;
+  std::string folder_;
+  std::uint64_t shard_bytes_;
+  std::map<std::string, std::shared_ptr<Shard>> open_;
+  std::map<std::string, std::uint64_t> numbers_;  // the next shard's, of each part
+};
+
+}  // namespace kinalign

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The formats that hold one take, or one stream of it, in a file.
+#pragma once
+
+#include "kinalign/dataset/export/exported_take.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+struct FilesMade {
+  std::vector<std::string> paths;
+  std::vector<std::string> left_out;  // "imu: the format holds points"
+  std::vector<Error> failed;          // streams that could not be written
+};
+
+/// Writes files whose paths begin with `stem`: "out/sub-03/sub-03_task-S2A03_run-01".
+using WriteTake = Result<FilesMade> (*)(ExportedTake& take, FileSystem& files,
+                                        const std::string& take_path, const std::string& stem);
+
+struct TakeFormat {
+  std::string_view name;   // "trc"
+  std::string_view title;  // for people
+  std::string_view lost;   // what no file of this format holds; empty: nothing
+  WriteTake write;
+};
+
+const std::vector<TakeFormat>& take_formats();
+
+}  // namespace kinalign
