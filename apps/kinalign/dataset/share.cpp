@@ -12,12 +12,14 @@ namespace {
 struct Names {
   const char *rank, *size, *least;  // `least`: taken off the rank; nullptr: nothing
 };
-constexpr std::array<Names, 5> starters{
-    {{"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"},
-     {"SLURM_PROCID", "SLURM_STEP_NUM_TASKS", nullptr},
-     {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", nullptr},
-     {"PMI_RANK", "PMI_SIZE", nullptr},
-     {"RANK", "WORLD_SIZE", nullptr}}};
+constexpr Names array{"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT", "SLURM_ARRAY_TASK_MIN"};
+// The innermost starter first: mpirun within a step of srun starts the tasks itself.
+constexpr std::array<Names, 4> steps{{{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", nullptr},
+                                      {"PMI_RANK", "PMI_SIZE", nullptr},
+                                      {"SLURM_PROCID", "SLURM_STEP_NUM_TASKS", nullptr},
+                                      {"RANK", "WORLD_SIZE", nullptr}}};
+
+using Variable = std::function<std::string(const std::string&)>;
 
 std::optional<std::int64_t> number(const std::string& text) {
   std::int64_t value = 0;
@@ -27,28 +29,40 @@ std::optional<std::int64_t> number(const std::string& text) {
   return good ? std::optional(value) : std::nullopt;
 }
 
+bool is_there(const Names& names, const Variable& variable) {
+  return !variable(names.rank).empty() && !variable(names.size).empty();
+}
+
+/// `shares`: wins as the size; empty: none does.
+Result<BuildShare> read(const Names& names, const Variable& variable, const std::string& shares,
+                        std::int64_t offset) {
+  const std::string rank_text = variable(names.rank);
+  const std::string size_text = shares.empty() ? variable(names.size) : shares;
+  const auto rank = number(rank_text), size = number(size_text);
+  const auto least = names.least == nullptr ? 0 : number(variable(names.least)).value_or(0);
+  const std::int64_t own = rank.value_or(-1) - least + offset;
+  if (rank && size && own >= 0 && own < *size) {
+    return BuildShare{static_cast<std::size_t>(own), static_cast<std::size_t>(*size)};
+  }
+  return Failure(Error{names.rank, 0,
+                       std::string("a number below ") + names.size +
+                           " (of a larger array KINALIGN_SHARES says how many there are in all)",
+                       rank_text + " of " + size_text});
+}
+
 }  // namespace
 
-Result<BuildShare> share_of(const std::function<std::string(const std::string&)>& variable,
-                            std::int64_t index_offset) {
-  for (const Names& names : starters) {
-    const std::string rank_text = variable(names.rank), size_text = variable(names.size);
-    if (rank_text.empty() || size_text.empty()) continue;
-    const auto rank = number(rank_text);
-    const std::string shares = variable("KINALIGN_SHARES");
-    const auto size = number(shares.empty() ? size_text : shares);
-    const auto least = names.least == nullptr ? 0 : number(variable(names.least)).value_or(0);
-    const std::int64_t offset = names.least == nullptr ? 0 : index_offset;
-    const std::int64_t own = rank.value_or(-1) - least + offset;
-    if (rank && size && own >= 0 && own < *size) {
-      return BuildShare{static_cast<std::size_t>(own), static_cast<std::size_t>(*size)};
-    }
-    return Failure(Error{names.rank, 0,
-                         std::string("a number below ") + names.size +
-                             " (of a larger array KINALIGN_SHARES says how many there are in all)",
-                         rank_text + " of " + (shares.empty() ? size_text : shares)});
+Result<BuildShare> share_of(const Variable& variable, std::int64_t index_offset) {
+  BuildShare outer, inner;
+  if (is_there(array, variable)) {
+    outer = KA_TRY(read(array, variable, variable("KINALIGN_SHARES"), index_offset));
   }
-  return BuildShare{};
+  for (const Names& names : steps) {
+    if (!is_there(names, variable)) continue;
+    inner = KA_TRY(read(names, variable, "", 0));
+    break;
+  }
+  return BuildShare{outer.rank * inner.size + inner.rank, outer.size * inner.size};
 }
 
 }  // namespace kinalign

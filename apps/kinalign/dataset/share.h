@@ -11,11 +11,12 @@
 
 namespace kinalign {
 
-/// The first that is there: a Slurm array (SLURM_ARRAY_TASK_ID less SLURM_ARRAY_TASK_MIN plus
-/// `index_offset`, of SLURM_ARRAY_TASK_COUNT), srun (SLURM_PROCID of SLURM_STEP_NUM_TASKS, which a
-/// batch script alone has not), Open MPI (OMPI_COMM_WORLD_RANK, _SIZE), MPICH (PMI_RANK, PMI_SIZE),
-/// RANK of WORLD_SIZE; else all of it. KINALIGN_SHARES wins as the number of all shares. Fails
-/// where the numbers do not go together.
+/// Tasks of a step: the first that is there of Open MPI (OMPI_COMM_WORLD_RANK, _SIZE), MPICH
+/// (PMI_RANK, PMI_SIZE), srun (SLURM_PROCID of SLURM_STEP_NUM_TASKS, which a batch script alone has
+/// not) and RANK of WORLD_SIZE. Jobs of a Slurm array: SLURM_ARRAY_TASK_ID less
+/// SLURM_ARRAY_TASK_MIN plus `index_offset`, of SLURM_ARRAY_TASK_COUNT or, where it is set,
+/// KINALIGN_SHARES. Where both are there, each job's share is divided among its tasks; where none
+/// is, it is all of the build. Fails where the numbers do not go together.
 Result<BuildShare> share_of(const std::function<std::string(const std::string&)>& variable,
                             std::int64_t index_offset);
 

@@ -54,8 +54,24 @@ TEST_CASE("arrays whose numbers are limited are put together by an offset") {
   check(second, 1000, 2000, 1000);
 }
 
+TEST_CASE("tasks of a step within an array divide the share of their job") {
+  const Environment job{{"SLURM_ARRAY_TASK_ID", "3"},
+                        {"SLURM_ARRAY_TASK_COUNT", "4"},
+                        {"SLURM_ARRAY_TASK_MIN", "1"},
+                        {"SLURM_PROCID", "1"},
+                        {"SLURM_STEP_NUM_TASKS", "2"}};
+  check(job, 5, 8);
+  // mpirun's numbers win over those of the step that started it.
+  Environment within = job;
+  within["OMPI_COMM_WORLD_RANK"] = "2";
+  within["OMPI_COMM_WORLD_SIZE"] = "3";
+  check(within, 8, 12);
+}
+
 TEST_CASE("numbers that do not go together are refused") {
   CHECK_FALSE(share({{"RANK", "2"}, {"WORLD_SIZE", "2"}}));
   CHECK_FALSE(share({{"RANK", "x"}, {"WORLD_SIZE", "2"}}));
-  CHECK_FALSE(share({{"RANK", "0"}, {"WORLD_SIZE", "2"}, {"KINALIGN_SHARES", "x"}}));
+  CHECK_FALSE(share({{"SLURM_ARRAY_TASK_ID", "0"},
+                     {"SLURM_ARRAY_TASK_COUNT", "2"},
+                     {"KINALIGN_SHARES", "x"}}));
 }
