@@ -3,6 +3,7 @@
 
 #include "kinalign/core/hash.h"
 #include "kinalign/documents/parameters_json.h"
+#include "kinalign/documents/report_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -43,25 +44,23 @@ struct Sums {
 };
 
 /// Adds what a stream's report says to its group.
-void add_report(const Json& report, StreamSummary& stream, Sums& sums) {
-  sums.samples += report.at("samples").get<std::uint64_t>();
-  sums.invalid += report.at("invalid").get<std::uint64_t>();
-  sums.inferred += report.at("inferred").get<std::uint64_t>();
-  stream.gaps += report.at("gaps").get<std::uint64_t>();
-  stream.gap_s += 1e-9 * report.at("gap_time_ns").get<double>();
-  if (report.contains("worst_interval_ns")) {
-    const auto widest = report["worst_interval_ns"].get<std::int64_t>();
-    stream.interval_ns = std::max(stream.interval_ns.value_or(0), widest);
+void add_report(const StreamReport& report, StreamSummary& stream, Sums& sums) {
+  sums.samples += report.samples;
+  sums.invalid += report.invalid;
+  sums.inferred += report.inferred;
+  stream.gaps += report.gaps;
+  stream.gap_s += 1e-9 * static_cast<double>(report.gap_time_ns);
+  if (report.worst_interval_ns) {
+    stream.interval_ns = std::max(stream.interval_ns.value_or(0), *report.worst_interval_ns);
   }
 }
 
-void add_streams(const Json& report, TakeSummary& out) {
+void add_streams(const AlignmentReport& report, TakeSummary& out) {
   std::map<std::string, Sums> sums;
-  for (const Json& one : report.at("streams")) {
-    const auto name = one.at("stream").get<std::string>();
+  for (const StreamReport& one : report.streams) {
     const auto stream = std::find_if(out.streams.begin(), out.streams.end(),
-                                     [&](const StreamSummary& s) { return s.name == name; });
-    if (stream != out.streams.end()) add_report(one, *stream, sums[name]);
+                                     [&](const StreamSummary& s) { return s.name == one.stream; });
+    if (stream != out.streams.end()) add_report(one, *stream, sums[one.stream]);
   }
   for (StreamSummary& stream : out.streams) {
     const Sums& of = sums[stream.name];
@@ -72,20 +71,25 @@ void add_streams(const Json& report, TakeSummary& out) {
   }
 }
 
-void add_findings(const Json& report, TakeSummary& out) {
-  for (const Json& finding : report.at("findings")) {
-    const auto severity = finding.at("severity").get<std::string>();
-    out.errors += severity == "error" ? 1 : 0;
-    out.warnings += severity == "warning" ? 1 : 0;
-    if (!out.worst.empty() || severity == "note") continue;  // worst first
-    out.worst = "expected " + finding.at("expected").get<std::string>() + ", found " +
-                finding.at("found").get<std::string>();
+/// Findings that are about no stream count, too.
+void add_findings(const AlignmentReport& report, TakeSummary& out) {
+  for (const Finding& finding : report.findings) {
+    if (finding.severity == Severity::note) continue;
+    const bool error = finding.severity == Severity::error;
+    (error ? out.errors : out.warnings) += 1;
+    const Quality least = error ? Quality::bad : Quality::usable;
+    if (out.quality >= least) continue;
+    out.quality = least;
+    out.worst = to_string(finding.what);
   }
 }
 
-void add_residual(const Json& report, TakeSummary& out) {
-  for (const Json& space : report.at("spaces")) {
-    out.residual_m = std::max(out.residual_m.value_or(0.0), space.at("after_m").get<double>());
+void add_verdicts(const TakeHeader& header, const AlignmentReport& report, TakeSummary& out) {
+  for (const TakeGroup& group : header.groups) {
+    const Verdict verdict = verdict_of(report, group.name, group.files);
+    if (verdict.quality <= out.quality) continue;
+    out.quality = verdict.quality;
+    out.worst = group.name + ": " + verdict.reason;
   }
 }
 
@@ -128,6 +132,10 @@ TakeSummary summary_from(const Json& json) {
   out.begin_ns = json.at("begin_ns").get<std::int64_t>();
   out.end_ns = json.at("end_ns").get<std::int64_t>();
   if (json.contains("residual_m")) out.residual_m = json["residual_m"].get<double>();
+  const auto verdict = json.at("verdict").get<std::string>();
+  for (const Quality quality : {Quality::usable, Quality::bad}) {
+    if (verdict == to_string(quality)) out.quality = quality;
+  }
   out.errors = json.at("errors").get<std::uint64_t>();
   out.warnings = json.at("warnings").get<std::uint64_t>();
   out.worst = json.at("worst").get<std::string>();
@@ -163,28 +171,30 @@ Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report
   out.action = header.action;
   out.frames = header.frames;
   out.recipe = recipe_of(header.parameters);
-  try {
-    const Json report = Json::parse(report_json);
-    const auto reference = report.at("reference").get<std::string>();
-    out.rate_hz = report.at("rate_hz").get<double>();
-    out.begin_ns = report.at("begin_ns").get<std::int64_t>();
-    out.end_ns = report.at("end_ns").get<std::int64_t>();
-    for (const TakeGroup& group : header.groups) {
-      StreamSummary stream = std::visit(StreamOf{}, group.kind);
-      stream.name = group.name;
-      if (group.name == reference) stream.modality = Modality::mocap;
-      out.streams.push_back(std::move(stream));
-      for (const InputFacts& input : group.files) {
-        if (std::find(out.inputs.begin(), out.inputs.end(), input) == out.inputs.end()) {
-          out.inputs.push_back(input);
-        }
+  const AlignmentReport report = KA_TRY(parse_report_json(report_json, ""));
+  if (report.frames != header.frames) {
+    return Failure(Error{"", 0, std::to_string(header.frames) + " frames in the take's report",
+                         std::to_string(report.frames)});
+  }
+  out.rate_hz = report.rate_hz;
+  out.begin_ns = to_ns(report.begin);
+  out.end_ns = to_ns(report.end);
+  for (const TakeGroup& group : header.groups) {
+    StreamSummary stream = std::visit(StreamOf{}, group.kind);
+    stream.name = group.name;
+    if (group.name == report.reference) stream.modality = Modality::mocap;
+    out.streams.push_back(std::move(stream));
+    for (const InputFacts& input : group.files) {
+      if (std::find(out.inputs.begin(), out.inputs.end(), input) == out.inputs.end()) {
+        out.inputs.push_back(input);
       }
     }
-    add_streams(report, out);
-    add_findings(report, out);
-    add_residual(report, out);
-  } catch (const Json::exception& fault) {
-    return Failure(Error{"", 0, "a report of the schema kinalign.report/1", fault.what()});
+  }
+  add_streams(report, out);
+  add_verdicts(header, report, out);
+  add_findings(report, out);
+  for (const SpaceReport& space : report.spaces) {
+    out.residual_m = std::max(out.residual_m.value_or(0.0), space.after_m);
   }
   return out;
 }

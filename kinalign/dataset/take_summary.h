@@ -3,6 +3,7 @@
 // schema kinalign.take_summary/1. Everything in it follows from the take's bytes.
 #pragma once
 
+#include "kinalign/align/verdict.h"
 #include "kinalign/dataset/take_name.h"
 #include "kinalign/take/take.h"
 
@@ -38,16 +39,16 @@ struct TakeSummary {
   std::int64_t begin_ns = 0, end_ns = 0;  // first and last row, UTC
   std::vector<StreamSummary> streams;
   std::optional<double> residual_m;        // of the worst stream that was moved, rms, at the end
+  Quality quality = Quality::good;         // of the worst stream (align/verdict.h), as on its page
+  std::string worst;                       // why it is not good, in words: "kinect: 9 % of ..."
   std::uint64_t errors = 0, warnings = 0;  // findings
-  std::string worst;                       // the first finding of the greatest severity, in words
   std::string software;                    // that made it: "kinalign 0.1.0"
   std::string recipe;                      // SHA-256 of all parameters: recipe_of()
   std::vector<InputFacts> inputs;          // in the order of the streams
   std::string sha256;                      // of the take's file
   std::uint64_t bytes = 0;                 // of it
 
-  /// Errors make a take bad, warnings usable, nothing good.
-  std::string_view verdict() const { return errors > 0 ? "bad" : warnings > 0 ? "usable" : "good"; }
+  std::string_view verdict() const { return to_string(quality); }
   double seconds() const { return rate_hz > 0.0 ? static_cast<double>(frames) / rate_hz : 0.0; }
   bool has(Modality modality) const;
 };

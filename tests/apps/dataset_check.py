@@ -119,7 +119,7 @@ def lists_and_queries_answer_in_text_csv_and_json_and_change_nothing(folder):
     assert [row["name"] for row in found] == ["sub-02_task-S2A03_run-01"], found
     assert answer("list", data, "--class", "S3")["takes"] == []
     sums = answer("query", data, "select class, sum(frames) as frames from takes group by class")["takes"]
-    assert sums == [{"class": "S2", "frames": 900}], sums
+    assert sums == [{"class": "S2", "frames": 910}], sums
     nodes = answer("query", data, "select distinct nodes from streams where modality = 'imu'")["takes"]
     assert nodes[0]["nodes"].split() == ["ankle_left", "ankle_right", "waist", "wrist_left", "wrist_right"] or \
         len(nodes[0]["nodes"].split()) == 5, nodes

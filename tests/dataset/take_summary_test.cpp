@@ -95,8 +95,10 @@ TEST_CASE("points that are the reference are the mocap") {
   CHECK_FALSE(take->has(Modality::kinect));
 }
 
-TEST_CASE("the verdict is that of the worst finding") {
+TEST_CASE("the verdict is that of the worst stream or finding, as on the take's page") {
   AlignmentReport of = report();
+  of.streams = {report_of("mocap", 0, 0), report_of("kinect", 600, 0)};
+  of.streams[1].worst_interval_ns = 1'000'000;
   const auto add = [&](Severity severity, const std::string& expected) {
     of.findings.insert(of.findings.begin(), {severity, Error{"f", 0, expected, "b"}, "", ""});
   };
@@ -104,12 +106,15 @@ TEST_CASE("the verdict is that of the worst finding") {
   add(Severity::note, "a");
   CHECK(summary(of).verdict() == "good");
   CHECK(summary(of).worst.empty());
+  of.streams[1].invalid = 120;
+  CHECK(summary(of).verdict() == "usable");
+  CHECK(summary(of).worst == "kinect: 20.0 % of samples invalid");
   add(Severity::warning, "rates");
   CHECK(summary(of).verdict() == "usable");
   add(Severity::error, "stamps");
   const TakeSummary bad = summary(of);
   CHECK(bad.verdict() == "bad");
-  CHECK(bad.worst == "expected stamps, found b");
+  CHECK(bad.worst == "f: expected stamps, found b");
   CHECK(bad.errors == 1);
   CHECK(bad.warnings == 1);
 }
