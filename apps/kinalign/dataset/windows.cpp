@@ -91,7 +91,7 @@ Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call
   FileSystem& files = call.surroundings.files;
   const DatasetIndex index = KA_TRY(open_index(folder, call));
   const Catalogue& catalogue = index.catalogue();
-  WindowSource source{catalogue.name, catalogue.licence, catalogue.citation, {"all"}, {}};
+  WindowSource source{folder, catalogue.name, catalogue.licence, catalogue.citation, {"all"}, {}};
   auto takes = KA_TRY(built_takes(files, folder, index, o.where));
   if (o.split.empty()) {
     for (const SplitTake& take : takes) source.takes.push_back({take.name, "", take.summary, 0});
@@ -145,8 +145,8 @@ Result<int> run_windows(Windows& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   const WindowSource source = KA_TRY(source_of(o, folder, call));
   const WindowsMade made =
-      KA_TRY(write_windows(call.surroundings.files, folder, source, o.options, call.common.out,
-                           call.common.overwrite(), call.console.progress()));
+      KA_TRY(write_windows(call.surroundings.files, source, o.options,
+                           {call.common.out, call.common.overwrite()}, call.console.progress()));
   call.console.wrote(call.common.out);
   print(made, source, call);
   return 0;

@@ -66,33 +66,47 @@ std::string number_text(const std::optional<double>& value) {
   return value ? fmt::format("{:g}", *value) : "";
 }
 
+Result<void> make_folder_of(const std::string& path) {
+  std::error_code failed;
+  const auto above = std::filesystem::path(path).parent_path();
+  std::filesystem::create_directories(above, failed);
+  if (!failed) return {};
+  return Failure(Error{above.string(), 0, "a folder that can be made", failed.message()});
+}
+
 }  // namespace
 
 Result<void> BidsExport::write(const std::string& path, std::string_view text) {
   const std::string whole = folder_ + "/" + path;
-  std::error_code failed;
-  std::filesystem::create_directories(std::filesystem::path(whole).parent_path(), failed);
+  KA_TRY(make_folder_of(whole));
   OutputFile out = KA_TRY(OutputFile::create(files_, whole, Overwrite::no));
   KA_TRY(out.write(text));
   return out.commit();
 }
 
-Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, FilesMade& made) {
+Result<BidsSidecars> BidsExport::write_motion(ExportedTake& take, std::size_t group,
+                                              const std::string& path) {
   const TakeGroup& of = take.header().groups[group];
-  const BidsEntities entities{take.name().subject, "", take.name().action,
-                              label_of(of.name),   "", fmt::format("{}", take.name().run)};
-  const std::string motion = bids_path(entities, "motion.tsv");
-  std::error_code failed;
-  std::filesystem::create_directories(std::filesystem::path(folder_ + "/" + motion).parent_path(),
-                                      failed);
-  TextOut out = KA_TRY(TextOut::create(files_, folder_ + "/" + motion, Overwrite::no));
+  KA_TRY(make_folder_of(path));
+  TextOut out = KA_TRY(TextOut::create(files_, path, Overwrite::no));
   BidsMotionWriter writer(source_of(of), out);
   const auto append = [&](const auto& rows) { return writer.append(rows); };
   if (std::holds_alternative<ClipGroup>(of.kind)) KA_TRY(take.clip_frames(group, append));
   if (std::holds_alternative<PointGroup>(of.kind)) KA_TRY(take.point_frames(group, append));
   if (std::holds_alternative<ImuGroup>(of.kind)) KA_TRY(take.node_samples(group, append));
-  const BidsSidecars beside = writer.sidecars(facts_of(catalogue_, take, of));
   KA_TRY(out.commit());
+  return writer.sidecars(facts_of(catalogue_, take, of));
+}
+
+Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, FilesMade& made) {
+  const BidsEntities entities{take.name().subject,
+                              "",
+                              take.name().action,
+                              label_of(take.header().groups[group].name),
+                              "",
+                              fmt::format("{}", take.name().run)};
+  const std::string motion = bids_path(entities, "motion.tsv");
+  const BidsSidecars beside = KA_TRY(write_motion(take, group, folder_ + "/" + motion));
   KA_TRY(write(bids_path(entities, "channels.tsv"), beside.channels_tsv));
   KA_TRY(write(bids_path(entities, "channels.json"), beside.channels_json));
   KA_TRY(write(bids_path(entities, "motion.json"), beside.motion_json));

@@ -6,6 +6,7 @@
 #include "kinalign/dataset/export/exported_take.h"
 #include "kinalign/dataset/export/take_files.h"
 #include "kinalign/formats/bids/dataset.h"
+#include "kinalign/formats/bids/motion_write.h"
 
 #include <map>
 
@@ -27,6 +28,7 @@ class BidsExport {
 
  private:
   Result<void> write(const std::string& path, std::string_view text);
+  Result<BidsSidecars> write_motion(ExportedTake& take, std::size_t group, const std::string& path);
   Result<void> add_system(ExportedTake& take, std::size_t group, FilesMade& made);
   BidsParticipants participants() const;
 

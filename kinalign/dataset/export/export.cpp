@@ -36,20 +36,20 @@ struct Made {
   }
 };
 
-/// The take as it is, or without names and dates.
-Result<FilesMade> copy_take(ExportedTake& take, FileSystem& files, const std::string& from,
-                            const std::string& to, bool release) {
-  if (!release) {
-    OutputFile out = KA_TRY(OutputFile::create(files, to, Overwrite::no));
-    InputFile in = KA_TRY(InputFile::open(files, from));
-    for (auto piece = KA_TRY(in.next()); !piece.empty(); piece = KA_TRY(in.next())) {
-      KA_TRY(out.write(piece));
-    }
-    KA_TRY(out.commit());
-    return FilesMade{{to}, {}, {}};
+Result<FilesMade> copy_take(FileSystem& files, const std::string& from, const std::string& to) {
+  OutputFile out = KA_TRY(OutputFile::create(files, to, Overwrite::no));
+  InputFile in = KA_TRY(InputFile::open(files, from));
+  for (auto piece = KA_TRY(in.next()); !piece.empty(); piece = KA_TRY(in.next())) {
+    KA_TRY(out.write(piece));
   }
+  KA_TRY(out.commit());
+  return FilesMade{{to}, {}, {}};
+}
+
+/// The take without names and dates.
+Result<FilesMade> rewrite_take(ExportedTake& take, FileSystem& files, const std::string& to) {
   TakeHeader header = take.header();
-  AlignmentReport report = KA_TRY(parse_report_json(KA_TRY(take.report_json()), from));
+  AlignmentReport report = KA_TRY(parse_report_json(KA_TRY(take.report_json()), to));
   hide_names(header, report);
   const Duration moved = take.first() - report.begin;
   report.begin += moved;
@@ -97,8 +97,8 @@ Result<FilesMade> Exporting::write(ExportedTake& take, const ExportTake& of,
   fs::create_directories(folder, failed);
   if (failed) return Failure(Error{folder, 0, "a folder that can be made", failed.message()});
   if (job_.format == "take") {
-    return copy_take(take, files_, path, folder_ + "/" + path_of(of.name, TakeFile::take),
-                     job_.release);
+    const std::string to = folder_ + "/" + path_of(of.name, TakeFile::take);
+    return job_.release ? rewrite_take(take, files_, to) : copy_take(files_, path, to);
   }
   const auto& formats = take_formats();
   const auto format = std::find_if(formats.begin(), formats.end(),

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 #include <regex>
 
 namespace kinalign {
@@ -104,6 +105,34 @@ void look_at_measures(const std::vector<Subject>& people, const char* what,
   }
 }
 
+/// What raw files are called afterwards, by their names before.
+class HiddenNames {
+ public:
+  const std::string& of(const std::string& name, const std::string& stream, std::size_t number) {
+    const std::string_view file = file_name(name);
+    const std::size_t dot = file.rfind('.');
+    const std::string ending(dot == std::string_view::npos ? "" : file.substr(dot));
+    std::string& to = names_[name];
+    if (to.empty()) {
+      to = number == 0 ? stream + ending : fmt::format("{}_{}{}", stream, number + 1, ending);
+    }
+    return to;
+  }
+
+  void put_into(std::string& text) const {
+    for (const auto& [from, to] : names_) {
+      if (from.empty()) continue;
+      for (std::size_t at = text.find(from); at != std::string::npos;
+           at = text.find(from, at + to.size())) {
+        text.replace(at, from.size(), to);
+      }
+    }
+  }
+
+ private:
+  std::map<std::string, std::string> names_;
+};
+
 }  // namespace
 
 Findings look_for_people(const Catalogue& catalogue, const std::string& file) {
@@ -132,36 +161,22 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file) {
 }
 
 void hide_names(TakeHeader& header, AlignmentReport& report) {
-  std::map<std::string, std::string> names;  // of raw files, by their names before
-  const auto hidden = [&](const std::string& name, const std::string& stream, std::size_t number) {
-    const std::string_view file = file_name(name);
-    const std::size_t dot = file.rfind('.');
-    const std::string ending(dot == std::string_view::npos ? "" : file.substr(dot));
-    auto& to = names[name];
-    if (to.empty())
-      to = number == 0 ? stream + ending : fmt::format("{}_{}{}", stream, number + 1, ending);
-    return to;
-  };
+  HiddenNames names;
   for (TakeGroup& group : header.groups) {
     for (std::size_t i = 0; i < group.files.size(); ++i) {
-      group.files[i].name = hidden(group.files[i].name, group.name, i);
+      group.files[i].name = names.of(group.files[i].name, group.name, i);
     }
   }
   for (StreamOptions& stream : header.parameters.streams) {
     for (std::size_t i = 0; i < stream.files.size(); ++i) {
-      stream.files[i].path = hidden(stream.files[i].path, stream.name, i);
+      stream.files[i].path = names.of(stream.files[i].path, stream.name, i);
     }
   }
   report.marks.clear();
   for (Finding& finding : report.findings) {
-    for (const auto& [from, to] : names) {
-      for (std::string* text : {&finding.what.file, &finding.what.expected, &finding.what.found,
-                                &finding.meaning, &finding.repair}) {
-        for (std::size_t at = text->find(from); !from.empty() && at != std::string::npos;
-             at = text->find(from, at + to.size())) {
-          text->replace(at, from.size(), to);
-        }
-      }
+    for (std::string* text : {&finding.what.file, &finding.what.expected, &finding.what.found,
+                              &finding.meaning, &finding.repair}) {
+      names.put_into(*text);
     }
   }
 }

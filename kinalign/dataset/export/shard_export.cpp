@@ -109,6 +109,7 @@ Result<FilesMade> ShardExport::add(ExportedTake& take, const SampleFacts& facts)
       [&](const TakeSlab& slab) { return add_values(take.header(), slab, numbers, members); }));
   members.push_back({"json", sample_json(take, facts)});
   std::vector<ShardMember> views;
+  views.reserve(members.size());
   for (const Npy& one : members) views.push_back({one.ending, one.bytes});
   Shard* shard = KA_TRY(shard_of(facts.part));
   KA_TRY(shard->writer.add(to_string(take.name()), views));

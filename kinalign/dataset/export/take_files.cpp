@@ -68,27 +68,6 @@ Result<void> write_sto(ExportedTake& take, std::size_t group, FileSystem& files,
   return out.commit();
 }
 
-/// A file for each stream that the format holds; `refused` says why it does not hold one.
-Result<FilesMade> each_stream(ExportedTake& take, FileSystem& files, const std::string& stem,
-                              std::string_view ending,
-                              std::string_view (*refused)(const TakeGroup&), WriteStream write) {
-  FilesMade made;
-  const auto& groups = take.header().groups;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::string_view why = refused(groups[g]);
-    const std::string path = fmt::format("{}_{}.{}", stem, groups[g].name, ending);
-    if (!why.empty()) {
-      made.left_out.push_back(fmt::format("{}: {}", groups[g].name, why));
-      continue;
-    }
-    const auto done = write(take, g, files, path);
-    if (done) made.paths.push_back(path);
-    if (!done && is_interruption(done.error())) return Failure(done.error());
-    if (!done) made.failed.push_back(done.error());
-  }
-  return made;
-}
-
 std::string_view no_points(const TakeGroup& group) {
   return std::holds_alternative<ImuGroup>(group.kind) ? "the format holds points" : "";
 }
@@ -102,26 +81,52 @@ std::string_view no_orientation(const TakeGroup& group) {
 }
 std::string_view nothing(const TakeGroup&) { return ""; }
 
+/// A format of a file for each stream.
+struct StreamFormat {
+  std::string_view ending;
+  std::string_view (*refused)(const TakeGroup&);  // why it does not hold a stream; empty: it does
+  WriteStream write;
+};
+
+Result<FilesMade> each_stream(ExportedTake& take, FileSystem& files, const std::string& stem,
+                              const StreamFormat& format) {
+  FilesMade made;
+  const auto& groups = take.header().groups;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::string_view why = format.refused(groups[g]);
+    if (!why.empty()) {
+      made.left_out.push_back(fmt::format("{}: {}", groups[g].name, why));
+      continue;
+    }
+    const std::string path = fmt::format("{}_{}.{}", stem, groups[g].name, format.ending);
+    const auto done = format.write(take, g, files, path);
+    if (done) made.paths.push_back(path);
+    if (!done && is_interruption(done.error())) return Failure(done.error());
+    if (!done) made.failed.push_back(done.error());
+  }
+  return made;
+}
+
 Result<FilesMade> as_trc(ExportedTake& take, FileSystem& files, const std::string&,
                          const std::string& stem) {
-  return each_stream(take, files, stem, "trc", no_points, write_trc);
+  return each_stream(take, files, stem, {"trc", no_points, write_trc});
 }
 Result<FilesMade> as_c3d(ExportedTake& take, FileSystem& files, const std::string&,
                          const std::string& stem) {
-  return each_stream(take, files, stem, "c3d", no_points, write_c3d);
+  return each_stream(take, files, stem, {"c3d", no_points, write_c3d});
 }
 Result<FilesMade> as_mot(ExportedTake& take, FileSystem& files, const std::string&,
                          const std::string& stem) {
-  return each_stream(take, files, stem, "mot", no_skeleton, write_mot);
+  return each_stream(take, files, stem, {"mot", no_skeleton, write_mot});
 }
 Result<FilesMade> as_sto(ExportedTake& take, FileSystem& files, const std::string&,
                          const std::string& stem) {
-  return each_stream(take, files, stem, "sto", no_orientation, write_sto);
+  return each_stream(take, files, stem, {"sto", no_orientation, write_sto});
 }
 
 Result<FilesMade> as_csv(ExportedTake& take, FileSystem& files, const std::string&,
                          const std::string& stem) {
-  FilesMade made = KA_TRY(each_stream(take, files, stem, "csv", nothing, write_stream_csv));
+  FilesMade made = KA_TRY(each_stream(take, files, stem, {"csv", nothing, write_stream_csv}));
   made.paths.push_back(stem + ".json");
   KA_TRY(write_streams_json(take, files, made.paths.back()));
   return made;

@@ -97,14 +97,8 @@ std::string manifest_json(const WindowSource& source, const WindowOptions& optio
   return out.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// All arrays of the file. `arrays` of fixed contents come with their bytes.
-struct Layout {
-  std::vector<NpzArray> arrays;
-  std::vector<std::pair<std::size_t, std::string>> contents;
-};
-
 void add_skeletons(const WindowStreams& streams, const std::vector<WindowedTake>& takes,
-                   Layout& layout) {
+                   WindowLayout& layout) {
   std::size_t skeleton = 0;
   for (const TakeGroup& group : streams.groups) {
     const auto* clip = std::get_if<ClipGroup>(&group.kind);
@@ -125,8 +119,8 @@ void add_skeletons(const WindowStreams& streams, const std::vector<WindowedTake>
   }
 }
 
-Layout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
-  Layout out;
+WindowLayout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
+  WindowLayout out;
   out.arrays = {npz_numbers("take", Stored::int32, {windows}),
                 npz_numbers("part", Stored::uint8, {windows}),
                 npz_numbers("first", Stored::int64, {windows}),
@@ -161,44 +155,46 @@ Result<std::vector<std::size_t>> WindowStreams::find_in(const TakeHeader& header
   return out;
 }
 
-Result<WindowFile> WindowFile::create(FileSystem& files, const std::string& path,
-                                      Overwrite overwrite, const WindowSource& source,
-                                      const WindowOptions& options, const WindowStreams& streams,
-                                      const std::vector<WindowedTake>& takes) {
+WindowLayout window_layout(const WindowSource& source, const WindowOptions& options,
+                           const WindowStreams& streams, const std::vector<WindowedTake>& takes) {
   std::uint64_t windows = 0;
   for (const WindowedTake& take : takes) windows += take.places.size();
   const auto length = static_cast<std::uint64_t>(options.length);
-  Layout layout = fixed_arrays(windows, manifest_json(source, options, streams, takes));
+  WindowLayout layout = fixed_arrays(windows, manifest_json(source, options, streams, takes));
   add_skeletons(streams, takes, layout);
-  std::vector<std::vector<Column>> columns;
   for (const TakeGroup& group : streams.groups) {
-    auto& found = columns.emplace_back();
+    auto& found = layout.streams.emplace_back();
     for (const TakeColumn& column : window_columns(group)) {
       found.push_back({column.name, column.stored, layout.arrays.size()});
       layout.arrays.push_back(npz_numbers(group.name + "_" + column.name, column.stored,
                                           {windows, length, column.row_values()}));
     }
   }
-  WindowFile out(KA_TRY(NpzWriter::create(files, path, overwrite, layout.arrays)),
-                 std::move(columns));
+  return layout;
+}
+
+Result<WindowFile> WindowFile::create(FileSystem& files, const NewFile& target,
+                                      WindowLayout layout) {
+  WindowFile out(KA_TRY(NpzWriter::create(files, target.path, target.overwrite, layout.arrays)),
+                 std::move(layout.streams));
   for (const auto& [array, bytes] : layout.contents) KA_TRY(out.writer_.append(array, bytes));
   return out;
 }
 
-Result<void> WindowFile::append(std::size_t take, std::uint8_t part,
-                                const std::vector<std::size_t>& groups, const WindowPlace& place,
+Result<void> WindowFile::append(const WindowOrigin& origin, const std::vector<std::size_t>& groups,
                                 const TakeSlab& rows) {
-  KA_TRY(writer_.append(take_array, one(static_cast<int>(take))));
-  KA_TRY(writer_.append(part_array, one(part)));
-  KA_TRY(writer_.append(first_array, one(static_cast<std::int64_t>(place.first))));
-  KA_TRY(writer_.append(time_array, one(place.begin)));
-  KA_TRY(writer_.append(rows_array, one(static_cast<int>(place.rows))));
+  KA_TRY(writer_.append(take_array, one(static_cast<int>(origin.take))));
+  KA_TRY(writer_.append(part_array, one(origin.part)));
+  KA_TRY(writer_.append(first_array, one(static_cast<std::int64_t>(origin.place.first))));
+  KA_TRY(writer_.append(time_array, one(origin.place.begin)));
+  KA_TRY(writer_.append(rows_array, one(static_cast<int>(origin.place.rows))));
   const std::vector<std::uint8_t> all_valid(rows.stamps.size(), 1);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const auto& columns = streams_[g];
     const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
-      const auto column = std::find_if(columns.begin(), columns.end(),
-                                       [&](const Column& c) { return c.name == name; });
+      const auto column =
+          std::find_if(columns.begin(), columns.end(),
+                       [&](const WindowLayout::Column& c) { return c.name == name; });
       if (column == columns.end()) return {};
       const auto put = [&](std::string_view bytes) { return writer_.append(column->array, bytes); };
       const std::span given(values);

@@ -26,28 +26,42 @@ struct WindowedTake {
   std::vector<WindowPlace> places;
 };
 
-class WindowFile {
- public:
-  static Result<WindowFile> create(FileSystem& files, const std::string& path, Overwrite overwrite,
-                                   const WindowSource& source, const WindowOptions& options,
-                                   const WindowStreams& streams,
-                                   const std::vector<WindowedTake>& takes);
-  /// `rows`: a whole take's slab of the window's length. `take`: position in the file's list.
-  Result<void> append(std::size_t take, std::uint8_t part, const std::vector<std::size_t>& groups,
-                      const WindowPlace& place, const TakeSlab& rows);
-  Result<void> finish() { return writer_.finish(); }
-
- private:
+/// The arrays of a file of windows.
+struct WindowLayout {
   struct Column {
     std::string name;
     Stored stored;
     std::size_t array;
   };
-  WindowFile(NpzWriter writer, std::vector<std::vector<Column>> streams)
+  std::vector<NpzArray> arrays;
+  std::vector<std::pair<std::size_t, std::string>> contents;  // of arrays that are known before
+  std::vector<std::vector<Column>> streams;                   // arrays of rows
+};
+WindowLayout window_layout(const WindowSource& source, const WindowOptions& options,
+                           const WindowStreams& streams, const std::vector<WindowedTake>& takes);
+
+/// Where a window comes from.
+struct WindowOrigin {
+  std::size_t take = 0;  // position in the file's list
+  std::uint8_t part = 0;
+  WindowPlace place;
+};
+
+class WindowFile {
+ public:
+  static Result<WindowFile> create(FileSystem& files, const NewFile& target, WindowLayout layout);
+  /// `rows`: of all the take's groups, as long as a window; `groups`: which of them are the
+  /// streams.
+  Result<void> append(const WindowOrigin& origin, const std::vector<std::size_t>& groups,
+                      const TakeSlab& rows);
+  Result<void> finish() { return writer_.finish(); }
+
+ private:
+  WindowFile(NpzWriter writer, std::vector<std::vector<WindowLayout::Column>> streams)
       : writer_(std::move(writer)), streams_(std::move(streams)) {}
 
   NpzWriter writer_;
-  std::vector<std::vector<Column>> streams_;
+  std::vector<std::vector<WindowLayout::Column>> streams_;
   NumberStore numbers_;
 };
 

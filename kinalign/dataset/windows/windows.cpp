@@ -59,10 +59,9 @@ Result<void> check_rates(const WindowSource& source, const WindowOptions& option
 /// The job of both passes.
 class Job {
  public:
-  Job(FileSystem& files, const std::string& folder, const WindowSource& source,
-      const WindowOptions& options, const Progress& progress)
+  Job(FileSystem& files, const WindowSource& source, const WindowOptions& options,
+      const Progress& progress)
       : files_(files),
-        folder_(folder),
         source_(source),
         options_(options),
         progress_(progress),
@@ -72,13 +71,13 @@ class Job {
   }
 
   Result<void> find(const std::vector<std::string>& names);
-  Result<void> write(const std::string& path, Overwrite overwrite);
+  Result<void> write(const NewFile& target);
   WindowsMade made;
 
  private:
   Result<TakeReader> open(std::size_t take) const {
-    return TakeReader::open(files_,
-                            folder_ + "/" + path_of(source_.takes[take].name, TakeFile::take));
+    return TakeReader::open(
+        files_, source_.folder + "/" + path_of(source_.takes[take].name, TakeFile::take));
   }
   Result<void> set_streams(const std::vector<std::string>& names, const TakeHeader& header);
   Result<WindowedTake> windowed(std::size_t take, TakeReader& reader);
@@ -87,7 +86,6 @@ class Job {
   Result<void> done_with(std::size_t take);
 
   FileSystem& files_;
-  const std::string& folder_;
   const WindowSource& source_;
   const WindowOptions& options_;
   const Progress& progress_;
@@ -164,19 +162,19 @@ Result<void> Job::find(const std::vector<std::string>& names) {
     KA_TRY(done_with(take));
   }
   if (!takes_.empty()) return {};
-  return Failure(Error{folder_, 0, "a window in one of the takes at least",
+  return Failure(Error{source_.folder, 0, "a window in one of the takes at least",
                        made.takes_left_out.empty() ? "none" : made.takes_left_out.front().why});
 }
 
-Result<void> Job::write(const std::string& path, Overwrite overwrite) {
-  WindowFile file =
-      KA_TRY(WindowFile::create(files_, path, overwrite, source_, options_, streams_, takes_));
+Result<void> Job::write(const NewFile& target) {
+  WindowFile file = KA_TRY(
+      WindowFile::create(files_, target, window_layout(source_, options_, streams_, takes_)));
   for (std::size_t i = 0; i < takes_.size(); ++i) {
     const WindowedTake& take = takes_[i];
     TakeReader reader = KA_TRY(open(take.index));
     for (const WindowPlace& place : take.places) {
       KA_TRY(read_window(reader, place, grid_, raw_, window_));
-      KA_TRY(file.append(i, source_.takes[take.index].part, take.groups, place, window_));
+      KA_TRY(file.append({i, source_.takes[take.index].part, place}, take.groups, window_));
     }
     KA_TRY(done_with(take.index));
   }
@@ -210,25 +208,23 @@ WindowsMade made_from(const std::string& text) {
 
 }  // namespace
 
-Result<WindowsMade> write_windows(FileSystem& files, const std::string& folder,
-                                  const WindowSource& source, const WindowOptions& options,
-                                  const std::string& path, Overwrite overwrite,
+Result<WindowsMade> write_windows(FileSystem& files, const WindowSource& source,
+                                  const WindowOptions& options, const NewFile& target,
                                   const Progress& progress) {
-  if (source.takes.empty()) return Failure(Error{folder, 0, "takes that are built", "none"});
+  if (source.takes.empty()) return Failure(Error{source.folder, 0, "takes that are built", "none"});
   const auto names = KA_TRY(chosen_streams(source, options));
   KA_TRY(check_rates(source, options));
   GuardLimits limits;
   limits.cpu_seconds += 60 * source.takes.size();
   limits.wall_seconds += 600.0 * static_cast<double>(source.takes.size());
-  const Error blame{folder, 0, "takes that HDF5 can read", ""};
-  const std::string text =
-      KA_TRY(run_guarded(limits, blame, progress, [&](const Progress& tell) -> Result<std::string> {
-        Job job(files, folder, source, options, tell);
-        KA_TRY(job.find(names));
-        KA_TRY(job.write(path, overwrite));
-        return text_of(job.made);
-      }));
-  return made_from(text);
+  const Error blame{source.folder, 0, "takes that HDF5 can read", ""};
+  const auto work = [&](const Progress& tell) -> Result<std::string> {
+    Job job(files, source, options, tell);
+    KA_TRY(job.find(names));
+    KA_TRY(job.write(target));
+    return text_of(job.made);
+  };
+  return made_from(KA_TRY(run_guarded(limits, blame, progress, work)));
 }
 
 }  // namespace kinalign

@@ -30,6 +30,7 @@ struct WindowTake {
 };
 
 struct WindowSource {
+  std::string folder;                   // of the data set
   std::string name, licence, citation;  // of the data set
   std::vector<std::string> parts;       // of the split; one, "all", without a split
   std::vector<WindowTake> takes;
@@ -47,12 +48,16 @@ struct WindowsMade {
   std::vector<LeftOut> takes_left_out;
 };
 
-/// Writes `path`, in a child process since HDF5 can crash on a hostile file. Takes are left out
+struct NewFile {
+  std::string path;
+  Overwrite overwrite = Overwrite::no;
+};
+
+/// Writes `target`, in a child process since HDF5 can crash on a hostile file. Takes are left out
 /// that lack a stream, or whose joints or nodes are others than the first take's. Fails where rates
 /// differ and `rate_hz` is 0, where no stream is in all takes, and where no window is left.
-Result<WindowsMade> write_windows(FileSystem& files, const std::string& folder,
-                                  const WindowSource& source, const WindowOptions& options,
-                                  const std::string& path, Overwrite overwrite,
+Result<WindowsMade> write_windows(FileSystem& files, const WindowSource& source,
+                                  const WindowOptions& options, const NewFile& target,
                                   const Progress& progress);
 
 }  // namespace kinalign
