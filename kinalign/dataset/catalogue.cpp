@@ -25,19 +25,13 @@ class CatalogueReader {
     Catalogue out;
     const Fields texts = describe(out);
     for (const TomlEntry& entry : in_file_order(top)) {
+      const auto table = tables().find(entry.key);
       if (entry.key == "align") {
         KA_TRY(read_align(entry, out.align));
-      } else if (entry.key == "subject") {
-        KA_TRY(read_each(entry, [&](const TomlEntry& one) { return read_subject(one, out); }));
-      } else if (entry.key == "class") {
-        KA_TRY(read_each(entry, [&](const TomlEntry& one) { return read_class(one, out); }));
-      } else if (entry.key == "action") {
-        KA_TRY(read_each(entry, [&](const TomlEntry& one) { return read_action(one, out); }));
-      } else if (entry.key == "device") {
-        KA_TRY(
-            read_each(entry, [&](const TomlEntry& one) { return read_texts(one, out.devices); }));
-      } else if (entry.key == "rig") {
-        KA_TRY(read_each(entry, [&](const TomlEntry& one) { return read_texts(one, out.rigs); }));
+      } else if (table != tables().end()) {
+        for (const TomlEntry& one : in_file_order(KA_TRY(file_.table(entry)))) {
+          KA_TRY((this->*table->second)(one, out));
+        }
       } else if (find_field(texts, entry.key) != nullptr) {
         KA_TRY(file_.option(entry, texts, "", {}));
       } else {
@@ -51,10 +45,23 @@ class CatalogueReader {
   }
 
  private:
-  template <class Read>
-  Result<void> read_each(const TomlEntry& tables, const Read& read) const {
-    for (const TomlEntry& one : in_file_order(KA_TRY(file_.table(tables)))) KA_TRY(read(one));
-    return {};
+  /// Reads one of the tables [subject.ID], [class.ID], ...
+  using ReadOne = Result<void> (CatalogueReader::*)(const TomlEntry& one, Catalogue& out) const;
+  static const std::map<std::string, ReadOne, std::less<>>& tables() {
+    static const std::map<std::string, ReadOne, std::less<>> all{
+        {"subject", &CatalogueReader::read_subject},
+        {"class", &CatalogueReader::read_class},
+        {"action", &CatalogueReader::read_action},
+        {"device", &CatalogueReader::read_device},
+        {"rig", &CatalogueReader::read_rig}};
+    return all;
+  }
+
+  Result<void> read_device(const TomlEntry& device, Catalogue& out) const {
+    return read_texts(device, out.devices);
+  }
+  Result<void> read_rig(const TomlEntry& rig, Catalogue& out) const {
+    return read_texts(rig, out.rigs);
   }
 
   Result<void> check_id(const TomlEntry& entry) const {

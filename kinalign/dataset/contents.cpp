@@ -97,20 +97,22 @@ void ContentCheck::add_rows(const PointRows& rows, std::size_t, Group& group) co
   }
 }
 
+void ContentCheck::add_vector(const std::vector<double>& all, std::size_t cell, double most,
+                              Group& group) {
+  if (all.empty()) return;
+  const double* v = &all[3 * cell];
+  if (!finite({v, 3})) {
+    ++group.not_finite;
+  } else {
+    group.fast += length_of(v) > most ? 1 : 0;
+  }
+}
+
 void ContentCheck::add_rows(const ImuRows& rows, std::size_t, Group& group) const {
   for (std::size_t cell = 0; cell < rows.valid.size(); ++cell) {
     if (rows.valid[cell] == 0) continue;
-    const auto check = [&](const std::vector<double>& all, double most) {
-      if (all.empty()) return;
-      const double* v = &all[3 * cell];
-      if (!finite({v, 3})) {
-        ++group.not_finite;
-      } else {
-        group.fast += length_of(v) > most ? 1 : 0;
-      }
-    };
-    check(rows.acceleration, fastest_m_s2);
-    check(rows.angular_velocity, fastest_rad_s);
+    add_vector(rows.acceleration, cell, fastest_m_s2, group);
+    add_vector(rows.angular_velocity, cell, fastest_rad_s, group);
     if (rows.orientation.empty()) continue;
     const double* turn = &rows.orientation[4 * cell];
     group.not_finite += finite({turn, 4}) ? 0 : 1;

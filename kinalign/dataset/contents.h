@@ -32,6 +32,9 @@ class ContentCheck {
     std::vector<double> least, most;                                // [J] m, of each bone
     std::uint64_t not_finite = 0, not_unit = 0, far = 0, fast = 0;  // cells
   };
+  /// One of an array that may be absent, of a valid cell.
+  static void add_vector(const std::vector<double>& all, std::size_t cell, double most,
+                         Group& group);
   void add_stamps(const std::vector<Time>& stamps);
   void add_rows(const ClipRows& rows, std::size_t count, Group& group) const;
   void add_rows(const PointRows& rows, std::size_t count, Group& group) const;

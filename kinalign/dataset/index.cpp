@@ -165,6 +165,17 @@ struct TakeInserts {
   sqlite::Statement next_id, take, detail, stream;
 };
 
+/// Statements that take one out.
+struct TakeDrops {
+  sqlite::Statement take, detail, streams;
+
+  Result<void> run(std::int64_t id) {
+    KA_TRY(take.run({id}));
+    KA_TRY(detail.run({id}));
+    return streams.run({id});
+  }
+};
+
 /// A summary's file as the index remembers it.
 struct Known {
   std::int64_t id = 0, changed_ns = 0, size = 0;
@@ -202,12 +213,15 @@ struct DatasetIndex::State {
   Result<bool> has_tables() const;
   Result<void> refresh();
   std::string catalogue_version() const;
+  Result<void> make_tables_of(const std::string& path);
   Result<bool> has_catalogue() const;
   Result<void> refresh_catalogue();
   Result<FolderChanges> folder_changes() const;
   Result<void> refresh_folder(const std::string& name);
   Result<void> forget_folder(const std::string& name);
   Result<TakeInserts> inserts() const;
+  Result<TakeDrops> drops() const;
+  Result<void> refresh_take(const Found& found, TakeInserts& add);
   Result<void> put(const Found& found, const TakeSummary& take, TakeInserts& inserts);
   Result<std::map<std::string, Known>> known_in(const std::string& name) const;
 };
@@ -228,7 +242,10 @@ Result<void> DatasetIndex::State::make(bool in_memory) {
     KA_TRY(database.run(
         "pragma journal_mode=wal; pragma synchronous=normal; pragma mmap_size=1073741824;"));
   }
-  if (KA_TRY(has_tables())) return {};
+  return KA_TRY(has_tables()) ? Result<void>{} : make_tables_of(path);
+}
+
+Result<void> DatasetIndex::State::make_tables_of(const std::string& path) {
   KA_TRY(database.run("begin immediate"));
   if (!KA_TRY(has_tables())) {  // another process may have made them meanwhile
     auto old = KA_TRY(database.prepare("select count(*) from sqlite_master"));
@@ -291,19 +308,27 @@ Result<void> DatasetIndex::State::forget_folder(const std::string& name) {
   return {};
 }
 
+Result<TakeDrops> DatasetIndex::State::drops() const {
+  return TakeDrops{KA_TRY(database.prepare("delete from take where id = ?")),
+                   KA_TRY(database.prepare("delete from detail where id = ?")),
+                   KA_TRY(database.prepare("delete from stream where take = ?"))};
+}
+
+/// Puts in a take that the index does not have; a summary that can't be read is a finding.
+Result<void> DatasetIndex::State::refresh_take(const Found& found, TakeInserts& add) {
+  const auto take = read_summary(*files, folder, found.name);
+  if (take) return put(found, *take, add);
+  findings.push_back({Severity::error, take.error(), "the take is in no list",
+                      "kinalign dataset build makes it again"});
+  return {};
+}
+
 Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
   const std::int64_t began = now_ns();
   const std::int64_t changed = changed_ns(folder + "/" + name);
   std::map<std::string, Known> known = KA_TRY(known_in(name));
   TakeInserts add = KA_TRY(inserts());
-  auto drop = KA_TRY(database.prepare("delete from take where id = ?"));
-  auto drop_detail = KA_TRY(database.prepare("delete from detail where id = ?"));
-  auto drop_streams = KA_TRY(database.prepare("delete from stream where take = ?"));
-  const auto forget = [&](const Known& one) -> Result<void> {
-    KA_TRY(drop.run({one.id}));
-    KA_TRY(drop_detail.run({one.id}));
-    return drop_streams.run({one.id});
-  };
+  TakeDrops drop = KA_TRY(drops());
   std::error_code fault;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder + "/" + name, fault)) {
     const std::string path = name + "/" + entry.path().filename().string();
@@ -311,25 +336,15 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
     if (!parsed || parsed->second != TakeFile::summary) continue;
     const auto version = version_of(entry.path().string());
     if (!version) continue;
-    const auto old = known.find(to_string(parsed->first));
-    if (old != known.end() && old->second.changed_ns == version->changed_ns &&
-        old->second.size == whole(version->size)) {
-      known.erase(old);
-      continue;
-    }
-    if (old != known.end()) {
-      KA_TRY(forget(old->second));
-      known.erase(old);
-    }
-    const auto take = read_summary(*files, folder, parsed->first);
-    if (take) {
-      KA_TRY(put({parsed->first, version->changed_ns, whole(version->size)}, *take, add));
-    } else {
-      findings.push_back({Severity::error, take.error(), "the take is in no list",
-                          "kinalign dataset build makes it again"});
-    }
+    const Found found{parsed->first, version->changed_ns, whole(version->size)};
+    const auto old = known.find(to_string(found.name));
+    const bool same = old != known.end() && old->second.changed_ns == found.changed_ns &&
+                      old->second.size == found.size;
+    if (old != known.end() && !same) KA_TRY(drop.run(old->second.id));
+    if (old != known.end()) known.erase(old);
+    if (!same) KA_TRY(refresh_take(found, add));
   }
-  for (const auto& [gone, one] : known) KA_TRY(forget(one));
+  for (const auto& [gone, one] : known) KA_TRY(drop.run(one.id));
   const bool settled = findings.empty() && changed < began - racy_ns;
   return KA_TRY(database.prepare("insert or replace into folder values(?,?)"))
       .run({name, settled ? changed : std::int64_t{0}});
@@ -350,14 +365,24 @@ Result<bool> DatasetIndex::State::has_catalogue() const {
 Result<void> DatasetIndex::State::refresh_catalogue() {
   KA_TRY(database.run(
       "delete from catalogue; delete from subject; delete from class; delete from action;"));
-  auto subject = KA_TRY(database.prepare("insert into subject values(?,?,?,?,?)"));
-  for (const Subject& s : catalogue.subjects) {
-    KA_TRY(subject.run({s.id, s.sex, maybe(s.height_cm), maybe(s.weight_kg), s.handedness}));
-  }
-  auto one_class = KA_TRY(database.prepare("insert into class values(?,?)"));
-  for (const ActionClass& c : catalogue.classes) KA_TRY(one_class.run({c.id, c.name}));
-  auto action = KA_TRY(database.prepare("insert into action values(?,?,?)"));
-  for (const Action& a : catalogue.actions) KA_TRY(action.run({a.id, a.class_id, a.name}));
+  const auto put_all = [&](const char* sql, const auto& all, const auto& cells) -> Result<void> {
+    auto insert = KA_TRY(database.prepare(sql));
+    for (const auto& one : all) KA_TRY(insert.run(cells(one)));
+    return {};
+  };
+  using Cells = std::vector<Cell>;
+  KA_TRY(put_all("insert into subject values(?,?,?,?,?)", catalogue.subjects,
+                 [](const Subject& s) -> Cells {
+                   return {s.id, s.sex, maybe(s.height_cm), maybe(s.weight_kg), s.handedness};
+                 }));
+  KA_TRY(put_all("insert into class values(?,?)", catalogue.classes,
+                 [](const ActionClass& c) -> Cells {
+                   return {c.id, c.name};
+                 }));
+  KA_TRY(
+      put_all("insert into action values(?,?,?)", catalogue.actions, [](const Action& a) -> Cells {
+        return {a.id, a.class_id, a.name};
+      }));
   KA_TRY(database.run("update take set class = (select class from action where id = take.action)"));
   return KA_TRY(database.prepare("insert into catalogue values(?)")).run({catalogue_version()});
 }

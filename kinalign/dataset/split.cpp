@@ -123,6 +123,7 @@ std::vector<SplitPart> a_part_each(const std::vector<SplitTake>& takes) {
     part.takes.push_back(take.name);
   }
   std::vector<SplitPart> out;
+  out.reserve(parts.size());
   for (auto& [id, part] : parts) out.push_back(std::move(part));
   return out;
 }
@@ -155,7 +156,29 @@ using Places = std::map<std::string, std::set<std::string>>;
 
 struct Seen {
   Places names, contents, subjects;
+  std::vector<std::string> unknown;  // takes that the data set does not have
 };
+
+Seen seen_in(const Split& split, const TakesByName& known) {
+  Seen seen;
+  for (const SplitPart& part : split.parts) {
+    for (const TakeName& name : part.takes) {
+      const auto found = known.find(name);
+      if (found == known.end()) {
+        seen.unknown.push_back(to_string(name));
+        continue;
+      }
+      seen.names[to_string(name)].insert(part.name);
+      seen.subjects[name.subject].insert(part.name);
+      const TakeSummary& summary = found->second->summary;
+      seen.contents[summary.sha256].insert(part.name);
+      for (const InputFacts& input : summary.inputs) {
+        seen.contents[input.sha256].insert(part.name);
+      }
+    }
+  }
+  return seen;
+}
 
 std::string listed(const std::set<std::string>& parts) {
   return fmt::format("{}", fmt::join(parts, " and "));
@@ -198,24 +221,8 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
   const auto tell = [&](Severity severity, std::string expected, std::string found) {
     out.push_back({severity, Error{file, 0, std::move(expected), std::move(found)}, "", ""});
   };
-  const TakesByName known = by_name(takes);
-  Seen seen;
-  for (const SplitPart& part : split.parts) {
-    for (const TakeName& name : part.takes) {
-      const auto found = known.find(name);
-      if (found == known.end()) {
-        tell(Severity::error, "takes of the data set", to_string(name));
-        continue;
-      }
-      seen.names[to_string(name)].insert(part.name);
-      seen.subjects[name.subject].insert(part.name);
-      const TakeSummary& summary = found->second->summary;
-      seen.contents[summary.sha256].insert(part.name);
-      for (const InputFacts& input : summary.inputs) {
-        seen.contents[input.sha256].insert(part.name);
-      }
-    }
-  }
+  const Seen seen = seen_in(split, by_name(takes));
+  for (const std::string& name : seen.unknown) tell(Severity::error, "takes of the data set", name);
   for (const auto& [name, parts] : seen.names) {
     if (parts.size() > 1)
       tell(Severity::error, "each take in one part", name + " in " + listed(parts));
