@@ -217,6 +217,7 @@ Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
                    [](const Candidate& a, const Candidate& b) { return a.bytes > b.bytes; });
   std::vector<std::uint64_t> loads(options.share.size, 0);
   BuildPlan plan;
+  plan.at_once = options.jobs;
   std::uint64_t seen = 0;
   for (const Candidate& one : takes) {
     const auto least = std::min_element(loads.begin(), loads.end());
@@ -234,23 +235,23 @@ Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
 }
 
 Result<void> build(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
-                   const std::vector<BuildJob>& jobs, const BuildOptions& options,
-                   const Progress& progress, const std::function<void(const Built&)>& done) {
+                   const BuildPlan& plan, const BuildWatch& watch) {
+  const std::vector<BuildJob>& jobs = plan.jobs;
   Builder builder(files, folder, catalogue);
-  BuildProgress all(progress, jobs);
+  BuildProgress all(watch.progress, jobs);
   for (std::size_t i = 0; i < jobs.size() && !all.stopped(); ++i) {
     if (jobs[i].reason != BuildReason::no_summary) continue;
-    done({jobs[i].name, builder.summarise(jobs[i])});
+    watch.done({jobs[i].name, builder.summarise(jobs[i])});
     all.reach(i, jobs[i].input_bytes);
   }
   std::mutex telling;
-  parallel_for(jobs.size(), options.jobs, [&](std::size_t i) {
+  parallel_for(jobs.size(), plan.at_once, [&](std::size_t i) {
     if (all.stopped() || jobs[i].reason == BuildReason::no_summary) return;
     Built built{jobs[i].name, builder.make(jobs[i], all.part(i, jobs[i].input_bytes))};
     all.reach(i, jobs[i].input_bytes);
     if (!built.summary && is_interruption(built.summary.error())) return;
     const std::lock_guard lock(telling);
-    done(built);
+    watch.done(built);
   });
   return all.stopped() ? Failure(interruption()) : Result<void>{};
 }

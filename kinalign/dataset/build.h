@@ -39,12 +39,19 @@ struct BuildJob {
 /// What a share has to do, longest first.
 struct BuildPlan {
   std::vector<BuildJob> jobs;
+  std::size_t at_once = 1;       // takes
   std::uint64_t up_to_date = 0;  // takes of the share
 };
 
 struct Built {
   TakeName name;
   Result<TakeSummary> summary;
+};
+
+/// Who is told how far a build is, and of each take that is done, from one thread at a time.
+struct BuildWatch {
+  Progress progress;
+  std::function<void(const Built&)> done;
 };
 
 /// Divides all takes among the shares, longest first, each to the share that has the least so far:
@@ -54,11 +61,10 @@ Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
                              const Catalogue& catalogue, const BuildOptions& options,
                              const Progress& progress);
 
-/// Makes takes and their summaries; each file appears as a whole. `done` is called after each, from
-/// one thread at a time; a take that fails stops no other. Fails where the user stops it.
+/// Makes takes and their summaries; each file appears as a whole. A take that fails stops no other.
+/// Fails where the user stops it.
 Result<void> build(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
-                   const std::vector<BuildJob>& jobs, const BuildOptions& options,
-                   const Progress& progress, const std::function<void(const Built&)>& done);
+                   const BuildPlan& plan, const BuildWatch& watch);
 
 /// The manifest of a take as it is aligned: with what dataset.toml says of [align], and with the
 /// subject and the action of the take's name.

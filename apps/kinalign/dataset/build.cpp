@@ -65,54 +65,62 @@ Result<int> show_plan(const BuildPlan& plan, Call& call) {
   return 0;
 }
 
+/// What was made, as lines and as JSON.
+struct Tally {
+  std::size_t made = 0, failed = 0, flawed = 0;
+  nlohmann::ordered_json takes = nlohmann::ordered_json::array();
+
+  void add(const Built& one, Console& console) {
+    const std::string name = to_string(one.name);
+    if (!one.summary) {
+      ++failed;
+      console.print(
+          harmless(fmt::format("failed  {}: {}\n", name, to_string(one.summary.error()))));
+      takes.push_back({{"name", name}, {"failed", to_string(one.summary.error())}});
+      return;
+    }
+    ++made;
+    flawed += one.summary->quality == Quality::good ? 0 : 1;
+    console.detail(
+        fmt::format("{}: {} frames, {}", name, one.summary->frames, one.summary->verdict()));
+    takes.push_back(
+        {{"name", name}, {"frames", one.summary->frames}, {"verdict", one.summary->verdict()}});
+  }
+};
+
 Result<int> run_build(Build& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
-  BuildOptions options;
-  options.jobs = call.jobs;
-  options.all = o.all;
-  options.share = KA_TRY(share_of(call.surroundings.variable, o.index_offset));
-  const Progress progress = call.console.progress();
-  const BuildPlan plan = KA_TRY(plan_build(files, folder, catalogue, options, progress));
+  const BuildOptions options{call.jobs,
+                             KA_TRY(share_of(call.surroundings.variable, o.index_offset)), o.all};
+  Tally tally;
+  const BuildWatch watch{call.console.progress(),
+                         [&](const Built& one) { tally.add(one, call.console); }};
+  const BuildPlan plan = KA_TRY(plan_build(files, folder, catalogue, options, watch.progress));
   if (call.common.dry_run) return show_plan(plan, call);
-  std::size_t made = 0, failed = 0, flawed = 0;
-  auto json = nlohmann::ordered_json::array();
-  KA_TRY(build(files, folder, catalogue, plan.jobs, options, progress, [&](const Built& one) {
-    const std::string name = to_string(one.name);
-    if (!one.summary) {
-      ++failed;
-      call.console.print(
-          harmless(fmt::format("failed  {}: {}\n", name, to_string(one.summary.error()))));
-      json.push_back({{"name", name}, {"failed", to_string(one.summary.error())}});
-      return;
-    }
-    ++made;
-    flawed += one.summary->verdict() == "good" ? 0 : 1;
-    call.console.detail(
-        fmt::format("{}: {} frames, {}", name, one.summary->frames, one.summary->verdict()));
-    json.push_back(
-        {{"name", name}, {"frames", one.summary->frames}, {"verdict", one.summary->verdict()}});
-  }));
+  KA_TRY(build(files, folder, catalogue, plan, watch));
   if (options.share.size == 1) KA_TRY(open_index(folder, call));
   const std::string share =
       options.share.size == 1
           ? ""
           : fmt::format(", share {} of {}", options.share.rank + 1, options.share.size);
-  call.console.print(harmless(
-      fmt::format("{}: {} made{}, {} up to date{}\n", folder, counted(made, "take"),
-                  failed > 0 ? fmt::format(", {} failed", failed) : "", plan.up_to_date, share)));
-  if (flawed > 0)
-    call.console.print(
-        fmt::format("  {} with findings; worst first: kinalign dataset list {} --verdict bad\n",
-                    counted(flawed, "take"), harmless(folder)));
+  call.console.print(harmless(fmt::format(
+      "{}: {} made{}, {} up to date{}\n", folder, counted(tally.made, "take"),
+      tally.failed > 0 ? fmt::format(", {} failed", tally.failed) : "", plan.up_to_date, share)));
+  if (tally.flawed > 0) {
+    call.console.print(fmt::format(
+        "  {} not good: kinalign dataset list {} --columns name,verdict,worst --sort verdict\n",
+        counted(tally.flawed, "take"), harmless(folder)));
+  }
   call.console.print(fmt::format("see    kinalign dataset tables {}\n", harmless(folder)));
   call.console.print_json(nlohmann::ordered_json{
-      {"made", made},
-      {"failed", failed},
+      {"made", tally.made},
+      {"failed", tally.failed},
       {"up_to_date", plan.up_to_date},
-      {"takes", json}}.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-  return failed > 0 ? 1 : 0;
+      {"takes", tally.takes}}.dump(1, ' ', false,
+                                   nlohmann::ordered_json::error_handler_t::replace));
+  return tally.failed > 0 ? 1 : 0;
 }
 
 }  // namespace
