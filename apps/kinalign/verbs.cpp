@@ -9,6 +9,7 @@ std::vector<Verb> all_verbs() {
           convert_verb(),        rebuild_verb(),
           record_verb(),         recover_verb(),
           dataset_init_verb(),   dataset_add_verb(),
+          dataset_import_verb(),
           dataset_build_verb(),  dataset_list_verb(),
           dataset_query_verb(),  dataset_tables_verb(),
           dataset_verify_verb(), dataset_split_verb(),
