@@ -3,6 +3,7 @@
 
 #include "kinalign/core/nearest_name.h"
 #include "kinalign/dataset/scan.h"
+#include "kinalign/dataset/take_inputs.h"
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/formats/take/guarded.h"
 #include "kinalign/formats/take/take_hdf5.h"
@@ -100,18 +101,6 @@ std::string as_named(const std::string& path, const std::string& folder, const s
 struct RawCopy {
   std::string from, to;
 };
-
-/// The files that the reader of a raw file opens itself: angles beside positions, channels beside
-/// samples. None where no reader is found: the build says that.
-std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions& options,
-                                          const StreamFile& file) {
-  auto opened = InputFile::open(files, file.path);
-  if (!opened) return {};
-  const auto head = opened->next();
-  if (!head) return {};
-  const auto format = find_format(files, options, file, *head);
-  return format ? format->further_files : std::vector<std::string>{};
-}
 
 /// Where the copies of a manifest's files lie, below sourcedata/ in a folder of the take.
 class CopyPlan {

@@ -2,6 +2,7 @@
 #include "kinalign/dataset/take_inputs.h"
 
 #include "kinalign/core/file_version.h"
+#include "kinalign/sources/formats.h"
 #include "kinalign/sources/input_facts.h"
 #include "kinalign/take/remembered_path.h"
 
@@ -9,20 +10,43 @@
 
 namespace kinalign {
 
-std::vector<TakeInput> inputs_of(Manifest manifest, const std::string& base,
+std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions& options,
+                                          const StreamFile& file) {
+  auto opened = InputFile::open(files, file.path);
+  if (!opened) return {};
+  const auto head = opened->next();
+  if (!head) return {};
+  const auto format = find_format(files, options, file, *head);
+  return format ? format->further_files : std::vector<std::string>{};
+}
+
+std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known) {
+  std::vector<std::string> paths;
+  for (const std::string* path : paths_in(manifest)) paths.push_back(*path);
+  const auto names = remembered_paths(paths);
   std::vector<TakeInput> out;
-  const auto has = [&out](const std::string& name) {
-    return std::any_of(out.begin(), out.end(),
-                       [&](const TakeInput& one) { return one.name == name; });
+  const auto add = [&out](const std::string& name, const std::string& path) {
+    const bool has =
+        std::any_of(out.begin(), out.end(), [&](const TakeInput& one) { return one.name == name; });
+    if (!has) out.push_back({name, path});
   };
-  for (const std::string* path : paths_in(manifest)) {
-    const std::string name = remembered_path(*path);
-    if (!has(name)) out.push_back({name, path_in(base, *path)});
+  for (const std::string& path : paths) add(names.at(path), path_in(base, path));
+  if (known.size() > out.size()) {
+    for (StreamOptions& stream : manifest.streams) {
+      if (stream.own_layout()) stream.layout = path_in(base, stream.layout);
+      for (const StreamFile& file : stream.files) {
+        const StreamFile placed{path_in(base, file.path), file.node};
+        for (const std::string& one : further_files_of(files, stream, placed)) {
+          if (one == stream.layout) continue;
+          add(remembered_beside(names.at(file.path), placed.path, one), one);
+        }
+      }
+    }
   }
   const std::string beside(out.empty() ? base : kinalign::folder(out.front().path));
   for (const InputFacts& input : known) {
-    if (!has(input.name)) out.push_back({input.name, beside + std::string(file_name(input.name))});
+    add(input.name, beside + std::string(file_name(input.name)));
   }
   return out;
 }
