@@ -104,16 +104,20 @@ void print_json(const Imported& made, Console& console) {
                          .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+void advise_to_say_it_again(Console& console) {
+  console.if_it_fails([](const Error&) -> std::vector<std::string> {
+    return {"some takes are in the data set; the same import goes on where it stopped"};
+  });
+}
+
 Result<int> run_import(Import& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   Console& console = call.console;
-  console.if_it_fails([](const Error&) -> std::vector<std::string> {
-    return {"the same import can be said again: what was added before it is not added twice"};
-  });
   const ImportRequest request{o.sources, o.from, o.subject, o.action, o.copy};
   const Imported made =
       KA_TRY(import_corpus(call.surroundings.files, folder, request, console.progress(),
                            [&](std::uint64_t done, std::uint64_t takes) {
+                             if (done == 1) advise_to_say_it_again(console);
                              if (done % 100 == 0 && done < takes)
                                console.print(fmt::format("{} of {}\n", done, takes));
                            }));

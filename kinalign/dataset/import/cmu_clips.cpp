@@ -117,8 +117,9 @@ Result<PackedClips> PackedClips::read(const ArchiveBytes& bytes) {
   const Npz npz = KA_TRY(Npz::read(bytes, largest_pack));
   PackedClips out;
   const auto people = KA_TRY(npz.texts("people", {0}));
+  if (people.empty()) return Failure(Error{bytes.name, 0, "people", "none"});
   out.skeletons_ = KA_TRY(read_skeletons(npz, bytes.name, people.size()));
-  const std::size_t joints = out.skeletons_.empty() ? 0 : out.skeletons_.front().joints();
+  const std::size_t joints = out.skeletons_.front().joints();
   const auto axes = KA_TRY(npz.numbers("axis", {people.size(), joints, 3}));
   for (std::size_t p = 0; p < people.size(); ++p) {
     auto& own = out.axes_.emplace_back();

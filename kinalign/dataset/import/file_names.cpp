@@ -78,7 +78,7 @@ std::size_t shared_folders(const std::vector<std::string>& names) {
 
 std::vector<FileSays> read_file_names(const std::vector<std::string>& names) {
   const std::size_t shared = shared_folders(names);
-  const bool has_people = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+  const bool has_people = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
     return folders_of(name).size() > shared;
   });
   std::vector<FileSays> out;
@@ -87,9 +87,9 @@ std::vector<FileSays> read_file_names(const std::vector<std::string>& names) {
     if (read_cmu(stem_of(name), says)) continue;
     read_action(stem_of(name), says);
     const auto folders = folders_of(name);
-    if (has_people && folders.size() > shared) {
+    if (has_people) {
       says.subject = folders[shared];
-    } else if (!has_people && shared > 0) {
+    } else if (shared > 0) {
       says.subject = folders[shared - 1];
     }
   }

@@ -20,8 +20,8 @@ struct FileSays {
 ///   01_02.bvh                CMU's: subject 01, run 2, no action
 ///   down_1Char00.bvh         Perception Neuron's: action down, run 1; Char00 is a character
 ///   walk_02.bvh              action walk, run 2
-///   anna/walk.bvh            in a folder per person: subject anna, the topmost folder of several,
-///                            or the one that all files share
+///   anna/walk.bvh            subject anna: all files lie in folders, of which the topmost that
+///                            differ are people's; or all lie in this one folder
 std::vector<FileSays> read_file_names(const std::vector<std::string>& names);
 
 }  // namespace kinalign

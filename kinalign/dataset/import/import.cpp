@@ -4,6 +4,7 @@
 #include "kinalign/dataset/import/catalogue_growth.h"
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/dataset/import/ids.h"
+#include "kinalign/dataset/import/new_folder.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -37,12 +38,6 @@ std::vector<std::pair<std::string, std::string>> named(const std::vector<Action>
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> named(const std::vector<Subject>& subjects) {
-  std::vector<std::pair<std::string, std::string>> out;
-  for (const Subject& one : subjects) out.emplace_back(one.id, one.id);
-  return out;
-}
-
 /// Words of the corpus made ids, and what dataset.toml needs for them.
 struct Named {
   Ids subjects, actions;
@@ -56,7 +51,8 @@ const Action* action_of(const Corpus& corpus, const std::string& word) {
 }
 
 Named name_takes(Corpus& corpus, const Catalogue& has) {
-  Named out{Ids(named(has.subjects)), Ids(named(has.actions)), {}};
+  // No name is kept of a person: the same word is the same person in each import.
+  Named out{Ids({}), Ids(named(has.actions)), {}};
   std::set<std::string> subjects, actions;
   for (CorpusTake& take : corpus.takes) {
     const std::string subject = out.subjects.of(take.subject), word = take.action;
@@ -89,13 +85,18 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                            const ImportRequest& request, const Progress& progress,
                            std::string& kind_name) {
   const std::string raw_folder = folder + "/sourcedata";
+  std::optional<UnfinishedFolder> unfinished;  // what was unpacked in vain
+  if (!fs::exists(raw_folder)) unfinished.emplace(raw_folder);
   const auto sources = KA_TRY(list_sources(files, request.sources, raw_folder, progress));
   const CorpusKind kind =
       KA_TRY(find_corpus(files, sources, request.from, request.sources.front()));
   kind_name = kind.name;
   Corpus corpus =
       KA_TRY(kind.list({files, sources, raw_folder, request.subject, request.action, progress}));
-  if (!corpus.takes.empty()) return corpus;
+  if (!corpus.takes.empty()) {
+    if (unfinished) unfinished->keep();
+    return corpus;
+  }
   const std::string why = corpus.left_out.empty()
                               ? "none"
                               : corpus.left_out.front().what + ": " + corpus.left_out.front().why;

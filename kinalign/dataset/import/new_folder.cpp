@@ -20,32 +20,21 @@ Result<void> make_all_folders(const fs::path& path) {
   return Failure(Error{path.string(), 0, "a folder that can be made", fault.message()});
 }
 
-/// Removes what it made unless it was kept: the folder, and those above it that were not there.
-class Unfinished {
- public:
-  explicit Unfinished(fs::path path) : path_(std::move(path)) {
-    for (fs::path up = path_.parent_path(); !up.empty() && !fs::exists(up); up = up.parent_path()) {
-      above_.push_back(up);
-    }
-  }
-  Unfinished(const Unfinished&) = delete;
-  Unfinished& operator=(const Unfinished&) = delete;
-  ~Unfinished() {
-    if (kept_) return;
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-    for (const fs::path& one : above_) fs::remove(one, ignored);  // where nothing else is in it
-  }
-
-  void keep() { kept_ = true; }
-
- private:
-  fs::path path_;
-  std::vector<fs::path> above_;  // the deepest first
-  bool kept_ = false;
-};
-
 }  // namespace
+
+UnfinishedFolder::UnfinishedFolder(std::string path) : path_(std::move(path)) {
+  for (fs::path up = fs::path(path_).parent_path(); !up.empty() && !fs::exists(up);
+       up = up.parent_path()) {
+    above_.push_back(up.string());
+  }
+}
+
+UnfinishedFolder::~UnfinishedFolder() {
+  if (kept_) return;
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  for (const std::string& one : above_) fs::remove(one, ignored);  // where nothing else is in it
+}
 
 Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
                                     const std::string& source,
@@ -59,7 +48,7 @@ Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent
   const fs::path beside = fs::path(parent) / ("." + own);
   std::error_code fault;
   fs::remove_all(beside, fault);  // of a run that was killed
-  Unfinished unfinished(beside);
+  UnfinishedFolder unfinished(beside.string());
   KA_TRY(make_all_folders(beside));
   KA_TRY(fill([&](const std::string& file) -> Result<OutputFile> {
     const fs::path path = beside / file;

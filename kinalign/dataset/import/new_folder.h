@@ -8,8 +8,26 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kinalign {
+
+/// A folder that is not there yet. Unless it is kept, it is removed at the end with all that is in
+/// it, and so are the folders above it that were not there.
+class UnfinishedFolder {
+ public:
+  explicit UnfinishedFolder(std::string path);
+  UnfinishedFolder(const UnfinishedFolder&) = delete;
+  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
+  ~UnfinishedFolder();
+
+  void keep() { kept_ = true; }
+
+ private:
+  std::string path_;
+  std::vector<std::string> above_;  // the deepest first
+  bool kept_ = false;
+};
 
 /// Puts a file into the folder, in folders of its own where `name` has them.
 using PutFile = std::function<Result<OutputFile>(const std::string& name)>;

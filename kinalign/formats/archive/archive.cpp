@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/formats/archive/archive.h"
 
+#include "kinalign/core/utf8.h"
 #include "kinalign/formats/archive/zip_names.h"
 
 #include <archive.h>
 #include <archive_entry.h>
 #include <fmt/format.h>
+#include <locale.h>
 
 #include <algorithm>
 #include <array>
@@ -51,6 +53,25 @@ la_int64_t seek_to(archive*, void* data, la_int64_t offset, int whence) {
   feed.at = static_cast<std::uint64_t>(from + offset);
   return static_cast<la_int64_t>(feed.at);
 }
+
+/// Names are UTF-8 while it lives: libarchive drops those that the locale's letters can't spell. Of
+/// this thread alone.
+class NamesInUtf8 {
+ public:
+  NamesInUtf8() : own_(newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)) {
+    if (own_ != nullptr) before_ = uselocale(own_);
+  }
+  NamesInUtf8(const NamesInUtf8&) = delete;
+  NamesInUtf8& operator=(const NamesInUtf8&) = delete;
+  ~NamesInUtf8() {
+    if (own_ == nullptr) return;
+    uselocale(before_);
+    freelocale(own_);
+  }
+
+ private:
+  locale_t own_, before_ = nullptr;
+};
 
 struct Free {
   void operator()(archive* one) const { archive_read_free(one); }
@@ -136,7 +157,7 @@ class ArchiveReader {
   static std::string name_of(archive_entry* entry) {
     const char* name = archive_entry_pathname_utf8(entry);
     if (name == nullptr) name = archive_entry_pathname(entry);
-    return name == nullptr ? "" : name;
+    return name == nullptr ? "" : as_utf8(name);
   }
 
   Result<void> check_kind(archive_entry* entry, const std::string& name) const {
@@ -220,6 +241,7 @@ bool looks_like_archive(std::string_view head, std::string_view path) {
 Result<void> read_archive(const ArchiveBytes& bytes, const ArchiveLimits& limits,
                           const UseArchiveFile& use) {
   KA_TRY(check_zip_names(bytes));
+  const NamesInUtf8 locale;
   return ArchiveReader(bytes, limits).read(use);
 }
 
