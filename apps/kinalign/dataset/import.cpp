@@ -17,34 +17,33 @@ namespace {
 
 struct Import {
   std::vector<std::string> folder, sources;
-  std::string from, subject, action;
+  std::string from = "auto", subject, action;
   bool copy = false;
 };
 
 Usage describe_import(Import& o) {
-  std::vector<std::string> kinds{""};
+  std::vector<std::string> kinds{"auto"};
   for (const std::string& name : corpus_kind_names()) kinds.push_back(name);
   Usage usage;
   usage.positionals = {folder_word(o.folder),
                        {"SOURCE", "folders, files or archives (.zip, .tar, .tar.gz) of a corpus",
                         &o.sources, 1, 1'000'000}};
-  usage.flags = {
-      {"from", "which corpus it is (default: by its files)", &o.from, 0.0, 0.0, kinds, "CORPUS"},
-      {"subject",
-       "who it is, where neither folders nor names say it",
-       &o.subject,
-       0.0,
-       0.0,
-       {},
-       "ID"},
-      {"action",
-       "which action it is, in place of the names of single files",
-       &o.action,
-       0.0,
-       0.0,
-       {},
-       "ID"},
-      {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
+  usage.flags = {{"from", "which corpus it is; auto: by its files", &o.from, 0.0, 0.0, kinds},
+                 {"subject",
+                  "who it is, where neither folders nor names say it",
+                  &o.subject,
+                  0.0,
+                  0.0,
+                  {},
+                  "ID"},
+                 {"action",
+                  "which action it is, in place of the names of single files",
+                  &o.action,
+                  0.0,
+                  0.0,
+                  {},
+                  "ID"},
+                 {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
   return usage;
 }
 
@@ -113,7 +112,8 @@ void advise_to_say_it_again(Console& console) {
 Result<int> run_import(Import& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   Console& console = call.console;
-  const ImportRequest request{o.sources, o.from, o.subject, o.action, o.copy};
+  const ImportRequest request{o.sources, o.from == "auto" ? "" : o.from, o.subject, o.action,
+                              o.copy};
   const Imported made =
       KA_TRY(import_corpus(call.surroundings.files, folder, request, console.progress(),
                            [&](std::uint64_t done, std::uint64_t takes) {

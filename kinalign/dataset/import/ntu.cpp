@@ -78,7 +78,8 @@ Result<Corpus> list_ntu(const ImportInput& input) {
     const auto clip = clip_of(file.name);
     if (!clip) continue;
     const std::string stem(stem_of(file.name)), action = fmt::format("A{:03}", clip->action);
-    const auto bodies = KA_TRY(ntu_bodies(input.files, file.path));
+    InputFile opened = KA_TRY(InputFile::open(input.files, file.path));
+    const auto bodies = KA_TRY(ntu_bodies([&opened] { return opened.next(); }, file.path));
     if (!go_on(input.progress, "reading", out.takes.size(), input.sources.size())) {
       return Failure(interruption(file.path));
     }

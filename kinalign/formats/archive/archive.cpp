@@ -206,8 +206,8 @@ bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x
 }  // namespace
 
 Result<std::string> safe_archive_name(std::string_view name) {
-  const auto refuse = [&](std::string expected) {
-    return Failure(Error{"", 0, std::move(expected), shown(name)});
+  const auto refuse = [whole = name](std::string expected) {
+    return Failure(Error{"", 0, std::move(expected), shown(whole)});
   };
   if (name.empty()) return refuse("names");
   if (name.size() > longest_name)

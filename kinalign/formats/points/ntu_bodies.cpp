@@ -73,20 +73,19 @@ class BodyCount {
 
 }  // namespace
 
-Result<std::vector<NtuBody>> ntu_bodies(FileSystem& files, const std::string& path) {
-  InputFile file = KA_TRY(InputFile::open(files, path));
+Result<std::vector<NtuBody>> ntu_bodies(const TextPieces& text, const std::string& name) {
   LineSplitter lines;
   BodyCount count;
   const auto use = [&](std::string_view line) { return count.read(line); };
   const auto placed = [&](Result<void> done) -> Result<void> {
     if (done) return {};
     Error error = done.error();
-    error.file = path;
+    error.file = name;
     if (error.line == 0) error.line = lines.number();
     return Failure(std::move(error));
   };
   for (;;) {
-    const std::string_view piece = KA_TRY(file.next());
+    const std::string_view piece = KA_TRY(text());
     if (piece.empty()) break;
     KA_TRY(placed(lines.feed(piece, use)));
   }
