@@ -102,7 +102,7 @@ struct RawCopy {
   std::string from, to;
 };
 
-/// Where the copies of a manifest's files lie, below sourcedata/ in a folder of the take.
+/// The places of copies of a manifest's files: below sourcedata/, in a folder of the take.
 class CopyPlan {
  public:
   CopyPlan(FileSystem& files, const std::string& folder, std::string to)

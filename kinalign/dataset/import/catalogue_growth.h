@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// What a data set shall have; what it has already is passed over.
+/// Entries that a data set has to have; those that are there already are passed over.
 struct CatalogueNeeds {
   std::vector<std::string> subjects;
   std::vector<ActionClass> classes;  // those of `actions`

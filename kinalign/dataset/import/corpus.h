@@ -15,7 +15,7 @@
 
 namespace kinalign {
 
-/// Subject and action are words of the corpus, which may be no ids: ids.h.
+/// Subject and action are words of the corpus; ids.h makes ids of them.
 struct CorpusTake {
   std::string subject, action;
   std::uint32_t run = 0;  // 0: the corpus numbers no repetitions
@@ -33,7 +33,7 @@ inline StreamOptions stream_of(const std::string& name, const std::string& path,
   return out;
 }
 
-/// What does not become a take. Those of one reason are told together.
+/// A part of the corpus that becomes no take. Parts with one reason are told together.
 struct LeftOut {
   std::string what, why;  // "m03_s03_e01", "without Vicon"
 };
@@ -47,7 +47,7 @@ struct Corpus {
   std::vector<LeftOut> left_out{};
 };
 
-/// What an importer works with.
+/// All that an importer works with.
 struct ImportInput {
   FileSystem& files;
   const std::vector<SourceFile>& sources;  // sorted by name

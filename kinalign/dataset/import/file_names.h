@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who does what in a file of motion, by where it lies and what it is called, for collections that
-// state it nowhere else.
+// Subject, action and run of a file of motion by its folder and its name, for collections that
+// state them nowhere else.
 #pragma once
 
 #include <cstdint>

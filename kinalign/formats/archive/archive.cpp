@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t longest_name = 1000, longest_part = 255;
 constexpr std::uint64_t not_judged = std::uint64_t{64} << 20;
 
-/// What libarchive's callbacks read from; a failure is kept, since they can hand on only -1.
+/// The source of libarchive's callbacks. A failure is kept, since callbacks can hand on only -1.
 struct Feed {
   const ArchiveBytes& bytes;
   std::uint64_t at = 0;
