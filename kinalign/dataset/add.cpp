@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 template <class One>
 std::vector<std::string> ids_of(const std::vector<One>& all) {
   std::vector<std::string> ids;
+  ids.reserve(all.size());
   for (const One& one : all) ids.push_back(one.id);
   return ids;
 }
@@ -92,7 +93,7 @@ bool is_below(const std::string& path, const std::string& folder) {
 
 /// A file's path in a manifest: relative to `base` where the file lies below the data set.
 std::string as_named(const std::string& path, const std::string& folder, const std::string& base) {
-  const std::string whole = one_spelling(path);
+  std::string whole = one_spelling(path);
   if (!is_below(path, folder)) return whole;
   return fs::path(whole).lexically_relative(one_spelling(base)).string();
 }

@@ -7,6 +7,7 @@
 #include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
+#include <map>
 
 namespace kinalign {
 
@@ -20,33 +21,45 @@ std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions
   return format ? format->further_files : std::vector<std::string>{};
 }
 
+namespace {
+
+void add_input(const TakeInput& input, std::vector<TakeInput>& out) {
+  const bool has = std::any_of(out.begin(), out.end(),
+                               [&](const TakeInput& one) { return one.name == input.name; });
+  if (!has) out.push_back(input);
+}
+
+using Names = std::map<std::string, std::string>;  // by path, as the manifest says it
+
+void add_further(FileSystem& files, StreamOptions stream, const std::string& base,
+                 const Names& names, std::vector<TakeInput>& out) {
+  if (stream.own_layout()) stream.layout = path_in(base, stream.layout);
+  for (const StreamFile& file : stream.files) {
+    const StreamFile placed{path_in(base, file.path), file.node};
+    for (const std::string& one : further_files_of(files, stream, placed)) {
+      if (one == stream.layout) continue;
+      add_input({remembered_beside(names.at(file.path), placed.path, one), one}, out);
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known) {
   std::vector<std::string> paths;
   for (const std::string* path : paths_in(manifest)) paths.push_back(*path);
-  const auto names = remembered_paths(paths);
+  const Names names = remembered_paths(paths);
   std::vector<TakeInput> out;
-  const auto add = [&out](const std::string& name, const std::string& path) {
-    const bool has =
-        std::any_of(out.begin(), out.end(), [&](const TakeInput& one) { return one.name == name; });
-    if (!has) out.push_back({name, path});
-  };
-  for (const std::string& path : paths) add(names.at(path), path_in(base, path));
+  for (const std::string& path : paths) add_input({names.at(path), path_in(base, path)}, out);
   if (known.size() > out.size()) {
-    for (StreamOptions& stream : manifest.streams) {
-      if (stream.own_layout()) stream.layout = path_in(base, stream.layout);
-      for (const StreamFile& file : stream.files) {
-        const StreamFile placed{path_in(base, file.path), file.node};
-        for (const std::string& one : further_files_of(files, stream, placed)) {
-          if (one == stream.layout) continue;
-          add(remembered_beside(names.at(file.path), placed.path, one), one);
-        }
-      }
+    for (const StreamOptions& stream : manifest.streams) {
+      add_further(files, stream, base, names, out);
     }
   }
   const std::string beside(out.empty() ? base : kinalign::folder(out.front().path));
   for (const InputFacts& input : known) {
-    add(input.name, beside + std::string(file_name(input.name)));
+    add_input({input.name, beside + std::string(file_name(input.name))}, out);
   }
   return out;
 }

@@ -111,6 +111,24 @@ Result<std::vector<PackedClip>> read_clips(const Npz& npz, const std::string& na
   return out;
 }
 
+Result<std::vector<std::vector<Quat>>> read_axes(const Npz& npz, std::size_t people,
+                                                 std::size_t joints) {
+  const auto axes = KA_TRY(npz.numbers("axis", {people, joints, 3}));
+  std::vector<std::vector<Quat>> out(people);
+  for (std::size_t p = 0; p < people; ++p) {
+    for (const Vec3& angles : vectors(axes, p * joints, joints)) {
+      out[p].push_back(turned(angles.x(), angles.y(), angles.z()));
+    }
+  }
+  return out;
+}
+
+Result<double> read_rate(const Npz& npz, const std::string& name) {
+  const double rate_hz = KA_TRY(npz.numbers("rate", {})).front();
+  if (rate_hz >= 1.0 && rate_hz <= 1e4) return rate_hz;
+  return Failure(Error{name, 0, "a rate of 1 to 10,000 Hz", std::to_string(rate_hz)});
+}
+
 }  // namespace
 
 Result<PackedClips> PackedClips::read(const ArchiveBytes& bytes) {
@@ -120,13 +138,7 @@ Result<PackedClips> PackedClips::read(const ArchiveBytes& bytes) {
   if (people.empty()) return Failure(Error{bytes.name, 0, "people", "none"});
   out.skeletons_ = KA_TRY(read_skeletons(npz, bytes.name, people.size()));
   const std::size_t joints = out.skeletons_.front().joints();
-  const auto axes = KA_TRY(npz.numbers("axis", {people.size(), joints, 3}));
-  for (std::size_t p = 0; p < people.size(); ++p) {
-    auto& own = out.axes_.emplace_back();
-    for (const Vec3& angles : vectors(axes, p * joints, joints)) {
-      own.push_back(turned(angles.x(), angles.y(), angles.z()));
-    }
-  }
+  out.axes_ = KA_TRY(read_axes(npz, people.size(), joints));
   const std::size_t channels = 3 + 3 * joints;
   {
     const auto planes = KA_TRY(npz.integers("planes", {2, channels, 0}));
@@ -134,13 +146,7 @@ Result<PackedClips> PackedClips::read(const ArchiveBytes& bytes) {
     out.values_ = unpacked(planes, channels, out.frames_);
   }
   out.clips_ = KA_TRY(read_clips(npz, bytes.name, people, out.frames_));
-  if (npz.has("rate")) {
-    const double rate_hz = KA_TRY(npz.numbers("rate", {})).front();
-    if (!(rate_hz >= 1.0 && rate_hz <= 1e4)) {
-      return Failure(Error{bytes.name, 0, "a rate of 1 to 10,000 Hz", std::to_string(rate_hz)});
-    }
-    out.frame_seconds_ = 1.0 / rate_hz;
-  }
+  if (npz.has("rate")) out.frame_seconds_ = 1.0 / KA_TRY(read_rate(npz, bytes.name));
   return out;
 }
 

@@ -34,6 +34,7 @@ Result<std::optional<std::string>> read_catalogue_text(FileSystem& files,
 
 std::vector<std::pair<std::string, std::string>> named(const std::vector<Action>& actions) {
   std::vector<std::pair<std::string, std::string>> out;
+  out.reserve(actions.size());
   for (const Action& one : actions) out.emplace_back(one.id, one.name);
   return out;
 }
@@ -104,33 +105,47 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                        "takes of " + kind_name + " (" + std::string(kind.known_by) + ")", why});
 }
 
+/// The data set's catalogue with all that the takes need, written where it grew.
+Result<Catalogue> grow_catalogue(FileSystem& files, const std::string& folder,
+                                 const std::optional<std::string>& text, const Corpus& corpus,
+                                 const CatalogueNeeds& needs) {
+  const std::string path = catalogue_path(folder);
+  const std::string before =
+      text ? *text : catalogue_head(corpus.name, corpus.licence, corpus.citation);
+  const std::string grown = KA_TRY(grown_catalogue(before, path, needs));
+  if (!text || grown != *text) KA_TRY(write_catalogue(files, folder, grown));
+  return read_catalogue(grown, path);
+}
+
+/// Adds the takes; returns how many were there before.
+Result<std::uint64_t> add_takes(const Corpus& corpus, const ImportRequest& request,
+                                TakeAdder& adder, const Progress& progress,
+                                const ImportStep& step) {
+  std::uint64_t done = 0, were_there = 0;
+  for (const CorpusTake& take : corpus.takes) {
+    const AddRequest add{take.from, take.subject, take.action, request.copy, take.run};
+    if (KA_TRY(adder.add(take.manifest, "", add)).was_there) ++were_there;
+    step(++done, corpus.takes.size());
+    if (!go_on(progress, "adding", done, corpus.takes.size())) return Failure(interruption());
+  }
+  return were_there;
+}
+
 }  // namespace
 
 Result<Imported> import_corpus(FileSystem& files, const std::string& folder,
                                const ImportRequest& request, const Progress& progress,
                                const ImportStep& step) {
   const auto text = KA_TRY(read_catalogue_text(files, folder));
-  const std::string path = catalogue_path(folder);
-  Catalogue catalogue = text ? KA_TRY(read_catalogue(*text, path)) : Catalogue{};
+  Catalogue catalogue = text ? KA_TRY(read_catalogue(*text, catalogue_path(folder))) : Catalogue{};
   Imported out;
   out.is_new = !text;
   Corpus corpus = KA_TRY(list_corpus(files, folder, request, progress, out.kind));
   const Named names = name_takes(corpus, catalogue);
-  const std::string grown = KA_TRY(
-      grown_catalogue(text ? *text : catalogue_head(corpus.name, corpus.licence, corpus.citation),
-                      path, names.needs));
-  if (!text || grown != *text) KA_TRY(write_catalogue(files, folder, grown));
-  catalogue = KA_TRY(read_catalogue(grown, path));
+  catalogue = KA_TRY(grow_catalogue(files, folder, text, corpus, names.needs));
   TakeAdder adder(files, folder, catalogue);
-  for (const CorpusTake& take : corpus.takes) {
-    const AddRequest add{take.from, take.subject, take.action, request.copy, take.run};
-    if (KA_TRY(adder.add(take.manifest, "", add)).was_there) ++out.were_there;
-    ++out.takes;
-    step(out.takes, corpus.takes.size());
-    if (!go_on(progress, "adding", out.takes, corpus.takes.size())) {
-      return Failure(interruption());
-    }
-  }
+  out.were_there = KA_TRY(add_takes(corpus, request, adder, progress, step));
+  out.takes = corpus.takes.size();
   out.subjects = names.needs.subjects.size();
   out.actions = names.needs.actions.size();
   out.left_out = std::move(corpus.left_out);

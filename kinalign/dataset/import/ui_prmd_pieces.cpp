@@ -83,37 +83,48 @@ Result<void> write_text(const PutFile& put, const std::string& name, const Packe
   return out.commit();
 }
 
+struct Tables {
+  PackedTable offsets, angles, markers;
+};
+
+Result<void> check_piece(const Piece& p, const Tables& tables, const std::string& file) {
+  const bool fits = p.movement >= 0 && p.movement < 100 && p.repetition >= 0 &&
+                    p.repetition < 100 && lies_in(p.kinect_begin, p.kinect_rows, tables.offsets) &&
+                    lies_in(p.kinect_begin, p.kinect_rows, tables.angles) &&
+                    lies_in(p.vicon_begin, p.vicon_rows, tables.markers);
+  if (fits) return {};
+  return Failure(Error{file, 0, "pieces within the arrays",
+                       fmt::format("piece {} of movement {}", p.repetition, p.movement)});
+}
+
+Result<void> write_piece(const Piece& p, const Tables& tables, const std::string& person,
+                         const PutFile& put) {
+  const std::string name = fmt::format("m{:02}_{}_e{:02}", p.movement, person, p.repetition);
+  if (p.kinect_rows > 0) {
+    KA_TRY(write_text(put, "Kinect/Positions/" + name + "_positions.txt", tables.offsets,
+                      p.kinect_begin, p.kinect_rows));
+    KA_TRY(write_text(put, "Kinect/Angles/" + name + "_angles.txt", tables.angles, p.kinect_begin,
+                      p.kinect_rows));
+  }
+  if (p.vicon_rows == 0) return {};
+  return write_text(put, "Vicon/Positions/" + name + "_positions.txt", tables.markers,
+                    p.vicon_begin, p.vicon_rows);
+}
+
 }  // namespace
 
 Result<void> write_ui_prmd_pieces(const ArchiveBytes& bytes, const std::string& person,
                                   const PutFile& put) {
   const Npz npz = KA_TRY(Npz::read(bytes, largest_pieces));
   const auto index = KA_TRY(npz.integers("index", {0, 6}));
-  const auto offsets =
-      KA_TRY(read_table(npz, {"kinect_local", kinect_columns, 1, kinect_decimals}));
-  const auto angles = KA_TRY(read_table(npz, {"kinect_euler", kinect_columns, 1, kinect_decimals}));
-  const auto markers = KA_TRY(read_table(npz, {"vicon_markers", vicon_columns, 2, vicon_decimals}));
+  const Tables tables{KA_TRY(read_table(npz, {"kinect_local", kinect_columns, 1, kinect_decimals})),
+                      KA_TRY(read_table(npz, {"kinect_euler", kinect_columns, 1, kinect_decimals})),
+                      KA_TRY(read_table(npz, {"vicon_markers", vicon_columns, 2, vicon_decimals}))};
   for (std::size_t i = 0; i + 6 <= index.size(); i += 6) {
-    const Piece p{index[i], index[i + 1], index[i + 2], index[i + 3], index[i + 4], index[i + 5]};
-    const bool fits = p.movement >= 0 && p.movement < 100 && p.repetition >= 0 &&
-                      p.repetition < 100 && lies_in(p.kinect_begin, p.kinect_rows, offsets) &&
-                      lies_in(p.kinect_begin, p.kinect_rows, angles) &&
-                      lies_in(p.vicon_begin, p.vicon_rows, markers);
-    if (!fits) {
-      return Failure(Error{bytes.name, 0, "pieces within the arrays",
-                           fmt::format("piece {} of movement {}", p.repetition, p.movement)});
-    }
-    const std::string name = fmt::format("m{:02}_{}_e{:02}", p.movement, person, p.repetition);
-    if (p.kinect_rows > 0) {
-      KA_TRY(write_text(put, "Kinect/Positions/" + name + "_positions.txt", offsets, p.kinect_begin,
-                        p.kinect_rows));
-      KA_TRY(write_text(put, "Kinect/Angles/" + name + "_angles.txt", angles, p.kinect_begin,
-                        p.kinect_rows));
-    }
-    if (p.vicon_rows > 0) {
-      KA_TRY(write_text(put, "Vicon/Positions/" + name + "_positions.txt", markers, p.vicon_begin,
-                        p.vicon_rows));
-    }
+    const Piece piece{index[i],     index[i + 1], index[i + 2],
+                      index[i + 3], index[i + 4], index[i + 5]};
+    KA_TRY(check_piece(piece, tables, bytes.name));
+    KA_TRY(write_piece(piece, tables, person, put));
   }
   return {};
 }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 namespace kinalign {
 
@@ -26,15 +27,11 @@ class HeaderText {
     while (!take("}")) {
       const auto key = quoted();
       if (!key || !take(":")) return false;
-      if (*key == "descr" && !std::exchange(descr, true)) {
-        if (!parse_descr(out)) return false;
-      } else if (*key == "fortran_order" && !std::exchange(order, true)) {
-        if (!take("False")) return false;
-      } else if (*key == "shape" && !std::exchange(shape, true)) {
-        if (!parse_shape(out)) return false;
-      } else {
-        return false;
-      }
+      bool taken = false;
+      if (*key == "descr") taken = !std::exchange(descr, true) && parse_descr(out);
+      if (*key == "fortran_order") taken = !std::exchange(order, true) && take("False");
+      if (*key == "shape") taken = !std::exchange(shape, true) && parse_shape(out);
+      if (!taken) return false;
       if (!take(",") && !next_is('}')) return false;
     }
     skip_blanks();
@@ -191,18 +188,19 @@ Result<NpyArray> read_npy(std::string&& file, std::string_view name) {
 }
 
 std::int64_t integer_at(const NpyArray& array, std::size_t index) {
-  const bool is_signed = array.header.kind == 'i';
+  const auto as = [&]<class Small, class Whole>(Small, Whole) {
+    return array.header.kind == 'i' ? std::int64_t{value_at<Small>(array, index)}
+                                    : static_cast<std::int64_t>(value_at<Whole>(array, index));
+  };
   switch (array.header.value_bytes) {
     case 1:
-      return is_signed ? value_at<std::int8_t>(array, index) : value_at<std::uint8_t>(array, index);
+      return as(std::int8_t{}, std::uint8_t{});
     case 2:
-      return is_signed ? value_at<std::int16_t>(array, index)
-                       : value_at<std::uint16_t>(array, index);
+      return as(std::int16_t{}, std::uint16_t{});
     case 4:
-      return is_signed ? value_at<std::int32_t>(array, index)
-                       : value_at<std::uint32_t>(array, index);
+      return as(std::int32_t{}, std::uint32_t{});
     default:
-      return value_at<std::int64_t>(array, index);
+      return as(std::int64_t{}, std::uint64_t{});
   }
 }
 

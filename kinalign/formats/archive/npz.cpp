@@ -71,15 +71,15 @@ Result<const NpyArray*> Npz::find(const std::string& name, std::string_view kind
   return &at->second;
 }
 
-Result<std::vector<std::int64_t>> Npz::integers(const std::string& name, Shape shape) const {
+Result<std::vector<std::int64_t>> Npz::integers(const std::string& name, const Shape& shape) const {
   return all_of<std::int64_t>(*KA_TRY(find(name, "iu", shape)), integer_at);
 }
 
-Result<std::vector<double>> Npz::numbers(const std::string& name, Shape shape) const {
+Result<std::vector<double>> Npz::numbers(const std::string& name, const Shape& shape) const {
   return all_of<double>(*KA_TRY(find(name, "iuf", shape)), number_at);
 }
 
-Result<std::vector<std::string>> Npz::texts(const std::string& name, Shape shape) const {
+Result<std::vector<std::string>> Npz::texts(const std::string& name, const Shape& shape) const {
   return all_of<std::string>(*KA_TRY(find(name, "U", shape)), text_at);
 }
 

@@ -22,9 +22,9 @@ class Npz {
   bool has(const std::string& name) const { return arrays_.contains(name); }
   /// Each fails where there is no such array, of such values, of that shape. A length of 0 in
   /// `shape` stands for any.
-  Result<std::vector<std::int64_t>> integers(const std::string& name, Shape shape) const;
-  Result<std::vector<double>> numbers(const std::string& name, Shape shape) const;
-  Result<std::vector<std::string>> texts(const std::string& name, Shape shape) const;
+  Result<std::vector<std::int64_t>> integers(const std::string& name, const Shape& shape) const;
+  Result<std::vector<double>> numbers(const std::string& name, const Shape& shape) const;
+  Result<std::vector<std::string>> texts(const std::string& name, const Shape& shape) const;
 
  private:
   Result<const NpyArray*> find(const std::string& name, std::string_view kinds,
