@@ -14,7 +14,7 @@ import sys
 
 ROOT = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else __file__ + "/../..").resolve()
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.M)
-HEAVY = ("toml++/", "nlohmann/", "hdf5.h", "H5", "zip.h", "openssl/", "sqlite3.h", "expat.h", "CLI/", "Eigen/")
+HEAVY = ("toml++/", "nlohmann/", "hdf5.h", "H5", "zip.h", "openssl/", "sqlite3.h", "archive.h", "archive_entry.h", "expat.h", "CLI/", "Eigen/")
 HEADERS_MAY = ("Eigen/Core", "Eigen/Geometry", "nlohmann/json_fwd.hpp")
 ENDINGS = {".h", ".hpp", ".cpp"}
 HEADERS = {".h", ".hpp"}

@@ -19,6 +19,7 @@ Verb recover_verb();
 Verb simulate_verb();
 Verb dataset_init_verb();
 Verb dataset_add_verb();
+Verb dataset_import_verb();
 Verb dataset_build_verb();
 Verb dataset_list_verb();
 Verb dataset_query_verb();

@@ -3,12 +3,14 @@
 
 #include "kinalign/core/nearest_name.h"
 #include "kinalign/dataset/scan.h"
+#include "kinalign/dataset/take_inputs.h"
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/formats/take/guarded.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/recording/beside.h"
 #include "kinalign/recording/streams/recording_source.h"
 #include "kinalign/sources/formats.h"
+#include "kinalign/sources/input_facts.h"
 #include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
@@ -25,6 +27,7 @@ namespace fs = std::filesystem;
 template <class One>
 std::vector<std::string> ids_of(const std::vector<One>& all) {
   std::vector<std::string> ids;
+  ids.reserve(all.size());
   for (const One& one : all) ids.push_back(one.id);
   return ids;
 }
@@ -84,118 +87,213 @@ std::string one_spelling(const std::string& path) {
   return fault ? path : whole.string();
 }
 
+bool is_below(const std::string& path, const std::string& folder) {
+  return one_spelling(path).starts_with(one_spelling(folder) + "/");
+}
+
 /// A file's path in a manifest: relative to `base` where the file lies below the data set.
 std::string as_named(const std::string& path, const std::string& folder, const std::string& base) {
-  const std::string whole = one_spelling(path), root = one_spelling(folder) + "/";
-  if (!whole.starts_with(root)) return whole;
+  std::string whole = one_spelling(path);
+  if (!is_below(path, folder)) return whole;
   return fs::path(whole).lexically_relative(one_spelling(base)).string();
 }
 
-struct Adding {
-  FileSystem& files;
-  const std::string& folder;
-  const Catalogue& catalogue;
-  const AddRequest& request;
-  const Progress& progress;
-
-  Result<Added> recording() const;
-  Result<Added> manifest() const;
-  Result<Added> take() const;
-
- private:
-  Result<Added> put(Manifest manifest, const std::string& base) const;
-  Result<std::vector<TakeName>> known(const std::string& subject, const std::string& action) const;
-  Result<void> copy_inputs(Manifest& manifest, const TakeName& name) const;
-  Result<Manifest> placed(Manifest manifest, const std::string& base, const TakeName& name) const;
+/// A raw file, and where its copy lies.
+struct RawCopy {
+  std::string from, to;
 };
 
-/// The takes of a subject and an action that are there.
-Result<std::vector<TakeName>> Adding::known(const std::string& subject,
-                                            const std::string& action) const {
-  std::vector<TakeName> names;
-  for (const auto& [name, there] : KA_TRY(scan_takes(folder, subject))) {
-    if (name.action == action) names.push_back(name);
-  }
-  return names;
-}
+/// The places of copies of a manifest's files: below sourcedata/, in a folder of the take.
+class CopyPlan {
+ public:
+  CopyPlan(FileSystem& files, const std::string& folder, std::string to)
+      : files_(files), folder_(folder), to_(std::move(to)) {}
 
-TakeName next_of(const std::vector<TakeName>& known, const std::string& subject,
-                 const std::string& action) {
-  TakeName name{subject, action, 1};
-  for (const TakeName& one : known) name.run = std::max(name.run, one.run + 1);
-  return name;
-}
-
-/// Copies the files that a manifest names below sourcedata/, further files of a recording too.
-Result<void> Adding::copy_inputs(Manifest& manifest, const TakeName& name) const {
-  const std::string to = folder + "/sourcedata/sub-" + name.subject + "/" + to_string(name);
-  KA_TRY(make_folders(to));
-  for (std::string* path : paths_in(manifest)) {
-    for (const std::string& one : with_namesakes(files, {*path})) {
-      const std::string copied = to + "/" + std::string(file_name(one));
-      if (!fs::exists(copied)) KA_TRY(copy_file(files, one, copied));
+  /// Paths become those of the copies. Files that lie in the data set already stay there.
+  Manifest plan(Manifest manifest) {
+    for (StreamOptions& stream : manifest.streams) {
+      const StreamOptions as_said = stream;
+      for (std::size_t i = 0; i < stream.files.size(); ++i) {
+        stream.files[i].path = place(as_said, as_said.files[i]);
+      }
+      if (stream.own_layout()) stream.layout = place_alone(stream.name, stream.layout);
+      if (!stream.skeleton.empty()) stream.skeleton = place_alone(stream.name, stream.skeleton);
     }
-    *path = to + "/" + std::string(file_name(*path));
+    return manifest;
   }
-  return {};
+  const std::vector<RawCopy>& copies() const { return copies_; }
+
+ private:
+  /// A file with further files keeps its folder's name, since readers look for them by it.
+  std::string place(const StreamOptions& stream, const StreamFile& file) {
+    if (is_below(file.path, folder_)) return file.path;
+    auto further = further_files_of(files_, stream, file);
+    std::erase(further, stream.layout);
+    if (further.empty()) {
+      for (const std::string& one : with_namesakes(files_, {file.path})) {
+        place_alone(stream.name, one);
+      }
+      return place_alone(stream.name, file.path);
+    }
+    const fs::path base = fs::path(one_spelling(file.path)).parent_path();
+    const fs::path own = fs::path(to_) / stream.name / base.filename();
+    for (const std::string& one : further) {
+      const fs::path step = fs::path(one_spelling(one)).lexically_relative(base);
+      copies_.push_back({one, (own / step).lexically_normal().string()});
+    }
+    copies_.push_back({file.path, (own / file_name(file.path)).string()});
+    return copies_.back().to;
+  }
+
+  /// Files of one name, from several folders, are told apart by their streams.
+  std::string place_alone(const std::string& stream, const std::string& path) {
+    if (is_below(path, folder_)) return path;
+    std::string to = to_ + "/" + std::string(file_name(path));
+    for (const RawCopy& one : copies_) {
+      if (one.from == path) return one.to;
+      if (one.to == to) to = to_ + "/" + stream + "/" + std::string(file_name(path));
+    }
+    copies_.push_back({path, to});
+    return to;
+  }
+
+  FileSystem& files_;
+  const std::string& folder_;
+  std::string to_;
+  std::vector<RawCopy> copies_;
+};
+
+std::string raw_folder_of(const TakeName& name) {
+  return "sourcedata/sub-" + name.subject + "/" + to_string(name);
 }
 
-/// With the paths that it has at its place.
-Result<Manifest> Adding::placed(Manifest manifest, const std::string& base,
-                                const TakeName& name) const {
-  for (std::string* path : paths_in(manifest)) *path = path_in(base, *path);
-  if (request.copy) KA_TRY(copy_inputs(manifest, name));
+/// A manifest's text without its own run, so that the same raw files under two runs are found.
+std::string without_own_name(std::string text, const TakeName& name) {
+  const std::string own = raw_folder_of(name) + "/";
+  for (auto at = text.find(own); at != std::string::npos; at = text.find(own, at)) {
+    text.erase(at, own.size());
+  }
+  return text;
+}
+
+/// The manifest as it stands in the folder of its subject.
+std::string placed_text(Manifest manifest, const std::string& folder, const TakeName& name) {
   const std::string own = folder + "/sub-" + name.subject;
   for (std::string* path : paths_in(manifest)) *path = as_named(*path, folder, own);
   manifest.subject = name.subject;
   manifest.action = name.action;
-  return manifest;
+  return manifest_toml(manifest);
 }
 
-Result<Added> Adding::put(Manifest manifest, const std::string& base) const {
-  const std::string subject = request.subject.empty() ? manifest.subject : request.subject;
-  const std::string action = request.action.empty() ? manifest.action : request.action;
-  KA_TRY(check_known(catalogue, request, subject, action));
-  KA_TRY(make_folders(folder + "/sub-" + subject));
-  for (;;) {  // until no other process takes the same run
-    const std::vector<TakeName> names = KA_TRY(known(subject, action));
-    const TakeName name = next_of(names, subject, action);
-    const std::string text = manifest_toml(KA_TRY(placed(manifest, base, name)));
-    for (const TakeName& one : names) {
-      const auto old =
-          read_whole(files, folder + "/" + path_of(one, TakeFile::manifest), longest_manifest);
-      if (old && *old == text) return Added{one, true};
+Result<bool> same_bytes(FileSystem& files, const RawCopy& copy) {
+  std::error_code fault;
+  if (fs::file_size(copy.from, fault) != fs::file_size(copy.to, fault) || fault) return false;
+  const InputFacts from = KA_TRY(facts_of(files, copy.from, "hashing", {}));
+  return from.sha256 == KA_TRY(facts_of(files, copy.to, "hashing", {})).sha256;
+}
+
+/// A copy that was made before stays: a job that was stopped goes on.
+Result<void> make_copies(FileSystem& files, const std::vector<RawCopy>& copies) {
+  for (const RawCopy& copy : copies) {
+    KA_TRY(make_folders(fs::path(copy.to).parent_path().string()));
+    if (!fs::exists(copy.to)) KA_TRY(copy_file(files, copy.from, copy.to));
+  }
+  return {};
+}
+
+/// The run that is asked for, where it is free, else the next behind all others.
+std::uint32_t free_run(const std::set<std::uint32_t>& runs, std::uint32_t wanted) {
+  if (wanted > 0 && !runs.contains(wanted)) return wanted;
+  return runs.empty() ? 1 : *runs.rbegin() + 1;
+}
+
+}  // namespace
+
+Result<TakeAdder::Known> TakeAdder::read_known(const std::string& subject,
+                                               const std::string& action) const {
+  KA_TRY(make_folders(folder_ + "/sub-" + subject));
+  Known out;
+  for (const auto& [name, there] : KA_TRY(scan_takes(folder_, subject))) {
+    if (name.action != action) continue;
+    out.runs.insert(name.run);
+    const auto text =
+        read_whole(files_, folder_ + "/" + path_of(name, TakeFile::manifest), longest_manifest);
+    if (text) out.by_text.emplace(without_own_name(*text, name), name);
+  }
+  return out;
+}
+
+Result<TakeAdder::Known*> TakeAdder::known(const std::string& subject, const std::string& action) {
+  const auto key = std::pair(subject, action);
+  auto at = known_.find(key);
+  if (at == known_.end()) {
+    at = known_.emplace(key, KA_TRY(read_known(subject, action))).first;
+  }
+  return &at->second;
+}
+
+/// The take that was added of the same manifest before. Of copies the bytes count.
+Result<std::optional<TakeName>> TakeAdder::find_same(const Known& known, const Manifest& manifest,
+                                                     const std::string& text, bool copy) const {
+  const auto [begin, end] = known.by_text.equal_range(text);
+  for (auto one = begin; one != end; ++one) {
+    bool same = true;
+    if (copy) {
+      CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder_of(one->second));
+      plan.plan(manifest);
+      for (const RawCopy& file : plan.copies()) same = same && KA_TRY(same_bytes(files_, file));
     }
-    const std::string path = folder + "/" + path_of(name, TakeFile::manifest);
-    const Result<void> written = write_new(files, path, text);
-    if (!written && fs::exists(path)) continue;
-    KA_TRY(written);
-    return Added{name, false};
+    if (same) return one->second;
+  }
+  return std::nullopt;
+}
+
+Result<Added> TakeAdder::add(const Manifest& said, const std::string& base,
+                             const AddRequest& request) {
+  TakeName name{request.subject.empty() ? said.subject : request.subject,
+                request.action.empty() ? said.action : request.action, 1};
+  KA_TRY(check_known(catalogue_, request, name.subject, name.action));
+  Manifest manifest = said;
+  for (std::string* path : paths_in(manifest)) *path = path_in(base, *path);
+  for (;;) {  // until no other process takes the same run
+    Known& there = *KA_TRY(known(name.subject, name.action));
+    name.run = free_run(there.runs, request.run);
+    CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder_of(name));
+    const std::string text =
+        placed_text(request.copy ? plan.plan(manifest) : manifest, folder_, name);
+    const std::string nameless = without_own_name(text, name);
+    if (const auto same = KA_TRY(find_same(there, manifest, nameless, request.copy))) {
+      return Added{*same, true};
+    }
+    KA_TRY(make_copies(files_, plan.copies()));
+    const std::string path = folder_ + "/" + path_of(name, TakeFile::manifest);
+    const Result<void> written = write_new(files_, path, text);
+    if (written) {
+      there.runs.insert(name.run);
+      there.by_text.emplace(nameless, name);
+      return Added{name, false};
+    }
+    if (!fs::exists(path) || there.runs.contains(name.run)) return Failure(written.error());
+    known_.erase({name.subject, name.action});
   }
 }
 
-Result<Added> Adding::recording() const {
+Result<Added> TakeAdder::add_recording(const AddRequest& request, const Progress& progress) {
   const auto source = KA_TRY(
-      RecordingSource::open(files, request.path, RecordingSource::Devices::unheard, {}, progress));
+      RecordingSource::open(files_, request.path, RecordingSource::Devices::unheard, {}, progress));
   const RecordingSurvey survey = source->survey();
   Manifest manifest = KA_TRY(manifest_of(survey, std::string(file_name(request.path))));
   if (survey.facts) {
     manifest.subject = survey.facts->subject;
     manifest.action = survey.facts->action;
   }
-  return put(std::move(manifest), std::string(kinalign::folder(request.path)));
+  return add(manifest, std::string(kinalign::folder(request.path)), request);
 }
 
-Result<Added> Adding::manifest() const {
-  const std::string text = KA_TRY(read_whole(files, request.path, longest_manifest));
-  return put(KA_TRY(read_manifest(text, request.path)),
-             std::string(kinalign::folder(request.path)));
-}
-
-Result<Added> Adding::take() const {
+Result<Added> TakeAdder::add_take(const AddRequest& request) {
   const Error blame{request.path, 0, "a take that HDF5 can read", ""};
   const std::string said = KA_TRY(run_guarded(GuardLimits{}, blame, [&]() -> Result<std::string> {
-    const TakeReader reader = KA_TRY(TakeReader::open(files, request.path));
+    const TakeReader reader = KA_TRY(TakeReader::open(files_, request.path));
     return reader.header().subject + "\n" + reader.header().action;
   }));
   const std::string subject = said.substr(0, said.find('\n'));
@@ -209,25 +307,25 @@ Result<Added> Adding::take() const {
                              shown(request.action) + ", which a take says itself",
                          shown(subject) + " and " + shown(action)});
   }
-  KA_TRY(check_known(catalogue, request, subject, action));
-  KA_TRY(make_folders(folder + "/sub-" + subject));
-  const TakeName name = next_of(KA_TRY(known(subject, action)), subject, action);
-  KA_TRY(copy_file(files, request.path, folder + "/" + path_of(name, TakeFile::take)));
+  KA_TRY(check_known(catalogue_, request, subject, action));
+  Known& there = *KA_TRY(known(subject, action));
+  const TakeName name{subject, action, free_run(there.runs, 0)};
+  KA_TRY(copy_file(files_, request.path, folder_ + "/" + path_of(name, TakeFile::take)));
+  there.runs.insert(name.run);
   return Added{name, false};
 }
 
-}  // namespace
-
-Result<Added> add_take(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
-                       const AddRequest& request, const Progress& progress) {
-  const Adding adding{files, folder, catalogue, request, progress};
-  switch (KA_TRY(kind_of_file(files, request.path))) {
+Result<Added> TakeAdder::add(const AddRequest& request, const Progress& progress) {
+  switch (KA_TRY(kind_of_file(files_, request.path))) {
     case FileKind::recording:
-      return adding.recording();
-    case FileKind::manifest:
-      return adding.manifest();
+      return add_recording(request, progress);
+    case FileKind::manifest: {
+      const std::string text = KA_TRY(read_whole(files_, request.path, longest_manifest));
+      return add(KA_TRY(read_manifest(text, request.path)),
+                 std::string(kinalign::folder(request.path)), request);
+    }
     case FileKind::take:
-      return adding.take();
+      return add_take(request);
     default:
       return Failure(Error{request.path, 0,
                            "a recording, a recording.toml or a take (single files go into a "

@@ -8,7 +8,12 @@
 #include "kinalign/dataset/catalogue.h"
 #include "kinalign/dataset/take_name.h"
 
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 namespace kinalign {
 
@@ -16,6 +21,7 @@ struct AddRequest {
   std::string path;             // a recording, a recording.toml or a take
   std::string subject, action;  // empty: as the file says
   bool copy = false;            // raw files, to sourcedata/sub-03/NAME/
+  std::uint32_t run = 0;        // of a manifest, where that run is free; 0: the next free one
 };
 
 struct Added {
@@ -23,10 +29,39 @@ struct Added {
   bool was_there = false;  // the same manifest, or the same take, was added before
 };
 
-/// Gives the take the next free run of its subject and action, and writes its manifest, or copies
-/// the take. Fails where the file is of another kind, and where dataset.toml has no such subject or
-/// action. Paths of files below the data set's folder become relative, others absolute.
-Result<Added> add_take(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
-                       const AddRequest& request, const Progress& progress);
+/// Adds to one data set. What it has of a subject and an action is read once, so that adding many
+/// takes costs little more than writing their manifests.
+class TakeAdder {
+ public:
+  /// All three must outlive it.
+  TakeAdder(FileSystem& files, const std::string& folder, const Catalogue& catalogue)
+      : files_(files), folder_(folder), catalogue_(catalogue) {}
+
+  /// Gives the take its run of its subject and action, and writes its manifest, or copies the take.
+  /// Fails where the file is of another kind, and where dataset.toml has no such subject or action.
+  /// Paths of files below the data set's folder become relative, others absolute.
+  Result<Added> add(const AddRequest& request, const Progress& progress);
+  /// The same of a manifest that stands in no file; `base` ("" or ending in '/') is the folder of
+  /// its paths, and `request.path` names it in messages.
+  Result<Added> add(const Manifest& manifest, const std::string& base, const AddRequest& request);
+
+ private:
+  /// The takes of a subject and an action.
+  struct Known {
+    std::set<std::uint32_t> runs;
+    std::multimap<std::string, TakeName> by_text;  // the manifest, but for its own folder's name
+  };
+  Result<Known> read_known(const std::string& subject, const std::string& action) const;
+  Result<Known*> known(const std::string& subject, const std::string& action);
+  Result<std::optional<TakeName>> find_same(const Known& known, const Manifest& manifest,
+                                            const std::string& text, bool copy) const;
+  Result<Added> add_recording(const AddRequest& request, const Progress& progress);
+  Result<Added> add_take(const AddRequest& request);
+
+  FileSystem& files_;
+  const std::string& folder_;
+  const Catalogue& catalogue_;
+  std::map<std::pair<std::string, std::string>, Known> known_;  // by subject and action
+};
 
 }  // namespace kinalign

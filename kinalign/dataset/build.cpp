@@ -59,7 +59,7 @@ class Planner {
       return out;
     }
     out.manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
-    out.inputs = inputs_of(out.manifest, folder_of(folder_, name),
+    out.inputs = inputs_of(files_, out.manifest, folder_of(folder_, name),
                            out.summary ? out.summary->inputs : std::vector<InputFacts>{});
     for (const TakeInput& input : out.inputs) out.bytes += size_of(input.path);
     return out;

@@ -6,10 +6,10 @@
 #include "kinalign/documents/option_values.h"
 #include "kinalign/documents/toml_entries.h"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <sstream>
 
 namespace kinalign {
 
@@ -157,11 +157,11 @@ std::string two_digits(int number) { return (number < 10 ? "0" : "") + std::to_s
 
 constexpr std::string_view head_of_template =
     R"(# A data set of kinalign: docs/formats/dataset.md lists every key.
-name = {}
-licence = ""       # on what terms others may use it: "CC BY 4.0"
+name = {0}
+licence = {1}       # on what terms others may use it: "CC BY 4.0"
 contact = ""       # whom they may ask
 description = ""
-citation = ""
+citation = {2}
 
 # [align]          what the manifests of takes leave open, as in a recording.toml
 
@@ -270,11 +270,14 @@ Result<std::string> catalogue_template(std::string_view template_name, const std
   if (template_name != "empty" && template_name != "hfut-mmd") {
     return Failure(unknown_name(template_name, "a template", catalogue_template_names()));
   }
-  std::string head(head_of_template);
-  std::ostringstream quoted;
-  quoted << toml::toml_formatter(toml::value<std::string>(name), toml::format_flags::none);
-  head.replace(head.find("{}"), 2, quoted.str());
+  const std::string head = catalogue_head(name, "", "");
   return head + (template_name == "empty" ? std::string(empty_template) : hfut_template());
+}
+
+std::string catalogue_head(const std::string& name, const std::string& licence,
+                           const std::string& citation) {
+  return fmt::format(head_of_template, toml_string(name), toml_string(licence),
+                     toml_string(citation));
 }
 
 }  // namespace kinalign

@@ -67,5 +67,8 @@ Result<Catalogue> read_catalogue(std::string_view toml, std::string_view name);
 /// has: ids are neutral, and the shares are ours (8, 8, 5, 5, 6, 2).
 Result<std::string> catalogue_template(std::string_view template_name, const std::string& name);
 std::vector<std::string> catalogue_template_names();
+/// The beginning of both: the texts, without people, classes and actions.
+std::string catalogue_head(const std::string& name, const std::string& licence,
+                           const std::string& citation);
 
 }  // namespace kinalign

@@ -2,27 +2,64 @@
 #include "kinalign/dataset/take_inputs.h"
 
 #include "kinalign/core/file_version.h"
+#include "kinalign/sources/formats.h"
 #include "kinalign/sources/input_facts.h"
 #include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
+#include <map>
 
 namespace kinalign {
 
-std::vector<TakeInput> inputs_of(Manifest manifest, const std::string& base,
+std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions& options,
+                                          const StreamFile& file) {
+  auto opened = InputFile::open(files, file.path);
+  if (!opened) return {};
+  const auto head = opened->next();
+  if (!head) return {};
+  const auto format = find_format(files, options, file, *head);
+  return format ? format->further_files : std::vector<std::string>{};
+}
+
+namespace {
+
+void add_input(const TakeInput& input, std::vector<TakeInput>& out) {
+  const bool has = std::any_of(out.begin(), out.end(),
+                               [&](const TakeInput& one) { return one.name == input.name; });
+  if (!has) out.push_back(input);
+}
+
+using Names = std::map<std::string, std::string>;  // by path, as the manifest says it
+
+void add_further(FileSystem& files, StreamOptions stream, const std::string& base,
+                 const Names& names, std::vector<TakeInput>& out) {
+  if (stream.own_layout()) stream.layout = path_in(base, stream.layout);
+  for (const StreamFile& file : stream.files) {
+    const StreamFile placed{path_in(base, file.path), file.node};
+    for (const std::string& one : further_files_of(files, stream, placed)) {
+      if (one == stream.layout) continue;
+      add_input({remembered_beside(names.at(file.path), placed.path, one), one}, out);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known) {
+  std::vector<std::string> paths;
+  for (const std::string* path : paths_in(manifest)) paths.push_back(*path);
+  const Names names = remembered_paths(paths);
   std::vector<TakeInput> out;
-  const auto has = [&out](const std::string& name) {
-    return std::any_of(out.begin(), out.end(),
-                       [&](const TakeInput& one) { return one.name == name; });
-  };
-  for (const std::string* path : paths_in(manifest)) {
-    const std::string name = remembered_path(*path);
-    if (!has(name)) out.push_back({name, path_in(base, *path)});
+  for (const std::string& path : paths) add_input({names.at(path), path_in(base, path)}, out);
+  if (known.size() > out.size()) {
+    for (const StreamOptions& stream : manifest.streams) {
+      add_further(files, stream, base, names, out);
+    }
   }
   const std::string beside(out.empty() ? base : kinalign::folder(out.front().path));
   for (const InputFacts& input : known) {
-    if (!has(input.name)) out.push_back({input.name, beside + std::string(file_name(input.name))});
+    add_input({input.name, beside + std::string(file_name(input.name))}, out);
   }
   return out;
 }

@@ -18,9 +18,15 @@ struct TakeInput {
   std::string name, path;
 };
 
-/// The files that a manifest in `base` (ending in '/') names and, of `known`, the further files of
-/// a recording, which only the take names and which lie beside the first.
-std::vector<TakeInput> inputs_of(Manifest manifest, const std::string& base,
+/// The files that the reader of a raw file opens itself: angles beside positions, channels beside
+/// samples. None where no reader is found: the build says that.
+std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions& options,
+                                          const StreamFile& file);
+
+/// The files that a manifest in `base` (ending in '/') names and, of `known`, those that
+/// only the take names: what readers open beside a file, and further files of a recording, which
+/// lie beside the first.
+std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known);
 
 /// Whether each input still has the bytes that the take was made of. One that is older than the

@@ -164,7 +164,7 @@ class Verifier {
       tell(Severity::warning, file, "the parameters that the take was made with", "others", build);
     }
     for (const TakeInput& input :
-         inputs_of(*manifest, folder_ + "/sub-" + name.subject + "/", summary.inputs)) {
+         inputs_of(files_, *manifest, folder_ + "/sub-" + name.subject + "/", summary.inputs)) {
       check_input(file, input, summary);
     }
   }

@@ -7,7 +7,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <sstream>
 
 namespace kinalign {
 
@@ -19,11 +18,7 @@ std::string toml_text(double value) {  // the shortest that reads back the same
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
-std::string toml_text(const std::string& value) {
-  std::ostringstream text;
-  text << toml::toml_formatter(toml::value<std::string>(value), toml::format_flags::none);
-  return text.str();
-}
+std::string toml_text(const std::string& value) { return toml_string(value); }
 
 std::string list_text(const std::vector<double>& numbers) {
   std::string text;

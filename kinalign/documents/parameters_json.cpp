@@ -305,9 +305,14 @@ Result<Manifest> parse_parameters_json(std::string_view json) {
 }
 
 Manifest without_folders(Manifest manifest) {
+  std::vector<std::string> paths;
+  for (const StreamOptions& stream : manifest.streams) {
+    for (const StreamFile& file : stream.files) paths.push_back(file.path);
+  }
+  const auto names = remembered_paths(paths);
   for (StreamOptions& stream : manifest.streams) {
     stream.layout = remembered_path(stream.layout);
-    for (StreamFile& file : stream.files) file.path = remembered_path(file.path);
+    for (StreamFile& file : stream.files) file.path = names.at(file.path);
   }
   return manifest;
 }

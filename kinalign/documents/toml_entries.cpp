@@ -58,9 +58,13 @@ std::string toml_key(const std::string& key) {
            c == '-';
   };
   if (!key.empty() && std::all_of(key.begin(), key.end(), bare)) return key;
-  std::ostringstream text;
-  text << toml::toml_formatter(toml::value<std::string>(key), toml::format_flags::none);
-  return text.str();
+  return toml_string(key);
+}
+
+std::string toml_string(const std::string& text) {
+  std::ostringstream quoted;
+  quoted << toml::toml_formatter(toml::value<std::string>(text), toml::format_flags::none);
+  return quoted.str();
 }
 
 std::int64_t line_of(const toml::node& node) {

@@ -41,6 +41,8 @@ std::int64_t line_of(const toml::node& node);
 
 /// As it stands in [device.KEY]: in quotes where it needs them.
 std::string toml_key(const std::string& key);
+/// A text in quotes, with what TOML wants escaped.
+std::string toml_string(const std::string& text);
 
 /// Of a line in which toml++ found a fault, such as [device.my suit], whose name has to stand in
 /// quotes: how; else empty. For the end of what was expected.

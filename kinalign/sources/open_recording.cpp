@@ -68,6 +68,7 @@ class SharedProgress {
 struct NamedFile {
   const StreamOptions* options = nullptr;
   const StreamFile* file = nullptr;
+  std::string remembered;  // as the take calls it
   std::string name() const { return options->name + (file->node.empty() ? "" : " " + file->node); }
 };
 
@@ -90,10 +91,16 @@ PlacedFile place_of(const std::string& folder, const NamedFile& named) {
 SurveyedFile named_as_said(SurveyedFile out, const std::string& folder, const NamedFile& named,
                            const StreamOptions& options) {
   for (std::size_t i = 0; i < out.paths.size(); ++i) {
-    const std::string* as_named = &named.file->path;
-    if (i > 0 && out.paths[i] == options.layout) as_named = &named.options->layout;
-    if (i > 0 && out.paths[i] == options.skeleton) as_named = &named.options->skeleton;
-    out.stream.files[i].name = remembered_path(folder, *as_named, out.paths[i]);
+    std::string& name = out.stream.files[i].name;
+    if (i == 0) {
+      name = named.remembered;
+    } else if (out.paths[i] == options.layout) {
+      name = remembered_path(folder, named.options->layout, out.paths[i]);
+    } else if (out.paths[i] == options.skeleton) {
+      name = remembered_path(folder, named.options->skeleton, out.paths[i]);
+    } else {
+      name = remembered_beside(named.remembered, out.paths[0], out.paths[i]);
+    }
   }
   if (named.file != &named.options->files.front()) {
     out.paths.resize(1);
@@ -178,12 +185,19 @@ Result<void> check_texts(const Manifest& manifest) {
 
 /// Their files.
 Result<std::vector<NamedFile>> named_files(const std::vector<StreamOptions>& streams) {
+  std::vector<std::string> paths;
+  for (const StreamOptions& options : streams) {
+    for (const StreamFile& file : options.files) paths.push_back(file.path);
+  }
+  const auto remembered = remembered_paths(paths);
   std::vector<NamedFile> named;
   for (const StreamOptions& options : streams) {
     if (options.files.empty()) {
       return Failure(Error{"", 0, "a file for stream '" + options.name + "'", "none"});
     }
-    for (const StreamFile& file : options.files) named.push_back({&options, &file});
+    for (const StreamFile& file : options.files) {
+      named.push_back({&options, &file, remembered.at(file.path)});
+    }
   }
   return named;
 }

@@ -3,9 +3,38 @@
 
 #include "kinalign/core/files.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <set>
 
 namespace kinalign {
+
+namespace {
+
+/// The path's last `count` parts, none of them a way up; all of them where it has no more.
+std::string tail(const std::string& path, std::size_t count) {
+  std::vector<std::string> parts;
+  for (const auto& part : std::filesystem::path(path).lexically_normal().relative_path()) {
+    if (part != "..") parts.push_back(part.string());
+  }
+  std::string out;
+  for (std::size_t i = parts.size() - std::min(count, parts.size()); i < parts.size(); ++i) {
+    out += (out.empty() ? "" : "/") + parts[i];
+  }
+  return out;
+}
+
+/// Whether one is the end of the other: then both may be one file, spelt in two ways.
+bool may_be_one(const std::string& a, const std::string& b) {
+  const std::string all = "/" + tail(a, SIZE_MAX), other = "/" + tail(b, SIZE_MAX);
+  return all.ends_with(other) || other.ends_with(all);
+}
+
+bool leads_out(const std::string& normal) {
+  return normal.starts_with('/') || normal == ".." || normal.starts_with("../");
+}
+
+}  // namespace
 
 std::string path_in(const std::string& folder, const std::string& path) {
   return path.starts_with('/') ? path : folder + path;
@@ -13,8 +42,41 @@ std::string path_in(const std::string& folder, const std::string& path) {
 
 std::string remembered_path(const std::string& path) {
   const std::string normal = std::filesystem::path(path).lexically_normal().string();
-  const bool leads_out = normal.starts_with('/') || normal == ".." || normal.starts_with("../");
-  return leads_out ? std::string(file_name(path)) : normal;
+  return leads_out(normal) ? std::string(file_name(path)) : normal;
+}
+
+std::map<std::string, std::string> remembered_paths(const std::vector<std::string>& paths) {
+  std::map<std::string, std::set<std::string>> by_name;  // of normal paths
+  const auto normal = [](const std::string& path) {
+    return std::filesystem::path(path).lexically_normal().string();
+  };
+  for (const std::string& path : paths) by_name[remembered_path(path)].insert(normal(path));
+  std::map<std::string, std::string> out;
+  for (const std::string& path : paths) {
+    const std::string name = remembered_path(path), own = normal(path);
+    out[path] = name;
+    if (!leads_out(own)) continue;
+    const auto is_shared = [&](std::size_t count) {
+      const auto& all = by_name[name];
+      return std::any_of(all.begin(), all.end(), [&](const std::string& other) {
+        return !may_be_one(other, own) && tail(other, count) == tail(own, count);
+      });
+    };
+    constexpr std::size_t most = 32;
+    for (std::size_t count = 1; count <= most; ++count) {
+      out[path] = count == 1 ? name : tail(path, count);
+      if (!is_shared(count)) break;
+    }
+  }
+  return out;
+}
+
+std::string remembered_beside(const std::string& name, const std::string& path,
+                              const std::string& other) {
+  const auto step = std::filesystem::path(other).lexically_normal().lexically_relative(
+      std::filesystem::path(path).lexically_normal().parent_path());
+  if (step.empty()) return std::string(file_name(other));
+  return remembered_path((std::filesystem::path(name).parent_path() / step).string());
 }
 
 std::string remembered_path(const std::string& folder, const std::string& given,

@@ -2,6 +2,8 @@
 // Which files a recording consists of, and by which names a take remembers them.
 #include "kinalign/sources/open_recording.h"
 
+#include "kinalign/documents/parameters_json.h"
+
 #include "tests/folder.h"
 
 #include <doctest/doctest.h>
@@ -171,20 +173,37 @@ TEST_CASE("files are remembered by their paths below the manifest, else by their
   CHECK(names_of(streams[4]) == std::vector<std::string>{"a/p.csv", "lab.toml"});
 }
 
+TEST_CASE("files of one name that lie elsewhere are remembered with the folders that differ") {
+  const FreshFolder folder;
+  folder.write("m/lab.toml", layout_text);
+  folder.write("a/x/p.csv", "1,2,3\n");
+  folder.write("b/x/p.csv", "4,5,6\n");
+  Manifest manifest;
+  manifest.streams = {stream("one", "../a/x/p.csv"), stream("two", folder / "b/x/p.csv")};
+  PosixFiles files;
+  const auto recording = open_recording(files, manifest, (folder / "m") + "/");
+  REQUIRE_MESSAGE(recording, error_of(recording));
+  CHECK(names_of(recording->streams[0]) == std::vector<std::string>{"a/x/p.csv", "lab.toml"});
+  CHECK(names_of(recording->streams[1]) == std::vector<std::string>{"b/x/p.csv", "lab.toml"});
+  const Manifest remembered = without_folders(manifest);
+  CHECK(remembered.streams[0].files[0].path == "a/x/p.csv");
+  CHECK(remembered.streams[1].files[0].path == "b/x/p.csv");
+}
+
 TEST_CASE("two files that a take would call by one name are refused with both paths") {
   const FreshFolder folder;
   folder.write("m/lab.toml", layout_text);
-  folder.write("a/p.csv", "1,2,3\n");
+  folder.write("p.csv", "1,2,3\n");
   folder.write("b/p.csv", "4,5,6\n");
   Manifest manifest;
-  manifest.streams = {stream("one", "../a/p.csv"), stream("two", "../b/p.csv")};
+  manifest.streams = {stream("one", "../p.csv"), stream("two", "../b/p.csv")};
   PosixFiles files;
   const std::string base = (folder / "m") + "/";
   CHECK(error_of(open_recording(files, manifest, base)) ==
         base +
             "../b/p.csv: expected files that a take can tell apart by name (below the manifest's "
             "folder: by their paths), so rename one or move both there, found 'p.csv' again: " +
-            base + "../a/p.csv");
+            base + "../p.csv");
   folder.write("b/p.csv", "1,2,3\n");  // the same bytes: whichever `rebuild` finds is right
   CHECK(error_of(open_recording(files, manifest, base)) == "none");
 }

@@ -35,11 +35,11 @@ Result<int> run_add(Add& o, Call& call) {
   call.console.if_it_fails([folder](const Error&) -> std::vector<std::string> {
     return {"what was added before it is in the data set; it can be said again"};
   });
+  TakeAdder adder(files, folder, catalogue);
   auto json = nlohmann::ordered_json::array();
   for (const std::string& path : o.files) {
     const AddRequest request{path, o.subject, o.action, o.copy};
-    const Added added =
-        KA_TRY(add_take(files, folder, catalogue, request, call.console.progress()));
+    const Added added = KA_TRY(adder.add(request, call.console.progress()));
     call.console.print(harmless(path + (added.was_there ? " is there already: " : ": ") +
                                 to_string(added.name) + "\n"));
     json.push_back(

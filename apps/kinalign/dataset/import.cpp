@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/import/import.h"
+
+#include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/dataset/import/corpora.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace kinalign {
+
+namespace {
+
+struct Import {
+  std::vector<std::string> folder, sources;
+  std::string from = "auto", subject, action;
+  bool copy = false;
+};
+
+Usage describe_import(Import& o) {
+  std::vector<std::string> kinds{"auto"};
+  for (const std::string& name : corpus_kind_names()) kinds.push_back(name);
+  Usage usage;
+  usage.positionals = {folder_word(o.folder),
+                       {"SOURCE", "folders, files or archives (.zip, .tar, .tar.gz) of a corpus",
+                        &o.sources, 1, 1'000'000}};
+  usage.flags = {{"from", "which corpus it is; auto: by its files", &o.from, 0.0, 0.0, kinds},
+                 {"subject",
+                  "who it is, where neither folders nor names say it",
+                  &o.subject,
+                  0.0,
+                  0.0,
+                  {},
+                  "ID"},
+                 {"action",
+                  "which action it is, in place of the names of single files",
+                  &o.action,
+                  0.0,
+                  0.0,
+                  {},
+                  "ID"},
+                 {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
+  return usage;
+}
+
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+/// "10 without Vicon left out: m03_s03_e01, m03_s03_e02, m03_s03_e03, ...", a line for each reason.
+std::string left_out_lines(const std::vector<LeftOut>& all) {
+  std::map<std::string, std::vector<std::string>> by_reason;
+  for (const LeftOut& one : all) by_reason[one.why].push_back(one.what);
+  std::string text;
+  for (const auto& [why, what] : by_reason) {
+    constexpr std::size_t most = 3;
+    text += fmt::format("  left out, {}: {}: ", why, what.size());
+    for (std::size_t i = 0; i < std::min(most, what.size()); ++i) {
+      text += (i > 0 ? ", " : "") + what[i];
+    }
+    text += what.size() > most ? ", ...\n" : "\n";
+  }
+  return text;
+}
+
+using Changed = std::vector<std::pair<std::string, std::string>>;
+
+std::string changed_line(std::string_view what, const Changed& changed) {
+  if (changed.empty()) return "";
+  constexpr std::size_t most = 5;
+  std::string text = fmt::format("  {} by ids of letters and digits: ", what);
+  for (std::size_t i = 0; i < std::min(most, changed.size()); ++i) {
+    text += fmt::format("{}{} is {}", i > 0 ? ", " : "", changed[i].first, changed[i].second);
+  }
+  return text + (changed.size() > most ? ", ...\n" : "\n");
+}
+
+nlohmann::ordered_json json_of(const Changed& changed) {
+  auto out = nlohmann::ordered_json::object();
+  for (const auto& [word, id] : changed) out[word] = id;
+  return out;
+}
+
+void print_json(const Imported& made, Console& console) {
+  auto left_out = nlohmann::ordered_json::array();
+  for (const LeftOut& one : made.left_out) {
+    left_out.push_back({{"what", one.what}, {"why", one.why}});
+  }
+  console.print_json(nlohmann::ordered_json{{"corpus", made.kind},
+                                            {"takes", made.takes},
+                                            {"added", made.takes - made.were_there},
+                                            {"were_there", made.were_there},
+                                            {"subjects", made.subjects},
+                                            {"actions", made.actions},
+                                            {"new_data_set", made.is_new},
+                                            {"left_out", left_out},
+                                            {"subject_ids", json_of(made.subject_ids)},
+                                            {"action_ids", json_of(made.action_ids)}}
+                         .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void advise_to_say_it_again(Console& console) {
+  console.if_it_fails([](const Error&) -> std::vector<std::string> {
+    return {"some takes are in the data set; the same import goes on where it stopped"};
+  });
+}
+
+Result<int> run_import(Import& o, Call& call) {
+  const std::string folder = folder_of(o.folder);
+  Console& console = call.console;
+  const ImportRequest request{o.sources, o.from == "auto" ? "" : o.from, o.subject, o.action,
+                              o.copy};
+  const Imported made =
+      KA_TRY(import_corpus(call.surroundings.files, folder, request, console.progress(),
+                           [&](std::uint64_t done, std::uint64_t takes) {
+                             if (done == 1) advise_to_say_it_again(console);
+                             if (done % 100 == 0 && done < takes)
+                               console.print(fmt::format("{} of {}\n", done, takes));
+                           }));
+  console.print(harmless(fmt::format(
+      "{}: {} of {}, {}{}\n", made.kind, counted(made.takes, "take", "takes"),
+      counted(made.subjects, "person", "people"), counted(made.actions, "action", "actions"),
+      made.were_there > 0 ? fmt::format("; {} were there already", made.were_there) : "")));
+  console.print(harmless(left_out_lines(made.left_out) + changed_line("people", made.subject_ids) +
+                         changed_line("actions", made.action_ids)));
+  console.print("see    kinalign dataset build " + harmless(folder) + "\n");
+  print_json(made, console);
+  return 0;
+}
+
+}  // namespace
+
+Verb dataset_import_verb() {
+  return make_verb<Import>(
+      {.name = "dataset import",
+       .summary = "take a published corpus into a data set",
+       .text = "Knows a corpus by its folders and names, adds its people and actions to "
+               "dataset.toml and "
+               "its takes as `dataset add` does. Where FOLDER is no data set yet it becomes one. "
+               "The same import "
+               "said again adds nothing twice. What each corpus gives: docs/dataset_import.md.",
+       .examples =
+           {{"kinalign dataset import prmd ui_prmd.zip", "an archive, unpacked below sourcedata/"},
+            {"kinalign dataset import dances bvh/ --from bvh --copy",
+             "a folder of BVH files with a folder per person, copied"},
+            {"kinalign dataset import walks walk_01.bvh walk_02.bvh --subject 07 --action walk",
+             "single files of one person"}},
+       .common = {"json"}},
+      describe_import, run_import);
+}
+
+}  // namespace kinalign

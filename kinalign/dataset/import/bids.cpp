@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// BIDS-Motion: subject, task and run become the take's, tracking systems its streams.
+#include "kinalign/dataset/import/corpora.h"
+#include "kinalign/formats/bids/names.h"
+#include "kinalign/formats/bids/system.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <tuple>
+
+namespace kinalign {
+
+namespace {
+
+bool is_motion(const SourceFile& file) { return named_as_bids_motion(file.name); }
+
+bool looks_like_bids(FileSystem&, const std::vector<SourceFile>& sources) {
+  return std::any_of(sources.begin(), sources.end(), is_motion);
+}
+
+/// One recording: what all its tracking systems share in their names.
+struct Recorded {
+  std::string subject, session, task, acquisition, run;
+
+  auto operator<=>(const Recorded&) const = default;
+  std::string text() const {
+    std::string out = "sub-" + subject;
+    for (const auto& [key, label] : {std::pair("_ses-", session), std::pair("_task-", task),
+                                     std::pair("_acq-", acquisition), std::pair("_run-", run)}) {
+      if (!label.empty()) out += key + label;
+    }
+    return out;
+  }
+};
+
+struct System {
+  std::string name, path;
+  bool has_points = false;
+};
+
+std::uint32_t run_number(const std::string& run) {
+  std::uint32_t value = 0;
+  std::from_chars(run.data(), run.data() + run.size(), value);
+  return value;
+}
+
+/// Systems with positions first: the reference has to have some.
+Manifest systems_manifest(std::vector<System> systems) {
+  std::stable_partition(systems.begin(), systems.end(),
+                        [](const System& one) { return one.has_points; });
+  Manifest out;
+  for (const System& one : systems) {
+    out.streams.push_back(stream_of(one.name, one.path, "bids"));
+    if (!one.has_points) out.streams.back().select = {{"kind", "nodes"}};
+  }
+  return out;
+}
+
+Result<Corpus> list_bids(const ImportInput& input) {
+  Corpus out{.name = "BIDS-Motion", .classes = {{"bids", "tasks"}}, .class_id = "bids"};
+  std::map<Recorded, std::vector<System>> recorded;
+  for (const SourceFile& file : input.sources) {
+    const auto name = parse_bids_name(file_name(file.name));
+    if (!is_motion(file) || !name) continue;
+    const auto label = [&](std::string_view key) { return std::string(name->label(key)); };
+    const auto system = read_bids_system(input.files, file.path);
+    if (!system) {
+      out.left_out.push_back({std::string(stem_of(file.name)), to_string(system.error())});
+      continue;
+    }
+    recorded[{label("sub"), label("ses"), label("task"), label("acq"), label("run")}].push_back(
+        {label("tracksys"), file.path, has_positions(*system)});
+  }
+  for (const auto& [key, systems] : recorded) {
+    const bool has_points = std::any_of(systems.begin(), systems.end(),
+                                        [](const System& one) { return one.has_points; });
+    if (!has_points) {
+      out.left_out.push_back({key.text(), "no tracking system with positions"});
+      continue;
+    }
+    // Runs are counted in each session anew, so that a later session's may be taken already.
+    out.takes.push_back(
+        {key.subject, key.task, run_number(key.run), systems_manifest(systems), key.text()});
+  }
+  return out;
+}
+
+}  // namespace
+
+CorpusKind bids_corpus() {
+  return {"bids", "sub-*_tracksys-*_motion.tsv", false, looks_like_bids, list_bids};
+}
+
+}  // namespace kinalign

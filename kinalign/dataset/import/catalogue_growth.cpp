@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/import/catalogue_growth.h"
+
+#include "kinalign/documents/toml_entries.h"
+
+#include <algorithm>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+bool has_class(const Catalogue& catalogue, const std::string& id) {
+  return std::any_of(catalogue.classes.begin(), catalogue.classes.end(),
+                     [&](const ActionClass& one) { return one.id == id; });
+}
+
+std::string table_head(const std::string& kind, const std::string& id) {
+  return "\n[" + kind + "." + toml_key(id) + "]\n";
+}
+
+}  // namespace
+
+Result<std::string> grown_catalogue(const std::string& toml, const std::string& name,
+                                    const CatalogueNeeds& needs) {
+  const Catalogue has = KA_TRY(read_catalogue(toml, name));
+  std::string more, actions;
+  for (const std::string& id : needs.subjects) {
+    if (find_subject(has, id) == nullptr) more += table_head("subject", id);
+  }
+  std::set<std::string> classes;
+  for (const Action& action : needs.actions) {
+    if (find_action(has, action.id) != nullptr) continue;
+    classes.insert(action.class_id);
+    actions += table_head("action", action.id) + "class = " + toml_string(action.class_id) +
+               "\nname = " + toml_string(action.name) + "\n";
+  }
+  for (const ActionClass& one : needs.classes) {
+    if (!classes.contains(one.id) || has_class(has, one.id)) continue;
+    more += table_head("class", one.id) + "name = " + toml_string(one.name) + "\n";
+  }
+  more += actions;
+  if (more.empty()) return toml;
+  const std::string grown = toml + (toml.empty() || toml.ends_with('\n') ? "" : "\n") + more;
+  const auto read = read_catalogue(grown, name);
+  if (read) return grown;
+  return Failure(
+      Error{name, 0, "room for [subject.ID] and [action.ID] at the end", to_string(read.error())});
+}
+
+}  // namespace kinalign

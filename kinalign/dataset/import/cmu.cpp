@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// CMU's motion capture database, packed: asf_00.npz on each person's own skeleton, daz_05.npz on
+// one body for all. Each clip becomes a BVH.
+#include "kinalign/dataset/import/cmu_clips.h"
+#include "kinalign/dataset/import/corpora.h"
+#include "kinalign/dataset/import/ids.h"
+#include "kinalign/dataset/import/new_folder.h"
+#include "kinalign/formats/bvh/bvh.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+bool is_clip_pack(const SourceFile& file) {
+  const std::string_view stem = stem_of(file.name);
+  return has_ending(file.name, ".npz") && (stem.starts_with("asf_") || stem.starts_with("daz_"));
+}
+
+bool looks_like_cmu(FileSystem&, const std::vector<SourceFile>& sources) {
+  return std::any_of(sources.begin(), sources.end(), is_clip_pack);
+}
+
+/// The trial's number of "13_29", CMU's own; 0 where the take has another name.
+std::uint32_t trial_of(const PackedClip& clip) {
+  const std::string lead = clip.person + "_";
+  std::uint32_t number = 0;
+  if (!clip.take.starts_with(lead)) return 0;
+  const char* const end = clip.take.data() + clip.take.size();
+  const auto [behind, fault] = std::from_chars(clip.take.data() + lead.size(), end, number);
+  return fault == std::errc{} && behind == end ? number : 0;
+}
+
+/// "13__13_29.bvh", with letters and digits for what a name can't have.
+std::vector<std::string> file_names_of(const std::vector<PackedClip>& clips) {
+  std::vector<std::string> out;
+  std::set<std::string> given;
+  for (const PackedClip& clip : clips) {
+    const auto safe = [](std::string text) {
+      for (char& c : text) {
+        if (label_of({&c, 1}) == "x" && c != 'x' && c != '-') c = '_';
+      }
+      return text;
+    };
+    const std::string name = safe(clip.person) + "__" + safe(clip.take);
+    std::string own = name + ".bvh";
+    for (int number = 2; !given.insert(own).second; ++number) {
+      own = name + "__" + std::to_string(number) + ".bvh";
+    }
+    out.push_back(own);
+  }
+  return out;
+}
+
+Result<void> write_clips(const PackedClips& packed, const std::vector<std::string>& names,
+                         const PutFile& put, const ImportInput& input, const std::string& file) {
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    OutputFile out = KA_TRY(put(names[k]));
+    const BvhFile bvh = bvh_from_clip(packed.clip(packed.clips()[k]), packed.frame_seconds());
+    KA_TRY(write_bvh(bvh, [&out](std::string_view bytes) { return out.write(bytes); }));
+    KA_TRY(out.commit());
+    if (!go_on(input.progress, "unpacking", k + 1, names.size())) {
+      return Failure(interruption(file));
+    }
+  }
+  return {};
+}
+
+CorpusTake take_of(const PackedClip& clip, const std::string& path) {
+  CorpusTake out{clip.person, clip.label, trial_of(clip), {}, clip.take};
+  out.manifest.streams.push_back(stream_of("mocap", path));
+  return out;
+}
+
+/// Clips that another pack holds, too, on the person's own skeleton: one of them is enough, and
+/// both would lie on two sides of a split.
+void leave_out_doubles(std::map<std::string, CorpusTake>& takes,
+                       const std::set<std::string>& doubles, Corpus& corpus) {
+  for (auto& [key, take] : takes) {
+    if (doubles.contains(key)) {
+      corpus.left_out.push_back({key, "there on the person's own skeleton, too"});
+    } else {
+      corpus.takes.push_back(std::move(take));
+    }
+  }
+}
+
+Result<Corpus> list_cmu(const ImportInput& input) {
+  Corpus out{.name = "CMU Graphics Lab Motion Capture Database",
+             .licence = "free for all uses; the data itself may not be resold",
+             .citation =
+                 "The data used in this project was obtained from mocap.cs.cmu.edu. The "
+                 "database was created with funding from NSF EIA-0196217.",
+             .classes = {{"cmu", "CMU's database, sorted by its descriptions"}},
+             .class_id = "cmu"};
+  std::map<std::string, CorpusTake> takes;  // by "asf_06:06_01", as clip_same names them
+  std::set<std::string> doubles;
+  for (const SourceFile& file : input.sources) {
+    if (!is_clip_pack(file)) continue;
+    const auto packed = KA_TRY(PackedClips::read(KA_TRY(archive_bytes(input.files, file.path))));
+    const auto names = file_names_of(packed.clips());
+    const std::string folder =
+        KA_TRY(unpacked_folder(input.files, input.raw_folder, file.path, [&](const PutFile& put) {
+          return write_clips(packed, names, put, input, file.path);
+        }));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const PackedClip& clip = packed.clips()[k];
+      std::string key = std::string(stem_of(file.name)) + ":" + clip.take;
+      if (takes.contains(key)) key += " of clip " + std::to_string(k);
+      takes.emplace(std::move(key), take_of(clip, folder + "/" + names[k]));
+      if (!clip.same.empty()) doubles.insert(clip.same);
+    }
+  }
+  leave_out_doubles(takes, doubles, out);
+  return out;
+}
+
+}  // namespace
+
+CorpusKind cmu_corpus() {
+  return {"cmu", "asf_00.npz, daz_05.npz", false, looks_like_cmu, list_cmu};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clips of CMU's motion capture database packed into an NPZ: angles as second differences, a
+// skeleton per person. Layout: docs/dataset_import.md.
+#pragma once
+
+#include "kinalign/formats/archive/archive.h"
+#include "kinalign/motion/clip.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct PackedClip {
+  std::string person, take, label, text;  // "13", "13_29", "climb", CMU's description
+  std::string same;      // "daz_05:06_01": the clip of another pack that it is, too
+  std::size_t body = 0;  // which of the people's skeletons
+  std::size_t begin = 0, frames = 0;
+};
+
+class PackedClips {
+ public:
+  /// Fails where an array is missing, has another shape, or says what can't be.
+  static Result<PackedClips> read(const ArchiveBytes& bytes);
+
+  const std::vector<PackedClip>& clips() const { return clips_; }
+  double frame_seconds() const { return frame_seconds_; }
+  Clip clip(const PackedClip& packed) const;
+
+ private:
+  std::vector<Skeleton> skeletons_;      // of each person
+  std::vector<std::vector<Quat>> axes_;  // [person][joint]: the joint's axes in the parent's space
+  std::vector<PackedClip> clips_;
+  std::vector<std::int16_t> values_;  // [C,F]: of the root x, y, z in 0.5 mm; then of each joint
+                                      // the angles x, y, z in 0.015 degrees
+  std::size_t frames_ = 0;
+  double frame_seconds_ = 1.0 / 60.0;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// A corpus as an importer finds it: which takes it has, in its own words, and what is known of it.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/dataset/catalogue.h"
+#include "kinalign/dataset/import/source_files.h"
+#include "kinalign/take/manifest.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+/// Subject and action are words of the corpus; ids.h makes ids of them.
+struct CorpusTake {
+  std::string subject, action;
+  std::uint32_t run = 0;  // 0: the corpus numbers no repetitions
+  Manifest manifest;      // paths as they can be opened
+  std::string from;       // what the corpus calls it, for messages
+};
+
+/// A stream of one raw file; `layout` empty: by the file's content.
+inline StreamOptions stream_of(const std::string& name, const std::string& path,
+                               const std::string& layout = "") {
+  StreamOptions out;
+  out.name = name;
+  out.files.push_back({path, ""});
+  out.layout = layout;
+  return out;
+}
+
+/// A part of the corpus that becomes no take. Parts with one reason are told together.
+struct LeftOut {
+  std::string what, why;  // "m03_s03_e01", "without Vicon"
+};
+
+struct Corpus {
+  std::string name, licence{}, citation{};
+  std::vector<ActionClass> classes{};
+  std::vector<Action> actions{};  // ids are words of the corpus; takes may have others, too
+  std::string class_id{};         // of the actions that `actions` does not have
+  std::vector<CorpusTake> takes{};
+  std::vector<LeftOut> left_out{};
+};
+
+/// All that an importer works with.
+struct ImportInput {
+  FileSystem& files;
+  const std::vector<SourceFile>& sources;  // sorted by name
+  std::string raw_folder;                  // the data set's sourcedata: packed corpora unpack there
+  std::string subject, action;             // of files that say none; empty: not said
+  const Progress& progress;
+};
+
+/// A kind of corpus.
+struct CorpusKind {
+  std::string_view name;      // for --from: "ui-prmd"
+  std::string_view known_by;  // for messages: "m01_s01_e01_positions.txt, s01.npz"
+  bool general = false;       // any folder of such files: a corpus of its own goes first
+  bool (*looks)(FileSystem& files, const std::vector<SourceFile>& sources) = nullptr;
+  Result<Corpus> (*list)(const ImportInput& input) = nullptr;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/import/file_names.h"
+
+#include "kinalign/dataset/import/source_files.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace kinalign {
+
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool is_number(std::string_view text) {
+  return !text.empty() && text.size() <= 6 && std::all_of(text.begin(), text.end(), is_digit);
+}
+
+std::uint32_t number_of(std::string_view text) {
+  std::uint32_t value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+/// "Char00" at the end, which Axis Neuron adds for each character of a recording.
+std::string_view without_character(std::string_view stem) {
+  const auto at = stem.rfind("Char");
+  return at != stem.npos && at > 0 && is_number(stem.substr(at + 4)) ? stem.substr(0, at) : stem;
+}
+
+void read_action(std::string_view stem, FileSays& out) {
+  stem = without_character(stem);
+  std::size_t end = stem.size();
+  while (end > 0 && is_digit(stem[end - 1])) --end;
+  if (is_number(stem.substr(end))) {
+    out.run = number_of(stem.substr(end));
+    stem = stem.substr(0, end);
+    while (!stem.empty() && (stem.back() == '_' || stem.back() == '-' || stem.back() == ' ')) {
+      stem.remove_suffix(1);
+    }
+  }
+  out.action = stem;
+}
+
+bool read_cmu(std::string_view stem, FileSays& out) {
+  const auto line = stem.find('_');
+  if (line == stem.npos) return false;
+  const std::string_view subject = stem.substr(0, line), trial = stem.substr(line + 1);
+  if (!is_number(subject) || !is_number(trial)) return false;
+  out.subject = subject;
+  out.run = number_of(trial);
+  return true;
+}
+
+std::vector<std::string_view> folders_of(std::string_view name) {
+  std::vector<std::string_view> out;
+  for (auto slash = name.find('/'); slash != name.npos; slash = name.find('/')) {
+    out.push_back(name.substr(0, slash));
+    name.remove_prefix(slash + 1);
+  }
+  return out;
+}
+
+/// How many folders all names begin with.
+std::size_t shared_folders(const std::vector<std::string>& names) {
+  if (names.empty()) return 0;
+  const auto first = folders_of(names.front());
+  std::size_t shared = first.size();
+  for (const std::string& name : names) {
+    const auto own = folders_of(name);
+    const auto [end, _] = std::mismatch(first.begin(), first.end(), own.begin(), own.end());
+    shared = std::min(shared, static_cast<std::size_t>(end - first.begin()));
+  }
+  return shared;
+}
+
+}  // namespace
+
+std::vector<FileSays> read_file_names(const std::vector<std::string>& names) {
+  const std::size_t shared = shared_folders(names);
+  const bool has_people = std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+    return folders_of(name).size() > shared;
+  });
+  std::vector<FileSays> out;
+  for (const std::string& name : names) {
+    FileSays& says = out.emplace_back();
+    if (read_cmu(stem_of(name), says)) continue;
+    read_action(stem_of(name), says);
+    const auto folders = folders_of(name);
+    if (has_people) {
+      says.subject = folders[shared];
+    } else if (shared > 0) {
+      says.subject = folders[shared - 1];
+    }
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/import/import.h"
+
+#include "kinalign/dataset/import/catalogue_growth.h"
+#include "kinalign/dataset/import/corpora.h"
+#include "kinalign/dataset/import/ids.h"
+#include "kinalign/dataset/import/new_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <system_error>
+
+namespace kinalign {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t longest_catalogue = std::size_t{64} << 20;
+
+std::string catalogue_path(const std::string& folder) {
+  return folder + "/" + std::string(catalogue_file);
+}
+
+/// The text of dataset.toml; absent where the folder is no data set.
+Result<std::optional<std::string>> read_catalogue_text(FileSystem& files,
+                                                       const std::string& folder) {
+  const std::string path = catalogue_path(folder);
+  if (!fs::exists(path)) return std::nullopt;
+  return KA_TRY(read_whole(files, path, longest_catalogue));
+}
+
+std::vector<std::pair<std::string, std::string>> named(const std::vector<Action>& actions) {
+  std::vector<std::pair<std::string, std::string>> out;
+  out.reserve(actions.size());
+  for (const Action& one : actions) out.emplace_back(one.id, one.name);
+  return out;
+}
+
+/// Words of the corpus made ids, and what dataset.toml needs for them.
+struct Named {
+  Ids subjects, actions;
+  CatalogueNeeds needs;
+};
+
+const Action* action_of(const Corpus& corpus, const std::string& word) {
+  const auto at = std::find_if(corpus.actions.begin(), corpus.actions.end(),
+                               [&](const Action& one) { return one.id == word; });
+  return at == corpus.actions.end() ? nullptr : &*at;
+}
+
+Named name_takes(Corpus& corpus, const Catalogue& has) {
+  // No name is kept of a person: the same word is the same person in each import.
+  Named out{Ids({}), Ids(named(has.actions)), {}};
+  std::set<std::string> subjects, actions;
+  for (CorpusTake& take : corpus.takes) {
+    const std::string subject = out.subjects.of(take.subject), word = take.action;
+    if (subjects.insert(subject).second) out.needs.subjects.push_back(subject);
+    take.subject = subject;
+    take.action = out.actions.of(word);
+    if (!actions.insert(take.action).second) continue;
+    const Action* const known = action_of(corpus, word);
+    out.needs.actions.push_back(
+        {take.action, known ? known->class_id : corpus.class_id, known ? known->name : word});
+  }
+  out.needs.classes = corpus.classes;
+  std::sort(out.needs.subjects.begin(), out.needs.subjects.end());
+  std::sort(out.needs.actions.begin(), out.needs.actions.end(),
+            [](const Action& a, const Action& b) { return a.id < b.id; });
+  return out;
+}
+
+Result<void> write_catalogue(FileSystem& files, const std::string& folder,
+                             const std::string& text) {
+  std::error_code fault;
+  fs::create_directories(folder, fault);
+  if (fault) return Failure(Error{folder, 0, "a folder that can be made", fault.message()});
+  OutputFile out = KA_TRY(OutputFile::create(files, catalogue_path(folder), Overwrite::yes));
+  KA_TRY(out.write(text));
+  return out.commit();
+}
+
+Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
+                           const ImportRequest& request, const Progress& progress,
+                           std::string& kind_name) {
+  const std::string raw_folder = folder + "/sourcedata";
+  std::optional<UnfinishedFolder> unfinished;  // what was unpacked in vain
+  if (!fs::exists(raw_folder)) unfinished.emplace(raw_folder);
+  const auto sources = KA_TRY(list_sources(files, request.sources, raw_folder, progress));
+  const CorpusKind kind =
+      KA_TRY(find_corpus(files, sources, request.from, request.sources.front()));
+  kind_name = kind.name;
+  Corpus corpus =
+      KA_TRY(kind.list({files, sources, raw_folder, request.subject, request.action, progress}));
+  if (!corpus.takes.empty()) {
+    if (unfinished) unfinished->keep();
+    return corpus;
+  }
+  const std::string why = corpus.left_out.empty()
+                              ? "none"
+                              : corpus.left_out.front().what + ": " + corpus.left_out.front().why;
+  return Failure(Error{request.sources.front(), 0,
+                       "takes of " + kind_name + " (" + std::string(kind.known_by) + ")", why});
+}
+
+/// The data set's catalogue with all that the takes need, written where it grew.
+Result<Catalogue> grow_catalogue(FileSystem& files, const std::string& folder,
+                                 const std::optional<std::string>& text, const Corpus& corpus,
+                                 const CatalogueNeeds& needs) {
+  const std::string path = catalogue_path(folder);
+  const std::string before =
+      text ? *text : catalogue_head(corpus.name, corpus.licence, corpus.citation);
+  const std::string grown = KA_TRY(grown_catalogue(before, path, needs));
+  if (!text || grown != *text) KA_TRY(write_catalogue(files, folder, grown));
+  return read_catalogue(grown, path);
+}
+
+/// Adds the takes; returns how many were there before.
+Result<std::uint64_t> add_takes(const Corpus& corpus, const ImportRequest& request,
+                                TakeAdder& adder, const Progress& progress,
+                                const ImportStep& step) {
+  std::uint64_t done = 0, were_there = 0;
+  for (const CorpusTake& take : corpus.takes) {
+    const AddRequest add{take.from, take.subject, take.action, request.copy, take.run};
+    if (KA_TRY(adder.add(take.manifest, "", add)).was_there) ++were_there;
+    step(++done, corpus.takes.size());
+    if (!go_on(progress, "adding", done, corpus.takes.size())) return Failure(interruption());
+  }
+  return were_there;
+}
+
+}  // namespace
+
+Result<Imported> import_corpus(FileSystem& files, const std::string& folder,
+                               const ImportRequest& request, const Progress& progress,
+                               const ImportStep& step) {
+  const auto text = KA_TRY(read_catalogue_text(files, folder));
+  Catalogue catalogue = text ? KA_TRY(read_catalogue(*text, catalogue_path(folder))) : Catalogue{};
+  Imported out;
+  out.is_new = !text;
+  Corpus corpus = KA_TRY(list_corpus(files, folder, request, progress, out.kind));
+  const Named names = name_takes(corpus, catalogue);
+  catalogue = KA_TRY(grow_catalogue(files, folder, text, corpus, names.needs));
+  TakeAdder adder(files, folder, catalogue);
+  out.were_there = KA_TRY(add_takes(corpus, request, adder, progress, step));
+  out.takes = corpus.takes.size();
+  out.subjects = names.needs.subjects.size();
+  out.actions = names.needs.actions.size();
+  out.left_out = std::move(corpus.left_out);
+  out.subject_ids = names.subjects.changed();
+  out.action_ids = names.actions.changed();
+  return out;
+}
+
+}  // namespace kinalign

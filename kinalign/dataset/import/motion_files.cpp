@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any folder of BVH, C3D, TRC or MVNX: a file is a take of one stream. Folders and names say who
+// does what (file_names.h).
+#include "kinalign/dataset/import/corpora.h"
+#include "kinalign/dataset/import/file_names.h"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::string_view bvh = ".bvh", c3d = ".c3d", mvnx = ".mvnx", packed_mvnx = ".mvnx.gz",
+                           trc = ".trc";
+
+template <const std::string_view& ending>
+bool is_one(const SourceFile& file) {
+  if (ending == mvnx && has_ending(file.name, packed_mvnx)) return true;
+  return has_ending(file.name, ending);
+}
+
+template <const std::string_view& ending>
+bool looks_like_motion_files(FileSystem&, const std::vector<SourceFile>& sources) {
+  return std::any_of(sources.begin(), sources.end(), is_one<ending>);
+}
+
+/// "walk" of "walk.mvnx.gz": what a name says stands before its first ending.
+std::string without_packing(const std::string& name) {
+  return has_ending(name, packed_mvnx) ? name.substr(0, name.size() - 3) : name;
+}
+
+/// The folder that the user named, for a collection that has no other name.
+std::string folder_name(const std::vector<SourceFile>& sources) {
+  const std::filesystem::path path(sources.front().path);
+  std::error_code fault;
+  std::filesystem::path up = std::filesystem::weakly_canonical(path, fault).parent_path();
+  const std::string& name = sources.front().name;
+  for (auto slash = std::count(name.begin(), name.end(), '/'); slash > 0; --slash) {
+    up = up.parent_path();
+  }
+  return up.filename().string();
+}
+
+template <const std::string_view& ending>
+Result<Corpus> list_motion_files(const ImportInput& input) {
+  constexpr const char* unnamed = "motion";
+  Corpus out{.name = folder_name(input.sources),
+             .classes = {{"motion", "not sorted into classes"}},
+             .class_id = "motion"};
+  std::vector<SourceFile> files;
+  std::vector<std::string> names;
+  for (const SourceFile& file : input.sources) {
+    if (!is_one<ending>(file)) continue;
+    files.push_back(file);
+    names.push_back(without_packing(file.name));
+  }
+  const auto says = read_file_names(names);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string subject = says[i].subject.empty() ? input.subject : says[i].subject;
+    const std::string named = says[i].action.empty() ? unnamed : says[i].action;
+    if (subject.empty()) {
+      out.left_out.push_back({files[i].name, "no folder or name says who it is (--subject ID)"});
+      continue;
+    }
+    CorpusTake take{
+        subject, input.action.empty() ? named : input.action, says[i].run, {}, files[i].name};
+    take.manifest.streams.push_back(stream_of("mocap", files[i].path));
+    out.takes.push_back(std::move(take));
+  }
+  return out;
+}
+
+template <const std::string_view& ending>
+CorpusKind kind(std::string_view name, std::string_view known_by) {
+  return {name, known_by, true, looks_like_motion_files<ending>, list_motion_files<ending>};
+}
+
+}  // namespace
+
+std::vector<CorpusKind> motion_file_corpora() {
+  return {kind<bvh>("bvh", "*.bvh"), kind<c3d>("c3d", "*.c3d"),
+          kind<mvnx>("mvnx", "*.mvnx, *.mvnx.gz"), kind<trc>("trc", "*.trc")};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/import/new_folder.h"
+
+#include "kinalign/dataset/import/ids.h"
+#include "kinalign/sources/input_facts.h"
+
+#include <filesystem>
+#include <system_error>
+
+namespace kinalign {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<void> make_all_folders(const fs::path& path) {
+  std::error_code fault;
+  fs::create_directories(path, fault);
+  if (!fault) return {};
+  return Failure(Error{path.string(), 0, "a folder that can be made", fault.message()});
+}
+
+}  // namespace
+
+UnfinishedFolder::UnfinishedFolder(std::string path) : path_(std::move(path)) {
+  for (fs::path up = fs::path(path_).parent_path(); !up.empty() && !fs::exists(up);
+       up = up.parent_path()) {
+    above_.push_back(up.string());
+  }
+}
+
+UnfinishedFolder::~UnfinishedFolder() {
+  if (kept_) return;
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+  for (const std::string& one : above_) fs::remove(one, ignored);  // where nothing else is in it
+}
+
+Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
+                                    const std::string& source,
+                                    const std::function<Result<void>(const PutFile&)>& fill) {
+  const InputFacts facts = KA_TRY(facts_of(files, source, "hashing", {}));
+  const std::string name(file_name(source));
+  const std::string own =
+      label_of(name.substr(0, name.find('.'))) + "-" + facts.sha256.substr(0, 8);
+  const fs::path to = fs::path(parent) / own;
+  if (fs::is_directory(to)) return to.string();
+  const fs::path beside = fs::path(parent) / ("." + own);
+  std::error_code fault;
+  fs::remove_all(beside, fault);  // of a run that was killed
+  UnfinishedFolder unfinished(beside.string());
+  KA_TRY(make_all_folders(beside));
+  KA_TRY(fill([&](const std::string& file) -> Result<OutputFile> {
+    const fs::path path = beside / file;
+    KA_TRY(make_all_folders(path.parent_path()));
+    return OutputFile::create(files, path.string(), Overwrite::no);
+  }));
+  fs::rename(beside, to, fault);
+  if (fault) return Failure(Error{to.string(), 0, "a folder that can be named", fault.message()});
+  unfinished.keep();
+  return to.string();
+}
+
+}  // namespace kinalign

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// A folder that comes to be only when all its files are there, so that an import that fails or is
+// stopped leaves nothing half done.
+#pragma once
+
+#include "kinalign/core/files.h"
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+/// A folder that is not there yet. Unless it is kept, it is removed at the end with all that is in
+/// it, and so are the folders above it that were not there.
+class UnfinishedFolder {
+ public:
+  explicit UnfinishedFolder(std::string path);
+  UnfinishedFolder(const UnfinishedFolder&) = delete;
+  UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
+  ~UnfinishedFolder();
+
+  void keep() { kept_ = true; }
+
+ private:
+  std::string path_;
+  std::vector<std::string> above_;  // the deepest first
+  bool kept_ = false;
+};
+
+/// Puts a file into the folder, in folders of its own where `name` has them.
+using PutFile = std::function<Result<OutputFile>(const std::string& name)>;
+
+/// The folder `parent`/STEM-HASH of what `source` is unpacked to; the hash is the file's, so that
+/// the same source is unpacked once. `fill` is called where the folder is not there yet.
+Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
+                                    const std::string& source,
+                                    const std::function<Result<void>(const PutFile&)>& fill);
+
+}  // namespace kinalign

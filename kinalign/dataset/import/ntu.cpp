@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// NTU RGB+D: S001C002P003R001A004.skeleton is setup, camera, person, repetition and action.
+#include "kinalign/dataset/import/corpora.h"
+#include "kinalign/formats/points/ntu_bodies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+struct ClipName {
+  std::uint32_t setup = 0, camera = 0, person = 0, repetition = 0, action = 0;
+
+  /// 1712 is setup 17, camera 1, repetition 2: each clip of a person's action has one of its own.
+  std::uint32_t run() const { return 100 * setup + 10 * camera + repetition; }
+  /// Actions of two people (rose1.ntu.edu.sg): the second person has no number.
+  bool is_mutual() const { return (action >= 50 && action <= 60) || action >= 106; }
+  std::string_view class_id() const {
+    if (is_mutual()) return "mutual";
+    return (action >= 41 && action <= 49) || action >= 103 ? "medical" : "daily";
+  }
+};
+
+bool take_three_digits(std::string_view& text, char lead, std::uint32_t& out) {
+  if (text.size() < 4 || text.front() != lead) return false;
+  out = 0;
+  for (const char c : text.substr(1, 3)) {
+    if (c < '0' || c > '9') return false;
+    out = 10 * out + static_cast<std::uint32_t>(c - '0');
+  }
+  text.remove_prefix(4);
+  return true;
+}
+
+std::optional<ClipName> clip_of(std::string_view name) {
+  ClipName out;
+  std::string_view rest = stem_of(name);
+  const bool fits =
+      has_ending(name, ".skeleton") && take_three_digits(rest, 'S', out.setup) &&
+      take_three_digits(rest, 'C', out.camera) && take_three_digits(rest, 'P', out.person) &&
+      take_three_digits(rest, 'R', out.repetition) && take_three_digits(rest, 'A', out.action);
+  return fits && rest.empty() ? std::optional(out) : std::nullopt;
+}
+
+bool looks_like_ntu(FileSystem&, const std::vector<SourceFile>& sources) {
+  return std::any_of(sources.begin(), sources.end(),
+                     [](const SourceFile& file) { return clip_of(file.name).has_value(); });
+}
+
+/// The body that is seen longest and, of two people's actions, the next one; `bodies` come so.
+Manifest clip_manifest(const std::string& path, const std::vector<NtuBody>& bodies,
+                       bool is_mutual) {
+  Manifest out;
+  const std::size_t count = is_mutual ? std::min<std::size_t>(bodies.size(), 2) : 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    out.streams.push_back(stream_of(k == 0 ? "kinect" : "partner", path, "ntu"));
+    out.streams.back().select = {{"body", bodies[k].id}};
+  }
+  if (count == 2) out.streams.back().clock = "shared";  // rows of one file
+  return out;
+}
+
+Result<Corpus> list_ntu(const ImportInput& input) {
+  Corpus out{.name = "NTU RGB+D",
+             .licence = "for academic research alone, by agreement with ROSE Lab",
+             .citation =
+                 "A. Shahroudy, J. Liu, T.-T. Ng, G. Wang: NTU RGB+D. CVPR 2016; J. Liu et "
+                 "al.: NTU RGB+D 120. TPAMI 2019",
+             .classes = {{"daily", "daily actions"},
+                         {"medical", "medical conditions"},
+                         {"mutual", "actions of two people"}},
+             .class_id = "daily"};
+  for (const SourceFile& file : input.sources) {
+    const auto clip = clip_of(file.name);
+    if (!clip) continue;
+    const std::string stem(stem_of(file.name)), action = fmt::format("A{:03}", clip->action);
+    InputFile opened = KA_TRY(InputFile::open(input.files, file.path));
+    const auto bodies = KA_TRY(ntu_bodies([&opened] { return opened.next(); }, file.path));
+    if (!go_on(input.progress, "reading", out.takes.size(), input.sources.size())) {
+      return Failure(interruption(file.path));
+    }
+    if (bodies.empty()) {
+      out.left_out.push_back({stem, "without a skeleton"});
+      continue;
+    }
+    out.takes.push_back({fmt::format("{:03}", clip->person), action, clip->run(),
+                         clip_manifest(file.path, bodies, clip->is_mutual()), stem});
+    const bool is_known = std::any_of(out.actions.begin(), out.actions.end(),
+                                      [&](const Action& one) { return one.id == action; });
+    if (!is_known) out.actions.push_back({action, std::string(clip->class_id()), ""});
+  }
+  return out;
+}
+
+}  // namespace
+
+CorpusKind ntu_corpus() {
+  return {"ntu", "S001C001P001R001A001.skeleton", false, looks_like_ntu, list_ntu};
+}
+
+}  // namespace kinalign

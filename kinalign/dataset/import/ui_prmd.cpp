@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// UI-PRMD: a Kinect v2 and Vicon markers of ten movements of rehabilitation, cut into repetitions.
+// Each device was cut by hand for itself, so that the time shift of a pair is not known.
+#include "kinalign/dataset/import/corpora.h"
+#include "kinalign/dataset/import/new_folder.h"
+#include "kinalign/dataset/import/ui_prmd_pieces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::array<std::string_view, 10> movements{"deep squat",
+                                                     "hurdle step",
+                                                     "inline lunge",
+                                                     "side lunge",
+                                                     "sit to stand",
+                                                     "standing active straight leg raise",
+                                                     "standing shoulder abduction",
+                                                     "standing shoulder extension",
+                                                     "standing shoulder internal-external rotation",
+                                                     "standing shoulder scaption"};
+
+/// "m01_s02_e03_positions.txt", and with _inc a repetition that was done wrongly on purpose.
+struct PieceName {
+  int movement = 0, subject = 0, repetition = 0;
+  bool incorrect = false;
+
+  auto operator<=>(const PieceName&) const = default;
+  std::string action() const { return fmt::format("m{:02}{}", movement, incorrect ? "inc" : ""); }
+  std::string text() const {
+    return fmt::format("m{:02}_s{:02}_e{:02}{}", movement, subject, repetition,
+                       incorrect ? "_inc" : "");
+  }
+};
+
+/// Takes `lead` and two digits off the front.
+bool take_two_digits(std::string_view& text, std::string_view lead, int& out) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (!text.starts_with(lead) || text.size() < lead.size() + 2) return false;
+  const char a = text[lead.size()], b = text[lead.size() + 1];
+  if (!is_digit(a) || !is_digit(b)) return false;
+  out = 10 * (a - '0') + (b - '0');
+  text.remove_prefix(lead.size() + 2);
+  return true;
+}
+
+std::optional<PieceName> piece_of(std::string_view name) {
+  PieceName out;
+  std::string_view rest = stem_of(name);
+  if (!has_ending(name, ".txt") || !take_two_digits(rest, "m", out.movement) ||
+      !take_two_digits(rest, "_s", out.subject) || !take_two_digits(rest, "_e", out.repetition)) {
+    return std::nullopt;
+  }
+  out.incorrect = rest == "_positions_inc";
+  return out.incorrect || rest == "_positions" ? std::optional(out) : std::nullopt;
+}
+
+bool is_piece_pack(const SourceFile& file) {
+  std::string_view stem = stem_of(file.name);
+  int number = 0;
+  return has_ending(file.name, ".npz") && take_two_digits(stem, "s", number) && stem.empty();
+}
+
+bool looks_like_ui_prmd(FileSystem&, const std::vector<SourceFile>& sources) {
+  return std::any_of(sources.begin(), sources.end(), [](const SourceFile& file) {
+    return is_piece_pack(file) || piece_of(file.name).has_value();
+  });
+}
+
+struct Pair {
+  std::string kinect, vicon;  // files of positions
+  double vicon_hz = 100.0;
+};
+using Pairs = std::map<PieceName, Pair>;
+
+/// Whole movements, which the pieces were cut out of, are no pieces and are passed over.
+void add_texts(const std::vector<SourceFile>& sources, double vicon_hz, Pairs& out) {
+  for (const SourceFile& file : sources) {
+    const auto piece = piece_of(file.name);
+    if (!piece) continue;
+    const bool is_kinect = file.path.find("/Kinect/") != std::string::npos;
+    const bool is_vicon = file.path.find("/Vicon/") != std::string::npos;
+    if (is_kinect == is_vicon) continue;
+    Pair& pair = out[*piece];
+    std::string& path = is_kinect ? pair.kinect : pair.vicon;
+    if (!path.empty()) continue;
+    path = file.path;
+    if (is_vicon) pair.vicon_hz = vicon_hz;
+  }
+}
+
+Result<void> add_packs(const ImportInput& input, Pairs& out) {
+  for (const SourceFile& file : input.sources) {
+    if (!is_piece_pack(file)) continue;
+    const std::string folder = KA_TRY(unpacked_folder(
+        input.files, input.raw_folder, file.path, [&](const PutFile& put) -> Result<void> {
+          return write_ui_prmd_pieces(KA_TRY(archive_bytes(input.files, file.path)),
+                                      std::string(stem_of(file.name)), put);
+        }));
+    Pairs packed;
+    add_texts(KA_TRY(list_sources(input.files, {folder}, input.raw_folder, input.progress)), 50.0,
+              packed);
+    out.merge(packed);  // pieces whose texts are there stay these
+  }
+  return {};
+}
+
+Manifest pair_manifest(const Pair& pair) {
+  Manifest out;
+  out.streams.push_back(stream_of("mocap", pair.vicon, "ui_prmd_vicon"));
+  if (pair.vicon_hz != 100.0) out.streams.back().rate_hz = pair.vicon_hz;
+  out.streams.push_back(stream_of("kinect", pair.kinect, "ui_prmd_kinect"));
+  SpaceOptions& space = out.spaces["kinect"];
+  space.method = "fit";
+  // The markers on the skin that lie nearest to the joints, in pairs left and right.
+  space.joints = {{"UpperArmLeft", "LSHO"}, {"UpperArmRight", "RSHO"}, {"ForearmLeft", "LELB"},
+                  {"ForearmRight", "RELB"}, {"HandLeft", "LWRA"},      {"HandRight", "RWRA"},
+                  {"LowerLegLeft", "LKNE"}, {"LowerLegRight", "RKNE"}, {"FootLeft", "LANK"},
+                  {"FootRight", "RANK"}};
+  return out;
+}
+
+Result<Corpus> list_ui_prmd(const ImportInput& input) {
+  Corpus out{.name = "UI-PRMD",
+             .licence = "ODC PDDL 1.0",
+             .citation =
+                 "A. Vakanski, H. Jun, D. Paul, R. Baker: A Data Set of Human Body Movements "
+                 "for Physical Rehabilitation Exercises. Data 2018, 3(1), 2",
+             .classes = {{"uiprmd", "movements of rehabilitation"},
+                         {"uiprmdinc", "movements of rehabilitation, done wrongly on purpose"}},
+             .class_id = "uiprmd"};
+  for (std::size_t k = 0; k < movements.size(); ++k) {
+    const std::string id = fmt::format("m{:02}", k + 1), name(movements[k]);
+    out.actions.push_back({id, "uiprmd", name});
+    out.actions.push_back({id + "inc", "uiprmdinc", name + ", done wrongly"});
+  }
+  Pairs pairs;
+  add_texts(input.sources, 100.0, pairs);
+  KA_TRY(add_packs(input, pairs));
+  for (const auto& [piece, pair] : pairs) {
+    if (pair.kinect.empty() || pair.vicon.empty()) {
+      out.left_out.push_back(
+          {piece.text(), pair.vicon.empty() ? "without Vicon" : "without Kinect"});
+      continue;
+    }
+    out.takes.push_back({fmt::format("{:02}", piece.subject), piece.action(),
+                         static_cast<std::uint32_t>(piece.repetition), pair_manifest(pair),
+                         piece.text()});
+  }
+  return out;
+}
+
+}  // namespace
+
+CorpusKind ui_prmd_corpus() {
+  return {"ui-prmd", "Kinect/Positions/m01_s01_e01_positions.txt, s01.npz", false,
+          looks_like_ui_prmd, list_ui_prmd};
+}
+
+}  // namespace kinalign

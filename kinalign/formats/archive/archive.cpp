@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/archive/archive.h"
+
+#include "kinalign/core/utf8.h"
+#include "kinalign/formats/archive/zip_names.h"
+
+#include <archive.h>
+#include <archive_entry.h>
+#include <fmt/format.h>
+#include <locale.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t longest_name = 1000, longest_part = 255;
+constexpr std::uint64_t not_judged = std::uint64_t{64} << 20;
+
+/// The source of libarchive's callbacks. A failure is kept, since callbacks can hand on only -1.
+struct Feed {
+  const ArchiveBytes& bytes;
+  std::uint64_t at = 0;
+  std::vector<char> buffer = std::vector<char>(std::size_t{256} << 10);
+  std::optional<Error> failure{};
+};
+
+la_ssize_t read_more(archive*, void* data, const void** out) {
+  Feed& feed = *static_cast<Feed*>(data);
+  const auto got = feed.bytes.read_at(feed.at, feed.buffer);
+  if (!got) {
+    feed.failure = got.error();
+    return -1;
+  }
+  feed.at += *got;
+  *out = feed.buffer.data();
+  return static_cast<la_ssize_t>(*got);
+}
+
+la_int64_t seek_to(archive*, void* data, la_int64_t offset, int whence) {
+  Feed& feed = *static_cast<Feed*>(data);
+  const auto size = static_cast<la_int64_t>(feed.bytes.size);
+  const la_int64_t from = whence == SEEK_SET   ? 0
+                          : whence == SEEK_CUR ? static_cast<la_int64_t>(feed.at)
+                                               : size;
+  if (offset < -from || offset > size - from) return ARCHIVE_FATAL;
+  feed.at = static_cast<std::uint64_t>(from + offset);
+  return static_cast<la_int64_t>(feed.at);
+}
+
+/// Names are UTF-8 while it lives: libarchive drops those that the locale's letters can't spell. Of
+/// this thread alone.
+class NamesInUtf8 {
+ public:
+  NamesInUtf8() : own_(newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr)) {
+    if (own_ != nullptr) before_ = uselocale(own_);
+  }
+  NamesInUtf8(const NamesInUtf8&) = delete;
+  NamesInUtf8& operator=(const NamesInUtf8&) = delete;
+  ~NamesInUtf8() {
+    if (own_ == nullptr) return;
+    uselocale(before_);
+    freelocale(own_);
+  }
+
+ private:
+  locale_t own_, before_ = nullptr;
+};
+
+struct Free {
+  void operator()(archive* one) const { archive_read_free(one); }
+};
+using Owned = std::unique_ptr<archive, Free>;
+
+/// Names that were given out, and the folders that they lie in.
+class GivenNames {
+ public:
+  /// False where the name, or a file in place of one of its folders, was there before.
+  bool add(const std::string& name) {
+    if (folders_.contains(name) || !files_.insert(name).second) return false;
+    for (auto slash = name.find('/'); slash != std::string::npos;
+         slash = name.find('/', slash + 1)) {
+      std::string folder = name.substr(0, slash);
+      if (files_.contains(folder)) return false;
+      folders_.insert(std::move(folder));
+    }
+    return true;
+  }
+
+ private:
+  std::set<std::string> files_, folders_;
+};
+
+class ArchiveReader {
+ public:
+  ArchiveReader(const ArchiveBytes& bytes, const ArchiveLimits& limits)
+      : feed_{bytes}, limits_(limits), archive_(archive_read_new()) {}
+
+  Result<void> read(const UseArchiveFile& use) {
+    KA_TRY(open());
+    std::uint64_t entries = 0;
+    for (;;) {
+      archive_entry* entry = nullptr;
+      const int status = archive_read_next_header(archive_.get(), &entry);
+      if (status == ARCHIVE_EOF) return {};
+      if (status != ARCHIVE_OK && status != ARCHIVE_WARN) return Failure(damage("an entry"));
+      if (++entries > limits_.entries) {
+        return refuse(fmt::format("at most {} entries", limits_.entries), "more");
+      }
+      const std::string said = name_of(entry);
+      KA_TRY(check_kind(entry, said));
+      auto safe = safe_archive_name(said);
+      if (!safe && archive_entry_filetype(entry) == AE_IFDIR && is_top(said)) continue;
+      if (!safe) return refuse(safe.error().expected, shown(said));
+      if (archive_entry_filetype(entry) == AE_IFDIR) continue;
+      if (!given_.add(*safe)) return refuse("each name once", shown(said) + " again");
+      KA_TRY(use(*safe, [this, said] { return next_piece(said); }));
+    }
+  }
+
+ private:
+  Result<void> open() {
+    archive* const a = archive_.get();
+    archive_read_support_format_zip_seekable(a);
+    archive_read_support_format_tar(a);
+    archive_read_support_filter_gzip(a);
+    archive_read_set_read_callback(a, read_more);
+    archive_read_set_seek_callback(a, seek_to);
+    archive_read_set_callback_data(a, &feed_);
+    if (archive_read_open1(a) == ARCHIVE_OK) return {};
+    return Failure(damage("a ZIP, a tar or a tar.gz"));
+  }
+
+  Failure refuse(std::string expected, std::string found) const {
+    return Failure(
+        Error{feed_.bytes.name, 0, std::move(expected) + " in the archive", std::move(found)});
+  }
+
+  Error damage(const std::string& expected) const {
+    if (feed_.failure) return *feed_.failure;
+    const char* const said = archive_error_string(archive_.get());
+    return Error{feed_.bytes.name, 0, expected + " that can be read",
+                 said == nullptr ? "damaged bytes" : shown(said)};
+  }
+
+  static bool is_top(std::string_view name) {
+    return name.find_first_not_of("./") == std::string_view::npos && name.find("..") == name.npos &&
+           !name.starts_with('/');
+  }
+
+  static std::string name_of(archive_entry* entry) {
+    const char* name = archive_entry_pathname_utf8(entry);
+    if (name == nullptr) name = archive_entry_pathname(entry);
+    return name == nullptr ? "" : as_utf8(name);
+  }
+
+  Result<void> check_kind(archive_entry* entry, const std::string& name) const {
+    const auto type = archive_entry_filetype(entry);
+    const bool is_link = type == AE_IFLNK || archive_entry_hardlink(entry) != nullptr ||
+                         archive_entry_symlink(entry) != nullptr;
+    if (is_link) return refuse("files and folders alone", "a link, " + shown(name));
+    if (type != AE_IFREG && type != AE_IFDIR) {
+      return refuse("files and folders alone", "a device, " + shown(name));
+    }
+    if (archive_entry_is_encrypted(entry) > 0) {
+      return refuse("files without a password", shown(name));
+    }
+    return {};
+  }
+
+  /// Counted as they come: an archive's own numbers are not trusted.
+  Result<std::string_view> next_piece(const std::string& name) {
+    const la_ssize_t got = archive_read_data(archive_.get(), piece_.data(), piece_.size());
+    if (got < 0) {
+      Error error = damage(shown(name));
+      return Failure(std::move(error));
+    }
+    bytes_ += static_cast<std::uint64_t>(got);
+    if (bytes_ > limits_.bytes) {
+      return refuse(fmt::format("at most {} bytes in all files", limits_.bytes),
+                    "more, up to " + shown(name));
+    }
+    if (bytes_ > not_judged && (bytes_ - not_judged) / limits_.ratio > feed_.bytes.size) {
+      return refuse(fmt::format("files at most {} times the archive's size", limits_.ratio),
+                    "more, in " + shown(name));
+    }
+    return std::string_view(piece_.data(), static_cast<std::size_t>(got));
+  }
+
+  Feed feed_;
+  const ArchiveLimits& limits_;
+  Owned archive_;
+  GivenNames given_;
+  std::uint64_t bytes_ = 0;
+  std::vector<char> piece_ = std::vector<char>(std::size_t{256} << 10);
+};
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+
+}  // namespace
+
+Result<std::string> safe_archive_name(std::string_view name) {
+  const auto refuse = [whole = name](std::string expected) {
+    return Failure(Error{"", 0, std::move(expected), shown(whole)});
+  };
+  if (name.empty()) return refuse("names");
+  if (name.size() > longest_name)
+    return refuse(fmt::format("names of at most {} bytes", longest_name));
+  if (name.starts_with('/') || (name.size() > 1 && name[1] == ':')) return refuse("relative names");
+  if (name.find('\\') != name.npos) return refuse("names without a backslash");
+  if (std::any_of(name.begin(), name.end(), is_control)) {
+    return refuse("names without control characters");
+  }
+  std::string out;
+  while (!name.empty()) {
+    const std::string_view part = name.substr(0, name.find('/'));
+    name.remove_prefix(std::min(name.size(), part.size() + 1));
+    if (part.empty() || part == ".") continue;
+    if (part == "..") return refuse("names without ..");
+    if (part.size() > longest_part) {
+      return refuse(fmt::format("folders and files of at most {} bytes", longest_part));
+    }
+    out += (out.empty() ? "" : "/") + std::string(part);
+  }
+  if (out.empty()) return refuse("names");
+  return out;
+}
+
+bool looks_like_archive(std::string_view head, std::string_view path) {
+  if (head.starts_with("PK\x03\x04") || head.starts_with("PK\x05\x06")) return true;
+  if (head.size() > 262 && head.substr(257, 5) == "ustar") return true;
+  return head.starts_with("\x1f\x8b") && (path.ends_with(".tar.gz") || path.ends_with(".tgz"));
+}
+
+Result<void> read_archive(const ArchiveBytes& bytes, const ArchiveLimits& limits,
+                          const UseArchiveFile& use) {
+  KA_TRY(check_zip_names(bytes));
+  const NamesInUtf8 locale;
+  return ArchiveReader(bytes, limits).read(use);
+}
+
+}  // namespace kinalign

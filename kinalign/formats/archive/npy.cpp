@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/archive/npy.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 40;
+constexpr std::size_t longest_header = 65536, most_dimensions = 32;
+
+/// The header's dict: {'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }. numpy evaluates
+/// it as Python; here only what numpy writes is taken.
+class HeaderText {
+ public:
+  explicit HeaderText(std::string_view text) : text_(text) {}
+
+  bool parse(NpyHeader& out) {
+    if (!take("{")) return false;
+    bool descr = false, order = false, shape = false;
+    while (!take("}")) {
+      const auto key = quoted();
+      if (!key || !take(":")) return false;
+      bool taken = false;
+      if (*key == "descr") taken = !std::exchange(descr, true) && parse_descr(out);
+      if (*key == "fortran_order") taken = !std::exchange(order, true) && take("False");
+      if (*key == "shape") taken = !std::exchange(shape, true) && parse_shape(out);
+      if (!taken) return false;
+      if (!take(",") && !next_is('}')) return false;
+    }
+    skip_blanks();
+    return descr && order && shape && text_.empty();
+  }
+
+ private:
+  void skip_blanks() {
+    const auto at = text_.find_first_not_of(" \n");
+    text_.remove_prefix(at == text_.npos ? text_.size() : at);
+  }
+  bool take(std::string_view word) {
+    skip_blanks();
+    if (!text_.starts_with(word)) return false;
+    text_.remove_prefix(word.size());
+    return true;
+  }
+  bool next_is(char c) {
+    skip_blanks();
+    return text_.starts_with(c);
+  }
+  std::optional<std::string_view> quoted() {
+    if (!take("'")) return std::nullopt;
+    const auto end = text_.find('\'');
+    if (end == text_.npos) return std::nullopt;
+    const std::string_view word = text_.substr(0, end);
+    text_.remove_prefix(end + 1);
+    return word;
+  }
+  std::optional<std::uint64_t> number() {
+    skip_blanks();
+    std::uint64_t value = 0;
+    const auto [end, fault] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
+    if (fault != std::errc{}) return std::nullopt;
+    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
+    return value;
+  }
+
+  /// "<f4", "|u1", "<U12".
+  bool parse_descr(NpyHeader& out) {
+    const auto descr = quoted();
+    if (!descr || descr->size() < 3) return false;
+    const char order = (*descr)[0];
+    std::uint64_t size = 0;
+    const char* const end = descr->data() + descr->size();
+    const auto [behind, fault] = std::from_chars(descr->data() + 2, end, size);
+    if (fault != std::errc{} || behind != end) return false;
+    out.kind = (*descr)[1];
+    if (out.kind == 'U') {
+      if (order != '<' || size == 0 || size > longest_header) return false;
+      out.value_bytes = 4 * size;
+      return true;
+    }
+    const bool whole = out.kind == 'i' || out.kind == 'u';
+    const bool known = (whole && (size == 1 || size == 2 || size == 4 || size == 8)) ||
+                       (out.kind == 'f' && (size == 4 || size == 8));
+    out.value_bytes = size;
+    return known && (order == '<' || (order == '|' && size == 1));
+  }
+
+  bool parse_shape(NpyHeader& out) {
+    if (!take("(")) return false;
+    while (!take(")")) {
+      const auto length = number();
+      if (!length || *length > most_bytes || out.shape.size() == most_dimensions) return false;
+      out.shape.push_back(*length);
+      if (!take(",") && !next_is(')')) return false;
+    }
+    return true;
+  }
+
+  std::string_view text_;
+};
+
+template <class Value>
+Value value_at(const NpyArray& array, std::size_t index) {
+  static_assert(std::endian::native == std::endian::little);
+  Value value;
+  std::memcpy(&value, array.bytes.data() + index * sizeof(Value), sizeof(Value));
+  return value;
+}
+
+void put_utf8(std::string& out, std::uint32_t code) {
+  const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
+  if (code < 0x80) return put(code);
+  if (code > 0x10FFFF || (code >= 0xD800 && code < 0xE000)) return put('?');
+  if (code < 0x800) {
+    put(0xC0 | code >> 6);
+  } else {
+    if (code < 0x10000) {
+      put(0xE0 | code >> 12);
+    } else {
+      put(0xF0 | code >> 18);
+      put(0x80 | (code >> 12 & 0x3F));
+    }
+    put(0x80 | (code >> 6 & 0x3F));
+  }
+  put(0x80 | (code & 0x3F));
+}
+
+}  // namespace
+
+std::uint64_t NpyHeader::values() const {
+  std::uint64_t count = 1;
+  for (const std::uint64_t length : shape) count *= length;
+  return count;
+}
+
+Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name) {
+  const auto refuse = [&](std::string expected, std::string found) {
+    return Failure(Error{std::string(name), 0, std::move(expected), std::move(found)});
+  };
+  if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 10) {
+    return refuse("an array of numpy, NPY", "another beginning");
+  }
+  const int version = bytes[6];
+  if (version < 1 || version > 3) {
+    return refuse("an NPY of version 1 to 3", std::to_string(static_cast<unsigned char>(version)));
+  }
+  const std::size_t length_bytes = version == 1 ? 2 : 4, at = 8 + length_bytes;
+  std::size_t length = 0;
+  for (std::size_t i = length_bytes; i-- > 0 && bytes.size() >= at;) {
+    length = length << 8 | static_cast<unsigned char>(bytes[8 + i]);
+  }
+  if (bytes.size() < at || length > longest_header || bytes.size() - at < length) {
+    return refuse("a whole NPY header", "one of " + std::to_string(length) + " bytes");
+  }
+  NpyHeader out;
+  const std::string_view text = bytes.substr(at, length);
+  if (!HeaderText(text).parse(out)) {
+    return refuse("an NPY of numbers or texts, little-endian, in C order", shown(text));
+  }
+  out.data_at = at + length;
+  std::uint64_t all = std::max<std::size_t>(out.value_bytes, 1);
+  for (const std::uint64_t one : out.shape) {
+    if (one > 0 && all > most_bytes / one)
+      return refuse("an array below 2^40 bytes", "a larger one");
+    all *= std::max<std::uint64_t>(one, 1);
+  }
+  return out;
+}
+
+Result<NpyArray> read_npy(std::string&& file, std::string_view name) {
+  NpyArray out;
+  out.header = KA_TRY(parse_npy_header(file, name));
+  const std::uint64_t wanted = out.header.values() * out.header.value_bytes;
+  if (file.size() - out.header.data_at != wanted) {
+    return Failure(Error{std::string(name), 0, std::to_string(wanted) + " bytes of values",
+                         std::to_string(file.size() - out.header.data_at)});
+  }
+  file.erase(0, out.header.data_at);
+  out.bytes = std::move(file);
+  return out;
+}
+
+std::int64_t integer_at(const NpyArray& array, std::size_t index) {
+  const auto as = [&]<class Small, class Whole>(Small, Whole) {
+    return array.header.kind == 'i' ? std::int64_t{value_at<Small>(array, index)}
+                                    : static_cast<std::int64_t>(value_at<Whole>(array, index));
+  };
+  switch (array.header.value_bytes) {
+    case 1:
+      return as(std::int8_t{}, std::uint8_t{});
+    case 2:
+      return as(std::int16_t{}, std::uint16_t{});
+    case 4:
+      return as(std::int32_t{}, std::uint32_t{});
+    default:
+      return as(std::int64_t{}, std::uint64_t{});
+  }
+}
+
+double number_at(const NpyArray& array, std::size_t index) {
+  if (array.header.kind != 'f') return static_cast<double>(integer_at(array, index));
+  return array.header.value_bytes == 4 ? static_cast<double>(value_at<float>(array, index))
+                                       : value_at<double>(array, index);
+}
+
+std::string text_at(const NpyArray& array, std::size_t index) {
+  std::string out;
+  const std::size_t letters = array.header.value_bytes / 4;
+  for (std::size_t i = 0; i < letters; ++i) {
+    const auto code = value_at<std::uint32_t>(array, index * letters + i);
+    if (code == 0) break;
+    put_utf8(out, code);
+  }
+  return out;
+}
+
+}  // namespace kinalign

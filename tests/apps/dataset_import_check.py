@@ -1,0 +1,492 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Published corpora become takes of a data set; archives of any kind stay in their folder.
+dataset_import_check.py BUILD_FOLDER [CASE...]"""
+import hashlib
+import io
+import json
+import pathlib
+import shutil
+import stat
+import struct
+import subprocess
+import sys
+import tarfile
+import zipfile
+
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from cases import DEMO, Skip, case, kinalign, law, main
+
+SHARED = pathlib.Path(__file__).resolve().parents[3] / "shared/data"
+
+
+def shared(name):
+    if not (SHARED / name).exists():
+        raise Skip(f"no ../shared/data/{name}")
+    return SHARED / name
+
+
+def said(*words, code=0, **how):
+    """A call that ends with this code: what it printed on stdout, or on stderr where it failed."""
+    ran = kinalign("dataset", *words, **how)
+    told = law(ran, ("dataset", *words))
+    assert ran.returncode == code, told
+    return (ran.stdout if code < 2 else ran.stderr).decode()
+
+
+def answer(*words, **how):
+    return json.loads(said(*words, "--json", **how))
+
+
+def contents(folder):
+    """Hash of every file, but for the cache."""
+    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest()
+            for p in sorted(folder.rglob("*")) if p.is_file() and ".kinalign" not in p.parts}
+
+
+def takes(data):
+    return sorted(p.name.removesuffix("_recording.toml") for p in data.glob("sub-*/*_recording.toml"))
+
+
+def small_bvh(folder, *names):
+    """One short BVH under many names."""
+    subprocess.run([DEMO, folder / "demo", "--seconds", "1", "--seed", "1"], check=True, capture_output=True)
+    bvh, = (folder / "demo").rglob("*.bvh")
+    for i, name in enumerate(names):
+        path = folder / "source" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(bvh.read_text() + "\n" * i)
+    return folder / "source"
+
+
+@case
+def a_folder_per_person_becomes_a_data_set_that_builds(folder):
+    source = small_bvh(folder, "anna/walk_02.bvh", "anna/walk_03.bvh", "bert/run.bvh", "01_07.bvh", "x/05_01.bvh")
+    (source / "01_07.bvh").rename(source / "anna/01_07.bvh")
+    made = answer("import", folder / "set", source)
+    assert (made["corpus"], made["takes"], made["added"], made["new_data_set"]) == ("bvh", 5, 5, True), made
+    assert takes(folder / "set") == ["sub-01_task-motion_run-07", "sub-05_task-motion_run-01", "sub-anna_task-walk_run-02",
+                                     "sub-anna_task-walk_run-03", "sub-bert_task-run_run-01"]
+    assert answer("build", folder / "set")["made"] == 5
+    assert "nothing wrong" in said("verify", folder / "set", "--deep")
+
+
+@case
+def the_same_import_said_again_adds_nothing_also_with_copies(folder):
+    source = small_bvh(folder, "anna/walk.bvh", "bert/walk.bvh", "bert/walk_2.bvh")
+    for copy in ([], ["--copy"]):
+        data = folder / f"set{len(copy)}"
+        assert answer("import", data, source, *copy)["added"] == 3
+        before = contents(data)
+        again = answer("import", data, source, *copy)
+        assert (again["added"], again["were_there"]) == (0, 3), again
+        assert contents(data) == before
+        assert any("sourcedata" in name for name in before) == bool(copy)
+    shutil.rmtree(source)
+    assert answer("build", folder / "set1")["made"] == 3
+
+
+@case
+def what_a_user_wrote_into_dataset_toml_stays_as_it_is(folder):
+    source = small_bvh(folder, "anna/walk.bvh")
+    said("init", folder / "set", "--name", "mine")
+    own = (folder / "set/dataset.toml").read_text() + "\n[subject.anna] # no consent yet\nsex = \"f\"\n"
+    (folder / "set/dataset.toml").write_text(own)
+    said("import", folder / "set", source)
+    text = (folder / "set/dataset.toml").read_text()
+    assert text.startswith(own) and text.count("[subject.anna]") == 1 and "[action.walk]" in text, text
+    (folder / "set/dataset.toml").write_text("subject = { bert = { } }\n")
+    before = contents(folder / "set")
+    assert "room for [subject.ID]" in said("import", folder / "set", source, code=3)
+    assert contents(folder / "set") == before
+
+
+@case
+def words_that_are_no_ids_become_such_and_stay_apart(folder):
+    source = small_bvh(folder, "p1/slow walk.bvh", "p1/slow_walk.bvh", "p1/größe.bvh", "p2/slow walk.bvh")
+    made = answer("import", folder / "set", source)
+    ids = made["action_ids"]
+    assert ids["slow walk"] == "slowWalk" and ids["slow_walk"] == "slowWalkx2" and ids["größe"] == "grE", ids
+    assert answer("import", folder / "set", source)["added"] == 0
+    text = (folder / "set/dataset.toml").read_text()
+    assert '[action.slowWalkx2]\nclass = "motion"\nname = "slow_walk"' in text, text
+
+
+@case
+def files_that_say_nobody_need_a_subject(folder):
+    source = small_bvh(folder, "walk.bvh", "down_1Char00.bvh")
+    err = said("import", folder / "set", source, code=3)
+    assert "--subject" in err and not (folder / "set").exists(), err
+    assert answer("import", folder / "set", source, "--subject", "07")["added"] == 2
+    assert takes(folder / "set") == ["sub-07_task-down_run-01", "sub-07_task-walk_run-01"]
+    said("import", folder / "two", source / "walk.bvh", "--subject", "07", "--action", "jump")
+    assert takes(folder / "two") == ["sub-07_task-jump_run-01"]
+
+
+@case
+def an_unknown_corpus_is_an_error_that_lists_the_known_ones(folder):
+    (folder / "source").mkdir()
+    (folder / "source/notes.txt").write_text("nothing")
+    err = said("import", folder / "set", folder / "source", code=3)
+    for kind in ("ui-prmd", "cmu", "keraal", "kinectmultitrack", "ntu", "bids", "bvh", "c3d", "mvnx", "trc"):
+        assert f"{kind} (" in err, err
+    assert not (folder / "set").exists()
+    said("import", folder / "set", folder / "source", "--from", "nothing", code=2)
+    small_bvh(folder, "anna/walk.bvh", "anna/walk.trc")
+    assert "--from" in said("import", folder / "set", folder / "source", code=3)
+
+
+def zipped(source, path, compression=zipfile.ZIP_DEFLATED):
+    with zipfile.ZipFile(path, "w", compression) as out:
+        for file in sorted(source.rglob("*")):
+            out.write(file, f"corpus/{file.relative_to(source)}")
+    return path
+
+
+def tarred(source, path, mode, form=tarfile.PAX_FORMAT):
+    with tarfile.open(path, mode, format=form) as out:
+        out.add(source, ".")
+    return path
+
+
+@case
+def archives_give_what_their_folder_gives(folder):
+    source = small_bvh(folder, "änne/walk.bvh", "bert/run_2.bvh", "bert/" + "long" * 40 + ".bvh")
+    said("import", folder / "plain", source)
+    archives = [zipped(source, folder / "a.zip"), zipped(source, folder / "stored.zip", zipfile.ZIP_STORED),
+                tarred(source, folder / "a.tar", "w"), tarred(source, folder / "a.tar.gz", "w:gz"),
+                tarred(source, folder / "a.tgz", "w:gz", tarfile.GNU_FORMAT)]
+    for archive in archives:
+        data = folder / ("from" + archive.name.replace(".", "_"))
+        made = answer("import", data, archive)
+        assert takes(data) == takes(folder / "plain"), (archive, takes(data), made)
+        unpacked = {p.name: p.read_bytes() for p in (data / "sourcedata").rglob("*.bvh")}
+        assert unpacked == {p.name: p.read_bytes() for p in source.rglob("*.bvh")}, archive
+        before = contents(data)
+        assert answer("import", data, archive)["added"] == 0
+        assert contents(data) == before
+    assert answer("build", data)["made"] == 3
+
+
+def zip_of(path, *names, data=b"x"):
+    with zipfile.ZipFile(path, "w") as out:
+        for name in names:
+            out.writestr(name, data)
+
+
+def zip_entry(path, **how):
+    info = zipfile.ZipInfo("anna/walk.bvh")
+    for name, value in how.items():
+        setattr(info, name, value)
+    with zipfile.ZipFile(path, "w") as out:
+        out.writestr(info, "/etc/passwd")
+
+
+def tar_of(path, *members):
+    with tarfile.open(path, "w") as out:
+        for name, how in members:
+            info = tarfile.TarInfo(name)
+            for key, value in how.items():
+                setattr(info, key, value)
+            out.addfile(info, io.BytesIO(b"x" * info.size))
+
+
+def with_nul(path):
+    zip_of(path, "anna/walkZ.bvh")
+    path.write_bytes(path.read_bytes().replace(b"walkZ", b"walk\0"))
+
+
+def encrypted(path):
+    zip_of(path, "anna/walk.bvh")
+    data = bytearray(path.read_bytes())
+    for mark, at in ((b"PK\3\4", 6), (b"PK\1\2", 8)):
+        where = data.index(mark) + at
+        data[where] |= 1
+    path.write_bytes(data)
+
+
+def with_bad_bytes(path):
+    zip_of(path, "anna/walk.bvh", data=b"many words " * 100)
+    path.write_bytes(path.read_bytes().replace(b"many words many", b"many wards many", 1))
+
+
+HOSTILE_ZIPS = [
+    ("leads up", lambda p: zip_of(p, "anna/../../../evil.bvh"), "evil.bvh"),
+    ("absolute", lambda p: zip_of(p, "/evil.bvh"), "/evil.bvh"),
+    ("a drive", lambda p: zip_of(p, "C:evil.bvh"), "C:evil.bvh"),
+    ("backslashes", lambda p: zip_of(p, "anna\\..\\..\\evil.bvh"), "evil.bvh"),
+    ("a control character", lambda p: zip_of(p, "anna/ev\x1b[2Jil.bvh"), "il.bvh"),
+    ("a NUL", with_nul, "anna/walk"),
+    ("a name twice", lambda p: zip_of(p, "anna/walk.bvh", "anna/./walk.bvh"), "walk.bvh again"),
+    ("a file in place of a folder", lambda p: zip_of(p, "anna", "anna/walk.bvh"), "anna/walk.bvh again"),
+    ("a folder in place of a file", lambda p: zip_of(p, "anna/walk.bvh", "anna"), "anna again"),
+    ("a link", lambda p: zip_entry(p, external_attr=(stat.S_IFLNK | 0o777) << 16), "a link, anna/walk.bvh"),
+    ("a device", lambda p: zip_entry(p, external_attr=(stat.S_IFCHR | 0o777) << 16), "a device, anna/walk.bvh"),
+    ("a password", encrypted, "anna/walk.bvh"),
+    ("a wrong checksum", with_bad_bytes, "hostile.zip"),
+    ("a long name", lambda p: zip_of(p, "a/" * 600 + "walk.bvh"), "a/a/a"),
+]
+HOSTILE_TARS = [
+    ("leads up", lambda p: tar_of(p, ("../evil.bvh", {"size": 1})), "../evil.bvh"),
+    ("absolute", lambda p: tar_of(p, ("/evil.bvh", {"size": 1})), "/evil.bvh"),
+    ("a symbolic link", lambda p: tar_of(p, ("link", {"type": tarfile.SYMTYPE, "linkname": "/tmp"}),
+                                         ("link/evil.bvh", {"size": 1})), "a link, link"),
+    ("a hard link", lambda p: tar_of(p, ("link", {"type": tarfile.LNKTYPE, "linkname": "/etc/passwd"})), "a link, link"),
+    ("a pipe", lambda p: tar_of(p, ("pipe", {"type": tarfile.FIFOTYPE})), "a device, pipe"),
+    ("a device", lambda p: tar_of(p, ("null", {"type": tarfile.CHRTYPE, "devmajor": 1, "devminor": 3})), "a device, null"),
+    ("a name twice", lambda p: tar_of(p, ("a.bvh", {"size": 1}), ("./a.bvh", {"size": 1})), "a.bvh again"),
+]
+
+
+@case
+def an_archive_cant_write_outside_of_its_target_and_leaves_nothing_behind(folder):
+    said("init", folder / "set")
+    before = contents(folder)
+    for ending, hostile in ((".zip", HOSTILE_ZIPS), (".tar", HOSTILE_TARS)):
+        for what, make, naming in hostile:
+            archive = folder / ("hostile" + ending)
+            make(archive)
+            for data in ("set", "fresh"):
+                err = said("import", folder / data, archive, "--subject", "01", code=3)
+                assert naming in err, f"{what}: {err}"
+            archive.unlink()
+            assert contents(folder) == before, f"{what}: {contents(folder).keys() - before.keys()}"
+            assert sorted(p.name for p in folder.rglob("*")) == ["dataset.toml", "set"], what
+            assert not list(folder.parent.glob("evil*")), what
+
+
+@case
+def a_small_archive_cant_fill_the_disk(folder):
+    for name, make in (("bomb.zip", lambda p: zipfile.ZipFile(p, "w", zipfile.ZIP_DEFLATED)),
+                       ("bomb.tar.gz", lambda p: tarfile.open(p, "w:gz"))):
+        with make(folder / name) as out:
+            if name.endswith("zip"):
+                with out.open("anna/walk.bvh", "w") as member:
+                    for _ in range(300):
+                        member.write(b"0" * (1 << 20))
+            else:
+                info = tarfile.TarInfo("anna/walk.bvh")
+                info.size = 300 << 20
+                out.addfile(info, io.BytesIO(b"0" * info.size))
+        assert (folder / name).stat().st_size < 1 << 20
+        err = said("import", folder / "set", folder / name, code=3)
+        assert "200 times" in err and "anna/walk.bvh" in err, err
+        assert not (folder / "set").exists()
+
+
+@case
+def an_archive_cut_anywhere_is_an_error_or_whole(folder):
+    source = small_bvh(folder, "anna/walk.bvh")
+    for archive in (zipped(source, folder / "whole.zip"), tarred(source, folder / "whole.tar.gz", "w:gz")):
+        data = archive.read_bytes()
+        for end in [0, 1, 10, 100] + [len(data) * k // 8 for k in range(1, 8)] + [len(data) - 30, len(data) - 1]:
+            part = folder / ("part" + "".join(archive.suffixes))
+            part.write_bytes(data[:end])
+            ran = kinalign("dataset", "import", folder / "set", part)
+            law(ran, ("dataset", "import", folder / "set", part))
+            if ran.returncode == 0:
+                assert takes(folder / "set") == ["sub-anna_task-walk_run-01"]
+                shutil.rmtree(folder / "set")
+            assert not (folder / "set").exists(), end
+
+
+def npz_with(folder, **changes):
+    """CMU's packing of one clip of a chain of two joints."""
+    arrays = {"planes": numpy.zeros((2, 9, 4), numpy.uint8), "joints": numpy.array(["hip", "knee"]),
+              "parents": numpy.array([-1, 0], numpy.int8), "tip_parents": numpy.array([1], numpy.int8),
+              "people": numpy.array(["02"]), "rest": numpy.array([[[0, 0, 0], [0, -0.5, 0]]], numpy.float32),
+              "axis": numpy.zeros((1, 2, 3), numpy.float32), "tips": numpy.array([[[0, -0.4, 0]]], numpy.float32),
+              "clip_person": numpy.array([0], numpy.int16), "clip_take": numpy.array(["02_05"]),
+              "clip_class": numpy.array(["walk"]), "clip_text": numpy.array(["a walk"]),
+              "clip_start": numpy.array([0], numpy.int32), "clip_len": numpy.array([4], numpy.int32),
+              "rate": numpy.float32(60)}
+    arrays.update(changes)
+    numpy.savez_compressed(folder / "asf_00.npz", **{k: v for k, v in arrays.items() if v is not None})
+    return folder / "asf_00.npz"
+
+
+@case
+def a_packed_clip_is_checked_before_anything_is_written(folder):
+    whole = npz_with(folder)
+    assert answer("import", folder / "set", whole)["added"] == 1
+    assert takes(folder / "set") == ["sub-02_task-walk_run-05"]
+    shutil.rmtree(folder / "set")
+    for changes, naming in (({"rest": None}, "array rest"), ({"clip_len": numpy.array([5])}, "clip 0"),
+                            ({"clip_person": numpy.array([-1])}, "clip 0"), ({"tip_parents": numpy.array([2])}, "tip_parents"),
+                            ({"parents": numpy.array([-1, 1])}, "asf_00.npz"), ({"joints": numpy.array([1, 2])}, "joints"),
+                            ({"planes": numpy.zeros((2, 8, 4), numpy.uint8)}, "planes"),
+                            ({"planes": numpy.zeros((2, 9, 4), numpy.uint8, order="F")}, "C order"),
+                            ({"clip_text": numpy.array([{"a": 1}], dtype=object)}, "numbers or texts"),
+                            ({"rate": numpy.float32("nan")}, "rate"), ({"people": numpy.array([], "<U2")}, "people")):
+        npz_with(folder, **changes)
+        err = said("import", folder / "set", whole, code=3)
+        assert naming in err, (changes, err)
+        assert not (folder / "set").exists(), changes
+    with zipfile.ZipFile(whole, "w") as out:
+        out.writestr("planes.npy", b"\x93NUMPY\1\0" + struct.pack("<H", 76) + b"{'descr': '<f8', 'fortran_order': False, "
+                     b"'shape': (999999999999,), }".ljust(76))
+    assert "2^40" in said("import", folder / "set", whole, code=3)
+
+
+def skeleton(bodies):
+    """Frames of an NTU file; `bodies`: the ids in each."""
+    lines = [str(len(bodies))]
+    for ids in bodies:
+        lines.append(str(len(ids)))
+        for one in ids:
+            lines += [f"{one} 0 1 1 1 1 0 0.1 0.2 2", "25"]
+            lines += [f"0.{k:02} {k / 10} 3 1 2 3 4 1 0 0 0 2" for k in range(25)]
+    return "\n".join(lines) + "\n"
+
+
+@case
+def names_of_ntu_say_person_action_and_run_and_mutual_actions_have_two_streams(folder):
+    source = folder / "source"
+    source.mkdir()
+    (source / "S017C001P008R002A050.skeleton").write_text(skeleton([["1", "2"]] * 5 + [["2"]]))
+    (source / "S017C003P008R002A001.skeleton").write_text(skeleton([["1", "2"]] * 5 + [["2"]]))
+    (source / "S017C003P008R002A002.skeleton").write_text(skeleton([[], []]))
+    made = answer("import", folder / "set", source)
+    assert made["left_out"] == [{"what": "S017C003P008R002A002", "why": "without a skeleton"}], made
+    assert takes(folder / "set") == ["sub-008_task-A001_run-1732", "sub-008_task-A050_run-1712"]
+    text = (folder / "set/sub-008/sub-008_task-A050_run-1712_recording.toml").read_text()
+    assert text.index('body = "2"') < text.index("[stream.partner]") < text.index('body = "1"'), text
+    assert answer("build", folder / "set")["made"] == 2
+    (source / "S017C003P008R002A003.skeleton").write_text("1\nmany\n")
+    assert "A003.skeleton:2: expected the number of bodies, found many" in said("import", folder / "set", source, code=3)
+
+
+def places(text):
+    """Joint places of a BVH, metres: an independent reader."""
+    names, parents, offsets, channels, open_joints = [], [], [], [], []
+    lines = iter(text.splitlines())
+    for line in lines:
+        words = line.split()
+        if words[0] in ("ROOT", "JOINT"):
+            parents.append(open_joints[-1] if open_joints else -1)
+            names.append(words[1])
+            now = len(names) - 1
+        elif words[0] == "End":
+            now = None
+        elif words[0] == "{":
+            open_joints.append(now)
+        elif words[0] == "}":
+            open_joints.pop()
+        elif words[0] == "OFFSET" and open_joints[-1] is not None:
+            offsets.append([float(w) for w in words[1:]])
+        elif words[0] == "CHANNELS":
+            channels.append(words[2:])
+        elif words[0] == "MOTION":
+            break
+    next(lines), next(lines)
+    rows = numpy.array([[float(w) for w in line.split()] for line in lines])
+    at, turned, column = [], [], 0
+    for j, parent in enumerate(parents):
+        place = numpy.tile(offsets[j], (len(rows), 1))
+        turn = numpy.tile(numpy.eye(3), (len(rows), 1, 1))
+        for channel in channels[j]:
+            axis, value, column = "XYZ".index(channel[0]), rows[:, column], column + 1
+            if channel.endswith("position"):
+                place[:, axis] = value
+                continue
+            a, b = (axis + 1) % 3, (axis + 2) % 3
+            one = numpy.tile(numpy.eye(3), (len(rows), 1, 1))
+            one[:, a, a] = one[:, b, b] = numpy.cos(numpy.radians(value))
+            one[:, b, a] = numpy.sin(numpy.radians(value))
+            one[:, a, b] = -one[:, b, a]
+            turn = turn @ one
+        if parent < 0:
+            at.append(place)
+            turned.append(turn)
+        else:
+            at.append(at[parent] + numpy.einsum("tab,tb->ta", turned[parent], place))
+            turned.append(turned[parent] @ turn)
+    return names, numpy.stack(at, 1) / 100
+
+
+@case
+def cmus_clips_come_in_by_one_command_and_stand_where_its_reference_puts_them(folder):
+    source = shared("cmu")
+    made = answer("import", folder / "set", source, seconds=300)
+    assert (made["corpus"], made["takes"], made["subjects"], len(made["left_out"])) == ("cmu", 353, 30, 28), made
+    sys.path.insert(0, str(source))
+    import unpack_cmu
+    worst, compared = 0.0, 0
+    for i, clip in enumerate(unpack_cmu.clips()):
+        if i % 16:
+            continue
+        bvh, = (folder / "set/sourcedata").glob(f"{clip['file'][:-4].replace('_', '')}-*/{clip['person']}__{clip['take']}.bvh")
+        names, found = places(bvh.read_text())
+        at, turned = [], []
+        for j, parent in enumerate(clip["parents"]):
+            if parent < 0:
+                at.append(clip["pos"] + clip["rest"][j])
+                turned.append(clip["rot"][:, j])
+            else:
+                at.append(at[parent] + turned[parent] @ clip["rest"][j])
+                turned.append(turned[parent] @ clip["rot"][:, j])
+        found = found[:, [names.index(joint) for joint in clip["joints"]]]
+        worst = max(worst, numpy.linalg.norm(found - numpy.stack(at, 1), axis=-1).max())
+        compared += 1
+    assert compared == 24 and worst < 1e-6, (compared, worst)  # six decimals of a centimetre and of a degree
+    assert answer("build", folder / "set", seconds=600)["made"] == 353
+    assert answer("build", folder / "set", seconds=600)["up_to_date"] == 353
+
+
+@case
+def ui_prmd_comes_in_by_one_command_and_equals_its_source(folder):
+    source = shared("ui_prmd")
+    made = answer("import", folder / "set", source, seconds=300)
+    assert (made["corpus"], made["takes"], made["subjects"], made["actions"]) == ("ui-prmd", 690, 7, 10), made
+    assert {one["why"] for one in made["left_out"]} == {"without Vicon"} and len(made["left_out"]) == 10, made
+    assert answer("import", folder / "set", source, seconds=300)["added"] == 0
+    for device, kind, half_a_step, rows in (("Kinect", "Positions", 0.005, 1), ("Kinect", "Angles", 0.005, 1),
+                                            ("Vicon", "Positions", 0.05, 2)):
+        name = f"{device}/{kind}/m10_s05_e02_{kind.lower()}.txt"
+        unpacked, = (folder / "set/sourcedata").glob(f"s05-*/{name}")
+        was = numpy.loadtxt(source / "original" / name, delimiter=",")[::rows]
+        now = numpy.loadtxt(unpacked, delimiter=",")
+        assert was.shape == now.shape and abs(was - now).max() < half_a_step + 1e-9, name
+    assert answer("build", folder / "set", seconds=600)["made"] == 690
+    assert answer("build", folder / "set", seconds=600)["up_to_date"] == 690
+    assert "nothing wrong" in said("verify", folder / "set", seconds=300)
+
+
+@case
+def a_pair_of_files_of_one_name_is_copied_apart_and_rebuilt(folder):
+    source = shared("ui_prmd") / "original"
+    for copy in ([], ["--copy"]):
+        data = folder / f"set{len(copy)}"
+        assert answer("import", data, source, *copy)["added"] == 2
+        assert answer("import", data, source, *copy)["added"] == 0
+        assert answer("build", data)["made"] == 2
+        assert answer("build", data)["up_to_date"] == 2
+        assert "nothing wrong" in said("verify", data, "--deep")
+    assert len(list((folder / "set1/sourcedata").rglob("*.txt"))) == 6
+    take = folder / "set0/sub-05/sub-05_task-m10_run-02_take.h5"
+    ran = kinalign("rebuild", take, "--inputs", source, "--verify")
+    assert ran.returncode == 0, ran
+
+
+@case
+def two_devices_of_a_file_or_of_a_pair_come_as_two_streams(folder):
+    for name, count, subject in (("kinect_keraal", 2, "G3P1"), ("kinect_multitrack", 3, "10")):
+        made = answer("import", folder / name, shared(name))
+        assert made["takes"] == count, made
+        assert answer("build", folder / name)["made"] == count
+        streams = said("query", folder / name, "select take, count(*) from streams group by take", "--format", "csv")
+        assert streams.count(f"sub-{subject}") == count and streams.count(",2") >= count, streams
+
+
+@case
+def tracking_systems_of_bids_motion_become_streams(folder):
+    source = shared("bids_motion")
+    made = answer("import", folder / "set", source)
+    assert (made["corpus"], made["takes"]) == ("bids", 1), made
+    manifest, = (folder / "set").glob("sub-07/sub-07_task-dualWalking_run-01_recording.toml")
+    assert "[stream.PhaseSpace1]" in manifest.read_text() and "[stream.PhaseSpace2]" in manifest.read_text()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Headers as numpy writes them; arrays of numpy itself: tests/data/fuzz/npy_fuzz.
+#include "kinalign/formats/archive/npy.h"
+
+#include "tests/folder.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+namespace {
+
+std::string npy(const std::string& header, const std::string& values) {
+  std::string out("\x93NUMPY\1\0", 8);
+  out += static_cast<char>(header.size() % 256);
+  out += static_cast<char>(header.size() / 256);
+  return out + header + values;
+}
+
+std::string header_fault(const std::string& header) {
+  const auto read = read_npy(npy(header, ""), "a.npy");
+  return read ? "" : to_string(read.error());
+}
+
+NpyArray numpys(const std::string& name) {
+  auto read = read_npy(bytes_in(KINALIGN_SOURCE_DIR "/tests/data/fuzz/npy_fuzz/" + name), name);
+  REQUIRE_MESSAGE(read, name);
+  return *std::move(read);
+}
+
+}  // namespace
+
+TEST_CASE("arrays that numpy wrote are read with their shape and values") {
+  const NpyArray floats = numpys("float.npy");
+  CHECK(floats.header.shape == std::vector<std::uint64_t>{2, 3});
+  CHECK(number_at(floats, 5) == 5.0);
+  const NpyArray integers = numpys("int.npy");
+  CHECK(integer_at(integers, 1) == -2);
+  CHECK(number_at(integers, 1) == -2.0);
+  const NpyArray texts = numpys("text.npy");
+  CHECK(text_at(texts, 0) == "walk");
+  CHECK(text_at(texts, 1) == "größe");
+  CHECK(numpys("scalar.npy").header.values() == 1);
+  CHECK(numpys("empty.npy").header.values() == 0);
+}
+
+TEST_CASE("an order, a kind or a header that is not ours is refused") {
+  CHECK(header_fault("{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }")
+            .starts_with("a.npy: expected an NPY of numbers or texts, little-endian, in C order"));
+  CHECK_FALSE(header_fault("{'descr': '>f8', 'fortran_order': False, 'shape': (0,), }").empty());
+  CHECK_FALSE(header_fault("{'descr': '|O', 'fortran_order': False, 'shape': (0,), }").empty());
+  CHECK_FALSE(header_fault("{'descr': '<U0', 'fortran_order': False, 'shape': (0,), }").empty());
+  CHECK_FALSE(header_fault("{'descr': '<f8', 'fortran_order': False, }").empty());
+  CHECK_FALSE(header_fault("{'descr': '<f8', 'descr': '<f8', 'shape': (0,), }").empty());
+  CHECK_FALSE(header_fault("{'descr': '<f8', 'fortran_order': False, 'shape': (0,), } x").empty());
+  CHECK_FALSE(header_fault("{'descr': '<f8', 'fortran_order': False, 'shape': (-1,), }").empty());
+  CHECK(header_fault("{'descr': '<f8', 'fortran_order': False, 'shape': (0,), }").empty());
+}
+
+TEST_CASE("an array has the bytes that its header promises, and never takes memory by them") {
+  CHECK(header_fault("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }") ==
+        "a.npy: expected 24 bytes of values, found 0");
+  CHECK(header_fault(
+            "{'descr': '<f8', 'fortran_order': False, 'shape': (4294967296, 4294967296), }") ==
+        "a.npy: expected an array below 2^40 bytes, found a larger one");
+  CHECK(header_fault("{'descr': '<f8', 'fortran_order': False, 'shape': (0, 99999999999999), }") ==
+        "a.npy: expected an NPY of numbers or texts, little-endian, in C order, found "
+        "{'descr': '<f8', 'fortran_order': False,...");
+}
