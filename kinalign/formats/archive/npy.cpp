@@ -189,7 +189,7 @@ Result<NpyArray> read_npy(std::string&& file, std::string_view name) {
 
 std::int64_t integer_at(const NpyArray& array, std::size_t index) {
   const auto as = [&]<class Small, class Whole>(Small, Whole) {
-    return array.header.kind == 'i' ? std::int64_t{value_at<Small>(array, index)}
+    return array.header.kind == 'i' ? static_cast<std::int64_t>(value_at<Small>(array, index))
                                     : static_cast<std::int64_t>(value_at<Whole>(array, index));
   };
   switch (array.header.value_bytes) {
