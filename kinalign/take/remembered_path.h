@@ -17,7 +17,8 @@ std::string remembered_path(const std::string& path);
 
 /// All paths of a manifest and their names. Where two files would have one name, those that lie
 /// elsewhere get as many of their folders as tell them apart: Kinect/m01.txt and
-/// Vicon/m01.txt. Paths of which one is the end of the other stay as they are: both may be one file.
+/// Vicon/m01.txt. Paths of which one is the end of the other stay as they are: both may be one
+/// file.
 std::map<std::string, std::string> remembered_paths(const std::vector<std::string>& paths);
 
 /// The name of `other`, which the reader of `path`, a file called `name`, opens by itself: from

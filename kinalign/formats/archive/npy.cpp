@@ -147,9 +147,9 @@ Result<NpyHeader> parse_npy_header(std::string_view bytes, std::string_view name
   if (!bytes.starts_with("\x93NUMPY") || bytes.size() < 10) {
     return refuse("an array of numpy, NPY", "another beginning");
   }
-  const int version = bytes[6];
+  const auto version = static_cast<unsigned char>(bytes[6]);
   if (version < 1 || version > 3) {
-    return refuse("an NPY of version 1 to 3", std::to_string(static_cast<unsigned char>(version)));
+    return refuse("an NPY of version 1 to 3", std::to_string(version));
   }
   const std::size_t length_bytes = version == 1 ? 2 : 4, at = 8 + length_bytes;
   std::size_t length = 0;
@@ -189,7 +189,7 @@ Result<NpyArray> read_npy(std::string&& file, std::string_view name) {
 
 std::int64_t integer_at(const NpyArray& array, std::size_t index) {
   const auto as = [&]<class Small, class Whole>(Small, Whole) {
-    return array.header.kind == 'i' ? std::int64_t{value_at<Small>(array, index)}
+    return array.header.kind == 'i' ? static_cast<std::int64_t>(value_at<Small>(array, index))
                                     : static_cast<std::int64_t>(value_at<Whole>(array, index));
   };
   switch (array.header.value_bytes) {
