@@ -122,7 +122,7 @@ void print(const WindowsMade& made, const WindowSource& source, Call& call) {
         "note   {} rows left out: in stretches shorter than half a window\n", made.rows_left_out));
   }
   auto left_out = nlohmann::ordered_json::array();
-  for (const LeftOut& one : made.takes_left_out) {
+  for (const TakeLeftOut& one : made.takes_left_out) {
     left_out.push_back({{"take", to_string(one.name)}, {"why", one.why}});
     if (left_out.size() > shown_takes) continue;
     call.console.print(

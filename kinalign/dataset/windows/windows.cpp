@@ -186,7 +186,7 @@ std::string text_of(const WindowsMade& made) {
            {"rows", made.rows_left_out},
            {"invalid", made.too_little_valid},
            {"left_out", Json::array()}};
-  for (const LeftOut& one : made.takes_left_out) {
+  for (const TakeLeftOut& one : made.takes_left_out) {
     out["left_out"].push_back({to_string(one.name), one.why});
   }
   return out.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -36,7 +36,7 @@ struct WindowSource {
   std::vector<WindowTake> takes;
 };
 
-struct LeftOut {
+struct TakeLeftOut {
   TakeName name;
   std::string why;
 };
@@ -45,7 +45,7 @@ struct WindowsMade {
   std::vector<std::uint64_t> windows;  // of each part
   std::uint64_t rows_left_out = 0;     // of takes: in stretches shorter than half a window
   std::uint64_t too_little_valid = 0;  // windows that were left out for that
-  std::vector<LeftOut> takes_left_out;
+  std::vector<TakeLeftOut> takes_left_out;
 };
 
 struct NewFile {
