@@ -25,6 +25,7 @@ Verb dataset_query_verb();
 Verb dataset_tables_verb();
 Verb dataset_verify_verb();
 Verb dataset_split_verb();
+Verb dataset_report_verb();
 Verb time_server_verb();
 Verb node_key_verb();
 Verb config_verb();

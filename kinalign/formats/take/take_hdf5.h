@@ -61,6 +61,8 @@ class TakeReader {
   const std::string& software() const;
   /// Fills the next slab, of at most 4096 rows or 16 MiB; false at the end.
   Result<bool> next(TakeSlab& slab);
+  /// Fills a slab with this row alone, which is below header().frames; next() goes on behind it.
+  Result<void> read_row(std::uint64_t row, TakeSlab& slab);
   /// The report as it stands in the file, schema kinalign.report/1 (report_json.h).
   Result<std::string> report_json() const;
 

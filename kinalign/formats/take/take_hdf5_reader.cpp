@@ -127,6 +127,7 @@ struct TakeReader::State {
   Result<void> read_header();
   Result<void> find_columns(hid_t group, const TakeGroup& what, std::uint64_t& row_bytes);
   Result<void> read_stamps(std::uint64_t count, std::vector<Time>& stamps);
+  Result<void> read_slab(std::uint64_t count, TakeSlab& slab);
 
   template <class Value>
   Result<void> read(const Found& column, std::uint64_t count, std::vector<Value>& values) {
@@ -243,28 +244,39 @@ Result<TakeReader> TakeReader::open(FileSystem& files, std::string path) {
 const TakeHeader& TakeReader::header() const { return state_->header; }
 const std::string& TakeReader::software() const { return state_->software; }
 
-Result<bool> TakeReader::next(TakeSlab& slab) {
-  State& s = *state_;
-  const std::uint64_t count = std::min(s.slab_rows, s.header.frames - s.rows);
-  if (count == 0) return false;
-  slab.first = s.rows;
-  slab.rows.resize(s.columns.size());
-  KA_TRY(s.read_stamps(count, slab.stamps));
-  for (std::size_t g = 0; g < s.columns.size(); ++g) {
-    AnyRows& rows = slab.rows[g];
-    AnyRows kind = rows_for(s.header.groups[g]);
-    if (rows.index() != kind.index()) rows = std::move(kind);
-    auto column = s.columns[g].cbegin();
+/// The next `count` rows, which are there.
+Result<void> TakeReader::State::read_slab(std::uint64_t count, TakeSlab& slab) {
+  slab.first = rows;
+  slab.rows.resize(columns.size());
+  KA_TRY(read_stamps(count, slab.stamps));
+  for (std::size_t g = 0; g < columns.size(); ++g) {
+    AnyRows& of_group = slab.rows[g];
+    AnyRows kind = rows_for(header.groups[g]);
+    if (of_group.index() != kind.index()) of_group = std::move(kind);
+    auto column = columns[g].cbegin();
     const auto use = [&](std::string_view name, auto& values) -> Result<void> {
       values.clear();
-      if (column == s.columns[g].cend() || column->name != name) return {};
-      KA_TRY(s.read(*column, count, values));
-      return s.check(*column++, std::span(std::as_const(values)));
+      if (column == columns[g].cend() || column->name != name) return {};
+      KA_TRY(read(*column, count, values));
+      return check(*column++, std::span(std::as_const(values)));
     };
-    KA_TRY(std::visit([&](auto& one) { return for_each_row_array(one, use); }, rows));
+    KA_TRY(std::visit([&](auto& one) { return for_each_row_array(one, use); }, of_group));
   }
-  s.rows += count;
+  rows += count;
+  return {};
+}
+
+Result<bool> TakeReader::next(TakeSlab& slab) {
+  const std::uint64_t count = std::min(state_->slab_rows, state_->header.frames - state_->rows);
+  if (count == 0) return false;
+  KA_TRY(state_->read_slab(count, slab));
   return true;
+}
+
+Result<void> TakeReader::read_row(std::uint64_t row, TakeSlab& slab) {
+  state_->rows = row;
+  state_->last = Time::min();
+  return state_->read_slab(1, slab);
 }
 
 Result<std::string> TakeReader::report_json() const {
