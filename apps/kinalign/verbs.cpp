@@ -21,6 +21,8 @@ std::vector<Verb> all_verbs() {
           dataset_verify_verb(),
           dataset_split_verb(),
           dataset_report_verb(),
+          dataset_rename_verb(),
+          dataset_rm_verb(),
           simulate_verb(),
           time_server_verb(),
           node_key_verb(),

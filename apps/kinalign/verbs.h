@@ -26,6 +26,8 @@ Verb dataset_tables_verb();
 Verb dataset_verify_verb();
 Verb dataset_split_verb();
 Verb dataset_report_verb();
+Verb dataset_rename_verb();
+Verb dataset_rm_verb();
 Verb time_server_verb();
 Verb node_key_verb();
 Verb config_verb();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/json_text.h"
+#include "apps/kinalign/dataset/counts_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/dataset/own_process.h"
 #include "apps/kinalign/verbs.h"
@@ -120,11 +121,6 @@ Result<PagesMade> make_pages(TakePages& pages, const DatasetIndex& index, const 
 }
 
 // ---- what is said
-
-std::string size_text(std::size_t bytes) {
-  const auto size = static_cast<double>(bytes);
-  return size < 1e6 ? fmt::format("{:.0f} kB", 1e-3 * size) : fmt::format("{:.1f} MB", 1e-6 * size);
-}
 
 void say(const std::string& out, std::size_t bytes, const DatasetPage& page,
          const std::optional<PagesMade>& pages, Call& call) {
