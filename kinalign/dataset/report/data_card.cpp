@@ -118,7 +118,7 @@ class Card {
     const std::string verdicts =
         KA_TRY(joined("select verdict, count(*) as takes from takes group by verdict order by "
                       "case verdict when 'good' then 0 when 'usable' then 1 else 2 end"));
-    line(fmt::format("{} takes of {} people: {} frames, {} of motion. Verdicts: {}.", cell(0),
+    line(fmt::format("Takes: {}. People: {}. Frames: {}. Motion: {}. Verdicts: {}.", cell(0),
                      cell(1), cell(2), duration_text(std::get<double>(sums.rows.at(0).at(3))),
                      verdicts.empty() ? "none yet" : verdicts));
     line(

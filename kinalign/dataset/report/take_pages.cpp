@@ -111,11 +111,13 @@ Result<std::vector<PageJob>> TakePages::plan(const DatasetIndex& index,
 }
 
 std::uint64_t TakePages::remove_old(const std::map<std::string, std::string>& known) {
-  return std::erase_if(pages_, [&](const auto& page) {
+  std::uint64_t removed = 0;
+  std::erase_if(pages_, [&](const auto& page) {
     if (known.contains(page.first)) return false;
-    files_.remove(path_of_page(page.first).c_str());
+    removed += files_.remove(path_of_page(page.first).c_str()) == 0 ? 1 : 0;
     return true;
   });
+  return removed;
 }
 
 Result<void> TakePages::remember() const {
