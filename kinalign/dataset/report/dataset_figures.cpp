@@ -56,18 +56,18 @@ DatasetTake take_of(const std::vector<Cell>& row) {
 }
 
 Result<void> add_sums(const DatasetIndex& index, DatasetPage& page) {
-  const Table sums = KA_TRY(index.select(
-      "select count(*), count(distinct subject), coalesce(sum(frames), 0), coalesce(sum(seconds), "
-      "0.0), coalesce(sum(verdict = 'good'), 0), coalesce(sum(verdict = 'usable'), 0), "
-      "coalesce(sum(verdict = 'bad'), 0) from takes"));
+  const Table sums = KA_TRY(
+      index.select("select count(*), count(distinct subject), coalesce(sum(mocap), 0), "
+                   "coalesce(sum(kinect), 0), "
+                   "coalesce(sum(imu), 0), coalesce(sum(verdict = 'good'), 0), "
+                   "coalesce(sum(verdict = 'usable'), 0), coalesce(sum(verdict = 'bad'), 0), "
+                   "coalesce(sum(seconds), 0.0) from takes"));
   const std::vector<Cell>& row = sums.rows.at(0);
-  page.takes = count(row[0]);
-  page.people = count(row[1]);
-  page.frames = count(row[2]);
-  page.seconds = number(row[3]).value_or(0.0);
-  page.good = count(row[4]);
-  page.usable = count(row[5]);
-  page.bad = count(row[6]);
+  const std::array<std::uint64_t*, 8> counts{
+      &page.takes,      &page.people, &page.mocap_frames, &page.kinect_frames,
+      &page.imu_frames, &page.good,   &page.usable,       &page.bad};
+  for (std::size_t i = 0; i < counts.size(); ++i) *counts[i] = count(row[i]);
+  page.seconds = number(row[counts.size()]).value_or(0.0);
   return {};
 }
 

@@ -70,10 +70,11 @@ std::string numbers_of(const DatasetPage& page) {
   const auto add = [&out](const std::string& number, std::string_view what) {
     out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>", number, what);
   };
-  add(grouped(page.takes), "takes");
-  add(grouped(page.people), "people");
-  add(grouped(page.frames), "frames of the grid");
-  add(fmt::format("{:.1f} h", page.seconds / 3600.0), "in all");
+  add(grouped(page.mocap_frames + page.kinect_frames + page.imu_frames),
+      "frames of all modalities");
+  add(grouped(page.mocap_frames), "mocap");
+  add(grouped(page.kinect_frames), "Kinect");
+  add(grouped(page.imu_frames), "IMU");
   return out;
 }
 

@@ -28,7 +28,8 @@ struct DatasetTake {
 
 struct DatasetPage {
   std::string name, licence, contact, description, citation, software;
-  std::uint64_t people = 0, takes = 0, frames = 0;
+  std::uint64_t people = 0, takes = 0;
+  std::uint64_t mocap_frames = 0, kinect_frames = 0, imu_frames = 0;  // as the paper counts
   std::uint64_t good = 0, usable = 0, bad = 0;
   std::uint64_t not_built = 0;  // manifests without a take
   double seconds = 0.0;

@@ -16,7 +16,7 @@ namespace {
 
 // Units of the picture: it is shown half as large, so that a unit is half a pixel.
 constexpr double width = 120.0, height = 160.0, margin = 6.0;
-constexpr double most_units_per_m = 90.0;  // a small pose is not blown up
+constexpr double most_units_per_m = 90.0;  // a small body, as in a file of other units, shows
 constexpr double farthest_m = 1000.0;      // a broken number does not blow the picture up
 
 struct Bone {

@@ -22,7 +22,7 @@ TEST_CASE("the worst takes come first, and a page that can't have all of them ha
                                           "sub-01_task-A_run-03", "sub-01_task-A_run-02"});
   CHECK(page->takes == 5);
   CHECK(page->people == 2);
-  CHECK(page->frames == 3000);
+  CHECK(page->mocap_frames == 3000);
   CHECK(page->seconds == doctest::Approx(50.0));
   CHECK(page->bad == 1);
   CHECK(page->usable == 2);

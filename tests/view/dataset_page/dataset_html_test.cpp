@@ -14,7 +14,7 @@ DatasetPage small_page() {
   page.folder = "walks";
   page.people = 2;
   page.takes = 3;
-  page.frames = 4800;
+  page.mocap_frames = page.kinect_frames = 2400;
   page.seconds = 80.0;
   page.bad = 1;
   page.good = 2;
