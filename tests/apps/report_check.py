@@ -122,6 +122,44 @@ def a_page_shows_every_figure_without_an_error_or_a_request(folder):
 
 
 @case
+def each_of_two_kinects_has_its_figures(folder):
+    demo(folder, 4)
+    text = (folder / "recording.toml").read_text()
+    stream, space = (re.search(rf"\[{part}\.kinect\].*?(?=\n\[|\Z)", text, re.S)[0] for part in ("stream", "space"))
+    second = space.replace("space.kinect", "space.side").replace('SpineMid = "Spine2", ', "")
+    (folder / "recording.toml").write_text(f"{text}\n{stream.replace('stream.kinect', 'stream.side')}\n\n{second}\n")
+    kinalign("align", folder / "recording.toml", "-o", folder / "take.h5")  # the same file twice is a finding
+    if kinalign("report", folder / "take.h5", "-o", folder / "report.html").returncode == 3:
+        raise Skip("kinalign was built without esbuild, libjs-three or node-d3")
+    with Browser(folder / "report.html", width=390) as browser:
+        def choose(figure, label, i):
+            """What an option says; the figures behind it before and after it was chosen."""
+            return browser.js("""
+                const [figure, label, i] = arguments, drawn = (id) => document.querySelector(`#${id} svg`).outerHTML;
+                const list = [...document.querySelectorAll(`#${figure} .tools label`)].find((l) => l.textContent.startsWith(label))
+                    .querySelector("select");
+                const all = ["figure7", "table5", "residual", "residual-time", "states"], before = all.map(drawn);
+                list.value = i;
+                list.dispatchEvent(new Event("change"));
+                return [list.options[i].textContent, all.filter((id, k) => drawn(id) !== before[k])];""", figure, label, i)
+        bars = "return document.querySelectorAll('#residual svg rect.fill').length"
+        first = browser.js(bars)
+        name, changed = choose("table5", "Stream", 1)
+        assert name == "side on mocap" and {"residual", "residual-time"} <= set(changed), (name, changed)
+        assert browser.js(bars) == first - 1, "the second Kinect has a pair of joints less"
+        assert choose("table5", "Stream", 0)[0] == "kinect on mocap" and browser.js(bars) == first
+        assert choose("figure7", "Stream", 1)[0] == "side"
+        assert choose("figure7", "Joint", 3) == ["Head", ["figure7"]]
+        assert choose("states", "Stream", 1)[0] == "side"
+        names = browser.js("return [...document.querySelectorAll('#bones svg .name')].map((t) => t.textContent.split(' ')[0])")
+        assert set(names) == {"kinect", "side"}, names
+        for caption, words in (("table5", "the chosen stream"), ("figure7", "the chosen stream"), ("bones", "kinect and side")):
+            assert words in browser.js("return document.querySelector(`#${arguments[0]} figcaption`).textContent", caption)
+        assert browser.js("return document.documentElement.scrollWidth") <= 390
+        assert browser.faults() == []
+
+
+@case
 def the_player_draws_and_moves_and_its_keys_work(folder):
     with Browser(page_of(folder, seconds=8)) as browser:
         drawn = "return Number(document.querySelector('#player canvas').dataset.frames)"

@@ -65,7 +65,8 @@ void put_flags(const TakePage& page, PageParts& parts) {
   parts["bins"] = page.lanes.empty() ? "0" : std::to_string(page.lanes.front().tracked.size());
   parts["points"] = flag(std::any_of(page.bodies.begin(), page.bodies.end(),
                                      [](const PageBody& b) { return b.kind == PageKind::points; }));
-  parts["pairs"] = flag(!page.spaces.empty() && !page.spaces.front().pairs.empty());
+  parts["pairs"] = flag(std::any_of(page.spaces.begin(), page.spaces.end(),
+                                    [](const PageSpace& s) { return !s.pairs.empty(); }));
   parts["zones"] = flag(!page.floors.empty());
   parts["bones"] = flag(!page.bones.empty());
   parts["detail"] = flag(!page.details.empty());
