@@ -4,6 +4,7 @@
 Needs chromium, chromium-driver and python3-selenium; without them the cases that look at a page are skipped.
 """
 import base64
+import csv
 import json
 import pathlib
 import re
@@ -245,6 +246,33 @@ def the_script_reads_the_rows_of_the_take(folder):
         wanted = np.linalg.norm(take["imu/angular_velocity"][:, 1], axis=1)
         read = np.linalg.norm(np.array(read).reshape(-1, 3), axis=1)
         assert np.abs(read - wanted).max() < 0.01, np.abs(read - wanted).max()
+
+
+@case
+def raw_samples_of_nodes_are_those_of_the_files(folder):
+    page = page_of(folder)
+    packed = data_of(page)
+    source = DATA_JS.read_text().replace("export ", "")
+    with Browser(page) as browser:
+        for _ in range(3):
+            browser.js("document.querySelector('#node-rate .tools button').click()")
+        for figure in ("node-rate", "node-acceleration"):
+            drawn = browser.js("return document.querySelector(`#${arguments[0]} .dots`).getAttribute('d')", figure)
+            assert drawn.count("M") > 3, (figure, drawn)
+        browser.driver.get("about:blank")
+        for node in packed["nodes"]:
+            with open(folder / f"imu_{node['node']}.csv") as file:
+                rows = [row for row in csv.DictReader(file) if row["gx"]]
+            read = {name: np.array(browser.js(source + "; return Array.from(unpacked(arguments[0]))", node[name]))
+                    for name in ("raw_seconds", "raw_rate")}
+            wanted = [[float(row[f"g{axis}"]) for axis in "xyz"] for row in rows]
+            stamps = [int(row["time_ns"]) for row in rows]
+            first = h5py.File(folder / "take.h5")["time_ns"][0]
+            inside = [i for i, stamp in enumerate(stamps) if stamp >= first]
+            rate = read["raw_rate"].reshape(-1, 3)
+            assert len(rate) == len(inside), (node["node"], len(rate), len(inside))
+            assert np.abs(rate - np.array(wanted)[inside]).max() < 0.006
+            assert np.abs(read["raw_seconds"] - (np.array(stamps)[inside] - first) / 1e9).max() < 1e-4
 
 
 @case

@@ -74,6 +74,7 @@ void put_flags(const TakePage& page, PageParts& parts) {
   parts["rate"] = any_node(page, [](const NodeFigures& n) { return n.has_rate; });
   parts["acceleration"] = any_node(page, [](const NodeFigures& n) { return n.has_acceleration; });
   parts["orientation"] = any_node(page, [](const NodeFigures& n) { return n.has_orientation; });
+  parts["raw_nodes"] = raw_nodes_text(page);
   parts["axes"] = flag(has_axes(page));
   const std::string gravity = any_node(page, [](const NodeFigures& n) { return n.has_gravity; });
   parts["gravity"] = gravity.empty() ? ", gravity removed" : ", gravity included";

@@ -407,6 +407,16 @@ std::string node_table(const TakePage& page) {
                "is late, where its rates agree best.");
 }
 
+std::string raw_nodes_text(const TakePage& page) {
+  const bool any = std::any_of(page.nodes.begin(), page.nodes.end(),
+                               [](const NodeFigures& node) { return !node.raw_seconds.empty(); });
+  if (!any) return "";
+  return fmt::format(
+      " Dots: the node's raw samples, read from the take's inputs, of {:.0f} to {:.0f} s; they are "
+      "drawn where at most one stands on every second pixel.",
+      page.raw_nodes_begin_s, page.raw_nodes_end_s);
+}
+
 std::string findings_list(const TakePage& page) {
   if (page.report.findings.empty()) return "<p>Alignment found nothing.</p>";
   std::string out = "<ul class=\"findings\">";
