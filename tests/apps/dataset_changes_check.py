@@ -13,7 +13,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from cases import PROGRAM, case, kinalign, main
-from dataset_check import answer, contents, done, recorded
+from dataset_runs import answer, contents, done, recorded
 
 
 def built_set(folder, takes=4, copied=True):

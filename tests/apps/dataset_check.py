@@ -2,7 +2,6 @@
 """A data set from raw files to the paper's tables.
 dataset_check.py BUILD_FOLDER [CASE...]"""
 import csv
-import hashlib
 import io
 import json
 import os
@@ -15,27 +14,10 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from cases import DEMO, PROGRAM, case, kinalign, law, main
+from cases import PROGRAM, case, kinalign, main
+from dataset_runs import answer, contents, done, recorded
 
 import hfut
-
-
-def done(*words, code=0, **how):
-    """A call that ends with this code; its stdout."""
-    ran = kinalign("dataset", *words, **how)
-    said = law(ran, ("dataset", *words))
-    assert ran.returncode == code, said
-    return ran.stdout.decode()
-
-
-def answer(*words, **how):
-    return json.loads(done(*words, "--json", **how))
-
-
-def recorded(folder, seconds, takes=1, seed=1):
-    """Manifests of raw files."""
-    subprocess.run([DEMO, folder, "--seconds", f"{seconds:.9f}", "--takes", str(takes), "--seed", str(seed)], check=True)
-    return sorted(folder.rglob("recording.toml"))
 
 
 def small_set(folder, takes=3, seconds=3):
@@ -44,12 +26,6 @@ def small_set(folder, takes=3, seconds=3):
     for i, manifest in enumerate(recorded(folder / "raw", seconds, takes)):
         done("add", folder / "set", manifest, "--subject", f"{i % 12:02}", "--action", f"S2A{i % 8 + 1:02}")
     return folder / "set"
-
-
-def contents(folder):
-    """Hash of every file, but for the cache."""
-    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest()
-            for p in sorted(folder.rglob("*")) if p.is_file() and ".kinalign" not in p.parts}
 
 
 @case

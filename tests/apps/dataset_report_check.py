@@ -11,20 +11,9 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from cases import DEMO, Skip, case, in_time, kinalign, law, main
-from report_check import Browser
-
-
-def done(*words, code=0, **how):
-    """A call of `kinalign dataset` that ends with this code; its stdout."""
-    ran = kinalign("dataset", *words, **how)
-    said = law(ran, ("dataset", *words))
-    assert ran.returncode == code, said
-    return ran.stdout.decode()
-
-
-def answer(*words, **how):
-    return json.loads(done(*words, "--json", **how))
+from browser import Browser
+from cases import DEMO, Skip, case, in_time, kinalign, main
+from dataset_runs import answer, done
 
 
 def small_set(folder, takes=3, copied=True):
@@ -111,7 +100,7 @@ def rows_are_filtered_and_sorted(folder):
 def each_row_leads_to_its_take_and_only_changed_takes_get_new_pages(folder):
     data = small_set(folder)
     said = kinalign("dataset", "report", data, "--pages", "--json")
-    assert said.returncode in (0, 3), said.stderr
+    assert said.returncode in (0, 1), said.stderr
     if b"built with esbuild" in said.stdout:
         raise Skip("kinalign was built without esbuild, libjs-three or node-d3")
     assert json.loads(said.stdout)["pages"] == {"made": 3, "up_to_date": 0, "removed": 0, "failed": []}, said.stdout

@@ -29,7 +29,7 @@ Usage describe_remove(Remove& o) {
   return usage;
 }
 
-/// What goes and what stays.
+/// The takes that go, and the raw files that stay.
 std::string plan_text(const RemovalPlan& plan) {
   std::string out;
   for (const TakeName& name : plan.takes) out += to_string(name) + "\n";

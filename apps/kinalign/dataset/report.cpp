@@ -81,7 +81,7 @@ Result<void> make_page(const PageJob& job) {
                        first.empty() ? fmt::format("exit code {}", ended.code) : first});
 }
 
-/// Where the pages of takes lie: walks/report/ beside walks/report.html.
+/// The folder of the takes' pages: walks/report/ beside walks/report.html.
 std::string place_of_pages(const std::string& out) { return out.substr(0, out.rfind('.')) + "/"; }
 
 /// A folder's name in a relative link.

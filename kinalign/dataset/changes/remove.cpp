@@ -4,6 +4,7 @@
 #include "kinalign/core/nearest_name.h"
 #include "kinalign/dataset/changes/toml_text.h"
 #include "kinalign/dataset/scan.h"
+#include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -162,14 +163,16 @@ Result<RemovalPlan> plan_removal(FileSystem& files, const std::string& folder,
 }
 
 Result<void> remove_takes(FileSystem& files, const std::string& folder, const RemovalPlan& plan) {
+  const std::string root = folder + "/";
   for (const std::string& file : plan.files) {
-    const std::string path = folder + "/" + file;
+    const std::string path = path_in(root, file);
     if (files.remove(path.c_str()) == 0 || errno == ENOENT) continue;
     return Failure(Error{path, 0, "a file that can be removed", std::strerror(errno)});
   }
   for (const std::string& inner : plan.folders) {
     std::error_code ignored;  // it is not empty, or not there
-    if (fs::is_directory(folder + "/" + inner, ignored)) fs::remove(folder + "/" + inner, ignored);
+    const std::string path = path_in(root, inner);
+    if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
   }
   return {};
 }

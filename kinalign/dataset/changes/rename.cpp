@@ -257,7 +257,7 @@ class Renamer {
   }
 
  private:
-  /// Whether the take keeps its bytes, as far as parameters go.
+  /// True: the take has the same parameters as before.
   Result<bool> write_manifest(const TakeName& from, const TakeName& to) {
     const std::string path = place(folder_, from, TakeFile::manifest);
     const std::string toml = KA_TRY(read_whole(files_, path, longest_manifest));
@@ -301,7 +301,8 @@ class Renamer {
 void remove_if_empty(const std::string& folder, const std::string& subject) {
   for (const char* above : {"/sub-", "/sourcedata/sub-"}) {
     std::error_code ignored;  // it is not empty, or not there
-    const std::string path = folder + above + subject;
+    std::string path = folder;
+    path.append(above).append(subject);
     if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
   }
 }

@@ -15,7 +15,7 @@ namespace kinalign {
 
 enum class RenameKind { take, subject, action };
 
-/// What one rename does: known before anything is changed.
+/// The steps of one rename, known before anything is changed.
 struct RenamePlan {
   RenameKind kind = RenameKind::take;
   std::string from, to;  // as dataset.toml and file names have them: "03", "S2A03", a take's name

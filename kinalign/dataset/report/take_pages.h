@@ -57,7 +57,7 @@ class TakePages {
   std::map<std::string, std::string> pages_;  // take's name -> SHA-256 of the take
 };
 
-/// Whether a file begins as a page that kinalign wrote, with `mark` in its head.
+/// True: the first 4096 bytes of the file hold `mark`, so kinalign wrote it.
 bool is_own_page(FileSystem& files, const std::string& path, std::string_view mark);
 
 }  // namespace kinalign

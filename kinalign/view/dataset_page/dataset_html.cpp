@@ -148,7 +148,7 @@ std::string about_list(const DatasetPage& page) {
   return out;
 }
 
-/// What the table leaves out.
+/// A sentence about the takes that the table leaves out.
 std::string cut_of(const DatasetPage& page) {
   if (page.worst.size() == page.takes) return "";
   return fmt::format(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the fixed frame of a page gets its words, and what the page lets a browser do.
+// The fixed frame of a page filled with words, and the policy that keeps a browser from loading
+// more.
 #pragma once
 
 #include <functional>

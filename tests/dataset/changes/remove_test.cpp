@@ -72,6 +72,9 @@ TEST_CASE("no link is followed: what lies elsewhere stays") {
   std::filesystem::create_symlink(elsewhere.path(), set.folder / (raw_folder(name) + "more"));
   std::filesystem::create_symlink(elsewhere / "precious.bvh",
                                   set.folder / (raw_folder(name) + "one.bvh"));
+  const auto plan = plan_removal(set.files, set.folder.path(), {to_string(name)}, true);
+  REQUIRE(plan);
+  CHECK(plan->files.size() == 3 + 1 + 2);  // the raw file and both links
   REQUIRE(removed(set.files, set.folder.path(), {to_string(name)}, true));
   CHECK(elsewhere.read("precious.bvh") == "raw");
   CHECK(!std::filesystem::exists(set.folder / raw_folder(name)));

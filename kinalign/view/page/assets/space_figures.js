@@ -37,7 +37,7 @@ function panel(svg, box, take, bodies, row, moved, map) {
   for (const body of bodies) drawBody(g, body, row, (p) => to(map(moved(body, p))));
 }
 
-/// Which of the moved bodies figures 5 to 7 show. `space` is absent where none has pairs of joints.
+/// The moved body that figures 5 to 7 show. `space` is absent if no body has pairs of joints.
 export class SpaceChoice {
   constructor(take) {
     this.spaces = take.spaces.filter((space) => space.pairs.length > 0);
