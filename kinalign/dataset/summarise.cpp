@@ -31,48 +31,48 @@ Error error_from(const Json& json) {
           json.at("expected").get<std::string>(), json.at("found").get<std::string>()};
 }
 
-Result<TakeSummary> summarise(FileSystem& files, const std::string& path) {
-  const TakeReader reader = KA_TRY(TakeReader::open(files, path));
-  TakeSummary made = KA_TRY(summary_of(reader.header(), KA_TRY(reader.report_json())));
-  made.software = reader.software();
-  return made;
-}
-
-/// A line for each take: its summary, or what is wrong with it.
-std::string line_of(FileSystem& files, const std::string& path) {
-  const auto made = summarise(files, path);
+/// A line for each take: its answer, or what is wrong with it.
+std::string line_of(const Result<std::string>& answer) {
   const Json line =
-      made ? Json{{"summary", summary_json(*made)}} : Json{{"error", error_json(made.error())}};
+      answer ? Json{{"answer", *answer}} : Json{{"error", error_json(answer.error())}};
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Result<TakeSummary> from_line(std::string_view line, const std::string& path) {
+Result<std::string> from_line(std::string_view line) {
   const Json json = Json::parse(line);
   if (json.contains("error")) return Failure(error_from(json["error"]));
-  return parse_summary_json(json.at("summary").get<std::string>(), path);
+  return json.at("answer").get<std::string>();
+}
+
+Result<std::string> summary_text(TakeReader& reader) {
+  TakeSummary made = KA_TRY(summary_of(reader.header(), KA_TRY(reader.report_json())));
+  made.software = reader.software();
+  return summary_json(made);
 }
 
 Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can read", ""}; }
 
 }  // namespace
 
-std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::string& folder,
-                                                 const std::vector<TakeName>& names) {
-  std::vector<Result<TakeSummary>> out;
+std::vector<Result<std::string>> ask_takes(
+    FileSystem& files, const std::string& folder, const std::vector<TakeName>& names,
+    const std::function<Result<std::string>(TakeReader&)>& ask) {
+  std::vector<Result<std::string>> out;
+  const auto answer = [&](const TakeName& name) -> Result<std::string> {
+    TakeReader reader = KA_TRY(TakeReader::open(files, take_path(folder, name)));
+    return ask(reader);
+  };
   while (out.size() < names.size()) {
     const std::size_t first = out.size();
     std::string text;  // of a line that has not ended
     const auto work = [&](const GuardSend& send) -> Result<void> {
-      for (std::size_t i = first; i < names.size(); ++i) {
-        KA_TRY(send(line_of(files, take_path(folder, names[i]))));
-      }
+      for (std::size_t i = first; i < names.size(); ++i) KA_TRY(send(line_of(answer(names[i]))));
       return {};
     };
     const auto receive = [&](std::string_view bytes) -> Result<void> {
       text += bytes;
       for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
-        out.push_back(
-            from_line(std::string_view(text).substr(0, end), take_path(folder, names[out.size()])));
+        out.push_back(from_line(std::string_view(text).substr(0, end)));
         text.erase(0, end + 1);
       }
       return {};
@@ -81,6 +81,17 @@ std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::s
     if (done || out.size() == names.size()) continue;
     done.error().file = take_path(folder, names[out.size()]);
     out.push_back(Failure(std::move(done).error()));
+  }
+  return out;
+}
+
+std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::string& folder,
+                                                 const std::vector<TakeName>& names) {
+  std::vector<Result<TakeSummary>> out;
+  const auto texts = ask_takes(files, folder, names, summary_text);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    out.push_back(texts[i] ? parse_summary_json(*texts[i], take_path(folder, names[i]))
+                           : Failure(texts[i].error()));
   }
   return out;
 }

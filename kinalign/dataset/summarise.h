@@ -6,15 +6,23 @@
 #include "kinalign/core/progress.h"
 #include "kinalign/dataset/take_summary.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace kinalign {
 
-/// The summary of each take of a data set, in the order of `names`, without hash and length. HDF5
+class TakeReader;
+
+/// Calls `ask` with each take of a data set, in the order of `names`, and hands on its texts. HDF5
 /// can crash on a hostile file: takes are opened in a child process (formats/take/guarded.h), so no
-/// other thread may run. A take on which the child ends is a failure, the others are read all the
-/// same.
+/// other thread may run. A take on which the child ends is a failure, the others are asked all the
+/// same. The texts are not to be trusted.
+std::vector<Result<std::string>> ask_takes(
+    FileSystem& files, const std::string& folder, const std::vector<TakeName>& names,
+    const std::function<Result<std::string>(TakeReader&)>& ask);
+
+/// The summary of each take, by ask_takes(), without hash and length.
 std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::string& folder,
                                                  const std::vector<TakeName>& names);
 

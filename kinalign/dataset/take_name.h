@@ -43,5 +43,7 @@ std::optional<std::pair<TakeName, TakeFile>> parse_take_path(std::string_view pa
 inline constexpr std::string_view catalogue_file = "dataset.toml";
 inline constexpr std::string_view cache_folder = ".kinalign";
 inline constexpr std::string_view index_file = ".kinalign/index.sqlite";
+/// There while takes are renamed (changes/rename.h).
+inline constexpr std::string_view unfinished_rename_file = "unfinished_rename.json";
 
 }  // namespace kinalign

@@ -22,9 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Names that may lie in the folder beside the takes.
-constexpr std::array<std::string_view, 8> known_names{"dataset.toml", "README.md", "LICENSE",
-                                                      "LICENCE",      "CHANGES",   "sourcedata",
-                                                      "splits",       "windows"};
+constexpr std::array<std::string_view, 10> known_names{
+    "dataset.toml", "README.md", "LICENSE", "LICENCE",     "CHANGES",
+    "sourcedata",   "splits",    "windows", "report.html", "report"};
 
 /// A file whose bytes are to be read.
 struct ToHash {
@@ -194,6 +194,11 @@ class Verifier {
       const bool is_known =
           std::find(known_names.begin(), known_names.end(), name) != known_names.end();
       if (is_known || name.starts_with('.')) continue;
+      if (name == unfinished_rename_file) {
+        tell(Severity::error, name, "a finished rename", "one that was stopped",
+             "run the same kinalign dataset rename again; the file says which");
+        continue;
+      }
       const bool is_person =
           name.starts_with("sub-") && is_label(name.substr(4)) && entry.is_directory();
       if (!is_person) {

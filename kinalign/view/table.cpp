@@ -30,16 +30,6 @@ std::string grouped(std::string digits) {
   return digits;
 }
 
-std::string for_people(const Cell& cell, const TableColumn& column) {
-  if (const auto* whole = std::get_if<std::int64_t>(&cell))
-    return grouped(fmt::format("{}", *whole));
-  if (const auto* number = std::get_if<double>(&cell)) {
-    return grouped(fmt::format("{:.{}f}", *number, column.decimals));
-  }
-  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
-  return "–";
-}
-
 std::string replaced(std::string_view text,
                      const std::vector<std::pair<char, std::string_view>>& by) {
   std::string out;
@@ -79,28 +69,14 @@ std::size_t width_of(std::string_view text) {
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
-/// Whether a column has numbers only, which stand at the right.
-std::vector<bool> numeric(const Table& table) {
-  std::vector<bool> out;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    bool any = false, text = false;
-    for (const auto& row : table.rows) {
-      text = text || std::holds_alternative<std::string>(row[c]);
-      any = any || !std::holds_alternative<std::monostate>(row[c]);
-    }
-    out.push_back(any && !text);
-  }
-  return out;
-}
-
 std::string text_of(const Table& table) {
-  const std::vector<bool> right = numeric(table);
+  const std::vector<bool> right = numeric_columns(table);
   std::vector<std::vector<std::string>> lines(1);
   for (const TableColumn& column : table.columns) lines[0].push_back(column.title);
   for (const auto& row : table.rows) {
     lines.emplace_back();
     for (std::size_t c = 0; c < row.size(); ++c) {
-      lines.back().push_back(for_people(row[c], table.columns[c]));
+      lines.back().push_back(cell_text(row[c], table.columns[c]));
     }
   }
   std::vector<std::size_t> widths(table.columns.size(), 0);
@@ -121,7 +97,7 @@ std::string text_of(const Table& table) {
 }
 
 std::string markdown_of(const Table& table) {
-  const std::vector<bool> right = numeric(table);
+  const std::vector<bool> right = numeric_columns(table);
   std::string out = table.caption.empty() ? "" : for_markdown(table.caption) + "\n\n";
   out += "|";
   for (const TableColumn& column : table.columns) out += " " + for_markdown(column.title) + " |";
@@ -130,7 +106,7 @@ std::string markdown_of(const Table& table) {
   for (const auto& row : table.rows) {
     out += "\n|";
     for (std::size_t c = 0; c < row.size(); ++c) {
-      out += " " + for_markdown(for_people(row[c], table.columns[c])) + " |";
+      out += " " + for_markdown(cell_text(row[c], table.columns[c])) + " |";
     }
   }
   return out + "\n";
@@ -146,7 +122,7 @@ std::string latex_row(std::size_t columns, Text text) {
 
 std::string latex_of(const Table& table) {
   std::string places;
-  for (const bool right : numeric(table)) places += right ? 'r' : 'l';
+  for (const bool right : numeric_columns(table)) places += right ? 'r' : 'l';
   const std::size_t columns = table.columns.size();
   std::string out = "\\begin{table}\n\\centering\n";
   if (!table.caption.empty()) out += "\\caption{" + for_latex(table.caption) + "}\n";
@@ -155,7 +131,7 @@ std::string latex_of(const Table& table) {
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     if (table.has_sum && r + 1 == table.rows.size()) out += "\\hline\n";
     out += latex_row(columns,
-                     [&](std::size_t c) { return for_people(table.rows[r][c], table.columns[c]); });
+                     [&](std::size_t c) { return cell_text(table.rows[r][c], table.columns[c]); });
   }
   return out + "\\hline\n\\end{tabular}\n\\end{table}\n";
 }
@@ -216,6 +192,29 @@ std::vector<std::string> table_format_names() {
   std::vector<std::string> names;
   for (const auto& [name, format] : formats) names.emplace_back(name);
   return names;
+}
+
+std::string cell_text(const Cell& cell, const TableColumn& column) {
+  if (const auto* whole = std::get_if<std::int64_t>(&cell))
+    return grouped(fmt::format("{}", *whole));
+  if (const auto* number = std::get_if<double>(&cell)) {
+    return grouped(fmt::format("{:.{}f}", *number, column.decimals));
+  }
+  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  return "–";
+}
+
+std::vector<bool> numeric_columns(const Table& table) {
+  std::vector<bool> out;
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    bool any = false, text = false;
+    for (const auto& row : table.rows) {
+      text = text || std::holds_alternative<std::string>(row[c]);
+      any = any || !std::holds_alternative<std::monostate>(row[c]);
+    }
+    out.push_back(any && !text);
+  }
+  return out;
 }
 
 std::string written(const Table& table, TableFormat format) {

@@ -28,6 +28,11 @@ struct Table {
   bool has_sum = false;                 // the last row sums up the others
 };
 
+/// A cell for people: digits by thousands, the column's decimals, "–" where nothing is known.
+std::string cell_text(const Cell& cell, const TableColumn& column);
+/// Columns of numbers alone, which stand at the right.
+std::vector<bool> numeric_columns(const Table& table);
+
 enum class TableFormat { text, markdown, latex, csv, json };
 
 /// "text", "markdown", "latex", "csv", "json"; absent for any other word.

@@ -4,10 +4,10 @@
 Needs chromium, chromium-driver and python3-selenium; without them the cases that look at a page are skipped.
 """
 import base64
+import csv
 import json
 import pathlib
 import re
-import subprocess
 import sys
 import time
 
@@ -15,81 +15,12 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import h5py
 import numpy as np
 import samples
-from cases import BUILD, Skip, case, demo, done_with, in_time, kinalign, main, refused, wrong
+from browser import Browser, Keys
+from cases import Skip, case, demo, done_with, in_time, kinalign, main, refused, wrong
 
-try:
-    from selenium import webdriver
-    from selenium.webdriver.chrome.options import Options
-    from selenium.webdriver.chrome.service import Service
-    from selenium.webdriver.common.keys import Keys
-except ImportError:
-    webdriver = None
-
-DRIVER, CHROMIUM = pathlib.Path("/usr/bin/chromedriver"), pathlib.Path("/usr/bin/chromium")
 DATA_JS = pathlib.Path(__file__).parent.parent.parent / "kinalign/view/page/assets/data.js"
 FIGURES = ("lanes", "distance", "figure7", "table5", "residual", "residual-time", "floor", "states", "bones", "node-rate",
            "node-acceleration", "node-orientation")
-
-
-class Browser:
-    """Chromium with a page; software draws its WebGL, and no name of a host resolves."""
-
-    def __init__(self, page, width=1400, dark=False, webgl=True):
-        if webdriver is None or not DRIVER.exists() or not CHROMIUM.exists():
-            raise Skip("no chromium, chromium-driver or python3-selenium")
-        options = Options()
-        options.binary_location = str(CHROMIUM)
-        for flag in ("--headless=new", "--no-sandbox", "--hide-scrollbars", "--host-resolver-rules=MAP * ~NOTFOUND",
-                     f"--window-size={width},900"):
-            options.add_argument(flag)
-        for flag in ("--use-angle=swiftshader", "--enable-unsafe-swiftshader") if webgl else ("--disable-3d-apis",):
-            options.add_argument(flag)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        try:
-            self.driver = webdriver.Chrome(options=options, service=Service(str(DRIVER)))
-        except Exception as why:  # noqa: BLE001 - whatever keeps a browser from starting
-            raise Skip(f"Chromium does not start: {str(why).splitlines()[0]}") from why
-        self.driver.set_script_timeout(60)
-        self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=844, deviceScaleFactor=1, mobile=width < 500)
-        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-        self.cdp("Emulation.setEmulatedMedia", features=[scheme])
-        self.driver.get(pathlib.Path(page).as_uri())
-        end = time.monotonic() + 20
-        while self.js("return document.body.dataset.ready") != "true" and time.monotonic() < end:
-            time.sleep(0.05)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.driver.quit()
-
-    def cdp(self, command, **arguments):
-        return self.driver.execute_cdp_cmd(command, arguments)
-
-    def js(self, script, *arguments):
-        return self.driver.execute_script(script, *arguments)
-
-    def seconds(self):
-        return float(self.js("return document.getElementById('player').dataset.seconds"))
-
-    def press(self, *keys):
-        body = self.driver.find_element("tag name", "body")
-        for key in keys:
-            body.send_keys(key)
-
-    def faults(self):
-        """Messages of the console that are no hints, and requests for anything but the page."""
-        said = [line["message"] for line in self.driver.get_log("browser") if line["level"] != "INFO"]
-        for line in self.driver.get_log("performance"):
-            message = json.loads(line["message"])["message"]
-            if message["method"] != "Network.requestWillBeSent":
-                continue
-            url = message["params"]["request"]["url"]
-            if url.startswith(("data:", "chrome:", "about:")) or url == self.driver.current_url:
-                continue
-            said.append(f"request: {url}")
-        return said
 
 
 def page_of(folder, seconds=4, **how):
@@ -118,6 +49,44 @@ def a_page_shows_every_figure_without_an_error_or_a_request(folder):
             assert browser.js("return document.querySelector('#' + arguments[0] + ' figcaption').textContent.length", figure) > 30
             text = browser.js("return document.querySelector('#' + arguments[0] + ' svg').outerHTML", figure)
             assert "NaN" not in text and "Infinity" not in text, figure
+        assert browser.faults() == []
+
+
+@case
+def each_of_two_kinects_has_its_figures(folder):
+    demo(folder, 4)
+    text = (folder / "recording.toml").read_text()
+    stream, space = (re.search(rf"\[{part}\.kinect\].*?(?=\n\[|\Z)", text, re.S)[0] for part in ("stream", "space"))
+    second = space.replace("space.kinect", "space.side").replace('SpineMid = "Spine2", ', "")
+    (folder / "recording.toml").write_text(f"{text}\n{stream.replace('stream.kinect', 'stream.side')}\n\n{second}\n")
+    kinalign("align", folder / "recording.toml", "-o", folder / "take.h5")  # the same file twice is a finding
+    if kinalign("report", folder / "take.h5", "-o", folder / "report.html").returncode == 3:
+        raise Skip("kinalign was built without esbuild, libjs-three or node-d3")
+    with Browser(folder / "report.html", width=390) as browser:
+        def choose(figure, label, i):
+            """What an option says; the figures behind it before and after it was chosen."""
+            return browser.js("""
+                const [figure, label, i] = arguments, drawn = (id) => document.querySelector(`#${id} svg`).outerHTML;
+                const list = [...document.querySelectorAll(`#${figure} .tools label`)].find((l) => l.textContent.startsWith(label))
+                    .querySelector("select");
+                const all = ["figure7", "table5", "residual", "residual-time", "states"], before = all.map(drawn);
+                list.value = i;
+                list.dispatchEvent(new Event("change"));
+                return [list.options[i].textContent, all.filter((id, k) => drawn(id) !== before[k])];""", figure, label, i)
+        bars = "return document.querySelectorAll('#residual svg rect.fill').length"
+        first = browser.js(bars)
+        name, changed = choose("table5", "Stream", 1)
+        assert name == "side on mocap" and {"residual", "residual-time"} <= set(changed), (name, changed)
+        assert browser.js(bars) == first - 1, "the second Kinect has a pair of joints less"
+        assert choose("table5", "Stream", 0)[0] == "kinect on mocap" and browser.js(bars) == first
+        assert choose("figure7", "Stream", 1)[0] == "side"
+        assert choose("figure7", "Joint", 3) == ["Head", ["figure7"]]
+        assert choose("states", "Stream", 1)[0] == "side"
+        names = browser.js("return [...document.querySelectorAll('#bones svg .name')].map((t) => t.textContent.split(' ')[0])")
+        assert set(names) == {"kinect", "side"}, names
+        for caption, words in (("table5", "the chosen stream"), ("figure7", "the chosen stream"), ("bones", "kinect and side")):
+            assert words in browser.js("return document.querySelector(`#${arguments[0]} figcaption`).textContent", caption)
+        assert browser.js("return document.documentElement.scrollWidth") <= 390
         assert browser.faults() == []
 
 
@@ -207,6 +176,33 @@ def the_script_reads_the_rows_of_the_take(folder):
         wanted = np.linalg.norm(take["imu/angular_velocity"][:, 1], axis=1)
         read = np.linalg.norm(np.array(read).reshape(-1, 3), axis=1)
         assert np.abs(read - wanted).max() < 0.01, np.abs(read - wanted).max()
+
+
+@case
+def raw_samples_of_nodes_are_those_of_the_files(folder):
+    page = page_of(folder)
+    packed = data_of(page)
+    source = DATA_JS.read_text().replace("export ", "")
+    with Browser(page) as browser:
+        for _ in range(3):
+            browser.js("document.querySelector('#node-rate .tools button').click()")
+        for figure in ("node-rate", "node-acceleration"):
+            drawn = browser.js("return document.querySelector(`#${arguments[0]} .dots`).getAttribute('d')", figure)
+            assert drawn.count("M") > 3, (figure, drawn)
+        browser.driver.get("about:blank")
+        for node in packed["nodes"]:
+            with open(folder / f"imu_{node['node']}.csv") as file:
+                rows = [row for row in csv.DictReader(file) if row["gx"]]
+            read = {name: np.array(browser.js(source + "; return Array.from(unpacked(arguments[0]))", node[name]))
+                    for name in ("raw_seconds", "raw_rate")}
+            wanted = [[float(row[f"g{axis}"]) for axis in "xyz"] for row in rows]
+            stamps = [int(row["time_ns"]) for row in rows]
+            first = h5py.File(folder / "take.h5")["time_ns"][0]
+            inside = [i for i, stamp in enumerate(stamps) if stamp >= first]
+            rate = read["raw_rate"].reshape(-1, 3)
+            assert len(rate) == len(inside), (node["node"], len(rate), len(inside))
+            assert np.abs(rate - np.array(wanted)[inside]).max() < 0.006
+            assert np.abs(read["raw_seconds"] - (np.array(stamps)[inside] - first) / 1e9).max() < 1e-4
 
 
 @case

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/build.h"
 
+#include "apps/kinalign/dataset/counts_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/dataset/share.h"
 #include "apps/kinalign/verbs.h"
@@ -44,10 +45,6 @@ std::string_view words_of(BuildReason reason) {
       break;
   }
   return "up to date";
-}
-
-std::string counted(std::size_t count, std::string_view one) {
-  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
 }
 
 Result<int> show_plan(const BuildPlan& plan, Call& call) {

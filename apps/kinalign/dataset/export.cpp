@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/export/export.h"
 
+#include "apps/kinalign/dataset/counts_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
@@ -93,8 +94,8 @@ nlohmann::ordered_json print_left_out(const ExportMade& made, Call& call) {
   std::size_t lines = 0;
   for (const auto& [why, names] : takes) {
     if (++lines > shown_streams) break;
-    call.console.print(harmless(fmt::format("lost   {} ({} {})\n", why, names.size(),
-                                            names.size() == 1 ? "take" : "takes")));
+    call.console.print(
+        harmless(fmt::format("lost   {} ({})\n", why, counted(names.size(), "take"))));
   }
   if (takes.size() > shown_streams) {
     call.console.print(fmt::format("lost   {} kinds in all (--json has them)\n", takes.size()));
@@ -117,9 +118,8 @@ Result<int> run_export(Export& o, Call& call) {
   }
   const ExportMade made =
       KA_TRY(export_takes(files, index.catalogue(), job, call.console.progress()));
-  call.console.print(harmless(fmt::format("{}: {} {}, {} {}\n", job.target, job.takes.size(),
-                                          job.takes.size() == 1 ? "take" : "takes", made.files,
-                                          made.files == 1 ? "file" : "files")));
+  call.console.print(harmless(fmt::format(
+      "{}: {}, {}\n", job.target, counted(job.takes.size(), "take"), counted(made.files, "file"))));
   const auto formats = export_formats();
   const auto format = std::find_if(formats.begin(), formats.end(),
                                    [&](const ExportFormat& one) { return one.name == o.format; });

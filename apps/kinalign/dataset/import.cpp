@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/import/import.h"
 
+#include "apps/kinalign/dataset/counts_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
@@ -45,10 +46,6 @@ Usage describe_import(Import& o) {
                   "ID"},
                  {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
   return usage;
-}
-
-std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 /// "10 without Vicon left out: m03_s03_e01, m03_s03_e02, m03_s03_e03, ...", a line for each reason.
@@ -122,8 +119,8 @@ Result<int> run_import(Import& o, Call& call) {
                                console.print(fmt::format("{} of {}\n", done, takes));
                            }));
   console.print(harmless(fmt::format(
-      "{}: {} of {}, {}{}\n", made.kind, counted(made.takes, "take", "takes"),
-      counted(made.subjects, "person", "people"), counted(made.actions, "action", "actions"),
+      "{}: {} of {}, {}{}\n", made.kind, counted(made.takes, "take"),
+      counted(made.subjects, "person", "people"), counted(made.actions, "action"),
       made.were_there > 0 ? fmt::format("; {} were there already", made.were_there) : "")));
   console.print(harmless(left_out_lines(made.left_out) + changed_line("people", made.subject_ids) +
                          changed_line("actions", made.action_ids)));

@@ -68,12 +68,13 @@ Result<std::string> with_take(FileSystem& files, const std::string& path, Use us
 }
 
 /// JSON with the begin of the detail of a long take ("begin_s"), the first row's stamp, and
-/// the names of the streams of points.
+/// the names of the streams of points and of nodes.
 Result<std::string> outline_json(TakeReader& reader, const AlignmentReport& report) {
   nlohmann::json out{{"begin_ns", to_ns(report.begin)}, {"begin_s", 0.0}};
-  out["points"] = nlohmann::json::array();
+  out["points"] = out["nodes"] = nlohmann::json::array();
   for (const TakeGroup& group : reader.header().groups) {
     if (std::holds_alternative<PointGroup>(group.kind)) out["points"].push_back(group.name);
+    if (std::holds_alternative<ImuGroup>(group.kind)) out["nodes"].push_back(group.name);
   }
   const double length = seconds(report.end - report.begin);
   if (length <= detail_length_s || out["points"].empty()) return json_text(out);
@@ -110,12 +111,18 @@ Result<std::string> page_text(const std::string& path, TakeReader& reader,
   return json_text(about) + "\n" + html;
 }
 
-// ---- the raw samples of figure 7
+// ---- the raw samples of figures 4, 11 and 12
 
 struct Outline {
   Time begin{};
   double detail_begin_s = 0.0;
-  std::vector<std::string> points;
+  std::vector<std::string> points, nodes;  // names of streams
+};
+
+struct RawSamples {
+  std::vector<RawPoints> points;
+  std::vector<RawNode> nodes;
+  bool empty() const { return points.empty() && nodes.empty(); }
 };
 
 Result<Outline> outline_of(FileSystem& files, const std::string& path, double wanted_s) {
@@ -130,6 +137,7 @@ Result<Outline> outline_of(FileSystem& files, const std::string& path, double wa
     out.begin = utc_time(json.at("begin_ns").get<std::int64_t>());
     out.detail_begin_s = wanted_s >= 0.0 ? wanted_s : json.at("begin_s").get<double>();
     out.points = json.at("points").get<std::vector<std::string>>();
+    out.nodes = json.at("nodes").get<std::vector<std::string>>();
     return out;
   } catch (const nlohmann::json::exception&) {
     return Failure(Error{path, 0, "a take that says when it begins", "another answer"});
@@ -161,15 +169,46 @@ Result<RawPoints> raw_points(const RecordedStream& stream, const Outline& outlin
   return out;
 }
 
-/// The raw samples of all streams of points. Fails if an input is missing or is not the take's.
-Result<std::vector<RawPoints>> read_raw(Call& call, const Origin& origin, const Outline& outline,
-                                        const std::string& base) {
+/// The samples of each node of a stream within the detail, stamps on the take's axis.
+Result<std::vector<RawNode>> raw_nodes(const RecordedStream& stream, const Outline& outline) {
+  const auto& input = std::get<ImuInput>(stream.data);
+  const std::size_t worn = input.node_names.size();
+  const double end_s = outline.detail_begin_s + detail_length_s;
+  std::vector<RawNode> out;
+  for (const std::string& node : input.node_names) out.push_back({stream.name, node, {}, {}, {}});
+  const Pass<ImuSamples> pass = KA_TRY(input.passes());
+  ImuSamples block;
+  while (KA_TRY(pass(block))) {
+    for (std::size_t sample = 0; sample < block.valid.size(); ++sample) {
+      const Time at = take_time(stream.clock, block.stamps[sample / worn]);
+      const double s = seconds(at - outline.begin);
+      if (block.valid[sample] == 0 || s < outline.detail_begin_s || s > end_s) continue;
+      RawNode& node = out[sample % worn];
+      node.stamps.push_back(at);
+      const auto put = [sample](const std::vector<double>& from, std::vector<double>& to) {
+        if (from.empty()) return;
+        const auto begin = from.begin() + static_cast<std::ptrdiff_t>(3 * sample);
+        to.insert(to.end(), begin, begin + 3);
+      };
+      put(block.angular_velocity, node.angular_velocity);
+      put(block.acceleration, node.acceleration);
+    }
+  }
+  return out;
+}
+
+/// The raw samples of all streams of points and nodes. Fails if an input is missing or is not the
+/// take's.
+Result<RawSamples> read_raw(Call& call, const Origin& origin, const Outline& outline,
+                            const std::string& base) {
   Manifest manifest = origin.parameters;
   std::erase_if(manifest.streams, [&outline](const StreamOptions& stream) {
-    return std::find(outline.points.begin(), outline.points.end(), stream.name) ==
-           outline.points.end();
+    const auto has = [&stream](const std::vector<std::string>& names) {
+      return std::find(names.begin(), names.end(), stream.name) != names.end();
+    };
+    return !has(outline.points) && !has(outline.nodes);
   });
-  std::vector<RawPoints> out;
+  RawSamples out;
   if (manifest.streams.empty()) return out;
   FileSystem& files = call.surroundings.files;
   for (const std::string& file : files_named(manifest, base)) {
@@ -183,7 +222,9 @@ Result<std::vector<RawPoints>> read_raw(Call& call, const Origin& origin, const 
   }
   for (const RecordedStream& stream : recording.streams) {
     if (std::holds_alternative<PointInput>(stream.data)) {
-      out.push_back(KA_TRY(raw_points(stream, outline)));
+      out.points.push_back(KA_TRY(raw_points(stream, outline)));
+    } else if (std::holds_alternative<ImuInput>(stream.data)) {
+      for (RawNode& node : KA_TRY(raw_nodes(stream, outline))) out.nodes.push_back(std::move(node));
     }
   }
   return out;
@@ -270,11 +311,11 @@ int say(const Written& written, bool has_raw, Call& call) {
 }
 
 /// The raw samples that can be read. Without --inputs, a take whose inputs are elsewhere has none.
-Result<std::vector<RawPoints>> find_raw(const Report& o, Call& call, const Origin& origin,
-                                        const Outline& outline, const std::string& base) {
+Result<RawSamples> find_raw(const Report& o, Call& call, const Origin& origin,
+                            const Outline& outline, const std::string& base) {
   auto raw = read_raw(call, origin, outline, base);
   const bool optional = o.inputs.empty() && !interrupted();
-  if (!raw && optional) return std::vector<RawPoints>{};
+  if (!raw && optional) return RawSamples{};
   return raw;
 }
 
@@ -298,9 +339,12 @@ Result<int> run(Report& o, Call& call) {
   TakeFigureOptions options;
   options.detail_begin_s = outline.detail_begin_s;
   options.detail_length_s = detail_length_s;
-  options.raw = KA_TRY(find_raw(o, call, origin, outline, base));
+  RawSamples raw = KA_TRY(find_raw(o, call, origin, outline, base));
+  const bool has_raw = !raw.empty();
+  options.raw = std::move(raw.points);
+  options.raw_nodes = std::move(raw.nodes);
   const Written written = KA_TRY(write_page(take, options, call));
-  const int code = say(written, !options.raw.empty(), call);
+  const int code = say(written, has_raw, call);
   if (o.open) show(call.common.out, call);
   return code;
 }

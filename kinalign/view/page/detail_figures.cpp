@@ -83,4 +83,30 @@ void add_raw(const RawPoints& raw, const RawMove& move, Time first, PageDetail& 
   }
 }
 
+Stretch raw_node_stretch(const std::vector<RawNode>& raw, const Stretch& stretch,
+                         std::size_t most) {
+  std::size_t samples = 0;
+  for (const RawNode& node : raw) samples += node.stamps.size();
+  if (samples <= most) return stretch;
+  const double kept = static_cast<double>(most) / static_cast<double>(samples);
+  const double middle = 0.5 * (stretch.begin_s + stretch.end_s);
+  const double half = 0.5 * kept * (stretch.end_s - stretch.begin_s);
+  return {middle - half, middle + half};
+}
+
+void add_raw(const RawNode& raw, const Quat& sensor_from_bone, Time first, const Stretch& stretch,
+             NodeFigures& figures) {
+  const Quat back = sensor_from_bone.conjugate();
+  for (std::size_t t = 0; t < raw.stamps.size(); ++t) {
+    const double at = seconds(raw.stamps[t] - first);
+    if (at < stretch.begin_s || at > stretch.end_s) continue;
+    figures.raw_seconds.push_back(static_cast<float>(at));
+    const auto put = [&](const std::vector<double>& from, std::vector<float>& to) {
+      if (!from.empty()) put_vector(to, back * Vec3(vec3(from, t)));
+    };
+    put(raw.angular_velocity, figures.raw_rate);
+    put(raw.acceleration, figures.raw_acceleration);
+  }
+}
+
 }  // namespace kinalign

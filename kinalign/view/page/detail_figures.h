@@ -18,6 +18,14 @@ struct RawPoints {
   PointFrames frames;
 };
 
+/// Raw samples of a node, stamps on the take's axis, vectors in the sensor's space; an array of a
+/// quantity that the node does not measure is empty.
+struct RawNode {
+  std::string stream, node;
+  std::vector<Time> stamps;                            // [R]
+  std::vector<double> angular_velocity, acceleration;  // [R,3] rad/s; m/s2
+};
+
 /// Collects one body's rows within a stretch.
 class DetailFigures {
  public:
@@ -49,5 +57,19 @@ struct RawMove {
 
 /// Puts the raw samples of the stretch into `detail`. `first`: stamp of the take's first row.
 void add_raw(const RawPoints& raw, const RawMove& move, Time first, PageDetail& detail);
+
+/// A stretch of the take, s from its first row.
+struct Stretch {
+  double begin_s = 0.0, end_s = 0.0;
+};
+
+/// The part of a stretch, around its middle, in which all nodes together have at most `most` raw
+/// samples, if they come evenly.
+Stretch raw_node_stretch(const std::vector<RawNode>& raw, const Stretch& stretch, std::size_t most);
+
+/// Puts a node's raw samples of a stretch into its figures, as the node is worn: turned back by
+/// `sensor_from_bone`.
+void add_raw(const RawNode& raw, const Quat& sensor_from_bone, Time first, const Stretch& stretch,
+             NodeFigures& figures);
 
 }  // namespace kinalign

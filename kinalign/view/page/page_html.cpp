@@ -1,71 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/page/page_html.h"
 
-#include "kinalign/core/hash.h"
 #include "kinalign/core/utf8.h"
 #include "kinalign/view/page/assets.h"
-#include "kinalign/view/page/packed_series.h"
 #include "kinalign/view/page/page_json.h"
+#include "kinalign/view/page/page_template.h"
 #include "kinalign/view/page/page_text.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <map>
 
 namespace kinalign {
 
 namespace {
-
-using Parts = std::map<std::string, std::string, std::less<>>;
-
-/// Puts parts into a template: {{name}} becomes the part; {{#name}}...{{/name}} stays only where
-/// the part is there and not empty.
-class Template {
- public:
-  explicit Template(const Parts& parts) : parts_(parts) {}
-
-  std::string filled(std::string_view text) const {
-    std::string out;
-    while (!text.empty()) {
-      const std::size_t open = text.find("{{");
-      out += text.substr(0, open);
-      if (open == std::string_view::npos) break;
-      text.remove_prefix(open + 2);
-      const std::size_t close = text.find("}}");
-      const std::string_view name = text.substr(0, close);
-      text.remove_prefix(close + 2);
-      if (!name.starts_with('#')) {
-        out += part(name);
-        continue;
-      }
-      const std::string end = fmt::format("{{{{/{}}}}}", name.substr(1));
-      const std::size_t behind = text.find(end);
-      if (!part(name.substr(1)).empty()) out += filled(text.substr(0, behind));
-      text.remove_prefix(behind + end.size());
-    }
-    return out;
-  }
-
- private:
-  std::string_view part(std::string_view name) const {
-    const auto found = parts_.find(name);
-    return found == parts_.end() ? std::string_view() : std::string_view(found->second);
-  }
-  const Parts& parts_;
-};
-
-/// A hash as a Content-Security-Policy names it.
-std::string policy_hash(std::string_view text) {
-  Sha256 hash;
-  hash.update(text);
-  const std::string hex = hash.hex();
-  std::string bytes;
-  for (std::size_t i = 0; i < hex.size(); i += 2) {
-    bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
-  }
-  return "'sha256-" + base64(bytes) + "'";
-}
 
 std::string flag(bool on) { return on ? "yes" : ""; }
 
@@ -74,10 +20,9 @@ std::string any_node(const TakePage& page, Has has) {
   return flag(std::any_of(page.nodes.begin(), page.nodes.end(), has));
 }
 
-Parts parts_of(const TakePage& page) {
-  Parts parts;
-  parts["policy"] = "default-src 'none'; base-uri 'none'; form-action 'none'; script-src " +
-                    policy_hash(page_script()) + "; style-src " + policy_hash(page_style());
+PageParts parts_of(const TakePage& page) {
+  PageParts parts;
+  parts["policy"] = page_policy(page_script(), page_style());
   parts["software"] = escaped(page.software);
   parts["title"] = escaped(page.file) + ": " + std::string(to_string(quality_of(page)));
   parts["licences"] = page_licences();
@@ -111,7 +56,7 @@ Parts parts_of(const TakePage& page) {
 }
 
 /// Which blocks of the template a take has.
-void put_flags(const TakePage& page, Parts& parts) {
+void put_flags(const TakePage& page, PageParts& parts) {
   const auto lane = [&](auto has) {
     return flag(std::any_of(page.lanes.begin(), page.lanes.end(), has));
   };
@@ -120,7 +65,8 @@ void put_flags(const TakePage& page, Parts& parts) {
   parts["bins"] = page.lanes.empty() ? "0" : std::to_string(page.lanes.front().tracked.size());
   parts["points"] = flag(std::any_of(page.bodies.begin(), page.bodies.end(),
                                      [](const PageBody& b) { return b.kind == PageKind::points; }));
-  parts["pairs"] = flag(!page.spaces.empty() && !page.spaces.front().pairs.empty());
+  parts["pairs"] = flag(std::any_of(page.spaces.begin(), page.spaces.end(),
+                                    [](const PageSpace& s) { return !s.pairs.empty(); }));
   parts["zones"] = flag(!page.floors.empty());
   parts["bones"] = flag(!page.bones.empty());
   parts["detail"] = flag(!page.details.empty());
@@ -128,6 +74,7 @@ void put_flags(const TakePage& page, Parts& parts) {
   parts["rate"] = any_node(page, [](const NodeFigures& n) { return n.has_rate; });
   parts["acceleration"] = any_node(page, [](const NodeFigures& n) { return n.has_acceleration; });
   parts["orientation"] = any_node(page, [](const NodeFigures& n) { return n.has_orientation; });
+  parts["raw_nodes"] = raw_nodes_text(page);
   parts["axes"] = flag(has_axes(page));
   const std::string gravity = any_node(page, [](const NodeFigures& n) { return n.has_gravity; });
   parts["gravity"] = gravity.empty() ? ", gravity removed" : ", gravity included";
@@ -166,9 +113,9 @@ Result<std::string> page_html(const TakePage& page) {
     return Failure(Error{"", 0, "a kinalign that was built with esbuild, libjs-three and node-d3",
                          "one without " + std::string(page_parts_missing())});
   }
-  Parts parts = parts_of(page);
+  PageParts parts = parts_of(page);
   put_flags(page, parts);
-  return Template(parts).filled(page_template());
+  return filled(page_template(), parts);
 }
 
 }  // namespace kinalign

@@ -130,6 +130,13 @@ Json node_json(const NodeFigures& node) {
     out["acceleration"] = series(node.acceleration, 3, acceleration_step);
     out["mocap_acceleration"] = series(node.mocap_acceleration, 3, acceleration_step);
   }
+  if (!node.raw_seconds.empty()) {
+    out["raw_seconds"] = series(node.raw_seconds, 1, second_step);
+    if (node.has_rate) out["raw_rate"] = series(node.raw_rate, 3, rate_step);
+    if (node.has_acceleration) {
+      out["raw_acceleration"] = series(node.raw_acceleration, 3, acceleration_step);
+    }
+  }
   if (node.has_orientation) {
     out["orientation_error"] = series(node.orientation_error, 1, angle_step);
     out["axes"] = series(node.axes, 4, rotation_step);

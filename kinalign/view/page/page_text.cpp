@@ -95,6 +95,16 @@ std::string how_moved(const PageSpace& space) {
          "every frame, so that the root has no residual";
 }
 
+/// "kinect and kinect_2".
+std::string bodies_with_bones(const TakePage& page) {
+  std::vector<std::string> names;
+  for (const BoneLength& bone : page.bones) {
+    const std::string name = escaped(page.bodies[bone.body].name);
+    if (names.empty() || names.back() != name) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, " and "));
+}
+
 }  // namespace
 
 std::string facts_text(const TakePage& page) {
@@ -256,7 +266,7 @@ std::string detail_caption(const TakePage& page) {
   std::string text = fmt::format(
       "The paper's figure 7: raw samples of {} against the resampled curve, in the space of the "
       "take. ",
-      escaped(page.bodies[detail.body].name));
+      page.details.size() > 1 ? "the chosen stream" : escaped(page.bodies[detail.body].name));
   text +=
       detail.has_raw
           ? "Dots: the raw samples, read from the take's inputs; hollow: inferred by the device."
@@ -295,22 +305,29 @@ std::string space_text(const TakePage& page) {
 std::string table5_caption(const TakePage& page) {
   if (page.spaces.empty()) return "";
   const PageSpace& space = page.spaces.front();
-  std::string text = fmt::format("The paper's table 5: {} (green) and {} (red) ",
-                                 escaped(space.report.stream), escaped(space.report.onto));
-  text += space.once_per_take ? "before and after the first was moved."
-                              : "after the first was moved. Before is not shown: the transform "
-                                "differs from frame to frame and the take holds its result.";
+  const bool several = page.spaces.size() > 1;
+  std::string text =
+      several ? "The paper's table 5: the chosen stream (green) and the one that it was moved onto "
+                "(red) "
+              : fmt::format("The paper's table 5: {} (green) and {} (red) ",
+                            escaped(space.report.stream), escaped(space.report.onto));
+  text += space.once_per_take || several
+              ? "before and after the first was moved."
+              : "after the first was moved. Before is not shown: the transform differs from frame "
+                "to frame and the take holds its result.";
   return text + " Each panel has its own scale. Dashed bones and hollow joints: inferred.";
 }
 
 std::string residual_caption(const TakePage& page) {
   if (page.spaces.empty()) return "";
   const SpaceReport& report = page.spaces.front().report;
+  const bool several = page.spaces.size() > 1;
   return fmt::format(
-      "Distance of each joint of {} from its counterpart in {}, rms over the rows in which it is "
+      "Distance of each joint of {} from its counterpart{}, rms over the rows in which it is "
       "tracked. The two skeletons do not mean quite the same places by one name, so a part of it "
       "is not noise.",
-      escaped(report.stream), escaped(report.onto));
+      several ? "the stream chosen in figure 5" : escaped(report.stream),
+      several ? "" : " in " + escaped(report.onto));
 }
 
 std::string floor_caption(const TakePage& page) {
@@ -349,7 +366,7 @@ std::string bones_caption(const TakePage& page) {
       "the joint at its end, over the rows in which both ends are tracked. A mocap skeleton's "
       "bones "
       "are constant by construction.",
-      escaped(page.bodies[page.bones.front().body].name));
+      bodies_with_bones(page));
 }
 
 std::string node_text(const TakePage& page) {
@@ -388,6 +405,16 @@ std::string node_table(const TakePage& page) {
                "Differences between a node and its bone after the best constant rotation, over the "
                "rows kept on this page. Correlations are of the magnitudes. Lag: by which the node "
                "is late, where its rates agree best.");
+}
+
+std::string raw_nodes_text(const TakePage& page) {
+  const bool any = std::any_of(page.nodes.begin(), page.nodes.end(),
+                               [](const NodeFigures& node) { return !node.raw_seconds.empty(); });
+  if (!any) return "";
+  return fmt::format(
+      " Dots: the node's raw samples, read from the take's inputs, of {:.0f} to {:.0f} s; they are "
+      "drawn where at most one stands on every second pixel.",
+      page.raw_nodes_begin_s, page.raw_nodes_end_s);
 }
 
 std::string findings_list(const TakePage& page) {

@@ -29,6 +29,7 @@ std::string zone_table(const TakePage& page);
 std::string bones_caption(const TakePage& page);
 std::string node_text(const TakePage& page);
 std::string node_table(const TakePage& page);
+std::string raw_nodes_text(const TakePage& page);  // of figures 11 and 12; empty: no raw samples
 std::string findings_list(const TakePage& page);
 std::string inputs_table(const TakePage& page);
 std::string thinning_text(const TakePage& page);

@@ -71,6 +71,7 @@ struct TakeFigures::State {
   void judge_nodes();
   void add_detail(const TakeSlab& slab, std::size_t row, double at, GroupFigures& body);
   void add_raw_samples(PageDetail& detail) const;
+  void add_raw_node_samples();
   void add_row(const TakeSlab& slab, std::size_t row);
   std::size_t bin_of(double seconds) const;
   double kept_step_s() const;
@@ -235,6 +236,28 @@ void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
   add_raw(*raw, move, *first, detail);
 }
 
+void TakeFigures::State::add_raw_node_samples() {
+  if (options.raw_nodes.empty() || !first) return;
+  const Stretch detail{options.detail_begin_s, options.detail_begin_s + options.detail_length_s};
+  const Stretch stretch =
+      raw_node_stretch(options.raw_nodes, detail, options.most_raw_node_samples);
+  page.raw_nodes_begin_s = std::max(0.0, stretch.begin_s);
+  page.raw_nodes_end_s = std::min(length_s, stretch.end_s);
+  const std::string& stream = header.groups[node_group].name;
+  const auto how = std::find_if(header.parameters.streams.begin(), header.parameters.streams.end(),
+                                [&](const StreamOptions& one) { return one.name == stream; });
+  for (const RawNode& raw : options.raw_nodes) {
+    const auto node = std::find_if(page.nodes.begin(), page.nodes.end(),
+                                   [&](const NodeFigures& n) { return n.node == raw.node; });
+    if (raw.stream != stream || node == page.nodes.end()) continue;
+    Quat sensor_from_bone = Quat::Identity();
+    if (how != header.parameters.streams.end() && how->mounting.contains(raw.node)) {
+      sensor_from_bone = quat(how->mounting.at(raw.node), 0).normalized();
+    }
+    add_raw(raw, sensor_from_bone, *first, stretch, *node);
+  }
+}
+
 double TakeFigures::State::kept_step_s() const {
   if (page.seconds.size() < 2) return 1.0;
   return static_cast<double>(page.seconds.back()) / static_cast<double>(page.seconds.size() - 1);
@@ -297,6 +320,7 @@ TakePage TakeFigures::finish() {
   }
   if (s.compare) {
     s.page.nodes = s.compare->finish(s.kept_step_s());
+    s.add_raw_node_samples();
     s.judge_nodes();
   }
   s.page.worst = worst_of(s.page.verdicts, 3);

@@ -22,6 +22,8 @@ struct TakeFigureOptions {
   double detail_length_s = 60.0;
   std::size_t bins = 240;  // of each lane
   std::vector<RawPoints> raw{};
+  std::vector<RawNode> raw_nodes{};
+  std::size_t most_raw_node_samples = 40'000;  // of all nodes together: 0.3 MB
 };
 
 /// Every stride-th row is kept so that the page stays small; 1: all are.

@@ -125,6 +125,9 @@ struct NodeFigures {
   std::vector<float> orientation_error;                 // [K] rad
   std::vector<float> axes;          // [K,4] w,x,y,z, the node in the take's space
   std::vector<std::uint8_t> valid;  // [K]
+  /// Raw samples of the detail's time, in the node's own space, too; empty where no input was read.
+  std::vector<float> raw_seconds;                 // [R]
+  std::vector<float> raw_rate, raw_acceleration;  // [R,3]
 };
 
 struct TakePage {
@@ -145,6 +148,7 @@ struct TakePage {
   std::vector<PageLane> lanes;
   std::size_t node_body = 0;  // of `bodies`, that nodes are compared with
   std::vector<NodeFigures> nodes;
+  double raw_nodes_begin_s = 0.0, raw_nodes_end_s = 0.0;  // in which `nodes` have raw samples
   std::vector<PageDetail> details;
 };
 

@@ -218,17 +218,20 @@ export function zoomButtons(id, view) {
   }
 }
 
-/// A list to choose from, in front of a figure's buttons; `names` in order.
+/// A list to choose from, in front of a figure's buttons; `names` in order. What it returns puts other
+/// names into the list.
 export function chooser(id, label, names, chosen, does) {
   const bar = document.querySelector(`#${id} .tools`);
-  if (bar === null) return;
+  if (bar === null) return () => {};
   const box = document.createElement("label");
   box.textContent = `${label} `;
   const list = document.createElement("select");
-  names.forEach((name, i) => list.add(new Option(name, i, i === chosen, i === chosen)));
+  const offer = (offered, now) => list.replaceChildren(...offered.map((name, i) => new Option(name, i, i === now, i === now)));
+  offer(names, chosen);
   list.addEventListener("change", () => does(Number(list.value)));
   box.append(list);
   bar.append(box);
+  return offer;
 }
 
 /// Horizontal bars, one a name. `bars[i]` = {name, draw(g, y, height)}.

@@ -5,7 +5,7 @@ import { PageClock } from "./clock.js";
 import { readTake } from "./data.js";
 import { nodeFigures } from "./node_figures.js";
 import { Player } from "./player.js";
-import { boneFigure, floorFigure, residualByJoint, residualOverTime, stateFigure, table5 } from "./space_figures.js";
+import { boneFigure, floorFigure, residualByJoint, residualOverTime, SpaceChoice, stateFigure, table5 } from "./space_figures.js";
 import { distanceFigure, figure7, laneFigure } from "./time_figures.js";
 
 const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -96,15 +96,17 @@ async function main() {
   await pause();
   const take = readTake(), clock = new PageClock(take.length_s);
   const whole = new TimeView(clock), detail = new TimeView(clock), nodes = new TimeView(clock);
+  const choice = new SpaceChoice(take);
   const player = makePlayer(take, clock);
   controls(take, clock, player);
   for (const figure of [
     () => laneFigure(take, whole),
     () => distanceFigure(take, whole),
     () => figure7(take, detail),
-    () => table5(take, clock),
-    () => residualByJoint(take),
-    () => residualOverTime(take, whole),
+    () => table5(take, clock, choice),
+    () => residualByJoint(choice),
+    () => residualOverTime(take, whole, choice),
+    () => choice.offer(),
     () => floorFigure(take, clock),
     () => stateFigure(take),
     () => boneFigure(take),

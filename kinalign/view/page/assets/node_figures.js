@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { scaleLinear } from "d3-scale";
 
-import { axes, chooser, path, zoomButtons } from "./chart.js";
+import { axes, chooser, dots, path, zoomButtons } from "./chart.js";
 import { rowAt } from "./data.js";
 
 const degrees = 180 / Math.PI;
@@ -13,12 +13,24 @@ const choices = [
   ["z", (v, k) => v[3 * k + 2]],
 ];
 
+/// Raw samples [seconds, value] within a time; none where they are more than `most`.
+function rawWithin(raw, [begin, end], most) {
+  if (!raw) return [];
+  const first = rowAt(raw.seconds, begin), last = rowAt(raw.seconds, end), out = [];
+  if (last - first > most) return [];
+  for (let r = first; r <= last; ++r) {
+    if (raw.seconds[r] >= begin && raw.seconds[r] <= end) out.push([raw.seconds[r], raw.value(r)]);
+  }
+  return out;
+}
+
 /// Two curves over time; null where the node has nothing.
 function compared(take, view, id, label, of) {
   view.add(id, 150, (svg, at, x) => {
     const first = rowAt(take.seconds, view.domain[0]), last = rowAt(take.seconds, view.domain[1]);
     const step = Math.max(1, Math.floor((last - first) / (3 * at.width)));
-    const { valid, curves } = of();
+    const { valid, curves, raw } = of();
+    const samples = rawWithin(raw, view.domain, at.width / 2);
     let low = Infinity, high = -Infinity;
     const lines = curves.map(({ colour, value }) => {
       const points = [];
@@ -34,6 +46,10 @@ function compared(take, view, id, label, of) {
       }
       return { colour, points };
     });
+    for (const [, v] of samples) {
+      low = Math.min(low, v);
+      high = Math.max(high, v);
+    }
     if (low > high) [low, high] = [0, 1];
     // From zero, unless that would hide what changes: gravity is in an acceleration.
     if (low > 0 && high - low > 0.3 * high) low = 0;
@@ -43,6 +59,8 @@ function compared(take, view, id, label, of) {
       svg.append("path").attr("class", `line ${colour === "mocap" ? "thin" : ""} ${colour}`)
         .attr("d", path(points.map((p) => (p === null ? null : [x(p[0]), y(p[1])]))));
     }
+    svg.append("path").attr("class", "dots imu").attr("stroke-width", samples.length > at.width / 6 ? 3 : 5)
+      .attr("d", dots(samples.map(([t, v]) => [x(t), y(v)])));
   });
 }
 
@@ -51,7 +69,12 @@ export function nodeFigures(take, view) {
   if (nodes.length === 0) return;
   const chosen = { node: 0, part: 0 };
   const node = () => nodes[chosen.node], part = () => choices[chosen.part][1];
+  const rawOf = (name, factor) => {
+    const one = node();
+    return one.raw_seconds ? { seconds: one.raw_seconds, value: (r) => factor * part()(one[name], r) } : null;
+  };
   const both = (ours, theirs, factor) => () => ({
+    raw: rawOf(`raw_${ours}`, factor),
     valid: node().valid,
     curves: [
       { colour: "mocap", value: (k) => factor * part()(node()[theirs], k) },

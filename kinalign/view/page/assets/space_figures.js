@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { scaleLinear } from "d3-scale";
 
-import { addHatches, axes, bars, drawn, hatch, margin, marker, path } from "./chart.js";
+import { addHatches, axes, bars, chooser, drawn, hatch, margin, marker, path } from "./chart.js";
 import { boxOf, drawBody } from "./bodies.js";
 import { beforeMove, distance, place, rowAt, stateOf } from "./data.js";
 
@@ -37,17 +37,36 @@ function panel(svg, box, take, bodies, row, moved, map) {
   for (const body of bodies) drawBody(g, body, row, (p) => to(map(moved(body, p))));
 }
 
-export function table5(take, clock) {
-  const space = take.spaces[0];
-  if (!space) return;
-  const bodies = [take.bodies[space.onto], take.bodies[space.body]];
-  const front = frontOf(facing(take));
-  const before = (body, p) => (body === bodies[1] ? beforeMove(space, p) : p);
-  const panels = [];
-  if (space.once_per_take) panels.push(["before, front", before, front], ["before, from above", before, (p) => [p[0], -p[2]]]);
-  panels.push(["after, front", (_, p) => p, front], ["after, from above", (_, p) => p, (p) => [p[0], -p[2]]]);
-  let row = seenRow(take, space);
+/// The moved body that figures 5 to 7 show. `space` is absent if no body has pairs of joints.
+export class SpaceChoice {
+  constructor(take) {
+    this.spaces = take.spaces.filter((space) => space.pairs.length > 0);
+    this.space = this.spaces[0];
+    this.changed = [];
+  }
+  /// A list to choose from, where there are several.
+  offer() {
+    if (this.spaces.length < 2) return;
+    chooser("table5", "Stream", this.spaces.map((space) => `${space.stream} on ${space.onto_stream}`), 0, (i) => {
+      this.space = this.spaces[i];
+      for (const change of this.changed) change();
+    });
+  }
+}
+
+/// The panels of table 5: each a name, where a body's point is drawn, and from where it is seen.
+function panelsOf(take, space) {
+  const moved = take.bodies[space.body], front = frontOf(facing(take)), above = (p) => [p[0], -p[2]];
+  const before = (body, p) => (body === moved ? beforeMove(space, p) : p), after = (_, p) => p;
+  const panels = [["after, front", after, front], ["after, from above", after, above]];
+  return space.once_per_take ? [["before, front", before, front], ["before, from above", before, above], ...panels] : panels;
+}
+
+export function table5(take, clock, choice) {
+  if (!choice.space) return;
+  let row = seenRow(take, choice.space);
   const figure = drawn("table5", (svg, width) => {
+    const space = choice.space, bodies = [take.bodies[space.onto], take.bodies[space.body]], panels = panelsOf(take, space);
     const columns = width < 560 ? 2 : panels.length, height = 240;
     panels.forEach(([name, moved, map], i) => {
       const w = width / columns, left = (i % columns) * w, top = Math.floor(i / columns) * (height + 24);
@@ -62,6 +81,11 @@ export function table5(take, clock) {
     if (stamp !== null) stamp.textContent = `${take.seconds[row].toFixed(2)} s`;
   };
   tell();
+  choice.changed.push(() => {
+    row = seenRow(take, choice.space);
+    figure.redraw();
+    tell();
+  });
   let touched = false;
   clock.listen(() => {
     touched = touched || clock.now > 0;
@@ -85,10 +109,10 @@ function seenRow(take, space) {
   return start;
 }
 
-export function residualByJoint(take) {
-  const space = take.spaces[0];
-  if (!space || space.joints.length === 0) return;
-  drawn("residual", (svg, width) => {
+export function residualByJoint(choice) {
+  if (!choice.space) return;
+  const figure = drawn("residual", (svg, width) => {
+    const space = choice.space;
     const most = Math.max(...space.joints.map((j) => j.after_m)) * 100;
     const names = space.joints.map((j) => j.joint);
     return bars(svg, width, names, scaleLinear().domain([0, 1.1 * most]), { x: "distance, rms / cm" }, (i, y, height, x) => {
@@ -97,12 +121,11 @@ export function residualByJoint(take) {
       svg.append("text").attr("class", "value").attr("x", x(value) + 4).attr("y", y + height / 2).attr("dy", "0.35em").text(value.toFixed(1));
     });
   });
+  choice.changed.push(figure.redraw);
 }
 
-/// Distance of each pair over time: the rms of all, and the worst of them.
-export function residualOverTime(take, view) {
-  const space = take.spaces[0];
-  if (!space) return;
+/// Distance of each pair over time: the rms of all, and the worst of them, in cm.
+function residualsOf(take, space) {
   const rms = new Array(take.rows), worst = new Array(take.rows);
   for (let row = 0; row < take.rows; ++row) {
     let sum = 0, count = 0, most = 0;
@@ -116,7 +139,13 @@ export function residualOverTime(take, view) {
     rms[row] = count === 0 ? null : 100 * Math.sqrt(sum / count);
     worst[row] = count === 0 ? null : 100 * most;
   }
-  view.add("residual-time", 170, (svg, at, x) => {
+  return { rms, worst };
+}
+
+export function residualOverTime(take, view, choice) {
+  if (!choice.space) return;
+  let { rms, worst } = residualsOf(take, choice.space);
+  const chart = view.add("residual-time", 170, (svg, at, x) => {
     const first = rowAt(take.seconds, view.domain[0]), last = rowAt(take.seconds, view.domain[1]);
     const step = Math.max(1, (last - first + 1) / (2 * at.width));
     const points = { rms: [], worst: [] };
@@ -138,6 +167,10 @@ export function residualOverTime(take, view) {
     const line = (list) => path(list.map((p) => (p === null ? null : [x(p[0]), y(p[1])])));
     svg.append("path").attr("class", "line thin faint kinect").attr("d", line(points.worst));
     svg.append("path").attr("class", "line kinect").attr("d", line(points.rms));
+  });
+  choice.changed.push(() => {
+    ({ rms, worst } = residualsOf(take, choice.space));
+    chart.redraw();
   });
 }
 
@@ -210,24 +243,29 @@ function drawZones(svg, floor, to) {
 /// Joint by joint: measured, guessed, missing.
 export function stateFigure(take) {
   const points = take.bodies.filter((b) => b.kind === "points");
-  const body = points.find((b) => b.colour === "kinect") ?? points[0];
+  const kinect = points.findIndex((b) => b.colour === "kinect");
+  let body = points[Math.max(0, kinect)];
   if (!body) return;
-  const counts = take.joint_states[take.bodies.indexOf(body)];
-  const shares = counts.map((c) => {
-    const all = Math.max(1, c[0] + c[1] + c[2]);
-    return { missing: (100 * c[0]) / all, inferred: (100 * c[1]) / all };
-  });
-  const order = shares.map((_, j) => j).sort((a, b) => shares[b].inferred + shares[b].missing - shares[a].inferred - shares[a].missing);
-  const most = Math.max(1, ...shares.map((s) => s.inferred + s.missing));
-  drawn("states", (svg, width) => {
+  const figure = drawn("states", (svg, width) => {
+    const shares = take.joint_states[take.bodies.indexOf(body)].map((c) => {
+      const all = Math.max(1, c[0] + c[1] + c[2]);
+      return { missing: (100 * c[0]) / all, inferred: (100 * c[1]) / all };
+    });
+    const order = shares.map((_, j) => j).sort((a, b) => shares[b].inferred + shares[b].missing - shares[a].inferred - shares[a].missing);
+    const most = Math.max(1, ...shares.map((s) => s.inferred + s.missing));
     addHatches(svg);
     return bars(svg, width, order.map((j) => body.joint_names[j]), scaleLinear().domain([0, 1.15 * most]), { x: "of all rows / %" }, (i, y, height, x) => {
       const s = shares[order[i]];
-      svg.append("rect").attr("fill", hatch(svg, "kinect")).attr("x", x(0)).attr("y", y).attr("width", x(s.inferred) - x(0)).attr("height", height);
-      svg.append("rect").attr("class", "lane-box kinect").attr("x", x(s.inferred)).attr("y", y).attr("width", x(s.missing) - x(0)).attr("height", height);
+      svg.append("rect").attr("fill", hatch(svg, body.colour)).attr("x", x(0)).attr("y", y).attr("width", x(s.inferred) - x(0)).attr("height", height);
+      svg.append("rect").attr("class", `lane-box ${body.colour}`).attr("x", x(s.inferred)).attr("y", y).attr("width", x(s.missing) - x(0)).attr("height", height);
       svg.append("text").attr("class", "value").attr("x", x(s.inferred + s.missing) + 4).attr("y", y + height / 2).attr("dy", "0.35em")
         .text((s.inferred + s.missing).toFixed(1));
     });
+  });
+  if (points.length < 2) return;
+  chooser("states", "Stream", points.map((one) => one.name), points.indexOf(body), (i) => {
+    body = points[i];
+    figure.redraw();
   });
 }
 
@@ -237,7 +275,8 @@ export function boneFigure(take) {
   if (bones.length === 0) return;
   const order = [...bones].sort((a, b) => b.deviation_m - a.deviation_m);
   const most = 100 * Math.max(...order.map((b) => 3 * b.deviation_m));
-  const name = (b) => take.bodies[b.body].joint_names[b.joint];
+  const several = bones.some((b) => b.body !== bones[0].body);
+  const name = (b) => (several ? `${take.bodies[b.body].name} ` : "") + take.bodies[b.body].joint_names[b.joint];
   drawn("bones", (svg, width) =>
     bars(svg, width, order.map(name), scaleLinear().domain([-most, most]), { x: "length minus its mean / cm" }, (i, y, height, x) => {
       const b = order[i], clamp = (v) => Math.max(-most, Math.min(most, v)), middle = y + height / 2;

@@ -131,12 +131,15 @@ function missing(curve, joint, first, last) {
   return out;
 }
 
+/// A wrist moves most.
+function usualJoint(names) {
+  return ["WristRight", "HandRight", "RightHand"].map((name) => names.indexOf(name)).find((j) => j >= 0) ?? 0;
+}
+
 export function figure7(take, view) {
-  const detail = take.details[0];
-  if (!detail) return;
-  const curve = curveOf(take, detail), names = curve.body.joint_names;
-  const usual = ["WristRight", "HandRight", "RightHand"].map((n) => names.indexOf(n)).find((j) => j >= 0);
-  const state = { joint: usual ?? 0, axis: 1 };
+  if (take.details.length === 0) return;
+  let detail = take.details[0], curve = curveOf(take, detail);
+  const state = { joint: usualJoint(curve.body.joint_names), axis: 1 };
   const gap = longestGap(curve, state.joint);
   const middle = gap ? gap.middle : Math.min(detail.begin_s + 3, take.length_s / 2);
   const half = Math.min(3, Math.max(1, document.querySelector("#figure7 .plot").clientWidth / 300));
@@ -164,18 +167,28 @@ export function figure7(take, view) {
     const clip = "figure7-inside";
     svg.append("clipPath").attr("id", clip).append("rect").attr("x", at.left).attr("y", at.top).attr("width", at.width).attr("height", at.height);
     const inside = svg.append("g").attr("clip-path", `url(#${clip})`);
+    const own = curve.body.colour;
     for (const [from, to] of missing(curve, state.joint, first, last)) {
       inside.append("rect").attr("class", "gap").attr("x", x(from)).attr("width", Math.max(1, x(to) - x(from))).attr("y", at.top).attr("height", at.height);
     }
     const line = (points) => path(points.map(([t, v]) => (v === null ? null : [x(t), y(v)])));
     inside.append("path").attr("class", "line thin mocap").attr("d", line(theirs));
-    inside.append("path").attr("class", "line kinect").attr("d", line(ours));
+    inside.append("path").attr("class", `line ${own}`).attr("d", line(ours));
     const spacing = at.width / Math.max(1, raw.length), size = spacing > 6 ? 3 : spacing > 2 ? 2 : 1.2;
     const placed = (wanted) => raw.filter((r) => r[2] === wanted).map((r) => [x(r[0]), y(r[1])]);
-    inside.append("path").attr("class", "dots kinect").attr("stroke-width", 2 * size).attr("d", dots(placed(2)));
-    inside.append("path").attr("class", "rings kinect").attr("d", rings(placed(1), size + 0.5));
+    inside.append("path").attr("class", `dots ${own}`).attr("stroke-width", 2 * size).attr("d", dots(placed(2)));
+    inside.append("path").attr("class", `rings ${own}`).attr("d", rings(placed(1), size + 0.5));
   });
-  chooser("figure7", "Joint", names, state.joint, (joint) => {
+  if (take.details.length > 1) {
+    chooser("figure7", "Stream", take.details.map((d) => take.bodies[d.body].name), 0, (i) => {
+      detail = take.details[i];
+      curve = curveOf(take, detail);
+      state.joint = usualJoint(curve.body.joint_names);
+      offerJoints(curve.body.joint_names, state.joint);
+      chart.redraw();
+    });
+  }
+  const offerJoints = chooser("figure7", "Joint", curve.body.joint_names, state.joint, (joint) => {
     state.joint = joint;
     chart.redraw();
   });

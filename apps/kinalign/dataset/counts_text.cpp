@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/dataset/counts_text.h"
+
+#include <fmt/format.h>
+
+namespace kinalign {
+
+std::string counted(std::uint64_t count, std::string_view one) {
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+}
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string size_text(std::uint64_t bytes) {
+  const auto size = static_cast<double>(bytes);
+  return size < 1e6 ? fmt::format("{:.0f} kB", 1e-3 * size) : fmt::format("{:.1f} MB", 1e-6 * size);
+}
+
+}  // namespace kinalign

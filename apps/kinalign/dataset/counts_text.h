@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Counts and sizes as several verbs print them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+/// "1 take", "3 takes".
+std::string counted(std::uint64_t count, std::string_view one);
+/// "1 person", "3 people".
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many);
+/// "85 kB", "1.6 MB".
+std::string size_text(std::uint64_t bytes);
+
+}  // namespace kinalign

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/changes/remove.h"
+
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/dataset/counts_text.h"
+#include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/dataset/splits_text.h"
+#include "apps/kinalign/verbs.h"
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+namespace kinalign {
+
+namespace {
+
+struct Remove {
+  std::vector<std::string> folder, names;
+  bool raw = false, yes = false;
+};
+
+Usage describe_remove(Remove& o) {
+  Usage usage;
+  usage.positionals = {
+      folder_word(o.folder),
+      {"NAME", "takes, or a person (sub-03) with all takes", &o.names, 1, 1'000'000}};
+  usage.flags = {{"raw", "remove the raw files below sourcedata/, too", &o.raw},
+                 {"yes", "do not ask", &o.yes}};
+  return usage;
+}
+
+/// The takes that go, and the raw files that stay.
+std::string plan_text(const RemovalPlan& plan) {
+  std::string out;
+  for (const TakeName& name : plan.takes) out += to_string(name) + "\n";
+  out += counted(plan.takes.size(), "take") + ", " + counted(plan.files.size(), "file") + ", " +
+         size_text(plan.bytes) + "\n";
+  for (const std::string& name : plan.unknown) out += "  " + name + ": nothing of it is there\n";
+  for (const std::string& folder : plan.raw_left) {
+    out += "  " + folder + " stays; --raw removes it\n";
+  }
+  return out;
+}
+
+/// Asks on the terminal; any answer but y or yes is no.
+bool agreed(Call& call) {
+  call.console.complain("remove them for good? [y/N]");
+  std::string answer;
+  for (char c = 0; ::read(STDIN_FILENO, &c, 1) == 1 && c != '\n';) answer += c;
+  return answer == "y" || answer == "yes";
+}
+
+nlohmann::ordered_json plan_json(const RemovalPlan& plan) {
+  auto takes = nlohmann::ordered_json::array();
+  for (const TakeName& name : plan.takes) takes.push_back(to_string(name));
+  return {{"takes", takes},
+          {"files", plan.files},
+          {"bytes", plan.bytes},
+          {"raw_left", plan.raw_left},
+          {"unknown", plan.unknown}};
+}
+
+Result<int> run_remove(Remove& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string folder = folder_of(o.folder);
+  KA_TRY(load_catalogue(files, folder));
+  const RemovalPlan plan = KA_TRY(plan_removal(files, folder, o.names, o.raw));
+  auto json = plan_json(plan);
+  json["removed"] = false;
+  if (!o.yes && !call.common.dry_run) {
+    const bool can_ask = ::isatty(STDIN_FILENO) == 1 && call.surroundings.err_is_terminal;
+    if (!can_ask) {
+      return call.console.refuse(
+          Error{"--yes", 0, "--yes, where there is no terminal to ask on", "none"});
+    }
+  }
+  call.console.print(harmless(plan_text(plan)));
+  const bool stays = call.common.dry_run || (!o.yes && (call.console.flush(), !agreed(call)));
+  if (stays) {
+    call.console.print("nothing was removed\n");
+    call.console.print_json(json_text(json));
+    return 0;
+  }
+  call.console.if_it_fails([](const Error&) -> std::vector<std::string> {
+    return {"a part may be removed; run the same again to go on"};
+  });
+  KA_TRY(remove_takes(files, folder, plan));
+  KA_TRY(open_index(folder, call));
+  const auto splits = splits_naming(files, folder, {plan.takes.begin(), plan.takes.end()});
+  json["removed"] = true;
+  json["splits"] = splits_json(splits);
+  call.console.print(harmless("removed\n" + splits_text(splits)));
+  call.console.print_json(json_text(json));
+  return plan.unknown.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+Verb dataset_rm_verb() {
+  return make_verb<Remove>(
+      {.name = "dataset rm",
+       .summary = "remove takes from a data set",
+       .text = "Removes the take, its summary, its manifest and its page, and with --raw the raw "
+               "files that were copied with it. Raw files outside the data set are never touched. "
+               "Asks on a terminal; elsewhere it needs --yes. Exit code 1 where one of the names "
+               "was not there."
+               "",
+       .examples = {{"kinalign dataset rm walks sub-03_task-S2A03_run-01 --yes", "one take"},
+                    {"kinalign dataset rm walks sub-03 --raw --dry-run",
+                     "says what would go of a person"}},
+       .common = {"json", "dry_run"}},
+      describe_remove, run_remove);
+}
+
+}  // namespace kinalign

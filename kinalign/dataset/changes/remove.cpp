@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/changes/remove.h"
+
+#include "kinalign/core/nearest_name.h"
+#include "kinalign/dataset/changes/toml_text.h"
+#include "kinalign/dataset/scan.h"
+#include "kinalign/take/remembered_path.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+namespace kinalign {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class RemovalPlanner {
+ public:
+  RemovalPlanner(FileSystem& files, const std::string& folder, bool with_raw,
+                 std::map<TakeName, TakeFiles> takes)
+      : files_(files), folder_(folder), with_raw_(with_raw), takes_(std::move(takes)) {}
+
+  Result<RemovalPlan> plan(const std::vector<std::string>& words) {
+    std::set<TakeName> wanted;
+    for (const std::string& word : words) {
+      std::set<TakeName> named = takes_named(word);
+      if (named.empty()) plan_.unknown.push_back(word);
+      wanted.merge(named);
+    }
+    if (wanted.empty()) return unknown(words.front());
+    plan_.takes.assign(wanted.begin(), wanted.end());
+    if (with_raw_) KA_TRY(check_others(wanted));
+    std::set<std::string> people;
+    for (const TakeName& name : plan_.takes) {
+      KA_TRY(add_take(name));
+      people.insert(name.subject);
+    }
+    for (const std::string& subject : people) {
+      if (with_raw_) plan_.folders.push_back("sourcedata/sub-" + subject);
+      plan_.folders.push_back("sub-" + subject);
+    }
+    return std::move(plan_);
+  }
+
+ private:
+  bool has_raw(const TakeName& name) const {
+    std::error_code fault;
+    return fs::exists(folder_ + "/" + raw_folder(name), fault);
+  }
+
+  std::set<TakeName> takes_named(const std::string& word) const {
+    std::set<TakeName> out;
+    const auto name = parse_take_name(word);
+    if (name && (takes_.contains(*name) || has_raw(*name))) out.insert(*name);
+    for (const auto& [take, there] : takes_) {
+      if (word == "sub-" + take.subject) out.insert(take);
+    }
+    if (with_raw_ && word.starts_with("sub-") && is_label(word.substr(4))) {
+      out.merge(takes_with_raw(word));  // of a run that was killed the raw files may be left alone
+    }
+    return out;
+  }
+
+  Failure unknown(const std::string& word) const {
+    std::vector<std::string> known;
+    for (const auto& [take, there] : takes_) known.push_back(to_string(take));
+    return Failure(unknown_name(word, "a take of " + folder_ + ", or a person as sub-03", known));
+  }
+
+  std::set<TakeName> takes_with_raw(const std::string& person) const {
+    std::set<TakeName> out;
+    std::error_code fault;
+    for (const auto& entry : fs::directory_iterator(folder_ + "/sourcedata/" + person, fault)) {
+      const auto name = parse_take_name(entry.path().filename().string());
+      if (name && "sub-" + name->subject == person) out.insert(*name);
+    }
+    return out;
+  }
+
+  /// Another take may have been made, by hand, of the raw files of one that goes.
+  Result<void> check_others(const std::set<TakeName>& wanted) const {
+    for (const auto& [name, there] : takes_) {
+      if (!there.manifest || wanted.contains(name)) continue;
+      const std::string path = path_of(name, TakeFile::manifest);
+      const std::string text = KA_TRY(read_whole(files_, folder_ + "/" + path, longest_manifest));
+      for (const TakeName& going : wanted) {
+        if (text.find(raw_folder(going)) == std::string::npos) continue;
+        return Failure(Error{path, 0, "no raw files of " + to_string(going) + ", which would go",
+                             raw_folder(going)});
+      }
+    }
+    return {};
+  }
+
+  Result<void> add_take(const TakeName& name) {
+    for (const TakeFile file : {TakeFile::manifest, TakeFile::take, TakeFile::summary}) {
+      add_file(path_of(name, file));
+    }
+    add_file("report/" + to_string(name) + ".html");
+    if (!has_raw(name)) return {};
+    if (!with_raw_) {
+      plan_.raw_left.push_back(raw_folder(name));
+      return {};
+    }
+    return add_raw(name);
+  }
+
+  void add_file(const std::string& path) {
+    std::error_code fault;
+    const fs::path whole = folder_ + "/" + path;
+    const auto kind = fs::symlink_status(whole, fault).type();
+    if (kind != fs::file_type::regular && kind != fs::file_type::symlink) return;
+    plan_.files.push_back(path);
+    if (kind == fs::file_type::regular) plan_.bytes += fs::file_size(whole, fault);
+  }
+
+  /// No link is followed: what it leads to lies elsewhere.
+  Result<void> add_raw(const TakeName& name) {
+    std::string folder = raw_folder(name);
+    folder.pop_back();
+    std::error_code fault;
+    for (const std::string& part :
+         {std::string("sourcedata"), "sourcedata/sub-" + name.subject, folder}) {
+      if (!fs::is_symlink(folder_ + "/" + part, fault)) continue;
+      return Failure(Error{folder_ + "/" + part, 0,
+                           "raw files within the data set; those elsewhere are not removed",
+                           "a link to another place"});
+    }
+    std::vector<std::string> inner;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ + "/" + folder, fault)) {
+      const std::string path = entry.path().lexically_relative(folder_).string();
+      if (fs::is_directory(entry.symlink_status())) {
+        inner.push_back(path);
+      } else {
+        add_file(path);
+      }
+    }
+    if (fault)
+      return Failure(
+          Error{folder_ + "/" + folder, 0, "a folder that can be read", fault.message()});
+    plan_.folders.insert(plan_.folders.end(), inner.rbegin(), inner.rend());
+    plan_.folders.push_back(folder);
+    return {};
+  }
+
+  FileSystem& files_;
+  const std::string& folder_;
+  bool with_raw_;
+  std::map<TakeName, TakeFiles> takes_;
+  RemovalPlan plan_;
+};
+
+}  // namespace
+
+Result<RemovalPlan> plan_removal(FileSystem& files, const std::string& folder,
+                                 const std::vector<std::string>& names, bool with_raw) {
+  return RemovalPlanner(files, folder, with_raw, KA_TRY(scan_takes(folder))).plan(names);
+}
+
+Result<void> remove_takes(FileSystem& files, const std::string& folder, const RemovalPlan& plan) {
+  const std::string root = folder + "/";
+  for (const std::string& file : plan.files) {
+    const std::string path = path_in(root, file);
+    if (files.remove(path.c_str()) == 0 || errno == ENOENT) continue;
+    return Failure(Error{path, 0, "a file that can be removed", std::strerror(errno)});
+  }
+  for (const std::string& inner : plan.folders) {
+    std::error_code ignored;  // it is not empty, or not there
+    const std::string path = path_in(root, inner);
+    if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
+  }
+  return {};
+}
+
+}  // namespace kinalign

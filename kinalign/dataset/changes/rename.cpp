@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/changes/rename.h"
+
+#include "kinalign/core/nearest_name.h"
+#include "kinalign/dataset/build.h"
+#include "kinalign/dataset/changes/toml_text.h"
+#include "kinalign/dataset/scan.h"
+#include "kinalign/dataset/take_inputs.h"
+#include "kinalign/documents/manifest_toml.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+namespace kinalign {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view schema = "kinalign.rename/1";
+constexpr std::size_t longest_journal = std::size_t{64} << 20;
+constexpr std::size_t longest_catalogue = std::size_t{16} << 20;
+constexpr std::array<std::string_view, 3> kind_names{"take", "subject", "action"};
+
+std::string place(const std::string& folder, const TakeName& name, TakeFile file) {
+  return folder + "/" + path_of(name, file);
+}
+
+// ---- what is to be done
+
+std::string journal_path(const std::string& folder) {
+  return folder + "/" + std::string(unfinished_rename_file);
+}
+
+std::string journal_json(const RenamePlan& plan) {
+  Json takes = Json::array();
+  for (const auto& [from, to] : plan.takes) takes.push_back({to_string(from), to_string(to)});
+  return Json{{"schema", schema},
+              {"kind", kind_names[static_cast<std::size_t>(plan.kind)]},
+              {"from", plan.from},
+              {"to", plan.to},
+              {"takes", takes}}
+             .dump(1) +
+         "\n";
+}
+
+Result<RenamePlan> read_journal(FileSystem& files, const std::string& path) {
+  const Failure broken(Error{path, 0, "what a rename that was stopped has left", "other text"});
+  const std::string text = KA_TRY(read_whole(files, path, longest_journal));
+  try {
+    const Json json = Json::parse(text);
+    RenamePlan plan;
+    const auto kind =
+        std::find(kind_names.begin(), kind_names.end(), json.at("kind").get<std::string>());
+    if (json.at("schema").get<std::string>() != schema || kind == kind_names.end()) return broken;
+    plan.kind = static_cast<RenameKind>(kind - kind_names.begin());
+    plan.from = json.at("from").get<std::string>();
+    plan.to = json.at("to").get<std::string>();
+    plan.was_begun = true;
+    for (const Json& pair : json.at("takes")) {
+      const auto from = parse_take_name(pair.at(0).get<std::string>());
+      const auto to = parse_take_name(pair.at(1).get<std::string>());
+      if (!from || !to) return broken;
+      plan.takes.emplace_back(*from, *to);
+    }
+    return plan;
+  } catch (const Json::exception&) {
+    return broken;
+  }
+}
+
+/// "sub-03" is "03", "task-S2A03" is "S2A03".
+std::string without(std::string_view lead, const std::string& word) {
+  return word.starts_with(lead) ? word.substr(lead.size()) : word;
+}
+
+class RenamePlanner {
+ public:
+  RenamePlanner(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
+                std::map<TakeName, TakeFiles> takes)
+      : files_(files), folder_(folder), catalogue_(catalogue), takes_(std::move(takes)) {}
+
+  Result<RenamePlan> plan(const std::string& from, const std::string& to) const {
+    RenamePlan out;
+    if (const auto name = parse_take_name(from)) {
+      out = KA_TRY(plan_take(*name, to));
+    } else {
+      out = KA_TRY(plan_id(from, to));
+    }
+    for (const auto& [old, renamed] : out.takes) KA_TRY(check(old, renamed));
+    return out;
+  }
+
+ private:
+  Result<RenamePlan> plan_take(const TakeName& from, const std::string& to_text) const {
+    const auto to = parse_take_name(to_text);
+    if (!to) return fault(to_text, "a take's name, as sub-03_task-S2A03_run-01", shown(to_text));
+    if (!takes_.contains(from)) {
+      std::vector<std::string> known;
+      for (const auto& [name, there] : takes_) known.push_back(to_string(name));
+      return Failure(unknown_name(to_string(from), "a take of " + folder_, known));
+    }
+    if (find_subject(catalogue_, to->subject) == nullptr) {
+      return fault(to_text, "a subject of dataset.toml", to->subject);
+    }
+    if (find_action(catalogue_, to->action) == nullptr) {
+      return fault(to_text, "an action of dataset.toml", to->action);
+    }
+    return RenamePlan{RenameKind::take, to_string(from), to_string(*to), {{from, *to}}, false};
+  }
+
+  /// A subject or an action, whichever is known by that id.
+  Result<RenamePlan> plan_id(const std::string& from, const std::string& to) const {
+    const std::string subject = without("sub-", from), action = without("task-", from);
+    const bool is_subject =
+        has(subject, &TakeName::subject) || find_subject(catalogue_, subject) != nullptr;
+    const bool is_action =
+        has(action, &TakeName::action) || find_action(catalogue_, action) != nullptr;
+    if (is_subject && is_action) {
+      return fault(from, "sub-" + subject + " or task-" + action,
+                   "an id of a subject and of an action");
+    }
+    if (is_subject) return plan_subject(subject, without("sub-", to));
+    if (is_action) return plan_action(action, without("task-", to));
+    return fault(from, "a take, a subject (sub-03) or an action of " + folder_, shown(from));
+  }
+
+  Result<RenamePlan> plan_subject(const std::string& from, const std::string& to) const {
+    const bool both =
+        find_subject(catalogue_, from) != nullptr && find_subject(catalogue_, to) != nullptr;
+    KA_TRY(check_new_id("sub-" + to, to, both || has(to, &TakeName::subject)));
+    RenamePlan out{RenameKind::subject, from, to, {}, false};
+    for (const auto& [name, there] : takes_) {
+      if (name.subject == from) out.takes.emplace_back(name, TakeName{to, name.action, name.run});
+    }
+    return out;
+  }
+
+  Result<RenamePlan> plan_action(const std::string& from, const std::string& to) const {
+    const bool both =
+        find_action(catalogue_, from) != nullptr && find_action(catalogue_, to) != nullptr;
+    KA_TRY(check_new_id("task-" + to, to, both || has(to, &TakeName::action)));
+    RenamePlan out{RenameKind::action, from, to, {}, false};
+    for (const auto& [name, there] : takes_) {
+      if (name.action == from) out.takes.emplace_back(name, TakeName{name.subject, to, name.run});
+    }
+    return out;
+  }
+
+  static Result<void> check_new_id(const std::string& word, const std::string& id, bool is_taken) {
+    if (!is_label(id)) return fault(word, "an id of letters and digits", shown(id));
+    if (is_taken) return fault(word, "an id that the data set does not have", "one that it has");
+    return {};
+  }
+
+  bool has(const std::string& id, std::string TakeName::*part) const {
+    return std::any_of(takes_.begin(), takes_.end(),
+                       [&](const auto& take) { return take.first.*part == id; });
+  }
+
+  Result<void> check(const TakeName& from, const TakeName& to) const {
+    if (takes_.contains(to)) {
+      return fault(folder_ + "/" + path_of(to, TakeFile::take), "no take of the new name", "one");
+    }
+    std::error_code fault_code;
+    if (fs::exists(folder_ + "/" + raw_folder(to), fault_code)) {
+      return fault(folder_ + "/" + raw_folder(to), "no raw files of the new name", "a folder");
+    }
+    const bool same_bytes = from.subject == to.subject && from.action == to.action;
+    return same_bytes || !takes_.at(from).take ? Result<void>{} : check_can_be_made(from);
+  }
+
+  Result<void> check_can_be_made(const TakeName& name) const {
+    const std::string take = folder_ + "/" + path_of(name, TakeFile::take);
+    const std::string why =
+        " (subject and action stand in a take's own bytes: it is made again under its new name)";
+    if (!takes_.at(name).manifest) {
+      return fault(take, "a take with a manifest" + why, "a take that was added as a take");
+    }
+    const Manifest manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
+    for (const TakeInput& input : inputs_of(files_, manifest, folder_ + "/sub-" + name.subject + "/", {})) {
+      std::error_code missing;
+      if (fs::exists(input.path, missing)) continue;
+      return fault(input.path, "the raw file of " + to_string(name) + why, "none there");
+    }
+    return {};
+  }
+
+  static Failure fault(const std::string& where, const std::string& expected,
+                       const std::string& found) {
+    return Failure(Error{where, 0, expected, found});
+  }
+
+  FileSystem& files_;
+  const std::string& folder_;
+  const Catalogue& catalogue_;
+  std::map<TakeName, TakeFiles> takes_;
+};
+
+// ---- doing it
+
+/// Each step looks at what is there and does what is left of it.
+class Renamer {
+ public:
+  Renamer(FileSystem& files, const std::string& folder) : files_(files), folder_(folder) {}
+
+  Result<void> move(const TakeName& from, const TakeName& to, Renamed& out) {
+    KA_TRY(make_folder(folder_ + "/sub-" + to.subject));
+    const bool same_name = from.subject == to.subject && from.action == to.action;
+    bool same_recipe = true;
+    if (fs::exists(place(folder_, from, TakeFile::manifest))) {
+      same_recipe = KA_TRY(write_manifest(from, to));
+    }
+    KA_TRY(move_raw_files(from, to));
+    const bool had_take = fs::exists(place(folder_, from, TakeFile::take));
+    for (const TakeFile file : {TakeFile::summary, TakeFile::take}) {
+      KA_TRY(move_or_drop(place(folder_, from, file), place(folder_, to, file),
+                          same_name && same_recipe));
+    }
+    KA_TRY(remove(place(folder_, from, TakeFile::manifest)));
+    KA_TRY(remove(folder_ + "/report/" + to_string(from) + ".html"));
+    if (had_take && same_name && same_recipe) ++out.moved;
+    if (!fs::exists(place(folder_, to, TakeFile::take))) ++out.to_build;
+    return {};
+  }
+
+  Result<void> edit_catalogue(const RenamePlan& plan) {
+    if (plan.kind == RenameKind::take) return {};
+    const std::string path = folder_ + "/" + std::string(catalogue_file);
+    const std::string toml = KA_TRY(read_whole(files_, path, longest_catalogue));
+    const Catalogue now = KA_TRY(read_catalogue(toml, path));
+    const bool is_subject = plan.kind == RenameKind::subject;
+    const bool has_old = is_subject ? find_subject(now, plan.from) != nullptr
+                                    : find_action(now, plan.from) != nullptr;
+    if (!has_old) return {};
+    return write(path, KA_TRY(with_id_renamed(toml, is_subject ? "subject" : "action", plan.from,
+                                              plan.to, path)));
+  }
+
+  Result<void> write(const std::string& path, const std::string& text) {
+    OutputFile out = KA_TRY(OutputFile::create(files_, path, Overwrite::yes));
+    KA_TRY(out.write(text));
+    return out.commit();
+  }
+
+  Result<void> remove(const std::string& path) {
+    if (files_.remove(path.c_str()) == 0 || errno == ENOENT) return {};
+    return Failure(Error{path, 0, "a file that can be removed", std::strerror(errno)});
+  }
+
+ private:
+  /// True: the take has the same parameters as before.
+  Result<bool> write_manifest(const TakeName& from, const TakeName& to) {
+    const std::string path = place(folder_, from, TakeFile::manifest);
+    const std::string toml = KA_TRY(read_whole(files_, path, longest_manifest));
+    const std::string text = KA_TRY(manifest_of_renamed(toml, from, to, path));
+    KA_TRY(write(place(folder_, to, TakeFile::manifest), text));
+    return recipe_of(KA_TRY(read_manifest(toml, path))) ==
+           recipe_of(KA_TRY(read_manifest(text, path)));
+  }
+
+  Result<void> move_raw_files(const TakeName& from, const TakeName& to) {
+    const std::string old = folder_ + "/" + raw_folder(from),
+                      renamed = folder_ + "/" + raw_folder(to);
+    std::error_code fault;
+    if (!fs::exists(old, fault)) return {};
+    KA_TRY(make_folder(folder_ + "/sourcedata/sub-" + to.subject));
+    return move_path(old.substr(0, old.size() - 1), renamed.substr(0, renamed.size() - 1));
+  }
+
+  Result<void> move_or_drop(const std::string& from, const std::string& to, bool keeps_bytes) {
+    if (!fs::exists(from)) return {};
+    return keeps_bytes ? move_path(from, to) : remove(from);
+  }
+
+  Result<void> move_path(const std::string& from, const std::string& to) {
+    if (files_.rename(from.c_str(), to.c_str()) == 0) return {};
+    return Failure(Error{from, 0, "a file that can become " + to, std::strerror(errno)});
+  }
+
+  static Result<void> make_folder(const std::string& path) {
+    std::error_code fault;
+    fs::create_directories(path, fault);
+    if (!fault) return {};
+    return Failure(Error{path, 0, "a folder that can be made", fault.message()});
+  }
+
+  FileSystem& files_;
+  const std::string& folder_;
+};
+
+/// Folders of people that have nothing left in them.
+void remove_if_empty(const std::string& folder, const std::string& subject) {
+  for (const char* above : {"/sub-", "/sourcedata/sub-"}) {
+    std::error_code ignored;  // it is not empty, or not there
+    std::string path = folder;
+    path.append(above).append(subject);
+    if (fs::is_directory(path, ignored)) fs::remove(path, ignored);
+  }
+}
+
+}  // namespace
+
+Result<RenamePlan> plan_rename(FileSystem& files, const std::string& folder,
+                               const Catalogue& catalogue, const std::string& from,
+                               const std::string& to) {
+  const std::string journal = journal_path(folder);
+  if (!fs::exists(journal)) {
+    return RenamePlanner(files, folder, catalogue, KA_TRY(scan_takes(folder))).plan(from, to);
+  }
+  const RenamePlan begun = KA_TRY(read_journal(files, journal));
+  const std::string lead = begun.kind == RenameKind::subject  ? "sub-"
+                           : begun.kind == RenameKind::action ? "task-"
+                                                              : "";
+  if (without(lead, from) == begun.from && without(lead, to) == begun.to) return begun;
+  return Failure(Error{journal, 0,
+                       "first the rename that was stopped: kinalign dataset rename " + folder +
+                           " " + lead + begun.from + " " + lead + begun.to,
+                       shown(from) + " to " + shown(to)});
+}
+
+Result<Renamed> rename_takes(FileSystem& files, const std::string& folder, const RenamePlan& plan) {
+  Renamer renamer(files, folder);
+  if (!plan.was_begun) {
+    OutputFile journal = KA_TRY(OutputFile::create(files, journal_path(folder), Overwrite::no));
+    KA_TRY(journal.write(journal_json(plan)));
+    KA_TRY(journal.commit());
+  }
+  KA_TRY(renamer.edit_catalogue(plan));
+  Renamed out;
+  for (const auto& [from, to] : plan.takes) KA_TRY(renamer.move(from, to, out));
+  for (const auto& [from, to] : plan.takes) remove_if_empty(folder, from.subject);
+  KA_TRY(renamer.remove(journal_path(folder)));
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of splits that name takes which have been renamed or removed.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/dataset/take_name.h"
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct SplitFile {
+  std::string path;         // below the data set's folder
+  std::uint64_t takes = 0;  // of those asked for
+};
+
+/// Splits in the folder and in splits/ that name any of `takes`, by path. Other files are passed
+/// over.
+std::vector<SplitFile> splits_naming(FileSystem& files, const std::string& folder,
+                                     const std::set<TakeName>& takes);
+
+}  // namespace kinalign

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pages of takes beside the page of their data set: which are there, which have to be made.
+// A file pages.json beside them says of which bytes each was made.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/dataset/index.h"
+#include "kinalign/dataset/take_name.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct PageJob {
+  TakeName name;
+  std::string take, page;  // paths
+  std::string inputs;      // folder of the take's raw files; empty: not known
+  std::string sha256;      // of the take
+};
+
+/// Makes one page. Called from several threads at once.
+using MakePage = std::function<Result<void>(const PageJob&)>;
+
+struct PagesMade {
+  std::uint64_t made = 0, up_to_date = 0, removed = 0;
+  std::vector<Error> failed;
+};
+
+class TakePages {
+ public:
+  /// `folder`: of the data set. `place`: of the pages; need not be there.
+  TakePages(FileSystem& files, std::string folder, std::string place, std::string software);
+
+  /// "NAME.html", where a page of these bytes by this software is there; else empty.
+  std::string page_of(const std::string& name, const std::string& sha256) const;
+
+  /// Makes the pages of `takes` that are missing or old. Removes pages of takes that the index does
+  /// not have. A page that fails stops no other. Fails where the user stops it, and where a file
+  /// that is no page of kinalign stands in a page's place.
+  Result<PagesMade> make(const DatasetIndex& index, const std::vector<std::string>& takes,
+                         std::size_t jobs, const MakePage& make_page, const Progress& progress);
+
+ private:
+  Result<std::vector<PageJob>> plan(const DatasetIndex& index,
+                                    const std::vector<std::string>& takes) const;
+  std::uint64_t remove_old(const std::map<std::string, std::string>& known);
+  Result<void> remember() const;
+  std::string path_of_page(const std::string& name) const { return place_ + name + ".html"; }
+
+  FileSystem& files_;
+  std::string folder_, place_, software_;
+  std::map<std::string, std::string> pages_;  // take's name -> SHA-256 of the take
+};
+
+/// True: the first 4096 bytes of the file hold `mark`, so kinalign wrote it.
+bool is_own_page(FileSystem& files, const std::string& path, std::string_view mark);
+
+}  // namespace kinalign

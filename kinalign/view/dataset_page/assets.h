@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fixed parts of the page, which the build joins into the library (cmake/embed_page.cmake).
+#pragma once
+
+#include <string_view>
+
+namespace kinalign {
+
+std::string_view dataset_script();    // assets/table.js
+std::string_view dataset_style();     // assets/dataset.css, after the style of a take's page
+std::string_view dataset_template();  // assets/dataset.html
+
+}  // namespace kinalign

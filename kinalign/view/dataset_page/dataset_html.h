@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of a data set: one HTML text that needs nothing beside it. The same DatasetPage gives
+// the same text.
+#pragma once
+
+#include "kinalign/view/dataset_page/dataset_page.h"
+
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+/// Stands in the head of every such page: a file that has it may be replaced.
+inline constexpr std::string_view dataset_page_mark =
+    "<meta name=\"kinalign-page\" content=\"data set\">";
+
+std::string dataset_html(const DatasetPage& page);
+
+}  // namespace kinalign

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/dataset/changes/remove.h"
+
+#include "tests/dataset/changes/changed_set.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+namespace {
+
+Result<void> removed(FileSystem& files, const std::string& folder,
+                     const std::vector<std::string>& names, bool with_raw) {
+  return remove_takes(files, folder, KA_TRY(plan_removal(files, folder, names, with_raw)));
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a take goes with its manifest, its summary and its page; its raw files only where that is "
+    "asked for") {
+  ChangedSet set;
+  const TakeName name{"01", "S1A01", 1};
+  set.folder.write("report/" + to_string(name) + ".html", "page");
+  const auto plan = plan_removal(set.files, set.folder.path(), {to_string(name)}, false);
+  REQUIRE(plan);
+  CHECK(plan->files.size() == 4);
+  CHECK(plan->raw_left == std::vector<std::string>{raw_folder(name)});
+  std::uint64_t bytes = 0;
+  for (const std::string& file : plan->files) bytes += set.folder.read(file).size();
+  CHECK(plan->bytes == bytes);
+  REQUIRE(remove_takes(set.files, set.folder.path(), *plan));
+  CHECK(set.contents().size() == 1 + 2 * 4 + 1);
+  REQUIRE(removed(set.files, set.folder.path(), {to_string(name)}, true));
+  CHECK(set.contents().size() == 1 + 2 * 4);
+  CHECK(!std::filesystem::exists(set.folder / raw_folder(name)));
+}
+
+TEST_CASE("a person goes with all takes and raw files, and dataset.toml stays as it is") {
+  ChangedSet set;
+  const std::string toml = set.folder.read("dataset.toml");
+  REQUIRE(removed(set.files, set.folder.path(), {"sub-01"}, true));
+  CHECK(set.contents().size() == 1 + 4);
+  CHECK(set.folder.read("dataset.toml") == toml);
+  CHECK(!std::filesystem::exists(set.folder / "sourcedata/sub-01"));
+  CHECK(!std::filesystem::exists(set.folder / "sub-01"));
+}
+
+TEST_CASE("a removal that is stopped at any call is finished by the same command") {
+  ChangedSet whole;
+  REQUIRE(removed(whole.files, whole.folder.path(), {"sub-01", "sub-02_task-S1A01_run-01"}, true));
+  bool stopped = true;
+  int calls = 0;
+  for (; stopped; ++calls) {
+    ChangedSet set;
+    StoppingFiles files(calls);
+    (void)removed(files, set.folder.path(), {"sub-01", "sub-02_task-S1A01_run-01"}, true);
+    stopped = files.stopped();
+    if (stopped) {
+      REQUIRE(removed(set.files, set.folder.path(), {"sub-01", "sub-02_task-S1A01_run-01"}, true));
+    }
+    CHECK(set.contents() == whole.contents());
+  }
+  CHECK(calls > 12);
+}
+
+TEST_CASE("no link is followed: what lies elsewhere stays") {
+  ChangedSet set;
+  const FreshFolder elsewhere;
+  elsewhere.write("precious.bvh", "raw");
+  const TakeName name{"01", "S1A01", 1};
+  std::filesystem::create_symlink(elsewhere.path(), set.folder / (raw_folder(name) + "more"));
+  std::filesystem::create_symlink(elsewhere / "precious.bvh",
+                                  set.folder / (raw_folder(name) + "one.bvh"));
+  const auto plan = plan_removal(set.files, set.folder.path(), {to_string(name)}, true);
+  REQUIRE(plan);
+  CHECK(plan->files.size() == 3 + 1 + 2);  // the raw file and both links
+  REQUIRE(removed(set.files, set.folder.path(), {to_string(name)}, true));
+  CHECK(elsewhere.read("precious.bvh") == "raw");
+  CHECK(!std::filesystem::exists(set.folder / raw_folder(name)));
+
+  const std::string other = set.folder / "sourcedata/sub-02";
+  std::filesystem::rename(other, elsewhere / "sub-02");
+  std::filesystem::create_symlink(elsewhere / "sub-02", other);
+  const auto refused = removed(set.files, set.folder.path(), {"sub-02"}, true);
+  REQUIRE(!refused);
+  CHECK(refused.error().found == "a link to another place");
+  CHECK(elsewhere.read("sub-02/sub-02_task-S1A01_run-01/mocap.bvh").starts_with("raw of"));
+}
+
+TEST_CASE("raw files that another take is made of are not removed") {
+  ChangedSet set;
+  const std::string other = path_of({"02", "S1A01", 1}, TakeFile::manifest);
+  set.folder.write(
+      other, "[stream.mocap]\nfile = \"../" + raw_folder({"01", "S1A01", 1}) + "mocap.bvh\"\n");
+  const auto before = set.contents();
+  const auto done = removed(set.files, set.folder.path(), {"sub-01"}, true);
+  REQUIRE(!done);
+  CHECK(to_string(done.error()) ==
+        other +
+            ": expected no raw files of sub-01_task-S1A01_run-01, which would go, found "
+            "sourcedata/sub-01/sub-01_task-S1A01_run-01/");
+  CHECK(set.contents() == before);
+}
+
+TEST_CASE("names of which nothing is there are told, and are an error where there are no others") {
+  ChangedSet set;
+  const auto plan = plan_removal(set.files, set.folder.path(), {"sub-02", "sub-33"}, false);
+  REQUIRE(plan);
+  CHECK(plan->unknown == std::vector<std::string>{"sub-33"});
+  const auto none = plan_removal(set.files, set.folder.path(), {"sub-01_task-S1A01_run-9"}, false);
+  REQUIRE(!none);
+  CHECK(none.error().expected.find("nearest: sub-01_task-S1A01_run-01") != std::string::npos);
+}
