@@ -122,6 +122,12 @@ def a_bids_data_set_passes_the_check_and_reads_back(folder):
         assert seen.any() and numpy.abs(back["positions"] - file["kinect/positions"][:])[seen].max() < 1e-6
         first = int(file["time_ns"][0])
         assert abs(int(back["time_ns"][0]) - first) < 1000, (back["time_ns"][0], first)
+    ran = kinalign("check", out, "--json")
+    said = json.loads(ran.stdout)["findings"]
+    assert ran.returncode == 1 and [one["severity"] for one in said] == ["warning"], said  # no licence
+    (motion.parent / motion.name.replace("motion.tsv", "channels.tsv")).unlink()
+    said = json.loads(kinalign("check", out, "--json").stdout)["findings"]
+    assert any(one["severity"] == "error" and one["file"].endswith("channels.tsv") for one in said), said
 
 
 @case

@@ -21,7 +21,8 @@ std::string folder_of(const std::vector<std::string>& words);
 /// Opens the index and tells what is wrong with its files on stderr.
 Result<DatasetIndex> open_index(const std::string& folder, Call& call);
 
-/// Takes that are built, by name; of those alone for which a condition of SQL holds, if any is said.
+/// Takes that are built, by name; of those alone for which a condition of SQL holds, if any is
+/// said.
 Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string& folder,
                                            const DatasetIndex& index, const std::string& where);
 

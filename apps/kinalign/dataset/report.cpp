@@ -124,8 +124,8 @@ Result<PagesMade> make_pages(TakePages& pages, const DatasetIndex& index, const 
 
 void say(const std::string& out, std::size_t bytes, const DatasetPage& page,
          const std::optional<PagesMade>& pages, Call& call) {
-  std::string text = fmt::format("{}: {}, {} takes: {} bad, {} usable, {} good\n", out,
-                                 size_text(bytes), page.takes, page.bad, page.usable, page.good);
+  std::string text = fmt::format("{}: {}, {}: {} bad, {} usable, {} good\n", out, size_text(bytes),
+                                 counted(page.takes, "take"), page.bad, page.usable, page.good);
   if (page.worst.size() < page.takes) {
     text += fmt::format("  its table has the {} worst\n", page.worst.size());
   }

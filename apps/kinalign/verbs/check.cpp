@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "kinalign/formats/bids/check.h"
+
 #include "apps/cli/console.h"
 #include "apps/cli/program.h"
 #include "apps/kinalign/text/describe_file.h"
@@ -12,7 +14,6 @@
 #include "kinalign/align/plan.h"
 #include "kinalign/align/space.h"
 #include "kinalign/documents/report_json.h"
-#include "kinalign/formats/bids/check.h"
 #include "kinalign/formats/bids/listing.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/recording/beside.h"
@@ -34,8 +35,9 @@ struct Check {
 
 Usage describe_check(Check& o) {
   Usage usage;
-  usage.positionals = {
-      {"FILE", "takes, recordings, recording.toml, XDF, streams' files or a BIDS folder", &o.files, 1, SIZE_MAX}};
+  usage.positionals = {{"FILE",
+                        "takes, recordings, recording.toml, XDF, streams' files or a BIDS folder",
+                        &o.files, 1, SIZE_MAX}};
   usage.flags = o.stream.fields();
   usage.check = [&o](const Common&, const Sources&) -> Result<void> {
     KA_TRY(o.stream.stream({}));
@@ -189,7 +191,7 @@ Result<Checked> check_folder(const Check& o, const std::string& path, Call& call
   const BidsListing listing = KA_TRY(list_bids_folder(call.surroundings.files, path));
   if (!listing.has("dataset_description.json")) {
     return Failure(Error{path, 0, "a file, or a BIDS data set with dataset_description.json",
-                         "another folder", ErrorKind::directory});
+                         "a directory", ErrorKind::directory});
   }
   Checked out{check_bids(listing), listing.paths.size()};
   for (Finding& finding : out.findings) finding.what.file = path + "/" + finding.what.file;

@@ -45,7 +45,10 @@ std::string difference(const TakeGroup& group, const TakeGroup& other) {
 /// The columns of a stream that windows have: all but what follows from others.
 std::vector<TakeColumn> window_columns(const TakeGroup& group) {
   std::vector<TakeColumn> columns = columns_of(group, Precision::single);
-  std::erase_if(columns, [](const TakeColumn& one) { return one.name == "local_positions"; });
+  const std::vector<std::string> wanted = window_array_names();
+  std::erase_if(columns, [&](const TakeColumn& one) {
+    return std::find(wanted.begin(), wanted.end(), one.name) == wanted.end();
+  });
   const auto is_valid = [](const TakeColumn& one) { return one.name == "valid"; };
   if (std::none_of(columns.begin(), columns.end(), is_valid)) {
     columns.push_back({"valid", Stored::uint8, {}, {{"values", "0 no, 1 yes"}}});
@@ -140,6 +143,18 @@ std::string one(Value value) {
 
 }  // namespace
 
+std::vector<std::string> window_array_names() {
+  return {"positions", "local_rotations", "orientation",    "acceleration",    "angular_velocity",
+          "state",     "valid",           "nearest_raw_ns", "time_interval_ns"};
+}
+
+void WindowStreams::add(const TakeHeader& header, const std::vector<std::size_t>& found) {
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    groups[g].resampled |= header.groups[found[g]].resampled;
+    groups[g].interval_known |= header.groups[found[g]].interval_known;
+  }
+}
+
 Result<std::vector<std::size_t>> WindowStreams::find_in(const TakeHeader& header) const {
   std::vector<std::size_t> out;
   for (const TakeGroup& wanted : groups) {
@@ -165,7 +180,7 @@ WindowLayout window_layout(const WindowSource& source, const WindowOptions& opti
   for (const TakeGroup& group : streams.groups) {
     auto& found = layout.streams.emplace_back();
     for (const TakeColumn& column : window_columns(group)) {
-      found.push_back({column.name, column.stored, layout.arrays.size()});
+      found.push_back({column.name, column.stored, column.row_values(), layout.arrays.size()});
       layout.arrays.push_back(npz_numbers(group.name + "_" + column.name, column.stored,
                                           {windows, length, column.row_values()}));
     }
@@ -188,7 +203,6 @@ Result<void> WindowFile::append(const WindowOrigin& origin, const std::vector<st
   KA_TRY(writer_.append(first_array, one(static_cast<std::int64_t>(origin.place.first))));
   KA_TRY(writer_.append(time_array, one(origin.place.begin)));
   KA_TRY(writer_.append(rows_array, one(static_cast<int>(origin.place.rows))));
-  const std::vector<std::uint8_t> all_valid(rows.stamps.size(), 1);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const auto& columns = streams_[g];
     const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
@@ -198,11 +212,15 @@ Result<void> WindowFile::append(const WindowOrigin& origin, const std::vector<st
       if (column == columns.end()) return {};
       const auto put = [&](std::string_view bytes) { return writer_.append(column->array, bytes); };
       const std::span given(values);
-      if constexpr (std::is_same_v<typename decltype(given)::value_type, double>) {
+      using Value = typename decltype(given)::value_type;
+      if constexpr (std::is_same_v<Value, double>) {
         return numbers_.store(given, column->stored, put);
       } else {
-        const bool is_empty = given.empty() && name == "valid";
-        return is_empty ? put(bytes_of(std::span(all_valid))) : put(bytes_of(given));
+        if (!given.empty()) return put(bytes_of(given));
+        const int said = name == "valid" ? 1 : name == "time_interval_ns" ? -1 : 0;
+        const std::vector<Value> all(rows.stamps.size() * column->row_values,
+                                     static_cast<Value>(said));
+        return put(bytes_of(std::span<const Value>(all)));
       }
     };
     KA_TRY(std::visit([&](const auto& stream) { return for_each_row_array(stream, use); },

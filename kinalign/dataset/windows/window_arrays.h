@@ -10,12 +10,18 @@
 
 namespace kinalign {
 
+/// Names of all arrays of a take that windows may have.
+std::vector<std::string> window_array_names();
+
 /// The streams of all windows, as the first take has them.
 struct WindowStreams {
   std::vector<TakeGroup> groups;
 
   /// Which of a take's groups these are; fails, saying what is missing or another.
   Result<std::vector<std::size_t>> find_in(const TakeHeader& header) const;
+  /// Takes note of what this take's groups, found by find_in(), have and others may lack: distances
+  /// and intervals of samples.
+  void add(const TakeHeader& header, const std::vector<std::size_t>& found);
 };
 
 /// A take that windows come from.
@@ -31,6 +37,7 @@ struct WindowLayout {
   struct Column {
     std::string name;
     Stored stored;
+    std::uint64_t row_values;
     std::size_t array;
   };
   std::vector<NpzArray> arrays;
@@ -50,8 +57,9 @@ struct WindowOrigin {
 class WindowFile {
  public:
   static Result<WindowFile> create(FileSystem& files, const NewFile& target, WindowLayout layout);
-  /// `rows`: of all the take's groups, as long as a window; `groups`: which of them are the
-  /// streams.
+  /// A take that lacks an array has no valid flags where all rows are valid, intervals where none
+  /// is known, distances where its rows are its own samples: 1, -1 and 0 stand there. `rows`: of
+  /// all the take's groups, as long as a window; `groups`: which of them are the streams.
   Result<void> append(const WindowOrigin& origin, const std::vector<std::size_t>& groups,
                       const TakeSlab& rows);
   Result<void> finish() { return writer_.finish(); }

@@ -77,7 +77,7 @@ class Job {
  private:
   Result<TakeReader> open(std::size_t take) const {
     return TakeReader::open(
-        files_, source_.folder + "/" + path_of(source_.takes[take].name, TakeFile::take));
+        files_, source_.folder + "/" + path_of(source_.takes[take].name, TakeFile::take), parts_);
   }
   Result<void> set_streams(const std::vector<std::string>& names, const TakeHeader& header);
   Result<WindowedTake> windowed(std::size_t take, TakeReader& reader);
@@ -90,6 +90,7 @@ class Job {
   const WindowOptions& options_;
   const Progress& progress_;
   WindowGrid grid_;
+  TakeParts parts_;
   WindowStreams streams_;
   std::vector<WindowedTake> takes_;
   TakeSlab raw_, window_;
@@ -135,6 +136,7 @@ Result<WindowedTake> Job::windowed(std::size_t take, TakeReader& reader) {
 }
 
 Result<void> Job::find(const std::vector<std::string>& names) {
+  parts_ = {names, window_array_names()};
   made.windows.assign(source_.parts.size(), 0);
   for (std::size_t take = 0; take < source_.takes.size(); ++take) {
     const WindowTake& of = source_.takes[take];
@@ -152,6 +154,7 @@ Result<void> Job::find(const std::vector<std::string>& names) {
       made.takes_left_out.push_back({of.name, fits.error().found});
       continue;
     }
+    streams_.add(reader.header(), *fits);
     WindowedTake found = KA_TRY(windowed(take, reader));
     made.windows[of.part] += found.places.size();
     if (found.places.empty()) {

@@ -43,13 +43,20 @@ class TakeWriter {
   std::unique_ptr<State> state_;
 };
 
+/// What of a take is read, by the names of streams and arrays; of an empty list all.
+struct TakeParts {
+  std::vector<std::string> streams, arrays;
+};
+
 /// Reads a take that TakeWriter wrote, in order of rows or any window of them. Nothing in the file
 /// is trusted: types, shapes and places are held against each other and against the file's length
 /// before anything is allocated, numbers are finite, stamps rise. HDF5 itself can crash on a
 /// hostile file: open what is not known to be ours in a child process (guarded.h).
 class TakeReader {
  public:
-  static Result<TakeReader> open(FileSystem& files, std::string path);
+  /// Of other `parts` nothing is looked at: other streams stand in no header, other arrays are
+  /// empty in a slab.
+  static Result<TakeReader> open(FileSystem& files, std::string path, const TakeParts& parts = {});
   TakeReader(TakeReader&& other) noexcept;
   TakeReader& operator=(TakeReader&& other) noexcept;
   TakeReader(const TakeReader&) = delete;

@@ -31,6 +31,10 @@ Failure bad_value(const std::string& path, const std::string& expected, const st
   return Failure(Error{path, 0, expected, "another one in " + where});
 }
 
+bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
+  return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
+
 /// NaN and infinity stay NaN through 0 * x. Several sums at once, so that none waits for the last.
 bool finite(std::span<const double> values) {
   constexpr std::size_t lanes = 16;
@@ -132,8 +136,9 @@ struct TakeReader::State {
   Time last = Time::min();
 
   Result<void> read_words(const hdf5::Checked& checked);
-  Result<void> read_header();
-  Result<void> find_columns(hid_t group, const TakeGroup& what, std::uint64_t& row_bytes);
+  Result<void> read_header(const TakeParts& parts);
+  Result<void> find_columns(hid_t group, const TakeGroup& what, const TakeParts& parts,
+                            std::uint64_t& row_bytes);
   Result<void> read_stamps(std::uint64_t first, std::uint64_t count, std::vector<Time>& stamps);
   Result<void> read_slab(std::uint64_t first, std::uint64_t count, TakeSlab& slab);
 
@@ -171,7 +176,7 @@ Result<void> TakeReader::State::read_words(const hdf5::Checked& checked) {
   return {};
 }
 
-Result<void> TakeReader::State::read_header() {
+Result<void> TakeReader::State::read_header(const TakeParts& parts) {
   const hdf5::Checked checked(bytes);
   const hid_t root = file.id();
   const auto format = checked.text_attributes(root, "format");
@@ -187,11 +192,12 @@ Result<void> TakeReader::State::read_header() {
   time = KA_TRY(checked.find(root, "time_ns", Stored::int64, {header.frames}));
   std::uint64_t row_bytes = 8;
   for (const std::string& name : KA_TRY(checked.text_attributes(root, "streams"))) {
+    if (!is_wanted(parts.streams, name)) continue;
     const Handle group(H5Gopen2(root, name.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group.good()) return hdf5::failure(bytes, "a group for each stream");
     header.groups.push_back(KA_TRY(read_group(checked, group.id(), name)));
     TakeGroup& what = header.groups.back();
-    KA_TRY(find_columns(group.id(), what, row_bytes));
+    KA_TRY(find_columns(group.id(), what, parts, row_bytes));
     if (!std::holds_alternative<ImuGroup>(what.kind)) what.space = space_of(checked, group.id());
   }
   constexpr std::uint64_t slab_bytes = std::uint64_t{16} << 20;
@@ -200,11 +206,12 @@ Result<void> TakeReader::State::read_header() {
 }
 
 Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
-                                             std::uint64_t& row_bytes) {
+                                             const TakeParts& parts, std::uint64_t& row_bytes) {
   const hdf5::Checked checked(bytes);
   const Precision precision = precision_of(header);
   auto& found = columns.emplace_back();
   for (const TakeColumn& column : columns_of(what, precision)) {
+    if (!is_wanted(parts.arrays, column.name)) continue;
     std::vector<std::uint64_t> sizes{header.frames};
     sizes.insert(sizes.end(), column.shape.begin(), column.shape.end());
     found.push_back(
@@ -252,10 +259,10 @@ TakeReader::TakeReader(TakeReader&& other) noexcept = default;
 TakeReader& TakeReader::operator=(TakeReader&& other) noexcept = default;
 TakeReader::~TakeReader() = default;
 
-Result<TakeReader> TakeReader::open(FileSystem& files, std::string path) {
+Result<TakeReader> TakeReader::open(FileSystem& files, std::string path, const TakeParts& parts) {
   auto state = std::make_unique<State>(KA_TRY(InputFile::open(files, std::move(path))));
   state->file = KA_TRY(hdf5::open(state->bytes));
-  auto read = state->read_header();
+  auto read = state->read_header(parts);
   if (!read && read.error().file.empty()) {
     Error error = read.error();
     error.file = state->input.path();

@@ -31,8 +31,8 @@ TEST_CASE("the card says what the data set is, how it is read and on what terms"
   REQUIRE(card);
   CHECK(card->starts_with("# walks\n<!-- data card of kinalign"));
   for (const char* text :
-       {"Walking \\*people\\*.", "Takes: 1. People: 1. Frames: 600. Motion: 10.00 s.", "Verdicts: usable (1).",
-        "| 01 | f | 165 | 600 | 0 | 0 |", "| S1 | walking | 600 | 0 | 0 |",
+       {"Walking \\*people\\*.", "Takes: 1. People: 1. Frames: 600. Motion: 10.00 s.",
+        "Verdicts: usable (1).", "| 01 | f | 165 | 600 | 0 | 0 |", "| S1 | walking | 600 | 0 | 0 |",
         "| mocap | mocap | 59 | 1 |", "60.0 Hz (1)",
         "h5py.File(\"sub-01/sub-01_task-A_run-01_take.h5\")", "- kinect: model: v2",
         "- `splits/people.json`", "- Licence: not said in dataset.toml",

@@ -35,6 +35,7 @@ class SummarisedSet {
     take.rate_hz = 60.0;
     take.errors = errors;
     take.warnings = warnings;
+    take.quality = errors > 0 ? Quality::bad : warnings > 0 ? Quality::usable : Quality::good;
     take.residual_m = residual_m;
     take.sha256 = std::string(64, 'a');
     take.streams.resize(1);
