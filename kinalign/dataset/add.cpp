@@ -309,6 +309,11 @@ Result<Added> TakeAdder::add_take(const AddRequest& request) {
   }
   KA_TRY(check_known(catalogue_, request, subject, action));
   Known& there = *KA_TRY(known(subject, action));
+  for (const std::uint32_t run : there.runs) {
+    const TakeName one{subject, action, run};
+    const RawCopy copy{request.path, folder_ + "/" + path_of(one, TakeFile::take)};
+    if (fs::exists(copy.to) && KA_TRY(same_bytes(files_, copy))) return Added{one, true};
+  }
   const TakeName name{subject, action, free_run(there.runs, 0)};
   KA_TRY(copy_file(files_, request.path, folder_ + "/" + path_of(name, TakeFile::take)));
   there.runs.insert(name.run);

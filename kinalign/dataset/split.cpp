@@ -157,6 +157,7 @@ using Places = std::map<std::string, std::set<std::string>>;
 struct Seen {
   Places names, contents, subjects;
   std::vector<std::string> unknown;  // takes that the data set does not have
+  std::vector<std::string> changed;  // takes that were others when the split was made
 };
 
 Seen seen_in(const Split& split, const TakesByName& known) {
@@ -173,7 +174,13 @@ Seen seen_in(const Split& split, const TakesByName& known) {
       const TakeSummary& summary = found->second->summary;
       seen.contents[summary.sha256].insert(part.name);
       for (const InputFacts& input : summary.inputs) {
+        // A layout or a list of channels may be the same for all.
+        if (!summary.sample_files.contains(input.name)) continue;
         seen.contents[input.sha256].insert(part.name);
+      }
+      const auto then = split.sha256.find(name);
+      if (then != split.sha256.end() && then->second != summary.sha256) {
+        seen.changed.push_back(to_string(name));
       }
     }
   }
@@ -192,7 +199,7 @@ std::vector<std::string> split_methods() {
 
 Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& catalogue,
                          const SplitOptions& options) {
-  Split out{options, {}};
+  Split out{options, {}, {}};
   if (options.by == "leave-one-out") {
     out.parts = a_part_each(takes);
   } else if (options.by == "hfut-imu") {
@@ -207,8 +214,10 @@ Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& c
   for (SplitPart& part : out.parts) {
     std::sort(part.takes.begin(), part.takes.end());
     if (!part.takes.empty()) continue;
-    return Failure(Error{"", 0, "takes for the part " + part.name,
-                         "none (of " + std::to_string(takes.size()) + " takes in all)"});
+    return Failure(Error{
+        "", 0,
+        "takes for the part " + part.name + " (a larger --test or --validation, or --by take)",
+        "none (of " + std::to_string(takes.size()) + " takes in all)"});
   }
   if (out.parts.size() < 2)
     return Failure(Error{"", 0, "takes of two people at least", "of fewer"});
@@ -223,6 +232,9 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
   };
   const Seen seen = seen_in(split, by_name(takes));
   for (const std::string& name : seen.unknown) tell(Severity::error, "takes of the data set", name);
+  for (const std::string& name : seen.changed) {
+    tell(Severity::warning, "takes as they were when the split was made", name + " made again");
+  }
   for (const auto& [name, parts] : seen.names) {
     if (parts.size() > 1)
       tell(Severity::error, "each take in one part", name + " in " + listed(parts));
@@ -278,6 +290,8 @@ Result<Split> parse_split_json(std::string_view json, const std::string& file) {
         const auto name = parse_take_name(take.at("name").get<std::string>());
         if (!name) return wrong(take["name"].get<std::string>());
         made.takes.push_back(*name);
+        const auto hash = take.value("sha256", std::string());
+        if (!hash.empty()) out.sha256[*name] = hash;
       }
     }
     return out;
@@ -289,6 +303,15 @@ Result<Split> parse_split_json(std::string_view json, const std::string& file) {
 Result<Split> read_split(FileSystem& files, const std::string& path) {
   constexpr std::size_t longest = std::size_t{64} << 20;
   return parse_split_json(KA_TRY(read_whole(files, path, longest)), path);
+}
+
+Result<Split> read_good_split(FileSystem& files, const std::string& path,
+                              const std::vector<SplitTake>& takes) {
+  Split split = KA_TRY(read_split(files, path));
+  for (const Finding& one : check_split(split, takes, path)) {
+    if (one.severity == Severity::error) return Failure(one.what);
+  }
+  return split;
 }
 
 }  // namespace kinalign

@@ -43,14 +43,16 @@ struct SplitPart {
 struct Split {
   SplitOptions options;
   std::vector<SplitPart> parts;
+  std::map<TakeName, std::string> sha256;  // of takes, when the split was made; of a file alone
 };
 
 /// The same takes, options and seed give the same split. Fails where a part would be empty.
 Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& catalogue,
                          const SplitOptions& options);
 
-/// Errors: a take in two parts, by its name, or by its bytes or those of a raw file; a take that is
-/// not there; where people shall not be in two parts, a person who is. A note says who else is.
+/// Errors: a take in two parts, by its name, or by its bytes or those of a raw file that holds
+/// samples; a take that is not there; where people shall not be in two parts, a person who is. A
+/// note says who else is, a warning which takes have other bytes than when the split was made.
 Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
                      const std::string& file);
 
@@ -59,5 +61,9 @@ std::string split_json(const Split& split, const std::vector<SplitTake>& takes);
 Result<Split> parse_split_json(std::string_view json, const std::string& file);
 /// Reads one from a file of at most 64 MiB.
 Result<Split> read_split(FileSystem& files, const std::string& path);
+/// The same of a split that is used: fails with the first error that check_split() finds, since a
+/// network would be tested on what it has seen.
+Result<Split> read_good_split(FileSystem& files, const std::string& path,
+                              const std::vector<SplitTake>& takes);
 
 }  // namespace kinalign

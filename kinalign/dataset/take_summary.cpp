@@ -148,6 +148,7 @@ TakeSummary summary_from(const Json& json) {
     out.inputs.push_back({input.at("name").get<std::string>(),
                           input.at("sha256").get<std::string>(),
                           input.at("bytes").get<std::uint64_t>()});
+    if (input.value("samples", true)) out.sample_files.insert(out.inputs.back().name);
   }
   return out;
 }
@@ -190,6 +191,9 @@ Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report
       }
     }
   }
+  for (const StreamOptions& stream : header.parameters.streams) {
+    for (const StreamFile& file : stream.files) out.sample_files.insert(file.path);
+  }
   add_streams(report, out);
   add_verdicts(header, report, out);
   add_findings(report, out);
@@ -209,8 +213,10 @@ std::string summary_json(const TakeSummary& s) {
   if (s.residual_m) out["residual_m"] = *s.residual_m;
   for (const StreamSummary& stream : s.streams) out["streams"].push_back(stream_json(stream));
   for (const InputFacts& input : s.inputs) {
-    out["inputs"].push_back(
-        {{"name", input.name}, {"sha256", input.sha256}, {"bytes", input.bytes}});
+    out["inputs"].push_back({{"name", input.name},
+                             {"sha256", input.sha256},
+                             {"bytes", input.bytes},
+                             {"samples", s.sample_files.contains(input.name)}});
   }
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

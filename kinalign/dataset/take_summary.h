@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,7 @@ struct TakeSummary {
   std::string software;                    // that made it: "kinalign 0.1.0"
   std::string recipe;                      // SHA-256 of all parameters: recipe_of()
   std::vector<InputFacts> inputs;          // in the order of the streams
+  std::set<std::string> sample_files;      // names of those inputs that hold samples
   std::string sha256;                      // of the take's file
   std::uint64_t bytes = 0;                 // of it
 

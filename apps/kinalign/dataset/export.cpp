@@ -61,7 +61,8 @@ Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call)
   while (job.target.size() > 1 && job.target.ends_with('/')) job.target.pop_back();
   std::map<TakeName, std::string> part_of;
   if (!o.split.empty()) {
-    const Split split = KA_TRY(read_split(files, o.split));
+    const auto all = KA_TRY(built_takes(files, job.folder, index, ""));
+    const Split split = KA_TRY(read_good_split(files, o.split, all));
     for (const SplitPart& part : split.parts) {
       for (const TakeName& name : part.takes) part_of[name] = part.name;
     }

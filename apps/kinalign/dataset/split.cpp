@@ -36,6 +36,10 @@ Usage describe_split(SplitVerb& o) {
     if (o.options.test + o.options.validation >= 1.0) {
       return Failure(Error{"--test", 0, "shares that leave something for training", "all of it"});
     }
+    if (o.options.stratified && o.options.by != "take") {
+      return Failure(Error{"--stratified", 0, "--by take, whose classes can be divided alike",
+                           "--by " + o.options.by});
+    }
     if (!o.check.empty() == common.out.empty()) return {};
     return Failure(Error{"-o", 0, "-o FILE for a new split, or --check FILE",
                          o.check.empty() ? "neither" : "both"});

@@ -76,17 +76,6 @@ Result<void> divide(const Split& split, const std::string& file, std::vector<Spl
   return {};
 }
 
-/// A split that no longer holds is refused: a network would be tested on what it has seen.
-Result<void> divide_by_file(const std::string& file, FileSystem& files,
-                            std::vector<SplitTake>& takes, WindowSource& source,
-                            const std::vector<SplitTake>& all) {
-  const Split split = KA_TRY(read_split(files, file));
-  for (const Finding& one : check_split(split, all, file)) {
-    if (one.severity == Severity::error) return Failure(one.what);
-  }
-  return divide(split, file, takes, source);
-}
-
 Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call& call) {
   FileSystem& files = call.surroundings.files;
   const DatasetIndex index = KA_TRY(open_index(folder, call));
@@ -97,7 +86,7 @@ Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call
     for (const SplitTake& take : takes) source.takes.push_back({take.name, "", take.summary, 0});
   } else {
     const auto all = KA_TRY(built_takes(files, folder, index, ""));
-    KA_TRY(divide_by_file(o.split, files, takes, source, all));
+    KA_TRY(divide(KA_TRY(read_good_split(files, o.split, all)), o.split, takes, source));
   }
   for (WindowTake& take : source.takes) {
     const Action* action = find_action(catalogue, take.name.action);

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 namespace kinalign {
 
@@ -51,9 +52,7 @@ Result<FilesMade> rewrite_take(ExportedTake& take, FileSystem& files, const std:
   TakeHeader header = take.header();
   AlignmentReport report = KA_TRY(parse_report_json(KA_TRY(take.report_json()), to));
   hide_names(header, report);
-  const Duration moved = take.first() - report.begin;
-  report.begin += moved;
-  report.end += moved;
+  move_dates(take.moved(), header, report);
   TakeWriter writer = KA_TRY(TakeWriter::create(files, to, Overwrite::no, header));
   KA_TRY(take.rows([&](const TakeSlab& slab) { return writer.append(slab); }));
   KA_TRY(writer.finish(report));
@@ -112,10 +111,13 @@ Result<void> Exporting::finish() {
   }
   if (job_.format == "webdataset") made.add({}, KA_TRY(shards_.finish()));
   if (job_.format == "take") {
-    constexpr std::size_t longest = std::size_t{4} << 20;
+    constexpr std::size_t longest = std::size_t{64} << 20;
     const std::string toml(catalogue_file);
+    std::set<std::string> used;
+    for (const ExportTake& take : job_.takes) used.insert(take.name.subject);
     OutputFile out = KA_TRY(OutputFile::create(files_, folder_ + "/" + toml, Overwrite::no));
-    KA_TRY(out.write(KA_TRY(read_whole(files_, job_.folder + "/" + toml, longest))));
+    KA_TRY(out.write(job_.release ? released_catalogue(catalogue_, used)
+                                  : KA_TRY(read_whole(files_, job_.folder + "/" + toml, longest))));
     KA_TRY(out.commit());
   }
   return {};

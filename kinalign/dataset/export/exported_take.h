@@ -21,7 +21,8 @@ class ExportedTake {
   const TakeName& name() const { return name_; }
   const TakeHeader& header() const { return reader_.header(); }
   double rate_hz() const { return rate_hz_; }
-  Time first() const { return first_; }  // stamp of the first row, moved
+  Time first() const { return first_; }      // stamp of the first row, moved
+  Duration moved() const { return moved_; }  // by how much
   Result<std::string> report_json() const { return reader_.report_json(); }
 
   /// All rows from the front, slab by slab; may be called again.

@@ -4,12 +4,14 @@
 #include "kinalign/core/files.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <map>
 #include <regex>
+#include <sstream>
 
 namespace kinalign {
 
@@ -133,6 +135,16 @@ class HiddenNames {
   std::map<std::string, std::string> names_;
 };
 
+toml::table described_table(const std::vector<Described>& all) {
+  toml::table out;
+  for (const Described& one : all) {
+    toml::table table;
+    for (const auto& [key, text] : one.texts) table.insert(key, text);
+    out.insert(one.id, table);
+  }
+  return out;
+}
+
 }  // namespace
 
 Findings look_for_people(const Catalogue& catalogue, const std::string& file) {
@@ -155,6 +167,10 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file) {
   for (const ActionClass& one : catalogue.classes) look.text("class." + one.id + ".name", one.name);
   for (const Action& one : catalogue.actions) look.text("action." + one.id + ".name", one.name);
   look.text("description", catalogue.description);
+  if (!catalogue.contact.empty()) {
+    look.add(Severity::note, "contact", fmt::format("\"{}\"", shown(catalogue.contact)),
+             "it is published as it stands");
+  }
   std::stable_sort(look.findings.begin(), look.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
   return look.findings;
@@ -171,6 +187,10 @@ void hide_names(TakeHeader& header, AlignmentReport& report) {
     for (std::size_t i = 0; i < stream.files.size(); ++i) {
       stream.files[i].path = names.of(stream.files[i].path, stream.name, i);
     }
+    if (stream.own_layout()) stream.layout = names.of(stream.layout, stream.name + "_layout", 0);
+    if (!stream.skeleton.empty()) {
+      stream.skeleton = names.of(stream.skeleton, stream.name + "_skeleton", 0);
+    }
   }
   report.marks.clear();
   for (Finding& finding : report.findings) {
@@ -179,6 +199,60 @@ void hide_names(TakeHeader& header, AlignmentReport& report) {
       names.put_into(*text);
     }
   }
+}
+
+void move_dates(Duration moved, TakeHeader& header, AlignmentReport& report) {
+  report.begin += moved;
+  report.end += moved;
+  for (StreamReport& stream : report.streams) {
+    stream.survey.first += moved;
+    stream.survey.last += moved;
+  }
+  for (StreamOptions& stream : header.parameters.streams) {
+    for (std::optional<std::int64_t>* stamp : {&stream.start_ns, &stream.end_ns}) {
+      if (*stamp) **stamp += moved.count();
+    }
+  }
+}
+
+std::string released_catalogue(const Catalogue& catalogue, const std::set<std::string>& used) {
+  toml::table top;
+  const auto put = [](toml::table& table, const std::string& key, const std::string& text) {
+    if (!text.empty()) table.insert(key, text);
+  };
+  put(top, "name", catalogue.name);
+  put(top, "licence", catalogue.licence);
+  put(top, "contact", catalogue.contact);
+  put(top, "description", catalogue.description);
+  put(top, "citation", catalogue.citation);
+  toml::table subjects, classes, actions;
+  for (const Subject& one : catalogue.subjects) {
+    if (!used.contains(one.id)) continue;
+    toml::table table;
+    put(table, "sex", one.sex);
+    put(table, "handedness", one.handedness);
+    put(table, "consent", one.consent);
+    if (one.height_cm) table.insert("height_cm", *one.height_cm);
+    if (one.weight_kg) table.insert("weight_kg", *one.weight_kg);
+    toml::table segments;
+    for (const auto& [name, length] : one.segments_m) segments.insert(name, length);
+    if (!segments.empty()) table.insert("segments_m", segments);
+    subjects.insert(one.id, table);
+  }
+  for (const ActionClass& one : catalogue.classes) {
+    classes.insert(one.id, toml::table{{"name", one.name}});
+  }
+  for (const Action& one : catalogue.actions) {
+    actions.insert(one.id, toml::table{{"class", one.class_id}, {"name", one.name}});
+  }
+  top.insert("subject", subjects);
+  top.insert("class", classes);
+  top.insert("action", actions);
+  top.insert("device", described_table(catalogue.devices));
+  top.insert("rig", described_table(catalogue.rigs));
+  std::ostringstream out;
+  out << top << "\n";
+  return out.str();
 }
 
 }  // namespace kinalign

@@ -7,6 +7,9 @@
 #include "kinalign/take/report.h"
 #include "kinalign/take/take.h"
 
+#include <set>
+#include <string>
+
 namespace kinalign {
 
 /// Looks at the texts of dataset.toml. Errors: ids that read like names; texts with a date, an
@@ -15,8 +18,15 @@ namespace kinalign {
 /// dataset.toml.
 Findings look_for_people(const Catalogue& catalogue, const std::string& file);
 
-/// Takes names of raw files, marks and findings' files out of a take: `kinect.csv` stands for what
-/// the device's file was called.
+/// Takes names of files and marks out of a take: `kinect.csv` stands for what the device's file was
+/// called. Names stand in inputs, parameters and findings.
 void hide_names(TakeHeader& header, AlignmentReport& report);
+
+/// Moves all stamps that parameters and report have by as much as the rows.
+void move_dates(Duration moved, TakeHeader& header, AlignmentReport& report);
+
+/// A dataset.toml of what is known, without comments, keys of its own, and subjects that `used`
+/// does not have.
+std::string released_catalogue(const Catalogue& catalogue, const std::set<std::string>& used);
 
 }  // namespace kinalign

@@ -122,8 +122,8 @@ class Card {
                      cell(1), cell(2), duration_text(std::get<double>(sums.rows.at(0).at(3))),
                      verdicts.empty() ? "none yet" : verdicts));
     line(
-        "A take is `bad` where its alignment has an error, `usable` where it has a warning, else "
-        "`good`.\n");
+        "The verdict of a take is that of its worst stream: by findings of its alignment, and by "
+        "limits for invalid, inferred and interpolated samples, gaps, clocks and distances.\n");
     text_ += own;
     return {};
   }
