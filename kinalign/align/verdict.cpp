@@ -114,9 +114,11 @@ bool is_about(const Finding& finding, const AlignmentReport& report, const std::
 void add_finding(const Finding& finding, const std::string& stream, std::vector<Concern>& out) {
   const bool error = finding.severity == Severity::error;
   if (finding.severity == Severity::note) return;
-  std::string what = finding.meaning.empty() ? to_string(finding.what) : finding.meaning;
-  if (!finding.meaning.empty() && !finding.what.found.empty()) {
-    what = finding.what.found + ": " + finding.meaning;
+  const Error& error_of = finding.what;
+  std::string what = to_string(error_of);
+  if (!finding.meaning.empty()) {
+    what = fmt::format("{} (expected {}, found {})", finding.meaning, error_of.expected,
+                       error_of.found);
   }
   out.push_back({stream, "", std::move(what), error ? error_weight : finding_weight,
                  error ? Quality::bad : Quality::usable});

@@ -192,13 +192,17 @@ Result<bool> same_bytes(FileSystem& files, const RawCopy& copy) {
   return from.sha256 == KA_TRY(facts_of(files, copy.to, "hashing", {})).sha256;
 }
 
-/// A copy that was made before stays: a job that was stopped goes on.
-Result<void> make_copies(FileSystem& files, const std::vector<RawCopy>& copies) {
+/// A copy that was made before stays: a job that was stopped goes on. False: another file stands in
+/// the place of one, of a take that was removed or that another process adds.
+Result<bool> make_copies(FileSystem& files, const std::vector<RawCopy>& copies) {
   for (const RawCopy& copy : copies) {
     KA_TRY(make_folders(fs::path(copy.to).parent_path().string()));
-    if (!fs::exists(copy.to)) KA_TRY(copy_file(files, copy.from, copy.to));
+    const Result<void> copied =
+        fs::exists(copy.to) ? Result<void>{} : copy_file(files, copy.from, copy.to);
+    if (!copied && !fs::exists(copy.to)) return Failure(copied.error());
+    if (!KA_TRY(same_bytes(files, copy))) return false;
   }
-  return {};
+  return true;
 }
 
 /// The run that is asked for, where it is free, else the next behind all others.
@@ -265,7 +269,10 @@ Result<Added> TakeAdder::add(const Manifest& said, const std::string& base,
     if (const auto same = KA_TRY(find_same(there, manifest, nameless, request.copy))) {
       return Added{*same, true};
     }
-    KA_TRY(make_copies(files_, plan.copies()));
+    if (!KA_TRY(make_copies(files_, plan.copies()))) {
+      there.runs.insert(name.run);  // its raw files are another take's
+      continue;
+    }
     const std::string path = folder_ + "/" + path_of(name, TakeFile::manifest);
     const Result<void> written = write_new(files_, path, text);
     if (written) {

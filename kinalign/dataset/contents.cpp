@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/contents.h"
 
+#include "kinalign/motion/arrays.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,6 +47,8 @@ ContentCheck::ContentCheck(const TakeHeader& header, double rate_hz)
       group.parents = clip->skeleton.parents;
       group.least.assign(group.parents.size(), std::numeric_limits<double>::infinity());
       group.most.assign(group.parents.size(), 0.0);
+      group.global_least = group.least;
+      group.global_most = group.most;
     }
   }
 }
@@ -60,6 +64,16 @@ void ContentCheck::add_stamps(const std::vector<Time>& stamps) {
     }
     last_ns_ = t;
   }
+}
+
+void ContentCheck::add_bone(const ClipRows& rows, std::size_t cell, std::size_t parent_cell,
+                            std::size_t joint, Group& group) {
+  const double bone = length_of(&rows.local_positions[3 * cell]);
+  group.least[joint] = std::min(group.least[joint], bone);
+  group.most[joint] = std::max(group.most[joint], bone);
+  const Vec3 between = vec3(rows.positions, cell) - vec3(rows.positions, parent_cell);
+  group.global_least[joint] = std::min(group.global_least[joint], between.norm());
+  group.global_most[joint] = std::max(group.global_most[joint], between.norm());
 }
 
 void ContentCheck::add_rows(const ClipRows& rows, std::size_t count, Group& group) const {
@@ -78,9 +92,7 @@ void ContentCheck::add_rows(const ClipRows& rows, std::size_t count, Group& grou
       group.not_unit += is_unit(turn) ? 0 : 1;
       group.far += length_of(place) > farthest_m ? 1 : 0;
       if (group.parents[j] < 0) continue;
-      const double bone = length_of(local);
-      group.least[j] = std::min(group.least[j], bone);
-      group.most[j] = std::max(group.most[j], bone);
+      add_bone(rows, cell, r * joints + static_cast<std::size_t>(group.parents[j]), j, group);
     }
   }
 }
@@ -152,7 +164,8 @@ Findings ContentCheck::findings(const std::string& file) const {
     std::uint64_t stretched = 0;
     double worst = 0.0;
     for (std::size_t j = 0; j < group.least.size(); ++j) {
-      const double by = group.most[j] - group.least[j];
+      const double by =
+          std::max(group.most[j] - group.least[j], group.global_most[j] - group.global_least[j]);
       if (!(by > std::max(bone_slack_m, bone_slack * group.most[j]))) continue;
       ++stretched;
       worst = std::max(worst, by);

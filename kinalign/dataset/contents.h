@@ -28,10 +28,13 @@ class ContentCheck {
   /// Of one group.
   struct Group {
     std::string name;
-    std::vector<int> parents;                                       // of a skeleton
-    std::vector<double> least, most;                                // [J] m, of each bone
+    std::vector<int> parents;         // of a skeleton
+    std::vector<double> least, most;  // [J] m, of each bone, by the joint's local place
+    std::vector<double> global_least, global_most;  // the same by both joints' places
     std::uint64_t not_finite = 0, not_unit = 0, far = 0, fast = 0;  // cells
   };
+  static void add_bone(const ClipRows& rows, std::size_t cell, std::size_t parent_cell,
+                       std::size_t joint, Group& group);
   /// One of an array that may be absent, of a valid cell.
   static void add_vector(const std::vector<double>& all, std::size_t cell, double most,
                          Group& group);

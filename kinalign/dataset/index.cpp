@@ -28,13 +28,13 @@ constexpr std::size_t most_toml = std::size_t{16} << 20;
 constexpr std::int64_t racy_ns = 2'000'000'000;
 
 /// Raised with every change of the tables: an index of another number is made anew.
-constexpr std::int64_t layout = 1;
+constexpr std::int64_t layout = 2;
 
 /// What is not of `take` stands in the view as a query of its own: SQLite asks for it only where a
 /// statement uses the column, while it goes through every join of a sum.
 constexpr const char* make_tables = R"(
 create table catalogue(version text not null);
-create table folder(path text primary key, changed_ns integer not null);
+create table folder(path text primary key, changed_ns integer not null, not_built integer not null);
 create table subject(id text primary key, sex text, height_cm real, weight_kg real, handedness text);
 create table class(id text primary key, name text);
 create table action(id text primary key, class text, name text);
@@ -330,10 +330,14 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
   TakeInserts add = KA_TRY(inserts());
   TakeDrops drop = KA_TRY(drops());
   std::error_code fault;
+  std::set<TakeName> all, summarised;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder + "/" + name, fault)) {
     const std::string path = name + "/" + entry.path().filename().string();
     const auto parsed = parse_take_path(path);
-    if (!parsed || parsed->second != TakeFile::summary) continue;
+    if (!parsed) continue;
+    all.insert(parsed->first);
+    if (parsed->second != TakeFile::summary) continue;
+    summarised.insert(parsed->first);
     const auto version = version_of(entry.path().string());
     if (!version) continue;
     const Found found{parsed->first, version->changed_ns, whole(version->size)};
@@ -346,8 +350,8 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
   }
   for (const auto& [gone, one] : known) KA_TRY(drop.run(one.id));
   const bool settled = findings.empty() && changed < began - racy_ns;
-  return KA_TRY(database.prepare("insert or replace into folder values(?,?)"))
-      .run({name, settled ? changed : std::int64_t{0}});
+  return KA_TRY(database.prepare("insert or replace into folder values(?,?,?)"))
+      .run({name, settled ? changed : std::int64_t{0}, whole(all.size() - summarised.size())});
 }
 
 /// Which dataset.toml the index has.
@@ -499,6 +503,12 @@ Result<Table> DatasetIndex::select(const std::string& sql, const std::vector<Cel
     for (std::size_t c = 0; c < rows.columns(); ++c) row.push_back(rows.at(c));
   }
   return out;
+}
+
+Result<std::uint64_t> DatasetIndex::not_built() const {
+  auto sum = KA_TRY(state_->database.prepare("select coalesce(sum(not_built), 0) from folder"));
+  KA_TRY(sum.step());
+  return static_cast<std::uint64_t>(std::get<std::int64_t>(sum.at(0)));
 }
 
 }  // namespace kinalign

@@ -29,12 +29,15 @@ class DatasetIndex {
   ~DatasetIndex();
 
   const Catalogue& catalogue() const;
-  /// Files in place of a summary that can't be read, takes without one and without a manifest.
+  /// Summaries that can't be read.
   const Findings& findings() const;
 
   /// Runs one SELECT with values for its '?', of the views `takes` and `streams`. Nothing but
   /// reading is allowed; fails with SQLite's words.
   Result<Table> select(const std::string& sql, const std::vector<Cell>& values = {}) const;
+
+  /// How many takes have a manifest or a take, but no summary yet: they are in no list.
+  Result<std::uint64_t> not_built() const;
 
   /// The columns of `takes`, in their order.
   static const std::vector<TableColumn>& columns();

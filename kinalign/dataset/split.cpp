@@ -155,7 +155,9 @@ TakesByName by_name(const std::vector<SplitTake>& takes) {
 using Places = std::map<std::string, std::set<std::string>>;
 
 struct Seen {
-  Places names, contents, subjects;
+  Places names, subjects;
+  /// By SHA-256 of a take or of a raw file: of each part a take that it stands in.
+  std::map<std::string, std::map<std::string, std::string>> contents;
   std::vector<std::string> unknown;  // takes that the data set does not have
   std::vector<std::string> changed;  // takes that were others when the split was made
 };
@@ -172,11 +174,11 @@ Seen seen_in(const Split& split, const TakesByName& known) {
       seen.names[to_string(name)].insert(part.name);
       seen.subjects[name.subject].insert(part.name);
       const TakeSummary& summary = found->second->summary;
-      seen.contents[summary.sha256].insert(part.name);
+      seen.contents[summary.sha256].emplace(part.name, to_string(name));
       for (const InputFacts& input : summary.inputs) {
         // A layout or a list of channels may be the same for all.
         if (!summary.sample_files.contains(input.name)) continue;
-        seen.contents[input.sha256].insert(part.name);
+        seen.contents[input.sha256].emplace(part.name, to_string(name));
       }
       const auto then = split.sha256.find(name);
       if (then != split.sha256.end() && then->second != summary.sha256) {
@@ -241,8 +243,11 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
   }
   for (const auto& [hash, parts] : seen.contents) {
     if (parts.size() < 2) continue;
+    const auto& [one, take] = *parts.begin();
+    const auto& [other, second] = *parts.rbegin();
     tell(Severity::error, "the same bytes in one part only",
-         "SHA-256 " + hash.substr(0, 12) + "... in " + listed(parts));
+         fmt::format("{} in {} and {} in {} (SHA-256 {}...)", take, one, second, other,
+                     hash.substr(0, 12)));
   }
   const bool apart = split.options.by == "subject" || split.options.by == "leave-one-out";
   for (const auto& [subject, parts] : seen.subjects) {

@@ -191,7 +191,7 @@ Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report
       }
     }
   }
-  for (const StreamOptions& stream : header.parameters.streams) {
+  for (const StreamOptions& stream : without_folders(header.parameters).streams) {
     for (const StreamFile& file : stream.files) out.sample_files.insert(file.path);
   }
   add_streams(report, out);

@@ -7,6 +7,7 @@ import json
 import pathlib
 import sys
 import tarfile
+import tomllib
 
 import h5py
 import numpy
@@ -143,7 +144,18 @@ def a_data_set_of_its_own_builds_and_verifies(folder):
 @case
 def a_release_has_no_dates_and_no_names_and_is_refused_where_a_text_gives_a_person_away(folder):
     data = built(folder)
+    toml = data / "dataset.toml"
+    toml.write_text("# 00 is Anna Schmidt\n" + toml.read_text())
+    manifest, = data.glob("sub-00/*_recording.toml")
+    text = manifest.read_text()
+    day = "1790000000"  # of the demo's start
+    assert f"start_ns = {day}" in text, text
     out = exported(folder, data, "take", "--release")
+    for path in filter(pathlib.Path.is_file, out.rglob("*")):
+        written = path.read_bytes()
+        assert day.encode() not in written and b"Anna" not in written, path
+        assert int(day).to_bytes(4, "little") not in written or path.suffix == ".h5", path
+    assert sorted(tomllib.loads((out / "dataset.toml").read_text())["subject"]) == ["00"]
     with take(data) as file, take(out) as free:
         assert free["time_ns"][0] == 946_684_800_000_000_000
         assert (numpy.diff(free["time_ns"]) == numpy.diff(file["time_ns"])).all()
@@ -153,7 +165,6 @@ def a_release_has_no_dates_and_no_names_and_is_refused_where_a_text_gives_a_pers
         assert abs(report["begin_ns"] - 946_684_800_000_000_000) < 1_000_000_000, report["begin_ns"]
     bids = exported(folder, data, "bids", "--release")
     assert (bids / "participants.tsv").read_text().splitlines()[0] == "participant_id"
-    toml = data / "dataset.toml"
     toml.write_text(toml.read_text() + '\n[device.kinect]\nserial = "A22596V01234"\n')
     ran = kinalign("dataset", "export", data, "-o", folder / "named", "--format", "npz", "--release", "--json")
     assert ran.returncode == 1 and not (folder / "named").exists(), ran

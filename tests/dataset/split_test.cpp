@@ -23,7 +23,8 @@ std::vector<SplitTake> many() {
                  static_cast<std::uint32_t>(i + 1)};
     take.summary.frames = 100 + (i * 37) % 900;
     take.summary.sha256 = "take " + std::to_string(i);
-    take.summary.inputs = {{"a.bvh", "raw " + std::to_string(i), 1}};
+    take.summary.inputs = {{"a.bvh", "raw " + std::to_string(i), 1}, {"rig.toml", "rig", 1}};
+    take.summary.sample_files = {"a.bvh"};
     take.summary.streams.resize(i % 3 == 0 ? 3 : 2);
     take.summary.streams[1].modality = Modality::kinect;
     if (i % 3 == 0) take.summary.streams[2].modality = Modality::imu;
@@ -153,6 +154,23 @@ TEST_CASE("a leak is found by the name and by the bytes") {
   CHECK(by_bytes.front().what.expected == "the same bytes in one part only");
   takes.erase(find(split.parts[0].takes.back()));
   CHECK(errors(check_split(split, takes, "s")) == 2);
+}
+
+TEST_CASE("takes that have a layout in common are no leak") {
+  const auto takes = many();  // rig.toml is the same in all of them
+  const Split split = *make_split(takes, catalogue(), {"subject", 0.25, 0.0, 1, false});
+  CHECK(errors(check_split(split, takes, "s")) == 0);
+}
+
+TEST_CASE("a take that was made again since is a warning of its split") {
+  auto takes = many();
+  const Split made = *make_split(takes, catalogue(), {"subject", 0.25, 0.0, 1, false});
+  const Split read = *parse_split_json(split_json(made, takes), "s");
+  CHECK(check_split(read, takes, "s").empty());
+  takes[5].summary.sha256 = "another";
+  const Findings found = check_split(read, takes, "s");
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].severity == Severity::warning);
 }
 
 TEST_CASE("a split reads back as it was written") {

@@ -64,7 +64,7 @@ Result<int> show_plan(const BuildPlan& plan, Call& call) {
 
 /// What was made, as lines and as JSON.
 struct Tally {
-  std::size_t made = 0, failed = 0, flawed = 0;
+  std::size_t made = 0, failed = 0, usable = 0, bad = 0;
   nlohmann::ordered_json takes = nlohmann::ordered_json::array();
 
   void add(const Built& one, Console& console) {
@@ -77,7 +77,8 @@ struct Tally {
       return;
     }
     ++made;
-    flawed += one.summary->quality == Quality::good ? 0 : 1;
+    usable += one.summary->quality == Quality::usable ? 1 : 0;
+    bad += one.summary->quality == Quality::bad ? 1 : 0;
     console.detail(
         fmt::format("{}: {} frames, {}", name, one.summary->frames, one.summary->verdict()));
     takes.push_back(
@@ -105,10 +106,11 @@ Result<int> run_build(Build& o, Call& call) {
   call.console.print(harmless(fmt::format(
       "{}: {} made{}, {} up to date{}\n", folder, counted(tally.made, "take"),
       tally.failed > 0 ? fmt::format(", {} failed", tally.failed) : "", plan.up_to_date, share)));
-  if (tally.flawed > 0) {
-    call.console.print(fmt::format(
-        "  {} not good: kinalign dataset list {} --columns name,verdict,worst --sort verdict\n",
-        counted(tally.flawed, "take"), harmless(folder)));
+  if (tally.bad + tally.usable > 0) {
+    call.console.print(
+        fmt::format("  {} bad, {} usable: kinalign dataset list {} --columns name,verdict,worst "
+                    "--sort verdict\n",
+                    tally.bad, tally.usable, harmless(folder)));
   }
   call.console.print(fmt::format("see    kinalign dataset tables {}\n", harmless(folder)));
   call.console.print_json(nlohmann::ordered_json{

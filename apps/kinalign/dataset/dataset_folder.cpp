@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/dataset/dataset_folder.h"
 
+#include "apps/kinalign/dataset/counts_text.h"
+
 #include "kinalign/dataset/scan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
 
 namespace kinalign {
 
@@ -24,6 +30,15 @@ Result<DatasetIndex> open_index(const std::string& folder, Call& call) {
   return index;
 }
 
+Result<void> say_not_built(const DatasetIndex& index, const std::string& folder, Call& call) {
+  const std::uint64_t not_built = KA_TRY(index.not_built());
+  if (not_built == 0) return {};
+  call.console.print(
+      harmless(fmt::format("note   {} not built, and not counted: kinalign dataset build {}\n",
+                           counted(not_built, "take"), folder)));
+  return {};
+}
+
 Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string& folder,
                                            const DatasetIndex& index, const std::string& where) {
   const std::string condition = where.empty() ? "" : " where (" + where + ")";
@@ -35,6 +50,21 @@ Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string&
     if (name) takes.push_back({*name, KA_TRY(read_summary(files, folder, *name))});
   }
   return takes;
+}
+
+bool print_findings(const Findings& findings, Call& call) {
+  constexpr std::size_t shown_findings = 8;
+  for (std::size_t i = 0; i < std::min(findings.size(), shown_findings); ++i) {
+    const Finding& one = findings[i];
+    call.console.print(
+        harmless(fmt::format("{}  {}\n", to_string(one.severity), to_string(one.what))));
+  }
+  if (findings.size() > shown_findings) {
+    call.console.print(
+        fmt::format("... and {} more (--json has them)\n", findings.size() - shown_findings));
+  }
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& one) { return one.severity == Severity::error; });
 }
 
 }  // namespace kinalign

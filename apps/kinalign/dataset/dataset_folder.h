@@ -21,6 +21,12 @@ std::string folder_of(const std::vector<std::string>& words);
 /// Opens the index and tells what is wrong with its files on stderr.
 Result<DatasetIndex> open_index(const std::string& folder, Call& call);
 
+/// A line, where some takes have no summary yet.
+Result<void> say_not_built(const DatasetIndex& index, const std::string& folder, Call& call);
+
+/// Prints the first ones, and how many more there are; whether one is an error.
+bool print_findings(const Findings& findings, Call& call);
+
 /// Takes that are built, by name; of those alone for which a condition of SQL holds, if any is
 /// said.
 Result<std::vector<SplitTake>> built_takes(FileSystem& files, const std::string& folder,

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace kinalign {
 
@@ -76,11 +77,16 @@ Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call)
   return job;
 }
 
-void print_findings(const Findings& findings, Call& call) {
-  for (const Finding& one : findings) {
-    call.console.print(
-        harmless(fmt::format("{}  {}\n", to_string(one.severity), to_string(one.what))));
+/// What streams and nodes are called, which every format writes.
+std::set<std::string> names_in(const ExportJob& job) {
+  std::set<std::string> out;
+  for (const ExportTake& take : job.takes) {
+    for (const StreamSummary& stream : take.summary.streams) {
+      out.insert(stream.name);
+      out.insert(stream.nodes.begin(), stream.nodes.end());
+    }
   }
+  return out;
 }
 
 bool has_error(const Findings& findings) {
@@ -109,7 +115,9 @@ Result<int> run_export(Export& o, Call& call) {
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
   const ExportJob job = KA_TRY(job_of(o, index, call));
   Findings findings;
-  if (o.release) findings = look_for_people(index.catalogue(), job.folder + "/dataset.toml");
+  if (o.release) {
+    findings = look_for_people(index.catalogue(), job.folder + "/dataset.toml", names_in(job));
+  }
   print_findings(findings, call);
   if (has_error(findings)) {
     call.console.print("nothing was written: a person could be known by what the errors name\n");
@@ -117,6 +125,7 @@ Result<int> run_export(Export& o, Call& call) {
         fmt::format("{{\"files\": 0, \"findings\": {}}}", findings_json(findings)));
     return 1;
   }
+  KA_TRY(say_not_built(index, job.folder, call));
   const ExportMade made =
       KA_TRY(export_takes(files, index.catalogue(), job, call.console.progress()));
   call.console.print(harmless(fmt::format(

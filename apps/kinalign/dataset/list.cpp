@@ -95,6 +95,7 @@ Result<int> show(const Shown& o, const std::string& sql, const std::vector<Cell>
   const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
   const Table table = KA_TRY(index.select(sql, values));
   print_table(table, o.format, "takes", call);
+  if (o.format == "text") KA_TRY(say_not_built(index, folder_of(o.folder), call));
   return index.findings().empty() ? 0 : 1;
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <map>
 
 namespace kinalign {
@@ -80,23 +81,22 @@ Result<int> run_split(SplitVerb& o, Call& call) {
     split = KA_TRY(read_split(files, o.check));
   }
   const Findings findings = check_split(split, takes, file);
-  int code = 0;
-  for (const Finding& one : findings) {
-    code = one.severity == Severity::error ? 1 : code;
-    call.console.print(
-        harmless(std::string(to_string(one.severity)) + "  " + to_string(one.what) + "\n"));
-  }
-  if (o.check.empty()) {
+  const bool leaks = print_findings(findings, call);
+  if (leaks && o.check.empty()) call.console.print("nothing was written\n");
+  if (!leaks && o.check.empty()) {
+    std::error_code ignored;  // creating the file says what is wrong
+    std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
     OutputFile out = KA_TRY(OutputFile::create(files, file, call.common.overwrite()));
     KA_TRY(out.write(split_json(split, takes)));
     KA_TRY(out.commit());
     call.console.wrote(file);
   }
+  KA_TRY(say_not_built(index, folder, call));
   const Table table = table_of(split, takes);
   call.console.print(written(table, TableFormat::text));
   call.console.print_json(fmt::format("{{\"parts\": {}, \"findings\": {}}}",
                                       written(table, TableFormat::json), findings_json(findings)));
-  return code;
+  return leaks ? 1 : 0;
 }
 
 }  // namespace

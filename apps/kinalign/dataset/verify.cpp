@@ -4,6 +4,8 @@
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/verbs.h"
 
+#include "kinalign/dataset/changes/split_files.h"
+#include "kinalign/dataset/scan.h"
 #include "kinalign/documents/report_json.h"
 
 #include <fmt/format.h>
@@ -25,12 +27,32 @@ Usage describe_verify(Verify& o) {
   return usage;
 }
 
+/// Splits against the takes whose summaries can be read; of the others there is a finding already.
+void check_splits(FileSystem& files, const std::string& folder, Findings& findings) {
+  const auto splits = splits_in(files, folder);
+  const auto there = scan_takes(folder);
+  if (splits.empty() || !there) return;
+  std::vector<SplitTake> takes;
+  for (const auto& [name, kinds] : *there) {
+    const auto summary = read_summary(files, folder, name);
+    if (summary) takes.push_back({name, *summary});
+  }
+  for (const auto& [path, split] : splits) {
+    for (Finding& one : check_split(split, takes, path)) {
+      if (one.severity == Severity::note) continue;
+      one.repair = "make it again with kinalign dataset split";
+      findings.push_back(std::move(one));
+    }
+  }
+}
+
 Result<int> run_verify(Verify& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   FileSystem& files = call.surroundings.files;
   const Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
-  const Verified found =
+  Verified found =
       KA_TRY(verify(files, folder, catalogue, {call.jobs, o.deep}, call.console.progress()));
+  check_splits(files, folder, found.findings);
   std::size_t serious = 0;
   for (const Finding& one : found.findings) {
     if (one.severity != Severity::note) ++serious;

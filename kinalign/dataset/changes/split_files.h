@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/core/files.h"
+#include "kinalign/dataset/split.h"
 #include "kinalign/dataset/take_name.h"
 
 #include <cstdint>
@@ -12,13 +13,15 @@
 
 namespace kinalign {
 
+/// All splits in the folder and in splits/, by path below the folder. Other files are passed over.
+std::map<std::string, Split> splits_in(FileSystem& files, const std::string& folder);
+
 struct SplitFile {
   std::string path;         // below the data set's folder
   std::uint64_t takes = 0;  // of those asked for
 };
 
-/// Splits in the folder and in splits/ that name any of `takes`, by path. Other files are passed
-/// over.
+/// Those of splits_in() that name any of `takes`.
 std::vector<SplitFile> splits_naming(FileSystem& files, const std::string& folder,
                                      const std::set<TakeName>& takes);
 

@@ -47,6 +47,7 @@ bool names_a_device(std::string key) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   constexpr std::array<std::string_view, 6> words{"serial",  "mac",   "imei",
                                                   "address", "owner", "host"};
+  if (key == "sn" || key == "ip") return true;
   return std::any_of(words.begin(), words.end(),
                      [&](std::string_view word) { return key.find(word) != std::string::npos; });
 }
@@ -147,13 +148,15 @@ toml::table described_table(const std::vector<Described>& all) {
 
 }  // namespace
 
-Findings look_for_people(const Catalogue& catalogue, const std::string& file) {
+Findings look_for_people(const Catalogue& catalogue, const std::string& file,
+                         const std::set<std::string>& names) {
   Look look(file);
   for (const Subject& person : catalogue.subjects) {
     if (reads_like_a_name(person.id)) {
       look.add(Severity::error, "a subject's id", fmt::format("\"{}\"", shown(person.id)),
                "give a number: kinalign dataset rename");
     }
+    look.text("a subject's id", person.id);
     look.text(fmt::format("subject.{}.consent", person.id), person.consent);
     if (!person.consent.empty()) {
       look.add(Severity::warning, fmt::format("subject.{}.consent", person.id),
@@ -166,6 +169,10 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file) {
   look_at_devices(catalogue.rigs, "rig", look);
   for (const ActionClass& one : catalogue.classes) look.text("class." + one.id + ".name", one.name);
   for (const Action& one : catalogue.actions) look.text("action." + one.id + ".name", one.name);
+  for (const std::string& name : names) look.text("a stream or node", name);
+  look.text("name", catalogue.name);
+  look.text("licence", catalogue.licence);
+  look.text("citation", catalogue.citation);
   look.text("description", catalogue.description);
   if (!catalogue.contact.empty()) {
     look.add(Severity::note, "contact", fmt::format("\"{}\"", shown(catalogue.contact)),

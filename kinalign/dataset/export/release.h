@@ -12,11 +12,12 @@
 
 namespace kinalign {
 
-/// Looks at the texts of dataset.toml. Errors: ids that read like names; texts with a date, an
-/// e-mail address, a telephone number or a hardware address; serial numbers of devices. Warnings:
-/// free text about a person. Notes: a height or weight that one person alone has. `file`: the
-/// dataset.toml.
-Findings look_for_people(const Catalogue& catalogue, const std::string& file);
+/// Looks at the texts of dataset.toml and at `names` of streams and nodes. Errors: ids that read
+/// like names; texts with a date, an e-mail address, a telephone number or a hardware address;
+/// serial numbers of devices. Warnings: free text about a person. Notes: a height or weight that
+/// one person alone has. `file`: the dataset.toml.
+Findings look_for_people(const Catalogue& catalogue, const std::string& file,
+                         const std::set<std::string>& names);
 
 /// Takes names of files and marks out of a take: `kinect.csv` stands for what the device's file was
 /// called. Names stand in inputs, parameters and findings.

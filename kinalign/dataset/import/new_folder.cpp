@@ -4,6 +4,8 @@
 #include "kinalign/dataset/import/ids.h"
 #include "kinalign/sources/input_facts.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <system_error>
 
@@ -45,7 +47,8 @@ Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent
       label_of(name.substr(0, name.find('.'))) + "-" + facts.sha256.substr(0, 8);
   const fs::path to = fs::path(parent) / own;
   if (fs::is_directory(to)) return to.string();
-  const fs::path beside = fs::path(parent) / ("." + own);
+  // Another process may unpack the same source.
+  const fs::path beside = fs::path(parent) / ("." + own + "-" + std::to_string(::getpid()));
   std::error_code fault;
   fs::remove_all(beside, fault);  // of a run that was killed
   UnfinishedFolder unfinished(beside.string());
@@ -56,6 +59,7 @@ Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent
     return OutputFile::create(files, path.string(), Overwrite::no);
   }));
   fs::rename(beside, to, fault);
+  if (fault && fs::is_directory(to)) return to.string();  // the other one was faster
   if (fault) return Failure(Error{to.string(), 0, "a folder that can be named", fault.message()});
   unfinished.keep();
   return to.string();

@@ -28,6 +28,7 @@ enum Fixed : std::size_t {
 std::string difference(const TakeGroup& group, const TakeGroup& other) {
   if (group.kind.index() != other.kind.index())
     return fmt::format("{} of another kind", group.name);
+  if (group.space != other.space) return fmt::format("{} in another space", group.name);
   if (names_of(group) != names_of(other)) return fmt::format("other names in {}", group.name);
   if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
     const auto& parents = std::get<ClipGroup>(other.kind).skeleton.parents;

@@ -79,6 +79,14 @@ class AngleRows {
   bool ended_ = false;
 };
 
+/// The files' z points to the camera, a Kinect's away from it: half a turn about y.
+void turn_forward(std::vector<double>& places) {
+  for (std::size_t j = 0; j < ui_prmd_joints; ++j) {
+    places[3 * j] = -places[3 * j];
+    places[3 * j + 2] = -places[3 * j + 2];
+  }
+}
+
 class UiPrmdReader final : public PointReader {
  public:
   UiPrmdReader(const StreamOptions& options, std::string_view offsets_file,
@@ -121,6 +129,7 @@ class UiPrmdReader final : public PointReader {
     }
     const Time stamp = KA_TRY(stamps_.next(0));
     ui_prmd_places(row_.values, angles_, places_);
+    turn_forward(places_);
     append_points(units_, places_.data(), states_, out);
     out.stamps.push_back(stamp);
     return {};

@@ -39,16 +39,17 @@ Read<PointReader> read_pair(const std::string& offsets, std::string angles) {
 }  // namespace
 
 TEST_CASE("offsets and angles become places") {
-  // The root turned by 90 degrees about z: every offset (1, 1, 1) cm becomes (-1, 1, 1).
+  // The root turned by 90 degrees about z: every offset (1, 1, 1) cm becomes (-1, 1, 1). Then all
+  // is turned by half a turn about y: the files' z points to the camera.
   const auto read = read_pair(row("10,20,-300", "1"), row("0,0,90", "0"));
   CHECK(read.error == "");
   REQUIRE(read.rows.size() == 1);
   const auto place = [&](std::size_t j) {
     return Vec3(vec3(std::span<const double>(read.rows.positions), j));
   };
-  CHECK((place(0) - Vec3(0.10, 0.20, -3.00)).norm() < 1e-12);
-  CHECK((place(1) - Vec3(0.09, 0.21, -2.99)).norm() < 1e-12);
-  CHECK((place(5) - Vec3(0.05, 0.25, -2.95)).norm() < 1e-12);
+  CHECK((place(0) - Vec3(-0.10, 0.20, 3.00)).norm() < 1e-12);
+  CHECK((place(1) - Vec3(-0.09, 0.21, 2.99)).norm() < 1e-12);
+  CHECK((place(5) - Vec3(-0.05, 0.25, 2.95)).norm() < 1e-12);
   CHECK(read.header.joint_names[21] == "ToesRight");
 }
 
@@ -94,10 +95,10 @@ TEST_CASE("rate, start, unit and axis of UI-PRMD's files are the user's where gi
   const auto read = read_all(
       make_ui_prmd_kinect_reader(options, "p.txt", "a.txt", in_pieces(one + one, 9)), one + one);
   CHECK(read.rows.stamps == std::vector<Time>{utc_time(5), utc_time(100'000'005)});
-  CHECK(Vec3(read.rows.positions.data()) == Vec3(2, 6, -4));
+  CHECK(Vec3(read.rows.positions.data()) == Vec3(-2, -6, -4));
   const auto usual = read_pair(one + one, one + one);
   CHECK(usual.rows.stamps == std::vector<Time>{utc_time(0), utc_time(33'333'333)});
-  CHECK(Vec3(usual.rows.positions.data()) == Vec3(0.01, 0.02, 0.03));
+  CHECK(Vec3(usual.rows.positions.data()) == Vec3(-0.01, 0.02, -0.03));
 }
 
 TEST_CASE("each joint turns all that hang on it and nothing else") {
@@ -149,12 +150,12 @@ TEST_CASE("UI-PRMD's Kinect joints are where its own kinematics puts them" *
   CHECK(read.error == "");
   CHECK(read.findings.empty());
   CHECK(read.rows.size() == 62);
-  // NumPy 1.24.2, R = Rz Rx Ry, row 10, cm: HeadTip, HandLeft, FootRight
+  // NumPy 1.24.2, R = Rz Rx Ry, then half a turn about y; row 10, cm: HeadTip, HandLeft, FootRight
   const auto near = [&](std::size_t joint, const Vec3& cm) {
     const Vec3 place = vec3(std::span<const double>(read.rows.positions), 10 * 22 + joint);
     return (place * 100 - cm).norm() < 1e-4;
   };
-  CHECK(near(5, Vec3(-6.16244, 156.18808, -226.07921)));
-  CHECK(near(9, Vec3(40.34596, 135.40009, -228.47968)));
-  CHECK(near(20, Vec3(-10.39412, 8.88246, -233.73077)));
+  CHECK(near(5, Vec3(6.16244, 156.18808, 226.07921)));
+  CHECK(near(9, Vec3(-40.34596, 135.40009, 228.47968)));
+  CHECK(near(20, Vec3(10.39412, 8.88246, 233.73077)));
 }
