@@ -161,6 +161,20 @@ def a_release_has_no_dates_and_no_names_and_is_refused_where_a_text_gives_a_pers
 
 
 @case
+def an_export_that_would_write_no_file_fails_and_leaves_nothing(folder):
+    points = exported(folder, built(folder), "trc")
+    data = folder / "points"
+    done("import", data, points, "--subject", "01")
+    done("build", data)
+    for kind, needs in (("bvh", "a skeleton"), ("mot", "a skeleton"), ("sto", "nodes with orientations")):
+        ran = kinalign("dataset", "export", data, "-o", folder / "none", "--format", kind)
+        said = law(ran, ("dataset", "export"), folder / "none")
+        assert ran.returncode == 3 and f"expected {needs} in one take at least, for {kind}, found none" in said, said
+        assert not list(folder.glob("none*")), said
+    exported(folder / "all", data, "npz")
+
+
+@case
 def what_is_there_is_not_touched_and_a_failure_leaves_nothing(folder):
     data = built(folder)
     (folder / "there").mkdir()

@@ -28,6 +28,14 @@ struct Made {
   Json left_out = Json::array();
   Findings findings;
 
+  /// An empty folder must not pass for an export. `needs`: what a take must have.
+  Result<void> holds_something(const ExportJob& job, std::string_view needs) const {
+    if (files > 0) return {};
+    if (!findings.empty()) return Failure(findings.front().what);
+    return Failure(Error{
+        job.folder, 0, fmt::format("{} in one take at least, for {}", needs, job.format), "none"});
+  }
+
   void add(const TakeName& name, const FilesMade& made) {
     files += made.paths.size();
     for (const std::string& why : made.left_out) left_out.push_back({to_string(name), why});
@@ -158,6 +166,13 @@ Result<ExportMade> made_from(const std::string& text) {
   return made;
 }
 
+std::string_view needs_of(const std::string& name) {
+  const auto& formats = take_formats();
+  const auto format = std::find_if(formats.begin(), formats.end(),
+                                   [&](const TakeFormat& one) { return one.name == name; });
+  return format == formats.end() ? "a stream" : format->needs;
+}
+
 /// A folder that is removed unless it is kept.
 class PartFolder {
  public:
@@ -226,6 +241,7 @@ Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, c
       KA_TRY(run_guarded(limits, blame, progress, [&](const Progress& tell) -> Result<std::string> {
         Exporting exporting(files, catalogue, job, part.path);
         KA_TRY(exporting.run(tell));
+        KA_TRY(exporting.made.holds_something(job, needs_of(job.format)));
         return text_of(exporting.made);
       }));
   KA_TRY(part.keep_as(job.target));
