@@ -16,6 +16,7 @@ from cases import case, kinalign, law, main
 from data_sets import answer, contents, done, small_set
 
 NAME = "sub-00_task-S2A01_run-01"
+NO_DATE = 946_684_800_000_000_000
 
 
 def built(folder, takes=1):
@@ -131,9 +132,23 @@ def a_bids_data_set_passes_the_check_and_reads_back(folder):
 
 
 @case
-def a_data_set_of_its_own_builds_and_verifies(folder):
+def a_data_set_of_its_own_is_listed_and_verified_as_it_was_written(folder):
     data = built(folder, takes=2)
     out = exported(folder, data, "take")
+    assert done("list", out, "--columns", "all") == done("list", data, "--columns", "all")
+    free = exported(folder / "free", data, "take", "--release")
+    for one in (out, free):
+        said = answer("verify", one, "--deep")
+        assert said["takes"] == 2 and {f["severity"] for f in said["findings"]} <= {"note"}, said
+        assert answer("build", one)["up_to_date"] == 2
+    assert [row["begin_ns"] for row in answer("list", free, "--columns", "begin_ns")["takes"]] == [NO_DATE] * 2
+    summaries = sorted(free.rglob("*_take.json"))
+    summaries[0].unlink()
+    summaries[1].write_text("{")
+    said = [(one["file"], one["expected"], one["found"]) for one in answer("verify", free, code=1)["findings"]
+            if one["severity"] == "error"]
+    assert said[0] == (str(summaries[0].relative_to(free)), "a summary beside the take", "none"), said
+    assert len(said) == 2 and said[1][1].startswith("a summary that can be read: ") and said[1][2] != "none", said
     assert (out / f"sub-00/{NAME}_take.h5").read_bytes() == (data / f"sub-00/{NAME}_take.h5").read_bytes()
     done("build", out)
     answer("verify", out, "--deep")
@@ -145,12 +160,12 @@ def a_release_has_no_dates_and_no_names_and_is_refused_where_a_text_gives_a_pers
     data = built(folder)
     out = exported(folder, data, "take", "--release")
     with take(data) as file, take(out) as free:
-        assert free["time_ns"][0] == 946_684_800_000_000_000
+        assert free["time_ns"][0] == NO_DATE
         assert (numpy.diff(free["time_ns"]) == numpy.diff(file["time_ns"])).all()
         assert (free["kinect/positions"][:] == file["kinect/positions"][:]).all()
         assert list(free["kinect"].attrs["input_names"].astype(str)) == ["kinect.csv"]
         report = json.loads(free["report_json"][()])
-        assert abs(report["begin_ns"] - 946_684_800_000_000_000) < 1_000_000_000, report["begin_ns"]
+        assert abs(report["begin_ns"] - NO_DATE) < 1_000_000_000, report["begin_ns"]
     bids = exported(folder, data, "bids", "--release")
     assert (bids / "participants.tsv").read_text().splitlines()[0] == "participant_id"
     toml = data / "dataset.toml"

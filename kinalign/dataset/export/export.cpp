@@ -5,6 +5,7 @@
 #include "kinalign/dataset/export/release.h"
 #include "kinalign/dataset/export/shard_export.h"
 #include "kinalign/dataset/export/take_files.h"
+#include "kinalign/dataset/summarise.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/guarded.h"
 
@@ -67,6 +68,15 @@ Result<FilesMade> rewrite_take(ExportedTake& take, FileSystem& files, const std:
   return FilesMade{{to}, {"marks, and the names of raw files"}, {}};
 }
 
+/// The summary beside a take that was written: without it, a data set lists no take.
+Result<FilesMade> with_summary(FilesMade made, FileSystem& files, const std::string& folder,
+                               const TakeName& name) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, made.paths.front()));
+  KA_TRY(keep_summary(files, folder, name, KA_TRY(summary_of(reader))));
+  made.paths.push_back(folder + "/" + path_of(name, TakeFile::summary));
+  return made;
+}
+
 class Exporting {
  public:
   Exporting(FileSystem& files, const Catalogue& catalogue, const ExportJob& job, std::string folder)
@@ -105,7 +115,9 @@ Result<FilesMade> Exporting::write(ExportedTake& take, const ExportTake& of,
   if (failed) return Failure(Error{folder, 0, "a folder that can be made", failed.message()});
   if (job_.format == "take") {
     const std::string to = folder_ + "/" + path_of(of.name, TakeFile::take);
-    return job_.release ? rewrite_take(take, files_, to) : copy_take(files_, path, to);
+    return with_summary(
+        KA_TRY(job_.release ? rewrite_take(take, files_, to) : copy_take(files_, path, to)), files_,
+        folder_, of.name);
   }
   const auto& formats = take_formats();
   const auto format = std::find_if(formats.begin(), formats.end(),
