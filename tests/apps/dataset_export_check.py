@@ -132,6 +132,28 @@ def a_bids_data_set_passes_the_check_and_reads_back(folder):
 
 
 @case
+def bids_has_no_date_that_is_not_known_and_says_whom_to_cite(folder):
+    dated = built(folder)
+    toml = dated / "dataset.toml"
+    lines = [line for line in toml.read_text().splitlines() if not line.startswith(("citation", "contact"))]
+    toml.write_text("\n".join(['citation = "Walks, 2023"', 'contact = "room 12"', *lines]) + "\n")
+    points = exported(folder, dated, "trc")
+    done("import", folder / "points", points, "--subject", "01")
+    done("build", folder / "points")
+
+    def times(data, *words):
+        out = exported(folder / f"{data.name}{len(words)}", data, "bids", *words)
+        rows = [list(csv.reader(path.open(), delimiter="\t")) for path in out.rglob("*_scans.tsv")]
+        assert b"room 12" not in b"".join(path.read_bytes() for path in out.rglob("*") if path.is_file())
+        about = json.loads((out / "dataset_description.json").read_text())
+        assert about.get("HowToAcknowledge") == ("Walks, 2023" if data == dated else None), about
+        return {row[1] for table in rows for row in table[1:]}
+    year = {one[:4] for one in times(dated)}
+    assert len(year) == 1 and year.pop() >= "2023"
+    assert times(dated, "--release") == times(folder / "points") == times(folder / "points", "--release") == {"n/a"}
+
+
+@case
 def a_data_set_of_its_own_is_listed_and_verified_as_it_was_written(folder):
     data = built(folder, takes=2)
     out = exported(folder, data, "take")

@@ -84,7 +84,7 @@ class Exporting {
         catalogue_(catalogue),
         job_(job),
         folder_(std::move(folder)),
-        bids_(files, folder_, catalogue, !job.release),
+        bids_(files, folder_, catalogue, job.release),
         shards_(files, folder_) {}
 
   Result<void> run(const Progress& progress);
