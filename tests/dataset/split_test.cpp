@@ -24,6 +24,7 @@ std::vector<SplitTake> many() {
     take.summary.frames = 100 + (i * 37) % 900;
     take.summary.sha256 = "take " + std::to_string(i);
     take.summary.inputs = {{"a.bvh", "raw " + std::to_string(i), 1}};
+    take.summary.sample_files = {"a.bvh"};
     take.summary.streams.resize(i % 3 == 0 ? 3 : 2);
     take.summary.streams[1].modality = Modality::kinect;
     if (i % 3 == 0) take.summary.streams[2].modality = Modality::imu;
