@@ -10,7 +10,6 @@
 #include "kinalign/documents/manifest_toml.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/take_hdf5.h"
-#include "kinalign/sources/input_facts.h"
 #include "kinalign/sources/open_recording.h"
 
 #include <algorithm>
@@ -163,28 +162,16 @@ class Builder {
     }
     TakeSummary summary = KA_TRY(summary_of(header, report_json(report)));
     summary.software = take_software();
-    return keep(job.name, std::move(summary));
+    return keep_summary(files_, folder_, job.name, std::move(summary));
   }
 
   /// A take that was added as a take. A child process opens it: before other threads begin.
   Result<TakeSummary> summarise(const BuildJob& job) {
-    return keep(job.name, KA_TRY(summarise_takes(files_, folder_, {job.name}).front()));
+    return keep_summary(files_, folder_, job.name,
+                        KA_TRY(summarise_takes(files_, folder_, {job.name}).front()));
   }
 
  private:
-  /// Writes the summary beside the take.
-  Result<TakeSummary> keep(const TakeName& name, TakeSummary summary) {
-    const InputFacts facts =
-        KA_TRY(facts_of(files_, place(folder_, name, TakeFile::take), "hashing", {}));
-    summary.sha256 = facts.sha256;
-    summary.bytes = facts.bytes;
-    OutputFile out =
-        KA_TRY(OutputFile::create(files_, place(folder_, name, TakeFile::summary), Overwrite::yes));
-    KA_TRY(out.write(summary_json(summary)));
-    KA_TRY(out.commit());
-    return summary;
-  }
-
   FileSystem& files_;
   const std::string& folder_;
   const Catalogue& catalogue_;

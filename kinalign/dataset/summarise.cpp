@@ -4,6 +4,7 @@
 #include "kinalign/dataset/contents.h"
 #include "kinalign/formats/take/guarded.h"
 #include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/sources/input_facts.h"
 
 #include <nlohmann/json.hpp>
 
@@ -45,9 +46,7 @@ Result<std::string> from_line(std::string_view line) {
 }
 
 Result<std::string> summary_text(TakeReader& reader) {
-  TakeSummary made = KA_TRY(summary_of(reader.header(), KA_TRY(reader.report_json())));
-  made.software = reader.software();
-  return summary_json(made);
+  return summary_json(KA_TRY(summary_of(reader)));
 }
 
 Error blame(const std::string& path) { return {path, 0, "a take that HDF5 can read", ""}; }
@@ -83,6 +82,24 @@ std::vector<Result<std::string>> ask_takes(
     out.push_back(Failure(std::move(done).error()));
   }
   return out;
+}
+
+Result<TakeSummary> summary_of(TakeReader& reader) {
+  TakeSummary made = KA_TRY(summary_of(reader.header(), KA_TRY(reader.report_json())));
+  made.software = reader.software();
+  return made;
+}
+
+Result<TakeSummary> keep_summary(FileSystem& files, const std::string& folder, const TakeName& name,
+                                 TakeSummary summary) {
+  const InputFacts facts = KA_TRY(facts_of(files, take_path(folder, name), "hashing", {}));
+  summary.sha256 = facts.sha256;
+  summary.bytes = facts.bytes;
+  OutputFile out = KA_TRY(
+      OutputFile::create(files, folder + "/" + path_of(name, TakeFile::summary), Overwrite::yes));
+  KA_TRY(out.write(summary_json(summary)));
+  KA_TRY(out.commit());
+  return summary;
 }
 
 std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::string& folder,

@@ -22,6 +22,13 @@ std::vector<Result<std::string>> ask_takes(
     FileSystem& files, const std::string& folder, const std::vector<TakeName>& names,
     const std::function<Result<std::string>(TakeReader&)>& ask);
 
+/// The summary of a take that is open, without hash and length.
+Result<TakeSummary> summary_of(TakeReader& reader);
+
+/// Puts hash and length of the take's file into its summary and writes it beside the take.
+Result<TakeSummary> keep_summary(FileSystem& files, const std::string& folder, const TakeName& name,
+                                 TakeSummary summary);
+
 /// The summary of each take, by ask_takes(), without hash and length.
 std::vector<Result<TakeSummary>> summarise_takes(FileSystem& files, const std::string& folder,
                                                  const std::vector<TakeName>& names);

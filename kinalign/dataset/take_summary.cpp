@@ -191,7 +191,9 @@ Result<TakeSummary> summary_of(const TakeHeader& header, std::string_view report
       }
     }
   }
-  for (const StreamOptions& stream : without_folders(header.parameters).streams) {
+  // Inputs are called as the take remembers them, also while it is built from paths elsewhere.
+  const Manifest remembered = without_folders(header.parameters);
+  for (const StreamOptions& stream : remembered.streams) {
     for (const StreamFile& file : stream.files) out.sample_files.insert(file.path);
   }
   add_streams(report, out);

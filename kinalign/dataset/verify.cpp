@@ -116,10 +116,16 @@ class Verifier {
   void compare_summary(const TakeName& name, TakeSummary made) {
     const std::string file = path_of(name, TakeFile::summary);
     const std::string again = "kinalign dataset build makes it again, once it is removed";
+    if (!takes_.at(name).summary) {
+      tell(Severity::error, file, "a summary beside the take", "none",
+           "kinalign dataset build makes it");
+      return;
+    }
     const auto text = read_whole(files_, folder_ + "/" + file, longest_summary);
     const auto said = text ? parse_summary_json(*text, file) : Failure(text.error());
     if (!said) {
-      tell(Severity::error, file, "a summary of the take", "none that can be read", again);
+      tell(Severity::error, file, "a summary that can be read: " + said.error().expected,
+           said.error().found, again);
       return;
     }
     made.sha256 = said->sha256;

@@ -14,7 +14,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from cases import PROGRAM, case, kinalign, main
+from cases import PROGRAM, case, kinalign, law, main
 from data_sets import answer, contents, done, recorded, small_set
 
 import hfut
@@ -127,6 +127,35 @@ def lists_and_queries_answer_in_text_csv_and_json_and_change_nothing(folder):
                  "pragma user_version = 9", "select * from nothing", "frames >", ""):
         done("query", data, harm, code=3)
     assert len(answer("list", data)["takes"]) == 5
+
+
+@case
+def an_id_that_nobody_has_is_an_error_and_a_flag_without_effect_is_wrong_use(folder):
+    data = small_set(folder, takes=4)
+    raw = sorted((folder / "raw").rglob("kinect.csv"))
+    text = raw[1].read_text().splitlines(keepends=True)
+    raw[1].write_text("".join(text[:1] + text[1:len(text) // 3]))
+    done("build", data, code=None)
+    assert [row["subject"] for row in answer("list", data, "--subject", "sub-03")["takes"]] == ["03"]
+    for words, wanted in ((("--subject", "3"), "--subject: expected an id of dataset.toml, [subject.ID] (nearest: 03)"),
+                          (("--class", "s1"), "--class: expected an id of dataset.toml, [class.ID] (nearest: S1)"),
+                          (("--action", "S2A0"), "--action: expected an id of dataset.toml, [action.ID] (nearest: S2A0"),
+                          (("--sort", "framess"), "--sort: expected a column (nearest: frames)"),
+                          (("--columns", "framess"), "--columns: expected a column (nearest: frames)")):
+        ran = kinalign("dataset", "list", data, *words)
+        assert ran.returncode == 3 and wanted in law(ran, ("dataset", "list")), ran.stderr
+    verdicts = [row["verdict"] for row in answer("list", data, "--sort", "verdict")["takes"]]
+    order = ["bad", "usable", "good"]
+    assert len(set(verdicts)) > 1 and verdicts == sorted(verdicts, key=order.index), verdicts
+    back = [row["verdict"] for row in answer("list", data, "--sort", "verdict-")["takes"]]
+    assert back == verdicts[::-1], back
+    for words in (("--columns", "name"), ("--sort", "name"), ("--limit", "1")):
+        ran = kinalign("dataset", "query", data, "select name from takes", *words)
+        assert ran.returncode == 2 and f"{words[0]}: expected it beside a condition" in law(ran, ("dataset", "query")), ran
+        answer("query", data, "frames > 0", *words)
+    text = (data / "dataset.toml").read_text()
+    (data / "dataset.toml").write_text(text.replace("[subject.03]", "[subject.99]"))
+    assert len(answer("list", data, "--subject", "03")["takes"]) == 1  # a take has it
 
 
 @case

@@ -17,6 +17,7 @@ from cases import case, kinalign, law, main
 from data_sets import answer, contents, done, small_set
 
 NAME = "sub-00_task-S2A01_run-01"
+NO_DATE = 946_684_800_000_000_000
 
 
 def built(folder, takes=1):
@@ -132,9 +133,45 @@ def a_bids_data_set_passes_the_check_and_reads_back(folder):
 
 
 @case
-def a_data_set_of_its_own_builds_and_verifies(folder):
+def bids_has_no_date_that_is_not_known_and_says_whom_to_cite(folder):
+    dated = built(folder)
+    toml = dated / "dataset.toml"
+    lines = [line for line in toml.read_text().splitlines() if not line.startswith(("citation", "contact"))]
+    toml.write_text("\n".join(['citation = "Walks, 2023"', 'contact = "room 12"', *lines]) + "\n")
+    points = exported(folder, dated, "trc")
+    done("import", folder / "points", points, "--subject", "01")
+    done("build", folder / "points")
+
+    def times(data, *words):
+        out = exported(folder / f"{data.name}{len(words)}", data, "bids", *words)
+        rows = [list(csv.reader(path.open(), delimiter="\t")) for path in out.rglob("*_scans.tsv")]
+        assert b"room 12" not in b"".join(path.read_bytes() for path in out.rglob("*") if path.is_file())
+        about = json.loads((out / "dataset_description.json").read_text())
+        assert about.get("HowToAcknowledge") == ("Walks, 2023" if data == dated else None), about
+        return {row[1] for table in rows for row in table[1:]}
+    year = {one[:4] for one in times(dated)}
+    assert len(year) == 1 and year.pop() >= "2023"
+    assert times(dated, "--release") == times(folder / "points") == times(folder / "points", "--release") == {"n/a"}
+
+
+@case
+def a_data_set_of_its_own_is_listed_and_verified_as_it_was_written(folder):
     data = built(folder, takes=2)
     out = exported(folder, data, "take")
+    assert done("list", out, "--columns", "all") == done("list", data, "--columns", "all")
+    free = exported(folder / "free", data, "take", "--release")
+    for one in (out, free):
+        said = answer("verify", one, "--deep")
+        assert said["takes"] == 2 and {f["severity"] for f in said["findings"]} <= {"note"}, said
+        assert answer("build", one)["up_to_date"] == 2
+    assert [row["begin_ns"] for row in answer("list", free, "--columns", "begin_ns")["takes"]] == [NO_DATE] * 2
+    summaries = sorted(free.rglob("*_take.json"))
+    summaries[0].unlink()
+    summaries[1].write_text("{")
+    said = [(one["file"], one["expected"], one["found"]) for one in answer("verify", free, code=1)["findings"]
+            if one["severity"] == "error"]
+    assert said[0] == (str(summaries[0].relative_to(free)), "a summary beside the take", "none"), said
+    assert len(said) == 2 and said[1][1].startswith("a summary that can be read: ") and said[1][2] != "none", said
     assert (out / f"sub-00/{NAME}_take.h5").read_bytes() == (data / f"sub-00/{NAME}_take.h5").read_bytes()
     done("build", out)
     answer("verify", out, "--deep")
@@ -157,18 +194,32 @@ def a_release_has_no_dates_and_no_names_and_is_refused_where_a_text_gives_a_pers
         assert int(day).to_bytes(4, "little") not in written or path.suffix == ".h5", path
     assert sorted(tomllib.loads((out / "dataset.toml").read_text())["subject"]) == ["00"]
     with take(data) as file, take(out) as free:
-        assert free["time_ns"][0] == 946_684_800_000_000_000
+        assert free["time_ns"][0] == NO_DATE
         assert (numpy.diff(free["time_ns"]) == numpy.diff(file["time_ns"])).all()
         assert (free["kinect/positions"][:] == file["kinect/positions"][:]).all()
         assert list(free["kinect"].attrs["input_names"].astype(str)) == ["kinect.csv"]
         report = json.loads(free["report_json"][()])
-        assert abs(report["begin_ns"] - 946_684_800_000_000_000) < 1_000_000_000, report["begin_ns"]
+        assert abs(report["begin_ns"] - NO_DATE) < 1_000_000_000, report["begin_ns"]
     bids = exported(folder, data, "bids", "--release")
     assert (bids / "participants.tsv").read_text().splitlines()[0] == "participant_id"
     toml.write_text(toml.read_text() + '\n[device.kinect]\nserial = "A22596V01234"\n')
     ran = kinalign("dataset", "export", data, "-o", folder / "named", "--format", "npz", "--release", "--json")
     assert ran.returncode == 1 and not (folder / "named").exists(), ran
     assert "serial" in ran.stdout.decode(), ran.stdout
+
+
+@case
+def an_export_that_would_write_no_file_fails_and_leaves_nothing(folder):
+    points = exported(folder, built(folder), "trc")
+    data = folder / "points"
+    done("import", data, points, "--subject", "01")
+    done("build", data)
+    for kind, needs in (("bvh", "a skeleton"), ("mot", "a skeleton"), ("sto", "nodes with orientations")):
+        ran = kinalign("dataset", "export", data, "-o", folder / "none", "--format", kind)
+        said = law(ran, ("dataset", "export"), folder / "none")
+        assert ran.returncode == 3 and f"expected {needs} in one take at least, for {kind}, found none" in said, said
+        assert not list(folder.glob("none*")), said
+    exported(folder / "all", data, "npz")
 
 
 @case

@@ -5,6 +5,7 @@ import hashlib
 import io
 import json
 import pathlib
+import re
 import shutil
 import stat
 import struct
@@ -13,6 +14,7 @@ import sys
 import tarfile
 import zipfile
 
+import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
@@ -100,6 +102,29 @@ def what_a_user_wrote_into_dataset_toml_stays_as_it_is(folder):
     before = contents(folder / "set")
     assert "room for [subject.ID]" in said("import", folder / "set", source, code=3)
     assert contents(folder / "set") == before
+
+
+@case
+def a_folder_of_motion_in_another_unit_or_with_z_up_says_so_once(folder):
+    source = small_bvh(folder, "anna/walk.bvh")
+    said("import", folder / "cm", source)
+    said("import", folder / "m", source, "--metres-per-unit", "1", "--up", "z")
+    heights = {}
+    for name in ("cm", "m"):
+        ran = kinalign("dataset", "build", folder / name)
+        assert ran.returncode in (0, 1), ran
+        with h5py.File(next((folder / name).rglob("*_take.h5"))) as file:
+            heights[name] = file["mocap/positions"][0]
+    x, y, z = heights["cm"].T * 100
+    turned = numpy.stack([x, z, -y], axis=1)  # what was called z is up
+    assert numpy.allclose(heights["m"], turned, rtol=1e-4, atol=1e-3), (heights["m"][:2], turned[:2])
+    manifest = next((folder / "m").rglob("*_recording.toml")).read_text()
+    assert "metres_per_unit = 1" in manifest and re.search("up = ['\"]z['\"]", manifest), manifest
+    (folder / "s.mvnx").write_text("<mvnx/>")
+    for flag, value in (("--metres-per-unit", "1"), ("--up", "z")):
+        ran = kinalign("dataset", "import", folder / "other", folder / "s.mvnx", "--subject", "1", flag, value)
+        assert ran.returncode == 3 and f"{flag}: expected files of bvh, c3d or trc, found mvnx" in ran.stderr.decode(), ran
+        assert not (folder / "other").exists()
 
 
 @case

@@ -152,3 +152,16 @@ TEST_CASE("the recipe changes with every parameter, and not with where the files
   other.subject = "04";
   CHECK(recipe_of(other) != recipe_of(manifest));
 }
+
+TEST_CASE("raw files that hold samples are known, wherever the manifest finds them") {
+  for (const char* folder : {"", "../../raw/", "/raw/"}) {
+    CAPTURE(folder);
+    TakeHeader take = header();
+    take.parameters.streams.resize(1);
+    take.parameters.streams[0].name = "mocap";
+    take.parameters.streams[0].files = {{std::string(folder) + "a.bvh", ""}};
+    const auto made = summary_of(take, report_json(report()));
+    REQUIRE(made);
+    CHECK(made->sample_files == std::set<std::string>{"a.bvh"});
+  }
+}

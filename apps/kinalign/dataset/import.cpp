@@ -18,7 +18,8 @@ namespace {
 
 struct Import {
   std::vector<std::string> folder, sources;
-  std::string from = "auto", subject, action;
+  std::string from = "auto", subject, action, up;
+  double metres_per_unit = 0.0;
   bool copy = false;
 };
 
@@ -44,6 +45,13 @@ Usage describe_import(Import& o) {
                   0.0,
                   {},
                   "ID"},
+                 {"metres_per_unit",
+                  "length of the unit of BVH, C3D or TRC files, m; 0: the format's own (BVH: 0.01)",
+                  &o.metres_per_unit, 0.0, 1000.0},
+                 {.name = "up",
+                  .meaning = "the up axis of BVH, C3D or TRC files (default: the format's own)",
+                  .value = &o.up,
+                  .choices = {"", "y", "z"}},
                  {"copy", "copy the raw files into the data set, below sourcedata/", &o.copy}};
   return usage;
 }
@@ -109,8 +117,9 @@ void advise_to_say_it_again(Console& console) {
 Result<int> run_import(Import& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   Console& console = call.console;
-  const ImportRequest request{o.sources, o.from == "auto" ? "" : o.from, o.subject, o.action,
-                              o.copy};
+  const ImportRequest request{
+      o.sources, o.from == "auto" ? "" : o.from, o.subject, o.action, o.metres_per_unit, o.up,
+      o.copy};
   const Imported made =
       KA_TRY(import_corpus(call.surroundings.files, folder, request, console.progress(),
                            [&](std::uint64_t done, std::uint64_t takes) {
@@ -144,6 +153,8 @@ Verb dataset_import_verb() {
            {{"kinalign dataset import prmd ui_prmd.zip", "an archive, unpacked below sourcedata/"},
             {"kinalign dataset import dances bvh/ --from bvh --copy",
              "a folder of BVH files with a folder per person, copied"},
+            {"kinalign dataset import dances bvh/ --metres-per-unit 1 --up z",
+             "the same in metres, with z up"},
             {"kinalign dataset import walks walk_01.bvh walk_02.bvh --subject 07 --action walk",
              "single files of one person"}},
        .common = {"json"}},

@@ -28,7 +28,7 @@ struct Shown {
 Fields fields_of(Shown& o) {
   return {{"columns", "comma-separated, or all", &o.columns, 0.0, 0.0, {}, "COLUMNS"},
           {"sort",
-           "a column; with a - at its end the greatest first: frames-",
+           "a column; with a - at its end the greatest first: frames-; verdict: the worst first",
            &o.sort,
            0.0,
            0.0,
@@ -55,11 +55,11 @@ std::vector<std::string> column_names() {
   return names;
 }
 
-Result<std::string> checked_column(const std::string& name) {
+Result<std::string> checked_column(const std::string& name, const char* flag) {
   const std::vector<std::string> known = column_names();
   if (std::find(known.begin(), known.end(), name) != known.end()) return name;
   Error error = unknown_name(name, "a column", known);
-  error.file = "--columns";
+  error.file = flag;
   return Failure(std::move(error));
 }
 
@@ -69,30 +69,36 @@ Result<std::string> chosen_columns(const std::string& text) {
   std::string out;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
-    out += (out.empty() ? "" : ", ") + KA_TRY(checked_column(text.substr(at, comma - at)));
+    out += (out.empty() ? "" : ", ") +
+           KA_TRY(checked_column(text.substr(at, comma - at), "--columns"));
     at = comma + 1;
   }
   return out;
+}
+
+/// What follows "order by". Verdicts go by how bad they are, not by the alphabet.
+Result<std::string> order_text(const std::string& sort) {
+  if (sort.empty()) return std::string("name");
+  const bool down = sort.ends_with('-');
+  const std::string column =
+      KA_TRY(checked_column(sort.substr(0, sort.size() - (down ? 1 : 0)), "--sort"));
+  const std::string key = column == "verdict"
+                              ? "case verdict when 'bad' then 0 when 'usable' then 1 else 2 end"
+                              : column;
+  return key + (down ? " desc" : "") + ", name";
 }
 
 /// The SELECT of these rows; `where`: empty for all.
 Result<std::string> select_text(const Shown& o, const std::string& where) {
   std::string sql = "select " + KA_TRY(chosen_columns(o.columns)) + " from takes";
   if (!where.empty()) sql += " where " + where;
-  if (!o.sort.empty()) {
-    const bool down = o.sort.ends_with('-');
-    sql += " order by " + KA_TRY(checked_column(o.sort.substr(0, o.sort.size() - (down ? 1 : 0)))) +
-           (down ? " desc" : "") + ", name";
-  } else {
-    sql += " order by name";
-  }
+  sql += " order by " + KA_TRY(order_text(o.sort));
   if (o.limit > 0) sql += fmt::format(" limit {}", o.limit);
   return sql;
 }
 
-Result<int> show(const Shown& o, const std::string& sql, const std::vector<Cell>& values,
-                 Call& call) {
-  const DatasetIndex index = KA_TRY(open_index(folder_of(o.folder), call));
+Result<int> show(const Shown& o, const DatasetIndex& index, const std::string& sql,
+                 const std::vector<Cell>& values, Call& call) {
   const Table table = KA_TRY(index.select(sql, values));
   print_table(table, o.format, "takes", call);
   if (o.format == "text") KA_TRY(say_not_built(index, folder_of(o.folder), call));
@@ -103,7 +109,7 @@ Usage describe_list(List& o) {
   Usage usage;
   usage.positionals = {folder_word(o.shown.folder)};
   usage.flags = {
-      {"subject", "takes of this person", &o.subject, 0.0, 0.0, {}, "ID"},
+      {"subject", "takes of this person: 03 or sub-03", &o.subject, 0.0, 0.0, {}, "ID"},
       {"class", "takes of this class of actions", &o.class_id, 0.0, 0.0, {}, "ID"},
       {"action", "takes of this action", &o.action, 0.0, 0.0, {}, "ID"},
       {"modality",
@@ -118,7 +124,31 @@ Usage describe_list(List& o) {
   return usage;
 }
 
+std::vector<std::string> ids_of(const auto& described) {
+  std::vector<std::string> ids;
+  for (const auto& one : described) ids.push_back(one.id);
+  return ids;
+}
+
+/// A filter for an id that no take can have is a slip: an empty table would hide it. `known`: ids
+/// of dataset.toml; takes may have others.
+Result<void> check_id(const DatasetIndex& index, const std::string& column, const std::string& id,
+                      const std::vector<std::string>& known) {
+  if (id.empty() || std::find(known.begin(), known.end(), id) != known.end()) return {};
+  const Table takes =
+      KA_TRY(index.select("select name from takes where " + column + " = ? limit 1", {id}));
+  if (!takes.rows.empty()) return {};
+  Error error = unknown_name(id, "an id of dataset.toml, [" + column + ".ID]", known);
+  error.file = "--" + column;
+  return Failure(std::move(error));
+}
+
 Result<int> run_list(List& o, Call& call) {
+  const DatasetIndex index = KA_TRY(open_index(folder_of(o.shown.folder), call));
+  if (o.subject.starts_with("sub-")) o.subject.erase(0, 4);
+  KA_TRY(check_id(index, "subject", o.subject, ids_of(index.catalogue().subjects)));
+  KA_TRY(check_id(index, "class", o.class_id, ids_of(index.catalogue().classes)));
+  KA_TRY(check_id(index, "action", o.action, ids_of(index.catalogue().actions)));
   std::string where;
   std::vector<Cell> values;
   const auto want = [&](const std::string& column, const std::string& value) {
@@ -133,15 +163,7 @@ Result<int> run_list(List& o, Call& call) {
   for (const std::string& modality : o.modality) {
     where += (where.empty() ? "" : " and ") + modality + " > 0";
   }
-  return show(o.shown, KA_TRY(select_text(o.shown, where)), values, call);
-}
-
-Usage describe_query(Query& o) {
-  Usage usage;
-  usage.positionals = {folder_word(o.shown.folder),
-                       {"CONDITION", "of SQL, or a whole SELECT", &o.words}};
-  usage.flags = fields_of(o.shown);
-  return usage;
+  return show(o.shown, index, KA_TRY(select_text(o.shown, where)), values, call);
 }
 
 bool is_select(std::string_view text) {
@@ -153,6 +175,27 @@ bool is_select(std::string_view text) {
   return word == "select" || word.starts_with("with ");
 }
 
+/// Flags that shape a SELECT of ours say nothing of one that is written out.
+Result<void> check_query(const Query& o, const Sources& given) {
+  if (!is_select(o.words.front())) return {};
+  for (const auto& [name, flag] : {std::pair("columns", "--columns"), std::pair("sort", "--sort"),
+                                   std::pair("limit", "--limit")}) {
+    if (!given.contains(name)) continue;
+    return Failure(
+        Error{flag, 0, "it beside a condition: a whole SELECT says its own", "a SELECT"});
+  }
+  return {};
+}
+
+Usage describe_query(Query& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.shown.folder),
+                       {"CONDITION", "of SQL, or a whole SELECT", &o.words}};
+  usage.flags = fields_of(o.shown);
+  usage.check = [&o](const Common&, const Sources& given) { return check_query(o, given); };
+  return usage;
+}
+
 Result<int> run_query(Query& o, Call& call) {
   const std::string& words = o.words.front();
   call.console.if_it_fails([](const Error&) -> std::vector<std::string> {
@@ -162,7 +205,8 @@ Result<int> run_query(Query& o, Call& call) {
   });
   const std::string sql =
       is_select(words) ? words : KA_TRY(select_text(o.shown, "(" + words + ")"));
-  return show(o.shown, sql, {}, call);
+  const DatasetIndex index = KA_TRY(open_index(folder_of(o.shown.folder), call));
+  return show(o.shown, index, sql, {}, call);
 }
 
 }  // namespace

@@ -20,6 +20,9 @@ namespace kinalign {
 
 namespace {
 
+/// Files without a date count their stamps from about 0, which is 1970. 1990-01-01T00:00:00Z.
+constexpr Time first_date = utc_time(631'152'000'000'000'000);
+
 /// A stream's name without what a label can't have: "kinect_2" is kinect2.
 std::string label_of(const std::string& stream) {
   std::string out;
@@ -111,7 +114,9 @@ Result<void> BidsExport::add_system(ExportedTake& take, std::size_t group, Files
   KA_TRY(write(bids_path(entities, "channels.json"), beside.channels_json));
   KA_TRY(write(bids_path(entities, "motion.json"), beside.motion_json));
   const std::string below = bids_subject_folder(entities);
-  scans_[entities.subject].emplace_back(motion.substr(below.size()), beside.onset);
+  const bool is_dated = !released_ && beside.onset >= first_date;
+  scans_[entities.subject].emplace_back(motion.substr(below.size()),
+                                        is_dated ? std::optional(beside.onset) : std::nullopt);
   made.paths.push_back(folder_ + "/" + motion);
   return {};
 }
@@ -128,7 +133,7 @@ Result<FilesMade> BidsExport::add(ExportedTake& take) {
 
 BidsParticipants BidsExport::participants() const {
   BidsParticipants out;
-  if (with_people_) {
+  if (!released_) {
     out.columns = {
         {"sex", "sex of the participant", "", {{"F", "female"}, {"M", "male"}, {"O", "other"}}},
         {"height", "body height", "cm", {}},
@@ -140,7 +145,7 @@ BidsParticipants BidsExport::participants() const {
   }
   for (const auto& [id, scans] : scans_) {
     std::vector<std::string> cells;
-    if (with_people_) {
+    if (!released_) {
       const Subject* person = find_subject(catalogue_, id);
       const Subject known = person == nullptr ? Subject{} : *person;
       const std::string sex = known.sex == "f"   ? "F"
@@ -158,6 +163,7 @@ Result<Findings> BidsExport::finish() {
   BidsDataset description;
   description.name = catalogue_.name;
   description.license = catalogue_.licence;
+  description.how_to_acknowledge = catalogue_.citation;
   const std::string software = take_software();
   description.generated_by = software.substr(0, software.find(' '));
   description.generated_by_version = software.substr(software.find(' ') + 1);

@@ -14,12 +14,10 @@ namespace kinalign {
 
 class BidsExport {
  public:
-  /// `folder`: of the new data set. `with_people`: height, weight and the like in participants.tsv.
-  BidsExport(FileSystem& files, std::string folder, const Catalogue& catalogue, bool with_people)
-      : files_(files),
-        folder_(std::move(folder)),
-        catalogue_(catalogue),
-        with_people_(with_people) {}
+  /// `folder`: of the new data set. `released`: no height, weight and the like in participants.tsv,
+  /// and no date in scans.tsv.
+  BidsExport(FileSystem& files, std::string folder, const Catalogue& catalogue, bool released)
+      : files_(files), folder_(std::move(folder)), catalogue_(catalogue), released_(released) {}
 
   /// A tracking system for each stream.
   Result<FilesMade> add(ExportedTake& take);
@@ -35,7 +33,7 @@ class BidsExport {
   FileSystem& files_;
   std::string folder_;
   const Catalogue& catalogue_;
-  bool with_people_;
+  bool released_;
   std::map<std::string, std::vector<BidsScan>> scans_;  // of each subject
 };
 

@@ -5,6 +5,7 @@
 #include "kinalign/dataset/export/release.h"
 #include "kinalign/dataset/export/shard_export.h"
 #include "kinalign/dataset/export/take_files.h"
+#include "kinalign/dataset/summarise.h"
 #include "kinalign/documents/report_json.h"
 #include "kinalign/formats/take/guarded.h"
 
@@ -27,6 +28,14 @@ struct Made {
   std::uint64_t files = 0;
   Json left_out = Json::array();
   Findings findings;
+
+  /// An empty folder must not pass for an export. `needs`: what a take must have.
+  Result<void> holds_something(const ExportJob& job, std::string_view needs) const {
+    if (files > 0) return {};
+    if (!findings.empty()) return Failure(findings.front().what);
+    return Failure(Error{
+        job.folder, 0, fmt::format("{} in one take at least, for {}", needs, job.format), "none"});
+  }
 
   void add(const TakeName& name, const FilesMade& made) {
     files += made.paths.size();
@@ -59,6 +68,15 @@ Result<FilesMade> rewrite_take(ExportedTake& take, FileSystem& files, const std:
   return FilesMade{{to}, {"marks, and the names of raw files"}, {}};
 }
 
+/// The summary beside a take that was written: without it, a data set lists no take.
+Result<FilesMade> with_summary(FilesMade made, FileSystem& files, const std::string& folder,
+                               const TakeName& name) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, made.paths.front()));
+  KA_TRY(keep_summary(files, folder, name, KA_TRY(summary_of(reader))));
+  made.paths.push_back(folder + "/" + path_of(name, TakeFile::summary));
+  return made;
+}
+
 class Exporting {
  public:
   Exporting(FileSystem& files, const Catalogue& catalogue, const ExportJob& job, std::string folder)
@@ -66,7 +84,7 @@ class Exporting {
         catalogue_(catalogue),
         job_(job),
         folder_(std::move(folder)),
-        bids_(files, folder_, catalogue, !job.release),
+        bids_(files, folder_, catalogue, job.release),
         shards_(files, folder_) {}
 
   Result<void> run(const Progress& progress);
@@ -97,7 +115,9 @@ Result<FilesMade> Exporting::write(ExportedTake& take, const ExportTake& of,
   if (failed) return Failure(Error{folder, 0, "a folder that can be made", failed.message()});
   if (job_.format == "take") {
     const std::string to = folder_ + "/" + path_of(of.name, TakeFile::take);
-    return job_.release ? rewrite_take(take, files_, to) : copy_take(files_, path, to);
+    return with_summary(
+        KA_TRY(job_.release ? rewrite_take(take, files_, to) : copy_take(files_, path, to)), files_,
+        folder_, of.name);
   }
   const auto& formats = take_formats();
   const auto format = std::find_if(formats.begin(), formats.end(),
@@ -156,6 +176,13 @@ Result<ExportMade> made_from(const std::string& text) {
   const Json report{{"findings", json.at("findings")}};
   made.findings = KA_TRY(parse_report_json(report.dump(), "")).findings;
   return made;
+}
+
+std::string_view needs_of(const std::string& name) {
+  const auto& formats = take_formats();
+  const auto format = std::find_if(formats.begin(), formats.end(),
+                                   [&](const TakeFormat& one) { return one.name == name; });
+  return format == formats.end() ? "a stream" : format->needs;
 }
 
 /// A folder that is removed unless it is kept.
@@ -226,6 +253,7 @@ Result<ExportMade> export_takes(FileSystem& files, const Catalogue& catalogue, c
       KA_TRY(run_guarded(limits, blame, progress, [&](const Progress& tell) -> Result<std::string> {
         Exporting exporting(files, catalogue, job, part.path);
         KA_TRY(exporting.run(tell));
+        KA_TRY(exporting.made.holds_something(job, needs_of(job.format)));
         return text_of(exporting.made);
       }));
   KA_TRY(part.keep_as(job.target));

@@ -168,21 +168,25 @@ Result<FilesMade> as_bvh(ExportedTake& take, FileSystem& files, const std::strin
 
 const std::vector<TakeFormat>& take_formats() {
   static const std::vector<TakeFormat> all{
-      {"npz", "NumPy, all streams of a take in a file", "the report and the parameters", as_npz},
+      {"npz", "NumPy, all streams of a take in a file", "the report and the parameters", "a stream",
+       as_npz},
       {"csv", "a table for each stream, and JSON of the skeletons", "the report and the parameters",
-       as_csv},
+       "a stream", as_csv},
       {"bvh", "a take's skeleton",
-       "points and nodes; stamps, of which an even step is left; which rows are valid", as_bvh},
+       "points and nodes; stamps, of which an even step is left; which rows are valid",
+       "a skeleton", as_bvh},
       {"trc", "points, and joints of skeletons as points",
-       "rotations and nodes; inferred against tracked; intervals; the date", as_trc},
+       "rotations and nodes; inferred against tracked; intervals; the date", "points or a skeleton",
+       as_trc},
       {"c3d", "points, and joints of skeletons as points",
        "rotations and nodes; inferred against tracked; intervals; stamps, of which an even step is "
        "left",
-       as_c3d},
+       "points or a skeleton", as_c3d},
       {"sto", "OpenSim: orientations of nodes",
-       "accelerations and angular velocities; intervals; the date", as_sto},
+       "accelerations and angular velocities; intervals; the date", "nodes with orientations",
+       as_sto},
       {"mot", "OpenSim: joint angles of skeletons",
-       "points and nodes; which rows are valid; intervals; the date", as_mot}};
+       "points and nodes; which rows are valid; intervals; the date", "a skeleton", as_mot}};
   return all;
 }
 

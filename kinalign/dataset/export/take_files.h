@@ -24,6 +24,7 @@ struct TakeFormat {
   std::string_view name;   // "trc"
   std::string_view title;  // for people
   std::string_view lost;   // what no file of this format holds; empty: nothing
+  std::string_view needs;  // what a take must have: "a skeleton"
   WriteTake write;
 };
 

@@ -63,6 +63,7 @@ struct CorpusKind {
   bool general = false;       // any folder of such files: a corpus of its own goes first
   bool (*looks)(FileSystem& files, const std::vector<SourceFile>& sources) = nullptr;
   Result<Corpus> (*list)(const ImportInput& input) = nullptr;
+  bool unit_is_open = false;  // unit and up axis may be other than the format's own
 };
 
 }  // namespace kinalign

@@ -82,6 +82,22 @@ Result<void> write_catalogue(FileSystem& files, const std::string& folder,
   return out.commit();
 }
 
+/// A unit for files that state theirs would be passed over by their reader.
+Result<void> check_units(const CorpusKind& kind, const ImportRequest& request) {
+  if (kind.unit_is_open || (request.metres_per_unit == 0.0 && request.up.empty())) return {};
+  const char* flag = request.metres_per_unit == 0.0 ? "--up" : "--metres-per-unit";
+  return Failure(Error{flag, 0, "files of bvh, c3d or trc", std::string(kind.name)});
+}
+
+void put_units(const ImportRequest& request, Corpus& corpus) {
+  for (CorpusTake& take : corpus.takes) {
+    for (StreamOptions& stream : take.manifest.streams) {
+      stream.metres_per_unit = request.metres_per_unit;
+      stream.up = request.up;
+    }
+  }
+}
+
 Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                            const ImportRequest& request, const Progress& progress,
                            std::string& kind_name) {
@@ -92,8 +108,10 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
   const CorpusKind kind =
       KA_TRY(find_corpus(files, sources, request.from, request.sources.front()));
   kind_name = kind.name;
+  KA_TRY(check_units(kind, request));
   Corpus corpus =
       KA_TRY(kind.list({files, sources, raw_folder, request.subject, request.action, progress}));
+  if (kind.unit_is_open) put_units(request, corpus);
   if (!corpus.takes.empty()) {
     if (unfinished) unfinished->keep();
     return corpus;

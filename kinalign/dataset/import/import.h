@@ -20,6 +20,8 @@ struct ImportRequest {
   std::vector<std::string> sources;  // folders, files and archives
   std::string from;                  // a kind of corpus; empty: by the files
   std::string subject, action;       // of files that say none
+  double metres_per_unit = 0.0;      // of the files; 0: their format's own
+  std::string up;                    // their up axis, "y" or "z"; empty: their format's own
   bool copy = false;                 // raw files that lie outside of the data set
 };
 
@@ -36,7 +38,8 @@ struct Imported {
 /// Called after each take with how many are done, of how many.
 using ImportStep = std::function<void(std::uint64_t done, std::uint64_t takes)>;
 
-/// Fails where the corpus is not known or has no take, and where a file can't be read or written;
+/// Fails where the corpus is not known or has no take, where a unit or an up axis is given for one
+/// whose files state theirs, and where a file can't be read or written;
 /// takes that were added before then stay.
 Result<Imported> import_corpus(FileSystem& files, const std::string& folder,
                                const ImportRequest& request, const Progress& progress,

@@ -73,7 +73,8 @@ Result<Corpus> list_motion_files(const ImportInput& input) {
 
 template <const std::string_view& ending>
 CorpusKind kind(std::string_view name, std::string_view known_by) {
-  return {name, known_by, true, looks_like_motion_files<ending>, list_motion_files<ending>};
+  return {name,          known_by, true, looks_like_motion_files<ending>, list_motion_files<ending>,
+          ending != mvnx};
 }
 
 }  // namespace

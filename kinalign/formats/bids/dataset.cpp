@@ -21,6 +21,7 @@ std::string dataset_description_json(const BidsDataset& dataset) {
   out["DatasetType"] = dataset.generated_by.empty() ? "raw" : "derivative";
   if (!dataset.license.empty()) out["License"] = dataset.license;
   if (!dataset.authors.empty()) out["Authors"] = dataset.authors;
+  if (!dataset.how_to_acknowledge.empty()) out["HowToAcknowledge"] = dataset.how_to_acknowledge;
   if (!dataset.generated_by.empty()) {
     Json program = {{"Name", dataset.generated_by}};
     if (!dataset.generated_by_version.empty()) program["Version"] = dataset.generated_by_version;
@@ -55,7 +56,9 @@ std::string participants_json(const BidsParticipants& participants) {
 
 std::string scans_tsv(const std::vector<BidsScan>& scans) {
   TsvTable table{{"filename", "acq_time"}, {}};
-  for (const auto& [path, onset] : scans) table.rows.push_back({path, acq_time_text(onset)});
+  for (const auto& [path, onset] : scans) {
+    table.rows.push_back({path, onset ? acq_time_text(*onset) : "n/a"});
+  }
   return write_tsv(table);
 }
 

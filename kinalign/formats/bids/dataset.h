@@ -6,6 +6,7 @@
 #include "kinalign/wire/time.h"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@ struct BidsDataset {
   std::vector<std::string> authors;
   /// A derivative (aligned, cleaned) names the program that made it; empty: raw data.
   std::string generated_by, generated_by_version;
+  std::string how_to_acknowledge{};  // the publication to cite
 };
 
 /// dataset_description.json
@@ -35,8 +37,9 @@ struct BidsParticipants {
 std::string participants_tsv(const BidsParticipants& participants);
 std::string participants_json(const BidsParticipants& participants);
 
-/// A row of scans.tsv: the file's path below the subject's (or session's) folder, its onset.
-using BidsScan = std::pair<std::string, Time>;
+/// A row of scans.tsv: the file's path below the subject's (or session's) folder, its onset. An
+/// onset that nobody knows is n/a.
+using BidsScan = std::pair<std::string, std::optional<Time>>;
 std::string scans_tsv(const std::vector<BidsScan>& scans);
 
 }  // namespace kinalign
