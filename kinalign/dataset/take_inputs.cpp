@@ -7,6 +7,7 @@
 #include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace kinalign {
@@ -43,20 +44,30 @@ void add_further(FileSystem& files, StreamOptions stream, const std::string& bas
   }
 }
 
-}  // namespace
-
-std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
-                                 const std::vector<InputFacts>& known) {
+/// The files that a manifest names, and further ones where `expected` is more.
+std::vector<TakeInput> named_inputs(FileSystem& files, Manifest& manifest, const std::string& base,
+                                    std::size_t expected) {
   std::vector<std::string> paths;
   for (const std::string* path : paths_in(manifest)) paths.push_back(*path);
   const Names names = remembered_paths(paths);
   std::vector<TakeInput> out;
   for (const std::string& path : paths) add_input({names.at(path), path_in(base, path)}, out);
-  if (known.size() > out.size()) {
-    for (const StreamOptions& stream : manifest.streams) {
-      add_further(files, stream, base, names, out);
-    }
+  if (expected <= out.size()) return out;
+  for (const StreamOptions& stream : manifest.streams) {
+    add_further(files, stream, base, names, out);
   }
+  return out;
+}
+
+}  // namespace
+
+std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base) {
+  return named_inputs(files, manifest, base, std::numeric_limits<std::size_t>::max());
+}
+
+std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
+                                 const std::vector<InputFacts>& known) {
+  std::vector<TakeInput> out = named_inputs(files, manifest, base, known.size());
   const std::string beside(out.empty() ? base : kinalign::folder(out.front().path));
   for (const InputFacts& input : known) {
     add_input({input.name, beside + std::string(file_name(input.name))}, out);

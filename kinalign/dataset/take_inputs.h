@@ -28,6 +28,8 @@ std::vector<std::string> further_files_of(FileSystem& files, const StreamOptions
 /// lie beside the first.
 std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base,
                                  const std::vector<InputFacts>& known);
+/// The same of a take that was never built: every file is opened for what its reader opens.
+std::vector<TakeInput> inputs_of(FileSystem& files, Manifest manifest, const std::string& base);
 
 /// Whether each input still has the bytes that the take was made of. One that is older than the
 /// summary, made at `made_ns`, and as long as it was is not read.

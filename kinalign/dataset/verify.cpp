@@ -3,17 +3,20 @@
 
 #include "kinalign/core/parallel.h"
 #include "kinalign/dataset/build.h"
+#include "kinalign/dataset/raw_files.h"
 #include "kinalign/dataset/scan.h"
 #include "kinalign/dataset/summarise.h"
 #include "kinalign/dataset/take_inputs.h"
 #include "kinalign/sources/input_facts.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <mutex>
+#include <set>
 
 namespace kinalign {
 
@@ -48,6 +51,7 @@ class Verifier {
     KA_TRY(check_summaries());
     for (const auto& [name, there] : takes_) check_take(name, there);
     KA_TRY(check_names());
+    KA_TRY(check_sourcedata());
     KA_TRY(check_hashes());
     std::stable_sort(
         out_.findings.begin(), out_.findings.end(), [](const Finding& a, const Finding& b) {
@@ -221,6 +225,31 @@ class Verifier {
       }
     }
     if (fault) return Failure(Error{folder_, 0, "folders that can be read", fault.message()});
+    return {};
+  }
+
+  /// Raw files that no take is made of. Said only where every manifest can be read.
+  Result<void> check_sourcedata() {
+    const std::vector<std::string> there = KA_TRY(files_in_sourcedata(folder_));
+    if (there.empty()) return {};
+    std::set<std::string> named;
+    for (const auto& [name, files] : takes_) {
+      const auto inputs = raw_files_of(files_, folder_, name);
+      if (!inputs) return {};
+      for (const TakeInput& input : *inputs) {
+        if (const auto place = place_in_sourcedata(folder_, input.path)) named.insert(*place);
+      }
+    }
+    std::set<std::string> others;
+    for (const std::string& file : there) {
+      if (!named.contains(file)) others.insert(file);
+    }
+    if (others.empty()) return {};
+    std::vector<std::string> first(others.begin(), others.end());
+    first.resize(std::min<std::size_t>(first.size(), 3));
+    tell(Severity::note, std::string(raw_files_folder), "files that a manifest names",
+         fmt::format("{} that none names: {}{}", others.size(), fmt::join(first, ", "),
+                     others.size() > first.size() ? ", ..." : ""));
     return {};
   }
 

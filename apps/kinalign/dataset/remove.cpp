@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include <algorithm>
+
 namespace kinalign {
 
 namespace {
@@ -29,6 +31,28 @@ Usage describe_remove(Remove& o) {
   return usage;
 }
 
+constexpr std::size_t most_places = 5;  // of raw files that are named
+
+std::string raw_left_text(const std::vector<std::string>& places) {
+  std::string out;
+  for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
+    const bool is_folder = places[i].ends_with('/');
+    out += "  " + places[i] + " stays; --raw removes it" +
+           (is_folder ? "" : " unless another take is made of it") + "\n";
+  }
+  if (places.size() > most_places) {
+    out += "  and " + std::to_string(places.size() - most_places) + " more raw files or folders\n";
+  }
+  return out;
+}
+
+std::string raw_shared_text(const std::vector<std::string>& places) {
+  if (places.empty()) return "";
+  return "  " + counted(places.size(), "raw file") + " of other takes, too, " +
+         (places.size() == 1 ? "stays: " : "stay: ") + places.front() +
+         (places.size() == 1 ? "\n" : ", ...\n");
+}
+
 /// The takes that go, and the raw files that stay.
 std::string plan_text(const RemovalPlan& plan) {
   std::string out;
@@ -36,10 +60,7 @@ std::string plan_text(const RemovalPlan& plan) {
   out += counted(plan.takes.size(), "take") + ", " + counted(plan.files.size(), "file") + ", " +
          size_text(plan.bytes) + "\n";
   for (const std::string& name : plan.unknown) out += "  " + name + ": nothing of it is there\n";
-  for (const std::string& folder : plan.raw_left) {
-    out += "  " + folder + " stays; --raw removes it\n";
-  }
-  return out;
+  return out + raw_left_text(plan.raw_left) + raw_shared_text(plan.raw_shared);
 }
 
 /// Asks on the terminal; any answer but y or yes is no.
@@ -57,6 +78,7 @@ nlohmann::ordered_json plan_json(const RemovalPlan& plan) {
           {"files", plan.files},
           {"bytes", plan.bytes},
           {"raw_left", plan.raw_left},
+          {"raw_shared", plan.raw_shared},
           {"unknown", plan.unknown}};
 }
 
@@ -100,8 +122,9 @@ Verb dataset_rm_verb() {
   return make_verb<Remove>(
       {.name = "dataset rm",
        .summary = "remove takes from a data set",
-       .text = "Removes the take, its summary, its manifest and its page, and with --raw the raw "
-               "files that were copied with it. Raw files outside the data set are never touched. "
+       .text = "Removes the take, its summary, its manifest and its page, and with --raw its "
+               "raw files below sourcedata/, unless another take is made of them. Raw files "
+               "outside the data set are never touched. "
                "Asks on a terminal; elsewhere it needs --yes. Exit code 1 where one of the names "
                "was not there."
                "",

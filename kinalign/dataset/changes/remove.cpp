@@ -3,6 +3,7 @@
 
 #include "kinalign/core/nearest_name.h"
 #include "kinalign/dataset/changes/toml_text.h"
+#include "kinalign/dataset/raw_files.h"
 #include "kinalign/dataset/scan.h"
 #include "kinalign/take/remembered_path.h"
 
@@ -44,6 +45,8 @@ class RemovalPlanner {
       if (with_raw_) plan_.folders.push_back("sourcedata/sub-" + subject);
       plan_.folders.push_back("sub-" + subject);
     }
+    // A folder's path begins with the path of the one above it, so inner ones come first.
+    plan_.folders.insert(plan_.folders.end(), folders_above_.rbegin(), folders_above_.rend());
     return std::move(plan_);
   }
 
@@ -82,32 +85,83 @@ class RemovalPlanner {
     return out;
   }
 
-  /// Another take may have been made, by hand, of the raw files of one that goes.
-  Result<void> check_others(const std::set<TakeName>& wanted) const {
+  /// Notes what the takes that stay are made of. Another take may have been made, by hand, of the
+  /// raw files of one that goes.
+  Result<void> check_others(const std::set<TakeName>& wanted) {
     for (const auto& [name, there] : takes_) {
       if (!there.manifest || wanted.contains(name)) continue;
-      const std::string path = path_of(name, TakeFile::manifest);
-      const std::string text = KA_TRY(read_whole(files_, folder_ + "/" + path, longest_manifest));
-      for (const TakeName& going : wanted) {
-        if (text.find(raw_folder(going)) == std::string::npos) continue;
-        return Failure(Error{path, 0, "no raw files of " + to_string(going) + ", which would go",
-                             raw_folder(going)});
+      for (const std::string& place : KA_TRY(raw_places(name))) {
+        needed_.insert(place);
+        for (const TakeName& going : wanted) {
+          if (!place.starts_with(raw_folder(going))) continue;
+          return Failure(Error{path_of(name, TakeFile::manifest), 0,
+                               "no raw files of " + to_string(going) + ", which would go",
+                               raw_folder(going)});
+        }
       }
     }
     return {};
   }
 
+  /// The inputs of a take below sourcedata/, and what those that are links lead to.
+  Result<std::vector<std::string>> raw_places(const TakeName& name) const {
+    std::vector<std::string> out;
+    for (const TakeInput& input : KA_TRY(raw_files_of(files_, folder_, name))) {
+      const auto place = place_in_sourcedata(folder_, input.path);
+      if (place) out.push_back(*place);
+      std::error_code fault;
+      if (!fs::is_symlink(input.path, fault)) continue;
+      const auto target = place_in_sourcedata(folder_, fs::canonical(input.path, fault).string());
+      if (!fault && target) out.push_back(*target);
+    }
+    return out;
+  }
+
+  /// The manifest goes last: until then a removal that was killed can be run again.
   Result<void> add_take(const TakeName& name) {
-    for (const TakeFile file : {TakeFile::manifest, TakeFile::take, TakeFile::summary}) {
+    add_file("report/" + to_string(name) + ".html");
+    if (has_raw(name)) {
+      if (with_raw_) {
+        KA_TRY(add_raw(name));
+      } else {
+        plan_.raw_left.push_back(raw_folder(name));
+      }
+    }
+    add_inputs(name);
+    for (const TakeFile file : {TakeFile::take, TakeFile::summary, TakeFile::manifest}) {
       add_file(path_of(name, file));
     }
-    add_file("report/" + to_string(name) + ".html");
-    if (!has_raw(name)) return {};
-    if (!with_raw_) {
-      plan_.raw_left.push_back(raw_folder(name));
-      return {};
+    return {};
+  }
+
+  /// Inputs that do not lie in the take's own folder of raw files: those of a corpus that was
+  /// unpacked. Further files go first, since they are found by way of the file that they belong to.
+  void add_inputs(const TakeName& name) {
+    auto inputs = raw_files_of(files_, folder_, name);
+    if (!inputs) return;  // the take goes all the same; `verify` names raw files that are left
+    std::reverse(inputs->begin(), inputs->end());
+    for (const TakeInput& input : *inputs) {
+      const auto place = place_in_sourcedata(folder_, input.path);
+      std::error_code fault;
+      const bool is_own = place && place->starts_with(raw_folder(name));
+      if (!place || is_own || !fs::exists(fs::symlink_status(input.path, fault))) continue;
+      if (!seen_.insert(*place).second) continue;
+      if (!with_raw_) {
+        plan_.raw_left.push_back(*place);
+      } else if (needed_.contains(*place)) {
+        plan_.raw_shared.push_back(*place);
+      } else {
+        add_file(*place);
+        add_folders_above(*place);
+      }
     }
-    return add_raw(name);
+  }
+
+  void add_folders_above(const std::string& place) {
+    for (fs::path above = fs::path(place).parent_path(); !above.empty();
+         above = above.parent_path()) {
+      if (!folders_above_.insert(above.string()).second) return;
+    }
   }
 
   void add_file(const std::string& path) {
@@ -152,6 +206,9 @@ class RemovalPlanner {
   const std::string& folder_;
   bool with_raw_;
   std::map<TakeName, TakeFiles> takes_;
+  std::set<std::string> needed_;         // places of what takes that stay are made of
+  std::set<std::string> seen_;           // raw files that were looked at
+  std::set<std::string> folders_above_;  // of raw files that go
   RemovalPlan plan_;
 };
 

@@ -24,12 +24,42 @@ struct Bone {
   bool inferred = false;
 };
 
+/// A joint without a bone, as markers are.
+struct Dot {
+  Vec3 at;
+  bool inferred = false;
+};
+
+struct Drawn {
+  std::string_view colour;
+  std::vector<Bone> bones;
+  std::vector<Dot> dots;
+
+  /// All that the picture has to hold.
+  std::vector<Vec3> places() const {
+    std::vector<Vec3> out;
+    for (const Bone& bone : bones) out.insert(out.end(), {bone.from, bone.to});
+    for (const Dot& dot : dots) out.push_back(dot.at);
+    return out;
+  }
+};
+
 bool is_drawable(const Vec3& place) {
   return place.allFinite() && place.cwiseAbs().maxCoeff() < farthest_m;
 }
 
-std::vector<Bone> bones_of(const PageBody& body) {
-  std::vector<Bone> out;
+std::vector<bool> joints_on_bones(const PageBody& body) {
+  std::vector<bool> out(body.parents.size(), false);
+  for (std::size_t j = 0; j < body.parents.size(); ++j) {
+    if (body.parents[j] < 0) continue;
+    out[j] = true;
+    out[static_cast<std::size_t>(body.parents[j])] = true;
+  }
+  return out;
+}
+
+Drawn drawn(const PageBody& body) {
+  Drawn out{to_string(body.colour), {}, {}};
   const auto state = [&body](std::size_t joint) {
     return body.state.empty() ? Tracking::tracked : static_cast<Tracking>(body.state[joint]);
   };
@@ -37,28 +67,33 @@ std::vector<Bone> bones_of(const PageBody& body) {
     const float* p = &body.positions[3 * joint];
     return Vec3(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
   };
+  const std::vector<bool> on_bone = joints_on_bones(body);
   for (std::size_t j = 0; j < body.parents.size(); ++j) {
-    if (body.parents[j] < 0) continue;
-    const auto p = static_cast<std::size_t>(body.parents[j]);
+    const bool has_parent = body.parents[j] >= 0;
+    const std::size_t p = has_parent ? static_cast<std::size_t>(body.parents[j]) : j;
     const Tracking least = std::min(state(j), state(p));
     if (least == Tracking::missing || !is_drawable(place(j)) || !is_drawable(place(p))) continue;
-    out.push_back({place(p), place(j), least == Tracking::inferred});
+    const bool inferred = least == Tracking::inferred;
+    if (has_parent) out.bones.push_back({place(p), place(j), inferred});
+    if (!on_bone[j]) out.dots.push_back({place(j), inferred});
   }
   return out;
 }
 
-/// The horizontal axis along which the ends of the bones are spread most; towards +x, else +z.
-Vec3 widest_axis(const std::vector<std::vector<Bone>>& bodies) {
+/// The horizontal axis along which bones' lower ends and dots are spread most; towards +x, else +z.
+Vec3 widest_axis(const std::vector<Drawn>& bodies) {
   double n = 0.0, x = 0.0, z = 0.0, xx = 0.0, xz = 0.0, zz = 0.0;
-  for (const auto& bones : bodies) {
-    for (const Bone& bone : bones) {
-      n += 1.0;
-      x += bone.to.x();
-      z += bone.to.z();
-      xx += bone.to.x() * bone.to.x();
-      xz += bone.to.x() * bone.to.z();
-      zz += bone.to.z() * bone.to.z();
-    }
+  const auto add = [&](const Vec3& place) {
+    n += 1.0;
+    x += place.x();
+    z += place.z();
+    xx += place.x() * place.x();
+    xz += place.x() * place.z();
+    zz += place.z() * place.z();
+  };
+  for (const Drawn& body : bodies) {
+    for (const Bone& bone : body.bones) add(bone.to);
+    for (const Dot& dot : body.dots) add(dot.at);
   }
   const double angle =
       0.5 * std::atan2(2.0 * (xz - x * z / n), (xx - x * x / n) - (zz - z * z / n));
@@ -68,15 +103,13 @@ Vec3 widest_axis(const std::vector<std::vector<Bone>>& bodies) {
 /// From metres to units of the picture.
 class Camera {
  public:
-  explicit Camera(const std::vector<std::vector<Bone>>& bodies) : axis_(widest_axis(bodies)) {
-    for (const auto& bones : bodies) {
-      for (const Bone& bone : bones) {
-        for (const Vec3& end : {bone.from, bone.to}) {
-          left_ = std::min(left_, axis_.dot(end));
-          right_ = std::max(right_, axis_.dot(end));
-          bottom_ = std::min(bottom_, end.y());
-          top_ = std::max(top_, end.y());
-        }
+  explicit Camera(const std::vector<Drawn>& bodies) : axis_(widest_axis(bodies)) {
+    for (const Drawn& body : bodies) {
+      for (const Vec3& place : body.places()) {
+        left_ = std::min(left_, axis_.dot(place));
+        right_ = std::max(right_, axis_.dot(place));
+        bottom_ = std::min(bottom_, place.y());
+        top_ = std::max(top_, place.y());
       }
     }
     const double wide = std::max(right_ - left_, 1e-3), high = std::max(top_ - bottom_, 1e-3);
@@ -110,28 +143,37 @@ std::string path_of(const std::vector<Bone>& bones, bool inferred, const Camera&
   return out;
 }
 
+/// A path of the dots: lines without length, whose round ends are drawn.
+std::string path_of(const std::vector<Dot>& dots, bool inferred, const Camera& camera) {
+  std::string out;
+  for (const Dot& dot : dots) {
+    const auto at = camera.at(dot.at);
+    if (dot.inferred == inferred) out += fmt::format("M{} {}h0", at.first, at.second);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string skeleton_svg(const std::vector<PageBody>& bodies) {
-  std::vector<std::vector<Bone>> bones;
-  std::vector<std::string_view> colours;
+  std::vector<Drawn> all;
   for (const PageBody& body : bodies) {
     if (!body.in_take_space) continue;
-    std::vector<Bone> one = bones_of(body);
-    if (one.empty()) continue;
-    bones.push_back(std::move(one));
-    colours.push_back(to_string(body.colour));
+    Drawn one = drawn(body);
+    if (!one.bones.empty() || !one.dots.empty()) all.push_back(std::move(one));
   }
-  if (bones.empty()) return "";
-  const Camera camera(bones);
+  if (all.empty()) return "";
+  const Camera camera(all);
   std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\">", width, height);
-  for (std::size_t b = 0; b < bones.size(); ++b) {
-    for (const bool inferred : {false, true}) {
-      const std::string path = path_of(bones[b], inferred, camera);
-      if (path.empty()) continue;
-      out += fmt::format("<path class=\"{}{}\" d=\"{}\"/>", colours[b], inferred ? " dashed" : "",
-                         path);
-    }
+  const auto add = [&out](std::string_view colour, std::string_view kind, const std::string& path) {
+    if (path.empty()) return;
+    out += fmt::format("<path class=\"{}{}\" d=\"{}\"/>", colour, kind, path);
+  };
+  for (const Drawn& one : all) {
+    add(one.colour, "", path_of(one.bones, false, camera));
+    add(one.colour, " dashed", path_of(one.bones, true, camera));
+    add(one.colour, " dots", path_of(one.dots, false, camera));
+    add(one.colour, " dots pale", path_of(one.dots, true, camera));
   }
   return out + "</svg>";
 }

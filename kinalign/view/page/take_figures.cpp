@@ -26,6 +26,12 @@ std::size_t index_of(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
+/// A bin spans two rows or more: if stamps jitter by less than half a step, no bin is empty.
+std::size_t bins_of(const TakeHeader& header, std::size_t most) {
+  const auto pairs = static_cast<std::size_t>(header.frames / 2);
+  return std::max<std::size_t>(1, std::min(most, pairs));
+}
+
 /// Seconds of a stamp since the first row's.
 double seconds_since(Time first, Time now) { return seconds(now - first); }
 
@@ -279,7 +285,7 @@ TakeFigures::TakeFigures(const TakeHeader& header, const AlignmentReport& report
   State& s = *state_;
   s.header = header;
   s.options = std::move(options);
-  s.options.bins = std::max<std::size_t>(1, s.options.bins);
+  s.options.bins = bins_of(header, s.options.bins);
   s.page.report = report;
   s.page.subject = header.subject;
   s.page.action = header.action;

@@ -20,7 +20,7 @@ struct TakeFigureOptions {
   std::uint64_t most_numbers = 4'500'000;
   double detail_begin_s = 0.0;  // of the detail, from the first row
   double detail_length_s = 60.0;
-  std::size_t bins = 240;  // of each lane
+  std::size_t bins = 240;  // of each lane at most; a short take has one for two rows
   std::vector<RawPoints> raw{};
   std::vector<RawNode> raw_nodes{};
   std::size_t most_raw_node_samples = 40'000;  // of all nodes together: 0.3 MB

@@ -112,3 +112,98 @@ TEST_CASE("names of which nothing is there are told, and are an error where ther
   REQUIRE(!none);
   CHECK(none.error().expected.find("nearest: sub-01_task-S1A01_run-01") != std::string::npos);
 }
+
+namespace {
+
+const std::string unpacked = "sourcedata/s05-0c951d0c/";
+
+/// A set whose takes of 01 are made of an unpacked corpus; one file belongs to both.
+void put_unpacked(const ChangedSet& set) {
+  for (const char* file : {"Vicon/a.bvh", "Vicon/b.bvh", "both.bvh", "readme.txt"}) {
+    set.folder.write(unpacked + file, "raw");
+  }
+  const auto manifest = [&](const char* action, const std::string& own) {
+    set.folder.write(path_of({"01", action, 1}, TakeFile::manifest),
+                     "[stream.mocap]\nfile = \"../" + unpacked + own +
+                         "\"\n[stream.other]\nfile = \"../" + unpacked + "both.bvh\"\n");
+  };
+  manifest("S1A01", "Vicon/a.bvh");
+  manifest("S1A02", "Vicon/b.bvh");
+}
+
+}  // namespace
+
+TEST_CASE("raw files of an unpacked corpus go with the last take that is made of them") {
+  const ChangedSet set;
+  PosixFiles files;
+  put_unpacked(set);
+  const auto kept = plan_removal(files, set.folder.path(), {"sub-01_task-S1A01_run-01"}, false);
+  REQUIRE(kept);
+  CHECK(kept->raw_left.size() == 3);  // both.bvh, a.bvh and the folder of the take
+  CHECK(kept->raw_left.back() == unpacked + "Vicon/a.bvh");
+
+  const auto one = plan_removal(files, set.folder.path(), {"sub-01_task-S1A01_run-01"}, true);
+  REQUIRE(one);
+  CHECK(one->raw_shared == std::vector<std::string>{unpacked + "both.bvh"});
+  REQUIRE(remove_takes(files, set.folder.path(), *one));
+  CHECK(!set.contents().contains(unpacked + "Vicon/a.bvh"));
+  CHECK(set.contents().contains(unpacked + "Vicon/b.bvh"));
+  CHECK(set.contents().contains(unpacked + "both.bvh"));
+
+  REQUIRE(removed(files, set.folder.path(), {"sub-01"}, true));
+  CHECK(!std::filesystem::exists(set.folder / (unpacked + "Vicon")));
+  CHECK(!set.contents().contains(unpacked + "both.bvh"));
+  CHECK(set.contents().contains(unpacked + "readme.txt"));  // no take is made of it
+}
+
+TEST_CASE("folders of raw files go once they are empty") {
+  const ChangedSet set;
+  PosixFiles files;
+  put_unpacked(set);
+  std::filesystem::remove(set.folder / (unpacked + "readme.txt"));
+  REQUIRE(removed(files, set.folder.path(), {"sub-01", "sub-02"}, true));
+  CHECK(set.contents().size() == 1);
+  CHECK(!std::filesystem::exists(set.folder / "sourcedata"));
+}
+
+TEST_CASE("a removal of unpacked raw files that is stopped at any call is finished by the same") {
+  for (int calls = 0, stopped = 1; stopped != 0; ++calls) {
+    const ChangedSet set;
+    put_unpacked(set);
+    StoppingFiles stopping(calls);
+    PosixFiles files;
+    (void)removed(stopping, set.folder.path(), {"sub-01"}, true);
+    stopped = stopping.stopped() ? 1 : 0;
+    if (stopped != 0) REQUIRE(removed(files, set.folder.path(), {"sub-01"}, true));
+    CHECK(set.contents().size() == 1 + 4 + 1);  // dataset.toml, the take of 02, readme.txt
+  }
+}
+
+TEST_CASE("inputs that a link leads to elsewhere stay, and so does the target of a take's link") {
+  const ChangedSet set;
+  PosixFiles files;
+  put_unpacked(set);
+  const FreshFolder elsewhere;
+  elsewhere.write("a.bvh", "precious");
+  std::filesystem::remove_all(set.folder / (unpacked + "Vicon"));
+  std::filesystem::create_directory_symlink(elsewhere.path(), set.folder / (unpacked + "Vicon"));
+  set.folder.write(path_of({"02", "S1A01", 1}, TakeFile::manifest),
+                   "[stream.mocap]\nfile = \"../sourcedata/linked.bvh\"\n");
+  std::filesystem::create_symlink(set.folder / (unpacked + "both.bvh"),
+                                  set.folder / "sourcedata/linked.bvh");
+  REQUIRE(removed(files, set.folder.path(), {"sub-01"}, true));
+  CHECK(elsewhere.read("a.bvh") == "precious");
+  CHECK(std::filesystem::is_symlink(set.folder / (unpacked + "Vicon")));
+  CHECK(set.folder.read(unpacked + "both.bvh") == "raw");
+}
+
+TEST_CASE("raw files stay where another take's manifest can't be read") {
+  const ChangedSet set;
+  PosixFiles files;
+  put_unpacked(set);
+  set.folder.write(path_of({"02", "S1A01", 1}, TakeFile::manifest), "[stream.mocap\n");
+  const auto before = set.contents();
+  CHECK(!removed(files, set.folder.path(), {"sub-01"}, true));
+  CHECK(set.contents() == before);
+  CHECK(removed(files, set.folder.path(), {"sub-01"}, false));
+}

@@ -52,6 +52,7 @@ TEST_CASE(
   const std::string html = dataset_html(small_page());
   CHECK(has(html, "<title>walks: 1 bad, 2 good</title>"));
   CHECK(has(html, dataset_page_mark));
+  CHECK(has(html, "; print-color-adjust: exact"));  // colours of the legend, on paper
   CHECK(has(html,
             "<span>sub-03_task-S2A03_run-01</span><small>kinect: expected one, found "
             "another</small>"));

@@ -49,6 +49,32 @@ TEST_CASE("a bone with an inferred end is dashed, one with a missing end is not 
   CHECK(skeleton_svg({body}).empty());
 }
 
+TEST_CASE(
+    "markers, which have no bones, are dots, pale where inferred, and the picture holds them") {
+  PageBody markers = cross();
+  markers.parents.assign(4, -1);
+  markers.state[3] = static_cast<std::uint8_t>(Tracking::inferred);
+  CHECK(skeleton_svg({markers}) ==
+        "<svg viewBox=\"0 0 120 160\"><path class=\"mocap dots\" d=\"M60 154h0M60 82h0M114 "
+        "89h0\"/><path class=\"mocap dots pale\" d=\"M6 89h0\"/></svg>");
+  markers.state[0] = static_cast<std::uint8_t>(Tracking::missing);
+  markers.positions[6] = std::numeric_limits<float>::infinity();
+  const std::string two = skeleton_svg({markers});
+  CHECK(two.find("M60 154h0") == std::string::npos);
+  CHECK(two.find("dots\" d=\"M") != std::string::npos);  // the head alone
+}
+
+TEST_CASE("a joint on a bone is no dot, and markers count for the side from which a pose is seen") {
+  PageBody some = cross();
+  some.parents[3] = -1;
+  CHECK(skeleton_svg({some}) ==
+        "<svg viewBox=\"0 0 120 160\"><path class=\"mocap\" d=\"M60 154L60 82L114 89\"/><path "
+        "class=\"mocap dots\" d=\"M6 89h0\"/></svg>");
+  PageBody turned = cross(1.5707963);  // along z
+  turned.parents.assign(4, -1);
+  CHECK(skeleton_svg({turned}).find("M6 89h0") != std::string::npos);
+}
+
 TEST_CASE("what is not in the take's space, and numbers out of this world, are not drawn") {
   PageBody own = cross();
   own.in_take_space = false;

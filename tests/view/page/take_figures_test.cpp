@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/view/page/take_figures.h"
 
+#include "tests/seeds.h"
 #include "tests/view/page/page_takes.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <random>
 
 using namespace kinalign;
 
@@ -92,6 +94,25 @@ TEST_CASE("lanes hold the share of each bin that was measured, and the largest d
   CHECK(lane.tracked[1] == doctest::Approx(1.0));
   CHECK(lane.nearest_raw_s[2] == doctest::Approx(0.07));
   CHECK(lane.nearest_raw_s[3] == doctest::Approx(0.016666667));
+}
+
+TEST_CASE("a take with fewer rows than bins has no empty bins, even where stamps jitter") {
+  for (const auto seed : fresh_seeds(50)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    std::uniform_int_distribution<std::int64_t> jitter(-7'000'000, 7'000'000);  // of 16.7 ms
+    PageTake take = walking_take(2 + random() % 600);
+    for (Time& stamp : take.slab.stamps) stamp += Duration{jitter(random)};
+    take.report.begin = take.slab.stamps.front();
+    take.report.end = take.slab.stamps.back();
+    const TakePage page = figures_of(take);
+    for (const PageLane& lane : page.lanes) {
+      CHECK(lane.tracked.size() <= take.header.frames);
+      for (const float share : lane.tracked) CHECK(share == 1.0f);
+    }
+  }
+  CHECK(figures_of(walking_take(100)).lanes[0].tracked == std::vector<float>(50, 1.0f));
+  CHECK(figures_of(walking_take(1)).lanes[0].tracked == std::vector<float>{1.0f});
 }
 
 TEST_CASE("a long take keeps every stride-th row, in order, and says which") {
