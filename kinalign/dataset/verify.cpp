@@ -3,7 +3,6 @@
 
 #include "kinalign/core/parallel.h"
 #include "kinalign/dataset/build.h"
-#include "kinalign/dataset/raw_files.h"
 #include "kinalign/dataset/scan.h"
 #include "kinalign/dataset/summarise.h"
 #include "kinalign/dataset/take_inputs.h"

@@ -2,9 +2,18 @@
 """Small data sets for cases, made by the program itself."""
 import hashlib
 import json
+import pathlib
 import subprocess
 
-from cases import DEMO, kinalign, law
+from cases import DEMO, Skip, kinalign, law
+
+SHARED = pathlib.Path(__file__).resolve().parents[3] / "shared/data"
+
+
+def shared(name):
+    if not (SHARED / name).exists():
+        raise Skip(f"no ../shared/data/{name}")
+    return SHARED / name
 
 
 def done(*words, code=0, **how):

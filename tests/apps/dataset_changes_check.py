@@ -10,10 +10,11 @@ import signal
 import subprocess
 import sys
 import time
+import zipfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from cases import PROGRAM, case, kinalign, main
-from data_sets import answer, contents, done, recorded
+from data_sets import answer, contents, done, recorded, shared
 
 
 def built_set(folder, takes=4, copied=True):
@@ -137,6 +138,31 @@ def raw_files_outside_the_data_set_stay(folder):
     answer("rm", data, "sub-21", "--raw", "--yes")
     assert contents(folder / "raw") == raw
     assert not list(data.glob("sub-*"))
+
+
+@case
+def raw_files_of_an_unpacked_corpus_go_and_verify_names_those_of_no_take(folder):
+    source = shared("ui_prmd") / "original"
+    data = folder / "set"
+    with zipfile.ZipFile(folder / "prmd.zip", "w") as packed:
+        for path in [*source.rglob("*_positions.txt"), *source.glob("Kinect/Angles/*.txt")]:
+            packed.write(path, path.relative_to(source))
+    assert answer("import", data, folder / "prmd.zip")["added"] == 2
+    done("build", data)
+    first, second = sorted(path.name[:-len("_take.h5")] for path in data.glob("sub-*/*.h5"))
+    before = contents(data)
+    left = answer("rm", data, first, "--dry-run")["raw_left"]
+    assert len(left) == 3 and all((data / path).is_file() for path in left), left
+    answer("rm", data, first, "--raw", "--yes")
+    gone = {name for name in before if name not in contents(data)}
+    assert set(left) <= gone, gone
+    assert not [one for one in answer("verify", data)["findings"] if one["file"] == "sourcedata"]
+    (data / "sourcedata/more.txt").write_text("x")
+    finding, = [one for one in answer("verify", data)["findings"] if one["file"] == "sourcedata"]
+    assert (finding["severity"], finding["found"]) == ("note", "1 that none names: sourcedata/more.txt"), finding
+    (data / "sourcedata/more.txt").unlink()
+    answer("rm", data, second, "--raw", "--yes")
+    assert not (data / "sourcedata").exists(), list(data.rglob("*"))
 
 
 if __name__ == "__main__":

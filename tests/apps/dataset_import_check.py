@@ -18,15 +18,8 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from cases import DEMO, Skip, case, kinalign, law, main
-
-SHARED = pathlib.Path(__file__).resolve().parents[3] / "shared/data"
-
-
-def shared(name):
-    if not (SHARED / name).exists():
-        raise Skip(f"no ../shared/data/{name}")
-    return SHARED / name
+from cases import DEMO, case, kinalign, law, main
+from data_sets import shared
 
 
 def said(*words, code=0, **how):

@@ -3,8 +3,8 @@
 
 #include "kinalign/core/nearest_name.h"
 #include "kinalign/dataset/changes/toml_text.h"
-#include "kinalign/dataset/raw_files.h"
 #include "kinalign/dataset/scan.h"
+#include "kinalign/dataset/take_inputs.h"
 #include "kinalign/take/remembered_path.h"
 
 #include <algorithm>
