@@ -221,7 +221,8 @@ struct DatasetIndex::State {
   Result<void> forget_folder(const std::string& name);
   Result<TakeInserts> inserts() const;
   Result<TakeDrops> drops() const;
-  Result<void> refresh_take(const Found& found, TakeInserts& add);
+  Result<void> refresh_take(const Found& found, std::map<std::string, Known>& known,
+                            TakeDrops& drop, TakeInserts& add);
   Result<void> put(const Found& found, const TakeSummary& take, TakeInserts& inserts);
   Result<std::map<std::string, Known>> known_in(const std::string& name) const;
 };
@@ -314,8 +315,18 @@ Result<TakeDrops> DatasetIndex::State::drops() const {
                    KA_TRY(database.prepare("delete from stream where take = ?"))};
 }
 
-/// Puts in a take that the index does not have; a summary that can't be read is a finding.
-Result<void> DatasetIndex::State::refresh_take(const Found& found, TakeInserts& add) {
+/// Puts in a take that the index does not have as it is; a summary that can't be read is a finding.
+/// Takes it out of `known`.
+Result<void> DatasetIndex::State::refresh_take(const Found& found,
+                                               std::map<std::string, Known>& known, TakeDrops& drop,
+                                               TakeInserts& add) {
+  const auto old = known.find(to_string(found.name));
+  if (old != known.end()) {
+    const Known before = old->second;
+    known.erase(old);
+    if (before.changed_ns == found.changed_ns && before.size == found.size) return {};
+    KA_TRY(drop.run(before.id));
+  }
   const auto take = read_summary(*files, folder, found.name);
   if (take) return put(found, *take, add);
   findings.push_back({Severity::error, take.error(), "the take is in no list",
@@ -341,12 +352,7 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
     const auto version = version_of(entry.path().string());
     if (!version) continue;
     const Found found{parsed->first, version->changed_ns, whole(version->size)};
-    const auto old = known.find(to_string(found.name));
-    const bool same = old != known.end() && old->second.changed_ns == found.changed_ns &&
-                      old->second.size == found.size;
-    if (old != known.end() && !same) KA_TRY(drop.run(old->second.id));
-    if (old != known.end()) known.erase(old);
-    if (!same) KA_TRY(refresh_take(found, add));
+    KA_TRY(refresh_take(found, known, drop, add));
   }
   for (const auto& [gone, one] : known) KA_TRY(drop.run(one.id));
   const bool settled = findings.empty() && changed < began - racy_ns;

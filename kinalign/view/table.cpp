@@ -190,6 +190,7 @@ std::optional<TableFormat> table_format(std::string_view name) {
 
 std::vector<std::string> table_format_names() {
   std::vector<std::string> names;
+  names.reserve(formats.size());
   for (const auto& [name, format] : formats) names.emplace_back(name);
   return names;
 }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Takes of a data set renamed and removed. dataset_changes_check.py BUILD_FOLDER [CASE...]"""
+import json
 import os
 import pathlib
 import pty
@@ -19,7 +20,8 @@ from data_sets import answer, contents, done, recorded, shared
 
 def built_set(folder, takes=4, copied=True):
     done("init", folder / "set", "--template", "hfut-mmd")
-    for i, manifest in enumerate(recorded(folder / "raw", 2, takes)):
+    for i in range(takes):  # of lengths that differ, so that no raw files are alike
+        manifest, = recorded(folder / "raw" / f"{i}", 2 + i / 60, seed=i + 1)
         done("add", folder / "set", manifest, "--subject", f"{i // 2 + 1:02}", "--action", f"S2A{i + 1:02}",
              *["--copy"] * copied)
     done("build", folder / "set")
@@ -71,6 +73,10 @@ def a_take_and_an_action_are_renamed_too_and_splits_are_told(folder):
     (data / "dataset.toml").write_text(re.sub(r'# \[action\.S2A07\]\nclass = "S2"\nname = ""\n', "", text))
     assert answer("rename", data, "S2A01", "S2A07")["to_build"] == 1
     done("build", data)
+    ran = kinalign("dataset", "verify", data, "--json")
+    assert ran.returncode == 1 and {one["file"] for one in json.loads(ran.stdout)["findings"]
+                                      if one["severity"] != "note"} == {"splits/a.json"}, ran.stdout
+    (data / "splits/a.json").unlink()
     assert faults(data) == []
     assert [row["action"] for row in answer("list", data, "--subject", "01")["takes"]] == ["S2A02", "S2A07"]
 

@@ -194,9 +194,9 @@ def names_that_hold_scripts_run_none(folder):
 @case
 def the_example_in_the_card_runs_and_own_text_stays(folder):
     data = small_set(folder)
-    done("split", data, "--by", "take", "--test", "0.4", "-o", folder / "people.json", code=1)
     (data / "splits").mkdir()
-    shutil.copy(folder / "people.json", data / "splits")
+    (data / "splits/people.json").write_text(json.dumps(
+        {"schema": "kinalign.split/1", "by": "take", "test": 0.4, "validation": 0, "seed": 1, "stratified": False, "parts": []}))
     done("report", data, "--card")
     card = (data / "README.md").read_text()
     example = re.search(r"```python\n(.*?)```", card, re.S)[1]

@@ -107,7 +107,7 @@ Result<void> link_pages(const TakePages& pages, const DatasetIndex& index, const
   for (DatasetTake& take : page.worst) {
     const std::string file = pages.page_of(take.name, hashes[take.name]);
     if (file.empty()) continue;
-    take.page = folder + "/" + file;
+    take.page.assign(folder).append("/").append(file);
     --page.takes_without_page;
   }
   return {};

@@ -68,6 +68,19 @@ Table table_of(const Split& split, const std::vector<SplitTake>& takes) {
   return table;
 }
 
+/// Writes -o FILE, in a folder that may not be there yet.
+Result<void> write_split(const std::string& json, Call& call) {
+  const std::string& file = call.common.out;
+  std::error_code ignored;  // creating the file says what is wrong
+  std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
+  OutputFile out =
+      KA_TRY(OutputFile::create(call.surroundings.files, file, call.common.overwrite()));
+  KA_TRY(out.write(json));
+  KA_TRY(out.commit());
+  call.console.wrote(file);
+  return {};
+}
+
 Result<int> run_split(SplitVerb& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string folder = folder_of(o.folder);
@@ -84,12 +97,7 @@ Result<int> run_split(SplitVerb& o, Call& call) {
   const bool leaks = print_findings(findings, call);
   if (leaks && o.check.empty()) call.console.print("nothing was written\n");
   if (!leaks && o.check.empty()) {
-    std::error_code ignored;  // creating the file says what is wrong
-    std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
-    OutputFile out = KA_TRY(OutputFile::create(files, file, call.common.overwrite()));
-    KA_TRY(out.write(split_json(split, takes)));
-    KA_TRY(out.commit());
-    call.console.wrote(file);
+    KA_TRY(write_split(split_json(split, takes), call));
   }
   KA_TRY(say_not_built(index, folder, call));
   const Table table = table_of(split, takes);

@@ -186,7 +186,8 @@ class RenamePlanner {
       return fault(take, "a take with a manifest" + why, "a take that was added as a take");
     }
     const Manifest manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, name));
-    for (const TakeInput& input : inputs_of(files_, manifest, folder_ + "/sub-" + name.subject + "/", {})) {
+    for (const TakeInput& input :
+         inputs_of(files_, manifest, folder_ + "/sub-" + name.subject + "/", {})) {
       std::error_code missing;
       if (fs::exists(input.path, missing)) continue;
       return fault(input.path, "the raw file of " + to_string(name) + why, "none there");

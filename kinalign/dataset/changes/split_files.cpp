@@ -20,7 +20,7 @@ std::map<std::string, Split> splits_in(FileSystem& files, const std::string& fol
       if (entry.path().extension() != ".json") continue;
       std::string path = below;
       path += entry.path().filename().string();
-      auto split = read_split(files, folder + "/" + path);
+      auto split = read_split(files, entry.path().string());
       if (split) out.emplace(std::move(path), *std::move(split));
     }
   }

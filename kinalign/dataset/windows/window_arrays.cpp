@@ -137,6 +137,12 @@ WindowLayout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
   return out;
 }
 
+/// What stands in the windows of a take that lacks an array.
+int value_of_absent(std::string_view array) {
+  if (array == "valid") return 1;
+  return array == "time_interval_ns" ? -1 : 0;
+}
+
 template <class Value>
 std::string one(Value value) {
   return std::string(bytes_of(std::span<const Value>(&value, 1)));
@@ -205,29 +211,30 @@ Result<void> WindowFile::append(const WindowOrigin& origin, const std::vector<st
   KA_TRY(writer_.append(time_array, one(origin.place.begin)));
   KA_TRY(writer_.append(rows_array, one(static_cast<int>(origin.place.rows))));
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const auto& columns = streams_[g];
-    const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
-      const auto column =
-          std::find_if(columns.begin(), columns.end(),
-                       [&](const WindowLayout::Column& c) { return c.name == name; });
-      if (column == columns.end()) return {};
-      const auto put = [&](std::string_view bytes) { return writer_.append(column->array, bytes); };
-      const std::span given(values);
-      using Value = typename decltype(given)::value_type;
-      if constexpr (std::is_same_v<Value, double>) {
-        return numbers_.store(given, column->stored, put);
-      } else {
-        if (!given.empty()) return put(bytes_of(given));
-        const int said = name == "valid" ? 1 : name == "time_interval_ns" ? -1 : 0;
-        const std::vector<Value> all(rows.stamps.size() * column->row_values,
-                                     static_cast<Value>(said));
-        return put(bytes_of(std::span<const Value>(all)));
-      }
-    };
-    KA_TRY(std::visit([&](const auto& stream) { return for_each_row_array(stream, use); },
-                      rows.rows[groups[g]]));
+    KA_TRY(append_stream(streams_[g], rows.stamps.size(), rows.rows[groups[g]]));
   }
   return {};
+}
+
+Result<void> WindowFile::append_stream(const std::vector<WindowLayout::Column>& columns,
+                                       std::size_t length, const AnyRows& rows) {
+  const auto use = [&](std::string_view name, const auto& values) -> Result<void> {
+    const auto column = std::find_if(columns.begin(), columns.end(),
+                                     [&](const WindowLayout::Column& c) { return c.name == name; });
+    if (column == columns.end()) return {};
+    const auto put = [&](std::string_view bytes) { return writer_.append(column->array, bytes); };
+    const std::span given(values);
+    using Value = typename decltype(given)::value_type;
+    if constexpr (std::is_same_v<Value, double>) {
+      return numbers_.store(given, column->stored, put);
+    } else {
+      if (!given.empty()) return put(bytes_of(given));
+      const auto value = static_cast<Value>(value_of_absent(name));
+      const std::vector<Value> all(length * column->row_values, value);
+      return put(bytes_of(std::span<const Value>(all)));
+    }
+  };
+  return std::visit([&](const auto& stream) { return for_each_row_array(stream, use); }, rows);
 }
 
 }  // namespace kinalign

@@ -65,6 +65,8 @@ class WindowFile {
   Result<void> finish() { return writer_.finish(); }
 
  private:
+  Result<void> append_stream(const std::vector<WindowLayout::Column>& columns, std::size_t length,
+                             const AnyRows& rows);
   WindowFile(NpzWriter writer, std::vector<std::vector<WindowLayout::Column>> streams)
       : writer_(std::move(writer)), streams_(std::move(streams)) {}
 

@@ -136,6 +136,7 @@ struct TakeReader::State {
   Time last = Time::min();
 
   Result<void> read_words(const hdf5::Checked& checked);
+  Result<void> check_format(const hdf5::Checked& checked) const;
   Result<void> read_header(const TakeParts& parts);
   Result<void> find_columns(hid_t group, const TakeGroup& what, const TakeParts& parts,
                             std::uint64_t& row_bytes);
@@ -176,10 +177,8 @@ Result<void> TakeReader::State::read_words(const hdf5::Checked& checked) {
   return {};
 }
 
-Result<void> TakeReader::State::read_header(const TakeParts& parts) {
-  const hdf5::Checked checked(bytes);
-  const hid_t root = file.id();
-  const auto format = checked.text_attributes(root, "format");
+Result<void> TakeReader::State::check_format(const hdf5::Checked& checked) const {
+  const auto format = checked.text_attributes(file.id(), "format");
   if (!format || format->size() != 1 || !format->front().starts_with("kinalign.take/")) {
     return Failure(Error{input.path(), 0, "a take that kinalign wrote", "HDF5 of another kind"});
   }
@@ -187,6 +186,13 @@ Result<void> TakeReader::State::read_header(const TakeParts& parts) {
     return Failure(
         Error{input.path(), 0, "format kinalign.take/1", "\"" + shown(format->front()) + "\""});
   }
+  return {};
+}
+
+Result<void> TakeReader::State::read_header(const TakeParts& parts) {
+  const hdf5::Checked checked(bytes);
+  const hid_t root = file.id();
+  KA_TRY(check_format(checked));
   KA_TRY(read_words(checked));
   header.frames = KA_TRY(checked.rows(root, "time_ns"));
   time = KA_TRY(checked.find(root, "time_ns", Stored::int64, {header.frames}));
