@@ -218,6 +218,8 @@ struct DatasetIndex::State {
   Result<void> refresh_catalogue();
   Result<FolderChanges> folder_changes() const;
   Result<void> refresh_folder(const std::string& name);
+  Result<void> remember_folder(const std::string& name, std::int64_t changed,
+                               std::int64_t not_built);
   Result<void> forget_folder(const std::string& name);
   Result<TakeInserts> inserts() const;
   Result<TakeDrops> drops() const;
@@ -356,8 +358,14 @@ Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
   }
   for (const auto& [gone, one] : known) KA_TRY(drop.run(one.id));
   const bool settled = findings.empty() && changed < began - racy_ns;
+  return remember_folder(name, settled ? changed : 0, whole(all.size() - summarised.size()));
+}
+
+/// `changed`: when the folder was as it was read; 0: it is read again next time.
+Result<void> DatasetIndex::State::remember_folder(const std::string& name, std::int64_t changed,
+                                                  std::int64_t not_built) {
   return KA_TRY(database.prepare("insert or replace into folder values(?,?,?)"))
-      .run({name, settled ? changed : std::int64_t{0}, whole(all.size() - summarised.size())});
+      .run({name, changed, not_built});
 }
 
 /// Which dataset.toml the index has.

@@ -126,6 +126,7 @@ Usage describe_list(List& o) {
 
 std::vector<std::string> ids_of(const auto& described) {
   std::vector<std::string> ids;
+  ids.reserve(described.size());
   for (const auto& one : described) ids.push_back(one.id);
   return ids;
 }

@@ -16,7 +16,7 @@ std::map<std::string, Split> splits_in(FileSystem& files, const std::string& fol
   std::map<std::string, Split> out;
   for (const std::string below : {"", "splits/"}) {
     std::error_code fault;
-    for (const auto& entry : fs::directory_iterator(folder + "/" + below, fault)) {
+    for (const auto& entry : fs::directory_iterator(fs::path(folder) / below, fault)) {
       if (entry.path().extension() != ".json") continue;
       std::string path = below;
       path += entry.path().filename().string();
