@@ -51,7 +51,7 @@ TEST_CASE("an error makes a stream bad, a warning usable, a note changes nothing
     CHECK(kinect_of(report).quality == quality);
     if (severity == Severity::note) continue;
     CHECK(kinect_of(report).reason ==
-        "left out (expected stamps that rise, found 3 that step back)");
+          "left out (expected stamps that rise, found 3 that step back)");
   }
 }
 

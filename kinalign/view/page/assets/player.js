@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 3D view: both skeletons, the lines between paired joints, the nodes' axes, the Kinect and its
 // zones, on a floor of 1 m squares. Hollow joints are inferred, or stand where a missing joint was
 // last seen.
