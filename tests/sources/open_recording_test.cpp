@@ -2,9 +2,9 @@
 // Which files a recording consists of, and by which names a take remembers them.
 #include "kinalign/sources/open_recording.h"
 
-#include "kinalign/documents/parameters_json.h"
-
 #include "tests/folder.h"
+
+#include "kinalign/documents/parameters_json.h"
 
 #include <doctest/doctest.h>
 

@@ -17,10 +17,11 @@ TEST_CASE("what a data set lacks stands at the end, and what its user wrote stay
   const std::string own = "name = \"x\"  # mine\n[subject.02]\nsex = \"f\"";
   const auto grown = grown_catalogue(own, "dataset.toml", needs);
   REQUIRE(grown);
-  CHECK(*grown == own +
-                      "\n\n[subject.01]\n\n[class.s]\nname = \"sports\"\n\n[action.golf]\nclass = "
-                      "\"s\"\nname = \"a \\\"long\\\" swing\"\n\n[action.run]\nclass = \"s\"\nname = "
-                      "\"\"\n");
+  CHECK(*grown ==
+        own +
+            "\n\n[subject.01]\n\n[class.s]\nname = \"sports\"\n\n[action.golf]\nclass = "
+            "\"s\"\nname = \"a \\\"long\\\" swing\"\n\n[action.run]\nclass = \"s\"\nname = "
+            "\"\"\n");
   CHECK(grown_catalogue(*grown, "dataset.toml", needs) == *grown);
 }
 

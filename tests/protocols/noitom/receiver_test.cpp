@@ -149,7 +149,8 @@ TEST_CASE("noitom datagrams: where nothing is lost every frame is given, with it
   }
 }
 
-TEST_CASE("noitom datagrams: no frame is given that was not sent, where some are lost or overtaken") {
+TEST_CASE(
+    "noitom datagrams: no frame is given that was not sent, where some are lost or overtaken") {
   for (const auto seed : fresh_seeds(20)) {
     CAPTURE(seed);
     std::mt19937_64 random(seed);

@@ -71,7 +71,6 @@ TEST_CASE("tasks of a step within an array divide the share of their job") {
 TEST_CASE("numbers that do not go together are refused") {
   CHECK_FALSE(share({{"RANK", "2"}, {"WORLD_SIZE", "2"}}));
   CHECK_FALSE(share({{"RANK", "x"}, {"WORLD_SIZE", "2"}}));
-  CHECK_FALSE(share({{"SLURM_ARRAY_TASK_ID", "0"},
-                     {"SLURM_ARRAY_TASK_COUNT", "2"},
-                     {"KINALIGN_SHARES", "x"}}));
+  CHECK_FALSE(share(
+      {{"SLURM_ARRAY_TASK_ID", "0"}, {"SLURM_ARRAY_TASK_COUNT", "2"}, {"KINALIGN_SHARES", "x"}}));
 }
