@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an archive hands on lies below its target: each name is safe and given once, and all bytes
+// Files of an archive lie below its target: each name is safe and given once, and all bytes
 // together stay below the limit.
 #include "kinalign/dataset/import/cmu_clips.h"
 #include "kinalign/formats/archive/npz.h"

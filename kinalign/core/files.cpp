@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 namespace kinalign {
 
@@ -140,6 +141,13 @@ Result<void> make_new_folder(const std::string& path) {
   return Failure(Error{path, 0, "a folder that can be made", std::strerror(errno)});
 }
 
+Result<void> make_folders(const std::string& path) {
+  std::error_code fault;
+  std::filesystem::create_directories(path, fault);
+  if (!fault) return {};
+  return Failure(Error{path, 0, "a folder that can be made", fault.message()});
+}
+
 Result<std::string> read_whole(FileSystem& files, const std::string& path, std::size_t most) {
   InputFile file = KA_TRY(InputFile::open(files, path));
   std::string text;
@@ -150,6 +158,23 @@ Result<std::string> read_whole(FileSystem& files, const std::string& path, std::
       return Failure(Error{path, 0, "at most " + std::to_string(most) + " bytes", "more"});
     }
     text += piece;
+  }
+}
+
+Result<void> write_whole(FileSystem& files, const std::string& path, std::string_view bytes,
+                         Overwrite overwrite) {
+  OutputFile out = KA_TRY(OutputFile::create(files, path, overwrite));
+  KA_TRY(out.write(bytes));
+  return out.commit();
+}
+
+Result<void> copy_file(FileSystem& files, const std::string& from, const std::string& to) {
+  InputFile in = KA_TRY(InputFile::open(files, from));
+  OutputFile out = KA_TRY(OutputFile::create(files, to, Overwrite::no));
+  for (;;) {
+    const std::string_view piece = KA_TRY(in.next());
+    if (piece.empty()) return out.commit();
+    KA_TRY(out.write(piece));
   }
 }
 

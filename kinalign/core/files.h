@@ -98,6 +98,9 @@ class InputFile {
 /// All of a file at once: for small ones (manifests, layouts). Fails above `most` bytes.
 Result<std::string> read_whole(FileSystem& files, const std::string& path, std::size_t most);
 
+/// The folder and those above it, where they are not there yet.
+Result<void> make_folders(const std::string& path);
+
 /// A folder that was not there; the one above it is. Fails where anything has that name.
 Result<void> make_new_folder(const std::string& path);
 
@@ -142,6 +145,12 @@ class OutputFile {
   std::string unfinished_;
   std::string beside_;  // the name with a dot; empty where the file has none
 };
+
+/// A file of these bytes.
+Result<void> write_whole(FileSystem& files, const std::string& path, std::string_view bytes,
+                         Overwrite overwrite);
+/// Fails where anything stands at `to`.
+Result<void> copy_file(FileSystem& files, const std::string& from, const std::string& to);
 
 /// The part of a path behind its last '/'.
 std::string_view file_name(std::string_view path);

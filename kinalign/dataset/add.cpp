@@ -55,31 +55,6 @@ Result<void> check_known(const Catalogue& catalogue, const AddRequest& request,
   return {};
 }
 
-Result<void> make_folders(const std::string& path) {
-  std::error_code fault;
-  fs::create_directories(path, fault);
-  if (!fault) return {};
-  return Failure(Error{path, 0, "a folder that can be made", fault.message()});
-}
-
-/// Copies a file; nothing that stands at `to` is replaced.
-Result<void> copy_file(FileSystem& files, const std::string& from, const std::string& to) {
-  InputFile in = KA_TRY(InputFile::open(files, from));
-  OutputFile out = KA_TRY(OutputFile::create(files, to, Overwrite::no));
-  for (;;) {
-    const std::string_view piece = KA_TRY(in.next());
-    if (piece.empty()) return out.commit();
-    KA_TRY(out.write(piece));
-  }
-}
-
-/// Fails where anything stands at `path`.
-Result<void> write_new(FileSystem& files, const std::string& path, const std::string& text) {
-  OutputFile out = KA_TRY(OutputFile::create(files, path, Overwrite::no));
-  KA_TRY(out.write(text));
-  return out.commit();
-}
-
 /// A path without links, in one spelling.
 std::string one_spelling(const std::string& path) {
   std::error_code fault;
@@ -103,7 +78,7 @@ struct RawCopy {
   std::string from, to;
 };
 
-/// The places of copies of a manifest's files: below sourcedata/, in a folder of the take.
+/// The places of copies of a manifest's files: in a folder of the take, which ends in '/'.
 class CopyPlan {
  public:
   CopyPlan(FileSystem& files, const std::string& folder, std::string to)
@@ -148,10 +123,10 @@ class CopyPlan {
   /// Files of one name, from several folders, are told apart by their streams.
   std::string place_alone(const std::string& stream, const std::string& path) {
     if (is_below(path, folder_)) return path;
-    std::string to = to_ + "/" + std::string(file_name(path));
+    std::string to = to_ + std::string(file_name(path));
     for (const RawCopy& one : copies_) {
       if (one.from == path) return one.to;
-      if (one.to == to) to = to_ + "/" + stream + "/" + std::string(file_name(path));
+      if (one.to == to) to = to_ + stream + "/" + std::string(file_name(path));
     }
     copies_.push_back({path, to});
     return to;
@@ -163,13 +138,9 @@ class CopyPlan {
   std::vector<RawCopy> copies_;
 };
 
-std::string raw_folder_of(const TakeName& name) {
-  return "sourcedata/sub-" + name.subject + "/" + to_string(name);
-}
-
 /// A manifest's text without its own run, so that the same raw files under two runs are found.
 std::string without_own_name(std::string text, const TakeName& name) {
-  const std::string own = raw_folder_of(name) + "/";
+  const std::string own = raw_folder(name);
   for (auto at = text.find(own); at != std::string::npos; at = text.find(own, at)) {
     text.erase(at, own.size());
   }
@@ -243,7 +214,7 @@ Result<std::optional<TakeName>> TakeAdder::find_same(const Known& known, const M
   for (auto one = begin; one != end; ++one) {
     bool same = true;
     if (copy) {
-      CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder_of(one->second));
+      CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder(one->second));
       plan.plan(manifest);
       for (const RawCopy& file : plan.copies()) same = same && KA_TRY(same_bytes(files_, file));
     }
@@ -262,7 +233,7 @@ Result<Added> TakeAdder::add(const Manifest& said, const std::string& base,
   for (;;) {  // until no other process takes the same run
     Known& there = *KA_TRY(known(name.subject, name.action));
     name.run = free_run(there.runs, request.run);
-    CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder_of(name));
+    CopyPlan plan(files_, folder_, folder_ + "/" + raw_folder(name));
     const std::string text =
         placed_text(request.copy ? plan.plan(manifest) : manifest, folder_, name);
     const std::string nameless = without_own_name(text, name);
@@ -274,7 +245,7 @@ Result<Added> TakeAdder::add(const Manifest& said, const std::string& base,
       continue;
     }
     const std::string path = folder_ + "/" + path_of(name, TakeFile::manifest);
-    const Result<void> written = write_new(files_, path, text);
+    const Result<void> written = write_whole(files_, path, text, Overwrite::no);
     if (written) {
       there.runs.insert(name.run);
       there.by_text.emplace(nameless, name);

@@ -36,7 +36,7 @@ struct BuildJob {
   BuildReason reason = BuildReason::first;
 };
 
-/// What a share has to do, longest first.
+/// The takes that a share has to make, longest first.
 struct BuildPlan {
   std::vector<BuildJob> jobs;
   std::size_t at_once = 1;       // takes
@@ -48,7 +48,8 @@ struct Built {
   Result<TakeSummary> summary;
 };
 
-/// Who is told how far a build is, and of each take that is done, from one thread at a time.
+/// Callbacks of a build: its progress, and each finished take. Never called from two threads at
+/// once.
 struct BuildWatch {
   Progress progress;
   std::function<void(const Built&)> done;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What dataset.toml says: who was recorded, doing what, with which devices, and on what terms
+// The content of dataset.toml: who was recorded, doing what, with which devices, and on what terms
 // others may use it. Documented for users in docs/formats/dataset.md.
 #pragma once
 

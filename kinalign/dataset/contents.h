@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rows of a take must be like, whatever made them: looked at slab by slab.
+// Rules that the rows of every take must keep, whatever made them. They are checked slab by slab.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -25,7 +25,7 @@ class ContentCheck {
   Findings findings(const std::string& file) const;
 
  private:
-  /// Of one group.
+  /// Counts of one group.
   struct Group {
     std::string name;
     std::vector<int> parents;         // of a skeleton

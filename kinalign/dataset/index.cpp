@@ -30,7 +30,7 @@ constexpr std::int64_t racy_ns = 2'000'000'000;
 /// Raised with every change of the tables: an index of another number is made anew.
 constexpr std::int64_t layout = 2;
 
-/// What is not of `take` stands in the view as a query of its own: SQLite asks for it only where a
+/// Columns of other tables stand in the view as queries of their own: SQLite runs one only where a
 /// statement uses the column, while it goes through every join of a sum.
 constexpr const char* make_tables = R"(
 create table catalogue(version text not null);
@@ -87,7 +87,7 @@ std::int64_t changed_ns(const std::string& folder) {
   return facts.st_mtim.tv_sec * 1'000'000'000 + facts.st_mtim.tv_nsec;
 }
 
-/// What all streams of one modality have together, for a column of `takes`.
+/// The streams of one modality together, for a column of `takes`.
 template <class Value, class Fold>
 std::optional<double> over(const TakeSummary& take, Modality modality, Value value, Fold fold) {
   std::optional<double> out;
@@ -446,7 +446,8 @@ Result<DatasetIndex> DatasetIndex::open(FileSystem& files, const std::string& fo
   Catalogue catalogue = KA_TRY(load_catalogue(files, folder));
   const std::string path = folder + "/" + std::string(index_file);
   Result<void> done;
-  // As it is; made anew, since it is only a cache; in memory, where nothing can be written.
+  // First the index that is there. It is only a cache: where it fails it is made anew, and where
+  // nothing can be written, in memory.
   for (const int attempt : {0, 1, 2}) {
     auto state = std::make_unique<State>();
     state->files = &files;

@@ -31,7 +31,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// What stays together: a take, or all takes of a person.
+/// Takes that stay together: one, or all of a person.
 struct Unit {
   std::vector<const SplitTake*> takes;
   std::uint64_t frames = 0;
@@ -151,7 +151,7 @@ TakesByName by_name(const std::vector<SplitTake>& takes) {
   return out;
 }
 
-/// Who or what stands in which parts.
+/// The parts in which a take, a person or a file stands.
 using Places = std::map<std::string, std::set<std::string>>;
 
 struct Seen {

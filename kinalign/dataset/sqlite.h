@@ -48,7 +48,7 @@ class Database {
 
   Result<void> run(const std::string& sql);  // any number of statements
   Result<Statement> prepare(const std::string& sql) const;
-  /// As prepare(), but fails for all that is not reading.
+  /// Like prepare(), but refuses statements that write.
   Result<Statement> prepare_reading(const std::string& sql) const;
 
  private:

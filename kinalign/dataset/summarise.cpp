@@ -95,10 +95,8 @@ Result<TakeSummary> keep_summary(FileSystem& files, const std::string& folder, c
   const InputFacts facts = KA_TRY(facts_of(files, take_path(folder, name), "hashing", {}));
   summary.sha256 = facts.sha256;
   summary.bytes = facts.bytes;
-  OutputFile out = KA_TRY(
-      OutputFile::create(files, folder + "/" + path_of(name, TakeFile::summary), Overwrite::yes));
-  KA_TRY(out.write(summary_json(summary)));
-  KA_TRY(out.commit());
+  KA_TRY(write_whole(files, folder + "/" + path_of(name, TakeFile::summary), summary_json(summary),
+                     Overwrite::yes));
   return summary;
 }
 

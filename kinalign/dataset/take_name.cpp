@@ -70,4 +70,8 @@ std::optional<std::pair<TakeName, TakeFile>> parse_take_path(std::string_view pa
   return std::nullopt;
 }
 
+std::string raw_folder(const TakeName& name) {
+  return "sourcedata/sub-" + name.subject + "/" + to_string(name) + "/";
+}
+
 }  // namespace kinalign

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a take of a data set is called and where its files lie, in the manner of BIDS:
+// The name of a take in a data set, and where its files lie, in the manner of BIDS:
 //
 //   sub-03/sub-03_task-S2A03_run-01_recording.toml   how it is made: a manifest of raw files
 //   sub-03/sub-03_task-S2A03_run-01_take.h5          the take
@@ -36,6 +36,8 @@ std::optional<TakeName> parse_take_name(std::string_view text);
 
 /// "sub-03/sub-03_task-S2A03_run-01_take.h5", below the data set's folder.
 std::string path_of(const TakeName& name, TakeFile file);
+/// "sourcedata/sub-03/NAME/": raw files that were copied with their take.
+std::string raw_folder(const TakeName& name);
 /// The name and kind of a file that lies where path_of() puts it; absent for any other path.
 std::optional<std::pair<TakeName, TakeFile>> parse_take_path(std::string_view path);
 

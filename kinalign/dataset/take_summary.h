@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of a take without opening it: the JSON file beside it (docs/formats/dataset.md),
-// schema kinalign.take_summary/1. Everything in it follows from the take's bytes.
+// The facts of a take that are known without opening it: the JSON file beside it
+// (docs/formats/dataset.md), schema kinalign.take_summary/1. Everything in it follows from the
+// take's bytes.
 #pragma once
 
 #include "kinalign/align/verdict.h"
@@ -17,7 +18,7 @@
 
 namespace kinalign {
 
-/// As the paper counts its frames (tables 6 and 7).
+/// The kinds by which the paper counts its frames (tables 6 and 7).
 enum class Modality : std::uint8_t { mocap, kinect, imu };
 inline constexpr std::array<std::string_view, 3> modality_names{"mocap", "kinect", "imu"};
 

@@ -66,7 +66,7 @@ class Verifier {
         {severity, Error{file, 0, std::move(expected), std::move(found)}, "", std::move(repair)});
   }
 
-  /// What dataset.toml leaves open.
+  /// Notes of what dataset.toml leaves open.
   void check_catalogue() {
     const std::string file(catalogue_file);
     const std::array<std::pair<const char*, const std::string*>, 3> texts{

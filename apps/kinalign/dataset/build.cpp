@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/build.h"
 
-#include "apps/kinalign/dataset/counts_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/dataset/share.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 
 #include <fmt/format.h>
@@ -62,7 +62,7 @@ Result<int> show_plan(const BuildPlan& plan, Call& call) {
   return 0;
 }
 
-/// What was made, as lines and as JSON.
+/// Counts the takes that were made, for lines and JSON.
 struct Tally {
   std::size_t made = 0, failed = 0, usable = 0, bad = 0;
   nlohmann::ordered_json takes = nlohmann::ordered_json::array();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/dataset/dataset_folder.h"
 
-#include "apps/kinalign/dataset/counts_text.h"
+#include "apps/kinalign/text/counts_text.h"
 
 #include "kinalign/dataset/scan.h"
 
@@ -19,6 +19,15 @@ std::string folder_of(const std::vector<std::string>& words) {
   std::string folder = words.front();
   while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();
   return folder.empty() ? "." : folder;
+}
+
+Field where_field(std::string& where) {
+  return {"where", "takes for which this holds, as for `dataset query`", &where, 0.0, 0.0, {},
+          "SQL"};
+}
+
+Field split_field(std::string& split) {
+  return {"split", "parts, as `dataset split` wrote them", &split, 0.0, 0.0, {}, "FILE"};
 }
 
 Result<DatasetIndex> open_index(const std::string& folder, Call& call) {

@@ -18,6 +18,10 @@ Positional folder_word(std::vector<std::string>& folder);
 /// The folder's path without a '/' at its end; "." where that is nothing.
 std::string folder_of(const std::vector<std::string>& words);
 
+/// Flags of verbs that take a choice of takes: --where and --split.
+Field where_field(std::string& where);
+Field split_field(std::string& split);
+
 /// Opens the index and tells what is wrong with its files on stderr.
 Result<DatasetIndex> open_index(const std::string& folder, Call& call);
 

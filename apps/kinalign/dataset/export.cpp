@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/export/export.h"
 
-#include "apps/kinalign/dataset/counts_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/dataset/export/release.h"
@@ -38,14 +38,8 @@ Usage describe_export(Export& o) {
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
       {"format", "of the files", &o.format, 0.0, 0.0, format_names()},
-      {"where",
-       "takes for which this holds, as for `dataset query`",
-       &o.where,
-       0.0,
-       0.0,
-       {},
-       "SQL"},
-      {"split", "parts of shards, as `dataset split` wrote them", &o.split, 0.0, 0.0, {}, "FILE"},
+      where_field(o.where),
+      split_field(o.split),
       {"release", "without dates and names; refused where a text gives a person away", &o.release}};
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty())
@@ -60,15 +54,16 @@ Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call)
   FileSystem& files = call.surroundings.files;
   ExportJob job{folder_of(o.folder), call.common.out, o.format, o.release, {}};
   while (job.target.size() > 1 && job.target.ends_with('/')) job.target.pop_back();
+  auto takes = KA_TRY(built_takes(files, job.folder, index, o.where));
   std::map<TakeName, std::string> part_of;
   if (!o.split.empty()) {
-    const auto all = KA_TRY(built_takes(files, job.folder, index, ""));
+    const auto all = o.where.empty() ? takes : KA_TRY(built_takes(files, job.folder, index, ""));
     const Split split = KA_TRY(read_good_split(files, o.split, all));
     for (const SplitPart& part : split.parts) {
       for (const TakeName& name : part.takes) part_of[name] = part.name;
     }
   }
-  for (SplitTake& take : KA_TRY(built_takes(files, job.folder, index, o.where))) {
+  for (SplitTake& take : takes) {
     const auto part = part_of.find(take.name);
     if (!o.split.empty() && part == part_of.end()) continue;
     job.takes.push_back(
@@ -77,7 +72,7 @@ Result<ExportJob> job_of(const Export& o, const DatasetIndex& index, Call& call)
   return job;
 }
 
-/// What streams and nodes are called, which every format writes.
+/// Names of streams and nodes, which every format writes.
 std::set<std::string> names_in(const ExportJob& job) {
   std::set<std::string> out;
   for (const ExportTake& take : job.takes) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/import/import.h"
 
-#include "apps/kinalign/dataset/counts_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/dataset/import/corpora.h"

@@ -37,14 +37,13 @@ Usage describe_init(Init& o) {
 
 Result<int> run_init(Init& o, Call& call) {
   const std::string folder = folder_of(o.folder);
+  KA_TRY(make_folders(folder));
   std::error_code fault;
-  std::filesystem::create_directories(folder, fault);
-  if (fault) return Failure(Error{folder, 0, "a folder that can be made", fault.message()});
   const std::string own = std::filesystem::weakly_canonical(folder, fault).filename().string();
   const std::string path = folder + "/" + std::string(catalogue_file);
-  OutputFile out = KA_TRY(OutputFile::create(call.surroundings.files, path, Overwrite::no));
-  KA_TRY(out.write(KA_TRY(catalogue_template(o.template_name, o.name.empty() ? own : o.name))));
-  KA_TRY(out.commit());
+  const std::string text =
+      KA_TRY(catalogue_template(o.template_name, o.name.empty() ? own : o.name));
+  KA_TRY(write_whole(call.surroundings.files, path, text, Overwrite::no));
   call.console.print(harmless(path +
                               ": a new data set. Say there who was recorded, doing what; then\n"
                               "  kinalign dataset add " +

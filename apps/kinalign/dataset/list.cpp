@@ -76,7 +76,7 @@ Result<std::string> chosen_columns(const std::string& text) {
   return out;
 }
 
-/// What follows "order by". Verdicts go by how bad they are, not by the alphabet.
+/// The text behind "order by". Verdicts go by how bad they are, not by the alphabet.
 Result<std::string> order_text(const std::string& sort) {
   if (sort.empty()) return std::string("name");
   const bool down = sort.ends_with('-');

@@ -2,9 +2,9 @@
 #include "kinalign/dataset/changes/rename.h"
 
 #include "apps/cli/json_text.h"
-#include "apps/kinalign/dataset/counts_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/dataset/splits_text.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/json_text.h"
-#include "apps/kinalign/dataset/counts_text.h"
 #include "apps/kinalign/dataset/dataset_folder.h"
 #include "apps/kinalign/dataset/own_process.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/dataset/report/data_card.h"

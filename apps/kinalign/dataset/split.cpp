@@ -73,10 +73,7 @@ Result<void> write_split(const std::string& json, Call& call) {
   const std::string& file = call.common.out;
   std::error_code ignored;  // creating the file says what is wrong
   std::filesystem::create_directories(std::filesystem::path(file).parent_path(), ignored);
-  OutputFile out =
-      KA_TRY(OutputFile::create(call.surroundings.files, file, call.common.overwrite()));
-  KA_TRY(out.write(json));
-  KA_TRY(out.commit());
+  KA_TRY(write_whole(call.surroundings.files, file, json, call.common.overwrite()));
   call.console.wrote(file);
   return {};
 }

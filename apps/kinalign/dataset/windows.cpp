@@ -29,14 +29,8 @@ Usage describe_windows(Windows& o) {
   Usage usage;
   usage.positionals = {folder_word(o.folder)};
   usage.flags = {
-      {"split", "parts, as `dataset split` wrote them", &o.split, 0.0, 0.0, {}, "FILE"},
-      {"where",
-       "takes for which this holds, as for `dataset query`",
-       &o.where,
-       0.0,
-       0.0,
-       {},
-       "SQL"},
+      split_field(o.split),
+      where_field(o.where),
       {"stream",
        "which stream; may be repeated (default: those that all takes have)",
        &o.options.streams,
@@ -86,7 +80,7 @@ Result<WindowSource> source_of(const Windows& o, const std::string& folder, Call
   if (o.split.empty()) {
     for (const SplitTake& take : takes) source.takes.push_back({take.name, "", take.summary, 0});
   } else {
-    const auto all = KA_TRY(built_takes(files, folder, index, ""));
+    const auto all = o.where.empty() ? takes : KA_TRY(built_takes(files, folder, index, ""));
     KA_TRY(divide(KA_TRY(read_good_split(files, o.split, all)), o.split, takes, source));
   }
   for (WindowTake& take : source.takes) {

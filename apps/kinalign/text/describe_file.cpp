@@ -3,6 +3,7 @@
 
 #include "apps/cli/console.h"
 #include "apps/cli/json_text.h"
+#include "apps/kinalign/text/counts_text.h"
 #include "apps/kinalign/text/describe_report.h"
 
 #include "kinalign/align/judge.h"
@@ -29,11 +30,6 @@ struct Contents {
   std::string kind, parts;  // "points", "25 joints"
   Json names;
 };
-
-/// "1 joint", "25 joints"
-std::string counted(std::size_t n, std::string_view what) {
-  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-}
 
 Contents contents(const Skeleton& skeleton) {
   return {

@@ -214,7 +214,7 @@ class Renamer {
   Renamer(FileSystem& files, const std::string& folder) : files_(files), folder_(folder) {}
 
   Result<void> move(const TakeName& from, const TakeName& to, Renamed& out) {
-    KA_TRY(make_folder(folder_ + "/sub-" + to.subject));
+    KA_TRY(make_folders(folder_ + "/sub-" + to.subject));
     const bool same_name = from.subject == to.subject && from.action == to.action;
     bool same_recipe = true;
     if (fs::exists(place(folder_, from, TakeFile::manifest))) {
@@ -242,14 +242,9 @@ class Renamer {
     const bool has_old = is_subject ? find_subject(now, plan.from) != nullptr
                                     : find_action(now, plan.from) != nullptr;
     if (!has_old) return {};
-    return write(path, KA_TRY(with_id_renamed(toml, is_subject ? "subject" : "action", plan.from,
-                                              plan.to, path)));
-  }
-
-  Result<void> write(const std::string& path, const std::string& text) {
-    OutputFile out = KA_TRY(OutputFile::create(files_, path, Overwrite::yes));
-    KA_TRY(out.write(text));
-    return out.commit();
+    const std::string text =
+        KA_TRY(with_id_renamed(toml, is_subject ? "subject" : "action", plan.from, plan.to, path));
+    return write_whole(files_, path, text, Overwrite::yes);
   }
 
   Result<void> remove(const std::string& path) {
@@ -263,7 +258,7 @@ class Renamer {
     const std::string path = place(folder_, from, TakeFile::manifest);
     const std::string toml = KA_TRY(read_whole(files_, path, longest_manifest));
     const std::string text = KA_TRY(manifest_of_renamed(toml, from, to, path));
-    KA_TRY(write(place(folder_, to, TakeFile::manifest), text));
+    KA_TRY(write_whole(files_, place(folder_, to, TakeFile::manifest), text, Overwrite::yes));
     return recipe_of(KA_TRY(read_manifest(toml, path))) ==
            recipe_of(KA_TRY(read_manifest(text, path)));
   }
@@ -273,7 +268,7 @@ class Renamer {
                       renamed = folder_ + "/" + raw_folder(to);
     std::error_code fault;
     if (!fs::exists(old, fault)) return {};
-    KA_TRY(make_folder(folder_ + "/sourcedata/sub-" + to.subject));
+    KA_TRY(make_folders(folder_ + "/sourcedata/sub-" + to.subject));
     return move_path(old.substr(0, old.size() - 1), renamed.substr(0, renamed.size() - 1));
   }
 
@@ -285,13 +280,6 @@ class Renamer {
   Result<void> move_path(const std::string& from, const std::string& to) {
     if (files_.rename(from.c_str(), to.c_str()) == 0) return {};
     return Failure(Error{from, 0, "a file that can become " + to, std::strerror(errno)});
-  }
-
-  static Result<void> make_folder(const std::string& path) {
-    std::error_code fault;
-    fs::create_directories(path, fault);
-    if (!fault) return {};
-    return Failure(Error{path, 0, "a folder that can be made", fault.message()});
   }
 
   FileSystem& files_;
@@ -331,9 +319,7 @@ Result<RenamePlan> plan_rename(FileSystem& files, const std::string& folder,
 Result<Renamed> rename_takes(FileSystem& files, const std::string& folder, const RenamePlan& plan) {
   Renamer renamer(files, folder);
   if (!plan.was_begun) {
-    OutputFile journal = KA_TRY(OutputFile::create(files, journal_path(folder), Overwrite::no));
-    KA_TRY(journal.write(journal_json(plan)));
-    KA_TRY(journal.commit());
+    KA_TRY(write_whole(files, journal_path(folder), journal_json(plan), Overwrite::no));
   }
   KA_TRY(renamer.edit_catalogue(plan));
   Renamed out;

@@ -104,10 +104,6 @@ std::string with_value(const std::string& toml, std::string_view key, const std:
 
 }  // namespace
 
-std::string raw_folder(const TakeName& name) {
-  return "sourcedata/sub-" + name.subject + "/" + to_string(name) + "/";
-}
-
 Result<std::string> with_id_renamed(const std::string& toml, const std::string& table,
                                     const std::string& from, const std::string& to,
                                     const std::string& file) {

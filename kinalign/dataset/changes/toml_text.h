@@ -23,7 +23,4 @@ Result<std::string> with_id_renamed(const std::string& toml, const std::string& 
 Result<std::string> manifest_of_renamed(const std::string& toml, const TakeName& from,
                                         const TakeName& to, const std::string& file);
 
-/// "sourcedata/sub-03/NAME/": raw files that were copied with their take.
-std::string raw_folder(const TakeName& name);
-
 }  // namespace kinalign

@@ -47,7 +47,7 @@ std::string text_of(const Described* device, const char* key) {
   return found == device->texts.end() ? "" : found->second;
 }
 
-/// What dataset.toml says of the device whose id is the stream's name.
+/// The facts of the device in dataset.toml whose id is the stream's name.
 BidsSystemFacts facts_of(const Catalogue& catalogue, const ExportedTake& take,
                          const TakeGroup& group) {
   const auto device = std::find_if(catalogue.devices.begin(), catalogue.devices.end(),
@@ -69,28 +69,18 @@ std::string number_text(const std::optional<double>& value) {
   return value ? fmt::format("{:g}", *value) : "";
 }
 
-Result<void> make_folder_of(const std::string& path) {
-  std::error_code failed;
-  const auto above = std::filesystem::path(path).parent_path();
-  std::filesystem::create_directories(above, failed);
-  if (!failed) return {};
-  return Failure(Error{above.string(), 0, "a folder that can be made", failed.message()});
-}
-
 }  // namespace
 
 Result<void> BidsExport::write(const std::string& path, std::string_view text) {
   const std::string whole = folder_ + "/" + path;
-  KA_TRY(make_folder_of(whole));
-  OutputFile out = KA_TRY(OutputFile::create(files_, whole, Overwrite::no));
-  KA_TRY(out.write(text));
-  return out.commit();
+  KA_TRY(make_folders(std::string(kinalign::folder(whole))));
+  return write_whole(files_, whole, text, Overwrite::no);
 }
 
 Result<BidsSidecars> BidsExport::write_motion(ExportedTake& take, std::size_t group,
                                               const std::string& path) {
   const TakeGroup& of = take.header().groups[group];
-  KA_TRY(make_folder_of(path));
+  KA_TRY(make_folders(std::string(kinalign::folder(path))));
   TextOut out = KA_TRY(TextOut::create(files_, path, Overwrite::no));
   BidsMotionWriter writer(source_of(of), out);
   const auto append = [&](const auto& rows) { return writer.append(rows); };

@@ -90,9 +90,7 @@ std::string streams_json(const TakeHeader& header) {
 }
 
 Result<void> write_streams_json(ExportedTake& take, FileSystem& files, const std::string& path) {
-  OutputFile out = KA_TRY(OutputFile::create(files, path, Overwrite::no));
-  KA_TRY(out.write(streams_json(take.header())));
-  return out.commit();
+  return write_whole(files, path, streams_json(take.header()), Overwrite::no);
 }
 
 }  // namespace kinalign

@@ -12,7 +12,7 @@ namespace kinalign {
 Result<void> write_stream_csv(ExportedTake& take, std::size_t group, FileSystem& files,
                               const std::string& path);
 
-/// What the tables lack: kinds, skeletons, nodes' gravity, units of every array.
+/// Facts that the tables lack: kinds, skeletons, nodes' gravity, units of every array.
 Result<void> write_streams_json(ExportedTake& take, FileSystem& files, const std::string& path);
 std::string streams_json(const TakeHeader& header);
 

@@ -47,12 +47,7 @@ struct Made {
 };
 
 Result<FilesMade> copy_take(FileSystem& files, const std::string& from, const std::string& to) {
-  OutputFile out = KA_TRY(OutputFile::create(files, to, Overwrite::no));
-  InputFile in = KA_TRY(InputFile::open(files, from));
-  for (auto piece = KA_TRY(in.next()); !piece.empty(); piece = KA_TRY(in.next())) {
-    KA_TRY(out.write(piece));
-  }
-  KA_TRY(out.commit());
+  KA_TRY(copy_file(files, from, to));
   return FilesMade{{to}, {}, {}};
 }
 
@@ -110,9 +105,7 @@ Result<FilesMade> Exporting::write(ExportedTake& take, const ExportTake& of,
     return shards_.add(take, {action == nullptr ? "" : action->class_id, of.part});
   }
   const std::string folder = folder_ + "/sub-" + of.name.subject;
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) return Failure(Error{folder, 0, "a folder that can be made", failed.message()});
+  KA_TRY(make_folders(folder));
   if (job_.format == "take") {
     const std::string to = folder_ + "/" + path_of(of.name, TakeFile::take);
     return with_summary(
@@ -135,10 +128,10 @@ Result<void> Exporting::finish() {
     const std::string toml(catalogue_file);
     std::set<std::string> used;
     for (const ExportTake& take : job_.takes) used.insert(take.name.subject);
-    OutputFile out = KA_TRY(OutputFile::create(files_, folder_ + "/" + toml, Overwrite::no));
-    KA_TRY(out.write(job_.release ? released_catalogue(catalogue_, used)
-                                  : KA_TRY(read_whole(files_, job_.folder + "/" + toml, longest))));
-    KA_TRY(out.commit());
+    const std::string text = job_.release
+                                 ? released_catalogue(catalogue_, used)
+                                 : KA_TRY(read_whole(files_, job_.folder + "/" + toml, longest));
+    KA_TRY(write_whole(files_, folder_ + "/" + toml, text, Overwrite::no));
   }
   return {};
 }

@@ -93,7 +93,7 @@ void look_at_devices(const std::vector<Described>& all, const char* table, Look&
   }
 }
 
-/// Who has a height or a weight of their own is known by it.
+/// A height or a weight that only one person has identifies that person.
 void look_at_measures(const std::vector<Subject>& people, const char* what,
                       std::optional<double> Subject::*measure, Look& look) {
   for (const Subject& person : people) {
@@ -108,7 +108,7 @@ void look_at_measures(const std::vector<Subject>& people, const char* what,
   }
 }
 
-/// What raw files are called afterwards, by their names before.
+/// The names that raw files get, by their names before.
 class HiddenNames {
  public:
   const std::string& of(const std::string& name, const std::string& stream, std::size_t number) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What in a data set could tell strangers who a person is.
+// Texts and stamps of a data set by which strangers could know a person.
 #pragma once
 
 #include "kinalign/core/error.h"

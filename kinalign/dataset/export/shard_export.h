@@ -11,7 +11,7 @@
 
 namespace kinalign {
 
-/// What a sample's JSON says of a take beside its streams.
+/// Members of a sample's JSON beside the take's streams.
 struct SampleFacts {
   std::string class_id, part;
 };

@@ -74,12 +74,8 @@ Named name_takes(Corpus& corpus, const Catalogue& has) {
 
 Result<void> write_catalogue(FileSystem& files, const std::string& folder,
                              const std::string& text) {
-  std::error_code fault;
-  fs::create_directories(folder, fault);
-  if (fault) return Failure(Error{folder, 0, "a folder that can be made", fault.message()});
-  OutputFile out = KA_TRY(OutputFile::create(files, catalogue_path(folder), Overwrite::yes));
-  KA_TRY(out.write(text));
-  return out.commit();
+  KA_TRY(make_folders(folder));
+  return write_whole(files, catalogue_path(folder), text, Overwrite::yes);
 }
 
 /// A unit for files that state theirs would be passed over by their reader.

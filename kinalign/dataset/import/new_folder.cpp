@@ -15,13 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<void> make_all_folders(const fs::path& path) {
-  std::error_code fault;
-  fs::create_directories(path, fault);
-  if (!fault) return {};
-  return Failure(Error{path.string(), 0, "a folder that can be made", fault.message()});
-}
-
 }  // namespace
 
 UnfinishedFolder::UnfinishedFolder(std::string path) : path_(std::move(path)) {
@@ -52,10 +45,10 @@ Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent
   std::error_code fault;
   fs::remove_all(beside, fault);  // of a run that was killed
   UnfinishedFolder unfinished(beside.string());
-  KA_TRY(make_all_folders(beside));
+  KA_TRY(make_folders(beside.string()));
   KA_TRY(fill([&](const std::string& file) -> Result<OutputFile> {
     const fs::path path = beside / file;
-    KA_TRY(make_all_folders(path.parent_path()));
+    KA_TRY(make_folders(path.parent_path().string()));
     return OutputFile::create(files, path.string(), Overwrite::no);
   }));
   fs::rename(beside, to, fault);

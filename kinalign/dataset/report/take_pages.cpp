@@ -131,9 +131,7 @@ Result<void> TakePages::remember() const {
 Result<PagesMade> TakePages::make(const DatasetIndex& index, const std::vector<std::string>& takes,
                                   std::size_t jobs, const MakePage& make_page,
                                   const Progress& progress) {
-  std::error_code fault;
-  fs::create_directories(place_, fault);
-  if (fault) return Failure(Error{place_, 0, "a folder that can be made", fault.message()});
+  KA_TRY(make_folders(place_));
   const std::vector<PageJob> to_make = KA_TRY(plan(index, takes));
   PagesMade out;
   out.up_to_date = takes.size() - to_make.size();

@@ -137,7 +137,7 @@ WindowLayout fixed_arrays(std::uint64_t windows, const std::string& manifest) {
   return out;
 }
 
-/// What stands in the windows of a take that lacks an array.
+/// The value that stands in the windows of a take that lacks an array.
 int value_of_absent(std::string_view array) {
   if (array == "valid") return 1;
   return array == "time_interval_ns" ? -1 : 0;

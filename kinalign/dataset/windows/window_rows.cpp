@@ -69,7 +69,7 @@ void blend(std::string_view name, const std::vector<Between>& rows, std::size_t 
   }
 }
 
-/// What is known of a row between two: no more than of the worse one.
+/// A row between two is known no better than the worse one.
 std::int64_t worse(std::int64_t a, std::int64_t b) {
   return std::min(a, b) < 0 ? -1 : std::max(a, b);
 }

@@ -195,7 +195,7 @@ std::string text_of(const WindowsMade& made) {
   return out.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Of the child's words, which are ours.
+/// Reads what text_of() wrote in the child process.
 WindowsMade made_from(const std::string& text) {
   const Json json = Json::parse(text);
   WindowsMade made{json.at("windows").get<std::vector<std::uint64_t>>(),

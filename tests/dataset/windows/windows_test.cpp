@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rows of a window hold, against the take's. The file itself is read by NumPy in
+// Rows of a window against the take's. The file itself is read by NumPy in
 // tests/apps/dataset_windows_check.py.
 #include "tests/folder.h"
 #include "tests/formats/take/take_samples.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/kinalign/dataset/counts_text.h"
+#include "apps/kinalign/text/counts_text.h"
 
 #include <fmt/format.h>
 
