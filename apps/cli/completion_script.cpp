@@ -151,6 +151,24 @@ std::string zsh_script(const std::vector<Verb>& verbs) {
       list, groups, cases);
 }
 
+/// The lines that complete one verb's options and its places with a fixed set of words, after
+/// `within`.
+std::string fish_options(const std::string& within, const Usage& usage, const Fields& fields) {
+  std::string text;
+  for (const Field& field : fields) {
+    text += fmt::format("{} -l {}", within, flag_of(field.name).substr(2));
+    const std::string values = joined(values_of(field));
+    if (!field.choices.empty()) text += " -x";
+    if (field.choices.empty() && !is_switch(field)) text += " -r";
+    if (!values.empty()) text += fmt::format(" -a '{}'", values);
+    text += fmt::format(" -d '{}'\n", quotable(field.meaning));
+  }
+  for (const Positional& place : usage.positionals) {
+    if (!place.choices.empty()) text += fmt::format("{} -a '{}'\n", within, joined(place.choices));
+  }
+  return text;
+}
+
 std::string fish_script(const std::vector<Verb>& verbs) {
   std::string text = "# fish completion of kinalign\n";
   for (const std::string& group : groups_of(verbs)) {
@@ -175,18 +193,7 @@ std::string fish_script(const std::vector<Verb>& verbs) {
           "__fish_seen_subcommand_from {}'",
           group, word);
     }
-    for (const Field& field : fields) {
-      text += fmt::format("{} -l {}", within, flag_of(field.name).substr(2));
-      const std::string values = joined(values_of(field));
-      if (!field.choices.empty()) text += " -x";
-      if (field.choices.empty() && !is_switch(field)) text += " -r";
-      if (!values.empty()) text += fmt::format(" -a '{}'", values);
-      text += fmt::format(" -d '{}'\n", quotable(field.meaning));
-    }
-    for (const Positional& place : usage.positionals) {
-      if (!place.choices.empty())
-        text += fmt::format("{} -a '{}'\n", within, joined(place.choices));
-    }
+    text += fish_options(within, usage, fields);
   });
   return text;
 }

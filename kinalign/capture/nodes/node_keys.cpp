@@ -60,7 +60,7 @@ Result<void> check_mode(int fd, const std::string& path) {
 
 /// Of a file that may not be read: whose it is, where that may be known.
 std::string forbidden(const std::string& path) {
-  const std::string text = "no permission to read it";
+  std::string text = "no permission to read it";
   struct stat found {};
   if (::stat(path.c_str(), &found) != 0) return text;
   const passwd* owner = ::getpwuid(found.st_uid);

@@ -138,6 +138,8 @@ struct TakeReader::State {
   Result<void> read_words(const hdf5::Checked& checked);
   Result<void> check_format(const hdf5::Checked& checked) const;
   Result<void> read_header(const TakeParts& parts);
+  Result<void> find_stream(const std::string& name, const TakeParts& parts,
+                           std::uint64_t& row_bytes);
   Result<void> find_columns(hid_t group, const TakeGroup& what, const TakeParts& parts,
                             std::uint64_t& row_bytes);
   Result<void> read_stamps(std::uint64_t first, std::uint64_t count, std::vector<Time>& stamps);
@@ -198,17 +200,23 @@ Result<void> TakeReader::State::read_header(const TakeParts& parts) {
   time = KA_TRY(checked.find(root, "time_ns", Stored::int64, {header.frames}));
   std::uint64_t row_bytes = 8;
   for (const std::string& name : KA_TRY(checked.text_attributes(root, "streams"))) {
-    if (!is_wanted(parts.streams, name)) continue;
-    const Handle group(H5Gopen2(root, name.c_str(), H5P_DEFAULT), H5Gclose);
-    if (!group.good()) return hdf5::failure(bytes, "a group for each stream");
-    header.groups.push_back(KA_TRY(read_group(checked, group.id(), name)));
-    TakeGroup& what = header.groups.back();
-    KA_TRY(find_columns(group.id(), what, parts, row_bytes));
-    if (!std::holds_alternative<ImuGroup>(what.kind)) what.space = space_of(checked, group.id());
+    if (is_wanted(parts.streams, name)) KA_TRY(find_stream(name, parts, row_bytes));
   }
   constexpr std::uint64_t slab_bytes = std::uint64_t{16} << 20;
   slab_rows = std::clamp<std::uint64_t>(slab_bytes / row_bytes, 1, 4096);
   return validate(header);
+}
+
+Result<void> TakeReader::State::find_stream(const std::string& name, const TakeParts& parts,
+                                            std::uint64_t& row_bytes) {
+  const Handle group(H5Gopen2(file.id(), name.c_str(), H5P_DEFAULT), H5Gclose);
+  if (!group.good()) return hdf5::failure(bytes, "a group for each stream");
+  const hdf5::Checked checked(bytes);
+  header.groups.push_back(KA_TRY(read_group(checked, group.id(), name)));
+  TakeGroup& what = header.groups.back();
+  KA_TRY(find_columns(group.id(), what, parts, row_bytes));
+  if (!std::holds_alternative<ImuGroup>(what.kind)) what.space = space_of(checked, group.id());
+  return {};
 }
 
 Result<void> TakeReader::State::find_columns(hid_t group, const TakeGroup& what,
