@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A network as a list of layers: plain data that a model's file holds as JSON, that `infer` runs and
-// that `learn` trains. Values between layers are [T,C]: T frames of C channels.
+// A network as a list of layers: plain data that a model's file holds as JSON, that `infer` runs
+// and that `learn` trains. Values between layers are [T,C]: T frames of C channels.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +37,8 @@ enum class LayerKind : std::uint8_t {
 ///   linear      path.weight [out,in], path.bias [out]
 ///   conv        path.weight [out,in,kernel], path.bias [out]
 ///   lstm, gru   path.weight_ih_l0 [G out,in], path.weight_hh_l0 [G out,out], path.bias_ih_l0,
-///               path.bias_hh_l0 [G out]; G 4, 3; and with _reverse behind the names if bidirectional
+///               path.bias_hh_l0 [G out]; G 4, 3; and with _reverse behind the names if
+///               bidirectional
 ///   layer_norm  path.weight [in], path.bias [in]
 struct Layer {
   LayerKind kind = LayerKind::linear;
@@ -49,7 +50,8 @@ struct Layer {
   double slope = 0.01;         // leaky_relu
   double rate = 0.0;           // dropout: share of values set to 0
   std::size_t begin = 0;       // slice
-  std::vector<std::vector<Layer>> branches;  // sum, product, concat; an empty one is the identity
+  std::vector<std::vector<Layer>> branches =
+      {};  // sum, product, concat; an empty one is the identity
 
   bool operator==(const Layer&) const = default;
 };

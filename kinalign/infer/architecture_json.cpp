@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/infer/architecture_json.h"
+
+#include "kinalign/infer/layer_kinds.h"
+#include "kinalign/infer/shapes.h"
+#include "kinalign/infer/strict_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// ---- to JSON
+
+nlohmann::ordered_json layers_to_json(const std::vector<Layer>& layers) {
+  auto out = nlohmann::ordered_json::array();
+  for (const Layer& layer : layers) {
+    nlohmann::ordered_json one;
+    one["kind"] = row_of(layer.kind).name;
+    if (uses(layer.kind, member_out)) one["out"] = layer.out;
+    if (uses(layer.kind, member_kernel)) one["kernel"] = layer.kernel;
+    if (uses(layer.kind, member_dilation)) one["dilation"] = layer.dilation;
+    if (uses(layer.kind, member_causal)) one["causal"] = layer.causal;
+    if (uses(layer.kind, member_bidirectional)) one["bidirectional"] = layer.bidirectional;
+    if (uses(layer.kind, member_slope)) one["slope"] = layer.slope;
+    if (uses(layer.kind, member_rate)) one["rate"] = layer.rate;
+    if (uses(layer.kind, member_begin)) one["begin"] = layer.begin;
+    if (uses(layer.kind, member_branches)) {
+      one["branches"] = nlohmann::ordered_json::array();
+      for (const auto& branch : layer.branches) one["branches"].push_back(layers_to_json(branch));
+    }
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+// ---- from JSON; `at` names the layer, for messages
+
+Failure wrong(const std::string& at, const std::string& expected, const std::string& found) {
+  return Failure(Error{"", 0, expected + " in " + at, found});
+}
+
+Failure wrong_type(const std::string& at, const std::string& expected, const Json& found) {
+  return wrong(at, expected, std::string("a JSON ") + found.type_name());
+}
+
+Result<std::size_t> count_of(const Json& json, const std::string& key, const std::string& at) {
+  if (json.is_number_unsigned()) return json.get<std::size_t>();
+  return wrong_type(at, "a whole number as " + key, json);
+}
+
+Result<double> number_of(const Json& json, const std::string& key, const std::string& at) {
+  if (json.is_number()) return json.get<double>();
+  return wrong_type(at, "a number as " + key, json);
+}
+
+Result<bool> truth_of(const Json& json, const std::string& key, const std::string& at) {
+  if (json.is_boolean()) return json.get<bool>();
+  return wrong_type(at, "true or false as " + key, json);
+}
+
+/// Reads layers and counts them, so that a hostile text ends early.
+class Reader {
+ public:
+  Result<std::vector<Layer>> layers(const Json& json, const std::string& path) {
+    const std::string at = path.empty() ? "the network" : "layer " + path;
+    if (!json.is_array()) return wrong_type(at, "an array of layers", json);
+    std::vector<Layer> out;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      if (++count_ > most_layers) {
+        return wrong(at, "at most " + std::to_string(most_layers) + " layers", "more");
+      }
+      out.push_back(KA_TRY(layer(json[i], path_below(path, i))));
+    }
+    return out;
+  }
+
+ private:
+  Result<Layer> layer(const Json& json, const std::string& path) {
+    const std::string at = "layer " + path;
+    if (!json.is_object()) return wrong_type(at, "a JSON object", json);
+    if (!json.contains("kind") || !json["kind"].is_string()) return wrong(at, "a kind", "none");
+    const auto kind = json["kind"].get<std::string>();
+    const auto* const row = std::find_if(kind_rows.begin(), kind_rows.end(),
+                                         [&](const KindRow& r) { return r.name == kind; });
+    if (row == kind_rows.end()) return wrong(at, "a known kind", "\"" + shown(kind) + "\"");
+    Layer out;
+    out.kind = row->kind;
+    for (const auto& [key, value] : json.items()) {
+      if (key != "kind") KA_TRY(member(out, key, value, path));
+    }
+    if (uses(out.kind, member_out) && !json.contains("out")) return wrong(at, "out", "none");
+    if (uses(out.kind, member_branches) && !json.contains("branches")) {
+      return wrong(at, "branches", "none");
+    }
+    return out;
+  }
+
+  Result<void> member(Layer& layer, const std::string& key, const Json& json,
+                      const std::string& path) {
+    const std::string at = "layer " + path;
+    const auto is = [&](const char* name, LayerMember member) {
+      return key == name && uses(layer.kind, member);
+    };
+    if (is("out", member_out)) {
+      layer.out = KA_TRY(count_of(json, key, at));
+    } else if (is("kernel", member_kernel)) {
+      layer.kernel = KA_TRY(count_of(json, key, at));
+    } else if (is("dilation", member_dilation)) {
+      layer.dilation = KA_TRY(count_of(json, key, at));
+    } else if (is("causal", member_causal)) {
+      layer.causal = KA_TRY(truth_of(json, key, at));
+    } else if (is("bidirectional", member_bidirectional)) {
+      layer.bidirectional = KA_TRY(truth_of(json, key, at));
+    } else if (is("slope", member_slope)) {
+      layer.slope = KA_TRY(number_of(json, key, at));
+    } else if (is("rate", member_rate)) {
+      layer.rate = KA_TRY(number_of(json, key, at));
+    } else if (is("begin", member_begin)) {
+      layer.begin = KA_TRY(count_of(json, key, at));
+    } else if (is("branches", member_branches)) {
+      layer.branches = KA_TRY(branches(json, path));
+    } else {
+      return wrong(at, "members of " + std::string(row_of(layer.kind).name),
+                   "\"" + shown(key) + "\"");
+    }
+    return {};
+  }
+
+  Result<std::vector<std::vector<Layer>>> branches(const Json& json, const std::string& path) {
+    const std::string at = "layer " + path;
+    if (!json.is_array()) return wrong_type(at, "an array of branches", json);
+    if (json.size() > most_layers) {
+      return wrong(at, "at most " + std::to_string(most_layers) + " branches",
+                   std::to_string(json.size()));
+    }
+    std::vector<std::vector<Layer>> out;
+    for (std::size_t b = 0; b < json.size(); ++b) {
+      out.push_back(KA_TRY(layers(json[b], path_below(path, b))));
+    }
+    return out;
+  }
+
+  std::size_t count_ = 0;
+};
+
+Result<Architecture> architecture_of(const Json& json) {
+  if (!json.is_object()) return wrong_type("the text", "a network as JSON object", json);
+  Architecture out;
+  for (const auto& [key, value] : json.items()) {
+    if (key == "inputs") {
+      out.inputs = KA_TRY(count_of(value, key, "the network"));
+    } else if (key == "layers") {
+      out.layers = KA_TRY(Reader{}.layers(value, ""));
+    } else {
+      return wrong("the network", "inputs and layers", "\"" + shown(key) + "\"");
+    }
+  }
+  if (!json.contains("layers")) return wrong("the network", "layers", "none");
+  KA_TRY(validate(out));
+  return out;
+}
+
+}  // namespace
+
+std::string architecture_json(const Architecture& architecture) {
+  nlohmann::ordered_json out;
+  out["inputs"] = architecture.inputs;
+  out["layers"] = layers_to_json(architecture.layers);
+  return out.dump();
+}
+
+Result<Architecture> parse_architecture_json(std::string_view text, const std::string& name) {
+  auto out = architecture_of(KA_TRY(parse_strict_json(text, name)));
+  if (!out) out.error().file = name;
+  return out;
+}
+
+}  // namespace kinalign

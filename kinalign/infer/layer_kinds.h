@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kinds of layer in a table: the name of each in a file, and the members of Layer that it uses.
+#pragma once
+
+#include "kinalign/infer/architecture.h"
+
+#include <array>
+#include <string_view>
+
+namespace kinalign {
+
+/// Members of Layer, as bits of KindRow::members.
+enum LayerMember : unsigned {
+  member_out = 1U,
+  member_kernel = 2U,
+  member_dilation = 4U,
+  member_causal = 8U,
+  member_bidirectional = 16U,
+  member_slope = 32U,
+  member_rate = 64U,
+  member_begin = 128U,
+  member_branches = 256U,
+};
+
+struct KindRow {
+  LayerKind kind;
+  std::string_view name;
+  unsigned members;
+};
+
+inline constexpr std::array<KindRow, 17> kind_rows{{
+    {LayerKind::linear, "linear", member_out},
+    {LayerKind::conv, "conv", member_out | member_kernel | member_dilation | member_causal},
+    {LayerKind::lstm, "lstm", member_out | member_bidirectional},
+    {LayerKind::gru, "gru", member_out | member_bidirectional},
+    {LayerKind::layer_norm, "layer_norm", 0},
+    {LayerKind::relu, "relu", 0},
+    {LayerKind::leaky_relu, "leaky_relu", member_slope},
+    {LayerKind::gelu, "gelu", 0},
+    {LayerKind::tanh, "tanh", 0},
+    {LayerKind::sigmoid, "sigmoid", 0},
+    {LayerKind::dropout, "dropout", member_rate},
+    {LayerKind::slice, "slice", member_out | member_begin},
+    {LayerKind::max_pool, "max_pool", 0},
+    {LayerKind::unpool, "unpool", 0},
+    {LayerKind::sum, "sum", member_branches},
+    {LayerKind::product, "product", member_branches},
+    {LayerKind::concat, "concat", member_branches},
+}};
+
+constexpr const KindRow& row_of(LayerKind kind) {
+  return kind_rows[static_cast<std::size_t>(kind)];
+}
+
+constexpr bool uses(LayerKind kind, LayerMember member) {
+  return (row_of(kind).members & member) != 0;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// JSON that a file of ours holds: no duplicate keys, no deep nesting.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+inline constexpr int most_json_depth = 64;
+
+/// Fails where `text` is no JSON, nests too deeply or gives a key of an object twice. `name`
+/// appears in messages only.
+Result<nlohmann::json> parse_strict_json(std::string_view text, const std::string& name);
+
+}  // namespace kinalign
