@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled twice: CMakeLists.txt sets KA_KERNELS to the name of the build. The file includes no
+// header with inline functions, because the linker would merge those of both builds and a processor
+// without AVX2 could then meet AVX2 code.
+#include "kinalign/infer/kernels.h"
+
+namespace kinalign::KA_KERNELS {
+
+extern const Kernels kernels;
+
+namespace {
+
+using std::size_t;
+
+#ifdef __AVX2__
+constexpr size_t lanes = 8;
+constexpr size_t tile_rows = 6;    // 6 x 2 sums stay in 12 of 16 registers
+constexpr size_t tile_panels = 4;  // of one frame alone: 4 x 2 sums
+#else
+constexpr size_t lanes = 4;
+constexpr size_t tile_rows = 2;
+constexpr size_t tile_panels = 2;
+#endif
+constexpr size_t row_block = 96;  // frames that stay in the cache while all panels pass
+
+constexpr size_t panel_vectors = panel_width / lanes;
+
+// Unaligned vectors of GCC and Clang. They may alias floats.
+using Vector [[gnu::vector_size(lanes * sizeof(float)), gnu::aligned(4), gnu::may_alias]] = float;
+
+#define KA_INLINE inline __attribute__((always_inline))
+
+KA_INLINE Vector& at(float* values) { return *reinterpret_cast<Vector*>(values); }
+KA_INLINE const Vector& at(const float* values) { return *reinterpret_cast<const Vector*>(values); }
+
+// ---- products
+
+/// Rows frames by Panels panels of outputs, beginning at frame t and panel `first`.
+template <size_t Rows, size_t Panels>
+KA_INLINE void sum_tile(const Product& p, size_t t, size_t first, float* sums, size_t stride) {
+  constexpr size_t vectors = Panels * panel_vectors;
+  const size_t depth = p.taps * p.channels;
+  const float* weights[Panels];
+  for (size_t j = 0; j < Panels; ++j) weights[j] = p.weights + (first + j) * depth * panel_width;
+  Vector sum[Rows][vectors];
+#pragma GCC unroll 6
+  for (size_t r = 0; r < Rows; ++r) {
+#pragma GCC unroll 16
+    for (size_t j = 0; j < vectors; ++j) sum[r][j] = at(sums + r * stride + j * lanes);
+  }
+  for (size_t k = 0; k < p.taps; ++k) {
+    const float* in = p.in + t * p.in_stride + k * p.tap_stride;
+    for (size_t c = 0; c < p.channels; ++c) {
+      Vector w[vectors];
+#pragma GCC unroll 16
+      for (size_t j = 0; j < vectors; ++j) {
+        w[j] = at(weights[j / panel_vectors] + (j % panel_vectors) * lanes);
+      }
+#pragma GCC unroll 6
+      for (size_t r = 0; r < Rows; ++r) {
+        const float x = in[r * p.in_stride + c];
+#pragma GCC unroll 16
+        for (size_t j = 0; j < vectors; ++j) sum[r][j] += x * w[j];
+      }
+#pragma GCC unroll 4
+      for (size_t j = 0; j < Panels; ++j) weights[j] += panel_width;
+    }
+  }
+#pragma GCC unroll 6
+  for (size_t r = 0; r < Rows; ++r) {
+#pragma GCC unroll 16
+    for (size_t j = 0; j < vectors; ++j) at(sums + r * stride + j * lanes) = sum[r][j];
+  }
+}
+
+/// The same with the start values and with outputs that end within the last panel.
+template <size_t Rows, size_t Panels>
+void tile(const Product& p, size_t t, size_t first) {
+  constexpr size_t width = Panels * panel_width;
+  const size_t begin = first * panel_width;
+  const size_t left = p.outputs - begin;
+  const size_t n = left < width ? left : width;
+  float* out = p.out + t * p.out_stride + begin;
+  float sums[Rows * width] = {};
+  for (size_t r = 0; r < Rows; ++r) {
+    const float* start = p.bias != nullptr ? p.bias + begin : out + r * p.out_stride;
+    for (size_t i = 0; i < n; ++i) sums[r * width + i] = start[i];
+  }
+  sum_tile<Rows, Panels>(p, t, first, sums, width);
+  for (size_t r = 0; r < Rows; ++r) {
+    for (size_t i = 0; i < n; ++i) out[r * p.out_stride + i] = sums[r * width + i];
+  }
+}
+
+/// `rows` frames, fewer than a full tile, of one panel.
+template <size_t Rows>
+void last_rows(const Product& p, size_t t, size_t panel, size_t rows) {
+  if constexpr (Rows > 0) {
+    if (rows == Rows) {
+      tile<Rows, 1>(p, t, panel);
+    } else {
+      last_rows<Rows - 1>(p, t, panel, rows);
+    }
+  }
+}
+
+void multiply_block(const Product& p, size_t from, size_t until) {
+  for (size_t panel = 0; panel * panel_width < p.outputs; ++panel) {
+    size_t t = from;
+    for (; t + tile_rows <= until; t += tile_rows) tile<tile_rows, 1>(p, t, panel);
+    last_rows<tile_rows - 1>(p, t, panel, until - t);
+  }
+}
+
+void multiply_frame(const Product& p) {
+  const size_t panels = (p.outputs + panel_width - 1) / panel_width;
+  size_t panel = 0;
+  for (; panel + tile_panels <= panels; panel += tile_panels) tile<1, tile_panels>(p, 0, panel);
+  for (; panel < panels; ++panel) tile<1, 1>(p, 0, panel);
+}
+
+void multiply(const Product& p) {
+  if (p.frames == 1) return multiply_frame(p);
+  for (size_t from = 0; from < p.frames; from += row_block) {
+    const size_t until = p.frames - from < row_block ? p.frames : from + row_block;
+    multiply_block(p, from, until);
+  }
+}
+
+// ---- functions of one value, written so that the compiler makes vectors of their loops
+
+/// e^x, relative error below 2e-7. Method and coefficients: Cephes, expf.
+KA_INLINE float exp_of(float x) {
+  x = x < -87.0F ? -87.0F : x;  // NaN stays NaN
+  x = x > 88.0F ? 88.0F : x;
+  // Adding 1.5 2^23 leaves the nearest whole number in the lowest bits.
+  const float shifted = x * 1.44269504F + 12582912.0F;
+  const float whole = shifted - 12582912.0F;
+  const float r = (x - whole * 0.693359375F) + whole * 2.12194440e-4F;
+  float p = 1.9875691500e-4F;
+  p = p * r + 1.3981999507e-3F;
+  p = p * r + 8.3334519073e-3F;
+  p = p * r + 4.1665795894e-2F;
+  p = p * r + 1.6666665459e-1F;
+  p = p * r + 5.0000001201e-1F;
+  p = p * r * r + r + 1.0F;
+  const unsigned bits = __builtin_bit_cast(unsigned, shifted) + 127U;
+  return p * __builtin_bit_cast(float, bits << 23U);
+}
+
+KA_INLINE float magnitude(float x) { return x < 0.0F ? -x : x; }
+
+KA_INLINE float sigmoid_of(float x) { return 1.0F / (1.0F + exp_of(-x)); }
+
+/// Cephes, tanhf: a polynomial near 0, where the difference of two near numbers would lose digits.
+KA_INLINE float tanh_of(float x) {
+  const float z = x * x;
+  float p = -5.70498872745e-3F;
+  p = p * z + 2.06390887954e-2F;
+  p = p * z - 5.37397155531e-2F;
+  p = p * z + 1.33314422036e-1F;
+  p = p * z - 3.33332819422e-1F;
+  const float near = p * z * x + x;
+  const float far = 1.0F - 2.0F / (exp_of(2.0F * x) + 1.0F);
+  return magnitude(x) < 0.625F ? near : far;
+}
+
+/// x/2 (1 + erf(x/sqrt 2)). Abramowitz and Stegun 7.1.26 gives erfc to 1.5e-7.
+KA_INLINE float gelu_of(float x) {
+  const float z = magnitude(x) * 0.70710678F;
+  const float t = 1.0F / (1.0F + 0.3275911F * z);
+  float p = 1.061405429F;
+  p = p * t - 1.453152027F;
+  p = p * t + 1.421413741F;
+  p = p * t - 0.284496736F;
+  p = p * t + 0.254829592F;
+  const float erfc = p * t * exp_of(-z * z);
+  return 0.5F * x * (x < 0.0F ? erfc : 2.0F - erfc);
+}
+
+void relu(float* values, size_t n) {
+  for (size_t i = 0; i < n; ++i) values[i] = values[i] < 0.0F ? 0.0F : values[i];
+}
+
+void leaky_relu(float* values, size_t n, float slope) {
+  for (size_t i = 0; i < n; ++i) values[i] = values[i] < 0.0F ? values[i] * slope : values[i];
+}
+
+void gelu(float* values, size_t n) {
+  for (size_t i = 0; i < n; ++i) values[i] = gelu_of(values[i]);
+}
+
+void tanh(float* values, size_t n) {
+  for (size_t i = 0; i < n; ++i) values[i] = tanh_of(values[i]);
+}
+
+void sigmoid(float* values, size_t n) {
+  for (size_t i = 0; i < n; ++i) values[i] = sigmoid_of(values[i]);
+}
+
+void add(float* __restrict values, const float* __restrict more, size_t n) {
+  for (size_t i = 0; i < n; ++i) values[i] += more[i];
+}
+
+void scale_by(float* __restrict values, const float* __restrict factors, size_t n) {
+  for (size_t i = 0; i < n; ++i) values[i] *= factors[i];
+}
+
+// ---- a frame's sums
+
+/// Sum of (value - mean)^Power, in `lanes` partial sums and their rest.
+template <int Power>
+KA_INLINE float sum_of(const float* values, size_t n, float mean) {
+  Vector sums = {};
+  size_t i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    const Vector x = at(values + i) - mean;
+    sums += Power == 1 ? x : x * x;
+  }
+  float sum = 0.0F;
+  for (; i < n; ++i) {
+    const float x = values[i] - mean;
+    sum += Power == 1 ? x : x * x;
+  }
+  for (size_t j = 0; j < lanes; ++j) sum += sums[j];
+  return sum;
+}
+
+void layer_norm(const float* in, float* out, const float* weight, const float* bias,
+                size_t channels) {
+  const float n = static_cast<float>(channels);
+  const float mean = sum_of<1>(in, channels, 0.0F) / n;
+  const float variance = sum_of<2>(in, channels, mean) / n;
+  const float scale = 1.0F / __builtin_sqrtf(variance + 1e-5F);
+  for (size_t i = 0; i < channels; ++i) out[i] = (in[i] - mean) * scale * weight[i] + bias[i];
+}
+
+// ---- gates
+
+void lstm_gates(const float* __restrict gates, float* __restrict cell, float* __restrict out,
+                size_t units) {
+  for (size_t u = 0; u < units; ++u) {
+    const float i = sigmoid_of(gates[u]), f = sigmoid_of(gates[units + u]);
+    const float g = tanh_of(gates[2 * units + u]), o = sigmoid_of(gates[3 * units + u]);
+    const float c = f * cell[u] + i * g;
+    cell[u] = c;
+    out[u] = o * tanh_of(c);
+  }
+}
+
+/// `previous` and `out` are the same or apart, so each iteration stands alone.
+void gru_gates(const float* from_input, const float* from_state, const float* previous, float* out,
+               size_t units) {
+#pragma GCC ivdep
+  for (size_t u = 0; u < units; ++u) {
+    const float r = sigmoid_of(from_input[u] + from_state[u]);
+    const float z = sigmoid_of(from_input[units + u] + from_state[units + u]);
+    const float n = tanh_of(from_input[2 * units + u] + r * from_state[2 * units + u]);
+    out[u] = (1.0F - z) * n + z * previous[u];
+  }
+}
+
+#define KA_TEXT(name) #name
+#define KA_NAME(name) KA_TEXT(name)
+
+}  // namespace
+
+const Kernels kernels{
+    KA_NAME(KA_KERNELS), multiply,   relu,     leaky_relu, gelu, tanh, sigmoid, add, scale_by,
+    layer_norm,          lstm_gates, gru_gates};
+
+}  // namespace kinalign::KA_KERNELS

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// A network that runs over whole sequences. OnlineNetwork (online.h) runs it frame by frame.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/infer/architecture.h"
+#include "kinalign/infer/kernels.h"
+#include "kinalign/infer/safetensors.h"
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct PreparedNetwork;
+
+/// Memory for values between layers. The caller keeps one for each thread and hands it to every
+/// run: a run over as many frames as an earlier one allocates nothing.
+class Workspace {
+ public:
+  /// The index of a free block of at least `values` values.
+  std::size_t take(std::size_t values);
+  void give_back(std::size_t block) { blocks_[block].taken = false; }
+  float* values(std::size_t block) { return blocks_[block].values.data(); }
+  void give_all_back();
+
+  std::vector<std::size_t> frames_before_pools;  // of max_pools whose unpool is still to come
+
+ private:
+  struct Block {
+    std::vector<float> values;
+    bool taken = false;
+  };
+  std::vector<Block> blocks_;
+};
+
+class Network {
+ public:
+  /// Fails where the architecture is not valid (shapes.h), where a tensor `prefix` + name is
+  /// missing, has another shape or a value that is not finite. Further tensors are ignored.
+  static Result<Network> make(const Architecture& architecture,
+                              const std::map<std::string, Tensor>& tensors,
+                              const std::string& prefix = "",
+                              const Kernels& kernels = best_kernels());
+
+  Network(Network&&) noexcept;
+  Network& operator=(Network&&) noexcept;
+  Network(const Network&) = delete;
+  Network& operator=(const Network&) = delete;
+  ~Network();
+
+  const Architecture& architecture() const;
+  std::size_t inputs() const;
+  std::size_t outputs() const;
+
+  /// Computes `out` [T,outputs] from `in` [T,inputs], T = `frames`, any number. Each max_pool
+  /// without an unpool halves the frames of `out`, rounded up. The result of a frame does not
+  /// depend on where it stands in the sequence or on `workspace`.
+  void run(std::span<const float> in, std::size_t frames, Workspace& workspace,
+           std::vector<float>& out) const;
+
+ private:
+  friend class OnlineNetwork;
+  explicit Network(std::unique_ptr<const PreparedNetwork> prepared);
+
+  std::unique_ptr<const PreparedNetwork> prepared_;
+};
+
+}  // namespace kinalign

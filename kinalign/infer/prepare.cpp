@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/infer/prepare.h"
+
+#include "kinalign/infer/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+using Tensors = std::map<std::string, Tensor>;
+
+std::string text_of(const std::vector<std::size_t>& shape) {
+  std::string out = "[";
+  for (const std::size_t n : shape) out += (out.size() > 1 ? "," : "") + std::to_string(n);
+  return out + "]";
+}
+
+Result<void> check_tensors(const Architecture& architecture, const Tensors& tensors,
+                           const std::string& prefix) {
+  for (const Parameter& needed : parameters(architecture)) {
+    const std::string name = prefix + needed.name;
+    const auto found = tensors.find(name);
+    if (found == tensors.end()) {
+      return Failure(Error{"", 0, "tensor " + shown(name) + " " + text_of(needed.shape), "none"});
+    }
+    const Tensor& tensor = found->second;
+    if (tensor.shape != needed.shape) {
+      return Failure(Error{"", 0, "tensor " + shown(name) + " " + text_of(needed.shape),
+                           text_of(tensor.shape)});
+    }
+    const auto finite = [](float value) { return std::isfinite(value); };
+    if (!std::all_of(tensor.values.begin(), tensor.values.end(), finite)) {
+      return Failure(Error{"", 0, "finite numbers in tensor " + shown(name), "others"});
+    }
+  }
+  return {};
+}
+
+std::size_t padded(std::size_t outputs) {
+  return (outputs + panel_width - 1) / panel_width * panel_width;
+}
+
+/// From [outputs,channels,taps] to panels.
+PackedWeights pack(const Tensor& tensor, const Tensor* bias) {
+  PackedWeights out;
+  out.outputs = tensor.shape[0];
+  out.channels = tensor.shape[1];
+  out.taps = tensor.shape.size() == 3 ? tensor.shape[2] : 1;
+  const std::size_t depth = out.taps * out.channels;
+  out.weights.assign(padded(out.outputs) * depth, 0.0F);
+  for (std::size_t n = 0; n < out.outputs; ++n) {
+    const std::size_t panel = n / panel_width * depth * panel_width + n % panel_width;
+    for (std::size_t c = 0; c < out.channels; ++c) {
+      for (std::size_t k = 0; k < out.taps; ++k) {
+        out.weights[panel + (k * out.channels + c) * panel_width] =
+            tensor.values[n * depth + c * out.taps + k];
+      }
+    }
+  }
+  if (bias != nullptr) {
+    out.bias.assign(padded(out.outputs), 0.0F);
+    std::copy(bias->values.begin(), bias->values.end(), out.bias.begin());
+  }
+  return out;
+}
+
+/// Packs one layer after the other. All tensors are there.
+class Packer {
+ public:
+  Packer(const Tensors& tensors, std::string prefix)
+      : tensors_(tensors), prefix_(std::move(prefix)) {}
+
+  std::vector<PreparedLayer> list(const std::vector<Layer>& layers, std::size_t inputs,
+                                  const std::string& path) const {
+    std::vector<PreparedLayer> out;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      out.push_back(one(layers[i], inputs, path_below(path, i)));
+      inputs = out.back().outputs;
+    }
+    return out;
+  }
+
+ private:
+  PreparedLayer one(const Layer& layer, std::size_t inputs, const std::string& path) const {
+    PreparedLayer out;
+    out.layer = layer;
+    out.layer.branches.clear();
+    out.path = path;
+    out.inputs = inputs;
+    out.outputs = outputs(layer, inputs);
+    switch (layer.kind) {
+      case LayerKind::linear:
+      case LayerKind::conv:
+        out.weights = pack(tensor(path, "weight"), &tensor(path, "bias"));
+        break;
+      case LayerKind::lstm:
+      case LayerKind::gru:
+        out.directions[0] = direction(layer, path, "_l0");
+        if (layer.bidirectional) out.directions[1] = direction(layer, path, "_l0_reverse");
+        break;
+      case LayerKind::layer_norm:
+        out.norm_weight.assign(tensor(path, "weight").values.begin(),
+                               tensor(path, "weight").values.end());
+        out.norm_bias.assign(tensor(path, "bias").values.begin(),
+                             tensor(path, "bias").values.end());
+        break;
+      default:
+        for (std::size_t b = 0; b < layer.branches.size(); ++b) {
+          out.branches.push_back(list(layer.branches[b], inputs, path_below(path, b)));
+        }
+    }
+    return out;
+  }
+
+  DirectionWeights direction(const Layer& layer, const std::string& path,
+                             const std::string& ending) const {
+    const Tensor& bias_hh = tensor(path, "bias_hh" + ending);
+    DirectionWeights out;
+    out.from_input = pack(tensor(path, "weight_ih" + ending), &tensor(path, "bias_ih" + ending));
+    const bool lstm = layer.kind == LayerKind::lstm;
+    out.from_state = pack(tensor(path, "weight_hh" + ending), lstm ? nullptr : &bias_hh);
+    for (std::size_t i = 0; lstm && i < bias_hh.values.size(); ++i) {
+      out.from_input.bias[i] += bias_hh.values[i];
+    }
+    return out;
+  }
+
+  const Tensor& tensor(const std::string& path, const std::string& what) const {
+    return tensors_.at(prefix_ + path + "." + what);
+  }
+
+  const Tensors& tensors_;
+  std::string prefix_;
+};
+
+}  // namespace
+
+Product PackedWeights::product() const {
+  Product out;
+  out.taps = taps;
+  out.channels = channels;
+  out.weights = weights.data();
+  out.bias = bias.empty() ? nullptr : bias.data();
+  out.outputs = outputs;
+  return out;
+}
+
+Result<PreparedNetwork> prepare(const Architecture& architecture, const Tensors& tensors,
+                                const std::string& prefix) {
+  KA_TRY(validate(architecture));
+  KA_TRY(check_tensors(architecture, tensors, prefix));
+  PreparedNetwork out;
+  out.architecture = architecture;
+  out.outputs = outputs(architecture);
+  out.layers = Packer(tensors, prefix).list(architecture.layers, architecture.inputs, "");
+  return out;
+}
+
+}  // namespace kinalign

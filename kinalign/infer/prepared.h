@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Layers with their weights in the order in which the kernels read them.
+#pragma once
+
+#include "kinalign/infer/architecture.h"
+#include "kinalign/infer/kernels.h"
+
+#include <array>
+#include <cstddef>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// Memory that begins at a cache line: an aligned panel row never spans two.
+template <class T>
+struct CacheAligned {
+  using value_type = T;
+  static constexpr std::align_val_t line{64};
+
+  CacheAligned() = default;
+  template <class Other>
+  explicit CacheAligned(const CacheAligned<Other>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), line)); }
+  void deallocate(T* at, std::size_t) { ::operator delete(at, line); }
+  bool operator==(const CacheAligned&) const = default;
+};
+
+using Values = std::vector<float, CacheAligned<float>>;
+
+/// One matrix, or one for each tap, with its bias.
+struct PackedWeights {
+  std::size_t taps = 1, channels = 0, outputs = 0;
+  Values weights;  // as Product::weights
+  Values bias;     // empty: none
+
+  /// A product of these weights, without its frames.
+  Product product() const;
+};
+
+struct DirectionWeights {
+  PackedWeights from_input;  // lstm: with the sum of both biases
+  PackedWeights from_state;  // gru: with a bias of its own
+};
+
+struct PreparedLayer {
+  Layer layer;       // without branches
+  std::string path;  // "3.1.0"
+  std::size_t inputs = 0, outputs = 0;
+  PackedWeights weights;                       // linear, conv
+  std::array<DirectionWeights, 2> directions;  // lstm, gru: forward, reverse
+  Values norm_weight, norm_bias;               // layer_norm
+  std::vector<std::vector<PreparedLayer>> branches;
+};
+
+/// Applies relu, leaky_relu, gelu, tanh or sigmoid to values in place.
+void apply_activation(const Kernels& kernels, const Layer& layer, float* values, std::size_t n);
+
+struct PreparedNetwork {
+  Architecture architecture;
+  std::size_t outputs = 0;
+  std::vector<PreparedLayer> layers;
+  const Kernels* kernels = nullptr;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs the network of a SafeTensors file for tests/infer/network_check.py:
+//   run_network offline|online baseline|best MODEL IN OUT   float32 [T,inputs] to float32
+//   [T,outputs]
+// The architecture stands as JSON in the metadata.
+#include "tests/folder.h"
+
+#include "kinalign/infer/architecture_json.h"
+#include "kinalign/infer/network.h"
+
+#include <cstdio>
+#include <cstring>
+
+using namespace kinalign;
+
+namespace {
+
+Result<void> run(const std::string& how, const Kernels& kernels, const std::string& model,
+                 const std::string& in_path, const std::string& out_path) {
+  const TensorFile file = KA_TRY(read_safetensors(bytes_in(model), model));
+  const Architecture architecture =
+      KA_TRY(parse_architecture_json(file.metadata.at("architecture"), model));
+  const Network network = KA_TRY(Network::make(architecture, file.tensors, "", kernels));
+  const std::string bytes = bytes_in(in_path);
+  std::vector<float> in(bytes.size() / sizeof(float));
+  std::memcpy(in.data(), bytes.data(), bytes.size());
+  std::vector<float> out;
+  if (how == "offline") {
+    Workspace workspace;
+    network.run(in, in.size() / network.inputs(), workspace, out);
+  }
+  std::ofstream(out_path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(out.data()),
+             static_cast<std::streamsize>(out.size() * sizeof(float)));
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 6) return 2;
+  const std::string how = argv[1], kernels = argv[2];
+  const auto done = run(how, kernels == "baseline" ? baseline_kernels() : best_kernels(), argv[3],
+                        argv[4], argv[5]);
+  if (done) return 0;
+  std::fprintf(stderr, "%s\n", to_string(done.error()).c_str());
+  return 3;
+}
