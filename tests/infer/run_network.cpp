@@ -7,6 +7,7 @@
 
 #include "kinalign/infer/architecture_json.h"
 #include "kinalign/infer/network.h"
+#include "kinalign/infer/online.h"
 
 #include <cstdio>
 #include <cstring>
@@ -28,6 +29,13 @@ Result<void> run(const std::string& how, const Kernels& kernels, const std::stri
   if (how == "offline") {
     Workspace workspace;
     network.run(in, in.size() / network.inputs(), workspace, out);
+  }
+  if (how == "online") {
+    OnlineNetwork online = KA_TRY(OnlineNetwork::make(network));
+    for (std::size_t at = 0; at < in.size(); at += network.inputs()) {
+      const auto result = online.step(std::span(in).subspan(at, network.inputs()));
+      out.insert(out.end(), result.begin(), result.end());
+    }
   }
   std::ofstream(out_path, std::ios::binary)
       .write(reinterpret_cast<const char*>(out.data()),

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// A network that runs frame by frame: convolutions remember earlier frames in ring buffers, lstm
+// and gru their state.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/infer/network.h"
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+namespace kinalign {
+
+class OnlineNetwork {
+ public:
+  /// All memory is allocated here. The weights stay in `network`, which must live longer and may be
+  /// moved.
+  /// Fails where a layer needs later frames: a bidirectional layer, a centred convolution,
+  /// max_pool. The error names the layer. Centred convolutions of one tap are accepted.
+  static Result<OnlineNetwork> make(const Network& network);
+
+  OnlineNetwork(OnlineNetwork&&) noexcept;
+  OnlineNetwork& operator=(OnlineNetwork&&) noexcept;
+  OnlineNetwork(const OnlineNetwork&) = delete;
+  OnlineNetwork& operator=(const OnlineNetwork&) = delete;
+  ~OnlineNetwork();
+
+  /// Takes the next frame [inputs] and computes its result [outputs]. The result is valid until the
+  /// next step and while `frame` is.
+  /// The results are those of Network::run over all frames since the start, bit by bit.
+  std::span<const float> step(std::span<const float> frame);
+
+  /// As if no frame had come.
+  void reset();
+
+  /// Number of values in the state of all lstm and gru layers.
+  std::size_t state_size() const;
+  /// The state, layer by layer: an lstm's output and cell, a gru's output. Buffers of convolutions
+  /// are no part of it.
+  void get_state(std::span<float> state) const;  // [state_size]
+  void set_state(std::span<const float> state);
+
+ private:
+  struct State;
+  explicit OnlineNetwork(std::unique_ptr<State> state);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace kinalign
