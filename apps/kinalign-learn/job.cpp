@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign-learn/job.h"
+
+#include "kinalign/learn/checkpoint.h"
+#include "kinalign/learn/fit_denoise.h"
+#include "kinalign/learn/windows_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t least_rows = 8;
+
+Result<std::string> bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return Failure(Error{path, 0, "a file that can be read", "none"});
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+/// Beside its place first, so that a kill leaves the old file or the new one.
+Result<void> write_file(const std::string& path, const std::string& bytes) {
+  const std::string unfinished = path + ".part";
+  std::ofstream out(unfinished, std::ios::binary | std::ios::trunc);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  std::error_code fault;
+  if (out) std::filesystem::rename(unfinished, path, fault);
+  if (!out || fault) return Failure(Error{path, 0, "room for the file", fault.message()});
+  return {};
+}
+
+const DenoiseMethod* find_method(const std::vector<DenoiseMethod>& all, const std::string& name) {
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const DenoiseMethod& one) { return one.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+void read_options(const Json& json, TrainingOptions& out) {
+  out.steps = json.value("steps", out.steps);
+  out.rate = json.value("rate", out.rate);
+  out.seed = json.value("seed", out.seed);
+  out.judge_every = json.value("judge_every", out.judge_every);
+  out.patience = json.value("patience", out.patience);
+}
+
+Result<void> save_log(const TrainingJob& job, const std::vector<TrainingPoint>& points) {
+  if (job.log.empty()) return {};
+  KA_TRY(write_file(job.log, csv_of(points)));
+  return write_file(std::filesystem::path(job.log).parent_path() / "events.out.tfevents.0.kinalign",
+                    events_of(points));
+}
+
+/// A line a second at most, and the last one.
+Progress progress_lines() {
+  using Clock = std::chrono::steady_clock;
+  auto last = std::make_shared<Clock::time_point>();
+  return [last](std::string_view what, std::uint64_t done, std::uint64_t total) {
+    const auto now = Clock::now();
+    if (done != total && now - *last < std::chrono::milliseconds(500)) return true;
+    *last = now;
+    std::cout << Json{{"what", what}, {"done", done}, {"total", total}}.dump() << std::endl;
+    return static_cast<bool>(std::cout);  // the program that started this one is gone: stop
+  };
+}
+
+std::string training_json(const TrainingJob& job, const Json& manifest, const Pairs& pairs) {
+  std::vector<std::string> subjects;
+  std::size_t frames = 0;
+  for (const Pair& pair : pairs.learnt) {
+    frames += pair.input.frames();
+    if (std::find(subjects.begin(), subjects.end(), pair.subject) == subjects.end()) {
+      subjects.push_back(pair.subject);
+    }
+  }
+  std::sort(subjects.begin(), subjects.end());
+  return Json{{"data",
+               {{{"name", manifest.value("dataset", "")},
+                 {"licence", manifest.value("licence", "")},
+                 {"citation", manifest.value("citation", "")},
+                 {"stretches", pairs.learnt.size()},
+                 {"frames", frames},
+                 {"subjects", subjects}}}},
+              {"steps", job.options.steps},
+              {"rate", job.options.rate},
+              {"seed", job.options.seed},
+              {"identity", job.identity}}
+      .dump();
+}
+
+}  // namespace
+
+Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || json.value("schema", "") != "kinalign.training_job/1") {
+    return Failure(Error{name, 0, "a job of schema kinalign.training_job/1", "another file"});
+  }
+  TrainingJob out;
+  try {
+    out.method = json.at("method").get<std::string>();
+    out.windows = json.at("windows").get<std::string>();
+    out.input = json.value("input", "kinect");
+    out.truth = json.value("truth", "mocap");
+    out.out = json.at("out").get<std::string>();
+    out.log = json.value("log", "");
+    out.checkpoint = json.value("checkpoint", "");
+    out.resume = json.value("resume", false);
+    out.device = json.value("device", "cpu");
+    out.threads = json.value("threads", std::int64_t{1});
+    out.identity = json.value("identity", "");
+    const auto methods = denoise_methods();
+    const DenoiseMethod* method = find_method(methods, out.method);
+    if (method == nullptr) return Failure(Error{name, 0, "a method that is known", out.method});
+    out.options = method->options;
+    if (json.contains("options")) read_options(json.at("options"), out.options);
+  } catch (const Json::exception& fault) {
+    return Failure(Error{name, 0, "a whole job", shown(fault.what())});
+  }
+  return out;
+}
+
+Result<void> run_job(const TrainingJob& job) {
+  const std::string bytes = KA_TRY(bytes_of(job.windows));
+  const Windows windows = KA_TRY(read_windows(bytes, job.windows));
+  const Pairs pairs = KA_TRY(pairs_of(windows, job.input, job.truth, least_rows));
+  const auto methods = denoise_methods();
+  const DenoiseMethod& method = *find_method(methods, job.method);
+  TrainingState state;
+  if (job.resume && std::filesystem::exists(job.checkpoint)) {
+    state = KA_TRY(read_checkpoint(KA_TRY(bytes_of(job.checkpoint)), job.identity, job.checkpoint));
+  }
+  TrainingHooks hooks{.progress = progress_lines(), .keep = {}, .every = 200};
+  if (!job.checkpoint.empty()) {
+    hooks.keep = [&](const TrainingState& now) {
+      return write_file(job.checkpoint, write_checkpoint(now, job.identity));
+    };
+  }
+  const FitOptions options{job.options,
+                           job.device == "cuda" ? torch::Device(torch::kCUDA) : torch::kCPU};
+  DenoiseFit fit = KA_TRY(fit_denoise(method, pairs, options, std::move(state), hooks));
+  fit.model.facts.training = training_json(job, windows.manifest, pairs);
+  KA_TRY(save_log(job, fit.points));
+  KA_TRY(write_file(job.out, write_denoise_model(fit.model)));
+  std::error_code ignored;
+  if (!job.checkpoint.empty()) std::filesystem::remove(job.checkpoint, ignored);
+  Json last{{"written", job.out}, {"loss", fit.points.empty() ? 0.0 : fit.points.back().loss}};
+  if (!fit.points.empty() && fit.points.back().judgement) {
+    last["judgement"] = *fit.points.back().judgement;
+  }
+  std::cout << last.dump() << std::endl;
+  return {};
+}
+
+}  // namespace kinalign

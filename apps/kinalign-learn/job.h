@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// A training job as `kinalign train` hands it over: JSON, schema kinalign.training_job/1.
+#pragma once
+
+#include "kinalign/learn/trainer.h"
+
+#include <string>
+
+namespace kinalign {
+
+struct TrainingJob {
+  std::string method;
+  std::string windows;        // the file of windows
+  std::string input, truth;   // streams
+  std::string out;            // the model
+  std::string log;            // CSV, and events beside it; empty: none
+  std::string checkpoint;     // kept there while it runs; empty: nowhere
+  bool resume = false;        // from that file, where it is there
+  std::string device = "cpu";  // cpu, cuda
+  std::int64_t threads = 1;
+  TrainingOptions options;
+  std::string identity;  // of the job: all that the result depends on
+};
+
+/// Settings that the job does not name are the method's own.
+Result<TrainingJob> read_job(const std::string& text, const std::string& name);
+
+/// Does it. Progress goes to stdout, a JSON object a line.
+Result<void> run_job(const TrainingJob& job);
+
+}  // namespace kinalign

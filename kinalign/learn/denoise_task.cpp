@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/denoise_task.h"
+
+#include "kinalign/learn/losses.h"
+#include "kinalign/learn/tensors.h"
+#include "kinalign/simulate/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double centimetres = 100.0;
+constexpr double least_position_scale = 0.01, least_step_scale = 0.001;  // m
+constexpr std::uint64_t lanes_per_example = 8;
+
+bool is_hand(const std::string& name) {
+  for (const std::string_view word : {"Wrist", "Hand", "Thumb", "wrist", "hand"}) {
+    if (name.find(word) != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// Rows begin ... begin + count of `x`, the last of them repeated where it ends sooner.
+torch::Tensor rows(const torch::Tensor& x, std::int64_t begin, std::int64_t count) {
+  const auto piece = x.slice(0, begin, begin + count);
+  const std::int64_t missing = count - piece.size(0);
+  if (missing == 0) return piece;
+  std::vector<std::int64_t> shape(piece.sizes().begin(), piece.sizes().end());
+  shape[0] = missing;
+  return torch::cat({piece, piece.slice(0, piece.size(0) - 1).expand(shape)});
+}
+
+}  // namespace
+
+DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
+                         const std::vector<Pair>& learnt, const std::vector<Pair>& judged,
+                         torch::Device device)
+    : layout_(std::move(layout)),
+      training_(training),
+      input_partners_(mirror_partners(layout_.inputs)),
+      output_partners_(mirror_partners(layout_.outputs)),
+      device_(device) {
+  for (const Pair& pair : learnt) {
+    examples_.push_back({example_of(pair)});
+    if (training_.mirror) examples_.back().push_back(mirrored(pair));
+  }
+  for (const Pair& pair : judged) judged_.push_back(example_of(pair));
+  set_scales();
+  std::vector<float> weights;
+  std::vector<std::int64_t> ends, begins;
+  for (std::size_t j = 0; j < layout_.outputs.size(); ++j) {
+    weights.push_back(is_hand(layout_.outputs[j]) ? static_cast<float>(training_.loss.hands) : 1.0F);
+    if (layout_.parents[j] < 0) continue;
+    ends.push_back(whole(j));
+    begins.push_back(layout_.parents[j]);
+  }
+  joint_weights_ = torch::tensor(weights);
+  joint_weights_ = (joint_weights_ / joint_weights_.mean()).to(device_);
+  bone_ends_ = torch::tensor(ends, torch::kInt64).to(device_);
+  bone_begins_ = torch::tensor(begins, torch::kInt64).to(device_);
+}
+
+DenoiseTask::Example DenoiseTask::example_of(const Pair& pair) const {
+  const DenoiseFeatures features = denoise_features(layout_, pair.input);
+  std::vector<float> truth = pair.truth;
+  to_body(features.frames, truth);
+  const std::int64_t frames = whole(pair.input.frames()), joints = whole(layout_.outputs.size());
+  return {to_torch(features.input, {frames, whole(layout_.channels())}),
+          to_torch(features.base, {frames, joints, 3}), to_torch(truth, {frames, joints, 3}),
+          to_torch(std::vector<float>(pair.valid.begin(), pair.valid.end()), {frames, joints})};
+}
+
+DenoiseTask::Example DenoiseTask::mirrored(const Pair& pair) const {
+  Pair other = pair;
+  mirror(other.input, input_partners_);
+  JointFrames truth{layout_.outputs.size(), std::move(other.truth), std::move(other.valid)};
+  mirror(truth, output_partners_);
+  other.truth = std::move(truth.positions);
+  other.valid = std::move(truth.seen);
+  return example_of(other);
+}
+
+void DenoiseTask::set_scales() {
+  std::vector<torch::Tensor> inputs;
+  torch::Tensor sum, count;
+  for (const auto& variants : examples_) {
+    for (const Example& one : variants) {
+      inputs.push_back(one.input);
+      const auto weights = one.valid.unsqueeze(-1);
+      const auto offsets = ((one.truth - one.base) * weights).to(torch::kFloat64).sum(0);
+      const auto counts = weights.to(torch::kFloat64).sum(0);
+      sum = sum.defined() ? sum + offsets : offsets;
+      count = count.defined() ? count + counts : counts;
+    }
+  }
+  const auto all = torch::cat(inputs).to(torch::kFloat64);
+  const std::int64_t positions = 3 * whole(layout_.inputs.size());
+  auto scale = all.std(0);
+  scale.slice(0, 0, positions).clamp_min_(least_position_scale);
+  scale.slice(0, positions, 2 * positions).clamp_min_(least_step_scale);
+  scale.slice(0, 2 * positions).fill_(1.0);
+  input_mean_ = all.mean(0).to(torch::kFloat32);
+  input_scale_ = scale.to(torch::kFloat32);
+  answer_mean_ = (sum / count.clamp_min(1.0)).to(torch::kFloat32);
+  scales_ = {values_of(input_mean_), values_of(input_scale_), values_of(answer_mean_)};
+  input_mean_ = input_mean_.to(device_);
+  input_scale_ = input_scale_.to(device_);
+  answer_mean_ = answer_mean_.to(device_);
+}
+
+DenoiseTask::Batch DenoiseTask::draw(std::uint64_t seed, std::uint64_t step) const {
+  const RandomStream random(seed, step);
+  std::vector<torch::Tensor> input, base, truth, valid;
+  for (std::int64_t k = 0; k < training_.batch; ++k) {
+    const auto at = static_cast<std::uint64_t>(k) * lanes_per_example;
+    const auto below = [&](std::uint64_t lane, std::size_t n) {
+      const double value = random.uniform(at, lane) * static_cast<double>(n);
+      return std::min(static_cast<std::size_t>(value), n - 1);
+    };
+    const auto& variants = examples_[below(0, examples_.size())];
+    const Example& one = variants[below(1, variants.size())];
+    const std::int64_t frames = one.input.size(0);
+    const auto most = static_cast<std::size_t>(std::max<std::int64_t>(frames - training_.crop, 0));
+    const std::int64_t begin = whole(below(2, most + 1));
+    input.push_back(rows(one.input, begin, training_.crop));
+    base.push_back(rows(one.base, begin, training_.crop));
+    truth.push_back(rows(one.truth, begin, training_.crop));
+    auto weights = rows(one.valid, begin, training_.crop).clone();
+    if (frames - begin < training_.crop) weights.slice(0, frames - begin).zero_();
+    valid.push_back(weights);
+  }
+  const auto joined = [&](const std::vector<torch::Tensor>& all) {
+    return torch::stack(all).to(device_);
+  };
+  return {joined(input), joined(base), joined(truth), joined(valid)};
+}
+
+torch::Tensor DenoiseTask::answers(const TorchNetwork& network, const torch::Tensor& input,
+                                   const torch::Tensor& base, bool training) const {
+  const auto out = network.forward((input - input_mean_) / input_scale_, training);
+  const auto positions = out.slice(2, 0, whole(layout_.answers())).reshape(base.sizes());
+  return base + answer_mean_ + positions * training_.answer_scale;
+}
+
+torch::Tensor DenoiseTask::weigh(const Batch& batch, const torch::Tensor& answer,
+                                 const torch::Tensor& spread) const {
+  const DenoiseLoss& weights = training_.loss;
+  const auto error = (answer - batch.truth) * centimetres;
+  const auto valid = batch.valid * joint_weights_;
+  auto loss = weights.distance * weighted_mean(lengths_of(error), valid);
+  if (weights.square > 0.0) {
+    loss = loss + weights.square * weighted_mean(error.pow(2).mean(-1), valid) / 100.0;
+  }
+  const auto n = batch.valid.size(1);
+  const auto valid3 = batch.valid.slice(1, 2, n) * batch.valid.slice(1, 1, n - 1) *
+                      batch.valid.slice(1, 0, n - 2);
+  if (weights.acceleration > 0.0) {
+    loss = loss + weights.acceleration *
+                      weighted_mean(lengths_of(second_differences(error)), valid3);
+  }
+  if (weights.smooth > 0.0) {
+    loss = loss + weights.smooth *
+                      lengths_of(second_differences(answer * centimetres)).mean();
+  }
+  if (weights.bone > 0.0) {
+    const auto bones = [&](const torch::Tensor& x) {
+      return lengths_of((x.index_select(2, bone_ends_) - x.index_select(2, bone_begins_)) *
+                        centimetres);
+    };
+    const auto both = batch.valid.index_select(2, bone_ends_) *
+                      batch.valid.index_select(2, bone_begins_);
+    loss = loss + weights.bone * weighted_mean((bones(answer) - bones(batch.truth)).abs(), both);
+  }
+  if (spread.defined()) {
+    // Three axes of one spread (cm); the error is not moved by it.
+    const auto square = error.detach().pow(2).sum(-1);
+    const auto likelihood = 3.0 * spread + 0.5 * square * torch::exp(-2.0 * spread);
+    loss = loss + weights.spread * weighted_mean(likelihood, batch.valid);
+  }
+  if (features_ && weights.hidden > 0.0) {
+    loss = loss + weights.hidden *
+                      (features_(answer.flatten(2)) - features_(batch.truth.flatten(2)))
+                          .pow(2)
+                          .mean();
+  }
+  return loss;
+}
+
+torch::Tensor DenoiseTask::loss(const TorchNetwork& network, std::uint64_t seed,
+                                std::uint64_t step) {
+  const Batch batch = draw(seed, step);
+  const auto out = network.forward((batch.input - input_mean_) / input_scale_, true);
+  const std::int64_t numbers = whole(layout_.answers());
+  const auto answer = batch.base + answer_mean_ +
+                      out.slice(2, 0, numbers).reshape(batch.base.sizes()) * training_.answer_scale;
+  const auto spread = training_.states_spread ? out.slice(2, numbers) : torch::Tensor();
+  return weigh(batch, answer, spread);
+}
+
+std::optional<double> DenoiseTask::judge(const TorchNetwork& network) {
+  if (judged_.empty()) return std::nullopt;
+  torch::NoGradGuard guard;
+  double distance = 0.0, acceleration = 0.0;
+  for (const Example& one : judged_) {
+    const auto batch = [&](const torch::Tensor& x) { return x.unsqueeze(0).to(device_); };
+    const auto valid = batch(one.valid);
+    const auto error =
+        (answers(network, batch(one.input), batch(one.base), false) - batch(one.truth)) *
+        centimetres;
+    const auto n = valid.size(1);
+    distance += weighted_mean(lengths_of(error), valid).item<double>();
+    const auto valid3 = valid.slice(1, 2, n) * valid.slice(1, 1, n - 1) * valid.slice(1, 0, n - 2);
+    acceleration +=
+        weighted_mean(lengths_of(second_differences(error)), valid3).item<double>();
+  }
+  return (distance + 0.5 * acceleration) / static_cast<double>(judged_.size());
+}
+
+}  // namespace kinalign

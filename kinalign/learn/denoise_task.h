@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cleaning skeletons as a task: pairs of an input and its truth, batches of them, their loss.
+#pragma once
+
+#include "kinalign/learn/trainer.h"
+#include "kinalign/models/denoise_features.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// What both devices saw of one motion. The truth is in the input's space.
+struct Pair {
+  JointFrames input;                // at the layout's rate
+  std::vector<float> truth;         // [T,Jout,3] m
+  std::vector<std::uint8_t> valid;  // [T,Jout]
+  std::string subject;
+};
+
+/// What the answers are held against, each in centimetres and with its weight.
+struct DenoiseLoss {
+  double distance = 1.0;      // mean distance of joints
+  double square = 0.0;        // mean square, in dm^2: BRA's and CNN's
+  double acceleration = 0.5;  // distance of second differences
+  double bone = 0.2;          // difference of bone lengths
+  double smooth = 0.0;        // length of the answer's own second differences
+  double spread = 0.1;        // negative log likelihood of the stated spread, if it is stated
+  double hands = 1.0;         // weight of wrists and hands beside the other joints
+  double hidden = 0.0;        // BRA-P: difference of the features of a network that knows motion
+};
+
+struct DenoiseTraining {
+  DenoiseLoss loss{};
+  std::int64_t batch = 32, crop = 61;
+  double seen_dropped = 0.1;  // share of draws in which a joint goes missing for a while
+  bool mirror = true;
+  bool states_spread = false;  // the last Jout channels are the logarithm of each joint's spread
+  double answer_scale = 0.05;  // m of a network's 1
+};
+
+/// Numbers of the training people's features, which the model keeps.
+struct DenoiseScales {
+  std::vector<float> input_mean, input_scale;  // [C]
+  std::vector<float> answer_mean;              // [3 Jout] m, of truth minus base
+};
+
+class DenoiseTask : public TrainingTask {
+ public:
+  /// `judged`: of people who are not trained on; may be empty. `known`: for the loss `hidden`, a
+  /// network from [B,T,3 Jout] answers in the body's frame, m, to features.
+  DenoiseTask(DenoiseLayout layout, DenoiseTraining training, const std::vector<Pair>& learnt,
+              const std::vector<Pair>& judged, torch::Device device);
+
+  torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) override;
+  std::optional<double> judge(const TorchNetwork& network) override;
+
+  /// The answers [B,T,Jout,3] m, in the body's frame, to features as denoise_features() gives them.
+  torch::Tensor answers(const TorchNetwork& network, const torch::Tensor& input,
+                        const torch::Tensor& base, bool training) const;
+
+  const DenoiseScales& scales() const { return scales_; }
+  void compare_features(std::function<torch::Tensor(const torch::Tensor&)> features) {
+    features_ = std::move(features);
+  }
+
+ private:
+  /// A sequence as the network sees it, once as it is and once mirrored.
+  struct Example {
+    torch::Tensor input, base, truth, valid;  // [T,C], [T,Jout,3], [T,Jout,3], [T,Jout]
+  };
+  struct Batch {
+    torch::Tensor input, base, truth, valid;
+  };
+  Example example_of(const Pair& pair) const;
+  Example mirrored(const Pair& pair) const;
+  void set_scales();
+  Batch draw(std::uint64_t seed, std::uint64_t step) const;
+  torch::Tensor weigh(const Batch& batch, const torch::Tensor& answer,
+                      const torch::Tensor& spread) const;
+
+  DenoiseLayout layout_;
+  DenoiseTraining training_;
+  std::vector<std::size_t> input_partners_, output_partners_;
+  std::vector<std::vector<Example>> examples_;  // one or two of each pair
+  std::vector<Example> judged_;
+  DenoiseScales scales_;
+  torch::Tensor input_mean_, input_scale_, answer_mean_, joint_weights_, bone_ends_, bone_begins_;
+  torch::Device device_;
+  std::function<torch::Tensor(const torch::Tensor&)> features_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/fit_denoise.h"
+
+#include "kinalign/learn/clean_motion.h"
+#include "kinalign/learn/tensors.h"
+
+#include <optional>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+/// The part of the model that the task has learnt without its network.
+DenoiseModel begun_model(const DenoiseMethod& method, const DenoiseLayout& layout,
+                         const DenoiseTask& task) {
+  DenoiseModel out;
+  out.facts.task = "denoise";
+  out.facts.method = method.name;
+  out.layout = layout;
+  out.answer_scale = method.training.answer_scale;
+  out.states_spread = method.training.states_spread;
+  out.input_mean = task.scales().input_mean;
+  out.input_scale = task.scales().input_scale;
+  out.answer_mean = task.scales().answer_mean;
+  return out;
+}
+
+}  // namespace
+
+void put_tensors(const TorchNetwork& network, const std::string& prefix,
+                 std::map<std::string, Tensor>& out) {
+  for (const auto& [name, tensor] : network.tensors()) {
+    out[prefix + name] = from_torch(tensor);
+  }
+}
+
+Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
+                               const FitOptions& options, TrainingState state,
+                               const TrainingHooks& hooks) {
+  DenoiseLayout layout = KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz));
+  if (!method.from_base) layout.bases.assign(layout.outputs.size(), -1);
+  DenoiseTask task(layout, method.training, pairs.learnt, pairs.judged, options.device);
+  DenoiseFit out{begun_model(method, layout, task), {}};
+  std::optional<TorchNetwork> clean;
+  if (method.perceptual) {
+    clean = KA_TRY(fit_clean_motion(layout, pairs.learnt, options.training, options.device, hooks));
+    for (auto& [name, tensor] : clean->tensors()) tensor.set_requires_grad(false);
+    task.compare_features([&](const torch::Tensor& answers) {
+      return motion_features(*clean, answers);
+    });
+    out.model.second = clean->architecture();
+    put_tensors(*clean, "second.", out.model.tensors);
+  }
+  torch::manual_seed(options.training.seed);
+  TorchNetwork network(method.architecture(layout));
+  if (method.zero_last) network.zero_last();
+  network.to(options.device);
+  out.points =
+      KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
+  out.model.architecture = network.architecture();
+  put_tensors(network, "net.", out.model.tensors);
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pieces of losses that several tasks use.
+#pragma once
+
+#include <torch/torch.h>
+
+namespace kinalign {
+
+/// Lengths of vectors [...,3], smooth at zero.
+inline torch::Tensor lengths_of(const torch::Tensor& vectors) {
+  return (vectors.pow(2).sum(-1) + 1e-4).sqrt();
+}
+
+/// The mean of `values` with these weights; 0 where all are 0.
+inline torch::Tensor weighted_mean(const torch::Tensor& values, const torch::Tensor& weights) {
+  return (values * weights).sum() / weights.sum().clamp_min(1e-6);
+}
+
+/// Second differences along T of [B,T,...].
+inline torch::Tensor second_differences(const torch::Tensor& x) {
+  const auto n = x.size(1);
+  return x.slice(1, 2, n) - 2 * x.slice(1, 1, n - 1) + x.slice(1, 0, n - 2);
+}
+
+}  // namespace kinalign

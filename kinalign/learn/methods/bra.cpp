@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// BRA: Li, Zhou, Zhu, Xie, Zhao, Liu, «Bidirectional recurrent autoencoder for 3D skeleton motion
+// data refinement», Computers & Graphics 81, 2019. Layer sizes are not published; these are those
+// of the nearest public successor. BRA-P: Li, Zhu, Zheng, Li, IEEE Access 8, 2020: the same network
+// with a loss on the features of a second one that knows clean motion, and that network behind it.
+#include "kinalign/learn/methods.h"
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t bra_units = 256;
+
+Layer bra_recurrent() { return {.kind = LayerKind::lstm, .out = bra_units, .bidirectional = true}; }
+
+/// Positions alone; encoder and decoder are one bidirectional LSTM each.
+Architecture bra_architecture(const DenoiseLayout& layout) {
+  return {layout.channels(),
+          {{.kind = LayerKind::slice, .out = 3 * layout.inputs.size()},
+           {.kind = LayerKind::linear, .out = bra_units},
+           {.kind = LayerKind::tanh},
+           {.kind = LayerKind::dropout, .rate = 0.2},
+           bra_recurrent(),
+           {.kind = LayerKind::linear, .out = bra_units},
+           {.kind = LayerKind::dropout, .rate = 0.2},
+           bra_recurrent(),
+           {.kind = LayerKind::linear, .out = layout.answers()}}};
+}
+
+DenoiseTraining bra_training() {
+  return {.loss = {.distance = 0.0,
+                   .square = 1.0,
+                   .acceleration = 0.0,
+                   .bone = 5e-3,
+                   .smooth = 2e-2,
+                   .spread = 0.0},
+          .answer_scale = 0.3};
+}
+
+}  // namespace
+
+DenoiseMethod bra_method() {
+  return {.name = "bra",
+          .summary = "bidirectional recurrent autoencoder",
+          .source = "Li et al., Computers & Graphics 81, 2019",
+          .architecture = bra_architecture,
+          .training = bra_training(),
+          .options = {.steps = 1200, .rate = 1e-3},
+          .from_base = false};
+}
+
+DenoiseMethod bra_p_method() {
+  DenoiseMethod out = bra_method();
+  out.name = "bra-p";
+  out.summary = "the same with a perceptual loss and a second network behind it";
+  out.source = "Li et al., IEEE Access 8, 2020";
+  out.perceptual = true;
+  out.training.loss.hidden = 0.1;
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/pairs.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+Result<std::vector<std::string>> joints_of(const Windows& windows, const std::string& stream) {
+  std::string known;
+  for (const auto& one : windows.manifest.at("streams")) {
+    const std::string name = one.value("name", "");
+    if (name == stream && one.contains("names")) {
+      return one.at("names").get<std::vector<std::string>>();
+    }
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  return Failure(Error{"", 0, "a stream \"" + stream + "\" with names", known});
+}
+
+/// 0, 1, 2 of each joint: from its state where it has one, else from its validity.
+std::vector<std::uint8_t> seen_of(const StretchStream& stream, std::size_t rows,
+                                  std::size_t joints) {
+  std::vector<std::uint8_t> out(rows * joints, 2);
+  const auto valid = stream.arrays.find("valid"), state = stream.arrays.find("state");
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (state != stream.arrays.end() && state->second.size() == out.size()) {
+      out[i] = static_cast<std::uint8_t>(state->second[i]);
+    }
+    if (valid == stream.arrays.end()) continue;
+    const bool one_flag = valid->second.size() == rows;
+    if (valid->second[one_flag ? i / joints : i] == 0.0F) out[i] = 0;
+  }
+  return out;
+}
+
+std::size_t part_named(const Windows& windows, const std::string& name) {
+  const auto& parts = windows.manifest.at("parts");
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i] == name) return i;
+  }
+  return parts.size();
+}
+
+}  // namespace
+
+Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const std::string& truth,
+                       std::size_t least) {
+  Pairs out{.inputs = KA_TRY(joints_of(windows, input)),
+            .outputs = KA_TRY(joints_of(windows, truth)),
+            .rate_hz = windows.manifest.value("rate_hz", 0.0)};
+  const std::size_t parts = windows.manifest.at("parts").size();
+  const std::size_t train = part_named(windows, "train");
+  const std::size_t validation = part_named(windows, "validation");
+  for (const Stretch& stretch : windows.stretches) {
+    if (stretch.rows < least) continue;
+    const bool is_judged = stretch.part == validation;
+    if (!is_judged && stretch.part != train && parts > 1) continue;
+    const StretchStream& rough = stretch.streams.at(input);
+    const StretchStream& precise = stretch.streams.at(truth);
+    if (!rough.arrays.contains("positions") || !precise.arrays.contains("positions")) {
+      return Failure(Error{"", 0, "positions of " + input + " and " + truth, "none"});
+    }
+    Pair pair;
+    pair.input.joints = out.inputs.size();
+    pair.input.positions = rough.arrays.at("positions");
+    pair.input.seen = seen_of(rough, stretch.rows, out.inputs.size());
+    pair.truth = precise.arrays.at("positions");
+    pair.valid = seen_of(precise, stretch.rows, out.outputs.size());
+    for (std::uint8_t& one : pair.valid) one = one == 0 ? 0 : 1;
+    const auto& takes = windows.manifest.at("takes");
+    if (stretch.take < takes.size()) pair.subject = takes[stretch.take].value("subject", "");
+    (is_judged ? out.judged : out.learnt).push_back(std::move(pair));
+  }
+  if (out.learnt.empty()) {
+    return Failure(Error{"", 0, "stretches of " + std::to_string(least) + " rows to train on",
+                         "none"});
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/torch_network.h"
+
+#include "kinalign/learn/tensors.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace kinalign {
+
+namespace {
+
+using Layers = std::vector<Layer>;
+using Tensors = std::map<std::string, torch::Tensor>;
+
+std::string path_below(const std::string& path, std::size_t i) {
+  return path.empty() ? std::to_string(i) : path + "." + std::to_string(i);
+}
+
+torch::Tensor uniform(std::vector<std::int64_t> shape, double bound) {
+  return torch::empty(shape).uniform_(-bound, bound);
+}
+
+/// Makes the tensors of layers and says how many channels come out.
+class Maker {
+ public:
+  explicit Maker(Tensors& tensors) : tensors_(tensors) {}
+
+  std::size_t make(const Layers& layers, const std::string& path, std::size_t channels) {
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      channels = make(layers[i], path_below(path, i), channels);
+    }
+    return channels;
+  }
+
+ private:
+  std::size_t make(const Layer& layer, const std::string& path, std::size_t in) {
+    switch (layer.kind) {
+      case LayerKind::linear: return make_linear(layer, path, in);
+      case LayerKind::conv: return make_conv(layer, path, in);
+      case LayerKind::lstm: return make_recurrent(layer, path, in, 4);
+      case LayerKind::gru: return make_recurrent(layer, path, in, 3);
+      case LayerKind::layer_norm:
+        tensors_[path + ".weight"] = torch::ones({whole(in)});
+        tensors_[path + ".bias"] = torch::zeros({whole(in)});
+        return in;
+      case LayerKind::slice: return layer.out;
+      case LayerKind::sum:
+      case LayerKind::product:
+      case LayerKind::concat: return make_branches(layer, path, in);
+      default: return in;
+    }
+  }
+
+  std::size_t make_linear(const Layer& layer, const std::string& path, std::size_t in) {
+    const double bound = 1.0 / std::sqrt(static_cast<double>(in));
+    tensors_[path + ".weight"] = uniform({whole(layer.out), whole(in)}, bound);
+    tensors_[path + ".bias"] = uniform({whole(layer.out)}, bound);
+    return layer.out;
+  }
+
+  std::size_t make_conv(const Layer& layer, const std::string& path, std::size_t in) {
+    const double bound = 1.0 / std::sqrt(static_cast<double>(in * layer.kernel));
+    tensors_[path + ".weight"] =
+        uniform({whole(layer.out), whole(in), whole(layer.kernel)}, bound);
+    tensors_[path + ".bias"] = uniform({whole(layer.out)}, bound);
+    return layer.out;
+  }
+
+  std::size_t make_recurrent(const Layer& layer, const std::string& path, std::size_t in,
+                             std::int64_t gates) {
+    const double bound = 1.0 / std::sqrt(static_cast<double>(layer.out));
+    const std::int64_t units = whole(layer.out);
+    for (const char* way : {"", "_reverse"}) {
+      if (*way != 0 && !layer.bidirectional) break;
+      tensors_[path + ".weight_ih_l0" + way] = uniform({gates * units, whole(in)}, bound);
+      std::vector<torch::Tensor> squares;
+      for (std::int64_t g = 0; g < gates; ++g) {
+        squares.push_back(torch::nn::init::orthogonal_(torch::empty({units, units})));
+      }
+      tensors_[path + ".weight_hh_l0" + way] = torch::cat(squares);
+      auto bias = uniform({gates * units}, bound);
+      if (gates == 4) bias.slice(0, units, 2 * units).fill_(1.0);
+      tensors_[path + ".bias_ih_l0" + way] = bias;
+      tensors_[path + ".bias_hh_l0" + way] = torch::zeros({gates * units});
+    }
+    return layer.bidirectional ? 2 * layer.out : layer.out;
+  }
+
+  std::size_t make_branches(const Layer& layer, const std::string& path, std::size_t in) {
+    std::size_t all = 0, last = in;
+    for (std::size_t b = 0; b < layer.branches.size(); ++b) {
+      last = make(layer.branches[b], path_below(path, b), in);
+      all += last;
+    }
+    return layer.kind == LayerKind::concat ? all : last;
+  }
+
+  Tensors& tensors_;
+};
+
+/// Runs layers on values [B,T,C].
+class Runner {
+ public:
+  Runner(const Tensors& tensors, bool training) : tensors_(tensors), training_(training) {}
+
+  torch::Tensor run(const Layers& layers, const std::string& path, torch::Tensor x) const {
+    // Pools are undone to the lengths they began with, the last one first.
+    std::vector<std::int64_t> lengths;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      const Layer& layer = layers[i];
+      if (layer.kind == LayerKind::max_pool) lengths.push_back(x.size(1));
+      if (layer.kind == LayerKind::unpool) {
+        x = unpool(x, lengths.back());
+        lengths.pop_back();
+      } else {
+        x = run(layer, path_below(path, i), x);
+      }
+    }
+    return x;
+  }
+
+ private:
+  torch::Tensor run(const Layer& layer, const std::string& path, const torch::Tensor& x) const {
+    switch (layer.kind) {
+      case LayerKind::linear: return torch::linear(x, at(path + ".weight"), at(path + ".bias"));
+      case LayerKind::conv: return conv(layer, path, x);
+      case LayerKind::lstm: {
+        const auto zero = state(layer, x);
+        return std::get<0>(torch::lstm(x, {zero, zero}, recurrent(layer, path), true, 1, 0.0,
+                                       training_, layer.bidirectional, true));
+      }
+      case LayerKind::gru:
+        return std::get<0>(torch::gru(x, state(layer, x), recurrent(layer, path), true, 1, 0.0,
+                                      training_, layer.bidirectional, true));
+      case LayerKind::layer_norm:
+        return torch::layer_norm(x, {x.size(2)}, at(path + ".weight"), at(path + ".bias"), 1e-5);
+      case LayerKind::relu: return torch::relu(x);
+      case LayerKind::leaky_relu: return torch::leaky_relu(x, layer.slope);
+      case LayerKind::gelu: return torch::gelu(x);
+      case LayerKind::tanh: return torch::tanh(x);
+      case LayerKind::sigmoid: return torch::sigmoid(x);
+      case LayerKind::dropout: return torch::dropout(x, layer.rate, training_);
+      case LayerKind::slice:
+        return x.slice(2, whole(layer.begin), whole(layer.begin + layer.out));
+      case LayerKind::max_pool:
+        return torch::max_pool1d(x.transpose(1, 2), 2, 2, 0, 1, true).transpose(1, 2);
+      case LayerKind::unpool: return x;  // run() does it
+      case LayerKind::sum:
+      case LayerKind::product:
+      case LayerKind::concat: return branches(layer, path, x);
+    }
+    return x;
+  }
+
+  torch::Tensor conv(const Layer& layer, const std::string& path, const torch::Tensor& x) const {
+    const std::int64_t reach = whole((layer.kernel - 1) * layer.dilation);
+    const std::int64_t before = layer.causal ? reach : reach / 2;
+    const auto padded = torch::constant_pad_nd(x.transpose(1, 2), {before, reach - before});
+    const std::vector<std::int64_t> step{1}, padding{0}, dilation{whole(layer.dilation)};
+    return torch::conv1d(padded, at(path + ".weight"), at(path + ".bias"), step,
+                         torch::IntArrayRef(padding), dilation)
+        .transpose(1, 2);
+  }
+
+  /// In training each value goes to a random one of its two frames; at use half of it to both.
+  torch::Tensor unpool(const torch::Tensor& x, std::int64_t length) const {
+    const auto twice = x.repeat_interleave(2, 1).slice(1, 0, length);
+    if (!training_) return twice * 0.5;
+    const auto first = torch::rand_like(x).lt(0.5).to(x.dtype());
+    const auto chosen = torch::stack({first, 1.0 - first}, 2)
+                            .reshape({x.size(0), 2 * x.size(1), x.size(2)})
+                            .slice(1, 0, length);
+    return twice * chosen;
+  }
+
+  torch::Tensor branches(const Layer& layer, const std::string& path,
+                         const torch::Tensor& x) const {
+    std::vector<torch::Tensor> all;
+    for (std::size_t b = 0; b < layer.branches.size(); ++b) {
+      all.push_back(run(layer.branches[b], path_below(path, b), x));
+    }
+    if (layer.kind == LayerKind::concat) return torch::cat(all, 2);
+    torch::Tensor out = all.front();
+    for (std::size_t b = 1; b < all.size(); ++b) {
+      out = layer.kind == LayerKind::sum ? out + all[b] : out * all[b];
+    }
+    return out;
+  }
+
+  static torch::Tensor state(const Layer& layer, const torch::Tensor& x) {
+    return torch::zeros({layer.bidirectional ? 2 : 1, x.size(0), whole(layer.out)}, x.options());
+  }
+
+  std::vector<torch::Tensor> recurrent(const Layer& layer, const std::string& path) const {
+    std::vector<torch::Tensor> out;
+    for (const char* way : {"", "_reverse"}) {
+      if (*way != 0 && !layer.bidirectional) break;
+      for (const char* name : {".weight_ih_l0", ".weight_hh_l0", ".bias_ih_l0", ".bias_hh_l0"}) {
+        out.push_back(at(path + name + way));
+      }
+    }
+    return out;
+  }
+
+  const torch::Tensor& at(const std::string& name) const { return tensors_.at(name); }
+
+  const Tensors& tensors_;
+  bool training_;
+};
+
+/// Path of the last layer with weights, found from the end.
+std::string last_weighted(const Layers& layers, const std::string& path) {
+  for (std::size_t i = layers.size(); i-- > 0;) {
+    const LayerKind kind = layers[i].kind;
+    if (kind == LayerKind::linear || kind == LayerKind::conv) return path_below(path, i);
+    for (std::size_t b = layers[i].branches.size(); b-- > 0;) {
+      const std::string found = last_weighted(layers[i].branches[b], path_below(path_below(path, i), b));
+      if (!found.empty()) return found;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+TorchNetwork::TorchNetwork(Architecture architecture) : architecture_(std::move(architecture)) {
+  torch::NoGradGuard guard;
+  Maker(tensors_).make(architecture_.layers, "", architecture_.inputs);
+  for (auto& [name, tensor] : tensors_) tensor.set_requires_grad(true);
+}
+
+torch::Tensor TorchNetwork::forward(const torch::Tensor& input, bool training) const {
+  return Runner(tensors_, training).run(architecture_.layers, "", input);
+}
+
+torch::Tensor run_layers(const std::vector<Layer>& layers,
+                         const std::map<std::string, torch::Tensor>& tensors,
+                         const torch::Tensor& input) {
+  return Runner(tensors, false).run(layers, "", input);
+}
+
+void TorchNetwork::zero_last() {
+  torch::NoGradGuard guard;
+  const std::string path = last_weighted(architecture_.layers, "");
+  if (path.empty()) return;
+  tensors_.at(path + ".weight").zero_();
+  tensors_.at(path + ".bias").zero_();
+}
+
+void TorchNetwork::to(torch::Device device) {
+  torch::NoGradGuard guard;
+  for (auto& [name, tensor] : tensors_) {
+    tensor = tensor.detach().to(device).set_requires_grad(true);
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/trainer.h"
+
+#include "kinalign/simulate/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using WeightMap = std::map<std::string, torch::Tensor>;
+
+constexpr double first_decay = 0.9, second_decay = 0.98, epsilon = 1e-8;
+constexpr double average_decay = 0.999;
+constexpr int most_failures = 5;
+constexpr std::int64_t point_every = 50;
+
+/// A share of the way from `from` to `to` along half a cosine.
+double eased(double from, double to, double share) {
+  return to + (from - to) * 0.5 * (1.0 + std::cos(std::numbers::pi * share));
+}
+
+WeightMap copy_of(const WeightMap& tensors) {
+  WeightMap out;
+  for (const auto& [name, tensor] : tensors) out[name] = tensor.detach().clone();
+  return out;
+}
+
+WeightMap zeros_like(const WeightMap& tensors) {
+  WeightMap out;
+  for (const auto& [name, tensor] : tensors) out[name] = torch::zeros_like(tensor).detach();
+  return out;
+}
+
+void put_weights(const WeightMap& from, TorchNetwork& network) {
+  torch::NoGradGuard guard;
+  for (auto& [name, tensor] : network.tensors()) tensor.copy_(from.at(name));
+}
+
+void begin(const TorchNetwork& network, TrainingState& state) {
+  if (!state.weights.empty()) return;
+  state.weights = copy_of(network.tensors());
+  state.first = zeros_like(network.tensors());
+  state.second = zeros_like(network.tensors());
+  state.average = copy_of(network.tensors());
+}
+
+/// The norm of all gradients together.
+double gradient_norm(const WeightMap& tensors) {
+  double sum = 0.0;
+  for (const auto& [name, tensor] : tensors) {
+    if (tensor.grad().defined()) sum += tensor.grad().pow(2).sum().item<double>();
+  }
+  return std::sqrt(sum);
+}
+
+/// One step of AdamW (Loshchilov and Hutter, 2019).
+void step_weights(TorchNetwork& network, const TrainingOptions& options, double norm,
+                  TrainingState& state) {
+  torch::NoGradGuard guard;
+  const double rate = rate_at(options, state.step), n = static_cast<double>(state.step + 1);
+  const double cut = norm > options.longest_gradient ? options.longest_gradient / norm : 1.0;
+  const double correction = std::sqrt(1.0 - std::pow(second_decay, n)) /
+                            (1.0 - std::pow(first_decay, n));
+  const double kept = std::min(average_decay, (1.0 + n) / (10.0 + n));
+  for (auto& [name, weight] : network.tensors()) {
+    if (!weight.grad().defined()) continue;
+    const torch::Tensor gradient = weight.grad() * cut;
+    torch::Tensor& first = state.first.at(name);
+    torch::Tensor& second = state.second.at(name);
+    first.mul_(first_decay).add_(gradient, 1.0 - first_decay);
+    second.mul_(second_decay).addcmul_(gradient, gradient, 1.0 - second_decay);
+    if (weight.dim() > 1) weight.mul_(1.0 - rate * options.weight_decay);
+    weight.addcdiv_(first, second.sqrt().add_(epsilon), -rate * correction);
+    state.average.at(name).mul_(kept).add_(weight, 1.0 - kept);
+  }
+}
+
+/// Judges the network with the weights that would be kept, and keeps the best.
+std::optional<double> judge(TorchNetwork& network, TrainingTask& task,
+                            const TrainingOptions& options, TrainingState& state) {
+  const WeightMap now = copy_of(network.tensors());
+  if (options.average) put_weights(state.average, network);
+  const auto judgement = task.judge(network);
+  if (!judgement || !state.best_judgement || *judgement < *state.best_judgement) {
+    state.best = copy_of(network.tensors());
+    state.best_judgement = judgement;
+    state.without_better = 0;
+  } else {
+    ++state.without_better;
+  }
+  put_weights(now, network);
+  return judgement;
+}
+
+/// Sums between two points of the log.
+struct Sums {
+  double loss = 0.0, gradient = 0.0;
+  std::int64_t count = 0;
+};
+
+void add_point(const TrainingOptions& options, std::optional<double> judgement, Sums& sums,
+               TrainingState& state) {
+  const double n = static_cast<double>(std::max<std::int64_t>(sums.count, 1));
+  state.points.push_back({state.step, sums.loss / n,
+                          rate_at(options, std::max<std::int64_t>(state.step - 1, 0)),
+                          sums.gradient / n, judgement});
+  sums = {};
+}
+
+/// Loss and gradients of the next batch; how long the gradient is, or nothing where a number is
+/// not finite.
+std::optional<double> gradients(TorchNetwork& network, TrainingTask& task,
+                                const TrainingOptions& options, const TrainingState& state,
+                                Sums& sums) {
+  for (auto& [name, tensor] : network.tensors()) {
+    if (tensor.grad().defined()) tensor.mutable_grad().reset();
+  }
+  const auto step = static_cast<std::uint64_t>(state.step);
+  torch::manual_seed(mix64(mix64(options.seed) ^ step));  // dropout
+  const torch::Tensor loss = task.loss(network, options.seed, step);
+  loss.backward();
+  const double value = loss.item<double>(), norm = gradient_norm(network.tensors());
+  if (!std::isfinite(value) || !std::isfinite(norm)) return std::nullopt;
+  sums.loss += value;
+  sums.gradient += norm;
+  ++sums.count;
+  return norm;
+}
+
+bool is_due(std::int64_t step, std::int64_t every) { return every > 0 && step % every == 0; }
+
+}  // namespace
+
+double rate_at(const TrainingOptions& options, std::int64_t step) {
+  const double peak = std::max(1.0, options.rise * static_cast<double>(options.steps));
+  const double at = static_cast<double>(step), end = static_cast<double>(options.steps);
+  const double first = options.rate / 25.0;
+  if (at < peak) return eased(first, options.rate, at / peak);
+  return eased(options.rate, first / 1e4, std::min(1.0, (at - peak) / std::max(1.0, end - peak)));
+}
+
+Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
+                            const TrainingOptions& options, TrainingState state,
+                            const TrainingHooks& hooks) {
+  begin(network, state);
+  put_weights(state.weights, network);
+  Sums sums;
+  int failures = 0;
+  while (state.step < options.steps) {
+    const auto norm = gradients(network, task, options, state, sums);
+    failures = norm ? 0 : failures + 1;
+    if (failures == most_failures) {
+      return Failure(Error{"", 0, "a loss that is a number",
+                           "none at steps up to " + std::to_string(state.step)});
+    }
+    if (norm) step_weights(network, options, *norm, state);
+    ++state.step;
+    const bool last = state.step == options.steps;
+    std::optional<double> judgement;
+    if (last || is_due(state.step, options.judge_every)) {
+      judgement = judge(network, task, options, state);
+    }
+    if (last || judgement || is_due(state.step, point_every)) {
+      add_point(options, judgement, sums, state);
+    }
+    if (!last && hooks.keep && is_due(state.step, hooks.every)) {
+      state.weights = copy_of(network.tensors());
+      KA_TRY(hooks.keep(state));
+    }
+    if (!go_on(hooks.progress, "training", static_cast<std::uint64_t>(state.step),
+               static_cast<std::uint64_t>(options.steps))) {
+      return Failure(interruption());
+    }
+    if (options.patience > 0 && state.without_better >= options.patience) break;
+  }
+  if (state.best.empty()) state.best = copy_of(options.average ? state.average : network.tensors());
+  put_weights(state.best, network);
+  state.weights = copy_of(network.tensors());
+  return state;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/windows_file.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint32_t end_mark = 0x06054b50, entry_mark = 0x02014b50, local_mark = 0x04034b50,
+                        end64_mark = 0x06064b50;
+constexpr std::size_t end_size = 22, entry_size = 46, local_size = 30;
+constexpr std::size_t most_dimensions = 8;
+
+/// Little-endian numbers of the file; 0 beyond its end, which the callers' checks then refuse.
+class Bytes {
+ public:
+  explicit Bytes(std::string_view all) : all_(all) {}
+  std::uint64_t number(std::size_t at, std::size_t size) const {
+    std::uint64_t out = 0;
+    for (std::size_t i = size; i-- > 0;) {
+      const std::size_t place = at + i;
+      out = out << 8U | (place < all_.size() ? static_cast<unsigned char>(all_[place]) : 0U);
+    }
+    return out;
+  }
+  bool holds(std::size_t at, std::uint64_t size) const {
+    return at <= all_.size() && size <= all_.size() - at;
+  }
+  std::string_view piece(std::size_t at, std::size_t size) const { return all_.substr(at, size); }
+  std::size_t size() const { return all_.size(); }
+
+ private:
+  std::string_view all_;
+};
+
+Failure broken(const std::string& name, std::string expected, std::string found) {
+  return Failure(Error{name, 0, std::move(expected), std::move(found)});
+}
+
+struct Entry {
+  std::string name;
+  std::uint64_t size = 0, at = 0;
+};
+
+/// Sizes and place from the field of ZIP64 where they are too large for 32 bits.
+void read_zip64(const Bytes& bytes, std::size_t extra, std::size_t length, Entry& entry) {
+  for (std::size_t at = extra; at + 4 <= extra + length;) {
+    const std::size_t size = bytes.number(at + 2, 2);
+    if (bytes.number(at, 2) == 1) {
+      std::size_t place = at + 4;
+      if (entry.size == 0xffffffff) {
+        entry.size = bytes.number(place, 8);
+        place += 16;  // plain and packed size, which are one here
+      }
+      if (entry.at == 0xffffffff) entry.at = bytes.number(place, 8);
+    }
+    at += 4 + size;
+  }
+}
+
+std::optional<std::size_t> find_end(const Bytes& bytes) {
+  if (bytes.size() < end_size) return std::nullopt;
+  const std::size_t last = bytes.size() - end_size;
+  for (std::size_t back = 0; back <= std::min<std::size_t>(last, 65535); ++back) {
+    if (bytes.number(last - back, 4) == end_mark) return last - back;
+  }
+  return std::nullopt;
+}
+
+Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& name) {
+  const auto end = find_end(bytes);
+  if (!end) return broken(name, "an NPZ (numpy.savez)", "no end of a ZIP");
+  std::uint64_t count = bytes.number(*end + 10, 2), at = bytes.number(*end + 16, 4);
+  if ((count == 0xffff || at == 0xffffffff) && *end >= 20) {
+    const std::uint64_t end64 = bytes.number(*end - 12, 8);
+    if (bytes.holds(end64, 56) && bytes.number(end64, 4) == end64_mark) {
+      count = bytes.number(end64 + 32, 8);
+      at = bytes.number(end64 + 48, 8);
+    }
+  }
+  std::vector<Entry> out;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (!bytes.holds(at, entry_size) || bytes.number(at, 4) != entry_mark) {
+      return broken(name, "an entry of the ZIP's list", "none at byte " + std::to_string(at));
+    }
+    const std::size_t length = bytes.number(at + 28, 2), extra = bytes.number(at + 30, 2);
+    if (!bytes.holds(at + entry_size, length + extra)) {
+      return broken(name, "a whole entry", "the end of the file");
+    }
+    Entry entry{std::string(bytes.piece(at + entry_size, length)), bytes.number(at + 24, 4),
+                bytes.number(at + 42, 4)};
+    if (bytes.number(at + 10, 2) != 0) {
+      return broken(name, "arrays that are stored (numpy.savez, kinalign dataset windows)",
+                    entry.name + ", which is compressed");
+    }
+    read_zip64(bytes, at + entry_size + length, extra, entry);
+    out.push_back(std::move(entry));
+    at += entry_size + length + extra + bytes.number(at + 32, 2);
+  }
+  return out;
+}
+
+/// The text behind `key` in a NumPy header: {'descr': '<f4', 'fortran_order': False, 'shape': (2,)}.
+std::string_view after(std::string_view header, std::string_view key) {
+  const std::size_t at = header.find(key);
+  return at == std::string_view::npos ? std::string_view{} : header.substr(at + key.size());
+}
+
+std::optional<StoredArray> read_header(std::string_view header) {
+  StoredArray out;
+  std::string_view type = after(header, "'descr': '");
+  out.type = type.substr(0, type.find('\''));
+  if (after(header, "'fortran_order': ").substr(0, 5) != "False") return std::nullopt;
+  std::string_view shape = after(header, "'shape': (");
+  while (!shape.empty() && shape.front() != ')') {
+    if (shape.front() == ' ' || shape.front() == ',') {
+      shape.remove_prefix(1);
+      continue;
+    }
+    std::size_t value = 0;
+    const auto [end, fault] = std::from_chars(shape.data(), shape.data() + shape.size(), value);
+    if (fault != std::errc() || out.shape.size() == most_dimensions) return std::nullopt;
+    out.shape.push_back(value);
+    shape.remove_prefix(static_cast<std::size_t>(end - shape.data()));
+  }
+  if (shape.empty()) return std::nullopt;
+  return out;
+}
+
+/// Bytes a value: of "<U12" 48.
+std::size_t value_size(const std::string& type) {
+  if (type.size() < 3) return 0;
+  std::size_t count = 0;
+  std::from_chars(type.data() + 2, type.data() + type.size(), count);
+  return type[1] == 'U' ? 4 * count : count;
+}
+
+Result<StoredArray> read_array(std::string_view npy, const std::string& what) {
+  const Bytes bytes(npy);
+  if (npy.size() < 12 || npy.substr(0, 6) != "\x93NUMPY") {
+    return broken(what, "an array of NumPy", "none");
+  }
+  const bool wide = npy[6] > 1;
+  const std::size_t begin = wide ? 12 : 10, length = bytes.number(8, wide ? 4 : 2);
+  if (!bytes.holds(begin, length)) return broken(what, "a whole header", "the end of the array");
+  auto array = read_header(npy.substr(begin, length));
+  if (!array) return broken(what, "a header of NumPy, rows first", "another one");
+  std::size_t size = value_size(array->type);
+  const std::size_t there = npy.size() - begin - length;
+  for (const std::size_t one : array->shape) {
+    if (one != 0 && size > there / one) return broken(what, "all of its values", "fewer");
+    size *= one;
+  }
+  if (size != there) return broken(what, std::to_string(size) + " bytes of values",
+                                   std::to_string(there));
+  array->bytes = npy.substr(begin + length);
+  return *array;
+}
+
+template <class Value>
+void append_as_float(std::string_view bytes, std::vector<float>& out) {
+  for (std::size_t at = 0; at + sizeof(Value) <= bytes.size(); at += sizeof(Value)) {
+    Value value;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    out.push_back(static_cast<float>(value));
+  }
+}
+
+bool append_row(const StoredArray& array, std::size_t first, std::size_t count,
+                std::vector<float>& out) {
+  const std::size_t rows = array.shape.empty() ? 0 : array.shape[0];
+  const std::size_t size = rows == 0 ? 0 : array.bytes.size() / rows;
+  const std::string_view bytes = array.bytes.substr(first * size, count * size);
+  if (array.type == "<f4") append_as_float<float>(bytes, out);
+  else if (array.type == "<f8") append_as_float<double>(bytes, out);
+  else if (array.type == "|u1") append_as_float<std::uint8_t>(bytes, out);
+  else if (array.type == "<i4") append_as_float<std::int32_t>(bytes, out);
+  else if (array.type == "<i8") append_as_float<std::int64_t>(bytes, out);
+  else return false;
+  return true;
+}
+
+Result<std::vector<std::int64_t>> integers(const std::map<std::string, StoredArray>& arrays,
+                                           const std::string& key, const std::string& name) {
+  const auto found = arrays.find(key);
+  if (found == arrays.end()) return broken(name, "an array " + key, "none");
+  const StoredArray& array = found->second;
+  const std::size_t size = value_size(array.type);
+  if (array.type.size() < 3 || (array.type[1] != 'i' && array.type[1] != 'u') || size > 8) {
+    return broken(name, key + " of integers", array.type);
+  }
+  std::vector<std::int64_t> out;
+  for (std::size_t at = 0; at + size <= array.bytes.size(); at += size) {
+    out.push_back(static_cast<std::int64_t>(Bytes(array.bytes.substr(at, size)).number(0, size)));
+  }
+  return out;
+}
+
+std::string utf8_of(const StoredArray& array) {
+  std::string out;
+  for (std::size_t at = 0; at + 4 <= array.bytes.size(); at += 4) {
+    const auto code = static_cast<std::uint32_t>(Bytes(array.bytes).number(at, 4));
+    if (code == 0) continue;
+    if (code < 0x80) {
+      out += static_cast<char>(code);
+    } else if (code < 0x800) {
+      out += static_cast<char>(0xc0U | code >> 6U);
+      out += static_cast<char>(0x80U | (code & 0x3fU));
+    } else {
+      out += static_cast<char>(0xe0U | code >> 12U);
+      out += static_cast<char>(0x80U | (code >> 6U & 0x3fU));
+      out += static_cast<char>(0x80U | (code & 0x3fU));
+    }
+  }
+  return out;
+}
+
+struct Places {
+  std::vector<std::int64_t> take, part, first, rows;
+};
+
+/// Appends rows `skip` ... of window `w` to the last stretch.
+Result<void> append_window(const std::map<std::string, StoredArray>& arrays, Windows& out,
+                           std::size_t window, std::size_t skip, std::size_t rows,
+                           const std::string& name) {
+  Stretch& stretch = out.stretches.back();
+  for (const auto& about : out.manifest.at("streams")) {
+    const auto stream = about.at("name").get<std::string>();
+    for (const auto& [key, array] : arrays) {
+      if (!key.starts_with(stream + "_") || array.shape.size() < 3) continue;
+      const std::size_t length = array.shape[1];
+      std::vector<std::size_t> flat{array.shape[0] * length};
+      flat.insert(flat.end(), array.shape.begin() + 2, array.shape.end());
+      const StoredArray lines{array.type, flat, array.bytes};
+      if (skip + rows > length || (window + 1) * length > flat[0]) {
+        return broken(name, key + " with a row for each", "fewer");
+      }
+      if (!append_row(lines, window * length + skip, rows,
+                      stretch.streams[stream].arrays[key.substr(stream.size() + 1)])) {
+        return broken(name, key + " of numbers", array.type);
+      }
+    }
+  }
+  stretch.rows += rows;
+  return {};
+}
+
+Result<void> join(const std::map<std::string, StoredArray>& arrays, const Places& places,
+                  Windows& out, const std::string& name) {
+  std::int64_t reached = 0;
+  for (std::size_t w = 0; w < places.take.size(); ++w) {
+    const std::int64_t first = places.first[w], rows = places.rows[w];
+    const bool goes_on = w > 0 && places.take[w] == places.take[w - 1] && first <= reached &&
+                         first + rows > reached && first >= places.first[w - 1];
+    if (!goes_on) {
+      out.stretches.push_back({static_cast<std::size_t>(places.take[w]),
+                               static_cast<std::size_t>(places.part[w]), 0, {}});
+      reached = first;
+    }
+    if (rows < 0 || first < 0) return broken(name, "rows of a take", std::to_string(rows));
+    KA_TRY(append_window(arrays, out, w, static_cast<std::size_t>(reached - first),
+                         static_cast<std::size_t>(first + rows - reached), name));
+    reached = first + rows;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::size_t StoredArray::row() const {
+  std::size_t out = 1;
+  for (std::size_t i = 1; i < shape.size(); ++i) out *= shape[i];
+  return out;
+}
+
+Result<std::map<std::string, StoredArray>> stored_arrays(std::string_view npz,
+                                                         const std::string& name) {
+  const Bytes bytes(npz);
+  std::map<std::string, StoredArray> out;
+  for (const Entry& entry : KA_TRY(entries_of(bytes, name))) {
+    if (!bytes.holds(entry.at, local_size) || bytes.number(entry.at, 4) != local_mark) {
+      return broken(name, entry.name + " where the list says", "something else");
+    }
+    const std::size_t begin =
+        entry.at + local_size + bytes.number(entry.at + 26, 2) + bytes.number(entry.at + 28, 2);
+    if (!bytes.holds(begin, entry.size)) {
+      return broken(name, "all of " + entry.name, "the end of the file");
+    }
+    const std::string key = entry.name.substr(0, entry.name.rfind(".npy"));
+    out[key] = KA_TRY(read_array(bytes.piece(begin, entry.size), name + ": " + entry.name));
+  }
+  return out;
+}
+
+Result<Windows> read_windows(std::string_view npz, const std::string& name) {
+  const auto arrays = KA_TRY(stored_arrays(npz, name));
+  const auto manifest = arrays.find("manifest");
+  if (manifest == arrays.end()) {
+    return broken(name, "a file of kinalign dataset windows", "no array manifest");
+  }
+  Windows out;
+  out.manifest = nlohmann::json::parse(utf8_of(manifest->second), nullptr, false);
+  if (!out.manifest.is_object() || out.manifest.value("schema", "") != "kinalign.windows/1") {
+    return broken(name, "a manifest of schema kinalign.windows/1", "another one");
+  }
+  const Places places{KA_TRY(integers(arrays, "take", name)), KA_TRY(integers(arrays, "part", name)),
+                      KA_TRY(integers(arrays, "first", name)),
+                      KA_TRY(integers(arrays, "rows", name))};
+  const std::size_t count = places.take.size();
+  if (places.part.size() != count || places.first.size() != count || places.rows.size() != count) {
+    return broken(name, "arrays of one length", "take, part, first and rows differ");
+  }
+  if (!out.manifest.contains("streams") || !out.manifest["streams"].is_array()) {
+    return broken(name, "a list of streams in the manifest", "none");
+  }
+  KA_TRY(join(arrays, places, out, name));
+  for (const auto& [key, array] : arrays) {
+    const std::size_t at = key.rfind("_rest_offsets");
+    if (at == std::string::npos || array.shape.empty()) continue;
+    append_row(array, 0, array.shape[0], out.rest_offsets[key.substr(0, at)]);
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// A file of windows (schema kinalign.windows/1, docs/windows.md) put back together: the whole
+// stretches of each take. Reads NPZ whose members are stored, as kinalign and numpy.savez write it,
+// with nothing but the standard library and JSON, so that `learn` also builds on a GPU machine.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+/// An array of a file: its numbers are read from the file's bytes.
+struct StoredArray {
+  std::string type;  // NumPy's: "<f4"
+  std::vector<std::size_t> shape;
+  std::string_view bytes;
+
+  /// Values a row (the product of all lengths but the first).
+  std::size_t row() const;
+};
+
+/// A stream of a stretch of T rows.
+struct StretchStream {
+  std::map<std::string, std::vector<float>> arrays;  // "positions" [T,C], "valid", "state", ...
+};
+
+/// Rows of one take between two gaps.
+struct Stretch {
+  std::size_t take = 0;  // position in the manifest's list of takes
+  std::size_t part = 0;  // position in the manifest's list of parts
+  std::size_t rows = 0;
+  std::map<std::string, StretchStream> streams;
+};
+
+struct Windows {
+  nlohmann::json manifest;
+  std::vector<Stretch> stretches;
+  std::map<std::string, std::vector<float>> rest_offsets;  // by stream: [takes,J,3] m
+};
+
+/// All arrays of an NPZ. Fails where it is none, a member is compressed, or a length is not true.
+Result<std::map<std::string, StoredArray>> stored_arrays(std::string_view npz,
+                                                         const std::string& name);
+
+/// `npz`: the file's bytes. Windows that overlap or follow each other become one stretch.
+Result<Windows> read_windows(std::string_view npz, const std::string& name);
+
+}  // namespace kinalign

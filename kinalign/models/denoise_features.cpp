@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/denoise_features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+/// What a joint hangs on, by the names of a Kinect's joints.
+const std::map<std::string, std::string>& kinect_tree() {
+  static const std::map<std::string, std::string> tree{
+      {"SpineMid", "SpineBase"},     {"SpineShoulder", "SpineMid"}, {"Neck", "SpineShoulder"},
+      {"Head", "SpineShoulder"},     {"ShoulderLeft", "SpineShoulder"},
+      {"ElbowLeft", "ShoulderLeft"}, {"WristLeft", "ElbowLeft"},    {"HandLeft", "WristLeft"},
+      {"ShoulderRight", "SpineShoulder"},
+      {"ElbowRight", "ShoulderRight"}, {"WristRight", "ElbowRight"}, {"HandRight", "WristRight"},
+      {"HipLeft", "SpineBase"},      {"KneeLeft", "HipLeft"},       {"AnkleLeft", "KneeLeft"},
+      {"FootLeft", "AnkleLeft"},     {"HipRight", "SpineBase"},     {"KneeRight", "HipRight"},
+      {"AnkleRight", "KneeRight"},   {"FootRight", "AnkleRight"}};
+  return tree;
+}
+
+/// A Kinect's name for the joints of UI-PRMD's Kinect files and of usual mocap skeletons.
+std::string kinect_name(const std::string& name) {
+  static const std::map<std::string, std::string> words{
+      {"Waist", "SpineBase"},        {"Spine", "SpineMid"},          {"Chest", "SpineShoulder"},
+      {"HeadTip", "Head"},           {"UpperArmLeft", "ShoulderLeft"},
+      {"ForearmLeft", "ElbowLeft"},  {"HandLeft", "WristLeft"},      {"UpperLegLeft", "HipLeft"},
+      {"LowerLegLeft", "KneeLeft"},  {"FootLeft", "AnkleLeft"},      {"ToesLeft", "FootLeft"},
+      {"UpperArmRight", "ShoulderRight"},
+      {"ForearmRight", "ElbowRight"}, {"HandRight", "WristRight"},   {"UpperLegRight", "HipRight"},
+      {"LowerLegRight", "KneeRight"}, {"FootRight", "AnkleRight"},   {"ToesRight", "FootRight"},
+      {"Hips", "SpineBase"},         {"LeftUpLeg", "HipLeft"},       {"RightUpLeg", "HipRight"},
+      {"LeftLeg", "KneeLeft"},       {"RightLeg", "KneeRight"},      {"LeftFoot", "AnkleLeft"},
+      {"RightFoot", "AnkleRight"},   {"LeftToeBase", "FootLeft"},    {"RightToeBase", "FootRight"},
+      {"LeftArm", "ShoulderLeft"},   {"RightArm", "ShoulderRight"},  {"LeftForeArm", "ElbowLeft"},
+      {"RightForeArm", "ElbowRight"}, {"LeftHand", "WristLeft"},     {"RightHand", "WristRight"},
+      {"Spine1", "SpineMid"},        {"Spine3", "SpineShoulder"}};
+  const auto found = words.find(name);
+  return found == words.end() ? name : found->second;
+}
+
+int index_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  return at == names.end() ? -1 : static_cast<int>(at - names.begin());
+}
+
+/// Names of both sides as a Kinect has them. A skeleton of UI-PRMD's 22 joints says "FootLeft" of
+/// an ankle: its names are translated only where it has "Waist".
+std::vector<std::string> common_names(const std::vector<std::string>& names) {
+  const bool is_kinect = index_of(names, "SpineBase") >= 0;
+  std::vector<std::string> out = names;
+  if (!is_kinect) std::transform(out.begin(), out.end(), out.begin(), kinect_name);
+  return out;
+}
+
+template <class Turn>
+void move(const std::vector<BodyFrame>& frames, std::span<float> positions, const Turn& turn) {
+  const std::size_t row = frames.empty() ? 0 : positions.size() / frames.size();
+  for (std::size_t i = 0; i < positions.size(); i += 3) turn(frames[i / row], &positions[i]);
+}
+
+}  // namespace
+
+Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
+                                     std::vector<std::string> outputs, double rate_hz) {
+  if (!body_joints(inputs)) {
+    return Failure(Error{"", 0, "an input with a root (SpineBase, Hips, ...) and both hips",
+                         std::to_string(inputs.size()) + " joints without them"});
+  }
+  DenoiseLayout out;
+  out.inputs = std::move(inputs);
+  out.outputs = std::move(outputs);
+  out.rate_hz = rate_hz;
+  const auto seen = common_names(out.inputs), answered = common_names(out.outputs);
+  for (const std::string& name : answered) {
+    out.bases.push_back(index_of(seen, name));
+    const auto parent = kinect_tree().find(name);
+    out.parents.push_back(parent == kinect_tree().end() ? -1 : index_of(answered, parent->second));
+  }
+  const auto window = static_cast<std::size_t>(std::lround(rate_hz * 0.3));
+  out.smoothing.window = window + (window % 2 == 0 ? 1 : 0);
+  return out;
+}
+
+DenoiseFeatures denoise_features(const DenoiseLayout& layout, JointFrames body) {
+  const std::size_t joints = body.joints, frames = body.frames();
+  DenoiseFeatures out;
+  fill_missing(body, layout.smoothing.causal);
+  JointFrames smoothed = body;
+  smooth(layout.smoothing, 3 * joints, smoothed.positions);
+  out.frames = body_frames(*body_joints(layout.inputs), smoothed);
+  to_body(out.frames, body.positions);
+  to_body(out.frames, smoothed.positions);
+  out.input.reserve(frames * layout.channels());
+  out.base.reserve(frames * layout.answers());
+  for (std::size_t t = 0; t < frames; ++t) {
+    const float* row = &body.positions[t * joints * 3];
+    const float* before = t == 0 ? row : row - joints * 3;
+    out.input.insert(out.input.end(), row, row + joints * 3);
+    for (std::size_t i = 0; i < joints * 3; ++i) out.input.push_back(row[i] - before[i]);
+    for (std::size_t j = 0; j < joints; ++j) {
+      out.input.push_back(static_cast<float>(body.seen[t * joints + j]) * 0.5F);
+    }
+    for (const int base : layout.bases) {
+      static constexpr std::array<float, 3> root{};
+      const float* at = base < 0 ? root.data()
+                                 : &smoothed.positions[(t * joints + static_cast<std::size_t>(base)) * 3];
+      out.base.insert(out.base.end(), at, at + 3);
+    }
+  }
+  return out;
+}
+
+void to_body(const std::vector<BodyFrame>& frames, std::span<float> positions) {
+  move(frames, positions, [](const BodyFrame& frame, float* at) {
+    const std::array<float, 3> moved{at[0] - frame.root[0], at[1] - frame.root[1],
+                                     at[2] - frame.root[2]};
+    const auto turned = frame.turned(moved.data());
+    std::copy(turned.begin(), turned.end(), at);
+  });
+}
+
+void to_world(const std::vector<BodyFrame>& frames, std::span<float> positions) {
+  move(frames, positions, [](const BodyFrame& frame, float* at) {
+    const auto turned = frame.turned_back(at);
+    for (std::size_t k = 0; k < 3; ++k) at[k] = turned[k] + frame.root[k];
+  });
+}
+
+}  // namespace kinalign

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/infer/architecture_json.h"
+#include "kinalign/infer/safetensors.h"
+#include "kinalign/models/denoise_model.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* header_key = "kinalign";
+constexpr const char* schema = "kinalign.model/1";
+constexpr std::size_t most_joints = 1000, most_window = 1001;
+
+Json smoothing_json(const Smoothing& how) {
+  return {{"window", how.window}, {"order", how.order}, {"causal", how.causal}};
+}
+
+Json parsed(const std::string& text) {
+  Json out = Json::parse(text.empty() ? "{}" : text, nullptr, false);
+  return out.is_discarded() ? Json::object() : out;
+}
+
+Json header_of(const DenoiseModel& model) {
+  const DenoiseLayout& layout = model.layout;
+  Json networks{{"net", Json::parse(architecture_json(model.architecture))}};
+  if (model.second) networks["second"] = Json::parse(architecture_json(*model.second));
+  return {{"schema", schema},
+          {"task", model.facts.task},
+          {"method", model.facts.method},
+          {"software", model.facts.software},
+          {"rate_hz", layout.rate_hz},
+          {"input", {{"joints", layout.inputs}, {"smoothing", smoothing_json(layout.smoothing)}}},
+          {"output",
+           {{"joints", layout.outputs},
+            {"parents", layout.parents},
+            {"bases", layout.bases},
+            {"scale_m", model.answer_scale},
+            {"spread", model.states_spread},
+            {"spread_factor", model.spread_factor}}},
+          {"steadying",
+           {{"mirror", model.steadying.mirror},
+            {"smoothing", smoothing_json(model.steadying.smoothing)},
+            {"bones", model.steadying.bones}}},
+          {"networks", std::move(networks)},
+          {"training", parsed(model.facts.training)},
+          {"metrics", parsed(model.facts.metrics)}};
+}
+
+Tensor row_of(const std::vector<float>& values) { return {{values.size()}, values}; }
+
+/// Reads members of the header; a member of another type throws, and read_denoise_model() says so.
+Smoothing smoothing_of(const Json& json) {
+  return {json.at("window").get<std::size_t>(), json.at("order").get<std::size_t>(),
+          json.at("causal").get<bool>()};
+}
+
+void read_header(const Json& header, DenoiseModel& out) {
+  out.facts.task = header.at("task").get<std::string>();
+  out.facts.method = header.at("method").get<std::string>();
+  out.facts.software = header.value("software", "");
+  out.facts.training = header.value("training", Json::object()).dump();
+  out.facts.metrics = header.value("metrics", Json::object()).dump();
+  DenoiseLayout& layout = out.layout;
+  layout.rate_hz = header.at("rate_hz").get<double>();
+  layout.inputs = header.at("input").at("joints").get<std::vector<std::string>>();
+  layout.smoothing = smoothing_of(header.at("input").at("smoothing"));
+  const Json& output = header.at("output");
+  layout.outputs = output.at("joints").get<std::vector<std::string>>();
+  layout.parents = output.at("parents").get<std::vector<int>>();
+  layout.bases = output.at("bases").get<std::vector<int>>();
+  out.answer_scale = output.at("scale_m").get<double>();
+  out.states_spread = output.at("spread").get<bool>();
+  out.spread_factor = output.value("spread_factor", 1.0);
+  const Json& steadying = header.at("steadying");
+  out.steadying = {steadying.at("mirror").get<bool>(), smoothing_of(steadying.at("smoothing")),
+                   steadying.at("bones").get<bool>()};
+}
+
+bool in_range(const std::vector<int>& values, std::size_t end) {
+  for (const int value : values) {
+    if (value < -1 || value >= static_cast<int>(end)) return false;
+  }
+  return true;
+}
+
+bool is_sound(const Smoothing& how) { return how.window <= most_window && how.order <= 5; }
+
+/// Why the parts do not fit together; empty where they do.
+std::string misfit(const DenoiseModel& model) {
+  const DenoiseLayout& layout = model.layout;
+  const std::size_t in = layout.inputs.size(), out = layout.outputs.size();
+  if (in == 0 || out == 0 || in > most_joints || out > most_joints) return "number of joints";
+  if (!body_joints(layout.inputs)) return "input without a root or both hips";
+  if (layout.parents.size() != out || !in_range(layout.parents, out)) return "parents";
+  if (layout.bases.size() != out || !in_range(layout.bases, in)) return "bases";
+  if (!std::isfinite(layout.rate_hz) || layout.rate_hz <= 0.0) return "rate_hz";
+  if (!is_sound(layout.smoothing) || !is_sound(model.steadying.smoothing)) return "smoothing";
+  if (model.input_mean.size() != layout.channels()) return "input.mean";
+  if (model.input_scale.size() != layout.channels()) return "input.scale";
+  if (model.answer_mean.size() != layout.answers()) return "answer.mean";
+  for (const float value : model.input_scale) {
+    if (!(value > 0.0F)) return "input.scale";
+  }
+  return "";
+}
+
+Result<void> take_row(std::map<std::string, Tensor>& tensors, const std::string& name,
+                      const std::string& file, std::vector<float>& out) {
+  const auto found = tensors.find(name);
+  if (found == tensors.end()) return Failure(Error{file, 0, "a tensor " + name, "none"});
+  out = std::move(found->second.values);
+  tensors.erase(found);
+  return {};
+}
+
+}  // namespace
+
+std::string write_denoise_model(const DenoiseModel& model) {
+  TensorFile file{{{header_key, header_of(model).dump()}}, model.tensors};
+  file.tensors["input.mean"] = row_of(model.input_mean);
+  file.tensors["input.scale"] = row_of(model.input_scale);
+  file.tensors["answer.mean"] = row_of(model.answer_mean);
+  return write_safetensors(file);
+}
+
+Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::string& name) {
+  TensorFile file = KA_TRY(read_safetensors(bytes, name));
+  const auto text = file.metadata.find(header_key);
+  const Json header =
+      text == file.metadata.end() ? Json() : Json::parse(text->second, nullptr, false);
+  if (!header.is_object() || header.value("schema", "") != schema) {
+    return Failure(Error{name, 0, "a model of kinalign (schema kinalign.model/1)", "another file"});
+  }
+  DenoiseModel out;
+  try {
+    read_header(header, out);
+    const Json& networks = header.at("networks");
+    out.architecture = KA_TRY(parse_architecture_json(networks.at("net").dump(), name));
+    if (networks.contains("second")) {
+      out.second = KA_TRY(parse_architecture_json(networks.at("second").dump(), name));
+    }
+  } catch (const nlohmann::json::exception& fault) {
+    return Failure(Error{name, 0, "a whole header of a model", shown(fault.what())});
+  }
+  if (out.facts.task != "denoise") {
+    return Failure(Error{name, 0, "a model that cleans skeletons", "task " + shown(out.facts.task)});
+  }
+  KA_TRY(take_row(file.tensors, "input.mean", name, out.input_mean));
+  KA_TRY(take_row(file.tensors, "input.scale", name, out.input_scale));
+  KA_TRY(take_row(file.tensors, "answer.mean", name, out.answer_mean));
+  out.tensors = std::move(file.tensors);
+  const std::string fault = misfit(out);
+  if (!fault.empty()) return Failure(Error{name, 0, "parts that fit together", fault});
+  return out;
+}
+
+}  // namespace kinalign

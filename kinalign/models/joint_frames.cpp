@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/joint_frames.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+/// The name of the joint on the other side; the name itself where it names no side.
+std::string other_side(const std::string& name) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 4> words{
+      {{"Left", "Right"}, {"Right", "Left"}, {"left", "right"}, {"right", "left"}}};
+  for (const auto& [here, there] : words) {
+    const std::size_t at = name.find(here);
+    if (at == std::string::npos) continue;
+    return name.substr(0, at) + std::string(there) + name.substr(at + here.size());
+  }
+  if (name.empty()) return name;
+  static constexpr std::array<std::pair<char, char>, 4> letters{
+      {{'L', 'R'}, {'R', 'L'}, {'l', 'r'}, {'r', 'l'}}};
+  for (const auto& [here, there] : letters) {
+    if (name.front() == here) return there + name.substr(1);
+  }
+  return name;
+}
+
+}  // namespace
+
+std::vector<std::size_t> mirror_partners(const std::vector<std::string>& names) {
+  std::vector<std::size_t> out(names.size());
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    const auto found = std::find(names.begin(), names.end(), other_side(names[j]));
+    out[j] = found == names.end() ? j : static_cast<std::size_t>(found - names.begin());
+  }
+  return out;
+}
+
+void mirror(JointFrames& body, const std::vector<std::size_t>& partners) {
+  const std::size_t joints = body.joints;
+  for (std::size_t t = 0; t < body.frames(); ++t) {
+    float* row = &body.positions[t * joints * 3];
+    std::uint8_t* seen = &body.seen[t * joints];
+    for (std::size_t j = 0; j < joints; ++j) {
+      const std::size_t other = partners[j];
+      if (other <= j) continue;
+      std::swap(seen[j], seen[other]);
+      std::swap_ranges(row + 3 * j, row + 3 * j + 3, row + 3 * other);
+    }
+    for (std::size_t j = 0; j < joints; ++j) row[3 * j] = -row[3 * j];
+  }
+}
+
+}  // namespace kinalign
