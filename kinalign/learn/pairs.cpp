@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/pairs.h"
 
+#include "kinalign/models/joint_names.h"
+#include "kinalign/motion/kinect_joints.h"
+
 #include <algorithm>
 
 namespace kinalign {
 
 namespace {
+
+constexpr std::size_t least_known = 10;
 
 Result<std::vector<std::string>> joints_of(const Windows& windows, const std::string& stream) {
   std::string known;
@@ -35,6 +40,42 @@ std::vector<std::uint8_t> seen_of(const StretchStream& stream, std::size_t rows,
   return out;
 }
 
+/// The input's joints that a Kinect has too, by its names, and where they stand; all joints where
+/// the stream is no Kinect's.
+struct Chosen {
+  std::vector<std::string> names;
+  std::vector<std::size_t> places;
+};
+
+Chosen choose(const std::vector<std::string>& joints) {
+  const auto names = kinect_names(joints);
+  Chosen known, all;
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    all.names.push_back(names[j]);
+    all.places.push_back(j);
+    if (std::find(kinect_joints.begin(), kinect_joints.end(), names[j]) == kinect_joints.end()) {
+      continue;
+    }
+    known.names.push_back(names[j]);
+    known.places.push_back(j);
+  }
+  return known.names.size() < least_known ? all : known;
+}
+
+/// The chosen joints of rows of all of them, `values` numbers each.
+template <class Value>
+std::vector<Value> chosen_of(const std::vector<Value>& all, const Chosen& chosen,
+                             std::size_t joints, std::size_t values) {
+  std::vector<Value> out;
+  for (std::size_t row = 0; row + joints * values <= all.size(); row += joints * values) {
+    for (const std::size_t j : chosen.places) {
+      const auto at = all.begin() + static_cast<std::ptrdiff_t>(row + j * values);
+      out.insert(out.end(), at, at + static_cast<std::ptrdiff_t>(values));
+    }
+  }
+  return out;
+}
+
 std::size_t part_named(const Windows& windows, const std::string& name) {
   const auto& parts = windows.manifest.at("parts");
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -47,7 +88,9 @@ std::size_t part_named(const Windows& windows, const std::string& name) {
 
 Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const std::string& truth,
                        std::size_t least) {
-  Pairs out{.inputs = KA_TRY(joints_of(windows, input)),
+  const auto joints = KA_TRY(joints_of(windows, input));
+  const Chosen chosen = choose(joints);
+  Pairs out{.inputs = chosen.names,
             .outputs = KA_TRY(joints_of(windows, truth)),
             .rate_hz = windows.manifest.value("rate_hz", 0.0)};
   const std::size_t parts = windows.manifest.at("parts").size();
@@ -64,8 +107,8 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
     }
     Pair pair;
     pair.input.joints = out.inputs.size();
-    pair.input.positions = rough.arrays.at("positions");
-    pair.input.seen = seen_of(rough, stretch.rows, out.inputs.size());
+    pair.input.positions = chosen_of(rough.arrays.at("positions"), chosen, joints.size(), 3);
+    pair.input.seen = chosen_of(seen_of(rough, stretch.rows, joints.size()), chosen, joints.size(), 1);
     pair.truth = precise.arrays.at("positions");
     pair.valid = seen_of(precise, stretch.rows, out.outputs.size());
     for (std::uint8_t& one : pair.valid) one = one == 0 ? 0 : 1;

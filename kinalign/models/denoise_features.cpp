@@ -1,62 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/denoise_features.h"
 
+#include "kinalign/models/joint_names.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace kinalign {
 
 namespace {
-
-/// What a joint hangs on, by the names of a Kinect's joints.
-const std::map<std::string, std::string>& kinect_tree() {
-  static const std::map<std::string, std::string> tree{
-      {"SpineMid", "SpineBase"},     {"SpineShoulder", "SpineMid"}, {"Neck", "SpineShoulder"},
-      {"Head", "SpineShoulder"},     {"ShoulderLeft", "SpineShoulder"},
-      {"ElbowLeft", "ShoulderLeft"}, {"WristLeft", "ElbowLeft"},    {"HandLeft", "WristLeft"},
-      {"ShoulderRight", "SpineShoulder"},
-      {"ElbowRight", "ShoulderRight"}, {"WristRight", "ElbowRight"}, {"HandRight", "WristRight"},
-      {"HipLeft", "SpineBase"},      {"KneeLeft", "HipLeft"},       {"AnkleLeft", "KneeLeft"},
-      {"FootLeft", "AnkleLeft"},     {"HipRight", "SpineBase"},     {"KneeRight", "HipRight"},
-      {"AnkleRight", "KneeRight"},   {"FootRight", "AnkleRight"}};
-  return tree;
-}
-
-/// A Kinect's name for the joints of UI-PRMD's Kinect files and of usual mocap skeletons.
-std::string kinect_name(const std::string& name) {
-  static const std::map<std::string, std::string> words{
-      {"Waist", "SpineBase"},        {"Spine", "SpineMid"},          {"Chest", "SpineShoulder"},
-      {"HeadTip", "Head"},           {"UpperArmLeft", "ShoulderLeft"},
-      {"ForearmLeft", "ElbowLeft"},  {"HandLeft", "WristLeft"},      {"UpperLegLeft", "HipLeft"},
-      {"LowerLegLeft", "KneeLeft"},  {"FootLeft", "AnkleLeft"},      {"ToesLeft", "FootLeft"},
-      {"UpperArmRight", "ShoulderRight"},
-      {"ForearmRight", "ElbowRight"}, {"HandRight", "WristRight"},   {"UpperLegRight", "HipRight"},
-      {"LowerLegRight", "KneeRight"}, {"FootRight", "AnkleRight"},   {"ToesRight", "FootRight"},
-      {"Hips", "SpineBase"},         {"LeftUpLeg", "HipLeft"},       {"RightUpLeg", "HipRight"},
-      {"LeftLeg", "KneeLeft"},       {"RightLeg", "KneeRight"},      {"LeftFoot", "AnkleLeft"},
-      {"RightFoot", "AnkleRight"},   {"LeftToeBase", "FootLeft"},    {"RightToeBase", "FootRight"},
-      {"LeftArm", "ShoulderLeft"},   {"RightArm", "ShoulderRight"},  {"LeftForeArm", "ElbowLeft"},
-      {"RightForeArm", "ElbowRight"}, {"LeftHand", "WristLeft"},     {"RightHand", "WristRight"},
-      {"Spine1", "SpineMid"},        {"Spine3", "SpineShoulder"}};
-  const auto found = words.find(name);
-  return found == words.end() ? name : found->second;
-}
-
-int index_of(const std::vector<std::string>& names, const std::string& name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  return at == names.end() ? -1 : static_cast<int>(at - names.begin());
-}
-
-/// Names of both sides as a Kinect has them. A skeleton of UI-PRMD's 22 joints says "FootLeft" of
-/// an ankle: its names are translated only where it has "Waist".
-std::vector<std::string> common_names(const std::vector<std::string>& names) {
-  const bool is_kinect = index_of(names, "SpineBase") >= 0;
-  std::vector<std::string> out = names;
-  if (!is_kinect) std::transform(out.begin(), out.end(), out.begin(), kinect_name);
-  return out;
-}
 
 template <class Turn>
 void move(const std::vector<BodyFrame>& frames, std::span<float> positions, const Turn& turn) {
@@ -76,12 +30,12 @@ Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
   out.inputs = std::move(inputs);
   out.outputs = std::move(outputs);
   out.rate_hz = rate_hz;
-  const auto seen = common_names(out.inputs), answered = common_names(out.outputs);
+  const auto seen = kinect_names(out.inputs), answered = kinect_names(out.outputs);
   for (const std::string& name : answered) {
-    out.bases.push_back(index_of(seen, name));
-    const auto parent = kinect_tree().find(name);
-    out.parents.push_back(parent == kinect_tree().end() ? -1 : index_of(answered, parent->second));
+    const auto base = index_of(seen, name);
+    out.bases.push_back(base ? static_cast<int>(*base) : -1);
   }
+  out.parents = kinect_parents_of(answered);
   const auto window = static_cast<std::size_t>(std::lround(rate_hz * 0.3));
   out.smoothing.window = window + (window % 2 == 0 ? 1 : 0);
   return out;

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/kinalign/learn/point_source.h"
+#include "apps/kinalign/learn/shipped_models.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/points/trc.h"
+#include "kinalign/formats/take/guarded.h"
+#include "kinalign/models/denoise_model.h"
+#include "kinalign/models/even_grid.h"
+#include "kinalign/models/joint_names.h"
+#include "kinalign/models/skeleton_of_points.h"
+#include "kinalign/sources/formats.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_model_bytes = std::size_t{1} << 30U;
+constexpr double longest_gap_s = 0.2;   // between samples that are joined by a line
+constexpr double longest_unseen_s = 2.0;  // a joint that is missing longer is told
+constexpr double radius_90 = 2.5003;    // of a Gaussian in space, in its standard deviations
+
+struct Denoise {
+  std::vector<std::string> in;
+  std::string model, stream;
+};
+
+Usage describe_denoise(Denoise& o) {
+  Usage usage;
+  usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in}};
+  usage.flags = {{"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
+                 {"stream", "which stream (default: the only one of joints)", &o.stream, 0.0, 0.0, {}, "NAME"}};
+  usage.check = [](const Common& common, const Sources&) -> Result<void> {
+    if (common.out.ends_with(".bvh") || common.out.ends_with(".trc")) return {};
+    return Failure(Error{"-o", 0, "-o FILE.bvh or FILE.trc",
+                         common.out.empty() ? "none" : shown(common.out)});
+  };
+  return usage;
+}
+
+/// The denoised joints, and what is to be said of them.
+struct Cleaned {
+  EvenFrames input;
+  Denoised answer;
+  Json about;
+};
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// How far seen joints were moved, m: from the input to the answer's joint of that name.
+std::vector<double> moves(const DenoiseModel& model, const Cleaned& cleaned) {
+  std::vector<double> out;
+  const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
+  for (std::size_t t = 0; t < cleaned.input.body.frames(); ++t) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      const auto from = index_of(model.layout.inputs, model.layout.outputs[j]);
+      if (!from || cleaned.input.body.seen[t * in + *from] != 2) continue;
+      const float* a = &cleaned.input.body.positions[(t * in + *from) * 3];
+      const float* b = &cleaned.answer.positions[(t * joints + j) * 3];
+      out.push_back(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+    }
+  }
+  return out;
+}
+
+/// Joints of the input that were missing for long, each with its longest time, s.
+Json long_missing(const DenoiseModel& model, const EvenFrames& input) {
+  Json out = Json::object();
+  const std::size_t joints = model.layout.inputs.size();
+  for (std::size_t j = 0; j < joints; ++j) {
+    std::size_t run = 0, longest = 0;
+    for (std::size_t t = 0; t < input.body.frames(); ++t) {
+      run = input.body.seen[t * joints + j] == 0 ? run + 1 : 0;
+      longest = std::max(longest, run);
+    }
+    const double seconds = static_cast<double>(longest) / input.rate_hz;
+    if (seconds >= longest_unseen_s) out[model.layout.inputs[j]] = seconds;
+  }
+  return out;
+}
+
+Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string& stream) {
+  const auto& seen = cleaned.input.body.seen;
+  const auto missing = std::count(seen.begin(), seen.end(), 0);
+  const auto inferred = std::count(seen.begin(), seen.end(), 1);
+  const double all = static_cast<double>(std::max<std::size_t>(seen.size(), 1));
+  Json out{{"stream", stream},
+           {"frames", cleaned.input.body.frames()},
+           {"rate_hz", cleaned.input.rate_hz},
+           {"joints", model.layout.outputs.size()},
+           {"method", model.facts.method},
+           {"missing", static_cast<double>(missing) / all},
+           {"inferred", static_cast<double>(inferred) / all},
+           {"moved_cm", 100.0 * mean_of(moves(model, cleaned))},
+           {"long_missing_s", long_missing(model, cleaned.input)}};
+  if (!cleaned.answer.spread.empty()) {
+    const std::vector<double> spread(cleaned.answer.spread.begin(), cleaned.answer.spread.end());
+    out["radius_90_cm"] = 100.0 * radius_90 * mean_of(spread);
+  }
+  return out;
+}
+
+Result<Cleaned> clean(Denoiser& denoiser, const NamedPoints& points) {
+  const DenoiseLayout& layout = denoiser.model().layout;
+  Cleaned out{KA_TRY(even_frames(layout.inputs, kinect_names(points.joints), points.frames,
+                                 layout.rate_hz, longest_gap_s)),
+              {},
+              {}};
+  out.answer = denoiser.clean(out.input.body);
+  out.about = about(denoiser.model(), out, points.stream);
+  return out;
+}
+
+Result<void> write_trc(FileSystem& files, const DenoiseModel& model, const Cleaned& cleaned,
+                       const Common& common) {
+  TextOut out = KA_TRY(TextOut::create(files, common.out, common.overwrite()));
+  const std::size_t joints = model.layout.outputs.size(), frames = cleaned.input.body.frames();
+  PointFrames points;
+  for (std::size_t t = 0; t < frames; ++t) {
+    const double ns = static_cast<double>(t) * 1e9 / cleaned.input.rate_hz;
+    points.stamps.push_back(cleaned.input.start + Duration(std::llround(ns)));
+  }
+  points.positions.assign(cleaned.answer.positions.begin(), cleaned.answer.positions.end());
+  points.state.assign(frames * joints, Tracking::tracked);
+  TrcWriter writer = KA_TRY(TrcWriter::begin({model.layout.outputs, cleaned.input.rate_hz, frames,
+                                              std::string(file_name(common.out)),
+                                              cleaned.input.start},
+                                             out));
+  KA_TRY(writer.append(points));
+  KA_TRY(writer.finish());
+  return out.commit();
+}
+
+Result<void> write_skeleton(FileSystem& files, const DenoiseModel& model, const Cleaned& cleaned,
+                            const Common& common) {
+  OutputFile file = KA_TRY(OutputFile::create(files, common.out, common.overwrite()));
+  const DenoiseLayout& layout = model.layout;
+  Clip clip =
+      KA_TRY(skeleton_of_points({layout.outputs, layout.parents}, cleaned.answer.positions,
+                                cleaned.input.start, layout.rate_hz));
+  KA_TRY(write_bvh(bvh_from_clip(std::move(clip), 1.0 / layout.rate_hz),
+                   [&](std::string_view text) { return file.write(text); }));
+  return file.commit();
+}
+
+Result<void> write_cleaned(FileSystem& files, const DenoiseModel& model, const Cleaned& cleaned,
+                           const Common& common) {
+  return common.out.ends_with(".trc") ? write_trc(files, model, cleaned, common)
+                                      : write_skeleton(files, model, cleaned, common);
+}
+
+void print(const Json& about, const std::string& in, const std::string& out, Call& call) {
+  std::string text = fmt::format(
+      "{}: {} frames at {:g} Hz, {} joints\ncleaned  joints moved by {:.1f} cm on average, bones of one "
+      "length each\n",
+      harmless(in), about.at("frames").get<std::size_t>(), about.at("rate_hz").get<double>(),
+      about.at("joints").get<std::size_t>(), about.at("moved_cm").get<double>());
+  text += fmt::format("seen     {:.1f} % missing, {:.1f} % inferred\n",
+                      100.0 * about.at("missing").get<double>(),
+                      100.0 * about.at("inferred").get<double>());
+  if (about.contains("radius_90_cm")) {
+    text += fmt::format("sure     9 of 10 joints lie within {:.1f} cm, the model says\n",
+                        about.at("radius_90_cm").get<double>());
+  }
+  for (const auto& [joint, seconds] : about.at("long_missing_s").items()) {
+    text += fmt::format("warning  {} is missing for {:.1f} s: there it is a guess\n",
+                        harmless(joint), seconds.get<double>());
+  }
+  call.console.print(text);
+  call.console.note(fmt::format("wrote {}", harmless(out)));
+  call.console.print_json(about.dump(1, ' ', false, Json::error_handler_t::replace));
+}
+
+Result<int> run_denoise(Denoise& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string& in = o.in.front();
+  KA_TRY(keep_inputs(call.common.out, o.in));
+  const std::string path = o.model.empty() ? KA_TRY(shipped_model("denoise")) : o.model;
+  const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
+  Denoiser denoiser = KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, path))));
+  const auto work = [&](Result<NamedPoints> points) -> Result<Json> {
+    auto cleaned = clean(denoiser, KA_TRY(std::move(points)));
+    if (!cleaned) {
+      Error error = cleaned.error();
+      if (error.file.empty()) error.file = in;
+      return Failure(error);
+    }
+    KA_TRY(write_cleaned(files, denoiser.model(), *cleaned, call.common));
+    return cleaned->about;
+  };
+  Json about;
+  if (KA_TRY(kind_of_file(files, in)) == FileKind::take) {
+    const std::string text =
+        KA_TRY(run_guarded(GuardLimits{}, blame(in), [&]() -> Result<std::string> {
+          return KA_TRY(work(points_of_take(files, in, o.stream))).dump();
+        }));
+    about = Json::parse(text, nullptr, false);
+    if (!about.is_object()) return Failure(Error{in, 0, "a take that can be read", "another answer"});
+  } else {
+    about = KA_TRY(work(points_of_file(in, o.stream, call)));
+  }
+  print(about, in, call.common.out, call);
+  return about.at("long_missing_s").empty() ? 0 : 1;
+}
+
+}  // namespace
+
+Verb denoise_verb() {
+  return make_verb<Denoise>(
+      {.name = "denoise",
+       .summary = "a Kinect's skeleton cleaned, with bones of constant length",
+       .text = "A model brings rough joints to where a precise system would have seen them. The new "
+               "file has the model's joints at its rate. A joint that is missing for 2 s or longer "
+               "is told, and the exit code is 1.",
+       .examples = {{"kinalign denoise kinect.csv -o clean.bvh", "a skeleton that Blender opens"},
+                    {"kinalign denoise take.h5 -o clean.trc --stream kinect --model own.safetensors",
+                     "a take's stream, with a model of your own"}},
+       .common = {"out", "force", "json"}},
+      describe_denoise, run_denoise);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/learn/point_source.h"
+
+#include "apps/cli/console.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/align/own_rows.h"
+#include "kinalign/formats/take/take_hdf5.h"
+
+#include <optional>
+#include <utility>
+#include <variant>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_values = std::size_t{1} << 29U;  // of all frames and joints
+
+Failure no_stream(const std::string& path, const std::string& wanted, const std::string& known) {
+  const std::string expected =
+      wanted.empty() ? "one stream of joints (--stream NAME)" : "a stream of joints \"" + wanted + "\"";
+  return Failure(Error{path, 0, expected, known.empty() ? "none" : known});
+}
+
+void add_name(std::string& all, const std::string& name) {
+  all += (all.empty() ? "" : ", ") + name;
+}
+
+/// Appends rows whose stamps rise.
+Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
+                    const std::vector<double>& positions, const std::vector<Tracking>& state) {
+  const std::size_t joints = out.joints.size();
+  if ((out.frames.size() + stamps.size()) * joints > most_values) {
+    return Failure(Error{"", 0, "a stream that fits into memory", "a longer one"});
+  }
+  for (std::size_t t = 0; t < stamps.size(); ++t) {
+    if (!out.frames.stamps.empty() && stamps[t] <= out.frames.stamps.back()) continue;
+    out.frames.stamps.push_back(stamps[t]);
+    const auto row = static_cast<std::ptrdiff_t>(t * joints), count = static_cast<std::ptrdiff_t>(joints);
+    out.frames.positions.insert(out.frames.positions.end(), positions.begin() + 3 * row,
+                                positions.begin() + 3 * (row + count));
+    out.frames.state.insert(out.frames.state.end(), state.begin() + row,
+                            state.begin() + row + count);
+  }
+  return {};
+}
+
+std::vector<Tracking> all_tracked(std::size_t rows, std::size_t joints,
+                                  const std::vector<std::uint8_t>& valid) {
+  std::vector<Tracking> out(rows * joints, Tracking::tracked);
+  for (std::size_t i = 0; i < out.size() && !valid.empty(); ++i) {
+    if (valid[i / joints] == 0) out[i] = Tracking::missing;
+  }
+  return out;
+}
+
+std::vector<Tracking> where_valid(const PointRows& rows) {
+  std::vector<Tracking> out = rows.state;
+  for (std::size_t i = 0; i < out.size() && i < rows.valid.size(); ++i) {
+    if (rows.valid[i] == 0) out[i] = Tracking::missing;
+  }
+  return out;
+}
+
+/// Position of the wanted group; the only one of points where none is named.
+Result<std::size_t> group_of(const TakeHeader& header, const std::string& path,
+                             const std::string& wanted) {
+  std::optional<std::size_t> found;
+  std::string known;
+  for (std::size_t g = 0; g < header.groups.size(); ++g) {
+    const TakeGroup& group = header.groups[g];
+    if (std::holds_alternative<ImuGroup>(group.kind)) continue;
+    add_name(known, group.name);
+    if (wanted.empty() ? std::holds_alternative<PointGroup>(group.kind) : group.name == wanted) {
+      if (found) return no_stream(path, wanted, known);
+      found = g;
+    }
+  }
+  if (!found) return no_stream(path, wanted, known);
+  return *found;
+}
+
+Result<void> read_points(const PointInput& input, NamedPoints& out) {
+  out.joints = input.joint_names;
+  const auto pass = KA_TRY(input.passes());
+  PointFrames block;
+  while (KA_TRY(pass(block))) KA_TRY(append(out, block.stamps, block.positions, block.state));
+  return {};
+}
+
+Result<void> read_clip(const ClipInput& input, NamedPoints& out) {
+  out.joints = input.skeleton.joint_names;
+  const auto pass = KA_TRY(input.passes());
+  ClipFrames block;
+  while (KA_TRY(pass(block))) {
+    const std::vector<Time> stamps = block.stamps;
+    const ClipRows rows = own_rows(input.skeleton, std::move(block));
+    KA_TRY(append(out, stamps, rows.positions, all_tracked(stamps.size(), out.joints.size(), {})));
+    block = {};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
+                                   const std::string& stream) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  const std::size_t wanted = KA_TRY(group_of(reader.header(), path, stream));
+  const TakeGroup& group = reader.header().groups[wanted];
+  NamedPoints out{group.name, {}, {}};
+  if (const auto* points = std::get_if<PointGroup>(&group.kind)) out.joints = points->joint_names;
+  if (const auto* clip = std::get_if<ClipGroup>(&group.kind)) {
+    out.joints = clip->skeleton.joint_names;
+  }
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) {
+    if (const auto* rows = std::get_if<PointRows>(&slab.rows[wanted])) {
+      KA_TRY(append(out, slab.stamps, rows->positions, where_valid(*rows)));
+    } else if (const auto* clip = std::get_if<ClipRows>(&slab.rows[wanted])) {
+      KA_TRY(append(out, slab.stamps, clip->positions,
+                    all_tracked(slab.stamps.size(), out.joints.size(), clip->valid)));
+    }
+  }
+  return out;
+}
+
+Result<NamedPoints> points_of_file(const std::string& path, const std::string& stream, Call& call) {
+  const Input input =
+      KA_TRY(open_input(call.surroundings.files, path, StreamFlags{}, call.console.progress()));
+  std::string known;
+  const RecordedStream* found = nullptr;
+  for (const RecordedStream& one : input.recording.streams) {
+    if (std::holds_alternative<ImuInput>(one.data)) continue;
+    add_name(known, one.name);
+    const bool fits = stream.empty() ? input.recording.streams.size() == 1 ||
+                                           std::holds_alternative<PointInput>(one.data)
+                                     : one.name == stream;
+    if (!fits) continue;
+    if (found != nullptr) return no_stream(path, stream, known);
+    found = &one;
+  }
+  if (found == nullptr) return no_stream(path, stream, known);
+  NamedPoints out{found->name, {}, {}};
+  if (const auto* points = std::get_if<PointInput>(&found->data)) {
+    KA_TRY(read_points(*points, out));
+  } else {
+    KA_TRY(read_clip(std::get<ClipInput>(found->data), out));
+  }
+  return out;
+}
+
+}  // namespace kinalign

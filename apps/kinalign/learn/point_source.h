@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The joints of one stream, out of a take, a recording, a manifest or a device's file.
+#pragma once
+
+#include "apps/cli/verb.h"
+
+#include "kinalign/motion/streams.h"
+
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct NamedPoints {
+  std::string stream;
+  std::vector<std::string> joints;
+  PointFrames frames;  // stamps rise
+};
+
+/// `stream`: its name; empty: the only stream of points. A skeleton's joints are taken as tracked
+/// points. Stamps that repeat or step back are left out. Takes: only in a child process
+/// (guarded.h).
+Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
+                                   const std::string& stream);
+Result<NamedPoints> points_of_file(const std::string& path, const std::string& stream, Call& call);
+
+}  // namespace kinalign

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/learn/shipped_models.h"
+
+#include <filesystem>
+
+namespace kinalign {
+
+std::string program_folder() {
+  std::error_code fault;
+  return std::filesystem::read_symlink("/proc/self/exe", fault).parent_path();
+}
+
+Result<std::string> shipped_model(const std::string& name) {
+  const std::filesystem::path own = program_folder();
+  // Installed: PREFIX/bin and PREFIX/share; built: TREE/build/PRESET/apps/kinalign and TREE/models.
+  for (const auto& folder : {own / "../share/kinalign/models", own / "../../../../models"}) {
+    const auto file = (folder / (name + ".safetensors")).lexically_normal();
+    std::error_code fault;
+    if (std::filesystem::exists(file, fault)) return file.string();
+  }
+  return Failure(Error{"--model", 0, "a model's file, since none is installed", "none"});
+}
+
+}  // namespace kinalign

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/even_grid.h"
+
+#include "kinalign/models/body_frame.h"
+#include "kinalign/models/joint_names.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_frames = 10'000'000;
+constexpr double least_size = 0.4, most_size = 2.6;  // m, from the lowest to the highest joint
+
+std::string text_of(double value, const char* unit) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.4g %s", value, unit);
+  return text;
+}
+
+/// The median step between samples, s.
+double usual_step(const std::vector<Time>& stamps) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    steps.push_back(static_cast<double>(to_ns(stamps[i]) - to_ns(stamps[i - 1])) * 1e-9);
+  }
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+Result<void> check_stamps(const std::vector<Time>& stamps, double rate_hz) {
+  if (stamps.size() < 2) {
+    return Failure(Error{"", 0, "two frames at least", std::to_string(stamps.size())});
+  }
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i] < stamps[i - 1]) {
+      return Failure(Error{"", 0, "stamps that rise", "frame " + std::to_string(i) + " is earlier"});
+    }
+  }
+  const double step = usual_step(stamps);
+  if (step * rate_hz > 2.0 || step * rate_hz < 0.25) {
+    return Failure(Error{"", 0, "about " + text_of(rate_hz, "frames a second"),
+                         text_of(1.0 / std::max(step, 1e-9), "frames a second")});
+  }
+  return {};
+}
+
+/// Where each wanted joint stands; fails without the joints that a body's frame needs.
+Result<std::vector<std::optional<std::size_t>>> places_of(const std::vector<std::string>& wanted,
+                                                          const std::vector<std::string>& names) {
+  std::vector<std::optional<std::size_t>> out;
+  for (const std::string& name : wanted) out.push_back(index_of(names, name));
+  const auto needed = body_joints(wanted);
+  std::vector<std::size_t> joints = needed ? needed->root : std::vector<std::size_t>{};
+  if (needed) {
+    joints.push_back(needed->left_right.front()[0]);
+    joints.push_back(needed->left_right.front()[1]);
+  }
+  for (const std::size_t j : joints) {
+    if (out[j]) continue;
+    return Failure(Error{"", 0, "a joint \"" + wanted[j] + "\", which the model needs",
+                         "none of that name", ErrorKind::no_such_joint});
+  }
+  return out;
+}
+
+/// The median height of the body over frames that see most of it.
+double body_size(const JointFrames& body) {
+  std::vector<double> sizes;
+  for (std::size_t t = 0; t < body.frames(); ++t) {
+    double low = 1e9, high = -1e9;
+    std::size_t seen = 0;
+    for (std::size_t j = 0; j < body.joints; ++j) {
+      if (body.seen[t * body.joints + j] == 0) continue;
+      ++seen;
+      const double y = body.positions[(t * body.joints + j) * 3 + 1];
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+    if (2 * seen > body.joints) sizes.push_back(high - low);
+  }
+  if (sizes.empty()) return 0.0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
+}
+
+}  // namespace
+
+Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
+                               const std::vector<std::string>& names, const PointFrames& points,
+                               double rate_hz, double gap_s) {
+  KA_TRY(check_stamps(points.stamps, rate_hz));
+  const auto places = KA_TRY(places_of(wanted, names));
+  const auto at_s = [&](std::size_t i) {
+    return static_cast<double>(to_ns(points.stamps[i]) - to_ns(points.stamps.front())) * 1e-9;
+  };
+  const double span = at_s(points.size() - 1);
+  // Half a step of room: stamps of 33.3 ms with jitter still give a row for each frame.
+  const auto frames = static_cast<std::size_t>(span * rate_hz + 0.5) + 1;
+  if (frames > most_frames) {
+    return Failure(Error{"", 0, "at most 10,000,000 frames", std::to_string(frames)});
+  }
+  EvenFrames out{{wanted.size(), std::vector<float>(frames * wanted.size() * 3, 0.0F),
+                  std::vector<std::uint8_t>(frames * wanted.size(), 0)},
+                 points.stamps.front(), rate_hz};
+  std::size_t before = 0;
+  for (std::size_t t = 0; t < frames; ++t) {
+    const double time = std::min(static_cast<double>(t) / rate_hz, span);
+    while (before + 2 < points.size() && at_s(before + 1) <= time) ++before;
+    const double from = at_s(before), to = at_s(before + 1);
+    const double share = to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0.0;
+    if (std::min(time - from, to - time) > gap_s) continue;
+    for (std::size_t j = 0; j < wanted.size(); ++j) {
+      if (!places[j]) continue;
+      const std::size_t a = before * names.size() + *places[j], b = a + names.size();
+      const auto seen = share < 1e-6   ? points.state[a]
+                        : share > 1 - 1e-6 ? points.state[b]
+                                           : std::min(points.state[a], points.state[b]);
+      out.body.seen[t * wanted.size() + j] = static_cast<std::uint8_t>(seen);
+      if (seen == Tracking::missing) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        out.body.positions[(t * wanted.size() + j) * 3 + k] = static_cast<float>(
+            points.positions[3 * a + k] * (1.0 - share) + points.positions[3 * b + k] * share);
+      }
+    }
+  }
+  const double size = body_size(out.body);
+  if (size < least_size || size > most_size) {
+    return Failure(Error{"", 0, "a body of 0.4 to 2.6 m, in metres, y up",
+                         text_of(size, "m from the lowest joint to the highest")});
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Joints of a device, with its stamps, on the even grid that a model works on.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/models/joint_frames.h"
+#include "kinalign/motion/streams.h"
+
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct EvenFrames {
+  JointFrames body;
+  Time start{};          // stamp of the first frame
+  double rate_hz = 0.0;
+};
+
+/// `wanted`: the model's input joints, by name among `names` (kinect_names()); one that is not
+/// there is missing in every frame. Between two samples a joint lies on the line between both, and
+/// is seen as well as the worse of them; farther than `gap_s` from a sample it is missing. Fails
+/// where there are no samples, where stamps fall, where root or hips are not there, where the usual
+/// step is more than twice or less than half of the grid's, and where the body is no person's size.
+Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
+                               const std::vector<std::string>& names, const PointFrames& points,
+                               double rate_hz, double gap_s);
+
+}  // namespace kinalign

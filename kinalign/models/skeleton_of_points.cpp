@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/skeleton_of_points.h"
+
+#include <Eigen/SVD>
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+namespace kinalign {
+
+namespace {
+
+struct Direction {
+  std::string_view joint;
+  double x, y, z;
+};
+
+/// The way to a joint from its parent in a T-pose that faces +z.
+constexpr std::array<Direction, 20> rest_directions{{{"SpineMid", 0, 1, 0},
+                                                     {"SpineShoulder", 0, 1, 0},
+                                                     {"Neck", 0, 1, 0},
+                                                     {"Head", 0, 1, 0},
+                                                     {"ShoulderLeft", 1, 0, 0},
+                                                     {"ElbowLeft", 1, 0, 0},
+                                                     {"WristLeft", 1, 0, 0},
+                                                     {"HandLeft", 1, 0, 0},
+                                                     {"ShoulderRight", -1, 0, 0},
+                                                     {"ElbowRight", -1, 0, 0},
+                                                     {"WristRight", -1, 0, 0},
+                                                     {"HandRight", -1, 0, 0},
+                                                     {"HipLeft", 1, 0, 0},
+                                                     {"KneeLeft", 0, -1, 0},
+                                                     {"AnkleLeft", 0, -1, 0},
+                                                     {"FootLeft", 0, 0, 1},
+                                                     {"HipRight", -1, 0, 0},
+                                                     {"KneeRight", 0, -1, 0},
+                                                     {"AnkleRight", 0, -1, 0},
+                                                     {"FootRight", 0, 0, 1}}};
+
+Vec3 rest_direction(const std::string& joint) {
+  for (const Direction& known : rest_directions) {
+    if (known.joint == joint) return {known.x, known.y, known.z};
+  }
+  return Vec3::UnitY();
+}
+
+/// The tree from its root outward, and which joint of the clip turns each bone.
+struct Plan {
+  std::vector<std::size_t> order;                  // of the points
+  std::vector<std::vector<std::size_t>> children;  // of each point
+  std::vector<int> joint, turner;                  // of the clip: a point's own, its bone's
+};
+
+Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
+  Plan plan;
+  const std::size_t points = body.parents.size();
+  plan.children.resize(points);
+  plan.joint.assign(points, -1);
+  plan.turner.assign(points, -1);
+  for (std::size_t j = 0; j < points; ++j) {
+    if (body.parents[j] < 0) plan.order.push_back(j);
+    else plan.children[static_cast<std::size_t>(body.parents[j])].push_back(j);
+  }
+  if (plan.order.size() != 1) {
+    return Failure(Error{"", 0, "joints that hang on one root",
+                         std::to_string(plan.order.size()) + " roots"});
+  }
+  const auto add = [&](const std::string& name, int parent) {
+    skeleton.joint_names.push_back(name);
+    skeleton.parents.push_back(parent);
+    skeleton.rest_offsets.push_back(Vec3::Zero());
+    return static_cast<int>(skeleton.parents.size()) - 1;
+  };
+  plan.joint[plan.order[0]] = add(body.names[plan.order[0]], -1);
+  for (std::size_t i = 0; i < plan.order.size(); ++i) {
+    const std::size_t p = plan.order[i];
+    for (const std::size_t j : plan.children[p]) {
+      const bool alone = plan.children[p].size() == 1;
+      plan.turner[j] = alone ? plan.joint[p] : add(body.names[j] + "Root", plan.joint[p]);
+      plan.joint[j] = add(body.names[j], plan.turner[j]);
+      plan.order.push_back(j);
+    }
+  }
+  if (plan.order.size() != points) return Failure(Error{"", 0, "joints in a tree", "a circle"});
+  return plan;
+}
+
+/// The rotation that turns the rest directions of a joint's children best to where they are; the
+/// smallest from `before` where there is one child.
+Quat turn_of(const std::vector<Vec3>& rest, const std::vector<Vec3>& now, const Quat& before) {
+  if (rest.size() < 2) {
+    return rest.empty() ? before
+                        : Quat::FromTwoVectors(before * rest[0], now[0]) * before;
+  }
+  Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < rest.size(); ++i) cross += now[i] * rest[i].transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d sides = Eigen::Matrix3d::Identity();
+  sides(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1.0 : 1.0;
+  return Quat(svd.matrixU() * sides * svd.matrixV().transpose());
+}
+
+class Poser {
+ public:
+  Poser(const PointBody& body, const Plan& plan, Clip& clip)
+      : body_(body), plan_(plan), clip_(clip), global_(clip.skeleton.joints()) {}
+
+  void set_lengths(const float* frame) {
+    for (std::size_t j = 0; j < body_.parents.size(); ++j) {
+      if (body_.parents[j] < 0) continue;
+      const auto p = static_cast<std::size_t>(body_.parents[j]);
+      clip_.skeleton.rest_offsets[static_cast<std::size_t>(plan_.joint[j])] =
+          rest_direction(body_.names[j]) * (at(frame, j) - at(frame, p)).norm();
+    }
+  }
+
+  void append(const float* frame, Time stamp) {
+    const Skeleton& skeleton = clip_.skeleton;
+    const std::size_t joints = skeleton.joints(), t = clip_.frames.size();
+    clip_.frames.stamps.push_back(stamp);
+    clip_.frames.local_positions.resize((t + 1) * joints * 3);
+    clip_.frames.local_rotations.resize((t + 1) * joints * 4);
+    turn_all(frame);
+    for (std::size_t i = 0; i < joints; ++i) {
+      const bool is_root = skeleton.parents[i] < 0;
+      vec3(clip_.frames.local_positions, t * joints + i) =
+          is_root ? at(frame, plan_.order[0]) : skeleton.rest_offsets[i];
+      const Quat parent =
+          is_root ? Quat::Identity() : global_[static_cast<std::size_t>(skeleton.parents[i])];
+      put_quat(clip_.frames.local_rotations, t * joints + i,
+               (parent.conjugate() * global_[i]).normalized());
+    }
+  }
+
+ private:
+  static Vec3 at(const float* frame, std::size_t j) {
+    return {frame[3 * j], frame[3 * j + 1], frame[3 * j + 2]};
+  }
+
+  Vec3 direction(const float* frame, std::size_t from, std::size_t to) const {
+    const Vec3 way = at(frame, to) - at(frame, from);
+    const double length = way.norm();
+    return length > 1e-9 ? Vec3(way / length) : rest_direction(body_.names[to]);
+  }
+
+  void turn_all(const float* frame) {
+    for (const std::size_t p : plan_.order) {
+      const auto own = static_cast<std::size_t>(plan_.joint[p]);
+      const int above = clip_.skeleton.parents[own];
+      const Quat before =
+          above < 0 ? Quat::Identity() : global_[static_cast<std::size_t>(above)];
+      std::vector<Vec3> rest, now;
+      for (const std::size_t j : plan_.children[p]) {
+        rest.push_back(rest_direction(body_.names[j]));
+        now.push_back(direction(frame, p, j));
+      }
+      global_[own] = turn_of(rest, now, before);
+      for (std::size_t i = 0; i < rest.size() && rest.size() > 1; ++i) {
+        const auto turner = static_cast<std::size_t>(plan_.turner[plan_.children[p][i]]);
+        global_[turner] = Quat::FromTwoVectors(global_[own] * rest[i], now[i]) * global_[own];
+      }
+    }
+  }
+
+  const PointBody& body_;
+  const Plan& plan_;
+  Clip& clip_;
+  std::vector<Quat> global_;
+};
+
+}  // namespace
+
+Result<Clip> skeleton_of_points(const PointBody& body, std::span<const float> positions, Time start,
+                                double rate_hz) {
+  Clip clip;
+  const Plan plan = KA_TRY(plan_of(body, clip.skeleton));
+  Poser poser(body, plan, clip);
+  const std::size_t row = 3 * body.parents.size(), frames = positions.size() / row;
+  if (frames > 0) poser.set_lengths(positions.data());
+  for (std::size_t t = 0; t < frames; ++t) {
+    const auto after = static_cast<std::int64_t>(std::llround(static_cast<double>(t) * 1e9 / rate_hz));
+    poser.append(&positions[t * row], start + Duration(after));
+  }
+  return clip;
+}
+
+}  // namespace kinalign
