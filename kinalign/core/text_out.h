@@ -19,6 +19,7 @@ class TextOut {
   static Result<TextOut> create(FileSystem& files, std::string path, Overwrite overwrite) {
     return TextOut(KA_TRY(OutputFile::create(files, std::move(path), overwrite)));
   }
+  explicit TextOut(OutputFile file) : file_(std::move(file)) { held_.reserve(2 * most_held); }
 
   void text(std::string_view piece) { held_ += piece; }
 
@@ -53,8 +54,6 @@ class TextOut {
 
  private:
   static constexpr std::size_t most_held = std::size_t{1} << 20;
-
-  explicit TextOut(OutputFile file) : file_(std::move(file)) { held_.reserve(2 * most_held); }
 
   Result<void> flush() {
     KA_TRY(file_.write(held_));

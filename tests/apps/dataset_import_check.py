@@ -2,6 +2,7 @@
 """Published corpora become takes of a data set; archives of any kind stay in their folder.
 dataset_import_check.py BUILD_FOLDER [CASE...]"""
 import hashlib
+import importlib.util
 import io
 import json
 import pathlib
@@ -18,8 +19,8 @@ import h5py
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from cases import DEMO, case, kinalign, law, main
-from data_sets import shared
+from cases import DEMO, Skip, case, kinalign, law, main
+from data_sets import SHARED, shared
 
 
 def said(*words, code=0, **how):
@@ -147,7 +148,7 @@ def an_unknown_corpus_is_an_error_that_lists_the_known_ones(folder):
     (folder / "source").mkdir()
     (folder / "source/notes.txt").write_text("nothing")
     err = said("import", folder / "set", folder / "source", code=3)
-    for kind in ("ui-prmd", "cmu", "keraal", "kinectmultitrack", "ntu", "bids", "bvh", "c3d", "mvnx", "trc"):
+    for kind in ("ui-prmd", "ui-prmd-joints", "cmu", "keraal", "kinectmultitrack", "ntu", "bids", "bvh", "c3d", "mvnx", "trc"):
         assert f"{kind} (" in err, err
     assert not (folder / "set").exists()
     said("import", folder / "set", folder / "source", "--from", "nothing", code=2)
@@ -469,6 +470,57 @@ def ui_prmd_comes_in_by_one_command_and_equals_its_source(folder):
     assert answer("build", folder / "set", seconds=600)["made"] == 690
     assert answer("build", folder / "set", seconds=600)["up_to_date"] == 690
     assert "nothing wrong" in said("verify", folder / "set", seconds=300)
+
+
+def protocol():
+    """The script that defines UI-PRMD's pairs."""
+    if not (SHARED.parent / "tools/ui_prmd_marks.py").exists() or not importlib.util.find_spec("scipy"):
+        raise Skip("needs ../shared/tools/ui_prmd_marks.py and SciPy")
+    sys.path.insert(0, str(SHARED.parent / "tools"))
+    import ui_prmd_marks
+    return ui_prmd_marks
+
+
+@case
+def ui_prmds_pairs_are_those_of_its_protocol(folder):
+    source, marks = shared("ui_prmd"), protocol()
+    made = answer("import", folder / "set", source / "s01.npz", "--from", "ui-prmd-joints", seconds=300)
+    left_out = dict(re.fullmatch(r"(m.._s.._e..) \((.*) cm\)", one["what"]).groups() for one in made["left_out"])
+    assert (made["corpus"], made["takes"], len(left_out)) == ("ui-prmd-joints", 73, 27), made
+    assert answer("import", folder / "set", source / "s01.npz", "--from", "ui-prmd-joints", seconds=300)["added"] == 0
+    assert answer("build", folder / "set", seconds=300)["made"] == made["takes"]
+    some = [one for one in marks.load(str(source), [1]) if one["movement"] in (1, 2, 3)]
+    kept = {(one["movement"], one["repetition"]): one for one in marks.align(some)}
+    turned = numpy.array([-1, 1, -1])  # from the packs' space to the reader's: half a turn about y
+    for one in some:
+        name, key = f"m{one['movement']:02}_s01_e{one['repetition']:02}", (one["movement"], one["repetition"])
+        assert (name in left_out) == (key not in kept), name
+        if name in left_out:
+            assert abs(float(left_out[name]) - one["rms"]) <= 0.0501, (name, left_out[name], one["rms"])
+            continue
+        stem = folder / f"set/sub-01/sub-01_task-m{key[0]:02}_run-{key[1]:02}"
+        offset = re.search(r"offset_ms = (\S+)", stem.with_name(stem.name + "_recording.toml").read_text())
+        assert abs(float(offset[1]) + 1000 * one["tau"]) < 1e-6, (name, offset[1], one["tau"])
+        with h5py.File(stem.with_name(stem.name + "_take.h5")) as take:
+            truth, valid = take["mocap/positions"][:], take["mocap/valid"][:] == 1
+        wanted = kept[key]
+        frames = min(len(truth), len(wanted["y"]))  # a last frame at the very end is there by rounding
+        assert abs(len(truth) - len(wanted["y"])) <= 1 and (valid[:frames] == wanted["w"][:frames]).all(), name
+        apart = numpy.linalg.norm(truth[:frames] - wanted["y"][:frames] * turned / 100, axis=-1)[valid[:frames]]
+        assert apart.max() < 0.001, (name, apart.max())  # beside gaps our spline ends, the script's runs on
+
+
+@case
+def ui_prmds_pairs_come_only_when_asked_for_and_become_windows(folder):
+    source = shared("ui_prmd") / "s02.npz"
+    assert answer("import", folder / "plain", source, seconds=300)["corpus"] == "ui-prmd"
+    made = answer("import", folder / "set", source, "--from", "ui-prmd-joints", "--jobs", "1", seconds=300)
+    again = answer("import", folder / "two", source, "--from", "ui-prmd-joints", "--jobs", "4", seconds=300)
+    assert made == again and contents(folder / "set") == contents(folder / "two")
+    assert answer("build", folder / "set", seconds=300)["made"] == made["takes"]
+    said("windows", folder / "set", "-o", folder / "w.npz", "--length", "32", "--step", "32")
+    windows = numpy.load(folder / "w.npz")
+    assert windows["mocap_positions"].shape[1:] == (32, 3 * 18) and windows["kinect_positions"].shape[1:] == (32, 3 * 22)
 
 
 @case

@@ -117,9 +117,14 @@ void advise_to_say_it_again(Console& console) {
 Result<int> run_import(Import& o, Call& call) {
   const std::string folder = folder_of(o.folder);
   Console& console = call.console;
-  const ImportRequest request{
-      o.sources, o.from == "auto" ? "" : o.from, o.subject, o.action, o.metres_per_unit, o.up,
-      o.copy};
+  const ImportRequest request{o.sources,
+                              o.from == "auto" ? "" : o.from,
+                              o.subject,
+                              o.action,
+                              o.metres_per_unit,
+                              o.up,
+                              o.copy,
+                              call.jobs};
   const Imported made =
       KA_TRY(import_corpus(call.surroundings.files, folder, request, console.progress(),
                            [&](std::uint64_t done, std::uint64_t takes) {
@@ -155,9 +160,11 @@ Verb dataset_import_verb() {
              "a folder of BVH files with a folder per person, copied"},
             {"kinalign dataset import dances bvh/ --metres-per-unit 1 --up z",
              "the same in metres, with z up"},
+            {"kinalign dataset import pairs ui_prmd/ --from ui-prmd-joints",
+             "UI-PRMD for learning: joints of both devices on the Kinect's frames"},
             {"kinalign dataset import walks walk_01.bvh walk_02.bvh --subject 07 --action walk",
              "single files of one person"}},
-       .common = {"json"}},
+       .common = {"json", "jobs"}},
       describe_import, run_import);
 }
 

@@ -19,8 +19,9 @@ std::string words_of_kinds(const std::vector<CorpusKind>& kinds) {
 }  // namespace
 
 std::vector<CorpusKind> corpus_kinds() {
-  std::vector<CorpusKind> kinds{ui_prmd_corpus(),           cmu_corpus(), keraal_corpus(),
-                                kinect_multitrack_corpus(), ntu_corpus(), bids_corpus()};
+  std::vector<CorpusKind> kinds{ui_prmd_corpus(), ui_prmd_joints_corpus(),    cmu_corpus(),
+                                keraal_corpus(),  kinect_multitrack_corpus(), ntu_corpus(),
+                                bids_corpus()};
   for (CorpusKind& kind : motion_file_corpora()) kinds.push_back(std::move(kind));
   return kinds;
 }

@@ -15,6 +15,7 @@ CorpusKind keraal_corpus();
 CorpusKind kinect_multitrack_corpus();
 CorpusKind ntu_corpus();
 CorpusKind ui_prmd_corpus();
+CorpusKind ui_prmd_joints_corpus();
 std::vector<CorpusKind> motion_file_corpora();  // bvh, c3d, mvnx, trc
 
 std::vector<CorpusKind> corpus_kinds();

@@ -54,6 +54,7 @@ struct ImportInput {
   std::string raw_folder;                  // the data set's sourcedata: packed corpora unpack there
   std::string subject, action;             // of files that say none; empty: not said
   const Progress& progress;
+  std::size_t jobs = 1;  // threads to use
 };
 
 /// A kind of corpus.

@@ -105,8 +105,8 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
       KA_TRY(find_corpus(files, sources, request.from, request.sources.front()));
   kind_name = kind.name;
   KA_TRY(check_units(kind, request));
-  Corpus corpus =
-      KA_TRY(kind.list({files, sources, raw_folder, request.subject, request.action, progress}));
+  Corpus corpus = KA_TRY(kind.list(
+      {files, sources, raw_folder, request.subject, request.action, progress, request.jobs}));
   if (kind.unit_is_open) put_units(request, corpus);
   if (!corpus.takes.empty()) {
     if (unfinished) unfinished->keep();

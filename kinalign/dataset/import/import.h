@@ -23,6 +23,7 @@ struct ImportRequest {
   double metres_per_unit = 0.0;      // of the files; 0: their format's own
   std::string up;                    // their up axis, "y" or "z"; empty: their format's own
   bool copy = false;                 // raw files that lie outside of the data set
+  std::size_t jobs = 1;              // threads to use
 };
 
 struct Imported {

@@ -32,12 +32,16 @@ UnfinishedFolder::~UnfinishedFolder() {
 }
 
 Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
-                                    const std::string& source,
-                                    const std::function<Result<void>(const PutFile&)>& fill) {
+                                    const std::string& source, const FillFolder& fill) {
   const InputFacts facts = KA_TRY(facts_of(files, source, "hashing", {}));
   const std::string name(file_name(source));
-  const std::string own =
-      label_of(name.substr(0, name.find('.'))) + "-" + facts.sha256.substr(0, 8);
+  return filled_folder(files, parent, label_of(name.substr(0, name.find('.'))), facts.sha256, fill);
+}
+
+Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
+                                  const std::string& stem, const std::string& sha256,
+                                  const FillFolder& fill) {
+  const std::string own = stem + "-" + sha256.substr(0, 8);
   const fs::path to = fs::path(parent) / own;
   if (fs::is_directory(to)) return to.string();
   // Another process may unpack the same source.

@@ -31,11 +31,16 @@ class UnfinishedFolder {
 
 /// Puts a file into the folder, in folders of its own where `name` has them.
 using PutFile = std::function<Result<OutputFile>(const std::string& name)>;
+using FillFolder = std::function<Result<void>(const PutFile& put)>;
 
 /// The folder `parent`/STEM-HASH of what `source` is unpacked to; the hash is the file's, so that
 /// the same source is unpacked once. `fill` is called where the folder is not there yet.
 Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
-                                    const std::string& source,
-                                    const std::function<Result<void>(const PutFile&)>& fill);
+                                    const std::string& source, const FillFolder& fill);
+
+/// The same of what is made of several files: `sha256` is over all that it depends on.
+Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
+                                  const std::string& stem, const std::string& sha256,
+                                  const FillFolder& fill);
 
 }  // namespace kinalign

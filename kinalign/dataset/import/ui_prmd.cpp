@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// UI-PRMD: a Kinect v2 and Vicon markers of ten movements of rehabilitation, cut into repetitions.
-// Each device was cut by hand for itself, so that the time shift of a pair is not known.
+#include "kinalign/dataset/import/ui_prmd.h"
+
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/dataset/import/new_folder.h"
 #include "kinalign/dataset/import/ui_prmd_pieces.h"
@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <optional>
 
 namespace kinalign {
@@ -26,19 +25,6 @@ constexpr std::array<std::string_view, 10> movements{"deep squat",
                                                      "standing shoulder extension",
                                                      "standing shoulder internal-external rotation",
                                                      "standing shoulder scaption"};
-
-/// "m01_s02_e03_positions.txt", and with _inc a repetition that was done wrongly on purpose.
-struct PieceName {
-  int movement = 0, subject = 0, repetition = 0;
-  bool incorrect = false;
-
-  auto operator<=>(const PieceName&) const = default;
-  std::string action() const { return fmt::format("m{:02}{}", movement, incorrect ? "inc" : ""); }
-  std::string text() const {
-    return fmt::format("m{:02}_s{:02}_e{:02}{}", movement, subject, repetition,
-                       incorrect ? "_inc" : "");
-  }
-};
 
 /// Takes `lead` and two digits off the front.
 bool take_two_digits(std::string_view& text, std::string_view lead, int& out) {
@@ -68,27 +54,15 @@ bool is_piece_pack(const SourceFile& file) {
   return has_ending(file.name, ".npz") && take_two_digits(stem, "s", number) && stem.empty();
 }
 
-bool looks_like_ui_prmd(FileSystem&, const std::vector<SourceFile>& sources) {
-  return std::any_of(sources.begin(), sources.end(), [](const SourceFile& file) {
-    return is_piece_pack(file) || piece_of(file.name).has_value();
-  });
-}
-
-struct Pair {
-  std::string kinect, vicon;  // files of positions
-  double vicon_hz = 100.0;
-};
-using Pairs = std::map<PieceName, Pair>;
-
 /// Whole movements, which the pieces were cut out of, are no pieces and are passed over.
-void add_texts(const std::vector<SourceFile>& sources, double vicon_hz, Pairs& out) {
+void add_texts(const std::vector<SourceFile>& sources, double vicon_hz, PiecePairs& out) {
   for (const SourceFile& file : sources) {
     const auto piece = piece_of(file.name);
     if (!piece) continue;
     const bool is_kinect = file.path.find("/Kinect/") != std::string::npos;
     const bool is_vicon = file.path.find("/Vicon/") != std::string::npos;
     if (is_kinect == is_vicon) continue;
-    Pair& pair = out[*piece];
+    PiecePair& pair = out[*piece];
     std::string& path = is_kinect ? pair.kinect : pair.vicon;
     if (!path.empty()) continue;
     path = file.path;
@@ -96,7 +70,7 @@ void add_texts(const std::vector<SourceFile>& sources, double vicon_hz, Pairs& o
   }
 }
 
-Result<void> add_packs(const ImportInput& input, Pairs& out) {
+Result<void> add_packs(const ImportInput& input, PiecePairs& out) {
   for (const SourceFile& file : input.sources) {
     if (!is_piece_pack(file)) continue;
     const std::string folder = KA_TRY(unpacked_folder(
@@ -104,7 +78,7 @@ Result<void> add_packs(const ImportInput& input, Pairs& out) {
           return write_ui_prmd_pieces(KA_TRY(archive_bytes(input.files, file.path)),
                                       std::string(stem_of(file.name)), put);
         }));
-    Pairs packed;
+    PiecePairs packed;
     add_texts(KA_TRY(list_sources(input.files, {folder}, input.raw_folder, input.progress)), 50.0,
               packed);
     out.merge(packed);  // pieces whose texts are there stay these
@@ -112,11 +86,9 @@ Result<void> add_packs(const ImportInput& input, Pairs& out) {
   return {};
 }
 
-Manifest pair_manifest(const Pair& pair) {
+Manifest pair_manifest(const PiecePair& pair) {
   Manifest out;
-  out.streams.push_back(stream_of("mocap", pair.vicon, "ui_prmd_vicon"));
-  if (pair.vicon_hz != 100.0) out.streams.back().rate_hz = pair.vicon_hz;
-  out.streams.push_back(stream_of("kinect", pair.kinect, "ui_prmd_kinect"));
+  out.streams = {marker_stream_of(pair), kinect_stream_of(pair)};
   SpaceOptions& space = out.spaces["kinect"];
   space.method = "fit";
   // The markers on the skin that lie nearest to the joints, in pairs left and right.
@@ -128,6 +100,54 @@ Manifest pair_manifest(const Pair& pair) {
 }
 
 Result<Corpus> list_ui_prmd(const ImportInput& input) {
+  Corpus out = ui_prmd_without_takes();
+  PiecePairs pairs = KA_TRY(find_ui_prmd_pairs(input));
+  leave_out_single(pairs, out);
+  for (const auto& [piece, pair] : pairs) {
+    out.takes.push_back({piece.person(), piece.action(),
+                         static_cast<std::uint32_t>(piece.repetition), pair_manifest(pair),
+                         piece.text()});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string PieceName::action() const {
+  return fmt::format("m{:02}{}", movement, incorrect ? "inc" : "");
+}
+
+std::string PieceName::person() const { return fmt::format("{:02}", subject); }
+
+std::string PieceName::text() const {
+  return fmt::format("m{:02}_s{:02}_e{:02}{}", movement, subject, repetition,
+                     incorrect ? "_inc" : "");
+}
+
+bool looks_like_ui_prmd(const std::vector<SourceFile>& sources) {
+  return std::any_of(sources.begin(), sources.end(), [](const SourceFile& file) {
+    return is_piece_pack(file) || piece_of(file.name).has_value();
+  });
+}
+
+Result<PiecePairs> find_ui_prmd_pairs(const ImportInput& input) {
+  PiecePairs pairs;
+  add_texts(input.sources, 100.0, pairs);
+  KA_TRY(add_packs(input, pairs));
+  return pairs;
+}
+
+StreamOptions kinect_stream_of(const PiecePair& pair) {
+  return stream_of("kinect", pair.kinect, "ui_prmd_kinect");
+}
+
+StreamOptions marker_stream_of(const PiecePair& pair) {
+  StreamOptions out = stream_of("mocap", pair.vicon, "ui_prmd_vicon");
+  if (pair.vicon_hz != 100.0) out.rate_hz = pair.vicon_hz;
+  return out;
+}
+
+Corpus ui_prmd_without_takes() {
   Corpus out{.name = "UI-PRMD",
              .licence = "ODC PDDL 1.0",
              .citation =
@@ -141,27 +161,27 @@ Result<Corpus> list_ui_prmd(const ImportInput& input) {
     out.actions.push_back({id, "uiprmd", name});
     out.actions.push_back({id + "inc", "uiprmdinc", name + ", done wrongly"});
   }
-  Pairs pairs;
-  add_texts(input.sources, 100.0, pairs);
-  KA_TRY(add_packs(input, pairs));
-  for (const auto& [piece, pair] : pairs) {
-    if (pair.kinect.empty() || pair.vicon.empty()) {
-      out.left_out.push_back(
-          {piece.text(), pair.vicon.empty() ? "without Vicon" : "without Kinect"});
-      continue;
-    }
-    out.takes.push_back({fmt::format("{:02}", piece.subject), piece.action(),
-                         static_cast<std::uint32_t>(piece.repetition), pair_manifest(pair),
-                         piece.text()});
-  }
   return out;
 }
 
-}  // namespace
+void leave_out_single(PiecePairs& pairs, Corpus& corpus) {
+  for (auto at = pairs.begin(); at != pairs.end();) {
+    const PiecePair& pair = at->second;
+    const bool whole = !pair.kinect.empty() && !pair.vicon.empty();
+    if (!whole) {
+      corpus.left_out.push_back(
+          {at->first.text(), pair.vicon.empty() ? "without Vicon" : "without Kinect"});
+    }
+    at = whole ? std::next(at) : pairs.erase(at);
+  }
+}
 
 CorpusKind ui_prmd_corpus() {
   return {"ui-prmd", "Kinect/Positions/m01_s01_e01_positions.txt, s01.npz", false,
-          looks_like_ui_prmd, list_ui_prmd};
+          [](FileSystem&, const std::vector<SourceFile>& sources) {
+            return looks_like_ui_prmd(sources);
+          },
+          list_ui_prmd};
 }
 
 }  // namespace kinalign

@@ -32,6 +32,11 @@ TEST_CASE("a corpus is known by the names of its files") {
   CHECK(kind_of({"a.trc"}) == "trc");
 }
 
+TEST_CASE("pairs for learning are made only where they are asked for") {
+  CHECK(kind_of({"s07.npz"}, "ui-prmd-joints") == "ui-prmd-joints");
+  CHECK(kind_of({"s07.npz"}) == "ui-prmd");
+}
+
 TEST_CASE("a corpus of its own goes before files of a kind that lie beside it") {
   CHECK(kind_of({"asf_00.npz", "extra/walk.bvh"}) == "cmu");
   CHECK(kind_of({"asf_00.npz", "extra/walk.bvh"}, "bvh") == "bvh");

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+// UI-PRMD as pairs for learning, by the corpus' protocol (docs/dataset_import.md): joint centres
+// from the markers, the time shift of each repetition by search, one rigid transform of a person's
+// movement. Repetitions that fit badly are left out.
+#include "kinalign/core/hash.h"
+#include "kinalign/core/parallel.h"
+#include "kinalign/core/text_out.h"
+#include "kinalign/dataset/import/corpora.h"
+#include "kinalign/dataset/import/new_folder.h"
+#include "kinalign/dataset/import/ui_prmd.h"
+#include "kinalign/formats/points/trc.h"
+#include "kinalign/motion/pairs/plug_in_gait.h"
+#include "kinalign/motion/pairs/shift_search.h"
+#include "kinalign/sources/open_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double kinect_hz = 30.0, truth_hz = 50.0;
+constexpr double most_rms_m = 0.12;      // of a repetition that is taken
+constexpr std::size_t least_taken = 3;   // repetitions of a person's movement
+constexpr std::size_t shift_stride = 5;  // frames of the truth that elbows and knees are fitted to
+constexpr double gap_ms = 36.0;          // more than a Kinect's step, less than two of the truth
+constexpr std::size_t marker_count = plug_in_gait_markers.size();
+
+/// One repetition. The markers are dropped once the joints are there.
+struct Repetition {
+  PieceName name;
+  PiecePair files;
+  std::string sha256;                // over the files' hashes
+  std::vector<double> kinect;        // [F,18,3] m
+  std::vector<double> markers;       // [G,39,3] m, 50 Hz
+  std::vector<std::uint8_t> seen;    // [G,39]
+  JointFrames truth;                 // [G]
+  std::optional<FoundShift> found;   // absent: too little overlaps
+  RigidTransform kinect_from_truth;  // of the person's movement
+
+  PointPiece rough() const { return {kinect, {}, shared_joint_count, kinect_hz}; }
+  PointPiece precise() const {
+    return {truth.positions, truth.valid, shared_joint_count, truth_hz};
+  }
+  bool fits() const { return found && found->rms_m <= most_rms_m; }
+};
+
+Result<PointFrames> all_frames(const PointInput& points) {
+  PointFrames out, block;
+  auto pass = KA_TRY(points.passes());
+  while (KA_TRY(pass(block))) {
+    out.positions.insert(out.positions.end(), block.positions.begin(), block.positions.end());
+    out.state.insert(out.state.end(), block.state.begin(), block.state.end());
+    out.stamps.insert(out.stamps.end(), block.stamps.begin(), block.stamps.end());
+  }
+  return out;
+}
+
+Result<void> read_kinect(const PointInput& points, Repetition& out) {
+  const auto joints = KA_TRY(shared_joints_among(points.joint_names));
+  const PointFrames frames = KA_TRY(all_frames(points));
+  out.kinect.resize(3 * shared_joint_count * frames.size());
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    for (std::size_t j = 0; j < shared_joint_count; ++j) {
+      vec3(out.kinect, t * shared_joint_count + j) =
+          vec3(frames.positions, t * points.joint_names.size() + joints[j]);
+    }
+  }
+  return {};
+}
+
+/// Of markers at 100 Hz every second frame: packs hold no others.
+Result<void> read_markers(const PointInput& points, Repetition& out) {
+  const PointFrames frames = KA_TRY(all_frames(points));
+  const std::size_t stride = out.files.vicon_hz > truth_hz ? 2 : 1;
+  for (std::size_t t = 0; t < frames.size(); t += stride) {
+    for (std::size_t i = t * marker_count; i < (t + 1) * marker_count; ++i) {
+      const Vec3 place = vec3(frames.positions, i);
+      out.markers.insert(out.markers.end(), place.begin(), place.end());
+      out.seen.push_back(frames.state[i] == Tracking::missing ? 0 : 1);
+    }
+  }
+  return {};
+}
+
+Result<Repetition> read_repetition(FileSystem& files, const PieceName& name,
+                                   const PiecePair& pair) {
+  Repetition out;
+  out.name = name;
+  out.files = pair;
+  const Recording recording =
+      KA_TRY(open_streams(files, {kinect_stream_of(pair), marker_stream_of(pair)}));
+  Sha256 hash;
+  for (const RecordedStream& stream : recording.streams) {
+    for (const InputFacts& facts : stream.files) hash.update(facts.sha256);
+  }
+  out.sha256 = hash.hex();
+  KA_TRY(read_kinect(std::get<PointInput>(recording.streams[0].data), out));
+  KA_TRY(read_markers(std::get<PointInput>(recording.streams[1].data), out));
+  return out;
+}
+
+/// Joints of all repetitions of one person, whose size and whose markers' places they share.
+void put_truth(std::vector<Repetition>& all) {
+  std::vector<double> places, few_places;
+  std::vector<std::uint8_t> seen, few_seen;
+  for (const Repetition& one : all) {
+    places.insert(places.end(), one.markers.begin(), one.markers.end());
+    seen.insert(seen.end(), one.seen.begin(), one.seen.end());
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (i / marker_count % shift_stride != 0) continue;
+    few_seen.push_back(seen[i]);
+    few_places.insert(few_places.end(), &places[3 * i], &places[3 * i] + 3);
+  }
+  const JointFrames joints =
+      joint_centres({places, seen}, functional_shifts({few_places, few_seen}));
+  auto place = joints.positions.begin();
+  auto valid = joints.valid.begin();
+  for (Repetition& one : all) {
+    const auto cells =
+        static_cast<std::ptrdiff_t>(one.seen.size() / marker_count * shared_joint_count);
+    one.truth = {{place, place + 3 * cells}, {valid, valid + cells}};
+    place += 3 * cells;
+    valid += cells;
+    fill_invalid(one.truth);
+    one.markers = {};
+    one.seen = {};
+  }
+}
+
+using Group = std::vector<std::pair<PieceName, PiecePair>>;
+
+/// All repetitions of one person with their joints and shifts.
+Result<std::vector<Repetition>> read_person(const ImportInput& input, const Group& group) {
+  std::vector<Result<Repetition>> read(group.size());
+  parallel_for(group.size(), input.jobs, [&](std::size_t i) {
+    read[i] = read_repetition(input.files, group[i].first, group[i].second);
+  });
+  std::vector<Repetition> out;
+  for (auto& one : read) out.push_back(KA_TRY(std::move(one)));
+  put_truth(out);
+  parallel_for(out.size(), input.jobs, [&](std::size_t i) {
+    out[i].found = find_shift(out[i].rough(), PieceCurve(out[i].precise()));
+  });
+  return out;
+}
+
+/// Moves what the gate lets through to `taken`; a person's movement at a time. Says of the others
+/// why they are left out.
+void pass_gate(std::vector<Repetition> movement, std::vector<Repetition>& taken, Corpus& corpus) {
+  const auto fitting = static_cast<std::size_t>(std::count_if(
+      movement.begin(), movement.end(), [](const Repetition& one) { return one.fits(); }));
+  for (Repetition& one : movement) {
+    const std::string rms =
+        one.found ? fmt::format("{} ({:.1f} cm)", one.name.text(), 100.0 * one.found->rms_m)
+                  : one.name.text();
+    if (!one.found) {
+      corpus.left_out.push_back({rms, "Kinect and Vicon overlap in less than five frames"});
+    } else if (!one.fits()) {
+      corpus.left_out.push_back({rms, "rms of the rigid fit above 12 cm"});
+    } else if (fitting < least_taken) {
+      corpus.left_out.push_back({rms, "fewer than 3 repetitions of the movement within 12 cm"});
+    } else {
+      taken.push_back(std::move(one));
+    }
+  }
+}
+
+/// One transform for all repetitions of the movement.
+Result<void> put_transform(std::span<Repetition> movement) {
+  PairMoments moments;
+  for (const Repetition& one : movement) {
+    add_pairs_at(one.rough(), PieceCurve(one.precise()), one.found->shift_s, moments);
+  }
+  const RigidTransform transform = KA_TRY(fit_rigid(moments));
+  for (Repetition& one : movement) one.kinect_from_truth = transform;
+  return {};
+}
+
+/// What is taken of one person.
+Result<std::vector<Repetition>> take_person(std::vector<Repetition> all, Corpus& corpus) {
+  std::vector<Repetition> taken;
+  for (auto begin = all.begin(); begin != all.end();) {
+    const auto end = std::find_if(begin, all.end(), [&](const Repetition& one) {
+      return one.name.movement != begin->name.movement;
+    });
+    const std::size_t before = taken.size();
+    pass_gate({std::make_move_iterator(begin), std::make_move_iterator(end)}, taken, corpus);
+    if (taken.size() > before) KA_TRY(put_transform(std::span(taken).subspan(before)));
+    begin = end;
+  }
+  return taken;
+}
+
+std::string truth_name(const Repetition& one) { return one.name.text() + "_joints.trc"; }
+
+/// From the first frame with a valid joint to the last.
+PointFrames truth_frames(const Repetition& one) {
+  const auto is_valid = [](std::uint8_t valid) { return valid != 0; };
+  const auto& valid = one.truth.valid;
+  const auto first = std::find_if(valid.begin(), valid.end(), is_valid) - valid.begin();
+  const auto behind = valid.rend() - std::find_if(valid.rbegin(), valid.rend(), is_valid);
+  const std::size_t begin = static_cast<std::size_t>(first) / shared_joint_count;
+  const std::size_t end =
+      (static_cast<std::size_t>(behind) + shared_joint_count - 1) / shared_joint_count;
+  PointFrames out;
+  for (std::size_t t = begin; t < end; ++t) {
+    out.stamps.push_back(utc_time(static_cast<std::int64_t>(t) * 20'000'000));  // 50 Hz
+    for (std::size_t i = t * shared_joint_count; i < (t + 1) * shared_joint_count; ++i) {
+      const bool is_there = valid[i] != 0;
+      const Vec3 place = is_there ? Vec3(vec3(one.truth.positions, i)) : Vec3::Zero();
+      out.positions.insert(out.positions.end(), place.begin(), place.end());
+      out.state.push_back(is_there ? Tracking::tracked : Tracking::missing);
+    }
+  }
+  return out;
+}
+
+Result<void> write_truth(const Repetition& one, const PutFile& put) {
+  const PointFrames frames = truth_frames(one);
+  TextOut out(KA_TRY(put(truth_name(one))));
+  TrcWriter writer = KA_TRY(TrcWriter::begin({{shared_joints.begin(), shared_joints.end()},
+                                              truth_hz,
+                                              frames.size(),
+                                              truth_name(one),
+                                              Time{}},
+                                             out));
+  KA_TRY(writer.append(frames));
+  KA_TRY(writer.finish());
+  return out.commit();
+}
+
+/// The folder of one person's files of joints, made where it is not there. Its name has a hash of
+/// all files of the person, since each of them moves every joint.
+Result<std::string> truth_folder(const ImportInput& input, const std::string& sha256,
+                                 const std::vector<Repetition>& taken) {
+  const std::string stem = fmt::format("s{}joints", taken.front().name.person());
+  return filled_folder(input.files, input.raw_folder, stem, sha256,
+                       [&](const PutFile& put) -> Result<void> {
+                         for (const Repetition& one : taken) KA_TRY(write_truth(one, put));
+                         return {};
+                       });
+}
+
+Manifest manifest_of(const Repetition& one, const std::string& folder) {
+  Manifest out;
+  out.align.reference = "kinect";
+  out.align.gap_ms = gap_ms;
+  out.streams = {kinect_stream_of(one.files),
+                 stream_of("mocap", folder + "/" + truth_name(one), "trc")};
+  // Kinect frame i belongs to the truth's time shift + i / 30.
+  out.streams.back().offset_ms = -1000.0 * one.found->shift_s;
+  SpaceOptions& space = out.spaces["mocap"];
+  space.method = "given";
+  const Quat& turn = one.kinect_from_truth.rotation;
+  const Vec3& move = one.kinect_from_truth.translation;
+  space.rotation = {turn.w(), turn.x(), turn.y(), turn.z()};
+  space.translation = {move.x(), move.y(), move.z()};
+  for (std::size_t j = 0; j < shared_joint_count; ++j) {
+    space.joints.emplace(shared_joints[j], shared_joints_in_ui_prmd[j]);
+  }
+  return out;
+}
+
+Result<void> add_person(const ImportInput& input, const Group& group, Corpus& corpus) {
+  std::vector<Repetition> all = KA_TRY(read_person(input, group));
+  Sha256 hash;
+  for (const Repetition& one : all) hash.update(one.sha256);
+  const auto taken = KA_TRY(take_person(std::move(all), corpus));
+  if (taken.empty()) return {};
+  const std::string folder = KA_TRY(truth_folder(input, hash.hex(), taken));
+  for (const Repetition& one : taken) {
+    corpus.takes.push_back({one.name.person(), one.name.action(),
+                            static_cast<std::uint32_t>(one.name.repetition),
+                            manifest_of(one, folder), one.name.text()});
+  }
+  return {};
+}
+
+Result<Corpus> list_ui_prmd_joints(const ImportInput& input) {
+  Corpus out = ui_prmd_without_takes();
+  PiecePairs pairs = KA_TRY(find_ui_prmd_pairs(input));
+  leave_out_single(pairs, out);
+  std::map<std::pair<int, bool>, Group> people;  // what was done wrongly is a session of its own
+  for (auto& pair : pairs) {
+    people[{pair.first.subject, pair.first.incorrect}].emplace_back(std::move(pair));
+  }
+  std::size_t done = 0;
+  for (const auto& [person, group] : people) {
+    KA_TRY(add_person(input, group, out));
+    if (!go_on(input.progress, "pairing", ++done, people.size())) return Failure(interruption());
+  }
+  return out;
+}
+
+}  // namespace
+
+CorpusKind ui_prmd_joints_corpus() {
+  return {"ui-prmd-joints", "the files of ui-prmd, only by --from", false,
+          [](FileSystem&, const std::vector<SourceFile>&) { return false; }, list_ui_prmd_joints};
+}
+
+}  // namespace kinalign

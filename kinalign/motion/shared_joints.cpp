@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/motion/shared_joints.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+using Names = std::array<std::string_view, shared_joint_count>;
+
+std::size_t place_of(std::span<const std::string> joint_names, std::string_view name) {
+  return static_cast<std::size_t>(std::find(joint_names.begin(), joint_names.end(), name) -
+                                  joint_names.begin());
+}
+
+}  // namespace
+
+Result<std::array<std::size_t, shared_joint_count>> shared_joints_among(
+    std::span<const std::string> joint_names) {
+  // UI-PRMD has a joint Head, too, at another place; only its files have a Waist.
+  const bool ui_prmd = place_of(joint_names, "Waist") < joint_names.size();
+  const Names& names = ui_prmd ? shared_joints_in_ui_prmd : shared_joints;
+  std::array<std::size_t, shared_joint_count> places{};
+  for (std::size_t j = 0; j < shared_joint_count; ++j) {
+    places[j] = place_of(joint_names, names[j]);
+    if (places[j] < joint_names.size()) continue;
+    return Failure(Error{"", 0, "a joint " + std::string(names[j]) + " among those of a Kinect",
+                         std::to_string(joint_names.size()) + " others"});
+  }
+  return places;
+}
+
+}  // namespace kinalign
