@@ -157,7 +157,7 @@ class Graph {
 
   std::string constant(const std::string& what, const Numbers& shape,
                        const std::vector<float>& values) {
-    const std::string name = path_ + "." + what;
+    std::string name = path_ + "." + what;
     constants_.add(5, tensor_message(name, type_float, shape, bytes_of(values)));
     return name;
   }
@@ -171,7 +171,7 @@ class Graph {
   }
 
   std::string integers(const Numbers& values) {
-    const std::string name = path_ + ".integers_" + std::to_string(++values_);
+    std::string name = path_ + ".integers_" + std::to_string(++values_);
     constants_.add(5, tensor_message(name, type_int64, {static_cast<std::int64_t>(values.size())},
                                      bytes_of(values)));
     return name;

@@ -14,8 +14,8 @@ namespace kinalign {
 struct OnnxOptions {
   std::string input = "input";    // [1,T,inputs]
   std::string output = "output";  // [1,T,outputs]; T need not be named when the file is written
-  std::string prefix = "";        // before the names of the tensors, as in Network::make
-  std::map<std::string, std::string> metadata = {};
+  std::string prefix;             // before the names of the tensors, as in Network::make
+  std::map<std::string, std::string> metadata;
 };
 
 /// The same network gives the same bytes. Fails where Network::make does.
