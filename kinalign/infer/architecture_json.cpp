@@ -17,25 +17,29 @@ using Json = nlohmann::json;
 
 // ---- to JSON
 
+nlohmann::ordered_json layers_to_json(const std::vector<Layer>& layers);
+
+nlohmann::ordered_json layer_to_json(const Layer& layer) {
+  nlohmann::ordered_json out;
+  out["kind"] = row_of(layer.kind).name;
+  if (uses(layer.kind, member_out)) out["out"] = layer.out;
+  if (uses(layer.kind, member_kernel)) out["kernel"] = layer.kernel;
+  if (uses(layer.kind, member_dilation)) out["dilation"] = layer.dilation;
+  if (uses(layer.kind, member_causal)) out["causal"] = layer.causal;
+  if (uses(layer.kind, member_bidirectional)) out["bidirectional"] = layer.bidirectional;
+  if (uses(layer.kind, member_slope)) out["slope"] = layer.slope;
+  if (uses(layer.kind, member_rate)) out["rate"] = layer.rate;
+  if (uses(layer.kind, member_begin)) out["begin"] = layer.begin;
+  if (uses(layer.kind, member_branches)) {
+    out["branches"] = nlohmann::ordered_json::array();
+    for (const auto& branch : layer.branches) out["branches"].push_back(layers_to_json(branch));
+  }
+  return out;
+}
+
 nlohmann::ordered_json layers_to_json(const std::vector<Layer>& layers) {
   auto out = nlohmann::ordered_json::array();
-  for (const Layer& layer : layers) {
-    nlohmann::ordered_json one;
-    one["kind"] = row_of(layer.kind).name;
-    if (uses(layer.kind, member_out)) one["out"] = layer.out;
-    if (uses(layer.kind, member_kernel)) one["kernel"] = layer.kernel;
-    if (uses(layer.kind, member_dilation)) one["dilation"] = layer.dilation;
-    if (uses(layer.kind, member_causal)) one["causal"] = layer.causal;
-    if (uses(layer.kind, member_bidirectional)) one["bidirectional"] = layer.bidirectional;
-    if (uses(layer.kind, member_slope)) one["slope"] = layer.slope;
-    if (uses(layer.kind, member_rate)) one["rate"] = layer.rate;
-    if (uses(layer.kind, member_begin)) one["begin"] = layer.begin;
-    if (uses(layer.kind, member_branches)) {
-      one["branches"] = nlohmann::ordered_json::array();
-      for (const auto& branch : layer.branches) one["branches"].push_back(layers_to_json(branch));
-    }
-    out.push_back(std::move(one));
-  }
+  for (const Layer& layer : layers) out.push_back(layer_to_json(layer));
   return out;
 }
 
@@ -49,19 +53,36 @@ Failure wrong_type(const std::string& at, const std::string& expected, const Jso
   return wrong(at, expected, std::string("a JSON ") + found.type_name());
 }
 
+/// A member of Layer that is no list, by its name in JSON.
+template <class Value>
+struct Named {
+  const char* name;
+  LayerMember member;
+  Value Layer::*value;
+};
+constexpr Named<std::size_t> count_members[] = {{"out", member_out, &Layer::out},
+                                                {"kernel", member_kernel, &Layer::kernel},
+                                                {"dilation", member_dilation, &Layer::dilation},
+                                                {"begin", member_begin, &Layer::begin}};
+constexpr Named<bool> truth_members[] = {
+    {"causal", member_causal, &Layer::causal},
+    {"bidirectional", member_bidirectional, &Layer::bidirectional}};
+constexpr Named<double> number_members[] = {{"slope", member_slope, &Layer::slope},
+                                            {"rate", member_rate, &Layer::rate}};
+
+/// The row of `key`, where the kind of `layer` uses it.
+template <class Value, std::size_t n>
+const Named<Value>* used(const Named<Value> (&rows)[n], const Layer& layer,
+                         const std::string& key) {
+  for (const Named<Value>& row : rows) {
+    if (key == row.name && uses(layer.kind, row.member)) return &row;
+  }
+  return nullptr;
+}
+
 Result<std::size_t> count_of(const Json& json, const std::string& key, const std::string& at) {
   if (json.is_number_unsigned()) return json.get<std::size_t>();
   return wrong_type(at, "a whole number as " + key, json);
-}
-
-Result<double> number_of(const Json& json, const std::string& key, const std::string& at) {
-  if (json.is_number()) return json.get<double>();
-  return wrong_type(at, "a number as " + key, json);
-}
-
-Result<bool> truth_of(const Json& json, const std::string& key, const std::string& at) {
-  if (json.is_boolean()) return json.get<bool>();
-  return wrong_type(at, "true or false as " + key, json);
 }
 
 /// Reads layers and counts them, so that a hostile text ends early.
@@ -104,26 +125,15 @@ class Reader {
   Result<void> member(Layer& layer, const std::string& key, const Json& json,
                       const std::string& path) {
     const std::string at = "layer " + path;
-    const auto is = [&](const char* name, LayerMember member) {
-      return key == name && uses(layer.kind, member);
-    };
-    if (is("out", member_out)) {
-      layer.out = KA_TRY(count_of(json, key, at));
-    } else if (is("kernel", member_kernel)) {
-      layer.kernel = KA_TRY(count_of(json, key, at));
-    } else if (is("dilation", member_dilation)) {
-      layer.dilation = KA_TRY(count_of(json, key, at));
-    } else if (is("causal", member_causal)) {
-      layer.causal = KA_TRY(truth_of(json, key, at));
-    } else if (is("bidirectional", member_bidirectional)) {
-      layer.bidirectional = KA_TRY(truth_of(json, key, at));
-    } else if (is("slope", member_slope)) {
-      layer.slope = KA_TRY(number_of(json, key, at));
-    } else if (is("rate", member_rate)) {
-      layer.rate = KA_TRY(number_of(json, key, at));
-    } else if (is("begin", member_begin)) {
-      layer.begin = KA_TRY(count_of(json, key, at));
-    } else if (is("branches", member_branches)) {
+    if (const auto* count = used(count_members, layer, key)) {
+      layer.*count->value = KA_TRY(count_of(json, key, at));
+    } else if (const auto* truth = used(truth_members, layer, key)) {
+      if (!json.is_boolean()) return wrong_type(at, "true or false as " + key, json);
+      layer.*truth->value = json.get<bool>();
+    } else if (const auto* number = used(number_members, layer, key)) {
+      if (!json.is_number()) return wrong_type(at, "a number as " + key, json);
+      layer.*number->value = json.get<double>();
+    } else if (key == "branches" && uses(layer.kind, member_branches)) {
       layer.branches = KA_TRY(branches(json, path));
     } else {
       return wrong(at, "members of " + std::string(row_of(layer.kind).name),

@@ -35,42 +35,51 @@ KA_INLINE const Vector& at(const float* values) { return *reinterpret_cast<const
 
 // ---- products
 
-/// Rows frames by Panels panels of outputs, beginning at frame t and panel `first`.
-template <size_t Rows, size_t Panels>
-KA_INLINE void sum_tile(const Product& p, size_t t, size_t first, float* sums, size_t stride) {
-  constexpr size_t vectors = Panels * panel_vectors;
-  const size_t depth = p.taps * p.channels;
-  const float* weights[Panels];
-  for (size_t j = 0; j < Panels; ++j) weights[j] = p.weights + (first + j) * depth * panel_width;
-  Vector sum[Rows][vectors];
+/// sums[r,j] += in[r in_stride] w[j]: one channel of one tap.
+template <size_t Rows, size_t Vectors>
+KA_INLINE void add_channel(Vector (&sums)[Rows][Vectors], const float* in, size_t in_stride,
+                           const Vector (&w)[Vectors]) {
 #pragma GCC unroll 6
   for (size_t r = 0; r < Rows; ++r) {
+    const float x = in[r * in_stride];
 #pragma GCC unroll 16
-    for (size_t j = 0; j < vectors; ++j) sum[r][j] = at(sums + r * stride + j * lanes);
+    for (size_t j = 0; j < Vectors; ++j) sums[r][j] += x * w[j];
   }
+}
+
+template <size_t Rows, size_t Vectors>
+KA_INLINE void load(Vector (&sums)[Rows][Vectors], const float* from) {
+#pragma GCC unroll 24
+  for (size_t i = 0; i < Rows * Vectors; ++i) sums[i / Vectors][i % Vectors] = at(from + i * lanes);
+}
+
+template <size_t Rows, size_t Vectors>
+KA_INLINE void store(const Vector (&sums)[Rows][Vectors], float* to) {
+#pragma GCC unroll 24
+  for (size_t i = 0; i < Rows * Vectors; ++i) at(to + i * lanes) = sums[i / Vectors][i % Vectors];
+}
+
+/// Adds to `values` [Rows, Panels, panel_width] the products of the frames from t on with the
+/// panels from `first` on. The sums stay in registers.
+template <size_t Rows, size_t Panels>
+KA_INLINE void sum_tile(const Product& p, size_t t, size_t first, float* values) {
+  constexpr size_t vectors = Panels * panel_vectors;
+  const size_t depth = p.taps * p.channels;
+  const float* weights = p.weights + first * depth * panel_width;
+  Vector sums[Rows][vectors];
+  load(sums, values);
   for (size_t k = 0; k < p.taps; ++k) {
     const float* in = p.in + t * p.in_stride + k * p.tap_stride;
-    for (size_t c = 0; c < p.channels; ++c) {
+    for (size_t c = 0; c < p.channels; ++c, weights += panel_width) {
       Vector w[vectors];
 #pragma GCC unroll 16
       for (size_t j = 0; j < vectors; ++j) {
-        w[j] = at(weights[j / panel_vectors] + (j % panel_vectors) * lanes);
+        w[j] = at(weights + j / panel_vectors * depth * panel_width + j % panel_vectors * lanes);
       }
-#pragma GCC unroll 6
-      for (size_t r = 0; r < Rows; ++r) {
-        const float x = in[r * p.in_stride + c];
-#pragma GCC unroll 16
-        for (size_t j = 0; j < vectors; ++j) sum[r][j] += x * w[j];
-      }
-#pragma GCC unroll 4
-      for (size_t j = 0; j < Panels; ++j) weights[j] += panel_width;
+      add_channel(sums, in + c, p.in_stride, w);
     }
   }
-#pragma GCC unroll 6
-  for (size_t r = 0; r < Rows; ++r) {
-#pragma GCC unroll 16
-    for (size_t j = 0; j < vectors; ++j) at(sums + r * stride + j * lanes) = sum[r][j];
-  }
+  store(sums, values);
 }
 
 /// The same with the start values and with outputs that end within the last panel.
@@ -86,7 +95,7 @@ void tile(const Product& p, size_t t, size_t first) {
     const float* start = p.bias != nullptr ? p.bias + begin : out + r * p.out_stride;
     for (size_t i = 0; i < n; ++i) sums[r * width + i] = start[i];
   }
-  sum_tile<Rows, Panels>(p, t, first, sums, width);
+  sum_tile<Rows, Panels>(p, t, first, sums);
   for (size_t r = 0; r < Rows; ++r) {
     for (size_t i = 0; i < n; ++i) out[r * p.out_stride + i] = sums[r * width + i];
   }

@@ -18,27 +18,6 @@ std::string text_of(const std::vector<std::size_t>& shape) {
   return out + "]";
 }
 
-Result<void> check_tensors(const Architecture& architecture, const Tensors& tensors,
-                           const std::string& prefix) {
-  for (const Parameter& needed : parameters(architecture)) {
-    const std::string name = prefix + needed.name;
-    const auto found = tensors.find(name);
-    if (found == tensors.end()) {
-      return Failure(Error{"", 0, "tensor " + shown(name) + " " + text_of(needed.shape), "none"});
-    }
-    const Tensor& tensor = found->second;
-    if (tensor.shape != needed.shape) {
-      return Failure(Error{"", 0, "tensor " + shown(name) + " " + text_of(needed.shape),
-                           text_of(tensor.shape)});
-    }
-    const auto finite = [](float value) { return std::isfinite(value); };
-    if (!std::all_of(tensor.values.begin(), tensor.values.end(), finite)) {
-      return Failure(Error{"", 0, "finite numbers in tensor " + shown(name), "others"});
-    }
-  }
-  return {};
-}
-
 std::size_t padded(std::size_t outputs) {
   return (outputs + panel_width - 1) / panel_width * panel_width;
 }
@@ -137,6 +116,27 @@ class Packer {
 };
 
 }  // namespace
+
+Result<void> check_tensors(const Architecture& architecture, const Tensors& tensors,
+                           const std::string& prefix) {
+  for (const Parameter& needed : parameters(architecture)) {
+    const std::string name = prefix + needed.name;
+    const auto found = tensors.find(name);
+    if (found == tensors.end()) {
+      return Failure(Error{"", 0, "tensor " + shown(name) + " " + text_of(needed.shape), "none"});
+    }
+    const Tensor& tensor = found->second;
+    if (tensor.shape != needed.shape) {
+      return Failure(Error{"", 0, "tensor " + shown(name) + " " + text_of(needed.shape),
+                           text_of(tensor.shape)});
+    }
+    const auto finite = [](float value) { return std::isfinite(value); };
+    if (!std::all_of(tensor.values.begin(), tensor.values.end(), finite)) {
+      return Failure(Error{"", 0, "finite numbers in tensor " + shown(name), "others"});
+    }
+  }
+  return {};
+}
 
 Product PackedWeights::product() const {
   Product out;

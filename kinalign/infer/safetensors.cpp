@@ -129,11 +129,12 @@ float from_half(std::uint16_t half) {
 }
 
 std::vector<float> read_values(std::string_view bytes, const std::string& type) {
-  std::vector<float> out(bytes.size() / value_bytes(type));
   if (type == "F32") {
+    std::vector<float> out(bytes.size() / 4);
     if (!out.empty()) std::memcpy(out.data(), bytes.data(), bytes.size());
     return out;
   }
+  std::vector<float> out(bytes.size() / 2);
   for (std::size_t i = 0; i < out.size(); ++i) {
     std::uint16_t value = 0;
     std::memcpy(&value, &bytes[2 * i], 2);

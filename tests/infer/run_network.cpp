@@ -8,6 +8,7 @@
 #include "kinalign/infer/architecture_json.h"
 #include "kinalign/infer/network.h"
 #include "kinalign/infer/online.h"
+#include "kinalign/infer/onnx.h"
 
 #include <cstdio>
 #include <cstring>
@@ -19,8 +20,19 @@ namespace {
 Result<void> run(const std::string& how, const Kernels& kernels, const std::string& model,
                  const std::string& in_path, const std::string& out_path) {
   const TensorFile file = KA_TRY(read_safetensors(bytes_in(model), model));
+  if (how == "copy") {
+    std::ofstream(out_path, std::ios::binary) << write_safetensors(file);
+    return {};
+  }
   const Architecture architecture =
       KA_TRY(parse_architecture_json(file.metadata.at("architecture"), model));
+  if (how == "onnx") {
+    OnnxOptions options;
+    options.metadata["made by"] = "a test";
+    std::ofstream(out_path, std::ios::binary)
+        << KA_TRY(onnx_of(architecture, file.tensors, options));
+    return {};
+  }
   const Network network = KA_TRY(Network::make(architecture, file.tensors, "", kernels));
   const std::string bytes = bytes_in(in_path);
   std::vector<float> in(bytes.size() / sizeof(float));

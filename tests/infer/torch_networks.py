@@ -13,6 +13,7 @@ ELEMENTWISE = {"relu": torch.nn.ReLU(), "gelu": torch.nn.GELU(), "tanh": torch.n
 TIMELESS = ["linear", "layer_norm", "relu", "leaky_relu", "gelu", "tanh", "sigmoid", "dropout", "slice"]
 RECURRENT = ["lstm", "gru"]
 BRANCHED = ["sum", "product", "concat"]
+KINDS = TIMELESS + ["conv"] + RECURRENT + BRANCHED + ["max_pool"]
 
 
 def write_safetensors(path, tensors, metadata):
@@ -156,6 +157,19 @@ def layers_of(count, channels, online, rng, depth=0):
             layer, channels = make(kind, channels, online, rng, *([depth] if kind in BRANCHED else []))
             layers.append(layer)
     return layers, channels
+
+
+def model_with(kind, seed, online):
+    """A layer of a kind between two linear ones; with max_pool its unpool."""
+    rng = random.Random(seed)
+    torch.manual_seed(seed)
+    inputs = rng.randint(2, 40)
+    layers = [{"kind": "max_pool"}, {"kind": "linear", "out": inputs}, {"kind": "unpool"}]
+    if kind != "max_pool":
+        make = branched if kind in BRANCHED else layer_of
+        layers = [make(kind, inputs, online, rng, *([1] if kind in BRANCHED else []))[0]]
+    ends = {"kind": "linear", "out": inputs}
+    return Model({"inputs": inputs, "layers": [ends, *layers, ends]})
 
 
 def random_model(seed, online):
