@@ -3,6 +3,7 @@
 
 #include "kinalign/learn/checkpoint.h"
 #include "kinalign/learn/fit_denoise.h"
+#include "kinalign/learn/methods/methods.h"
 #include "kinalign/learn/windows_file.h"
 
 #include <nlohmann/json.hpp>
@@ -76,7 +77,7 @@ Progress progress_lines() {
   };
 }
 
-std::string training_json(const TrainingJob& job, const Json& manifest, const Pairs& pairs) {
+std::string training_json(const TrainingJob& job, const WindowsFacts& facts, const Pairs& pairs) {
   std::vector<std::string> subjects;
   std::size_t frames = 0;
   for (const Pair& pair : pairs.learnt) {
@@ -87,9 +88,9 @@ std::string training_json(const TrainingJob& job, const Json& manifest, const Pa
   }
   std::sort(subjects.begin(), subjects.end());
   return Json{{"data",
-               {{{"name", manifest.value("dataset", "")},
-                 {"licence", manifest.value("licence", "")},
-                 {"citation", manifest.value("citation", "")},
+               {{{"name", facts.dataset},
+                 {"licence", facts.licence},
+                 {"citation", facts.citation},
                  {"stretches", pairs.learnt.size()},
                  {"frames", frames},
                  {"subjects", subjects}}}},
@@ -150,7 +151,7 @@ Result<void> run_job(const TrainingJob& job) {
   const FitOptions options{job.options,
                            job.device == "cuda" ? torch::Device(torch::kCUDA) : torch::kCPU};
   DenoiseFit fit = KA_TRY(fit_denoise(method, pairs, options, std::move(state), hooks));
-  fit.model.facts.training = training_json(job, windows.manifest, pairs);
+  fit.model.facts.training = training_json(job, windows.facts, pairs);
   KA_TRY(save_log(job, fit.points));
   KA_TRY(write_file(job.out, write_denoise_model(fit.model)));
   std::error_code ignored;

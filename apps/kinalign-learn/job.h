@@ -10,12 +10,12 @@ namespace kinalign {
 
 struct TrainingJob {
   std::string method;
-  std::string windows;        // the file of windows
-  std::string input, truth;   // streams
-  std::string out;            // the model
-  std::string log;            // CSV, and events beside it; empty: none
-  std::string checkpoint;     // kept there while it runs; empty: nowhere
-  bool resume = false;        // from that file, where it is there
+  std::string windows;         // the file of windows
+  std::string input, truth;    // streams
+  std::string out;             // the model
+  std::string log;             // CSV, and events beside it; empty: none
+  std::string checkpoint;      // kept there while it runs; empty: nowhere
+  bool resume = false;         // from that file, where it is there
   std::string device = "cpu";  // cpu, cuda
   std::int64_t threads = 1;
   TrainingOptions options;

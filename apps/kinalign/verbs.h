@@ -31,6 +31,8 @@ Verb dataset_export_verb();
 Verb dataset_report_verb();
 Verb dataset_rename_verb();
 Verb dataset_rm_verb();
+Verb train_verb();
+Verb denoise_verb();
 Verb time_server_verb();
 Verb node_key_verb();
 Verb config_verb();

@@ -51,8 +51,7 @@ class CleanMotionTask : public TrainingTask {
     rough = (rough.reshape({batch, crop, -1, 3}) * kept).flatten(2);
     const auto answer = network.forward(rough, true);
     const auto error = (answer - clean) * 100.0;
-    return error.pow(2).mean() +
-           0.5 * second_differences(error).abs().mean();
+    return error.pow(2).mean() + 0.5 * second_differences(error).abs().mean();
   }
 
   std::optional<double> judge(const TorchNetwork&) override { return std::nullopt; }

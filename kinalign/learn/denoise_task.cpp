@@ -53,7 +53,8 @@ DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
   std::vector<float> weights;
   std::vector<std::int64_t> ends, begins;
   for (std::size_t j = 0; j < layout_.outputs.size(); ++j) {
-    weights.push_back(is_hand(layout_.outputs[j]) ? static_cast<float>(training_.loss.hands) : 1.0F);
+    weights.push_back(is_hand(layout_.outputs[j]) ? static_cast<float>(training_.loss.hands)
+                                                  : 1.0F);
     if (layout_.parents[j] < 0) continue;
     ends.push_back(whole(j));
     begins.push_back(layout_.parents[j]);
@@ -156,23 +157,22 @@ torch::Tensor DenoiseTask::weigh(const Batch& batch, const torch::Tensor& answer
     loss = loss + weights.square * weighted_mean(error.pow(2).mean(-1), valid) / 100.0;
   }
   const auto n = batch.valid.size(1);
-  const auto valid3 = batch.valid.slice(1, 2, n) * batch.valid.slice(1, 1, n - 1) *
-                      batch.valid.slice(1, 0, n - 2);
+  const auto valid3 =
+      batch.valid.slice(1, 2, n) * batch.valid.slice(1, 1, n - 1) * batch.valid.slice(1, 0, n - 2);
   if (weights.acceleration > 0.0) {
-    loss = loss + weights.acceleration *
-                      weighted_mean(lengths_of(second_differences(error)), valid3);
+    loss =
+        loss + weights.acceleration * weighted_mean(lengths_of(second_differences(error)), valid3);
   }
   if (weights.smooth > 0.0) {
-    loss = loss + weights.smooth *
-                      lengths_of(second_differences(answer * centimetres)).mean();
+    loss = loss + weights.smooth * lengths_of(second_differences(answer * centimetres)).mean();
   }
   if (weights.bone > 0.0) {
     const auto bones = [&](const torch::Tensor& x) {
       return lengths_of((x.index_select(2, bone_ends_) - x.index_select(2, bone_begins_)) *
                         centimetres);
     };
-    const auto both = batch.valid.index_select(2, bone_ends_) *
-                      batch.valid.index_select(2, bone_begins_);
+    const auto both =
+        batch.valid.index_select(2, bone_ends_) * batch.valid.index_select(2, bone_begins_);
     loss = loss + weights.bone * weighted_mean((bones(answer) - bones(batch.truth)).abs(), both);
   }
   if (spread.defined()) {
@@ -182,10 +182,9 @@ torch::Tensor DenoiseTask::weigh(const Batch& batch, const torch::Tensor& answer
     loss = loss + weights.spread * weighted_mean(likelihood, batch.valid);
   }
   if (features_ && weights.hidden > 0.0) {
-    loss = loss + weights.hidden *
-                      (features_(answer.flatten(2)) - features_(batch.truth.flatten(2)))
-                          .pow(2)
-                          .mean();
+    loss =
+        loss + weights.hidden *
+                   (features_(answer.flatten(2)) - features_(batch.truth.flatten(2))).pow(2).mean();
   }
   return loss;
 }
@@ -214,8 +213,7 @@ std::optional<double> DenoiseTask::judge(const TorchNetwork& network) {
     const auto n = valid.size(1);
     distance += weighted_mean(lengths_of(error), valid).item<double>();
     const auto valid3 = valid.slice(1, 2, n) * valid.slice(1, 1, n - 1) * valid.slice(1, 0, n - 2);
-    acceleration +=
-        weighted_mean(lengths_of(second_differences(error)), valid3).item<double>();
+    acceleration += weighted_mean(lengths_of(second_differences(error)), valid3).item<double>();
   }
   return (distance + 0.5 * acceleration) / static_cast<double>(judged_.size());
 }

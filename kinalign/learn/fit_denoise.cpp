@@ -46,9 +46,8 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   if (method.perceptual) {
     clean = KA_TRY(fit_clean_motion(layout, pairs.learnt, options.training, options.device, hooks));
     for (auto& [name, tensor] : clean->tensors()) tensor.set_requires_grad(false);
-    task.compare_features([&](const torch::Tensor& answers) {
-      return motion_features(*clean, answers);
-    });
+    task.compare_features(
+        [&](const torch::Tensor& answers) { return motion_features(*clean, answers); });
     out.model.second = clean->architecture();
     put_tensors(*clean, "second.", out.model.tensors);
   }
@@ -56,8 +55,7 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   TorchNetwork network(method.architecture(layout));
   if (method.zero_last) network.zero_last();
   network.to(options.device);
-  out.points =
-      KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
+  out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
   out.model.architecture = network.architecture();
   put_tensors(network, "net.", out.model.tensors);
   return out;

@@ -2,7 +2,7 @@
 // From pairs and a method to a model.
 #pragma once
 
-#include "kinalign/learn/methods.h"
+#include "kinalign/learn/method.h"
 #include "kinalign/learn/pairs.h"
 #include "kinalign/models/denoise_model.h"
 

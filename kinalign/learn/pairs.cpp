@@ -13,14 +13,10 @@ namespace {
 constexpr std::size_t least_known = 10;
 
 Result<std::vector<std::string>> joints_of(const Windows& windows, const std::string& stream) {
+  const WindowsFacts::Stream* found = windows.facts.find(stream);
+  if (found != nullptr && !found->names.empty()) return found->names;
   std::string known;
-  for (const auto& one : windows.manifest.at("streams")) {
-    const std::string name = one.value("name", "");
-    if (name == stream && one.contains("names")) {
-      return one.at("names").get<std::vector<std::string>>();
-    }
-    known += (known.empty() ? "" : ", ") + name;
-  }
+  for (const auto& one : windows.facts.streams) known += (known.empty() ? "" : ", ") + one.name;
   return Failure(Error{"", 0, "a stream \"" + stream + "\" with names", known});
 }
 
@@ -77,11 +73,8 @@ std::vector<Value> chosen_of(const std::vector<Value>& all, const Chosen& chosen
 }
 
 std::size_t part_named(const Windows& windows, const std::string& name) {
-  const auto& parts = windows.manifest.at("parts");
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (parts[i] == name) return i;
-  }
-  return parts.size();
+  const auto& parts = windows.facts.parts;
+  return static_cast<std::size_t>(std::find(parts.begin(), parts.end(), name) - parts.begin());
 }
 
 }  // namespace
@@ -92,8 +85,8 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
   const Chosen chosen = choose(joints);
   Pairs out{.inputs = chosen.names,
             .outputs = KA_TRY(joints_of(windows, truth)),
-            .rate_hz = windows.manifest.value("rate_hz", 0.0)};
-  const std::size_t parts = windows.manifest.at("parts").size();
+            .rate_hz = windows.facts.rate_hz};
+  const std::size_t parts = windows.facts.parts.size();
   const std::size_t train = part_named(windows, "train");
   const std::size_t validation = part_named(windows, "validation");
   for (const Stretch& stretch : windows.stretches) {
@@ -108,17 +101,19 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
     Pair pair;
     pair.input.joints = out.inputs.size();
     pair.input.positions = chosen_of(rough.arrays.at("positions"), chosen, joints.size(), 3);
-    pair.input.seen = chosen_of(seen_of(rough, stretch.rows, joints.size()), chosen, joints.size(), 1);
+    pair.input.seen =
+        chosen_of(seen_of(rough, stretch.rows, joints.size()), chosen, joints.size(), 1);
     pair.truth = precise.arrays.at("positions");
     pair.valid = seen_of(precise, stretch.rows, out.outputs.size());
     for (std::uint8_t& one : pair.valid) one = one == 0 ? 0 : 1;
-    const auto& takes = windows.manifest.at("takes");
-    if (stretch.take < takes.size()) pair.subject = takes[stretch.take].value("subject", "");
+    if (stretch.take < windows.facts.takes.size()) {
+      pair.subject = windows.facts.takes[stretch.take].subject;
+    }
     (is_judged ? out.judged : out.learnt).push_back(std::move(pair));
   }
   if (out.learnt.empty()) {
-    return Failure(Error{"", 0, "stretches of " + std::to_string(least) + " rows to train on",
-                         "none"});
+    return Failure(
+        Error{"", 0, "stretches of " + std::to_string(least) + " rows to train on", "none"});
   }
   return out;
 }

@@ -13,7 +13,8 @@ namespace kinalign {
 struct Pairs {
   std::vector<std::string> inputs, outputs;  // joints
   double rate_hz = 0.0;
-  std::vector<Pair> learnt{}, judged{};  // of the parts train and validation; all where there is one
+  std::vector<Pair> learnt{},
+      judged{};  // of the parts train and validation; all where there is one
 };
 
 /// Fails where the file lacks a stream or its positions. Stretches shorter than `least` rows are

@@ -33,7 +33,8 @@ inline std::vector<float> values_of(const torch::Tensor& tensor) {
 
 inline Tensor from_torch(const torch::Tensor& tensor) {
   Tensor out;
-  for (const std::int64_t size : tensor.sizes()) out.shape.push_back(static_cast<std::size_t>(size));
+  for (const std::int64_t size : tensor.sizes())
+    out.shape.push_back(static_cast<std::size_t>(size));
   out.values = values_of(tensor);
   return out;
 }

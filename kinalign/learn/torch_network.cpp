@@ -37,19 +37,26 @@ class Maker {
  private:
   std::size_t make(const Layer& layer, const std::string& path, std::size_t in) {
     switch (layer.kind) {
-      case LayerKind::linear: return make_linear(layer, path, in);
-      case LayerKind::conv: return make_conv(layer, path, in);
-      case LayerKind::lstm: return make_recurrent(layer, path, in, 4);
-      case LayerKind::gru: return make_recurrent(layer, path, in, 3);
+      case LayerKind::linear:
+        return make_linear(layer, path, in);
+      case LayerKind::conv:
+        return make_conv(layer, path, in);
+      case LayerKind::lstm:
+        return make_recurrent(layer, path, in, 4);
+      case LayerKind::gru:
+        return make_recurrent(layer, path, in, 3);
       case LayerKind::layer_norm:
         tensors_[path + ".weight"] = torch::ones({whole(in)});
         tensors_[path + ".bias"] = torch::zeros({whole(in)});
         return in;
-      case LayerKind::slice: return layer.out;
+      case LayerKind::slice:
+        return layer.out;
       case LayerKind::sum:
       case LayerKind::product:
-      case LayerKind::concat: return make_branches(layer, path, in);
-      default: return in;
+      case LayerKind::concat:
+        return make_branches(layer, path, in);
+      default:
+        return in;
     }
   }
 
@@ -62,8 +69,7 @@ class Maker {
 
   std::size_t make_conv(const Layer& layer, const std::string& path, std::size_t in) {
     const double bound = 1.0 / std::sqrt(static_cast<double>(in * layer.kernel));
-    tensors_[path + ".weight"] =
-        uniform({whole(layer.out), whole(in), whole(layer.kernel)}, bound);
+    tensors_[path + ".weight"] = uniform({whole(layer.out), whole(in), whole(layer.kernel)}, bound);
     tensors_[path + ".bias"] = uniform({whole(layer.out)}, bound);
     return layer.out;
   }
@@ -124,8 +130,10 @@ class Runner {
  private:
   torch::Tensor run(const Layer& layer, const std::string& path, const torch::Tensor& x) const {
     switch (layer.kind) {
-      case LayerKind::linear: return torch::linear(x, at(path + ".weight"), at(path + ".bias"));
-      case LayerKind::conv: return conv(layer, path, x);
+      case LayerKind::linear:
+        return torch::linear(x, at(path + ".weight"), at(path + ".bias"));
+      case LayerKind::conv:
+        return conv(layer, path, x);
       case LayerKind::lstm: {
         const auto zero = state(layer, x);
         return std::get<0>(torch::lstm(x, {zero, zero}, recurrent(layer, path), true, 1, 0.0,
@@ -136,20 +144,28 @@ class Runner {
                                       training_, layer.bidirectional, true));
       case LayerKind::layer_norm:
         return torch::layer_norm(x, {x.size(2)}, at(path + ".weight"), at(path + ".bias"), 1e-5);
-      case LayerKind::relu: return torch::relu(x);
-      case LayerKind::leaky_relu: return torch::leaky_relu(x, layer.slope);
-      case LayerKind::gelu: return torch::gelu(x);
-      case LayerKind::tanh: return torch::tanh(x);
-      case LayerKind::sigmoid: return torch::sigmoid(x);
-      case LayerKind::dropout: return torch::dropout(x, layer.rate, training_);
+      case LayerKind::relu:
+        return torch::relu(x);
+      case LayerKind::leaky_relu:
+        return torch::leaky_relu(x, layer.slope);
+      case LayerKind::gelu:
+        return torch::gelu(x);
+      case LayerKind::tanh:
+        return torch::tanh(x);
+      case LayerKind::sigmoid:
+        return torch::sigmoid(x);
+      case LayerKind::dropout:
+        return torch::dropout(x, layer.rate, training_);
       case LayerKind::slice:
         return x.slice(2, whole(layer.begin), whole(layer.begin + layer.out));
       case LayerKind::max_pool:
         return torch::max_pool1d(x.transpose(1, 2), 2, 2, 0, 1, true).transpose(1, 2);
-      case LayerKind::unpool: return x;  // run() does it
+      case LayerKind::unpool:
+        return x;  // run() does it
       case LayerKind::sum:
       case LayerKind::product:
-      case LayerKind::concat: return branches(layer, path, x);
+      case LayerKind::concat:
+        return branches(layer, path, x);
     }
     return x;
   }
@@ -216,7 +232,8 @@ std::string last_weighted(const Layers& layers, const std::string& path) {
     const LayerKind kind = layers[i].kind;
     if (kind == LayerKind::linear || kind == LayerKind::conv) return path_below(path, i);
     for (std::size_t b = layers[i].branches.size(); b-- > 0;) {
-      const std::string found = last_weighted(layers[i].branches[b], path_below(path_below(path, i), b));
+      const std::string found =
+          last_weighted(layers[i].branches[b], path_below(path_below(path, i), b));
       if (!found.empty()) return found;
     }
   }

@@ -64,8 +64,8 @@ void step_weights(TorchNetwork& network, const TrainingOptions& options, double 
   torch::NoGradGuard guard;
   const double rate = rate_at(options, state.step), n = static_cast<double>(state.step + 1);
   const double cut = norm > options.longest_gradient ? options.longest_gradient / norm : 1.0;
-  const double correction = std::sqrt(1.0 - std::pow(second_decay, n)) /
-                            (1.0 - std::pow(first_decay, n));
+  const double correction =
+      std::sqrt(1.0 - std::pow(second_decay, n)) / (1.0 - std::pow(first_decay, n));
   const double kept = std::min(average_decay, (1.0 + n) / (10.0 + n));
   for (auto& [name, weight] : network.tensors()) {
     if (!weight.grad().defined()) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop that fits a network to a task: AdamW, a learning rate that rises and falls, gradients cut
-// at a norm, an average of the weights, early stopping. Everything random is a function of the seed
-// and the step's number, so that a run goes on after a kill as if nothing had happened.
+// The loop that fits a network to a task: AdamW, a learning rate that rises and falls, gradients
+// cut at a norm, an average of the weights, early stopping. Everything random is a function of the
+// seed and the step's number, so that a run goes on after a kill as if nothing had happened.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -32,11 +32,11 @@ class TrainingTask {
 
 struct TrainingOptions {
   std::int64_t steps = 1200;
-  double rate = 2e-3;           // the highest learning rate
-  double rise = 0.3;            // share of the steps in which the rate rises
-  double weight_decay = 1e-2;   // of matrices alone
-  double longest_gradient = 1;  // norm; longer ones are cut
-  bool average = true;          // the weights' moving average is what is judged and kept
+  double rate = 2e-3;            // the highest learning rate
+  double rise = 0.3;             // share of the steps in which the rate rises
+  double weight_decay = 1e-2;    // of matrices alone
+  double longest_gradient = 1;   // norm; longer ones are cut
+  bool average = true;           // the weights' moving average is what is judged and kept
   std::int64_t judge_every = 0;  // steps; 0: at the end alone
   std::int64_t patience = 0;     // judgements without a better one, then it stops; 0: never
   std::uint64_t seed = 1;
@@ -44,7 +44,7 @@ struct TrainingOptions {
 
 struct TrainingPoint {
   std::int64_t step = 0;
-  double loss = 0.0;      // mean since the last point
+  double loss = 0.0;  // mean since the last point
   double rate = 0.0;
   double gradient = 0.0;  // norm before it is cut
   std::optional<double> judgement;

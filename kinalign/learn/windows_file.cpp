@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/windows_file.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -105,7 +107,8 @@ Result<std::vector<Entry>> entries_of(const Bytes& bytes, const std::string& nam
   return out;
 }
 
-/// The text behind `key` in a NumPy header: {'descr': '<f4', 'fortran_order': False, 'shape': (2,)}.
+/// The text behind `key` in a NumPy header: {'descr': '<f4', 'fortran_order': False, 'shape':
+/// (2,)}.
 std::string_view after(std::string_view header, std::string_view key) {
   const std::size_t at = header.find(key);
   return at == std::string_view::npos ? std::string_view{} : header.substr(at + key.size());
@@ -156,8 +159,8 @@ Result<StoredArray> read_array(std::string_view npy, const std::string& what) {
     if (one != 0 && size > there / one) return broken(what, "all of its values", "fewer");
     size *= one;
   }
-  if (size != there) return broken(what, std::to_string(size) + " bytes of values",
-                                   std::to_string(there));
+  if (size != there)
+    return broken(what, std::to_string(size) + " bytes of values", std::to_string(there));
   array->bytes = npy.substr(begin + length);
   return *array;
 }
@@ -176,12 +179,18 @@ bool append_row(const StoredArray& array, std::size_t first, std::size_t count,
   const std::size_t rows = array.shape.empty() ? 0 : array.shape[0];
   const std::size_t size = rows == 0 ? 0 : array.bytes.size() / rows;
   const std::string_view bytes = array.bytes.substr(first * size, count * size);
-  if (array.type == "<f4") append_as_float<float>(bytes, out);
-  else if (array.type == "<f8") append_as_float<double>(bytes, out);
-  else if (array.type == "|u1") append_as_float<std::uint8_t>(bytes, out);
-  else if (array.type == "<i4") append_as_float<std::int32_t>(bytes, out);
-  else if (array.type == "<i8") append_as_float<std::int64_t>(bytes, out);
-  else return false;
+  if (array.type == "<f4")
+    append_as_float<float>(bytes, out);
+  else if (array.type == "<f8")
+    append_as_float<double>(bytes, out);
+  else if (array.type == "|u1")
+    append_as_float<std::uint8_t>(bytes, out);
+  else if (array.type == "<i4")
+    append_as_float<std::int32_t>(bytes, out);
+  else if (array.type == "<i8")
+    append_as_float<std::int64_t>(bytes, out);
+  else
+    return false;
   return true;
 }
 
@@ -220,6 +229,36 @@ std::string utf8_of(const StoredArray& array) {
   return out;
 }
 
+WindowsFacts::Stream stream_of(const nlohmann::json& json) {
+  WindowsFacts::Stream out{json.at("name").get<std::string>(), json.value("kind", ""), {}, {}};
+  if (json.contains("names")) json.at("names").get_to(out.names);
+  if (json.contains("parents")) json.at("parents").get_to(out.parents);
+  return out;
+}
+
+Result<WindowsFacts> read_facts(const std::string& text, const std::string& name) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("schema") || json.at("schema") != "kinalign.windows/1") {
+    return broken(name, "a manifest of schema kinalign.windows/1", "another one");
+  }
+  WindowsFacts out;
+  try {
+    out.dataset = json.value("dataset", "");
+    out.licence = json.value("licence", "");
+    out.citation = json.value("citation", "");
+    out.rate_hz = json.at("rate_hz").get<double>();
+    json.at("parts").get_to(out.parts);
+    for (const auto& take : json.at("takes")) {
+      out.takes.push_back(
+          {take.value("name", ""), take.value("subject", ""), take.value("action", "")});
+    }
+    for (const auto& stream : json.at("streams")) out.streams.push_back(stream_of(stream));
+  } catch (const nlohmann::json::exception& fault) {
+    return broken(name, "a whole manifest", shown(fault.what()));
+  }
+  return out;
+}
+
 struct Places {
   std::vector<std::int64_t> take, part, first, rows;
 };
@@ -229,8 +268,8 @@ Result<void> append_window(const std::map<std::string, StoredArray>& arrays, Win
                            std::size_t window, std::size_t skip, std::size_t rows,
                            const std::string& name) {
   Stretch& stretch = out.stretches.back();
-  for (const auto& about : out.manifest.at("streams")) {
-    const auto stream = about.at("name").get<std::string>();
+  for (const WindowsFacts::Stream& about : out.facts.streams) {
+    const std::string& stream = about.name;
     for (const auto& [key, array] : arrays) {
       if (!key.starts_with(stream + "_") || array.shape.size() < 3) continue;
       const std::size_t length = array.shape[1];
@@ -259,7 +298,9 @@ Result<void> join(const std::map<std::string, StoredArray>& arrays, const Places
                          first + rows > reached && first >= places.first[w - 1];
     if (!goes_on) {
       out.stretches.push_back({static_cast<std::size_t>(places.take[w]),
-                               static_cast<std::size_t>(places.part[w]), 0, {}});
+                               static_cast<std::size_t>(places.part[w]),
+                               0,
+                               {}});
       reached = first;
     }
     if (rows < 0 || first < 0) return broken(name, "rows of a take", std::to_string(rows));
@@ -271,6 +312,12 @@ Result<void> join(const std::map<std::string, StoredArray>& arrays, const Places
 }
 
 }  // namespace
+
+const WindowsFacts::Stream* WindowsFacts::find(const std::string& stream) const {
+  const auto found = std::find_if(streams.begin(), streams.end(),
+                                  [&](const Stream& one) { return one.name == stream; });
+  return found == streams.end() ? nullptr : &*found;
+}
 
 std::size_t StoredArray::row() const {
   std::size_t out = 1;
@@ -304,19 +351,13 @@ Result<Windows> read_windows(std::string_view npz, const std::string& name) {
     return broken(name, "a file of kinalign dataset windows", "no array manifest");
   }
   Windows out;
-  out.manifest = nlohmann::json::parse(utf8_of(manifest->second), nullptr, false);
-  if (!out.manifest.is_object() || out.manifest.value("schema", "") != "kinalign.windows/1") {
-    return broken(name, "a manifest of schema kinalign.windows/1", "another one");
-  }
-  const Places places{KA_TRY(integers(arrays, "take", name)), KA_TRY(integers(arrays, "part", name)),
-                      KA_TRY(integers(arrays, "first", name)),
-                      KA_TRY(integers(arrays, "rows", name))};
+  out.facts = KA_TRY(read_facts(utf8_of(manifest->second), name));
+  const Places places{
+      KA_TRY(integers(arrays, "take", name)), KA_TRY(integers(arrays, "part", name)),
+      KA_TRY(integers(arrays, "first", name)), KA_TRY(integers(arrays, "rows", name))};
   const std::size_t count = places.take.size();
   if (places.part.size() != count || places.first.size() != count || places.rows.size() != count) {
     return broken(name, "arrays of one length", "take, part, first and rows differ");
-  }
-  if (!out.manifest.contains("streams") || !out.manifest["streams"].is_array()) {
-    return broken(name, "a list of streams in the manifest", "none");
   }
   KA_TRY(join(arrays, places, out, name));
   for (const auto& [key, array] : arrays) {

@@ -6,8 +6,6 @@
 
 #include "kinalign/core/error.h"
 
-#include <nlohmann/json.hpp>
-
 #include <cstdint>
 #include <map>
 #include <string>
@@ -39,8 +37,27 @@ struct Stretch {
   std::map<std::string, StretchStream> streams;
 };
 
+/// What the file's manifest says.
+struct WindowsFacts {
+  struct Take {
+    std::string name, subject, action;
+  };
+  struct Stream {
+    std::string name, kind;          // kind: skeleton, points, nodes
+    std::vector<std::string> names;  // of joints or nodes
+    std::vector<int> parents;        // of a skeleton
+  };
+  std::string dataset, licence, citation;
+  double rate_hz = 0.0;
+  std::vector<std::string> parts;  // train, validation, test; one, "all", without a split
+  std::vector<Take> takes;
+  std::vector<Stream> streams;
+
+  const Stream* find(const std::string& stream) const;
+};
+
 struct Windows {
-  nlohmann::json manifest;
+  WindowsFacts facts;
   std::vector<Stretch> stretches;
   std::map<std::string, std::vector<float>> rest_offsets;  // by stream: [takes,J,3] m
 };

@@ -37,8 +37,7 @@ void copy_joint(JointFrames& body, std::size_t from, std::size_t to, std::size_t
 /// Between frames `before` and `after`, in which the joint was seen.
 void fill_between(JointFrames& body, std::size_t joint, std::size_t before, std::size_t after) {
   for (std::size_t t = before + 1; t < after; ++t) {
-    const float share =
-        static_cast<float>(t - before) / static_cast<float>(after - before);
+    const float share = static_cast<float>(t - before) / static_cast<float>(after - before);
     for (std::size_t k = 0; k < 3; ++k) {
       const float a = body.positions[(before * body.joints + joint) * 3 + k];
       const float b = body.positions[(after * body.joints + joint) * 3 + k];

@@ -15,7 +15,7 @@ namespace kinalign {
 
 /// Which joints the frame is found from. Positions of several are averaged.
 struct BodyJoints {
-  std::vector<std::size_t> root;                               // SpineBase, or both hips
+  std::vector<std::size_t> root;                       // SpineBase, or both hips
   std::vector<std::array<std::size_t, 2>> left_right;  // hips, shoulders
 };
 
@@ -25,7 +25,7 @@ std::optional<BodyJoints> body_joints(const std::vector<std::string>& names);
 
 /// A space that goes along with the body: origin at its root, y up, x to its left.
 struct BodyFrame {
-  std::array<float, 3> root{};     // m
+  std::array<float, 3> root{};       // m
   float cosine = 1.0F, sine = 0.0F;  // of the heading: (cosine, 0, sine) is the body's left
 
   std::array<float, 3> turned(const float* vector) const;       // from the world's
@@ -37,7 +37,8 @@ struct BodyFrame {
 std::vector<BodyFrame> body_frames(const BodyJoints& joints, const JointFrames& smoothed);
 
 /// Missing joints from the frames around: on the line between the last and the next seen, held at
-/// the ends and, if `causal`, until it is seen again. One never seen lies at the mean of the others.
+/// the ends and, if `causal`, until it is seen again. One never seen lies at the mean of the
+/// others.
 void fill_missing(JointFrames& body, bool causal);
 
 }  // namespace kinalign

@@ -70,8 +70,8 @@ class Frame {
       const auto p = static_cast<std::size_t>(parents_[j]);
       const float length = distance(&before[3 * p], &before[3 * j]);
       for (std::size_t k = 0; k < 3; ++k) {
-        const float direction =
-            length < 1e-6F ? (k == 1 ? 1.0F : 0.0F) : (before[3 * j + k] - before[3 * p + k]) / length;
+        const float direction = length < 1e-6F ? (k == 1 ? 1.0F : 0.0F)
+                                               : (before[3 * j + k] - before[3 * p + k]) / length;
         joints_[3 * j + k] = joints_[3 * p + k] + lengths_[j] * direction;
       }
     }

@@ -62,8 +62,9 @@ DenoiseFeatures denoise_features(const DenoiseLayout& layout, JointFrames body) 
     }
     for (const int base : layout.bases) {
       static constexpr std::array<float, 3> root{};
-      const float* at = base < 0 ? root.data()
-                                 : &smoothed.positions[(t * joints + static_cast<std::size_t>(base)) * 3];
+      const float* at =
+          base < 0 ? root.data()
+                   : &smoothed.positions[(t * joints + static_cast<std::size_t>(base)) * 3];
       out.base.insert(out.base.end(), at, at + 3);
     }
   }

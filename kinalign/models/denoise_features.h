@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a network that cleans a skeleton sees and says, the same in training and at use. Every number
-// is in the body's frame of the input (body_frame.h), so that no truth is needed.
+// What a network that cleans a skeleton sees and says, the same in training and at use. Every
+// number is in the body's frame of the input (body_frame.h), so that no truth is needed.
 #pragma once
 
 #include "kinalign/core/error.h"

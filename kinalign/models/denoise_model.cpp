@@ -47,7 +47,8 @@ Result<Denoiser> Denoiser::make(DenoiseModel model) {
   Network network = KA_TRY(Network::make(model.architecture, below(model.tensors, "net.")));
   const auto fits = [](const Network& one, std::size_t in, std::size_t out) -> Result<void> {
     if (one.inputs() == in && one.outputs() == out) return {};
-    return Failure(Error{"", 0, std::to_string(in) + " channels in and " + std::to_string(out) + " out",
+    return Failure(Error{"", 0,
+                         std::to_string(in) + " channels in and " + std::to_string(out) + " out",
                          std::to_string(one.inputs()) + " and " + std::to_string(one.outputs())});
   };
   KA_TRY(fits(network, model.layout.channels(), outputs));

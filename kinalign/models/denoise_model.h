@@ -14,9 +14,9 @@ namespace kinalign {
 
 /// What is done to an answer, the same for every method.
 struct Steadying {
-  bool mirror = true;                // the mean of the answers to the body and to its mirror image
+  bool mirror = true;                 // the mean of the answers to the body and to its mirror image
   Smoothing smoothing{.window = 11};  // of the answer
-  bool bones = true;                 // each bone has one length over the take
+  bool bones = true;                  // each bone has one length over the take
 
   bool operator==(const Steadying&) const = default;
 };

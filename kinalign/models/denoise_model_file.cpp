@@ -150,7 +150,8 @@ Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::strin
     return Failure(Error{name, 0, "a whole header of a model", shown(fault.what())});
   }
   if (out.facts.task != "denoise") {
-    return Failure(Error{name, 0, "a model that cleans skeletons", "task " + shown(out.facts.task)});
+    return Failure(
+        Error{name, 0, "a model that cleans skeletons", "task " + shown(out.facts.task)});
   }
   KA_TRY(take_row(file.tensors, "input.mean", name, out.input_mean));
   KA_TRY(take_row(file.tensors, "input.scale", name, out.input_scale));

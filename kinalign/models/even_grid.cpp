@@ -17,7 +17,7 @@ constexpr std::size_t most_frames = 10'000'000;
 constexpr double least_size = 0.4, most_size = 2.6;  // m, from the lowest to the highest joint
 
 std::string text_of(double value, const char* unit) {
-  char text[48];
+  char text[80];
   std::snprintf(text, sizeof text, "%.4g %s", value, unit);
   return text;
 }
@@ -39,7 +39,8 @@ Result<void> check_stamps(const std::vector<Time>& stamps, double rate_hz) {
   }
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i] < stamps[i - 1]) {
-      return Failure(Error{"", 0, "stamps that rise", "frame " + std::to_string(i) + " is earlier"});
+      return Failure(
+          Error{"", 0, "stamps that rise", "frame " + std::to_string(i) + " is earlier"});
     }
   }
   const double step = usual_step(stamps);
@@ -108,7 +109,8 @@ Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
   }
   EvenFrames out{{wanted.size(), std::vector<float>(frames * wanted.size() * 3, 0.0F),
                   std::vector<std::uint8_t>(frames * wanted.size(), 0)},
-                 points.stamps.front(), rate_hz};
+                 points.stamps.front(),
+                 rate_hz};
   std::size_t before = 0;
   for (std::size_t t = 0; t < frames; ++t) {
     const double time = std::min(static_cast<double>(t) / rate_hz, span);
@@ -119,7 +121,7 @@ Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
     for (std::size_t j = 0; j < wanted.size(); ++j) {
       if (!places[j]) continue;
       const std::size_t a = before * names.size() + *places[j], b = a + names.size();
-      const auto seen = share < 1e-6   ? points.state[a]
+      const auto seen = share < 1e-6       ? points.state[a]
                         : share > 1 - 1e-6 ? points.state[b]
                                            : std::min(points.state[a], points.state[b]);
       out.body.seen[t * wanted.size() + j] = static_cast<std::uint8_t>(seen);

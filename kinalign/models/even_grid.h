@@ -13,7 +13,7 @@ namespace kinalign {
 
 struct EvenFrames {
   JointFrames body;
-  Time start{};          // stamp of the first frame
+  Time start{};  // stamp of the first frame
   double rate_hz = 0.0;
 };
 

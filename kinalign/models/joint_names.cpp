@@ -38,23 +38,33 @@ constexpr std::array<Word, 20> prmd_words{{{"Waist", "SpineBase"},
                                            {"FootRight", "AnkleRight"},
                                            {"ToesRight", "FootRight"}}};
 
-constexpr std::array<Word, 22> mocap_words{
-    {{"Hips", "SpineBase"},           {"Spine1", "SpineMid"},
-     {"Spine3", "SpineShoulder"},     {"LeftUpLeg", "HipLeft"},
-     {"RightUpLeg", "HipRight"},      {"LeftLeg", "KneeLeft"},
-     {"RightLeg", "KneeRight"},       {"LeftFoot", "AnkleLeft"},
-     {"RightFoot", "AnkleRight"},     {"LeftToeBase", "FootLeft"},
-     {"RightToeBase", "FootRight"},   {"LeftArm", "ShoulderLeft"},
-     {"RightArm", "ShoulderRight"},   {"LeftForeArm", "ElbowLeft"},
-     {"RightForeArm", "ElbowRight"},  {"LeftHand", "WristLeft"},
-     {"RightHand", "WristRight"},     {"Head", "Head"},
-     {"LeftHandMiddle1", "HandLeft"}, {"RightHandMiddle1", "HandRight"},
-     {"Neck", "Neck"},                {"Neck1", "NeckTop"}}};
+constexpr std::array<Word, 22> mocap_words{{{"Hips", "SpineBase"},
+                                            {"Spine1", "SpineMid"},
+                                            {"Spine3", "SpineShoulder"},
+                                            {"LeftUpLeg", "HipLeft"},
+                                            {"RightUpLeg", "HipRight"},
+                                            {"LeftLeg", "KneeLeft"},
+                                            {"RightLeg", "KneeRight"},
+                                            {"LeftFoot", "AnkleLeft"},
+                                            {"RightFoot", "AnkleRight"},
+                                            {"LeftToeBase", "FootLeft"},
+                                            {"RightToeBase", "FootRight"},
+                                            {"LeftArm", "ShoulderLeft"},
+                                            {"RightArm", "ShoulderRight"},
+                                            {"LeftForeArm", "ElbowLeft"},
+                                            {"RightForeArm", "ElbowRight"},
+                                            {"LeftHand", "WristLeft"},
+                                            {"RightHand", "WristRight"},
+                                            {"Head", "Head"},
+                                            {"LeftHandMiddle1", "HandLeft"},
+                                            {"RightHandMiddle1", "HandRight"},
+                                            {"Neck", "Neck"},
+                                            {"Neck1", "NeckTop"}}};
 
 template <std::size_t N>
 std::string translated(const std::array<Word, N>& words, const std::string& name) {
-  const auto found = std::find_if(words.begin(), words.end(),
-                                  [&](const Word& word) { return word.name == name; });
+  const auto found =
+      std::find_if(words.begin(), words.end(), [&](const Word& word) { return word.name == name; });
   return found == words.end() ? name : std::string(found->kinect);
 }
 

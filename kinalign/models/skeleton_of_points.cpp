@@ -18,26 +18,14 @@ struct Direction {
 };
 
 /// The way to a joint from its parent in a T-pose that faces +z.
-constexpr std::array<Direction, 20> rest_directions{{{"SpineMid", 0, 1, 0},
-                                                     {"SpineShoulder", 0, 1, 0},
-                                                     {"Neck", 0, 1, 0},
-                                                     {"Head", 0, 1, 0},
-                                                     {"ShoulderLeft", 1, 0, 0},
-                                                     {"ElbowLeft", 1, 0, 0},
-                                                     {"WristLeft", 1, 0, 0},
-                                                     {"HandLeft", 1, 0, 0},
-                                                     {"ShoulderRight", -1, 0, 0},
-                                                     {"ElbowRight", -1, 0, 0},
-                                                     {"WristRight", -1, 0, 0},
-                                                     {"HandRight", -1, 0, 0},
-                                                     {"HipLeft", 1, 0, 0},
-                                                     {"KneeLeft", 0, -1, 0},
-                                                     {"AnkleLeft", 0, -1, 0},
-                                                     {"FootLeft", 0, 0, 1},
-                                                     {"HipRight", -1, 0, 0},
-                                                     {"KneeRight", 0, -1, 0},
-                                                     {"AnkleRight", 0, -1, 0},
-                                                     {"FootRight", 0, 0, 1}}};
+constexpr std::array<Direction, 20> rest_directions{
+    {{"SpineMid", 0, 1, 0},    {"SpineShoulder", 0, 1, 0}, {"Neck", 0, 1, 0},
+     {"Head", 0, 1, 0},        {"ShoulderLeft", 1, 0, 0},  {"ElbowLeft", 1, 0, 0},
+     {"WristLeft", 1, 0, 0},   {"HandLeft", 1, 0, 0},      {"ShoulderRight", -1, 0, 0},
+     {"ElbowRight", -1, 0, 0}, {"WristRight", -1, 0, 0},   {"HandRight", -1, 0, 0},
+     {"HipLeft", 1, 0, 0},     {"KneeLeft", 0, -1, 0},     {"AnkleLeft", 0, -1, 0},
+     {"FootLeft", 0, 0, 1},    {"HipRight", -1, 0, 0},     {"KneeRight", 0, -1, 0},
+     {"AnkleRight", 0, -1, 0}, {"FootRight", 0, 0, 1}}};
 
 Vec3 rest_direction(const std::string& joint) {
   for (const Direction& known : rest_directions) {
@@ -60,12 +48,14 @@ Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
   plan.joint.assign(points, -1);
   plan.turner.assign(points, -1);
   for (std::size_t j = 0; j < points; ++j) {
-    if (body.parents[j] < 0) plan.order.push_back(j);
-    else plan.children[static_cast<std::size_t>(body.parents[j])].push_back(j);
+    if (body.parents[j] < 0)
+      plan.order.push_back(j);
+    else
+      plan.children[static_cast<std::size_t>(body.parents[j])].push_back(j);
   }
   if (plan.order.size() != 1) {
-    return Failure(Error{"", 0, "joints that hang on one root",
-                         std::to_string(plan.order.size()) + " roots"});
+    return Failure(
+        Error{"", 0, "joints that hang on one root", std::to_string(plan.order.size()) + " roots"});
   }
   const auto add = [&](const std::string& name, int parent) {
     skeleton.joint_names.push_back(name);
@@ -91,8 +81,7 @@ Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
 /// smallest from `before` where there is one child.
 Quat turn_of(const std::vector<Vec3>& rest, const std::vector<Vec3>& now, const Quat& before) {
   if (rest.size() < 2) {
-    return rest.empty() ? before
-                        : Quat::FromTwoVectors(before * rest[0], now[0]) * before;
+    return rest.empty() ? before : Quat::FromTwoVectors(before * rest[0], now[0]) * before;
   }
   Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < rest.size(); ++i) cross += now[i] * rest[i].transpose();
@@ -149,8 +138,7 @@ class Poser {
     for (const std::size_t p : plan_.order) {
       const auto own = static_cast<std::size_t>(plan_.joint[p]);
       const int above = clip_.skeleton.parents[own];
-      const Quat before =
-          above < 0 ? Quat::Identity() : global_[static_cast<std::size_t>(above)];
+      const Quat before = above < 0 ? Quat::Identity() : global_[static_cast<std::size_t>(above)];
       std::vector<Vec3> rest, now;
       for (const std::size_t j : plan_.children[p]) {
         rest.push_back(rest_direction(body_.names[j]));
@@ -180,7 +168,8 @@ Result<Clip> skeleton_of_points(const PointBody& body, std::span<const float> po
   const std::size_t row = 3 * body.parents.size(), frames = positions.size() / row;
   if (frames > 0) poser.set_lengths(positions.data());
   for (std::size_t t = 0; t < frames; ++t) {
-    const auto after = static_cast<std::int64_t>(std::llround(static_cast<double>(t) * 1e9 / rate_hz));
+    const auto after =
+        static_cast<std::int64_t>(std::llround(static_cast<double>(t) * 1e9 / rate_hz));
     poser.append(&positions[t * row], start + Duration(after));
   }
   return clip;

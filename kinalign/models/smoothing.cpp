@@ -28,8 +28,7 @@ std::vector<double> polynomial_weights(std::size_t window, std::size_t order, do
     design.row(i) = powers((static_cast<double>(i) - middle) / scale, order).transpose();
   }
   const Eigen::VectorXd here = powers((at - middle) / scale, order);
-  const Eigen::VectorXd weights =
-      design * (design.transpose() * design).ldlt().solve(here).eval();
+  const Eigen::VectorXd weights = design * (design.transpose() * design).ldlt().solve(here).eval();
   return {weights.begin(), weights.end()};
 }
 
@@ -43,8 +42,7 @@ void smooth(const Smoothing& how, std::size_t channels, std::span<float> values)
   std::vector<std::vector<double>> weights(window);
   const std::vector<float> before(values.begin(), values.end());
   for (std::size_t t = 0; t < frames; ++t) {
-    const std::size_t begin =
-        std::min(t > centre ? t - centre : std::size_t{0}, frames - window);
+    const std::size_t begin = std::min(t > centre ? t - centre : std::size_t{0}, frames - window);
     std::vector<double>& w = weights[t - begin];
     if (w.empty()) w = polynomial_weights(window, order, static_cast<double>(t - begin));
     for (std::size_t c = 0; c < channels; ++c) {

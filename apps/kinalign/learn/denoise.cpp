@@ -2,6 +2,7 @@
 #include "apps/cli/console.h"
 #include "apps/kinalign/learn/point_source.h"
 #include "apps/kinalign/learn/shipped_models.h"
+#include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/inputs.h"
 
@@ -27,9 +28,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_model_bytes = std::size_t{1} << 30U;
-constexpr double longest_gap_s = 0.2;   // between samples that are joined by a line
+constexpr double longest_gap_s = 0.2;     // between samples that are joined by a line
 constexpr double longest_unseen_s = 2.0;  // a joint that is missing longer is told
-constexpr double radius_90 = 2.5003;    // of a Gaussian in space, in its standard deviations
+constexpr double radius_90 = 2.5003;      // of a Gaussian in space, in its standard deviations
 
 struct Denoise {
   std::vector<std::string> in;
@@ -39,12 +40,19 @@ struct Denoise {
 Usage describe_denoise(Denoise& o) {
   Usage usage;
   usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in}};
-  usage.flags = {{"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
-                 {"stream", "which stream (default: the only one of joints)", &o.stream, 0.0, 0.0, {}, "NAME"}};
+  usage.flags = {
+      {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
+      {"stream",
+       "which stream (default: the only one of joints)",
+       &o.stream,
+       0.0,
+       0.0,
+       {},
+       "NAME"}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.ends_with(".bvh") || common.out.ends_with(".trc")) return {};
-    return Failure(Error{"-o", 0, "-o FILE.bvh or FILE.trc",
-                         common.out.empty() ? "none" : shown(common.out)});
+    return Failure(
+        Error{"-o", 0, "-o FILE.bvh or FILE.trc", common.out.empty() ? "none" : shown(common.out)});
   };
   return usage;
 }
@@ -137,10 +145,10 @@ Result<void> write_trc(FileSystem& files, const DenoiseModel& model, const Clean
   }
   points.positions.assign(cleaned.answer.positions.begin(), cleaned.answer.positions.end());
   points.state.assign(frames * joints, Tracking::tracked);
-  TrcWriter writer = KA_TRY(TrcWriter::begin({model.layout.outputs, cleaned.input.rate_hz, frames,
-                                              std::string(file_name(common.out)),
-                                              cleaned.input.start},
-                                             out));
+  TrcWriter writer =
+      KA_TRY(TrcWriter::begin({model.layout.outputs, cleaned.input.rate_hz, frames,
+                               std::string(file_name(common.out)), cleaned.input.start},
+                              out));
   KA_TRY(writer.append(points));
   KA_TRY(writer.finish());
   return out.commit();
@@ -150,9 +158,8 @@ Result<void> write_skeleton(FileSystem& files, const DenoiseModel& model, const 
                             const Common& common) {
   OutputFile file = KA_TRY(OutputFile::create(files, common.out, common.overwrite()));
   const DenoiseLayout& layout = model.layout;
-  Clip clip =
-      KA_TRY(skeleton_of_points({layout.outputs, layout.parents}, cleaned.answer.positions,
-                                cleaned.input.start, layout.rate_hz));
+  Clip clip = KA_TRY(skeleton_of_points({layout.outputs, layout.parents}, cleaned.answer.positions,
+                                        cleaned.input.start, layout.rate_hz));
   KA_TRY(write_bvh(bvh_from_clip(std::move(clip), 1.0 / layout.rate_hz),
                    [&](std::string_view text) { return file.write(text); }));
   return file.commit();
@@ -166,7 +173,8 @@ Result<void> write_cleaned(FileSystem& files, const DenoiseModel& model, const C
 
 void print(const Json& about, const std::string& in, const std::string& out, Call& call) {
   std::string text = fmt::format(
-      "{}: {} frames at {:g} Hz, {} joints\ncleaned  joints moved by {:.1f} cm on average, bones of one "
+      "{}: {} frames at {:g} Hz, {} joints\ncleaned  joints moved by {:.1f} cm on average, bones "
+      "of one "
       "length each\n",
       harmless(in), about.at("frames").get<std::size_t>(), about.at("rate_hz").get<double>(),
       about.at("joints").get<std::size_t>(), about.at("moved_cm").get<double>());
@@ -210,7 +218,8 @@ Result<int> run_denoise(Denoise& o, Call& call) {
           return KA_TRY(work(points_of_take(files, in, o.stream))).dump();
         }));
     about = Json::parse(text, nullptr, false);
-    if (!about.is_object()) return Failure(Error{in, 0, "a take that can be read", "another answer"});
+    if (!about.is_object())
+      return Failure(Error{in, 0, "a take that can be read", "another answer"});
   } else {
     about = KA_TRY(work(points_of_file(in, o.stream, call)));
   }
@@ -224,12 +233,14 @@ Verb denoise_verb() {
   return make_verb<Denoise>(
       {.name = "denoise",
        .summary = "a Kinect's skeleton cleaned, with bones of constant length",
-       .text = "A model brings rough joints to where a precise system would have seen them. The new "
-               "file has the model's joints at its rate. A joint that is missing for 2 s or longer "
-               "is told, and the exit code is 1.",
-       .examples = {{"kinalign denoise kinect.csv -o clean.bvh", "a skeleton that Blender opens"},
-                    {"kinalign denoise take.h5 -o clean.trc --stream kinect --model own.safetensors",
-                     "a take's stream, with a model of your own"}},
+       .text =
+           "A model brings rough joints to where a precise system would have seen them. The new "
+           "file has the model's joints at its rate. A joint that is missing for 2 s or longer "
+           "is told, and the exit code is 1.",
+       .examples =
+           {{"kinalign denoise kinect.csv -o clean.bvh", "a skeleton that Blender opens"},
+            {"kinalign denoise take.h5 -o clean.trc --stream kinect --model own.safetensors",
+             "a take's stream, with a model of your own"}},
        .common = {"out", "force", "json"}},
       describe_denoise, run_denoise);
 }

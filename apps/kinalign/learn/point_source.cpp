@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t most_values = std::size_t{1} << 29U;  // of all frames and joints
 
 Failure no_stream(const std::string& path, const std::string& wanted, const std::string& known) {
-  const std::string expected =
-      wanted.empty() ? "one stream of joints (--stream NAME)" : "a stream of joints \"" + wanted + "\"";
+  const std::string expected = wanted.empty() ? "one stream of joints (--stream NAME)"
+                                              : "a stream of joints \"" + wanted + "\"";
   return Failure(Error{path, 0, expected, known.empty() ? "none" : known});
 }
 
@@ -37,7 +37,8 @@ Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
   for (std::size_t t = 0; t < stamps.size(); ++t) {
     if (!out.frames.stamps.empty() && stamps[t] <= out.frames.stamps.back()) continue;
     out.frames.stamps.push_back(stamps[t]);
-    const auto row = static_cast<std::ptrdiff_t>(t * joints), count = static_cast<std::ptrdiff_t>(joints);
+    const auto row = static_cast<std::ptrdiff_t>(t * joints),
+               count = static_cast<std::ptrdiff_t>(joints);
     out.frames.positions.insert(out.frames.positions.end(), positions.begin() + 3 * row,
                                 positions.begin() + 3 * (row + count));
     out.frames.state.insert(out.frames.state.end(), state.begin() + row,

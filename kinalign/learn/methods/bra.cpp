@@ -3,7 +3,7 @@
 // data refinement», Computers & Graphics 81, 2019. Layer sizes are not published; these are those
 // of the nearest public successor. BRA-P: Li, Zhu, Zheng, Li, IEEE Access 8, 2020: the same network
 // with a loss on the features of a second one that knows clean motion, and that network behind it.
-#include "kinalign/learn/methods.h"
+#include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // CNN: the convolutional autoencoder of Holden, Saito, Komura, «A deep learning framework for
 // character motion synthesis and editing», SIGGRAPH 2016, in paired mode: rough in, clean out.
-#include "kinalign/learn/methods.h"
+#include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
 
@@ -36,10 +36,6 @@ DenoiseMethod cnn_method() {
                        .answer_scale = 0.3},
           .options = {.steps = 1200, .rate = 1e-3},
           .from_base = false};
-}
-
-std::vector<DenoiseMethod> denoise_methods() {
-  return {refine_method(), cnn_method(), bra_method(), bra_p_method()};
 }
 
 }  // namespace kinalign

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ours: what the smoothed input joint and the mean offset leave over, corrected by a small
 // convolutional network over 35 frames. The spread of each joint is stated.
-#include "kinalign/learn/methods.h"
+#include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
 
@@ -12,10 +12,11 @@ constexpr std::size_t refine_width = 128;
 /// x + relu(conv(dropout(x))), over three frames that lie `dilation` apart.
 Layer refine_block(std::size_t dilation) {
   return {.kind = LayerKind::sum,
-          .branches = {{},
-                       {{.kind = LayerKind::dropout, .rate = 0.2},
-                        {.kind = LayerKind::conv, .out = refine_width, .kernel = 3, .dilation = dilation},
-                        {.kind = LayerKind::relu}}}};
+          .branches = {
+              {},
+              {{.kind = LayerKind::dropout, .rate = 0.2},
+               {.kind = LayerKind::conv, .out = refine_width, .kernel = 3, .dilation = dilation},
+               {.kind = LayerKind::relu}}}};
 }
 
 Architecture refine_architecture(const DenoiseLayout& layout) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods that are trained, a file each in methods/.
+// A method: a network, what it is trained on, how it is trained.
 #pragma once
 
 #include "kinalign/learn/denoise_task.h"
 #include "kinalign/learn/trainer.h"
 
 #include <string_view>
-#include <vector>
 
 namespace kinalign {
 
@@ -21,12 +20,5 @@ struct DenoiseMethod {
   bool zero_last = false;  // begins as its base
   bool perceptual = false;  // BRA-P: trains a network of clean motion first
 };
-
-DenoiseMethod refine_method();
-DenoiseMethod cnn_method();
-DenoiseMethod bra_method();
-DenoiseMethod bra_p_method();
-
-std::vector<DenoiseMethod> denoise_methods();
 
 }  // namespace kinalign

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/kinalign/dataset/own_process.h"
+#include "apps/kinalign/learn/worker.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/core/hash.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <filesystem>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 4> denoise_words{"refine", "cnn", "bra", "bra-p"};
+
+struct Train {
+  std::vector<std::string> method;
+  std::string data, windows, split, where;
+  std::string input = "kinect", truth = "mocap", device = "cpu";
+  double rate_hz = 30.0;
+  std::int64_t steps = 0, seed = 1, patience = 0;
+  bool resume = false;
+};
+
+Usage describe_train(Train& o) {
+  Usage usage;
+  usage.positionals = {{"METHOD", "what is trained", &o.method}};
+  usage.positionals.front().choices.assign(denoise_words.begin(), denoise_words.end());
+  usage.flags = {
+      {"data", "the data set's folder", &o.data, 0.0, 0.0, {}, "FOLDER"},
+      {"windows", "a file of windows in its place", &o.windows, 0.0, 0.0, {}, "FILE"},
+      {"split",
+       "of the data set: its parts train and validation are used",
+       &o.split,
+       0.0,
+       0.0,
+       {},
+       "FILE"},
+      {"where",
+       "of the data set: a condition as dataset query has it",
+       &o.where,
+       0.0,
+       0.0,
+       {},
+       "SQL"},
+      {"input", "the rough stream", &o.input, 0.0, 0.0, {}, "NAME"},
+      {"truth", "the precise stream", &o.truth, 0.0, 0.0, {}, "NAME"},
+      {"rate", "frames a second that the model works at", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
+      {"steps", "batches; 0: the method's own number", &o.steps, 0.0, 1e8},
+      {"seed", "of everything that is random", &o.seed, 0.0, 1e9},
+      {"patience", "judgements without a better one before it stops; 0: never", &o.patience, 0.0,
+       1e6},
+      {"device", "where it is trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+      {"resume", "go on with a run that was stopped", &o.resume}};
+  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+    if (!common.out.ends_with(".safetensors")) {
+      return Failure(
+          Error{"-o", 0, "-o FILE.safetensors", common.out.empty() ? "none" : shown(common.out)});
+    }
+    if (o.data.empty() == o.windows.empty()) {
+      return Failure(Error{"--data", 0, "a data set (--data) or a file of windows (--windows)",
+                           o.data.empty() ? "neither" : "both"});
+    }
+    return {};
+  };
+  return usage;
+}
+
+/// The folder of a run, beside its model: "m.training" of "m.safetensors".
+std::string run_folder(const std::string& model) {
+  return model.substr(0, model.rfind('.')) + ".training";
+}
+
+Result<void> make_windows(const Train& o, const std::string& file) {
+  std::vector<std::string> words{
+      "dataset",  "windows", o.data,     "-o",     file,
+      "--force",  "--quiet", "--length", "32",     "--step",
+      "32",       "--valid", "0.2",      "--rate", fmt::format("{:g}", o.rate_hz),
+      "--stream", o.input,   "--stream", o.truth};
+  if (!o.split.empty()) words.insert(words.end(), {"--split", o.split});
+  if (!o.where.empty()) words.insert(words.end(), {"--where", o.where});
+  const Ended ended = KA_TRY(run_own_process(words));
+  if (ended.code == 0) return {};
+  return Failure(Error{o.data, 0, "a data set that windows can be cut from", ended.complaint});
+}
+
+Result<std::string> hash_of(FileSystem& files, const std::string& path) {
+  InputFile in = KA_TRY(InputFile::open(files, path));
+  Sha256 hash;
+  for (;;) {
+    const std::string_view piece = KA_TRY(in.next());
+    if (piece.empty()) return hash.hex();
+    hash.update(piece);
+  }
+}
+
+Json job_of(const Train& o, const std::string& windows, const std::string& hash, Call& call) {
+  const std::string folder = run_folder(call.common.out);
+  Json options{{"seed", o.seed}};
+  if (o.steps > 0) options["steps"] = o.steps;
+  if (o.patience > 0) options.update({{"patience", o.patience}, {"judge_every", 100}});
+  Json job{{"schema", "kinalign.training_job/1"},
+           {"method", o.method.front()},
+           {"windows", windows},
+           {"input", o.input},
+           {"truth", o.truth},
+           {"options", options}};
+  Sha256 identity;
+  identity.update(job.dump());
+  identity.update(hash);
+  job["identity"] = identity.hex();
+  job["out"] = call.common.out;
+  job["log"] = folder + "/log.csv";
+  job["checkpoint"] = folder + "/checkpoint.safetensors";
+  job["resume"] = o.resume;
+  job["device"] = o.device;
+  job["threads"] = call.jobs;
+  return job;
+}
+
+Result<int> run_train(Train& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string& out = call.common.out;
+  std::error_code fault;
+  if (fs::exists(out, fault) && !call.common.force) {
+    return Failure(Error{out, 0, "no file of that name (--force replaces it)", "one"});
+  }
+  const std::string folder = run_folder(out);
+  KA_TRY(make_folders(folder));
+  std::string windows = o.windows;
+  if (windows.empty()) {
+    windows = folder + "/windows.npz";
+    KA_TRY(make_windows(o, windows));
+  }
+  const Json job = job_of(o, windows, KA_TRY(hash_of(files, windows)), call);
+  const std::string job_file = folder + "/job.json";
+  KA_TRY(write_whole(files, job_file, job.dump(1), Overwrite::yes));
+  const Json last =
+      Json::parse(KA_TRY(run_worker(job_file, call.console.progress())), nullptr, false);
+  if (o.windows.empty()) fs::remove(windows, fault);
+  call.console.wrote(out);
+  std::string text =
+      fmt::format("{}: trained, loss {:.4g}", o.method.front(), last.value("loss", 0.0));
+  if (last.contains("judgement")) {
+    text += fmt::format(", {:.4g} on the validation part", last.at("judgement").get<double>());
+  }
+  call.console.print(text + fmt::format("\nlog      {}/log.csv, events for TensorBoard beside it\n",
+                                        harmless(folder)));
+  call.console.print_json(last.dump(1));
+  return 0;
+}
+
+}  // namespace
+
+Verb train_verb() {
+  return make_verb<Train>(
+      {.name = "train",
+       .summary = "a model from a data set",
+       .text = "Trains a network and writes one SafeTensors file, which denoise reads and PyTorch "
+               "and NumPy open. The same seed gives the same weights on the same machine. A run "
+               "that was stopped goes on with --resume. The program kinalign-learn does the work; "
+               "it is built where LibTorch is installed.",
+       .examples =
+           {{"kinalign train refine --data walks -o denoise.safetensors",
+             "a network that cleans a Kinect, from the pairs of a data set"},
+            {"kinalign train bra --data walks --split walks/splits/people.json -o bra.safetensors "
+             "--patience 10",
+             "stops when the validation part gets no better"}},
+       .common = {"out", "force", "json", "jobs"}},
+      describe_train, run_train);
+}
+
+}  // namespace kinalign
