@@ -4,7 +4,7 @@
 #include "kinalign/learn/checkpoint.h"
 #include "kinalign/learn/fit_denoise.h"
 #include "kinalign/learn/methods/methods.h"
-#include "kinalign/learn/windows_file.h"
+#include "kinalign/models/windows_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -77,10 +77,11 @@ Progress progress_lines() {
   };
 }
 
-std::string training_json(const TrainingJob& job, const WindowsFacts& facts, const Pairs& pairs) {
+std::string training_json(const TrainingJob& job, const WindowsFacts& facts,
+                          const std::vector<Pair>& learnt) {
   std::vector<std::string> subjects;
   std::size_t frames = 0;
-  for (const Pair& pair : pairs.learnt) {
+  for (const Pair& pair : learnt) {
     frames += pair.input.frames();
     if (std::find(subjects.begin(), subjects.end(), pair.subject) == subjects.end()) {
       subjects.push_back(pair.subject);
@@ -91,7 +92,7 @@ std::string training_json(const TrainingJob& job, const WindowsFacts& facts, con
                {{{"name", facts.dataset},
                  {"licence", facts.licence},
                  {"citation", facts.citation},
-                 {"stretches", pairs.learnt.size()},
+                 {"stretches", learnt.size()},
                  {"frames", frames},
                  {"subjects", subjects}}}},
               {"steps", job.options.steps},
@@ -99,6 +100,27 @@ std::string training_json(const TrainingJob& job, const WindowsFacts& facts, con
               {"seed", job.options.seed},
               {"identity", job.identity}}
       .dump();
+}
+
+/// By the job's lists of takes where it has them, else by the parts of the file's split; all is
+/// trained on where neither is there.
+DividedPairs divide(const TrainingJob& job, std::vector<Pair> all) {
+  const auto holds = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  const bool by_list = !job.learn.empty();
+  DividedPairs out;
+  for (Pair& pair : all) {
+    const bool judged = by_list ? holds(job.judge, pair.take) : pair.part == "validation";
+    const bool learnt = by_list ? holds(job.learn, pair.take)
+                                : pair.part == "train" || pair.part == "all";
+    if (judged) {
+      out.judged.push_back(std::move(pair));
+    } else if (learnt) {
+      out.learnt.push_back(std::move(pair));
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -121,6 +143,8 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     out.device = json.value("device", "cpu");
     out.threads = json.value("threads", std::int64_t{1});
     out.identity = json.value("identity", "");
+    if (json.contains("learn")) json.at("learn").get_to(out.learn);
+    if (json.contains("judge")) json.at("judge").get_to(out.judge);
     const auto methods = denoise_methods();
     const DenoiseMethod* method = find_method(methods, out.method);
     if (method == nullptr) return Failure(Error{name, 0, "a method that is known", out.method});
@@ -135,7 +159,8 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
 Result<void> run_job(const TrainingJob& job) {
   const std::string bytes = KA_TRY(bytes_of(job.windows));
   const Windows windows = KA_TRY(read_windows(bytes, job.windows));
-  const Pairs pairs = KA_TRY(pairs_of(windows, job.input, job.truth, least_rows));
+  Pairs pairs = KA_TRY(pairs_of(windows, job.input, job.truth, least_rows));
+  const DividedPairs divided = divide(job, std::move(pairs.all));
   const auto methods = denoise_methods();
   const DenoiseMethod& method = *find_method(methods, job.method);
   TrainingState state;
@@ -150,8 +175,8 @@ Result<void> run_job(const TrainingJob& job) {
   }
   const FitOptions options{job.options,
                            job.device == "cuda" ? torch::Device(torch::kCUDA) : torch::kCPU};
-  DenoiseFit fit = KA_TRY(fit_denoise(method, pairs, options, std::move(state), hooks));
-  fit.model.facts.training = training_json(job, windows.facts, pairs);
+  DenoiseFit fit = KA_TRY(fit_denoise(method, pairs, divided, options, std::move(state), hooks));
+  fit.model.facts.training = training_json(job, windows.facts, divided.learnt);
   KA_TRY(save_log(job, fit.points));
   KA_TRY(write_file(job.out, write_denoise_model(fit.model)));
   std::error_code ignored;

@@ -5,6 +5,7 @@
 #include "kinalign/learn/trainer.h"
 
 #include <string>
+#include <vector>
 
 namespace kinalign {
 

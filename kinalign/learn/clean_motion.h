@@ -3,7 +3,7 @@
 // first network is trained, and it stands behind the first at use.
 #pragma once
 
-#include "kinalign/learn/pairs.h"
+#include "kinalign/models/pairs.h"
 #include "kinalign/learn/trainer.h"
 
 namespace kinalign {

@@ -4,6 +4,7 @@
 
 #include "kinalign/learn/trainer.h"
 #include "kinalign/models/denoise_features.h"
+#include "kinalign/models/pairs.h"
 
 #include <cstdint>
 #include <optional>
@@ -11,14 +12,6 @@
 #include <vector>
 
 namespace kinalign {
-
-/// What both devices saw of one motion. The truth is in the input's space.
-struct Pair {
-  JointFrames input;                // at the layout's rate
-  std::vector<float> truth;         // [T,Jout,3] m
-  std::vector<std::uint8_t> valid;  // [T,Jout]
-  std::string subject;
-};
 
 /// What the answers are held against, each in centimetres and with its weight.
 struct DenoiseLoss {

@@ -36,15 +36,19 @@ void put_tensors(const TorchNetwork& network, const std::string& prefix,
 }
 
 Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
+                               const DividedPairs& divided,
                                const FitOptions& options, TrainingState state,
                                const TrainingHooks& hooks) {
+  if (divided.learnt.empty()) {
+    return Failure(Error{"", 0, "pairs to train on", "none"});
+  }
   DenoiseLayout layout = KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz));
   if (!method.from_base) layout.bases.assign(layout.outputs.size(), -1);
-  DenoiseTask task(layout, method.training, pairs.learnt, pairs.judged, options.device);
+  DenoiseTask task(layout, method.training, divided.learnt, divided.judged, options.device);
   DenoiseFit out{begun_model(method, layout, task), {}};
   std::optional<TorchNetwork> clean;
   if (method.perceptual) {
-    clean = KA_TRY(fit_clean_motion(layout, pairs.learnt, options.training, options.device, hooks));
+    clean = KA_TRY(fit_clean_motion(layout, divided.learnt, options.training, options.device, hooks));
     for (auto& [name, tensor] : clean->tensors()) tensor.set_requires_grad(false);
     task.compare_features(
         [&](const torch::Tensor& answers) { return motion_features(*clean, answers); });

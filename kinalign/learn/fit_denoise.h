@@ -3,7 +3,7 @@
 #pragma once
 
 #include "kinalign/learn/method.h"
-#include "kinalign/learn/pairs.h"
+#include "kinalign/models/pairs.h"
 #include "kinalign/models/denoise_model.h"
 
 namespace kinalign {
@@ -18,7 +18,14 @@ struct FitOptions {
   torch::Device device = torch::kCPU;
 };
 
+/// What of the pairs is trained on, and what judges the network while it is.
+struct DividedPairs {
+  std::vector<Pair> learnt, judged;
+};
+
+/// `pairs`: the joints and the rate; those in `divided` are used.
 Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
+                               const DividedPairs& divided,
                                const FitOptions& options, TrainingState state,
                                const TrainingHooks& hooks);
 

@@ -87,7 +87,7 @@ class Frame {
 
 }  // namespace
 
-std::vector<float> median_lengths(const std::vector<int>& parents,
+std::vector<float> typical_lengths(const std::vector<int>& parents,
                                   const std::vector<std::size_t>& partners,
                                   std::span<const float> positions) {
   const std::size_t joints = parents.size(), frames = positions.size() / (3 * joints);

@@ -10,7 +10,7 @@ namespace kinalign {
 
 /// The median length of each joint's bone to its parent over T frames, m; 0 for roots. Left and
 /// right get their mean.
-std::vector<float> median_lengths(const std::vector<int>& parents,
+std::vector<float> typical_lengths(const std::vector<int>& parents,
                                   const std::vector<std::size_t>& partners,
                                   std::span<const float> positions);
 

@@ -38,7 +38,7 @@ void mirror_answer(Denoised& answer, const std::vector<std::size_t>& partners) {
 void steady(const Steadying& how, const std::vector<int>& parents,
             const std::vector<std::size_t>& partners, std::vector<float>& positions) {
   smooth(how.smoothing, 3 * parents.size(), positions);
-  if (how.bones) impose_lengths(parents, median_lengths(parents, partners, positions), positions);
+  if (how.bones) impose_lengths(parents, typical_lengths(parents, partners, positions), positions);
 }
 
 Result<Denoiser> Denoiser::make(DenoiseModel model) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/learn/windows_file.h"
+#include "kinalign/models/windows_file.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/learn/pairs.h"
+#include "kinalign/models/pairs.h"
 
 #include "kinalign/models/joint_names.h"
 #include "kinalign/motion/kinect_joints.h"
@@ -72,11 +72,6 @@ std::vector<Value> chosen_of(const std::vector<Value>& all, const Chosen& chosen
   return out;
 }
 
-std::size_t part_named(const Windows& windows, const std::string& name) {
-  const auto& parts = windows.facts.parts;
-  return static_cast<std::size_t>(std::find(parts.begin(), parts.end(), name) - parts.begin());
-}
-
 }  // namespace
 
 Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const std::string& truth,
@@ -86,13 +81,8 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
   Pairs out{.inputs = chosen.names,
             .outputs = KA_TRY(joints_of(windows, truth)),
             .rate_hz = windows.facts.rate_hz};
-  const std::size_t parts = windows.facts.parts.size();
-  const std::size_t train = part_named(windows, "train");
-  const std::size_t validation = part_named(windows, "validation");
   for (const Stretch& stretch : windows.stretches) {
     if (stretch.rows < least) continue;
-    const bool is_judged = stretch.part == validation;
-    if (!is_judged && stretch.part != train && parts > 1) continue;
     const StretchStream& rough = stretch.streams.at(input);
     const StretchStream& precise = stretch.streams.at(truth);
     if (!rough.arrays.contains("positions") || !precise.arrays.contains("positions")) {
@@ -107,13 +97,13 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
     pair.valid = seen_of(precise, stretch.rows, out.outputs.size());
     for (std::uint8_t& one : pair.valid) one = one == 0 ? 0 : 1;
     if (stretch.take < windows.facts.takes.size()) {
-      pair.subject = windows.facts.takes[stretch.take].subject;
+      const WindowsFacts::Take& take = windows.facts.takes[stretch.take];
+      pair.take = take.name;
+      pair.subject = take.subject;
+      pair.action = take.action;
     }
-    (is_judged ? out.judged : out.learnt).push_back(std::move(pair));
-  }
-  if (out.learnt.empty()) {
-    return Failure(
-        Error{"", 0, "stretches of " + std::to_string(least) + " rows to train on", "none"});
+    if (stretch.part < windows.facts.parts.size()) pair.part = windows.facts.parts[stretch.part];
+    out.all.push_back(std::move(pair));
   }
   return out;
 }

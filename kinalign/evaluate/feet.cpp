@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/evaluate/feet.h"
+
+#include "kinalign/evaluate/statistics.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace kinalign {
+
+namespace {
+
+/// The true height that a foot is rarely below, m.
+std::optional<double> floor_of(const Sequence& sequence, std::size_t foot) {
+  std::vector<double> heights;
+  for (std::size_t t = 0; t < sequence.frames(); ++t) {
+    if (!sequence.has(t, foot)) continue;
+    heights.push_back(vec3(sequence.truth, t * sequence.joints + foot).y());
+  }
+  if (heights.empty()) return std::nullopt;
+  return quantile(std::move(heights), 0.01);
+}
+
+/// Frames of contact [T]: valid like the frame before, slow, near the floor, and in long runs.
+std::vector<std::uint8_t> contacts(const Sequence& sequence, std::size_t foot, double floor_m,
+                                   const ContactOptions& options) {
+  const std::size_t frames = sequence.frames();
+  std::vector<std::uint8_t> out(frames);
+  for (std::size_t t = 1; t < frames; ++t) {
+    if (!sequence.has(t, foot) || !sequence.has(t - 1, foot)) continue;
+    const std::size_t i = t * sequence.joints + foot;
+    const Vec3 now = vec3(sequence.truth, i), before = vec3(sequence.truth, i - sequence.joints);
+    const bool slow = (now - before).norm() * sequence.rate_hz < options.fastest_m_s;
+    out[t] = slow && now.y() < floor_m + options.highest_m ? 1 : 0;
+  }
+  for (auto begin = out.begin(); begin != out.end();) {
+    const auto end = std::find_if(begin, out.end(), [begin](auto c) { return c != *begin; });
+    if (end - begin < static_cast<std::ptrdiff_t>(options.least_frames)) std::fill(begin, end, 0);
+    begin = end;
+  }
+  return out;
+}
+
+/// Horizontal speed from the frame before, m/s.
+double skate(std::span<const double> places, std::size_t i, const Sequence& sequence) {
+  Vec3 step = vec3(places, i) - vec3(places, i - sequence.joints);
+  step.y() = 0.0;
+  return step.norm() * sequence.rate_hz;
+}
+
+struct FootMeans {
+  Mean skate, true_skate, depth, true_depth;
+
+  void add(const Sequence& sequence, Prediction prediction, std::size_t foot, double floor_m,
+           const std::vector<std::uint8_t>& in_contact) {
+    for (std::size_t t = 0; t < sequence.frames(); ++t) {
+      if (!sequence.has(t, foot)) continue;
+      const std::size_t i = t * sequence.joints + foot;
+      depth.add(std::max(0.0, floor_m - vec3(prediction, i).y()));
+      true_depth.add(std::max(0.0, floor_m - vec3(sequence.truth, i).y()));
+      if (in_contact[t] == 0) continue;
+      skate.add(kinalign::skate(prediction, i, sequence));
+      true_skate.add(kinalign::skate(sequence.truth, i, sequence));
+    }
+  }
+};
+
+}  // namespace
+
+std::optional<FeetMarks> feet_marks(const Sequence& sequence, Prediction prediction,
+                                    std::span<const std::size_t> feet,
+                                    const ContactOptions& options) {
+  assert(prediction.size() == sequence.truth.size());
+  FootMeans means;
+  for (const std::size_t foot : feet) {
+    const auto floor_m = floor_of(sequence, foot);
+    if (!floor_m) continue;
+    means.add(sequence, prediction, foot, *floor_m, contacts(sequence, foot, *floor_m, options));
+  }
+  if (means.skate.count() == 0) return std::nullopt;
+  return FeetMarks{means.skate.count(), means.skate.value_or(0.0), means.true_skate.value_or(0.0),
+                   means.depth.value_or(0.0), means.true_depth.value_or(0.0)};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What metrics are computed on: a truth with its validity, beside what a method says. Metrics are
+// those of the reference (models.md section 8, UI-PRMD's protocol); lengths are metres everywhere.
+#pragma once
+
+#include "kinalign/motion/arrays.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace kinalign {
+
+/// T frames of J joints at a fixed rate, without gaps. The caller owns the arrays.
+struct Sequence {
+  std::size_t joints = 0;
+  double rate_hz = 0.0;
+  std::span<const double> truth;        // [T,J,3] m, y up
+  std::span<const std::uint8_t> valid;  // [T,J] cells that count
+
+  std::size_t frames() const { return valid.size() / joints; }
+  bool has(std::size_t frame, std::size_t joint) const {
+    return valid[frame * joints + joint] != 0;
+  }
+};
+
+/// What a method says: [T,J,3] m, an answer for every cell.
+using Prediction = std::span<const double>;
+
+/// Two joints.
+struct Bone {
+  std::size_t a = 0, b = 0;
+};
+
+/// A running mean; absent where nothing was added.
+class Mean {
+ public:
+  void add(double value) {
+    sum_ += value;
+    ++count_;
+  }
+  std::size_t count() const { return count_; }
+  std::optional<double> value() const {
+    return count_ == 0 ? std::nullopt : std::optional(sum_ / static_cast<double>(count_));
+  }
+  double value_or(double other) const { return value().value_or(other); }
+
+ private:
+  double sum_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace kinalign

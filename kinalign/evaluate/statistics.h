@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums over sequences and people (models.md 8.11): quantiles, paired tests, intervals.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kinalign {
+
+/// The quantile q in [0, 1] on the line between the two values around it, as NumPy's default.
+double quantile(std::vector<double> values, double q);
+/// The population's standard deviation.
+double deviation(std::span<const double> values);
+
+struct WilcoxonTest {
+  std::size_t pairs = 0;   // differences that are not 0
+  double statistic = 0.0;  // the smaller sum of ranks
+  double p = 1.0;          // two-sided
+};
+/// Wilcoxon's signed-rank test of paired differences. Differences of 0 drop out. Exact up to 50
+/// pairs without ties and zeros; else the normal approximation with correction for ties.
+WilcoxonTest wilcoxon_signed_rank(std::span<const double> differences);
+
+/// Holm's correction (Scand. J. Stat. 6, 1979) of several tests' p, in their order.
+std::vector<double> holm(std::span<const double> p);
+
+struct MeanInterval {
+  double mean = 0.0, low = 0.0, high = 0.0;
+};
+struct BootstrapOptions {
+  std::uint64_t seed = 1;
+  std::size_t draws = 10'000;
+  double level = 0.95;
+};
+/// The percentile interval of the mean over people, a value each, drawn with replacement. The same
+/// seed gives the same interval. With fewer than 8 people print their values instead.
+MeanInterval bootstrap_mean(std::span<const double> people, const BootstrapOptions& options = {});
+
+}  // namespace kinalign

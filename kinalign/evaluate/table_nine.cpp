@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/evaluate/table_nine.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+/// |Y O| / (T + 2) of a window whose first and last frame were repeated once: Frobenius' norm of
+/// second differences, and of first differences in the corners of O, which are 0.
+double roughness(std::span<const double> places, std::size_t joints) {
+  const std::size_t width = 3 * joints, frames = places.size() / width;
+  const auto at = [&](std::size_t t, std::size_t c) {
+    const std::size_t frame = t == 0 ? 0 : std::min(t - 1, frames - 1);  // of T + 2
+    return places[frame * width + c];
+  };
+  double square = 0.0;
+  for (std::size_t c = 0; c < width; ++c) {
+    for (std::size_t t = 1; t <= frames; ++t) {
+      const double bend = at(t - 1, c) - 2.0 * at(t, c) + at(t + 1, c);
+      square += bend * bend;
+    }
+  }
+  return std::sqrt(square) / static_cast<double>(frames + 2);
+}
+
+double length(std::span<const double> places, std::size_t at, const Bone& bone) {
+  return (vec3(places, at + bone.a) - vec3(places, at + bone.b)).norm();
+}
+
+}  // namespace
+
+double TableNine::smooth_apart() const { return std::abs(smooth - true_smooth); }
+
+TableNine table_nine(std::span<const double> truth, Prediction prediction, std::size_t joints,
+                     std::span<const Bone> bones) {
+  assert(!truth.empty() && prediction.size() == truth.size());
+  Mean position, bone_mean;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    position.add((prediction[i] - truth[i]) * (prediction[i] - truth[i]));
+  }
+  for (std::size_t at = 0; at < truth.size() / 3; at += joints) {
+    for (const Bone& bone : bones) {
+      bone_mean.add(std::abs(length(prediction, at, bone) - length(truth, at, bone)));
+    }
+  }
+  return {position.value_or(0.0), bone_mean.value_or(0.0), roughness(prediction, joints),
+          roughness(truth, joints)};
+}
+
+TableNine mean_of(std::span<const TableNine> windows) {
+  Mean position, bone, smooth, true_smooth;
+  for (const TableNine& one : windows) {
+    position.add(one.position);
+    bone.add(one.bone);
+    smooth.add(one.smooth);
+    true_smooth.add(one.true_smooth);
+  }
+  return {position.value_or(0.0), bone.value_or(0.0), smooth.value_or(0.0),
+          true_smooth.value_or(0.0)};
+}
+
+std::vector<double> own_root(std::span<const double> positions, std::size_t joints,
+                             const OwnRootJoints& own) {
+  std::vector<double> out(positions.size());
+  for (std::size_t at = 0; at < positions.size() / 3; at += joints) {
+    const Vec3 left = vec3(positions, at + own.hip_left) - vec3(positions, at + own.hip_right) +
+                      vec3(positions, at + own.shoulder_left) -
+                      vec3(positions, at + own.shoulder_right);
+    const Quat turn(Eigen::AngleAxisd(std::atan2(left.z(), left.x()), Vec3::UnitY()));
+    Vec3 root = vec3(positions, at + own.root);
+    root.y() = 0.0;
+    for (std::size_t i = at; i < at + joints; ++i) {
+      vec3(out, i) = turn * Vec3(vec3(positions, i) - root);
+    }
+  }
+  return out;
+}
+
+UnitScale unit_scale(std::span<const double> positions, std::size_t joints) {
+  assert(!positions.empty());
+  const std::size_t width = 3 * joints;
+  UnitScale out{std::vector<double>(width), Vec3::Zero()};
+  const double share = static_cast<double>(width) / static_cast<double>(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    out.mean_pose[i % width] += share * positions[i];
+  }
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    double& largest = out.largest[static_cast<Eigen::Index>(i % 3)];
+    largest = std::max(largest, std::abs(positions[i] - out.mean_pose[i % width]));
+  }
+  for (double& largest : out.largest) {
+    if (!(largest > 0.0)) largest = 1.0;
+  }
+  return out;
+}
+
+std::vector<double> scaled(std::span<const double> positions, const UnitScale& scale) {
+  std::vector<double> out(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    out[i] = (positions[i] - scale.mean_pose[i % scale.mean_pose.size()]) /
+             scale.largest[static_cast<Eigen::Index>(i % 3)];
+  }
+  return out;
+}
+
+}  // namespace kinalign

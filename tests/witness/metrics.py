@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Metrics of motion by NumPy and SciPy, from the reference's formulas (models.md section 8 and 2.6)."""
+from arrays import answer, given
+import numpy as np
+from scipy.spatial.transform import Rotation
+from scipy.stats import chi2, norm
+
+J, RATE = 18, 30.0
+y, p = given("truth", -1, J, 3), given("prediction", -1, J, 3)
+ok = given("valid", -1, J) > 0
+bones = given("bones", -1, 2).astype(int)
+e = np.linalg.norm(p - y, axis=-1)
+answer("distances", [e[ok].mean(), np.median(e[ok]), np.percentile(e[ok], 95)])
+grid = np.linspace(0, 0.15, 150001)
+shares = np.searchsorted(np.sort(e[ok]), grid, side="right") / ok.sum()
+answer("shares", [(e[ok] <= d).mean() for d in (0.05, 0.1, 0.15)] + [np.trapz(shares, grid) / 0.15])
+rooted = ok & ok[:, :1]
+answer("root_aligned", [np.linalg.norm((p - p[:, :1]) - (y - y[:, :1]), axis=-1)[rooted].mean()])
+
+
+def fitted(scaled):
+    out = []
+    for a, b, w in zip(p, y, ok):
+        if w.sum() < 4:
+            continue
+        X, Y = a[w] - a[w].mean(0), b[w] - b[w].mean(0)
+        R, _ = Rotation.align_vectors(Y, X)  # Kabsch by SciPy
+        s = (Y * R.apply(X)).sum() / (X ** 2).sum() if scaled else 1.0
+        out.append(np.linalg.norm(s * R.apply(X) - Y, axis=-1))
+    return np.concatenate(out).mean()
+
+
+answer("fitted", [fitted(False), fitted(True)])
+both = [ok[:, a] & ok[:, b] for a, b in bones]
+lp = [np.linalg.norm(p[w, a] - p[w, b], axis=-1) for w, (a, b) in zip(both, bones)]
+ly = [np.linalg.norm(y[w, a] - y[w, b], axis=-1) for w, (a, b) in zip(both, bones)]
+answer("bones", [np.abs(np.concatenate(lp) - np.concatenate(ly)).mean(),
+                 np.mean([abs(a.mean() - b.mean()) for a, b in zip(lp, ly)]),
+                 np.mean([a.std() for a in lp]), np.mean([b.std() for b in ly])])
+w3 = ok[2:] & ok[1:-1] & ok[:-2]
+w4 = w3[1:] & ok[:-3]
+answer("smoothness", [np.linalg.norm(np.diff(p - y, 2, axis=0), axis=-1)[w3].mean(),
+                      np.linalg.norm(np.diff(p, 3, axis=0), axis=-1)[w4].mean(),
+                      np.linalg.norm(np.diff(y, 3, axis=0), axis=-1)[w4].mean()])
+w2 = ok[1:] & ok[:-1]
+
+
+def speeds(x):
+    v = np.ma.array(np.linalg.norm(np.diff(x, axis=0), axis=-1), mask=~w2)
+    return v - v.mean(0)
+
+
+def correlation(k):
+    a, b = speeds(y), speeds(p)
+    a, b = (a[:len(a) - k], b[k:]) if k >= 0 else (a[-k:], b[:k])
+    both = ~(a.mask | b.mask)
+    a, b = a.data[both], b.data[both]
+    return (a * b).sum() / np.sqrt((a * a).sum() * (b * b).sum())
+
+
+c = np.array([correlation(k) for k in range(-15, 16)])
+k = int(c.argmax())
+top = np.polynomial.Polynomial.fit([-1, 0, 1], c[k - 1:k + 2], 2).deriv().roots()[0]
+answer("lag", [(k - 15 + top) / RATE])
+far = lambda x: np.ma.array(np.linalg.norm(x - x[:, :1], axis=-1), mask=~rooted).std(0).sum()
+answer("amplitude", [far(p) / far(y)])
+
+skates, true_skates, depths = [], [], []
+for foot in (13, 17):
+    w, h = ok[:, foot], y[:, foot, 1]
+    floor = np.percentile(h[w], 1)
+    v = np.linalg.norm(np.diff(y[:, foot], axis=0), axis=-1) * RATE
+    low = np.concatenate([[False], w2[:, foot] & (v < 1.5) & (h[1:] < floor + 0.2)])
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], low.astype(int), [0]])))
+    for a, b in zip(edges[::2], edges[1::2]):
+        if b - a < 3:
+            low[a:b] = False
+    flat = lambda x: np.linalg.norm(np.diff(x[:, foot][:, [0, 2]], axis=0), axis=-1)[low[1:]] * RATE
+    skates.append(flat(p))
+    true_skates.append(flat(y))
+    depths.append(np.maximum(0, floor - p[w, foot, 1]))
+skates, depths = np.concatenate(skates), np.concatenate(depths)
+answer("feet", [len(skates), skates.mean(), np.concatenate(true_skates).mean(), depths.mean()])
+
+a = [p[w, j] - p[w, i] for w, (i, j) in zip(both, bones)]
+b = [y[w, j] - y[w, i] for w, (i, j) in zip(both, bones)]
+a, b = np.concatenate(a), np.concatenate(b)
+answer("swing", [np.arccos((a * b).sum(-1) / np.linalg.norm(a, axis=-1) / np.linalg.norm(b, axis=-1)).mean()])
+q, r = given("rotations", -1, 4)[:, [1, 2, 3, 0]], given("true_rotations", -1, 4)[:, [1, 2, 3, 0]]
+answer("rotation", [(Rotation.from_quat(q) * Rotation.from_quat(r).inv()).magnitude()[ok.ravel()].mean()])
+
+s = given("sigmas", -1, J)[ok]
+d = (p - y)[ok]
+answer("coverage", [*[((d / s[:, None]) ** 2).sum(-1).__le__(chi2.ppf(x, 3)).mean() for x in (0.5, 0.9, 0.95)], s.mean(),
+                    norm.logpdf(d, 0, s[:, None]).sum(-1).mean()])
+
+
+def nine(truth, out):
+    """BRA_DGN's three sums, with the matrix O written out."""
+    T = len(out)
+    O = np.diag(-2.0 * np.ones(T + 2)) + np.diag(np.ones(T + 1), 1) + np.diag(np.ones(T + 1), -1)
+    O[0, 0] = O[-1, -1] = -1
+    rough = lambda x: np.linalg.norm(np.pad(x.reshape(T, -1).T, ((0, 0), (1, 1)), mode="edge") @ O) / (T + 2)
+    length = lambda x: np.linalg.norm(x[:, bones[:, 0]] - x[:, bones[:, 1]], axis=-1)
+    return [((out - truth) ** 2).mean(), np.abs(length(out) - length(truth)).mean(), rough(out), rough(truth)]
+
+
+def own_root(x):
+    left = x[:, 10] - x[:, 14] + x[:, 4] - x[:, 7]
+    angle = np.arctan2(left[:, 2], left[:, 0])
+    moved = x - x[:, :1] * [1, 0, 1]
+    return np.stack([Rotation.from_euler("y", one).apply(body) for one, body in zip(angle, moved)])
+
+
+rooted_y, rooted_p = own_root(y), own_root(p)
+pose = rooted_y.mean(0)
+largest = np.abs(rooted_y - pose).max((0, 1))
+answer("nine", nine(100 * y, 100 * p) + nine((rooted_y - pose) / largest, (rooted_p - pose) / largest))
