@@ -9,8 +9,8 @@
 
 namespace kinalign {
 
-/// While it lives, this thread's processor takes such numbers for 0. Elsewhere than on x86 nothing
-/// changes.
+/// While an object of this class lives, the processor of this thread takes such numbers for 0. The
+/// class does nothing on processors other than x86.
 class FlushToZero {
  public:
   FlushToZero(const FlushToZero&) = delete;

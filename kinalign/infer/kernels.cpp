@@ -25,13 +25,20 @@ constexpr size_t row_block = 96;  // frames that stay in the cache while all pan
 
 constexpr size_t panel_vectors = panel_width / lanes;
 
-// Unaligned vectors of GCC and Clang. They may alias floats.
-using Vector [[gnu::vector_size(lanes * sizeof(float)), gnu::aligned(4), gnu::may_alias]] = float;
+// A vector of GCC and Clang.
+using Vector [[gnu::vector_size(lanes * sizeof(float))]] = float;
 
 #define KA_INLINE inline __attribute__((always_inline))
 
-KA_INLINE Vector& at(float* values) { return *reinterpret_cast<Vector*>(values); }
-KA_INLINE const Vector& at(const float* values) { return *reinterpret_cast<const Vector*>(values); }
+/// Loads and stores at any address.
+KA_INLINE Vector vector_at(const float* values) {
+  Vector out;
+  __builtin_memcpy(&out, values, sizeof out);
+  return out;
+}
+KA_INLINE void put(const Vector& vector, float* values) {
+  __builtin_memcpy(values, &vector, sizeof vector);
+}
 
 // ---- products
 
@@ -50,13 +57,14 @@ KA_INLINE void add_channel(Vector (&sums)[Rows][Vectors], const float* in, size_
 template <size_t Rows, size_t Vectors>
 KA_INLINE void load(Vector (&sums)[Rows][Vectors], const float* from) {
 #pragma GCC unroll 24
-  for (size_t i = 0; i < Rows * Vectors; ++i) sums[i / Vectors][i % Vectors] = at(from + i * lanes);
+  for (size_t i = 0; i < Rows * Vectors; ++i)
+    sums[i / Vectors][i % Vectors] = vector_at(from + i * lanes);
 }
 
 template <size_t Rows, size_t Vectors>
 KA_INLINE void store(const Vector (&sums)[Rows][Vectors], float* to) {
 #pragma GCC unroll 24
-  for (size_t i = 0; i < Rows * Vectors; ++i) at(to + i * lanes) = sums[i / Vectors][i % Vectors];
+  for (size_t i = 0; i < Rows * Vectors; ++i) put(sums[i / Vectors][i % Vectors], to + i * lanes);
 }
 
 /// Adds to `values` [Rows, Panels, panel_width] the products of the frames from t on with the
@@ -74,7 +82,8 @@ KA_INLINE void sum_tile(const Product& p, size_t t, size_t first, float* values)
       Vector w[vectors];
 #pragma GCC unroll 16
       for (size_t j = 0; j < vectors; ++j) {
-        w[j] = at(weights + j / panel_vectors * depth * panel_width + j % panel_vectors * lanes);
+        w[j] = vector_at(weights + j / panel_vectors * depth * panel_width +
+                         j % panel_vectors * lanes);
       }
       add_channel(sums, in + c, p.in_stride, w);
     }
@@ -223,7 +232,7 @@ KA_INLINE float sum_of(const float* values, size_t n, float mean) {
   Vector sums = {};
   size_t i = 0;
   for (; i + lanes <= n; i += lanes) {
-    const Vector x = at(values + i) - mean;
+    const Vector x = vector_at(values + i) - mean;
     sums += Power == 1 ? x : x * x;
   }
   float sum = 0.0F;
@@ -257,7 +266,7 @@ void lstm_gates(const float* __restrict gates, float* __restrict cell, float* __
   }
 }
 
-/// `previous` and `out` are the same or apart, so each iteration stands alone.
+/// `previous` and `out` are the same or apart, so no iteration depends on another.
 void gru_gates(const float* from_input, const float* from_state, const float* previous, float* out,
                size_t units) {
 #pragma GCC ivdep

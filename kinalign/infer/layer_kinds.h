@@ -48,6 +48,14 @@ inline constexpr std::array<KindRow, 17> kind_rows{{
     {LayerKind::concat, "concat", member_branches},
 }};
 
+constexpr bool rows_in_order() {
+  for (std::size_t i = 0; i < kind_rows.size(); ++i) {
+    if (kind_rows[i].kind != static_cast<LayerKind>(i)) return false;
+  }
+  return true;
+}
+static_assert(rows_in_order(), "row_of finds a kind by its number");
+
 constexpr const KindRow& row_of(LayerKind kind) {
   return kind_rows[static_cast<std::size_t>(kind)];
 }

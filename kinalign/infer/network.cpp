@@ -21,7 +21,8 @@ struct Sequence {
   std::size_t size() const { return frames * channels; }
 };
 
-/// One run. Functions take their input over: they give its block back, or hand it on.
+/// One run. A function of a layer owns its input: it returns the block to the workspace or hands it
+/// on.
 class Run {
  public:
   Run(const Kernels& kernels, Workspace& workspace) : kernels_(kernels), workspace_(workspace) {}
@@ -78,7 +79,7 @@ class Run {
     return out;
   }
 
-  /// With zeros before and after, so that every tap of a convolution finds a frame.
+  /// The same values with zeros before and after, so that every tap of a convolution finds a frame.
   Sequence padded(const Layer& layer, Sequence in) {
     const std::size_t reach = (layer.kernel - 1) * layer.dilation;
     if (reach == 0) return in;

@@ -58,8 +58,8 @@ class Network {
   std::size_t outputs() const;
 
   /// Computes `out` [T,outputs] from `in` [T,inputs], T = `frames`, any number. Each max_pool
-  /// without an unpool halves the frames of `out`, rounded up. The result of a frame does not
-  /// depend on where it stands in the sequence or on `workspace`.
+  /// without an unpool halves the frames of `out`, rounded up. Results do not depend
+  /// on `workspace`.
   void run(std::span<const float> in, std::size_t frames, Workspace& workspace,
            std::vector<float>& out) const;
 

@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-/// What one layer keeps between frames, and its result.
+/// The values that one layer keeps between frames, and its result.
 struct LayerState {
   const PreparedLayer* layer = nullptr;
   Values out;           // [outputs]
@@ -67,7 +67,7 @@ Result<std::vector<LayerState>> states_of(const std::vector<PreparedLayer>& laye
   return out;
 }
 
-/// One frame through the layers. Results stand in the layers' own memory.
+/// The path of one frame through the layers. Each result is stored in the state of its layer.
 class Step {
  public:
   explicit Step(const Kernels& kernels) : kernels_(kernels) {}

@@ -31,7 +31,7 @@ class OnlineNetwork {
   /// The results are those of Network::run over all frames since the start, bit by bit.
   std::span<const float> step(std::span<const float> frame);
 
-  /// As if no frame had come.
+  /// Forgets all earlier frames.
   void reset();
 
   /// Number of values in the state of all lstm and gru layers.

@@ -49,7 +49,7 @@ std::size_t outputs(const std::vector<Layer>& layers, std::size_t inputs);
 std::optional<std::size_t> look_ahead(const Architecture& architecture);
 std::optional<std::size_t> look_back(const Architecture& architecture);
 
-/// "3.1.0" is layer 0 of branch 1 of layer 3. An empty `path` stands for the architecture itself.
+/// "3.1.0" is layer 0 of branch 1 of layer 3. An empty `path` means the architecture itself.
 std::string path_below(std::string_view path, std::size_t index);
 
 }  // namespace kinalign

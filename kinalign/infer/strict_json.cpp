@@ -44,8 +44,10 @@ Result<Json> parse_strict_json(std::string_view text, const std::string& name) {
   Json json;
   try {
     json = Json::parse(text, see);
-  } catch (const Json::exception& error) {
-    return Failure(Error{name, 0, "JSON", error.what()});
+  } catch (const Json::parse_error& error) {
+    return Failure(Error{name, 0, "JSON", "a syntax error at byte " + std::to_string(error.byte)});
+  } catch (const Json::exception&) {
+    return Failure(Error{name, 0, "JSON", "a number beyond the range of a double"});
   }
   if (watch.deep()) {
     return Failure(Error{name, 0, "JSON of at most " + std::to_string(most_json_depth) + " levels",

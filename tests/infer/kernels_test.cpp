@@ -52,7 +52,7 @@ TEST_CASE("products of every size") {
   for (const Kernels* kernels : builds) {
     for (std::size_t frames = 0; frames < 16; ++frames) {
       for (const std::size_t outputs : {1, 15, 16, 17, 40, 64, 65, 100}) {
-        CAPTURE(kernels->name);
+        CAPTURE(std::string(kernels->name));
         CAPTURE(frames);
         CAPTURE(outputs);
         const std::size_t taps = 1 + frames % 3, channels = 1 + (frames * outputs) % 9;
@@ -87,7 +87,7 @@ TEST_CASE("products of every size") {
 
 TEST_CASE("functions of one value are right to 5e-7 and keep NaN") {
   for (const Kernels* kernels : builds) {
-    CAPTURE(kernels->name);
+    CAPTURE(std::string(kernels->name));
     CHECK(worst_error(kernels->sigmoid, true_sigmoid) < 5e-7);
     CHECK(worst_error(kernels->tanh, true_tanh) < 5e-7);
     CHECK(worst_error(kernels->gelu, true_gelu) < 5e-7);

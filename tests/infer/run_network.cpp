@@ -10,8 +10,8 @@
 #include "kinalign/infer/online.h"
 #include "kinalign/infer/onnx.h"
 
+#include <algorithm>
 #include <cstdio>
-#include <cstring>
 
 using namespace kinalign;
 
@@ -36,7 +36,7 @@ Result<void> run(const std::string& how, const Kernels& kernels, const std::stri
   const Network network = KA_TRY(Network::make(architecture, file.tensors, "", kernels));
   const std::string bytes = bytes_in(in_path);
   std::vector<float> in(bytes.size() / sizeof(float));
-  std::memcpy(in.data(), bytes.data(), bytes.size());
+  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(in.data()));
   std::vector<float> out;
   if (how == "offline") {
     Workspace workspace;
