@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The marks of a cleaned skeleton, on the joints that Kinect and truth share.
+#pragma once
+
+#include "kinalign/evaluate/protocol.h"
+#include "kinalign/evaluate/table_nine.h"
+#include "kinalign/models/denoise_features.h"
+#include "kinalign/models/pairs.h"
+#include "kinalign/motion/shared_joints.h"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// Of one stretch of a take.
+struct DenoiseMarks {
+  ProtocolMarks protocol;
+  TableNine table_nine;            // of positions in cm, in the answer's own space
+  double covered = 0.0;            // share of cells within the stated 90 % radius
+  double radius_cm = 0.0;          // that radius, mean; 0 where none is stated
+  std::size_t cells = 0;
+};
+
+/// Marks many answers of one layout.
+class DenoiseMarker {
+ public:
+  /// Fails where the outputs lack one of the 18 shared joints.
+  static Result<DenoiseMarker> make(const DenoiseLayout& layout, const std::vector<Pair>& pairs);
+
+  /// `answer`: [T,Jout,3] m; `spread`: [T,Jout] m per axis, or empty.
+  DenoiseMarks marks_of(const Pair& pair, const std::vector<float>& answer,
+                        const std::vector<float>& spread) const;
+
+ private:
+  std::array<std::size_t, shared_joint_count> places_{};
+  std::size_t joints_ = 0;
+  double rate_hz_ = 0.0;
+  /// Median true lengths of the limb bones, m, by person and action.
+  std::map<std::string, std::vector<std::optional<double>>> lengths_;
+};
+
+}  // namespace kinalign

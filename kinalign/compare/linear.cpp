@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/compare/linear.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t half_window = 4;
+constexpr double feature_scale = 0.05;  // m
+
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Eigen::Index whole(std::size_t value) { return static_cast<Eigen::Index>(value); }
+
+/// The body's heading in each frame, from the joints as they are.
+std::vector<BodyFrame> headings(const DenoiseLayout& layout, const JointFrames& body) {
+  return body_frames(*body_joints(layout.inputs), body);
+}
+
+/// Positions of nine frames less the root of the middle one, in its heading: [9 * 3J] m.
+void put_features(const JointFrames& body, const std::vector<BodyFrame>& frames, std::size_t t,
+                  double* out) {
+  const std::size_t last = body.frames() - 1;
+  for (std::size_t k = 0; k <= 2 * half_window; ++k) {
+    const std::size_t u = std::min(t + k < half_window ? 0 : t + k - half_window, last);
+    for (std::size_t j = 0; j < body.joints; ++j) {
+      const float* at = &body.positions[(u * body.joints + j) * 3];
+      const std::array<float, 3> moved{at[0] - frames[t].root[0], at[1] - frames[t].root[1],
+                                       at[2] - frames[t].root[2]};
+      for (const float value : frames[t].turned(moved.data())) *out++ = value;
+    }
+  }
+}
+
+/// Truth less base in the body's heading, m.
+std::array<float, 3> offset_of(const BodyFrame& frame, const float* truth, const float* base) {
+  const std::array<float, 3> moved{truth[0] - base[0], truth[1] - base[1], truth[2] - base[2]};
+  return frame.turned(moved.data());
+}
+
+void add_turned(const BodyFrame& frame, const float* offset, float* at) {
+  const auto turned = frame.turned_back(offset);
+  for (std::size_t k = 0; k < 3; ++k) at[k] += turned[k];
+}
+
+}  // namespace
+
+std::vector<float> base_joints(const DenoiseLayout& layout, JointFrames body) {
+  fill_missing(body, layout.smoothing.causal);
+  const auto frames = headings(layout, body);
+  std::vector<float> out;
+  for (std::size_t t = 0; t < body.frames(); ++t) {
+    for (const int base : layout.bases) {
+      const float* at = base < 0 ? frames[t].root.data()
+                                 : &body.positions[(t * body.joints + static_cast<std::size_t>(base)) * 3];
+      out.insert(out.end(), at, at + 3);
+    }
+  }
+  return out;
+}
+
+MeanOffset::MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt) {
+  const std::size_t joints = layout.outputs.size();
+  std::vector<double> sums(3 * joints, 0.0), counts(joints, 0.0);
+  for (const Pair* pair : learnt) {
+    JointFrames body = pair->input;
+    fill_missing(body, layout.smoothing.causal);
+    const auto frames = headings(layout, body);
+    const auto base = base_joints(layout, body);
+    for (std::size_t i = 0; i < pair->valid.size(); ++i) {
+      if (pair->valid[i] == 0) continue;
+      const auto offset = offset_of(frames[i / joints], &pair->truth[3 * i], &base[3 * i]);
+      for (std::size_t k = 0; k < 3; ++k) sums[3 * (i % joints) + k] += offset[k];
+      counts[i % joints] += 1.0;
+    }
+  }
+  for (std::size_t c = 0; c < sums.size(); ++c) {
+    mean_.push_back(static_cast<float>(sums[c] / std::max(counts[c / 3], 1.0)));
+  }
+}
+
+std::vector<float> MeanOffset::clean(const DenoiseLayout& layout, const JointFrames& body) const {
+  JointFrames filled = body;
+  fill_missing(filled, layout.smoothing.causal);
+  const auto frames = headings(layout, filled);
+  std::vector<float> out = base_joints(layout, filled);
+  const std::size_t joints = layout.outputs.size();
+  for (std::size_t i = 0; 3 * i < out.size(); ++i) {
+    add_turned(frames[i / joints], &mean_[3 * (i % joints)], &out[3 * i]);
+  }
+  return out;
+}
+
+struct Ridge::Fit {
+  Eigen::RowVectorXd mean;  // of the features
+  Matrix weights;           // [features + 1, 3 Jout]
+};
+
+namespace {
+
+/// Sums of one joint, or of all joints over frames in which all are valid.
+struct Normal {
+  Matrix gram, moment;
+
+  void add(const Matrix& features, const Matrix& targets) {
+    if (gram.size() == 0) {
+      gram = Matrix::Zero(features.cols(), features.cols());
+      moment = Matrix::Zero(features.cols(), targets.cols());
+    }
+    gram.noalias() += features.transpose() * features;
+    moment.noalias() += features.transpose() * targets;
+  }
+
+  Matrix solved(double penalty) const {
+    Matrix ridge = gram;
+    for (Eigen::Index i = 0; i + 1 < ridge.rows(); ++i) ridge(i, i) += penalty;
+    return ridge.llt().solve(moment);
+  }
+};
+
+/// Features of the frames in which all joints are valid, less `mean` and scaled, and a 1 behind
+/// them; the targets beside them, m.
+void frames_of(const DenoiseLayout& layout, const Pair& pair, const Eigen::RowVectorXd& mean,
+               Matrix& features, Matrix& targets) {
+  JointFrames body = pair.input;
+  fill_missing(body, layout.smoothing.causal);
+  const auto frames = headings(layout, body);
+  const auto base = base_joints(layout, body);
+  const std::size_t joints = layout.outputs.size();
+  std::vector<std::size_t> rows;
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    const auto* valid = &pair.valid[t * joints];
+    if (std::all_of(valid, valid + joints, [](std::uint8_t one) { return one != 0; })) {
+      rows.push_back(t);
+    }
+  }
+  features.resize(whole(rows.size()), mean.size() + 1);
+  targets.resize(whole(rows.size()), whole(3 * joints));
+  std::vector<double> line(static_cast<std::size_t>(mean.size()));
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    put_features(body, frames, rows[r], line.data());
+    for (Eigen::Index c = 0; c < mean.size(); ++c) {
+      features(whole(r), c) = (line[static_cast<std::size_t>(c)] - mean(c)) / feature_scale;
+    }
+    features(whole(r), mean.size()) = 1.0;
+    for (std::size_t j = 0; j < joints; ++j) {
+      const std::size_t i = rows[r] * joints + j;
+      const auto offset = offset_of(frames[rows[r]], &pair.truth[3 * i], &base[3 * i]);
+      for (std::size_t k = 0; k < 3; ++k) targets(whole(r), whole(3 * j + k)) = offset[k];
+    }
+  }
+}
+
+}  // namespace
+
+Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt, double penalty)
+    : fit_(std::make_unique<Fit>()) {
+  const auto width = whole((2 * half_window + 1) * 3 * layout.inputs.size());
+  const Eigen::RowVectorXd zero = Eigen::RowVectorXd::Zero(width);
+  Matrix features, targets;
+  Eigen::RowVectorXd sum = zero;
+  double count = 0.0;
+  for (const Pair* pair : learnt) {
+    frames_of(layout, *pair, zero, features, targets);
+    if (features.rows() == 0) continue;
+    sum += features.leftCols(width).colwise().sum() * feature_scale;
+    count += static_cast<double>(features.rows());
+  }
+  fit_->mean = sum / std::max(count, 1.0);
+  Normal normal;
+  for (const Pair* pair : learnt) {
+    frames_of(layout, *pair, fit_->mean, features, targets);
+    if (features.rows() > 0) normal.add(features, targets);
+  }
+  fit_->weights = normal.gram.size() == 0
+                      ? Matrix(Matrix::Zero(width + 1, whole(layout.answers())))
+                      : normal.solved(penalty);
+}
+
+Ridge::~Ridge() = default;
+
+std::vector<float> Ridge::clean(const DenoiseLayout& layout, const JointFrames& body) const {
+  JointFrames filled = body;
+  fill_missing(filled, layout.smoothing.causal);
+  const auto frames = headings(layout, filled);
+  std::vector<float> out = base_joints(layout, filled);
+  const std::size_t joints = layout.outputs.size();
+  Eigen::RowVectorXd line(fit_->mean.size() + 1);
+  for (std::size_t t = 0; t < frames.size(); ++t) {
+    put_features(filled, frames, t, line.data());
+    line.head(fit_->mean.size()) = (line.head(fit_->mean.size()) - fit_->mean) / feature_scale;
+    line(fit_->mean.size()) = 1.0;
+    const Eigen::RowVectorXd offsets = line * fit_->weights;
+    for (std::size_t j = 0; j < joints; ++j) {
+      const std::array<float, 3> offset{static_cast<float>(offsets(whole(3 * j))),
+                                        static_cast<float>(offsets(whole(3 * j + 1))),
+                                        static_cast<float>(offsets(whole(3 * j + 2)))};
+      add_turned(frames[t], offset.data(), &out[(t * joints + j) * 3]);
+    }
+  }
+  return out;
+}
+
+}  // namespace kinalign

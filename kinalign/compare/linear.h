@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Methods that are fitted in closed form: the mean offset of each joint, and ridge regression over
+// nine frames. Both are those of UI-PRMD's protocol.
+#pragma once
+
+#include "kinalign/models/denoise_features.h"
+#include "kinalign/models/pairs.h"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace kinalign {
+
+/// Each output joint is its input joint moved by a constant vector in the body's heading.
+class MeanOffset {
+ public:
+  MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt);
+  /// [T,Jout,3] m.
+  std::vector<float> clean(const DenoiseLayout& layout, const JointFrames& body) const;
+
+ private:
+  std::vector<float> mean_;  // [Jout,3] m
+};
+
+/// The offset as a linear function of the input's joints in nine frames, in the heading of the
+/// middle one.
+class Ridge {
+ public:
+  Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt, double penalty = 300.0);
+  ~Ridge();
+  std::vector<float> clean(const DenoiseLayout& layout, const JointFrames& body) const;
+
+ private:
+  struct Fit;
+  std::unique_ptr<Fit> fit_;
+};
+
+/// The input joints that stand for the outputs [T,Jout,3] m, missing ones filled.
+std::vector<float> base_joints(const DenoiseLayout& layout, JointFrames body);
+
+}  // namespace kinalign
