@@ -169,8 +169,8 @@ Result<bool> make_copies(FileSystem& files, const std::vector<RawCopy>& copies) 
   for (const RawCopy& copy : copies) {
     KA_TRY(make_folders(fs::path(copy.to).parent_path().string()));
     const Result<void> copied =
-        fs::exists(copy.to) ? Result<void>{} : copy_file(files, copy.from, copy.to);
-    if (!copied && !fs::exists(copy.to)) return Failure(copied.error());
+        is_there(copy.to) ? Result<void>{} : copy_file(files, copy.from, copy.to);
+    if (!copied && !is_there(copy.to)) return Failure(copied.error());
     if (!KA_TRY(same_bytes(files, copy))) return false;
   }
   return true;
@@ -251,7 +251,7 @@ Result<Added> TakeAdder::add(const Manifest& said, const std::string& base,
       there.by_text.emplace(nameless, name);
       return Added{name, false};
     }
-    if (!fs::exists(path) || there.runs.contains(name.run)) return Failure(written.error());
+    if (!is_there(path) || there.runs.contains(name.run)) return Failure(written.error());
     known_.erase({name.subject, name.action});
   }
 }
@@ -290,7 +290,7 @@ Result<Added> TakeAdder::add_take(const AddRequest& request) {
   for (const std::uint32_t run : there.runs) {
     const TakeName one{subject, action, run};
     const RawCopy copy{request.path, folder_ + "/" + path_of(one, TakeFile::take)};
-    if (fs::exists(copy.to) && KA_TRY(same_bytes(files_, copy))) return Added{one, true};
+    if (is_there(copy.to) && KA_TRY(same_bytes(files_, copy))) return Added{one, true};
   }
   const TakeName name{subject, action, free_run(there.runs, 0)};
   KA_TRY(copy_file(files_, request.path, folder_ + "/" + path_of(name, TakeFile::take)));

@@ -190,12 +190,26 @@ struct Found {
   std::int64_t changed_ns = 0, size = 0;
 };
 
+/// A summary's file; absent where it has just gone. Fails where only names in the folder can be
+/// read.
+Result<std::optional<Found>> found_in(const std::string& folder, const TakeName& name) {
+  const std::string file(file_name(path_of(name, TakeFile::summary)));
+  if (const auto version = version_of(folder + "/" + file)) {
+    return Found{name, version->changed_ns, whole(version->size)};
+  }
+  std::error_code fault;
+  if (fs::exists(folder + "/.", fault) || !fault) return std::nullopt;
+  return Failure(Error{folder, 0, "a folder that can be read", fault.message()});
+}
+
 }  // namespace
 
 Result<Catalogue> load_catalogue(FileSystem& files, const std::string& folder) {
   const std::string path = folder + "/" + std::string(catalogue_file);
-  if (!fs::exists(folder)) return Failure(Error{folder, 0, "the folder of a data set", "none"});
-  if (!fs::exists(path)) {
+  std::error_code fault;
+  if (!fs::exists(folder, fault) || !fs::exists(path, fault)) {
+    if (fault) return Failure(Error{folder, 0, "the folder of a data set", fault.message()});
+    if (!is_there(folder)) return Failure(Error{folder, 0, "the folder of a data set", "none"});
     return Failure(Error{folder, 0, "the folder of a data set, with a dataset.toml in it",
                          "none; kinalign dataset init makes one"});
   }
@@ -208,7 +222,14 @@ struct DatasetIndex::State {
   Catalogue catalogue;
   Findings findings;
   sqlite::Database database;
+  std::optional<Error> unreadable;  // a folder of takes: no index made anew would help
 
+  /// What was read of a folder; a fault is kept in `unreadable`, too.
+  template <class Value>
+  Result<Value> read(Result<Value> found) {
+    if (!found) unreadable = found.error();
+    return found;
+  }
   Result<void> make(bool in_memory);
   Result<bool> has_tables() const;
   Result<void> refresh();
@@ -216,7 +237,8 @@ struct DatasetIndex::State {
   Result<void> make_tables_of(const std::string& path);
   Result<bool> has_catalogue() const;
   Result<void> refresh_catalogue();
-  Result<FolderChanges> folder_changes() const;
+  Result<FolderChanges> folder_changes();
+  Result<void> refresh_takes(const std::string& name, const std::set<TakeName>& summarised);
   Result<void> refresh_folder(const std::string& name);
   Result<void> remember_folder(const std::string& name, std::int64_t changed,
                                std::int64_t not_built);
@@ -336,27 +358,32 @@ Result<void> DatasetIndex::State::refresh_take(const Found& found,
   return {};
 }
 
-Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
-  const std::int64_t began = now_ns();
-  const std::int64_t changed = changed_ns(folder + "/" + name);
+Result<void> DatasetIndex::State::refresh_takes(const std::string& name,
+                                                const std::set<TakeName>& summarised) {
+  const std::string place = folder + "/" + name;
   std::map<std::string, Known> known = KA_TRY(known_in(name));
   TakeInserts add = KA_TRY(inserts());
   TakeDrops drop = KA_TRY(drops());
-  std::error_code fault;
-  std::set<TakeName> all, summarised;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder + "/" + name, fault)) {
-    const std::string path = name + "/" + entry.path().filename().string();
-    const auto parsed = parse_take_path(path);
-    if (!parsed) continue;
-    all.insert(parsed->first);
-    if (parsed->second != TakeFile::summary) continue;
-    summarised.insert(parsed->first);
-    const auto version = version_of(entry.path().string());
-    if (!version) continue;
-    const Found found{parsed->first, version->changed_ns, whole(version->size)};
-    KA_TRY(refresh_take(found, known, drop, add));
+  for (const TakeName& take : summarised) {
+    const auto found = KA_TRY(read(found_in(place, take)));
+    if (found) KA_TRY(refresh_take(*found, known, drop, add));
   }
   for (const auto& [gone, one] : known) KA_TRY(drop.run(one.id));
+  return {};
+}
+
+Result<void> DatasetIndex::State::refresh_folder(const std::string& name) {
+  const std::string place = folder + "/" + name, below = name + "/";
+  const std::int64_t began = now_ns();
+  const std::int64_t changed = changed_ns(place);
+  std::set<TakeName> all, summarised;
+  for (const std::string& file : KA_TRY(read(names_in_folder(place)))) {
+    const auto parsed = parse_take_path(below + file);
+    if (!parsed) continue;
+    all.insert(parsed->first);
+    if (parsed->second == TakeFile::summary) summarised.insert(parsed->first);
+  }
+  KA_TRY(refresh_takes(name, summarised));
   const bool settled = findings.empty() && changed < began - racy_ns;
   return remember_folder(name, settled ? changed : 0, whole(all.size() - summarised.size()));
 }
@@ -406,19 +433,17 @@ Result<void> DatasetIndex::State::refresh_catalogue() {
 }
 
 /// Folders whose entries have changed since they were read, and those that have gone.
-Result<FolderChanges> DatasetIndex::State::folder_changes() const {
+Result<FolderChanges> DatasetIndex::State::folder_changes() {
   FolderChanges out;
   std::map<std::string, std::int64_t> known;
   auto rows = KA_TRY(database.prepare("select path, changed_ns from folder"));
   while (KA_TRY(rows.step())) {
     known[std::get<std::string>(rows.at(0))] = std::get<std::int64_t>(rows.at(1));
   }
-  std::error_code fault;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with("sub-") || !is_label(name.substr(4)) || !entry.is_directory()) continue;
+  for (const std::string& name : KA_TRY(read(people_in(folder)))) {
+    if (!is_label(name.substr(4))) continue;
     const auto old = known.find(name);
-    const bool same = old != known.end() && old->second == changed_ns(entry.path().string());
+    const bool same = old != known.end() && old->second == changed_ns(folder + "/" + name);
     if (!same) out.changed.insert(name);
     if (old != known.end()) known.erase(old);
   }
@@ -458,6 +483,7 @@ Result<DatasetIndex> DatasetIndex::open(FileSystem& files, const std::string& fo
     }
     done = state->make(attempt == 2);
     if (done) done = state->refresh();
+    if (state->unreadable) return Failure(*state->unreadable);
     if (done) return DatasetIndex(std::move(state));
   }
   return Failure(done.error());

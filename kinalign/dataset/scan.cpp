@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/scan.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -10,34 +11,62 @@ namespace {
 
 namespace fs = std::filesystem;
 
+Failure unreadable(const std::string& folder, const std::error_code& fault) {
+  return Failure(Error{folder, 0, "a folder that can be read", fault.message()});
+}
+
 }  // namespace
+
+bool is_there(const std::string& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+Result<std::vector<std::string>> names_in_folder(const std::string& path) {
+  std::vector<std::string> out;
+  std::error_code fault;
+  for (fs::directory_iterator at(path, fault), end; !fault && at != end; at.increment(fault)) {
+    out.push_back(at->path().filename().string());
+  }
+  if (fault) return unreadable(path, fault);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+Result<std::vector<std::string>> people_in(const std::string& folder) {
+  std::vector<std::string> out;
+  const std::string root = folder + "/";
+  for (const std::string& name : KA_TRY(names_in_folder(folder))) {
+    if (!name.starts_with("sub-")) continue;
+    const std::string path = root + name;
+    std::error_code fault;
+    const auto kind = fs::status(path, fault).type();
+    if (kind == fs::file_type::none) return unreadable(path, fault);
+    if (kind == fs::file_type::directory) out.push_back(name);
+  }
+  return out;
+}
 
 Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder) {
   std::map<TakeName, TakeFiles> out;
-  std::error_code fault;
-  for (const fs::directory_entry& person : fs::directory_iterator(folder, fault)) {
-    const std::string name = person.path().filename().string();
-    if (!name.starts_with("sub-") || !person.is_directory()) continue;
+  for (const std::string& name : KA_TRY(people_in(folder))) {
     out.merge(KA_TRY(scan_takes(folder, name.substr(4))));
   }
-  if (fault) return Failure(Error{folder, 0, "a folder that can be read", fault.message()});
   return out;
 }
 
 Result<std::map<TakeName, TakeFiles>> scan_takes(const std::string& folder,
                                                  const std::string& subject) {
   std::map<TakeName, TakeFiles> out;
-  std::error_code fault;
-  const std::string name = "sub-" + subject, path = folder + "/" + name;
-  for (const fs::directory_entry& file : fs::directory_iterator(path, fault)) {
-    const auto parsed = parse_take_path(name + "/" + file.path().filename().string());
+  const std::string below = "sub-" + subject + "/", path = folder + "/sub-" + subject;
+  for (const std::string& file : KA_TRY(names_in_folder(path))) {
+    const auto parsed = parse_take_path(below + file);
     if (!parsed) continue;
     TakeFiles& take = out[parsed->first];
     take.manifest = take.manifest || parsed->second == TakeFile::manifest;
     take.take = take.take || parsed->second == TakeFile::take;
     take.summary = take.summary || parsed->second == TakeFile::summary;
   }
-  if (fault) return Failure(Error{path, 0, "a folder that can be read", fault.message()});
   return out;
 }
 

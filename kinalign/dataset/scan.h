@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files of which takes lie in a data set's folder.
+// Which files of which takes lie in a data set's folder. Nothing here throws: a folder that may not
+// be entered is an Error.
 #pragma once
 
 #include "kinalign/core/files.h"
@@ -8,12 +9,20 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace kinalign {
 
 /// Longer files of these kinds are refused.
 inline constexpr std::size_t longest_summary = std::size_t{1} << 20;
 inline constexpr std::size_t longest_manifest = std::size_t{4} << 20;
+
+/// Whether a file or a folder is there; false also where that can't be found out.
+bool is_there(const std::string& path);
+/// Names of all that lies in a folder, sorted. Fails where it can't be read.
+Result<std::vector<std::string>> names_in_folder(const std::string& path);
+/// Names of people's folders, "sub-03". Fails where the data set's folder can't be read.
+Result<std::vector<std::string>> people_in(const std::string& folder);
 
 struct TakeFiles {
   bool manifest = false, take = false, summary = false;

@@ -158,8 +158,8 @@ struct Seen {
   Places names, subjects;
   /// By SHA-256 of a take or of a raw file: of each part a take that it stands in.
   std::map<std::string, std::map<std::string, std::string>> contents;
-  std::vector<std::string> unknown;  // takes that the data set does not have
-  std::vector<std::string> changed;  // takes that were others when the split was made
+  std::set<std::string> unknown;  // takes that the data set does not have
+  std::set<std::string> changed;  // takes that were others when the split was made
 };
 
 Seen seen_in(const Split& split, const TakesByName& known) {
@@ -168,7 +168,7 @@ Seen seen_in(const Split& split, const TakesByName& known) {
     for (const TakeName& name : part.takes) {
       const auto found = known.find(name);
       if (found == known.end()) {
-        seen.unknown.push_back(to_string(name));
+        seen.unknown.insert(to_string(name));
         continue;
       }
       seen.names[to_string(name)].insert(part.name);
@@ -182,7 +182,7 @@ Seen seen_in(const Split& split, const TakesByName& known) {
       }
       const auto then = split.sha256.find(name);
       if (then != split.sha256.end() && then->second != summary.sha256) {
-        seen.changed.push_back(to_string(name));
+        seen.changed.insert(to_string(name));
       }
     }
   }
@@ -233,10 +233,6 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
     out.push_back({severity, Error{file, 0, std::move(expected), std::move(found)}, "", ""});
   };
   const Seen seen = seen_in(split, by_name(takes));
-  for (const std::string& name : seen.unknown) tell(Severity::error, "takes of the data set", name);
-  for (const std::string& name : seen.changed) {
-    tell(Severity::warning, "takes as they were when the split was made", name + " made again");
-  }
   for (const auto& [name, parts] : seen.names) {
     if (parts.size() > 1)
       tell(Severity::error, "each take in one part", name + " in " + listed(parts));
@@ -255,6 +251,14 @@ Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
     tell(apart ? Severity::error : Severity::note, "each person in one part",
          "subject " + subject + " in " + listed(parts));
   }
+  for (const std::string& name : seen.unknown) tell(Severity::error, "takes of the data set", name);
+  if (!seen.changed.empty()) {
+    tell(Severity::warning, "takes as they were when the split was made",
+         fmt::format("{} made again: {}{}", seen.changed.size(), *seen.changed.begin(),
+                     seen.changed.size() > 1 ? ", ..." : ""));
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
   return out;
 }
 

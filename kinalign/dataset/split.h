@@ -51,8 +51,9 @@ Result<Split> make_split(const std::vector<SplitTake>& takes, const Catalogue& c
                          const SplitOptions& options);
 
 /// Errors: a take in two parts, by its name, or by its bytes or those of a raw file that holds
-/// samples; a take that is not there; where people shall not be in two parts, a person who is. A
-/// note says who else is, a warning which takes have other bytes than when the split was made.
+/// samples; where people shall not be in two parts, a person who is; a take that is not there. One
+/// warning says how many takes have other bytes than when the split was made, notes who else is in
+/// two parts. The worst come first.
 Findings check_split(const Split& split, const std::vector<SplitTake>& takes,
                      const std::string& file);
 

@@ -110,6 +110,15 @@ std::optional<std::string> place_in_sourcedata(const std::string& folder, const 
   return place;
 }
 
+bool is_unpacked(const std::string& place) {
+  constexpr std::size_t hash_digits = 8;
+  const std::size_t begin = raw_files_folder.size() + 1, end = place.find('/', begin);
+  if (end == std::string::npos || end - begin < hash_digits + 2) return false;
+  const std::size_t dash = end - hash_digits - 1;
+  return place[dash] == '-' && is_label(place.substr(begin, dash - begin)) &&
+         place.find_first_not_of("0123456789abcdef", dash + 1) == end;
+}
+
 Result<std::vector<TakeInput>> raw_files_of(FileSystem& files, const std::string& folder,
                                             const TakeName& name) {
   std::error_code fault;

@@ -46,6 +46,9 @@ inline constexpr std::string_view raw_files_folder = "sourcedata";
 /// the file followed. Absent where the file does not lie below sourcedata/ then.
 std::optional<std::string> place_in_sourcedata(const std::string& folder, const std::string& path);
 
+/// Whether such a place lies in a folder that an import unpacked to: sourcedata/LABEL-HASH/.
+bool is_unpacked(const std::string& place);
+
 /// The inputs of a take, also of one that was never built. None where the take has no manifest.
 /// Fails where the manifest can't be read.
 Result<std::vector<TakeInput>> raw_files_of(FileSystem& files, const std::string& folder,

@@ -50,12 +50,9 @@ class Verifier {
     KA_TRY(check_summaries());
     for (const auto& [name, there] : takes_) check_take(name, there);
     KA_TRY(check_names());
-    KA_TRY(check_sourcedata());
+    check_sourcedata();
     KA_TRY(check_hashes());
-    std::stable_sort(
-        out_.findings.begin(), out_.findings.end(), [](const Finding& a, const Finding& b) {
-          return a.severity != b.severity ? a.severity > b.severity : a.what.file < b.what.file;
-        });
+    sort_findings(out_.findings);
     return std::move(out_);
   }
 
@@ -198,9 +195,8 @@ class Verifier {
 
   /// Files that belong to nothing.
   Result<void> check_names() {
-    std::error_code fault;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_, fault)) {
-      const std::string name = entry.path().filename().string();
+    const std::string root = folder_ + "/";
+    for (const std::string& name : KA_TRY(names_in_folder(folder_))) {
       const bool is_known =
           std::find(known_names.begin(), known_names.end(), name) != known_names.end();
       if (is_known || name.starts_with('.')) continue;
@@ -209,47 +205,52 @@ class Verifier {
              "run the same kinalign dataset rename again; the file says which");
         continue;
       }
+      const std::string place = root + name, below = name + "/";
+      std::error_code ignored;
       const bool is_person =
-          name.starts_with("sub-") && is_label(name.substr(4)) && entry.is_directory();
+          name.starts_with("sub-") && is_label(name.substr(4)) && fs::is_directory(place, ignored);
       if (!is_person) {
         tell(Severity::note, name, "a file or folder of a data set",
              "one that kinalign does not know");
         continue;
       }
-      for (const fs::directory_entry& file : fs::directory_iterator(entry.path(), fault)) {
-        const std::string path = name + "/" + file.path().filename().string();
+      for (const std::string& file : KA_TRY(names_in_folder(place))) {
+        const std::string path = below + file;
         if (!parse_take_path(path)) {
           tell(Severity::note, path, "a file of a take", "one that kinalign does not know");
         }
       }
     }
-    if (fault) return Failure(Error{folder_, 0, "folders that can be read", fault.message()});
     return {};
   }
 
   /// Raw files that no take is made of. Said only where every manifest can be read.
-  Result<void> check_sourcedata() {
-    const std::vector<std::string> there = KA_TRY(files_in_sourcedata(folder_));
-    if (there.empty()) return {};
+  void check_sourcedata() {
+    const auto there = files_in_sourcedata(folder_);
+    if (!there) {
+      tell(Severity::warning, std::string(raw_files_folder), there.error().expected,
+           there.error().found, "which of its files belong to no take is not known");
+      return;
+    }
+    if (there->empty()) return;
     std::set<std::string> named;
     for (const auto& [name, files] : takes_) {
       const auto inputs = raw_files_of(files_, folder_, name);
-      if (!inputs) return {};
+      if (!inputs) return;
       for (const TakeInput& input : *inputs) {
         if (const auto place = place_in_sourcedata(folder_, input.path)) named.insert(*place);
       }
     }
     std::set<std::string> others;
-    for (const std::string& file : there) {
+    for (const std::string& file : *there) {
       if (!named.contains(file)) others.insert(file);
     }
-    if (others.empty()) return {};
+    if (others.empty()) return;
     std::vector<std::string> first(others.begin(), others.end());
     first.resize(std::min<std::size_t>(first.size(), 3));
     tell(Severity::note, std::string(raw_files_folder), "files that a manifest names",
          fmt::format("{} that none names: {}{}", others.size(), fmt::join(first, ", "),
                      others.size() > first.size() ? ", ..." : ""));
-    return {};
   }
 
   Result<void> check_hashes() {
@@ -294,6 +295,12 @@ class Verifier {
 };
 
 }  // namespace
+
+void sort_findings(Findings& findings) {
+  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+    return a.severity != b.severity ? a.severity > b.severity : a.what.file < b.what.file;
+  });
+}
 
 Result<Verified> verify(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                         const VerifyOptions& options, const Progress& progress) {

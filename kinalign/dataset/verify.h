@@ -21,10 +21,14 @@ struct Verified {
   Findings findings;                   // by severity, then by place; files below the folder
 };
 
+/// By severity, then by place.
+void sort_findings(Findings& findings);
+
 /// Reads every byte of the takes. Errors: a take that can't be read, whose hash is another, or
 /// whose summary does not follow from it; a manifest without a take. Warnings: raw files that are
 /// gone or others, parameters that have changed since, people and actions that dataset.toml does
-/// not know. Notes: metadata that are not said, and files of which nobody knows.
+/// not know. Notes: metadata that are not said, and files of which nobody knows. A
+/// sourcedata folder that can't be read is a warning.
 Result<Verified> verify(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                         const VerifyOptions& options, const Progress& progress);
 

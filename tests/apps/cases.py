@@ -94,6 +94,16 @@ def wrong(*words, says, **how):
     assert first == f"kinalign {words[0]}: {says}", f"{first}\nnot {says}"
 
 
+def nobody():
+    """A prefix of calls that another user makes."""
+    if os.geteuid() != 0:
+        raise Skip("needs root to become another user")
+    prefix = ("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups")
+    if subprocess.run([*prefix, "test", "-x", PROGRAM], check=False).returncode:
+        raise Skip("needs a build folder that other users can enter")
+    return prefix
+
+
 def examples(verb):
     """The commands of a help page."""
     page, _ = done_with(0, verb, "--help")

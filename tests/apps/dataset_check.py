@@ -14,7 +14,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from cases import PROGRAM, case, kinalign, law, main
+from cases import PROGRAM, case, kinalign, law, main, nobody
 from data_sets import answer, contents, done, recorded, small_set
 
 import hfut
@@ -320,6 +320,68 @@ def verify_finds_any_byte_that_was_altered_and_what_belongs_to_nothing(folder):
     next(data.glob("sub-01/*_take.h5")).unlink()
     said = answer("verify", data, code=1)
     assert any(one["expected"] == "a take beside it" for one in said["findings"]), said
+
+
+@case
+def a_folder_that_may_not_be_read_is_an_error_and_hides_no_take(folder):
+    prefix = nobody()
+    data = small_set(folder)
+    done("build", data)
+    shutil.rmtree(data / ".kinalign")
+    folder.chmod(0o755)
+    manifest = next((folder / "raw").rglob("recording.toml"))
+    verbs = [("list", data), ("tables", data), ("split", data, "-o", folder / "s.json"), ("verify", data),
+             ("export", data, "-o", folder / "out"), ("windows", data, "-o", folder / "w.npz"), ("build", data),
+             ("report", data), ("rm", data, "sub-01", "--yes"), ("rename", data, "sub-01", "sub-09")]
+    writing = [("add", data, manifest, "--subject", "01", "--action", "S1A01"), ("import", data, folder / "raw")]
+    for place, mode, words in ((data / "sub-01", 0o700, verbs), (data / "sub-01", 0o704, verbs[:4]),
+                               (data, 0o700, verbs + writing)):
+        place.chmod(mode)
+        for one in words:
+            ran = kinalign("dataset", *one, prefix=prefix)
+            told = law(ran, ("dataset", *one))
+            is_verify = one[0] == "verify" and mode == 0o704  # names the takes that it can't read
+            assert ran.returncode == (1 if is_verify else 3) and (is_verify or "Permission denied" in told), told
+        place.chmod(0o755)
+    assert len(answer("list", data)["takes"]) == 3
+
+
+@case
+def sourcedata_that_may_not_be_read_stops_no_check_and_no_raw_file_is_forgotten(folder):
+    prefix = nobody()
+    done("init", folder / "set", "--template", "hfut-mmd")
+    data, (manifest,) = folder / "set", recorded(folder / "raw", 2)
+    done("add", data, manifest, "--subject", "01", "--action", "S1A01", "--copy")
+    done("build", data)
+    folder.chmod(0o755)
+    (data / "sourcedata").chmod(0o700)
+    said = json.loads(kinalign("dataset", "verify", data, "--json", prefix=prefix).stdout)
+    assert said["takes"] == 1 and said["bytes"] > 0, said
+    finding, = [one for one in said["findings"] if one["file"] == "sourcedata"]
+    assert (finding["severity"], finding["found"]) == ("warning", "Permission denied"), finding
+    ran = kinalign("dataset", "rm", data, "sub-01", "--raw", "--yes", "--dry-run", prefix=prefix)
+    assert ran.returncode == 3 and b"sourcedata" in ran.stderr, ran
+
+
+@case
+def a_split_after_a_build_is_a_line_and_hides_no_leak(folder):
+    data = small_set(folder, takes=10, seconds=1)
+    done("build", data)
+    (data / "splits").mkdir()
+    split = data / "splits/people.json"
+    done("split", data, "--by", "subject", "--test", "0.3", "-o", split)
+    (data / "dataset.toml").write_text((data / "dataset.toml").read_text() + "\n[align]\nrotations = \"slerp\"\n")
+    assert answer("build", data, code=None)["made"] == 10
+    found, = [one for one in answer("verify", data)["findings"] if one["file"] == "splits/people.json"]
+    assert found["severity"] == "note" and "10 made again" in found["found"] and "--force" in found["repair"], found
+    parts = json.loads(split.read_text())
+    parts["parts"][1]["takes"].append(parts["parts"][0]["takes"][0])
+    split.write_text(json.dumps(parts))
+    assert "in one part" in done("split", data, "--check", split, code=1).splitlines()[0]
+    kinds = [one["severity"] for one in answer("split", data, "--check", split, code=1)["findings"]]
+    assert len(kinds) > 1 and kinds == ["error"] * (len(kinds) - 1) + ["warning"], kinds
+    files = [one["file"] for one in answer("verify", data, code=1)["findings"] if one["severity"] == "error"]
+    assert files == ["splits/people.json"], files
 
 
 @case

@@ -200,6 +200,7 @@ def a_release_has_no_dates_and_no_names_and_is_refused_where_a_text_gives_a_pers
         assert list(free["kinect"].attrs["input_names"].astype(str)) == ["kinect.csv"]
         report = json.loads(free["report_json"][()])
         assert abs(report["begin_ns"] - NO_DATE) < 1_000_000_000, report["begin_ns"]
+        assert {stream["stamps"]["first_ns"] for stream in report["streams"]} == {0}, report["streams"]
     bids = exported(folder, data, "bids", "--release")
     assert (bids / "participants.tsv").read_text().splitlines()[0] == "participant_id"
     toml.write_text(toml.read_text() + '\n[device.kinect]\nserial = "A22596V01234"\n')

@@ -5,6 +5,7 @@ import hashlib
 import importlib.util
 import io
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -186,6 +187,46 @@ def archives_give_what_their_folder_gives(folder):
         assert answer("import", data, archive)["added"] == 0
         assert contents(data) == before
     assert answer("build", data)["made"] == 3
+
+
+@case
+def unpacked_files_that_rm_removed_come_back_with_the_same_import(folder):
+    source = small_bvh(folder, "anna/walk.bvh", "bert/run_2.bvh", "bert/jump.bvh")
+    bids = shared("bids_motion")
+    archive = zipped(source, folder / "a.zip")
+    packed = zipped(bids, folder / "bids.zip")
+    for data, corpus in ((folder / "set", archive), (folder / "bids_set", packed)):
+        said("import", data, corpus)
+        before, all_takes = contents(data), takes(data)
+        dates = {p: p.stat().st_mtime_ns for p in (data / "sourcedata").rglob("*.*") if p.is_file()}
+        said("rm", data, all_takes[0], "--raw", "--yes")
+        assert contents(data) != before
+        assert answer("import", data, corpus)["added"] == 1
+        assert contents(data) == before
+        (data / "sourcedata/mine.txt").write_text("x")
+        said("rm", data, *all_takes, "--raw", "--yes")
+        stays = [p for p in dates if p.exists()]
+        assert answer("import", data, corpus)["added"] == len(all_takes)
+        assert contents(data).items() >= before.items()
+        assert all(p.stat().st_mtime_ns == dates[p] for p in stays), "a file that was there was written anew"
+        assert len(list((data / "sourcedata").iterdir())) == 2, "a folder of the unpacking is left"
+    assert answer("build", folder / "set")["made"] == 3
+
+
+@case
+def what_a_killed_import_left_goes_with_the_next_one(folder):
+    archive = zipped(small_bvh(folder, "anna/walk.bvh"), folder / "a.zip")
+    said("import", folder / "set", archive)
+    raw = folder / "set/sourcedata"
+    own, = (p.name for p in raw.iterdir())
+    over = subprocess.Popen(["true"])
+    over.wait()
+    left = {name: raw / name for name in (f".{own}-{over.pid}", f".{own}-{os.getpid()}", f".{own}-note", ".other-1-1")}
+    for path in left.values():
+        (path / "anna").mkdir(parents=True)
+        (path / "anna/walk.bvh").write_text("half")
+    assert answer("import", folder / "set", archive)["added"] == 0
+    assert sorted(p.name for p in raw.iterdir()) == sorted([own, *list(left)[1:]]), list(raw.iterdir())
 
 
 def zip_of(path, *names, data=b"x"):

@@ -96,6 +96,23 @@ def windows_stand_in_the_parts_of_the_split_and_a_split_that_leaks_is_refused(fo
 
 
 @case
+def the_space_of_most_takes_decides_and_every_reason_is_counted(folder):
+    data = built(folder, takes=4)
+    manifest = sorted(data.glob("sub-*/*_recording.toml"))[0]
+    text = manifest.read_text()
+    manifest.write_text(text[:text.index("[space.kinect]")])
+    done("build", data, code=None)
+    said = answer("windows", data, "-o", folder / "w.npz", "--stream", "kinect")
+    assert said["takes_left_out"] == [{"take": "sub-00_task-S2A01_run-01", "why": "kinect in another space"}], said
+    _, facts = read(folder / "w.npz")
+    assert len(facts["takes"]) == 3, facts["takes"]
+    ran = kinalign("dataset", "windows", data, "-o", folder / "none.npz", "--stream", "kinect", "--length", 5000)
+    assert ran.returncode == 3 and not (folder / "none.npz").exists(), ran
+    found = ran.stderr.decode().split("found ")[1]
+    assert found == "has no window: too short, or too little is valid (3 takes); kinect in another space (1 take)\n", found
+
+
+@case
 def what_lacks_a_stream_is_left_out_and_said(folder):
     data = built(folder)
     manifest = sorted(data.glob("sub-*/*_recording.toml"))[0]

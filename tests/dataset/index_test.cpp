@@ -120,6 +120,19 @@ TEST_CASE("a summary that can't be read is a finding, and hides no other take") 
   CHECK(set.open().findings().size() == 1);  // until it is mended
 }
 
+TEST_CASE("a person's folder that can't be read is an error, and the index stays") {
+  Listed set;
+  set.put({"01", "S1A01", 1}, 600);
+  (void)set.open();
+  std::filesystem::create_symlink("sub-02", set.folder / "sub-02");  // root can read all else
+  const auto index = DatasetIndex::open(set.files, set.folder.path());
+  REQUIRE(!index);
+  CHECK(index.error().file == set.folder / "sub-02");
+  CHECK(index.error().expected == "a folder that can be read");
+  CHECK(std::filesystem::exists(set.folder / index_file));
+  CHECK(!scan_takes(set.folder.path()));
+}
+
 TEST_CASE("an index that is damaged or of another program is made anew") {
   Listed set;
   set.put({"01", "S1A01", 1}, 600);

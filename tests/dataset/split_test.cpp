@@ -162,6 +162,20 @@ TEST_CASE("takes that have a layout in common are no leak") {
   CHECK(errors(check_split(split, takes, "s")) == 0);
 }
 
+TEST_CASE("leaks come before takes that were made again, which are one line") {
+  auto takes = many();
+  const Split made = *make_split(takes, catalogue(), {"subject", 0.25, 0.0, 1, false});
+  Split read = *parse_split_json(split_json(made, takes), "s");
+  for (SplitTake& take : takes) take.summary.sha256 += " again";
+  read.parts[0].takes.push_back(read.parts[1].takes.front());
+  const Findings found = check_split(read, takes, "s");
+  CHECK(found.front().severity == Severity::error);
+  CHECK(found.back().severity == Severity::warning);
+  CHECK(found.back().what.found.find(std::to_string(takes.size()) + " made again: ") !=
+        std::string::npos);
+  CHECK(found.size() == errors(found) + 1);
+}
+
 TEST_CASE("a take that was made again since is a warning of its split") {
   auto takes = many();
   const Split made = *make_split(takes, catalogue(), {"subject", 0.25, 0.0, 1, false});

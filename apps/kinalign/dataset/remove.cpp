@@ -46,6 +46,17 @@ std::string raw_left_text(const std::vector<std::string>& places) {
   return out;
 }
 
+std::string raw_kept_text(const std::vector<std::string>& places) {
+  std::string out;
+  for (std::size_t i = 0; i < std::min(places.size(), most_places); ++i) {
+    out += "  " + places[i] + " stays: it was not copied or unpacked for this take\n";
+  }
+  if (places.size() > most_places) {
+    out += "  and " + std::to_string(places.size() - most_places) + " more that stay\n";
+  }
+  return out;
+}
+
 std::string raw_shared_text(const std::vector<std::string>& places) {
   if (places.empty()) return "";
   return "  " + counted(places.size(), "raw file") + " of other takes, too, " +
@@ -60,7 +71,8 @@ std::string plan_text(const RemovalPlan& plan) {
   out += counted(plan.takes.size(), "take") + ", " + counted(plan.files.size(), "file") + ", " +
          size_text(plan.bytes) + "\n";
   for (const std::string& name : plan.unknown) out += "  " + name + ": nothing of it is there\n";
-  return out + raw_left_text(plan.raw_left) + raw_shared_text(plan.raw_shared);
+  return out + raw_left_text(plan.raw_left) + raw_kept_text(plan.raw_kept) +
+         raw_shared_text(plan.raw_shared);
 }
 
 /// Asks on the terminal; any answer but y or yes is no.
@@ -78,6 +90,7 @@ nlohmann::ordered_json plan_json(const RemovalPlan& plan) {
           {"files", plan.files},
           {"bytes", plan.bytes},
           {"raw_left", plan.raw_left},
+          {"raw_kept", plan.raw_kept},
           {"raw_shared", plan.raw_shared},
           {"unknown", plan.unknown}};
 }
@@ -123,8 +136,8 @@ Verb dataset_rm_verb() {
       {.name = "dataset rm",
        .summary = "remove takes from a data set",
        .text = "Removes the take, its summary, its manifest and its page, and with --raw its "
-               "raw files below sourcedata/, unless another take is made of them. Raw files "
-               "outside the data set are never touched. "
+               "raw files that were copied or unpacked below sourcedata/, unless another take is "
+               "made of them. Raw files of your own are never touched. "
                "Asks on a terminal; elsewhere it needs --yes. Exit code 1 where one of the names "
                "was not there."
                "",

@@ -8,6 +8,7 @@
 #include "kinalign/dataset/report/data_card.h"
 #include "kinalign/dataset/report/dataset_figures.h"
 #include "kinalign/dataset/report/take_pages.h"
+#include "kinalign/dataset/scan.h"
 #include "kinalign/formats/take/take_hdf5.h"
 #include "kinalign/view/dataset_page/dataset_html.h"
 
@@ -51,7 +52,7 @@ Usage describe_report(Report& o) {
 Result<void> write_over_own(const std::string& path, std::string_view mark, const std::string& text,
                             Call& call) {
   FileSystem& files = call.surroundings.files;
-  const bool is_own = std::filesystem::exists(path) && is_own_page(files, path, mark);
+  const bool is_own = is_there(path) && is_own_page(files, path, mark);
   OutputFile file =
       KA_TRY(OutputFile::create(files, path, is_own ? Overwrite::yes : call.common.overwrite()));
   KA_TRY(file.write(text));

@@ -28,6 +28,7 @@ Usage describe_verify(Verify& o) {
 }
 
 /// Splits against the takes whose summaries can be read; of the others there is a finding already.
+/// A line for each split: a note where all its takes are there and only their bytes are others.
 void check_splits(FileSystem& files, const std::string& folder, Findings& findings) {
   const auto splits = splits_in(files, folder);
   const auto there = scan_takes(folder);
@@ -38,12 +39,16 @@ void check_splits(FileSystem& files, const std::string& folder, Findings& findin
     if (summary) takes.push_back({name, *summary});
   }
   for (const auto& [path, split] : splits) {
-    for (Finding& one : check_split(split, takes, path)) {
-      if (one.severity == Severity::note) continue;
-      one.repair = "make it again with kinalign dataset split";
-      findings.push_back(std::move(one));
-    }
+    Findings found = check_split(split, takes, path);
+    std::erase_if(found, [](const Finding& one) { return one.severity == Severity::note; });
+    if (found.empty()) continue;
+    Finding& worst = found.front();
+    if (worst.severity == Severity::warning) worst.severity = Severity::note;
+    if (found.size() > 1) worst.what.found += fmt::format(", and {} more", found.size() - 1);
+    worst.repair = "make it again with kinalign dataset split and --force";
+    findings.push_back(std::move(worst));
   }
+  sort_findings(findings);
 }
 
 Result<int> run_verify(Verify& o, Call& call) {

@@ -51,9 +51,10 @@ class RemovalPlanner {
   }
 
  private:
+  /// True also where it can't be found out and raw files are to go: looking at them then fails.
   bool has_raw(const TakeName& name) const {
     std::error_code fault;
-    return fs::exists(folder_ + "/" + raw_folder(name), fault);
+    return fs::exists(folder_ + "/" + raw_folder(name), fault) || (with_raw_ && fault);
   }
 
   std::set<TakeName> takes_named(const std::string& word) const {
@@ -77,9 +78,9 @@ class RemovalPlanner {
 
   std::set<TakeName> takes_with_raw(const std::string& person) const {
     std::set<TakeName> out;
-    std::error_code fault;
-    for (const auto& entry : fs::directory_iterator(folder_ + "/sourcedata/" + person, fault)) {
-      const auto name = parse_take_name(entry.path().filename().string());
+    const std::string folder = folder_ + "/sourcedata/" + person;
+    for (const std::string& entry : names_in_folder(folder).value_or(std::vector<std::string>{})) {
+      const auto name = parse_take_name(entry);
       if (name && "sub-" + name->subject == person) out.insert(*name);
     }
     return out;
@@ -127,7 +128,7 @@ class RemovalPlanner {
         plan_.raw_left.push_back(raw_folder(name));
       }
     }
-    add_inputs(name);
+    KA_TRY(add_inputs(name));
     for (const TakeFile file : {TakeFile::take, TakeFile::summary, TakeFile::manifest}) {
       add_file(path_of(name, file));
     }
@@ -135,10 +136,17 @@ class RemovalPlanner {
   }
 
   /// Inputs that do not lie in the take's own folder of raw files: those of a corpus that was
-  /// unpacked. Further files go first, since they are found by way of the file that they belong to.
-  void add_inputs(const TakeName& name) {
+  /// unpacked, and the user's own, which stay. Further files go first, since they are found by way
+  /// of the file that they belong to.
+  Result<void> add_inputs(const TakeName& name) {
     auto inputs = raw_files_of(files_, folder_, name);
-    if (!inputs) return;  // the take goes all the same; `verify` names raw files that are left
+    if (!inputs && with_raw_) {
+      return Failure(Error{path_of(name, TakeFile::manifest), 0,
+                           "a manifest that says which raw files go (without --raw the take goes, "
+                           "and they stay)",
+                           to_string(inputs.error())});
+    }
+    if (!inputs) return {};  // the take goes all the same; `verify` names raw files that are left
     std::reverse(inputs->begin(), inputs->end());
     for (const TakeInput& input : *inputs) {
       const auto place = place_in_sourcedata(folder_, input.path);
@@ -146,7 +154,9 @@ class RemovalPlanner {
       const bool is_own = place && place->starts_with(raw_folder(name));
       if (!place || is_own || !fs::exists(fs::symlink_status(input.path, fault))) continue;
       if (!seen_.insert(*place).second) continue;
-      if (!with_raw_) {
+      if (!is_unpacked(*place)) {
+        plan_.raw_kept.push_back(*place);
+      } else if (!with_raw_) {
         plan_.raw_left.push_back(*place);
       } else if (needed_.contains(*place)) {
         plan_.raw_shared.push_back(*place);
@@ -155,6 +165,7 @@ class RemovalPlanner {
         add_folders_above(*place);
       }
     }
+    return {};
   }
 
   void add_folders_above(const std::string& place) {
@@ -186,9 +197,10 @@ class RemovalPlanner {
                            "a link to another place"});
     }
     std::vector<std::string> inner;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_ + "/" + folder, fault)) {
-      const std::string path = entry.path().lexically_relative(folder_).string();
-      if (fs::is_directory(entry.symlink_status())) {
+    fs::recursive_directory_iterator entry(folder_ + "/" + folder, fault);
+    for (; !fault && entry != fs::recursive_directory_iterator(); entry.increment(fault)) {
+      const std::string path = entry->path().lexically_relative(folder_).string();
+      if (fs::is_directory(entry->symlink_status(fault))) {
         inner.push_back(path);
       } else {
         add_file(path);

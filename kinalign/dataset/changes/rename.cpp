@@ -217,11 +217,11 @@ class Renamer {
     KA_TRY(make_folders(folder_ + "/sub-" + to.subject));
     const bool same_name = from.subject == to.subject && from.action == to.action;
     bool same_recipe = true;
-    if (fs::exists(place(folder_, from, TakeFile::manifest))) {
+    if (is_there(place(folder_, from, TakeFile::manifest))) {
       same_recipe = KA_TRY(write_manifest(from, to));
     }
     KA_TRY(move_raw_files(from, to));
-    const bool had_take = fs::exists(place(folder_, from, TakeFile::take));
+    const bool had_take = is_there(place(folder_, from, TakeFile::take));
     for (const TakeFile file : {TakeFile::summary, TakeFile::take}) {
       KA_TRY(move_or_drop(place(folder_, from, file), place(folder_, to, file),
                           same_name && same_recipe));
@@ -229,7 +229,7 @@ class Renamer {
     KA_TRY(remove(place(folder_, from, TakeFile::manifest)));
     KA_TRY(remove(folder_ + "/report/" + to_string(from) + ".html"));
     if (had_take && same_name && same_recipe) ++out.moved;
-    if (!fs::exists(place(folder_, to, TakeFile::take))) ++out.to_build;
+    if (!is_there(place(folder_, to, TakeFile::take))) ++out.to_build;
     return {};
   }
 
@@ -273,7 +273,7 @@ class Renamer {
   }
 
   Result<void> move_or_drop(const std::string& from, const std::string& to, bool keeps_bytes) {
-    if (!fs::exists(from)) return {};
+    if (!is_there(from)) return {};
     return keeps_bytes ? move_path(from, to) : remove(from);
   }
 
@@ -302,7 +302,7 @@ Result<RenamePlan> plan_rename(FileSystem& files, const std::string& folder,
                                const Catalogue& catalogue, const std::string& from,
                                const std::string& to) {
   const std::string journal = journal_path(folder);
-  if (!fs::exists(journal)) {
+  if (!is_there(journal)) {
     return RenamePlanner(files, folder, catalogue, KA_TRY(scan_takes(folder))).plan(from, to);
   }
   const RenamePlan begun = KA_TRY(read_journal(files, journal));

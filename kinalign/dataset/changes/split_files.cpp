@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/dataset/changes/split_files.h"
 
-#include <filesystem>
-#include <system_error>
+#include "kinalign/dataset/scan.h"
 
 namespace kinalign {
 
-namespace {
-
-namespace fs = std::filesystem;
-
-}  // namespace
-
 std::map<std::string, Split> splits_in(FileSystem& files, const std::string& folder) {
   std::map<std::string, Split> out;
+  const std::string root = folder + "/";
   for (const std::string below : {"", "splits/"}) {
-    std::error_code fault;
-    for (const auto& entry : fs::directory_iterator(fs::path(folder) / below, fault)) {
-      if (entry.path().extension() != ".json") continue;
-      std::string path = below;
-      path += entry.path().filename().string();
-      auto split = read_split(files, entry.path().string());
-      if (split) out.emplace(std::move(path), *std::move(split));
+    const std::string place = root + below;
+    const auto names = names_in_folder(place);
+    if (!names) continue;
+    for (const std::string& name : *names) {
+      if (!name.ends_with(".json")) continue;
+      auto split = read_split(files, place + name);
+      if (split) out.emplace(below + name, *std::move(split));
     }
   }
   return out;

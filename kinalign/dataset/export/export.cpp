@@ -182,14 +182,14 @@ std::string_view needs_of(const std::string& name) {
 class PartFolder {
  public:
   static Result<PartFolder> make(const std::string& target) {
-    if (fs::exists(fs::symlink_status(target))) {
+    std::error_code failed;
+    if (fs::exists(fs::symlink_status(target, failed))) {
       return Failure(Error{target, 0, "a folder that is not there yet", "one that is"});
     }
-    std::error_code failed;
     const auto above = fs::path(target).parent_path();
     if (!above.empty()) fs::create_directories(above, failed);
     const std::string path = target + ".part";
-    if (fs::exists(fs::symlink_status(path))) {
+    if (fs::exists(fs::symlink_status(path, failed))) {
       return Failure(Error{path, 0, "no export that goes on or was broken off (remove it)", "one"});
     }
     KA_TRY(make_new_folder(path));

@@ -11,6 +11,7 @@
 #include <cctype>
 #include <map>
 #include <regex>
+#include <span>
 #include <sstream>
 
 namespace kinalign {
@@ -21,6 +22,8 @@ struct Pattern {
   const char* what;
   std::regex text;
 };
+
+constexpr std::size_t address_patterns = 2;  // the first ones
 
 const std::array<Pattern, 4>& patterns() {
   static const std::array<Pattern, 4> all{{
@@ -64,7 +67,30 @@ class Look {
   }
 
   void text(const std::string& where, const std::string& value) {
-    for (const Pattern& pattern : patterns()) {
+    find_first_of(where, value, patterns());
+  }
+
+  /// Of a text that may have dates and long numbers: years, pages, an ISBN.
+  void published_text(const std::string& where, const std::string& value) {
+    find_first_of(where, value, std::span(patterns()).first(address_patterns));
+  }
+
+  /// Of an action, a class, a device or a rig. "kinect" and "walk" are ids, "Maria" may be a name.
+  void id(const char* table, const std::string& value) {
+    text(fmt::format("the id of a {}", table), value);
+    const auto letter = [&](std::size_t i) { return static_cast<unsigned char>(value[i]); };
+    const bool is_proper = value.size() > 1 && std::isupper(letter(0)) && std::islower(letter(1));
+    if (!is_proper || !reads_like_a_name(value)) return;
+    add(Severity::warning, fmt::format("the id of a {}", table),
+        fmt::format("\"{}\"", shown(value)), "give another id, if it is a person's name");
+  }
+
+  Findings findings;
+
+ private:
+  void find_first_of(const std::string& where, const std::string& value,
+                     std::span<const Pattern> kinds) {
+    for (const Pattern& pattern : kinds) {
       std::smatch match;
       if (!std::regex_search(value, match, pattern.text)) continue;
       add(Severity::error, where, fmt::format("{}: \"{}\"", pattern.what, shown(match.str())),
@@ -73,14 +99,12 @@ class Look {
     }
   }
 
-  Findings findings;
-
- private:
   const std::string& file_;
 };
 
 void look_at_devices(const std::vector<Described>& all, const char* table, Look& look) {
   for (const Described& one : all) {
+    look.id(table, one.id);
     for (const auto& [key, value] : one.texts) {
       const std::string where = fmt::format("{}.{}.{}", table, one.id, key);
       if (names_a_device(key) && !value.empty()) {
@@ -167,12 +191,18 @@ Findings look_for_people(const Catalogue& catalogue, const std::string& file,
   look_at_measures(catalogue.subjects, "weight_kg", &Subject::weight_kg, look);
   look_at_devices(catalogue.devices, "device", look);
   look_at_devices(catalogue.rigs, "rig", look);
-  for (const ActionClass& one : catalogue.classes) look.text("class." + one.id + ".name", one.name);
-  for (const Action& one : catalogue.actions) look.text("action." + one.id + ".name", one.name);
+  for (const ActionClass& one : catalogue.classes) {
+    look.id("class", one.id);
+    look.text("class." + one.id + ".name", one.name);
+  }
+  for (const Action& one : catalogue.actions) {
+    look.id("action", one.id);
+    look.text("action." + one.id + ".name", one.name);
+  }
   for (const std::string& name : names) look.text("a stream or node", name);
   look.text("name", catalogue.name);
-  look.text("licence", catalogue.licence);
-  look.text("citation", catalogue.citation);
+  look.published_text("licence", catalogue.licence);
+  look.published_text("citation", catalogue.citation);
   look.text("description", catalogue.description);
   if (!catalogue.contact.empty()) {
     look.add(Severity::note, "contact", fmt::format("\"{}\"", shown(catalogue.contact)),
@@ -198,6 +228,9 @@ void hide_names(TakeHeader& header, AlignmentReport& report) {
     if (!stream.skeleton.empty()) {
       stream.skeleton = names.of(stream.skeleton, stream.name + "_skeleton", 0);
     }
+    for (auto& [column, value] : stream.select) {
+      if (value.find_first_not_of("0123456789") != std::string::npos) value.clear();
+    }
   }
   report.marks.clear();
   for (Finding& finding : report.findings) {
@@ -212,12 +245,13 @@ void move_dates(Duration moved, TakeHeader& header, AlignmentReport& report) {
   report.begin += moved;
   report.end += moved;
   for (StreamReport& stream : report.streams) {
-    stream.survey.first += moved;
-    stream.survey.last += moved;
+    stream.survey.last = Time{stream.survey.last - stream.survey.first};
+    stream.survey.first = Time{};
   }
   for (StreamOptions& stream : header.parameters.streams) {
+    const std::int64_t first = stream.start_ns.value_or(stream.end_ns.value_or(0));
     for (std::optional<std::int64_t>* stamp : {&stream.start_ns, &stream.end_ns}) {
-      if (*stamp) **stamp += moved.count();
+      if (*stamp) **stamp -= first;
     }
   }
 }

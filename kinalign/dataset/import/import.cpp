@@ -5,18 +5,15 @@
 #include "kinalign/dataset/import/corpora.h"
 #include "kinalign/dataset/import/ids.h"
 #include "kinalign/dataset/import/new_folder.h"
+#include "kinalign/dataset/scan.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <set>
-#include <system_error>
 
 namespace kinalign {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::size_t longest_catalogue = std::size_t{64} << 20;
 
@@ -28,7 +25,7 @@ std::string catalogue_path(const std::string& folder) {
 Result<std::optional<std::string>> read_catalogue_text(FileSystem& files,
                                                        const std::string& folder) {
   const std::string path = catalogue_path(folder);
-  if (!fs::exists(path)) return std::nullopt;
+  if (!is_there(path)) return std::nullopt;
   return KA_TRY(read_whole(files, path, longest_catalogue));
 }
 
@@ -99,7 +96,7 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                            std::string& kind_name) {
   const std::string raw_folder = folder + "/sourcedata";
   std::optional<UnfinishedFolder> unfinished;  // what was unpacked in vain
-  if (!fs::exists(raw_folder)) unfinished.emplace(raw_folder);
+  if (!is_there(raw_folder)) unfinished.emplace(raw_folder);
   const auto sources = KA_TRY(list_sources(files, request.sources, raw_folder, progress));
   const CorpusKind kind =
       KA_TRY(find_corpus(files, sources, request.from, request.sources.front()));

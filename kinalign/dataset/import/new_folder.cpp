@@ -2,10 +2,14 @@
 #include "kinalign/dataset/import/new_folder.h"
 
 #include "kinalign/dataset/import/ids.h"
+#include "kinalign/dataset/scan.h"
 #include "kinalign/sources/input_facts.h"
 
+#include <signal.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <charconv>
 #include <filesystem>
 #include <system_error>
 
@@ -15,10 +19,39 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Removes the folders `parent`/LEAD-PID of imports that were killed.
+void remove_abandoned(const std::string& parent, const std::string& lead) {
+  for (const std::string& name : names_in_folder(parent).value_or(std::vector<std::string>{})) {
+    if (!name.starts_with(lead)) continue;
+    pid_t process = 0;
+    const char* const end = name.data() + name.size();
+    const auto [behind, fault] = std::from_chars(name.data() + lead.size(), end, process);
+    if (fault != std::errc{} || behind != end || process <= 0) continue;
+    const bool runs = process != ::getpid() && (::kill(process, 0) == 0 || errno != ESRCH);
+    std::error_code ignored;
+    if (!runs) fs::remove_all(fs::path(parent) / name, ignored);
+  }
+}
+
+/// Moves the files of a folder to another one that lacks them.
+Result<void> fill_in(const fs::path& from, const fs::path& to) {
+  std::error_code fault;
+  fs::recursive_directory_iterator at(from, fault);
+  for (; !fault && at != fs::recursive_directory_iterator(); at.increment(fault)) {
+    const fs::path target = to / at->path().lexically_relative(from);
+    if (at->is_directory(fault) || is_there(target.string())) continue;
+    KA_TRY(make_folders(target.parent_path().string()));
+    fs::rename(at->path(), target, fault);
+    if (fault) break;
+  }
+  if (!fault) return {};
+  return Failure(Error{to.string(), 0, "a folder that can be filled", fault.message()});
+}
+
 }  // namespace
 
 UnfinishedFolder::UnfinishedFolder(std::string path) : path_(std::move(path)) {
-  for (fs::path up = fs::path(path_).parent_path(); !up.empty() && !fs::exists(up);
+  for (fs::path up = fs::path(path_).parent_path(); !up.empty() && !is_there(up.string());
        up = up.parent_path()) {
     above_.push_back(up.string());
   }
@@ -43,11 +76,10 @@ Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
                                   const FillFolder& fill) {
   const std::string own = stem + "-" + sha256.substr(0, 8);
   const fs::path to = fs::path(parent) / own;
-  if (fs::is_directory(to)) return to.string();
   // Another process may unpack the same source.
-  const fs::path beside = fs::path(parent) / ("." + own + "-" + std::to_string(::getpid()));
-  std::error_code fault;
-  fs::remove_all(beside, fault);  // of a run that was killed
+  const std::string lead = "." + own + "-";
+  remove_abandoned(parent, lead);
+  const fs::path beside = fs::path(parent) / (lead + std::to_string(::getpid()));
   UnfinishedFolder unfinished(beside.string());
   KA_TRY(make_folders(beside.string()));
   KA_TRY(fill([&](const std::string& file) -> Result<OutputFile> {
@@ -55,10 +87,14 @@ Result<std::string> filled_folder(FileSystem& files, const std::string& parent,
     KA_TRY(make_folders(path.parent_path().string()));
     return OutputFile::create(files, path.string(), Overwrite::no);
   }));
+  std::error_code fault;
   fs::rename(beside, to, fault);
-  if (fault && fs::is_directory(to)) return to.string();  // the other one was faster
-  if (fault) return Failure(Error{to.string(), 0, "a folder that can be named", fault.message()});
-  unfinished.keep();
+  if (!fault) unfinished.keep();
+  if (fault && is_there(to.string())) {
+    KA_TRY(fill_in(beside, to));
+  } else if (fault) {
+    return Failure(Error{to.string(), 0, "a folder that can be named", fault.message()});
+  }
   return to.string();
 }
 

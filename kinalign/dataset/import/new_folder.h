@@ -34,7 +34,8 @@ using PutFile = std::function<Result<OutputFile>(const std::string& name)>;
 using FillFolder = std::function<Result<void>(const PutFile& put)>;
 
 /// The folder `parent`/STEM-HASH of what `source` is unpacked to; the hash is the file's, so that
-/// the same source is unpacked once. `fill` is called where the folder is not there yet.
+/// the same source has one folder. If the folder is there already, files that it lacks are put into
+/// it (dataset rm --raw removed them), and all others stay as they are.
 Result<std::string> unpacked_folder(FileSystem& files, const std::string& parent,
                                     const std::string& source, const FillFolder& fill);
 

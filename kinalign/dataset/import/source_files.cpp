@@ -81,7 +81,8 @@ Result<std::vector<SourceFile>> list_sources(FileSystem& files,
                                              const Progress& progress) {
   std::vector<SourceFile> out;
   for (const std::string& source : sources) {
-    if (fs::is_directory(source)) {
+    std::error_code ignored;  // opening the file says what is wrong
+    if (fs::is_directory(source, ignored)) {
       KA_TRY(list_folder(source, out));
     } else if (KA_TRY(is_archive(files, source))) {
       KA_TRY(list_folder(KA_TRY(unpack(files, source, raw_folder, progress)), out));

@@ -18,7 +18,7 @@ struct SourceFile {
 };
 
 /// Files of all sources, sorted by name. Names that begin with a dot are passed over, and what
-/// macOS adds to archives. An archive goes to a folder of its own below `raw_folder`, once.
+/// macOS adds to archives. An archive goes to a folder of its own below `raw_folder`.
 Result<std::vector<SourceFile>> list_sources(FileSystem& files,
                                              const std::vector<std::string>& sources,
                                              const std::string& raw_folder,

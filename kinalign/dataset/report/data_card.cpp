@@ -8,16 +8,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
-#include <set>
-#include <system_error>
 
 namespace kinalign {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::size_t longest_card = std::size_t{4} << 20;
 constexpr std::string_view own_begin = "<!-- own text -->", own_end = "<!-- end -->";
@@ -49,7 +44,7 @@ std::string text_at(const Cell& cell, const TableColumn& column) {
 /// Blocks of own text in the old card, with their marks.
 Result<std::string> own_texts(FileSystem& files, const std::string& path) {
   const std::string empty = fmt::format("{}\n\n{}\n", own_begin, own_end);
-  if (path.empty() || !fs::exists(path)) return empty;
+  if (path.empty() || !is_there(path)) return empty;
   const std::string text = KA_TRY(read_whole(files, path, longest_card));
   std::string out;
   for (std::size_t at = text.find(own_begin); at != std::string::npos;
@@ -219,11 +214,9 @@ class Card {
   }
 
   void put_splits() {
-    std::set<std::string> names;
-    std::error_code fault;
-    for (const auto& entry : fs::directory_iterator(folder_ + "/splits", fault)) {
-      if (entry.path().extension() == ".json") names.insert(entry.path().filename().string());
-    }
+    std::vector<std::string> names =
+        names_in_folder(folder_ + "/splits").value_or(std::vector<std::string>{});
+    std::erase_if(names, [](const std::string& name) { return !name.ends_with(".json"); });
     if (names.empty()) return;
     title("Splits");
     for (const std::string& name : names) line("- `splits/" + name + "`");

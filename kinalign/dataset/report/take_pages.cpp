@@ -3,20 +3,18 @@
 
 #include "kinalign/core/parallel.h"
 #include "kinalign/dataset/build.h"
+#include "kinalign/dataset/scan.h"
 #include "kinalign/dataset/take_inputs.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <filesystem>
 #include <mutex>
-#include <system_error>
 
 namespace kinalign {
 
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view schema = "kinalign.dataset_pages/1";
@@ -89,7 +87,7 @@ TakePages::TakePages(FileSystem& files, std::string folder, std::string place, s
 std::string TakePages::page_of(const std::string& name, const std::string& sha256) const {
   const auto known = pages_.find(name);
   const bool current = known != pages_.end() && known->second == sha256;
-  return current && fs::exists(path_of_page(name)) ? name + ".html" : "";
+  return current && is_there(path_of_page(name)) ? name + ".html" : "";
 }
 
 Result<std::vector<PageJob>> TakePages::plan(const DatasetIndex& index,
@@ -101,7 +99,7 @@ Result<std::vector<PageJob>> TakePages::plan(const DatasetIndex& index,
     const auto hash = hashes.find(take);
     if (!name || hash == hashes.end() || !page_of(take, hash->second).empty()) continue;
     const std::string page = path_of_page(take);
-    if (fs::exists(page) && !is_own_page(files_, page, "name=\"generator\" content=\"kinalign")) {
+    if (is_there(page) && !is_own_page(files_, page, "name=\"generator\" content=\"kinalign")) {
       return Failure(Error{page, 0, "a page that kinalign wrote, or none", "another file"});
     }
     jobs.push_back({*name, folder_ + "/" + path_of(*name, TakeFile::take), page,

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace kinalign {
@@ -24,6 +25,14 @@ std::set<std::string> streams_of(const WindowTake& take) {
   std::set<std::string> out;
   for (const StreamSummary& stream : take.summary.streams) out.insert(stream.name);
   return out;
+}
+
+/// The first of the streams that a take does not have; empty where it has all.
+std::string lacking(const std::vector<std::string>& names, const WindowTake& take) {
+  const auto there = streams_of(take);
+  const auto lacks = std::find_if(names.begin(), names.end(),
+                                  [&](const auto& name) { return !there.contains(name); });
+  return lacks == names.end() ? "" : *lacks;
 }
 
 /// The streams that were asked for; without any, those that all takes have.
@@ -79,7 +88,8 @@ class Job {
     return TakeReader::open(
         files_, source_.folder + "/" + path_of(source_.takes[take].name, TakeFile::take), parts_);
   }
-  Result<void> set_streams(const std::vector<std::string>& names, const TakeHeader& header);
+  Result<void> set_streams(const std::vector<std::string>& names);
+  std::string reasons() const;
   Result<WindowedTake> windowed(std::size_t take, TakeReader& reader);
   Result<bool> is_valid(TakeReader& reader, const WindowPlace& place,
                         const std::vector<std::size_t>& groups);
@@ -102,13 +112,52 @@ Result<void> Job::done_with(std::size_t take) {
   return go_on(progress_, "windows", done_, total_) ? Result<void>() : Failure(interruption());
 }
 
-Result<void> Job::set_streams(const std::vector<std::string>& names, const TakeHeader& header) {
+/// The groups of those names, in that order.
+std::vector<TakeGroup> groups_of(const TakeHeader& header, const std::vector<std::string>& names) {
+  std::vector<TakeGroup> out;
   for (const std::string& name : names) {
     const auto found = std::find_if(header.groups.begin(), header.groups.end(),
                                     [&](const TakeGroup& g) { return g.name == name; });
-    if (found != header.groups.end()) streams_.groups.push_back(*found);
+    if (found != header.groups.end()) out.push_back(*found);
   }
+  return out;
+}
+
+/// Windows have the streams of the first take in the spaces that most takes have.
+Result<void> Job::set_streams(const std::vector<std::string>& names) {
+  struct Spaces {
+    std::vector<TakeGroup> groups;  // of the first take that has them
+    std::size_t takes = 0;
+  };
+  std::vector<Spaces> all;
+  for (std::size_t take = 0; take < source_.takes.size(); ++take) {
+    if (!lacking(names, source_.takes[take]).empty()) continue;
+    const TakeReader reader = KA_TRY(open(take));
+    std::vector<TakeGroup> groups = groups_of(reader.header(), names);
+    const auto same = [&](const Spaces& one) {
+      return std::equal(one.groups.begin(), one.groups.end(), groups.begin(), groups.end(),
+                        [](const TakeGroup& a, const TakeGroup& b) { return a.space == b.space; });
+    };
+    const auto known = std::find_if(all.begin(), all.end(), same);
+    if (known != all.end()) ++known->takes;
+    if (known == all.end()) all.push_back({std::move(groups), 1});
+  }
+  const auto most = std::max_element(
+      all.begin(), all.end(), [](const Spaces& a, const Spaces& b) { return a.takes < b.takes; });
+  if (most != all.end()) streams_.groups = std::move(most->groups);
   return {};
+}
+
+/// Why takes were left out: "has no stream imu (2 takes); ...".
+std::string Job::reasons() const {
+  std::map<std::string, std::size_t> counts;
+  for (const TakeLeftOut& one : made.takes_left_out) ++counts[one.why];
+  std::string out;
+  for (const auto& [why, takes] : counts) {
+    out +=
+        fmt::format("{}{} ({} take{})", out.empty() ? "" : "; ", why, takes, takes == 1 ? "" : "s");
+  }
+  return out.empty() ? "none" : out;
 }
 
 Result<bool> Job::is_valid(TakeReader& reader, const WindowPlace& place,
@@ -138,17 +187,14 @@ Result<WindowedTake> Job::windowed(std::size_t take, TakeReader& reader) {
 Result<void> Job::find(const std::vector<std::string>& names) {
   parts_ = {names, window_array_names()};
   made.windows.assign(source_.parts.size(), 0);
+  KA_TRY(set_streams(names));
   for (std::size_t take = 0; take < source_.takes.size(); ++take) {
     const WindowTake& of = source_.takes[take];
-    const auto there = streams_of(of);
-    const auto lacks = std::find_if(names.begin(), names.end(),
-                                    [&](const auto& name) { return !there.contains(name); });
-    if (lacks != names.end()) {
-      made.takes_left_out.push_back({of.name, "has no stream " + *lacks});
+    if (const std::string lacks = lacking(names, of); !lacks.empty()) {
+      made.takes_left_out.push_back({of.name, "has no stream " + lacks});
       continue;
     }
     TakeReader reader = KA_TRY(open(take));
-    if (streams_.groups.empty()) KA_TRY(set_streams(names, reader.header()));
     const auto fits = streams_.find_in(reader.header());
     if (!fits) {
       made.takes_left_out.push_back({of.name, fits.error().found});
@@ -165,8 +211,7 @@ Result<void> Job::find(const std::vector<std::string>& names) {
     KA_TRY(done_with(take));
   }
   if (!takes_.empty()) return {};
-  return Failure(Error{source_.folder, 0, "a window in one of the takes at least",
-                       made.takes_left_out.empty() ? "none" : made.takes_left_out.front().why});
+  return Failure(Error{source_.folder, 0, "a window in one of the takes at least", reasons()});
 }
 
 Result<void> Job::write(const NewFile& target) {

@@ -54,7 +54,8 @@ struct NewFile {
 };
 
 /// Writes `target`, in a child process since HDF5 can crash on a hostile file. Takes are left out
-/// that lack a stream, or whose joints or nodes are others than the first take's. Fails where rates
+/// that lack a stream, that stand in other spaces than most takes, or whose joints or nodes are
+/// others than those of the first take in these spaces. Fails where rates
 /// differ and `rate_hz` is 0, where no stream is in all takes, and where no window is left.
 Result<WindowsMade> write_windows(FileSystem& files, const WindowSource& source,
                                   const WindowOptions& options, const NewFile& target,

@@ -207,3 +207,39 @@ TEST_CASE("raw files stay where another take's manifest can't be read") {
   CHECK(set.contents() == before);
   CHECK(removed(files, set.folder.path(), {"sub-01"}, false));
 }
+
+TEST_CASE("raw files that the user put below sourcedata stay, and are named") {
+  const ChangedSet set;
+  PosixFiles files;
+  const std::string own = "sourcedata/monday/walk.bvh", other = "sourcedata/my-walks/walk.bvh";
+  for (const std::string& file : {own, other}) set.folder.write(file, "the only copy");
+  set.folder.write(
+      path_of({"01", "S1A01", 1}, TakeFile::manifest),
+      "[stream.mocap]\nfile = \"../" + own + "\"\n[stream.other]\nfile = \"../" + other + "\"\n");
+  for (const bool with_raw : {false, true}) {
+    const auto plan = plan_removal(files, set.folder.path(), {"sub-01"}, with_raw);
+    REQUIRE(plan);
+    CHECK(plan->raw_kept == std::vector<std::string>{other, own});
+    CHECK(plan->raw_left.size() == (with_raw ? 0 : 2));  // the takes' own folders
+  }
+  REQUIRE(removed(files, set.folder.path(), {"sub-01"}, true));
+  CHECK(set.folder.read(own) == "the only copy");
+  CHECK(set.folder.read(other) == "the only copy");
+  CHECK(!std::filesystem::exists(set.folder / "sub-01"));
+}
+
+TEST_CASE("raw files of a take whose manifest can't be read are not forgotten") {
+  const ChangedSet set;
+  PosixFiles files;
+  put_unpacked(set);
+  const TakeName name{"01", "S1A01", 1};
+  set.folder.write(path_of(name, TakeFile::manifest), "[stream.mocap\n");
+  const auto before = set.contents();
+  const auto failed = removed(files, set.folder.path(), {to_string(name)}, true);
+  REQUIRE(!failed);
+  CHECK(failed.error().file == path_of(name, TakeFile::manifest));
+  CHECK(failed.error().expected.starts_with("a manifest that says which raw files go"));
+  CHECK(set.contents() == before);
+  CHECK(removed(files, set.folder.path(), {to_string(name)}, false));
+  CHECK(set.contents().contains(unpacked + "Vicon/a.bvh"));
+}
