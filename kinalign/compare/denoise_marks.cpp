@@ -63,9 +63,8 @@ Result<DenoiseMarker> DenoiseMarker::make(const DenoiseLayout& layout,
   };
   std::map<std::string, std::deque<Copy>> takes;
   for (const Pair& pair : pairs) {
-    takes[person_and_action(pair)].push_back(
-        {shared_of(out.places_, out.joints_, pair.truth),
-         shared_valid(out.places_, out.joints_, pair.valid)});
+    takes[person_and_action(pair)].push_back({shared_of(out.places_, out.joints_, pair.truth),
+                                              shared_valid(out.places_, out.joints_, pair.valid)});
   }
   for (const auto& [key, copies] : takes) {
     std::vector<Sequence> sequences;
@@ -94,9 +93,9 @@ DenoiseMarks DenoiseMarker::marks_of(const Pair& pair, const std::vector<float>&
     if (valid[i] == 0) continue;
     const std::size_t frame = i / shared_joint_count, joint = places_[i % shared_joint_count];
     const double radius = radius_90 * spread[frame * joints_ + joint];
-    const double distance = std::hypot(predicted[3 * i] - truth[3 * i],
-                                       predicted[3 * i + 1] - truth[3 * i + 1],
-                                       predicted[3 * i + 2] - truth[3 * i + 2]);
+    const double distance =
+        std::hypot(predicted[3 * i] - truth[3 * i], predicted[3 * i + 1] - truth[3 * i + 1],
+                   predicted[3 * i + 2] - truth[3 * i + 2]);
     ++out.cells;
     radii += radius;
     if (distance <= radius) ++within;

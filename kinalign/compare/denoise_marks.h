@@ -19,9 +19,9 @@ namespace kinalign {
 /// Of one stretch of a take.
 struct DenoiseMarks {
   ProtocolMarks protocol;
-  TableNine table_nine;            // of positions in cm, in the answer's own space
-  double covered = 0.0;            // share of cells within the stated 90 % radius
-  double radius_cm = 0.0;          // that radius, mean; 0 where none is stated
+  TableNine table_nine;    // of positions in cm, in the answer's own space
+  double covered = 0.0;    // share of cells within the stated 90 % radius
+  double radius_cm = 0.0;  // that radius, mean; 0 where none is stated
   std::size_t cells = 0;
 };
 

@@ -42,22 +42,22 @@ Result<std::vector<Fold>> folds_of(const std::string& kind, const std::vector<Fo
   std::vector<Fold> out;
   if (kind == "people") {
     for (const std::string& subject : all_of(takes, &FoldTake::subject)) {
-      out.push_back(fold_where("subject " + subject, takes, [&](const FoldTake& take) {
-        return take.subject == subject;
-      }));
+      out.push_back(fold_where("subject " + subject, takes,
+                               [&](const FoldTake& take) { return take.subject == subject; }));
     }
   } else if (kind == "runs") {
-    out.push_back(fold_where("runs 5 and 10", takes, [](const FoldTake& take) {
-      return take.run == 5 || take.run == 10;
-    }));
+    out.push_back(fold_where("runs 5 and 10", takes,
+                             [](const FoldTake& take) { return take.run == 5 || take.run == 10; }));
   } else if (kind == "actions") {
     const auto names = all_of(takes, &FoldTake::action);
     const std::vector<std::string> actions(names.begin(), names.end());
     for (std::size_t k = 0; k < action_folds; ++k) {
-      out.push_back(fold_where("actions " + std::to_string(k + 1), takes, [&](const FoldTake& take) {
-        const auto at = std::find(actions.begin(), actions.end(), take.action) - actions.begin();
-        return static_cast<std::size_t>(at) % action_folds == k;
-      }));
+      out.push_back(
+          fold_where("actions " + std::to_string(k + 1), takes, [&](const FoldTake& take) {
+            const auto at =
+                std::find(actions.begin(), actions.end(), take.action) - actions.begin();
+            return static_cast<std::size_t>(at) % action_folds == k;
+          }));
     }
   } else {
     return Failure(Error{"", 0, "folds of people, runs or actions", kind});

@@ -15,13 +15,13 @@ struct FoldTake {
 };
 
 struct Fold {
-  std::string name;                       // "subject 03"
+  std::string name;                         // "subject 03"
   std::vector<std::string> learnt, tested;  // names of takes
 };
 
-/// "people": each person is tested once. "runs": runs 5 and 10 of every action are tested (UI-PRMD's
-/// REP). "actions": five folds, every fifth action is tested (MOV), in the order of their names.
-/// Fails for another word and where a fold has nothing to learn from or to test.
+/// "people": each person is tested once. "runs": runs 5 and 10 of every action are tested
+/// (UI-PRMD's REP). "actions": five folds, every fifth action is tested (MOV), in the order of
+/// their names. Fails for another word and where a fold has nothing to learn from or to test.
 Result<std::vector<Fold>> folds_of(const std::string& kind, const std::vector<FoldTake>& takes);
 
 /// The run in a take's name: 3 of "sub-01_task-walk_run-03"; 0 where it names none.

@@ -56,8 +56,9 @@ std::vector<float> base_joints(const DenoiseLayout& layout, JointFrames body) {
   std::vector<float> out;
   for (std::size_t t = 0; t < body.frames(); ++t) {
     for (const int base : layout.bases) {
-      const float* at = base < 0 ? frames[t].root.data()
-                                 : &body.positions[(t * body.joints + static_cast<std::size_t>(base)) * 3];
+      const float* at =
+          base < 0 ? frames[t].root.data()
+                   : &body.positions[(t * body.joints + static_cast<std::size_t>(base)) * 3];
       out.insert(out.end(), at, at + 3);
     }
   }
@@ -177,9 +178,8 @@ Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt
     frames_of(layout, *pair, fit_->mean, features, targets);
     if (features.rows() > 0) normal.add(features, targets);
   }
-  fit_->weights = normal.gram.size() == 0
-                      ? Matrix(Matrix::Zero(width + 1, whole(layout.answers())))
-                      : normal.solved(penalty);
+  fit_->weights = normal.gram.size() == 0 ? Matrix(Matrix::Zero(width + 1, whole(layout.answers())))
+                                          : normal.solved(penalty);
 }
 
 Ridge::~Ridge() = default;

@@ -27,7 +27,8 @@ class MeanOffset {
 /// middle one.
 class Ridge {
  public:
-  Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt, double penalty = 300.0);
+  Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt,
+        double penalty = 300.0);
   ~Ridge();
   std::vector<float> clean(const DenoiseLayout& layout, const JointFrames& body) const;
 

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/learn/eval_methods.h"
+
+#include "apps/cli/console.h"
+#include "apps/kinalign/learn/worker.h"
+
+#include "kinalign/compare/linear.h"
+#include "kinalign/models/filters.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_model_bytes = std::size_t{1} << 30U;
+
+/// The base joints after a filter of the input.
+Answer filtered(const DenoiseLayout& layout, const std::function<void(JointFrames&)>& filter) {
+  return [&layout, filter](const JointFrames& body) {
+    JointFrames copy = body;
+    fill_missing(copy, false);
+    filter(copy);
+    return Denoised{base_joints(layout, std::move(copy)), {}};
+  };
+}
+
+std::vector<const Pair*> learnt_of(const EvalTask& task) {
+  std::vector<const Pair*> out;
+  for (const Pair& pair : task.pairs) {
+    if (std::find(task.learnt.begin(), task.learnt.end(), pair.take) != task.learnt.end()) {
+      out.push_back(&pair);
+    }
+  }
+  return out;
+}
+
+Result<Answer> trained(const std::string& method, const EvalTask& task, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string model = task.folder + "/model.safetensors", file = task.folder + "/job.json";
+  Json options{{"seed", task.seed}};
+  if (task.steps > 0) options["steps"] = task.steps;
+  const Json job{{"schema", "kinalign.training_job/1"},
+                 {"method", method},
+                 {"windows", task.windows},
+                 {"input", task.input},
+                 {"truth", task.truth},
+                 {"learn", task.learnt},
+                 {"out", model},
+                 {"threads", call.jobs},
+                 {"options", options}};
+  KA_TRY(write_whole(files, file, job.dump(1), Overwrite::yes));
+  KA_TRY(run_worker(file, call.console.progress()));
+  const std::string bytes = KA_TRY(read_whole(files, model, most_model_bytes));
+  auto denoiser =
+      std::make_shared<Denoiser>(KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, model)))));
+  return Answer([denoiser](const JointFrames& body) { return denoiser->answer(body); });
+}
+
+}  // namespace
+
+const std::vector<EvalMethod>& eval_methods() {
+  static const std::vector<EvalMethod> all{
+      {"raw", "the Kinect as it is"},
+      {"hold", "the last tracked place"},
+      {"savgol", "Savitzky-Golay, 9 frames, order 2"},
+      {"one-euro", "One-Euro filter"},
+      {"kalman", "Kalman smoother"},
+      {"offset", "mean offset of each joint"},
+      {"offset+kalman", "Kalman smoother, then the mean offset"},
+      {"ridge", "ridge regression over 9 frames"},
+      {"cnn", "convolutional autoencoder (Holden 2016), paired", true},
+      {"bra", "bidirectional recurrent autoencoder (Li 2019)", true},
+      {"bra-p", "the same, perceptual (Li 2020)", true},
+      {"refine", "ours", true}};
+  return all;
+}
+
+Result<Answer> make_answer(const std::string& method, const EvalTask& task, Call& call) {
+  const DenoiseLayout& layout = task.layout;
+  const double rate = layout.rate_hz;
+  if (method == "raw") return filtered(layout, [](JointFrames&) {});
+  if (method == "hold") return filtered(layout, [rate](JointFrames& body) { hold(body, rate); });
+  if (method == "savgol") {
+    return filtered(layout, [&layout](JointFrames& body) {
+      smooth(layout.smoothing, 3 * body.joints, body.positions);
+    });
+  }
+  if (method == "one-euro") {
+    return filtered(layout, [rate](JointFrames& body) { one_euro({}, body, rate); });
+  }
+  if (method == "kalman") {
+    return filtered(layout, [rate](JointFrames& body) { kalman_smooth({}, body, rate); });
+  }
+  if (method == "offset" || method == "offset+kalman") {
+    const auto fit = std::make_shared<MeanOffset>(layout, learnt_of(task));
+    const bool smoothed = method != "offset";
+    return Answer([fit, smoothed, &layout, rate](const JointFrames& body) {
+      JointFrames copy = body;
+      if (smoothed) kalman_smooth({}, copy, rate);
+      return Denoised{fit->clean(layout, copy), {}};
+    });
+  }
+  if (method == "ridge") {
+    const auto fit = std::make_shared<Ridge>(layout, learnt_of(task));
+    return Answer([fit, &layout](const JointFrames& body) {
+      return Denoised{fit->clean(layout, body), {}};
+    });
+  }
+  return trained(method, task, call);
+}
+
+}  // namespace kinalign

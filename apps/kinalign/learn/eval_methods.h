@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The methods that eval compares: filters, those fitted in closed form, and trained networks.
+#pragma once
+
+#include "apps/cli/verb.h"
+
+#include "kinalign/models/denoise_model.h"
+#include "kinalign/models/pairs.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// What a method answers to a body, in the body's space.
+using Answer = std::function<Denoised(const JointFrames& body)>;
+
+struct EvalMethod {
+  std::string name, summary;
+  bool trained = false;  // by kinalign-learn
+};
+const std::vector<EvalMethod>& eval_methods();
+
+/// What a method is made from.
+struct EvalTask {
+  const DenoiseLayout& layout;
+  const std::vector<Pair>& pairs;
+  std::vector<std::string> learnt;  // names of takes
+  std::string windows, input, truth;
+  std::string folder;  // for files of the run
+  std::int64_t seed = 1, steps = 0;
+};
+
+/// Fits or trains it.
+Result<Answer> make_answer(const std::string& method, const EvalTask& task, Call& call);
+
+}  // namespace kinalign
