@@ -6,7 +6,7 @@
 
 namespace kinalign {
 
-/// When a true foot stands on the floor.
+/// The conditions under which a true foot stands on the floor.
 struct ContactOptions {
   double fastest_m_s = 0.15;  // of the step from the frame before
   double highest_m = 0.05;    // above the foot's floor: the lowest percentile of its height

@@ -8,7 +8,7 @@
 
 namespace kinalign {
 
-/// Of one repetition. A mark is absent where no cell counts for it.
+/// The marks of one repetition. A mark is absent where no cell counts for it.
 struct ProtocolMarks {
   std::optional<double> position_cm;   // MPJPE
   std::optional<double> fitted_cm;     // PA: a similarity per frame of 12 valid joints or more

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What metrics are computed on: a truth with its validity, beside what a method says. Metrics are
-// those of the reference (models.md section 8, UI-PRMD's protocol); lengths are metres everywhere.
+// The input of all metrics: a truth with its validity, and a method's prediction. The metrics are
+// those of the reference (models.md section 8, UI-PRMD's protocol); lengths are metres.
 #pragma once
 
 #include "kinalign/motion/arrays.h"
@@ -19,13 +19,13 @@ struct Sequence {
   std::span<const double> truth;        // [T,J,3] m, y up
   std::span<const std::uint8_t> valid;  // [T,J] cells that count
 
-  std::size_t frames() const { return valid.size() / joints; }
+  std::size_t frames() const { return joints == 0 ? 0 : valid.size() / joints; }
   bool has(std::size_t frame, std::size_t joint) const {
     return valid[frame * joints + joint] != 0;
   }
 };
 
-/// What a method says: [T,J,3] m, an answer for every cell.
+/// A method's answer [T,J,3] m for every cell.
 using Prediction = std::span<const double>;
 
 /// Two joints.

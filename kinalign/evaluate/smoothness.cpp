@@ -28,7 +28,7 @@ Vec3 third_difference(std::span<const double> places, std::size_t i, std::size_t
   return second_difference(places, i + joints, joints) - second_difference(places, i, joints);
 }
 
-/// Distances from frame to frame [T-1,J], m; each joint's less its mean over valid steps.
+/// Distances from frame to frame [T-1,J], m, less each joint's mean over valid steps.
 struct Speeds {
   std::vector<double> values;
   std::vector<std::uint8_t> valid;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a prediction moves, against how the truth does (models.md 8.5 to 8.7). Differences are taken
-// over frames whose cells are all valid, without padding.
+// Smoothness, delay and amplitude of a prediction against the truth's (models.md 8.5 to 8.7).
+// Differences are taken over frames whose cells are all valid, without padding.
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"
@@ -20,9 +20,9 @@ struct Jitter {
 };
 std::optional<Jitter> jitter(const Sequence& sequence, Prediction prediction);
 
-/// How much later the prediction moves, s: where the correlation of the joints' speeds with the
-/// truth's is largest, within `most_frames`, to a part of a frame by a parabola. Absent where
-/// nothing moves, or the largest lies at the end of the range.
+/// The prediction's delay, s: the shift within `most_frames` at which the joints' speeds correlate
+/// best with the truth's, to a part of a frame by a parabola. Absent if nothing moves, or if the
+/// best shift lies at the end of the range.
 std::optional<double> lag_s(const Sequence& sequence, Prediction prediction,
                             std::size_t most_frames = 15);
 

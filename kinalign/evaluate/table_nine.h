@@ -18,7 +18,7 @@ struct TableNine {
   double smooth_apart() const;  // |E_s - the truth's|
 };
 
-/// Of one window [T,J,3] of any unit; windows are averaged (mean_of).
+/// The columns of one window [T,J,3] of any unit; windows are averaged (mean_of).
 TableNine table_nine(std::span<const double> truth, Prediction prediction, std::size_t joints,
                      std::span<const Bone> bones);
 TableNine mean_of(std::span<const TableNine> windows);
@@ -39,7 +39,7 @@ struct UnitScale {
   std::vector<double> mean_pose;  // [3J]
   Vec3 largest = Vec3::Ones();
 };
-/// Of the training people's truth [N,J,3], after own_root.
+/// The scale of the training people's truth [N,J,3], after own_root.
 UnitScale unit_scale(std::span<const double> positions, std::size_t joints);
 std::vector<double> scaled(std::span<const double> positions, const UnitScale& scale);
 

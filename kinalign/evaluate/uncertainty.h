@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a stated uncertainty holds (models.md 8.10).
+// Tests of a stated uncertainty (models.md 8.10).
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"

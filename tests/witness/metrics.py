@@ -60,8 +60,9 @@ def correlation(k):
 
 c = np.array([correlation(k) for k in range(-15, 16)])
 k = int(c.argmax())
-top = np.polynomial.Polynomial.fit([-1, 0, 1], c[k - 1:k + 2], 2).deriv().roots()[0]
-answer("lag", [(k - 15 + top) / RATE])
+if 0 < k < 30:  # at the end of the range there is no lag
+    top = np.polynomial.Polynomial.fit([-1, 0, 1], c[k - 1:k + 2], 2).deriv().roots()[0]
+answer("lag", [(k - 15 + top) / RATE] if 0 < k < 30 else [])
 far = lambda x: np.ma.array(np.linalg.norm(x - x[:, :1], axis=-1), mask=~rooted).std(0).sum()
 answer("amplitude", [far(p) / far(y)])
 

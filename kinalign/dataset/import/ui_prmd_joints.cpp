@@ -75,7 +75,7 @@ Result<void> read_kinect(const PointInput& points, Repetition& out) {
   return {};
 }
 
-/// Of markers at 100 Hz every second frame: packs hold no others.
+/// Markers at 100 Hz give every second frame: packs hold no others.
 Result<void> read_markers(const PointInput& points, Repetition& out) {
   const PointFrames frames = KA_TRY(all_frames(points));
   const std::size_t stride = out.files.vicon_hz > truth_hz ? 2 : 1;
@@ -144,6 +144,7 @@ Result<std::vector<Repetition>> read_person(const ImportInput& input, const Grou
     read[i] = read_repetition(input.files, group[i].first, group[i].second);
   });
   std::vector<Repetition> out;
+  out.reserve(read.size());
   for (auto& one : read) out.push_back(KA_TRY(std::move(one)));
   put_truth(out);
   parallel_for(out.size(), input.jobs, [&](std::size_t i) {
@@ -152,8 +153,8 @@ Result<std::vector<Repetition>> read_person(const ImportInput& input, const Grou
   return out;
 }
 
-/// Moves what the gate lets through to `taken`; a person's movement at a time. Says of the others
-/// why they are left out.
+/// The gate over one person's movement: moves the repetitions that pass to `taken`, and adds the
+/// others with the reason to the parts left out.
 void pass_gate(std::vector<Repetition> movement, std::vector<Repetition>& taken, Corpus& corpus) {
   const auto fitting = static_cast<std::size_t>(std::count_if(
       movement.begin(), movement.end(), [](const Repetition& one) { return one.fits(); }));
@@ -184,7 +185,7 @@ Result<void> put_transform(std::span<Repetition> movement) {
   return {};
 }
 
-/// What is taken of one person.
+/// The repetitions of one person that pass the gate, with their transforms.
 Result<std::vector<Repetition>> take_person(std::vector<Repetition> all, Corpus& corpus) {
   std::vector<Repetition> taken;
   for (auto begin = all.begin(); begin != all.end();) {
@@ -201,7 +202,7 @@ Result<std::vector<Repetition>> take_person(std::vector<Repetition> all, Corpus&
 
 std::string truth_name(const Repetition& one) { return one.name.text() + "_joints.trc"; }
 
-/// From the first frame with a valid joint to the last.
+/// The truth from the first frame with a valid joint to the last.
 PointFrames truth_frames(const Repetition& one) {
   const auto is_valid = [](std::uint8_t valid) { return valid != 0; };
   const auto& valid = one.truth.valid;

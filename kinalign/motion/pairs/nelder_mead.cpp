@@ -115,7 +115,7 @@ class Simplex {
 
 }  // namespace
 
-std::vector<double> minimise(const CostFunction& cost, std::vector<double> start) {
+std::vector<double> minimise(const CostFunction& cost, const std::vector<double>& start) {
   const std::size_t most = calls_a_number * start.size();
   Simplex simplex(cost, start);
   for (std::size_t steps = 1; steps < most && simplex.calls() < most; ++steps) {

@@ -13,6 +13,6 @@ using CostFunction = std::function<double(std::span<const double>)>;
 
 /// The place near `start` where the cost is least: to 1e-4 in the place and in the cost, or after
 /// 200 calls for each of its numbers.
-std::vector<double> minimise(const CostFunction& cost, std::vector<double> start);
+std::vector<double> minimise(const CostFunction& cost, const std::vector<double>& start);
 
 }  // namespace kinalign

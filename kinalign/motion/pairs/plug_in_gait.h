@@ -28,7 +28,8 @@ struct MarkerFrames {
   std::size_t frames() const { return seen.size() / plug_in_gait_markers.size(); }
 };
 
-/// How far joints lie from where the markers alone put them. Markers sit 1 to 5 cm above a joint.
+/// The distance of joints from the places that the markers alone give. Markers sit 1 to 5 cm above
+/// a joint.
 struct SideShift {
   double elbow_m = 0.0;         // along forearm to shoulder
   double knee_along_m = 0.0;    // along the thigh to the hip

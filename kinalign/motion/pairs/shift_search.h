@@ -36,7 +36,7 @@ class PieceCurve {
  public:
   explicit PieceCurve(const PointPiece& piece);
 
-  /// At the piece's own times shift_s + i / rate_hz, i in [0, frames).
+  /// The points at the piece's own times shift_s + i / rate_hz, i in [0, frames).
   CurvePoints at(double shift_s, double rate_hz, std::size_t frames) const;
   const PointPiece& piece() const { return piece_; }
 
