@@ -5,6 +5,7 @@
 
 #include "kinalign/models/pairs.h"
 #include "kinalign/learn/trainer.h"
+#include "kinalign/models/denoise_features.h"
 
 namespace kinalign {
 

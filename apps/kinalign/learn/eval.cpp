@@ -35,6 +35,7 @@ constexpr int cache_version = 1;
 struct Eval {
   std::vector<std::string> methods;
   std::string data, windows, input = "kinect", truth = "mocap", folds = "people", format = "text";
+  std::string device = "cpu";
   double rate_hz = 30.0;
   std::int64_t seeds = 1, steps = 0;
 };
@@ -55,6 +56,7 @@ Usage describe_eval(Eval& o) {
       {"rate", "frames a second", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
       {"seeds", "trainings of each network", &o.seeds, 1.0, 100.0},
       {"steps", "batches of each training; 0: the method's own number", &o.steps, 0.0, 1e8},
+      {"device", "where networks are trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
       format_field(o.format)};
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"-o", 0, "-o FOLDER for results", "none"});
@@ -225,8 +227,16 @@ std::string key_of(const Bench& bench, const Fold& fold, const std::string& meth
 Result<std::vector<Marked>> compute(const Bench& bench, const Fold& fold, const std::string& method,
                                     std::int64_t seed, const Eval& o, const DenoiseMarker& marker,
                                     Call& call) {
-  const EvalTask task{bench.layout, bench.pairs.all, fold.learnt, bench.windows, o.input,
-                      o.truth,      call.common.out, seed,        o.steps};
+  const EvalTask task{.layout = bench.layout,
+                      .pairs = bench.pairs.all,
+                      .learnt = fold.learnt,
+                      .windows = bench.windows,
+                      .input = o.input,
+                      .truth = o.truth,
+                      .folder = call.common.out + "/models/" + key_of(bench, fold, method, seed, o),
+                      .device = o.device,
+                      .seed = seed,
+                      .steps = o.steps};
   const Answer answer = KA_TRY(make_answer(method, task, call));
   const Steadier steadier(bench.layout);
   std::vector<Marked> out;

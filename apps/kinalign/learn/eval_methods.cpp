@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 namespace kinalign {
@@ -18,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_model_bytes = std::size_t{1} << 30U;
+constexpr std::size_t most_trained_bytes = std::size_t{1} << 30U;
 
 /// The base joints after a filter of the input.
 Answer filtered(const DenoiseLayout& layout, const std::function<void(JointFrames&)>& filter) {
@@ -43,6 +44,7 @@ std::vector<const Pair*> learnt_of(const EvalTask& task) {
 Result<Answer> trained(const std::string& method, const EvalTask& task, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string model = task.folder + "/model.safetensors", file = task.folder + "/job.json";
+  KA_TRY(make_folders(task.folder));
   Json options{{"seed", task.seed}};
   if (task.steps > 0) options["steps"] = task.steps;
   const Json job{{"schema", "kinalign.training_job/1"},
@@ -52,11 +54,16 @@ Result<Answer> trained(const std::string& method, const EvalTask& task, Call& ca
                  {"truth", task.truth},
                  {"learn", task.learnt},
                  {"out", model},
+                 {"log", task.folder + "/log.csv"},
+                 {"device", task.device},
                  {"threads", call.jobs},
                  {"options", options}};
-  KA_TRY(write_whole(files, file, job.dump(1), Overwrite::yes));
-  KA_TRY(run_worker(file, call.console.progress()));
-  const std::string bytes = KA_TRY(read_whole(files, model, most_model_bytes));
+  std::error_code fault;
+  if (!std::filesystem::exists(model, fault)) {
+    KA_TRY(write_whole(files, file, job.dump(1), Overwrite::yes));
+    KA_TRY(run_worker(file, call.console.progress()));
+  }
+  const std::string bytes = KA_TRY(read_whole(files, model, most_trained_bytes));
   auto denoiser =
       std::make_shared<Denoiser>(KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, model)))));
   return Answer([denoiser](const JointFrames& body) { return denoiser->answer(body); });

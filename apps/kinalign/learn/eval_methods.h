@@ -28,7 +28,8 @@ struct EvalTask {
   const std::vector<Pair>& pairs;
   std::vector<std::string> learnt;  // names of takes
   std::string windows, input, truth;
-  std::string folder;  // for files of the run
+  std::string folder;  // of the run: its job, its log and its model, which is used if it is there
+  std::string device;  // cpu, cuda
   std::int64_t seed = 1, steps = 0;
 };
 

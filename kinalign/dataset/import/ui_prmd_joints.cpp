@@ -40,7 +40,7 @@ struct Repetition {
   std::vector<double> kinect;        // [F,18,3] m
   std::vector<double> markers;       // [G,39,3] m, 50 Hz
   std::vector<std::uint8_t> seen;    // [G,39]
-  JointFrames truth;                 // [G]
+  JointCentres truth;                 // [G]
   std::optional<FoundShift> found;   // absent: too little overlaps
   RigidTransform kinect_from_truth;  // of the person's movement
 
@@ -119,7 +119,7 @@ void put_truth(std::vector<Repetition>& all) {
     few_seen.push_back(seen[i]);
     few_places.insert(few_places.end(), &places[3 * i], &places[3 * i] + 3);
   }
-  const JointFrames joints =
+  const JointCentres joints =
       joint_centres({places, seen}, functional_shifts({few_places, few_seen}));
   auto place = joints.positions.begin();
   auto valid = joints.valid.begin();

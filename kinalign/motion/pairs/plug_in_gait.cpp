@@ -150,7 +150,7 @@ PelvisSize pelvis_size(const MarkerFrames& markers) {
 /// Puts the joints of one frame into the arrays.
 class FrameJoints {
  public:
-  FrameJoints(JointFrames& out, std::size_t frame) : out_(out), at_(frame * shared_joint_count) {}
+  FrameJoints(JointCentres& out, std::size_t frame) : out_(out), at_(frame * shared_joint_count) {}
 
   void put(std::size_t joint, const Vec3& place, bool valid) {
     vec3(out_.positions, at_ + joint) = place;
@@ -159,7 +159,7 @@ class FrameJoints {
   Vec3 operator[](std::size_t joint) const { return vec3(out_.positions, at_ + joint); }
 
  private:
-  JointFrames& out_;
+  JointCentres& out_;
   std::size_t at_;
 };
 
@@ -216,7 +216,7 @@ double deviation(const std::vector<double>& values) {
 constexpr double cm = 0.01;  // the minimiser's unit: its tolerances are meant so
 
 /// Frames in which `count` joints from `first` on are all valid.
-std::vector<std::size_t> whole_frames(const JointFrames& joints, std::size_t first,
+std::vector<std::size_t> whole_frames(const JointCentres& joints, std::size_t first,
                                       std::size_t count) {
   std::vector<std::size_t> out;
   for (std::size_t t = 0; t < joints.frames(); ++t) {
@@ -231,7 +231,7 @@ std::vector<std::size_t> whole_frames(const JointFrames& joints, std::size_t fir
 }
 
 /// The elbow's shift with which the forearm varies least.
-double elbow_shift(const JointFrames& joints, const Side& side) {
+double elbow_shift(const JointCentres& joints, const Side& side) {
   const auto frames = whole_frames(joints, side.arm, 3);
   if (frames.empty()) return 0.0;
   std::vector<double> lengths(frames.size());
@@ -248,7 +248,7 @@ double elbow_shift(const JointFrames& joints, const Side& side) {
 }
 
 /// The knee's shift along and across the thigh with which the shank varies least.
-void put_knee_shift(const MarkerFrames& markers, const JointFrames& joints, const Side& side,
+void put_knee_shift(const MarkerFrames& markers, const JointCentres& joints, const Side& side,
                     SideShift& out) {
   const auto frames = whole_frames(joints, side.leg, 3);
   if (frames.empty()) return;
@@ -269,7 +269,7 @@ void put_knee_shift(const MarkerFrames& markers, const JointFrames& joints, cons
   out.knee_forward_m = cm * found[1];
 }
 
-SideShift side_shift(const MarkerFrames& markers, const JointFrames& joints, const Side& side) {
+SideShift side_shift(const MarkerFrames& markers, const JointCentres& joints, const Side& side) {
   SideShift out;
   out.elbow_m = elbow_shift(joints, side);
   put_knee_shift(markers, joints, side, out);
@@ -277,7 +277,7 @@ SideShift side_shift(const MarkerFrames& markers, const JointFrames& joints, con
 }
 
 /// The invalid frames of one joint, by np.interp's rule: the nearest valid frame beyond the ends.
-void fill_joint(JointFrames& joints, std::size_t j) {
+void fill_joint(JointCentres& joints, std::size_t j) {
   const auto cell = [j](std::size_t t) { return t * shared_joint_count + j; };
   std::vector<std::size_t> good;
   for (std::size_t t = 0; t < joints.frames(); ++t) {
@@ -301,13 +301,13 @@ void fill_joint(JointFrames& joints, std::size_t j) {
 }  // namespace
 
 FunctionalShifts functional_shifts(const MarkerFrames& markers) {
-  const JointFrames joints = joint_centres(markers, {});
+  const JointCentres joints = joint_centres(markers, {});
   return {side_shift(markers, joints, left_side), side_shift(markers, joints, right_side)};
 }
 
-JointFrames joint_centres(const MarkerFrames& markers, const FunctionalShifts& shifts) {
+JointCentres joint_centres(const MarkerFrames& markers, const FunctionalShifts& shifts) {
   const std::size_t frames = markers.frames();
-  JointFrames out{std::vector<double>(3 * shared_joint_count * frames),
+  JointCentres out{std::vector<double>(3 * shared_joint_count * frames),
                   std::vector<std::uint8_t>(shared_joint_count * frames)};
   const PelvisSize size = pelvis_size(markers);
   for (std::size_t t = 0; t < frames; ++t) {
@@ -323,7 +323,7 @@ JointFrames joint_centres(const MarkerFrames& markers, const FunctionalShifts& s
   return out;
 }
 
-void fill_invalid(JointFrames& joints) {
+void fill_invalid(JointCentres& joints) {
   for (std::size_t j = 0; j < shared_joint_count; ++j) fill_joint(joints, j);
 }
 

@@ -44,7 +44,7 @@ struct FunctionalShifts {
 FunctionalShifts functional_shifts(const MarkerFrames& markers);
 
 /// F frames of the 18 shared joints.
-struct JointFrames {
+struct JointCentres {
   std::vector<double> positions;    // [F,18,3] m
   std::vector<std::uint8_t> valid;  // [F,18] all markers that the joint needs were seen
 
@@ -52,10 +52,10 @@ struct JointFrames {
 };
 
 /// The frames should be all that there are of a person: the size of the pelvis is their median.
-JointFrames joint_centres(const MarkerFrames& markers, const FunctionalShifts& shifts);
+JointCentres joint_centres(const MarkerFrames& markers, const FunctionalShifts& shifts);
 
 /// Puts joints that are not valid on the line between the valid frames around, so that a spline can
 /// run through them. They stay marked.
-void fill_invalid(JointFrames& joints);
+void fill_invalid(JointCentres& joints);
 
 }  // namespace kinalign

@@ -67,7 +67,7 @@ constexpr FunctionalShifts some_shifts{{0.02, 0.03, -0.01}, {0.01, 0.04, 0.02}};
 std::vector<std::string> lost_without(const std::string& name) {
   Markers markers = standing(3, 1);
   markers.seen[marker(name)] = 0;
-  const JointFrames joints = joint_centres(markers.frames(), {});
+  const JointCentres joints = joint_centres(markers.frames(), {});
   std::vector<std::string> lost;
   for (std::size_t j = 0; j < shared_joint_count; ++j) {
     if (joints.valid[j] == 0) lost.emplace_back(shared_joints[j]);
@@ -86,8 +86,8 @@ TEST_CASE("turned and moved markers give turned and moved joints") {
   for (std::size_t i = 0; i < markers.seen.size(); ++i) {
     vec3(moved.positions, i) = turn * Vec3(vec3(markers.positions, i)) + move;
   }
-  const JointFrames a = joint_centres(markers.frames(), some_shifts);
-  const JointFrames b = joint_centres(moved.frames(), some_shifts);
+  const JointCentres a = joint_centres(markers.frames(), some_shifts);
+  const JointCentres b = joint_centres(moved.frames(), some_shifts);
   for (std::size_t i = 0; i < a.valid.size(); ++i) {
     const Vec3 wanted = turn * Vec3(vec3(a.positions, i)) + move;
     CHECK((vec3(b.positions, i) - wanted).norm() < 1e-12);  // rounding
@@ -103,8 +103,8 @@ TEST_CASE("mirrored markers give mirrored joints") {
     auto to = vec3(mirrored.positions, i - i % marker_count + marker(name));
     to = Vec3(vec3(markers.positions, i)).cwiseProduct(Vec3(1.0, -1.0, 1.0));
   }
-  const JointFrames a = joint_centres(markers.frames(), some_shifts);
-  const JointFrames b = joint_centres(mirrored.frames(), {some_shifts.right, some_shifts.left});
+  const JointCentres a = joint_centres(markers.frames(), some_shifts);
+  const JointCentres b = joint_centres(mirrored.frames(), {some_shifts.right, some_shifts.left});
   constexpr std::array<std::size_t, shared_joint_count> partner{0, 1,  2,  3,  7,  8,  9,  4,  5,
                                                                 6, 14, 15, 16, 17, 10, 11, 12, 13};
   for (std::size_t i = 0; i < a.valid.size(); ++i) {
@@ -130,7 +130,7 @@ TEST_CASE("a joint without one of its markers is not valid, and the others are")
 TEST_CASE("the elbow goes where the forearm keeps its length") {
   // The true elbow lies 3 cm from its marker to the shoulder; the forearm is 25 cm long.
   Markers markers = standing(200, 4);
-  const JointFrames before = joint_centres(markers.frames(), {});
+  const JointCentres before = joint_centres(markers.frames(), {});
   for (std::size_t t = 0; t < 200; ++t) {
     const Vec3 shoulder = vec3(before.positions, t * shared_joint_count + 4);
     auto cell = [&](std::string_view name) {
@@ -146,7 +146,7 @@ TEST_CASE("the elbow goes where the forearm keeps its length") {
 }
 
 TEST_CASE("invalid joints lie between the valid frames around, and stay marked") {
-  JointFrames joints{std::vector<double>(5 * 3 * shared_joint_count),
+  JointCentres joints{std::vector<double>(5 * 3 * shared_joint_count),
                      std::vector<std::uint8_t>(5 * shared_joint_count, 1)};
   const auto place = [&joints](std::size_t t) {
     return vec3(joints.positions, t * shared_joint_count + 6);
