@@ -112,8 +112,8 @@ DividedPairs divide(const TrainingJob& job, std::vector<Pair> all) {
   DividedPairs out;
   for (Pair& pair : all) {
     const bool judged = by_list ? holds(job.judge, pair.take) : pair.part == "validation";
-    const bool learnt = by_list ? holds(job.learn, pair.take)
-                                : pair.part == "train" || pair.part == "all";
+    const bool learnt =
+        by_list ? holds(job.learn, pair.take) : pair.part == "train" || pair.part == "all";
     if (judged) {
       out.judged.push_back(std::move(pair));
     } else if (learnt) {
@@ -139,6 +139,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     out.out = json.at("out").get<std::string>();
     out.log = json.value("log", "");
     out.checkpoint = json.value("checkpoint", "");
+    out.keep_every = json.value("keep_every", out.keep_every);
     out.resume = json.value("resume", false);
     out.device = json.value("device", "cpu");
     out.threads = json.value("threads", std::int64_t{1});
@@ -167,7 +168,7 @@ Result<void> run_job(const TrainingJob& job) {
   if (job.resume && std::filesystem::exists(job.checkpoint)) {
     state = KA_TRY(read_checkpoint(KA_TRY(bytes_of(job.checkpoint)), job.identity, job.checkpoint));
   }
-  TrainingHooks hooks{.progress = progress_lines(), .keep = {}, .every = 200};
+  TrainingHooks hooks{.progress = progress_lines(), .keep = {}, .every = job.keep_every};
   if (!job.checkpoint.empty()) {
     hooks.keep = [&](const TrainingState& now) {
       return write_file(job.checkpoint, write_checkpoint(now, job.identity));

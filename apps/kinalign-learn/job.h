@@ -11,16 +11,18 @@ namespace kinalign {
 
 struct TrainingJob {
   std::string method;
-  std::string windows;                    // the file of windows
-  std::string input, truth;               // streams
-  std::vector<std::string> learn, judge;  // names of takes; empty: by the file\'s split
-  std::string out;                        // the model
-  std::string log;                        // CSV, and events beside it; empty: none
-  std::string checkpoint;                 // kept there while it runs; empty: nowhere
-  bool resume = false;                    // from that file, where it is there
-  std::string device = "cpu";             // cpu, cuda
+  std::string windows;            // the file of windows
+  std::string input, truth;       // streams
+  std::string out;                // the model
+  std::string log;                // CSV, and events beside it; empty: none
+  std::string checkpoint;         // kept there while it runs; empty: nowhere
+  std::int64_t keep_every = 200;  // steps between checkpoints
+  bool resume = false;            // from that file, where it is there
+  std::string device = "cpu";     // cpu, cuda
   std::int64_t threads = 1;
   TrainingOptions options;
+  /// Names of takes that are trained on, and that judge; empty: by the parts of the file's split.
+  std::vector<std::string> learn, judge;
   std::string identity;  // of the job: all that the result depends on
 };
 

@@ -5,12 +5,46 @@
 #include <nlohmann/json.hpp>
 #include <torch/torch.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <sstream>
 
 namespace {
+
+constexpr double least_gflops = 20.0;  // of a matrix product, on one core of 2015 or later
+
+/// Billions of operations a second that a product of 256 x 256 numbers makes: the best of ten.
+double product_gflops() {
+  using Clock = std::chrono::steady_clock;
+  constexpr int size = 256;
+  const auto a = torch::ones({size, size}), b = torch::ones({size, size});
+  auto out = torch::mm(a, b);  // starts the library's threads
+  double best = 0.0;
+  for (int i = 0; i < 10; ++i) {
+    const auto begin = Clock::now();
+    torch::mm_out(out, a, b);
+    const std::chrono::duration<double> took = Clock::now() - begin;
+    best = std::max(best, 2e-9 * size * size * size / std::max(took.count(), 1e-9));
+  }
+  return best;
+}
+
+/// Debian's LibTorch multiplies with whatever BLAS is installed. The reference one needs ten times
+/// as long as OpenBLAS.
+void warn_of_slow_products() {
+  const double gflops = product_gflops();
+  if (gflops >= least_gflops) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "this machine's BLAS makes " << gflops
+       << " GFLOP/s, training takes many times as long as it could: sudo apt-get install "
+          "libopenblas0-pthread";
+  std::cout << nlohmann::ordered_json{{"warning", text.str()}}.dump() << std::endl;
+}
 
 int fail(const kinalign::Error& error) {
   std::cout << nlohmann::ordered_json{{"error",
@@ -41,6 +75,7 @@ int main(int argc, char** argv) {
     auto job = kinalign::read_job(text, argv[1]);
     if (!job) return fail(job.error());
     torch::set_num_threads(static_cast<int>(job->threads));
+    if (job->device == "cpu") warn_of_slow_products();
     const auto done = kinalign::run_job(*job);
     return done ? 0 : fail(done.error());
   } catch (const std::exception& fault) {  // of LibTorch

@@ -30,8 +30,15 @@ bool is_text(std::string_view line) {
 
 bool looks_like_hdf5(std::string_view head) { return head.starts_with(hdf5_signature); }
 
+bool looks_like_model(std::string_view head) {
+  // The header's length as a u64, at most 16 MB: five of its bytes are 0, or four and a 1.
+  if (head.size() < 10 || head.substr(8, 2) != "{\"") return false;
+  return (head[3] == 0 || head[3] == 1) && head.substr(4, 4) == "\0\0\0\0"sv;
+}
+
 std::string beginning_of(std::string_view head) {
   if (head.empty()) return "an empty file";
+  if (looks_like_model(head)) return "a model (SafeTensors)";
   for (const auto& [mark, name] : marks) {
     if (head.starts_with(mark)) return std::string(name);
   }
@@ -41,6 +48,10 @@ std::string beginning_of(std::string_view head) {
 }
 
 Error unknown_file(const std::string& path, std::string_view head) {
+  if (looks_like_model(head)) {
+    return {path, 0, "a file of motion",
+            "a model (SafeTensors): kinalign info shows what is in it"};
+  }
   const bool empty = head.empty();
   return {path, empty ? 0 : 1,
           empty

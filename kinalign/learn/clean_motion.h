@@ -3,9 +3,9 @@
 // first network is trained, and it stands behind the first at use.
 #pragma once
 
-#include "kinalign/models/pairs.h"
 #include "kinalign/learn/trainer.h"
 #include "kinalign/models/denoise_features.h"
+#include "kinalign/models/pairs.h"
 
 namespace kinalign {
 

@@ -28,7 +28,6 @@ struct DenoiseLoss {
 struct DenoiseTraining {
   DenoiseLoss loss{};
   std::int64_t batch = 32, crop = 61;
-  double seen_dropped = 0.1;  // share of draws in which a joint goes missing for a while
   bool mirror = true;
   bool states_spread = false;  // the last Jout channels are the logarithm of each joint's spread
   double answer_scale = 0.05;  // m of a network's 1

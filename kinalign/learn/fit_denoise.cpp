@@ -36,9 +36,8 @@ void put_tensors(const TorchNetwork& network, const std::string& prefix,
 }
 
 Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
-                               const DividedPairs& divided,
-                               const FitOptions& options, TrainingState state,
-                               const TrainingHooks& hooks) {
+                               const DividedPairs& divided, const FitOptions& options,
+                               TrainingState state, const TrainingHooks& hooks) {
   if (divided.learnt.empty()) {
     return Failure(Error{"", 0, "pairs to train on", "none"});
   }
@@ -48,7 +47,8 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   DenoiseFit out{begun_model(method, layout, task), {}};
   std::optional<TorchNetwork> clean;
   if (method.perceptual) {
-    clean = KA_TRY(fit_clean_motion(layout, divided.learnt, options.training, options.device, hooks));
+    clean =
+        KA_TRY(fit_clean_motion(layout, divided.learnt, options.training, options.device, hooks));
     for (auto& [name, tensor] : clean->tensors()) tensor.set_requires_grad(false);
     task.compare_features(
         [&](const torch::Tensor& answers) { return motion_features(*clean, answers); });

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "kinalign/learn/method.h"
-#include "kinalign/models/pairs.h"
 #include "kinalign/models/denoise_model.h"
+#include "kinalign/models/pairs.h"
 
 namespace kinalign {
 
@@ -25,9 +25,8 @@ struct DividedPairs {
 
 /// `pairs`: the joints and the rate; those in `divided` are used.
 Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
-                               const DividedPairs& divided,
-                               const FitOptions& options, TrainingState state,
-                               const TrainingHooks& hooks);
+                               const DividedPairs& divided, const FitOptions& options,
+                               TrainingState state, const TrainingHooks& hooks);
 
 /// The network's weights as a model's file holds them, `prefix` before each name.
 void put_tensors(const TorchNetwork& network, const std::string& prefix,

@@ -41,8 +41,15 @@ void put_weights(const WeightMap& from, TorchNetwork& network) {
   for (auto& [name, tensor] : network.tensors()) tensor.copy_(from.at(name));
 }
 
+/// The state of a new run, or that of a checkpoint on the network's device.
 void begin(const TorchNetwork& network, TrainingState& state) {
-  if (!state.weights.empty()) return;
+  if (!state.weights.empty()) {
+    for (WeightMap* one :
+         {&state.weights, &state.first, &state.second, &state.average, &state.best}) {
+      for (auto& [name, tensor] : *one) tensor = tensor.to(network.tensors().at(name).device());
+    }
+    return;
+  }
   state.weights = copy_of(network.tensors());
   state.first = zeros_like(network.tensors());
   state.second = zeros_like(network.tensors());
@@ -137,8 +144,8 @@ bool is_due(std::int64_t step, std::int64_t every) { return every > 0 && step % 
 }  // namespace
 
 double rate_at(const TrainingOptions& options, std::int64_t step) {
-  const double peak = std::max(1.0, options.rise * static_cast<double>(options.steps));
-  const double at = static_cast<double>(step), end = static_cast<double>(options.steps);
+  const double steps = static_cast<double>(options.steps), at = static_cast<double>(step);
+  const double peak = std::max(1.0, options.rise * steps - 1.0), end = steps - 1.0;
   const double first = options.rate / 25.0;
   if (at < peak) return eased(first, options.rate, at / peak);
   return eased(options.rate, first / 1e4, std::min(1.0, (at - peak) / std::max(1.0, end - peak)));

@@ -23,7 +23,7 @@ class TrainingTask {
   TrainingTask(const TrainingTask&) = delete;
   TrainingTask& operator=(const TrainingTask&) = delete;
   virtual ~TrainingTask() = default;
-  /// The loss of batch `step` of `rank`'s share in `ranks`, drawn from `seed`.
+  /// The loss of batch `step`, drawn from `seed`.
   virtual torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed,
                              std::uint64_t step) = 0;
   /// Less is better; empty where no validation part was given.

@@ -88,8 +88,8 @@ class Frame {
 }  // namespace
 
 std::vector<float> typical_lengths(const std::vector<int>& parents,
-                                  const std::vector<std::size_t>& partners,
-                                  std::span<const float> positions) {
+                                   const std::vector<std::size_t>& partners,
+                                   std::span<const float> positions) {
   const std::size_t joints = parents.size(), frames = positions.size() / (3 * joints);
   std::vector<float> out(joints, 0.0F), all(frames);
   for (std::size_t j = 0; j < joints && frames > 0; ++j) {

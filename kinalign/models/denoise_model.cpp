@@ -46,6 +46,15 @@ Result<Denoiser> Denoiser::make(DenoiseModel model) {
   const std::size_t outputs = answers + (model.states_spread ? model.layout.outputs.size() : 0);
   Network network = KA_TRY(Network::make(model.architecture, below(model.tensors, "net.")));
   const auto fits = [](const Network& one, std::size_t in, std::size_t out) -> Result<void> {
+    const auto count = [&](LayerKind kind) {
+      const auto& layers = one.architecture().layers;
+      return std::count_if(layers.begin(), layers.end(),
+                           [&](const Layer& layer) { return layer.kind == kind; });
+    };
+    // Branches keep the number of frames by themselves (validate() of infer/shapes.h).
+    if (count(LayerKind::max_pool) != count(LayerKind::unpool)) {
+      return Failure(Error{"", 0, "a network with as many frames out as in", "a max_pool alone"});
+    }
     if (one.inputs() == in && one.outputs() == out) return {};
     return Failure(Error{"", 0,
                          std::to_string(in) + " channels in and " + std::to_string(out) + " out",

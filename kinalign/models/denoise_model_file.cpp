@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/infer/architecture_json.h"
 #include "kinalign/infer/safetensors.h"
+#include "kinalign/infer/strict_json.h"
 #include "kinalign/models/denoise_model.h"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -17,6 +19,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* header_key = "kinalign";
 constexpr const char* schema = "kinalign.model/1";
 constexpr std::size_t most_joints = 1000, most_window = 1001;
+constexpr double least_rate_hz = 0.1, most_rate_hz = 10'000.0;
+constexpr double least_scale = 1e-6, most_scale = 1e6;
 
 Json smoothing_json(const Smoothing& how) {
   return {{"window", how.window}, {"order", how.order}, {"causal", how.causal}};
@@ -90,24 +94,56 @@ bool in_range(const std::vector<int>& values, std::size_t end) {
   return true;
 }
 
-bool is_sound(const Smoothing& how) { return how.window <= most_window && how.order <= 5; }
+bool is_sound(const Smoothing& how) {
+  return how.window <= most_window && (how.window == 0 || how.window % 2 == 1) && how.order <= 5;
+}
+
+bool is_within(double value, double least, double most) { return value >= least && value <= most; }
+
+bool all_finite(const std::vector<float>& values) {
+  return std::all_of(values.begin(), values.end(),
+                     [](float value) { return std::isfinite(value); });
+}
+
+/// Names stand once each: joints are found by them.
+bool are_unique(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  return std::adjacent_find(names.begin(), names.end()) == names.end();
+}
+
+/// Every way up ends at a root.
+bool is_forest(const std::vector<int>& parents) {
+  for (std::size_t j = 0; j < parents.size(); ++j) {
+    int at = parents[j];
+    for (std::size_t steps = 0; at >= 0; at = parents[static_cast<std::size_t>(at)]) {
+      if (++steps > parents.size()) return false;
+    }
+  }
+  return true;
+}
 
 /// Why the parts do not fit together; empty where they do.
 std::string misfit(const DenoiseModel& model) {
   const DenoiseLayout& layout = model.layout;
   const std::size_t in = layout.inputs.size(), out = layout.outputs.size();
   if (in == 0 || out == 0 || in > most_joints || out > most_joints) return "number of joints";
+  if (!are_unique(layout.inputs) || !are_unique(layout.outputs)) return "a joint twice";
   if (!body_joints(layout.inputs)) return "input without a root or both hips";
   if (layout.parents.size() != out || !in_range(layout.parents, out)) return "parents";
+  if (!is_forest(layout.parents)) return "parents in a circle";
   if (layout.bases.size() != out || !in_range(layout.bases, in)) return "bases";
-  if (!std::isfinite(layout.rate_hz) || layout.rate_hz <= 0.0) return "rate_hz";
+  if (!is_within(layout.rate_hz, least_rate_hz, most_rate_hz)) return "rate_hz";
+  if (!is_within(model.answer_scale, least_scale, most_scale)) return "scale_m";
+  if (!is_within(model.spread_factor, least_scale, most_scale)) return "spread_factor";
   if (!is_sound(layout.smoothing) || !is_sound(model.steadying.smoothing)) return "smoothing";
   if (model.input_mean.size() != layout.channels()) return "input.mean";
   if (model.input_scale.size() != layout.channels()) return "input.scale";
   if (model.answer_mean.size() != layout.answers()) return "answer.mean";
   for (const float value : model.input_scale) {
-    if (!(value > 0.0F)) return "input.scale";
+    if (!is_within(value, least_scale, most_scale)) return "input.scale";
   }
+  if (!all_finite(model.input_mean)) return "input.mean";
+  if (!all_finite(model.answer_mean)) return "answer.mean";
   return "";
 }
 
@@ -133,9 +169,12 @@ std::string write_denoise_model(const DenoiseModel& model) {
 Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::string& name) {
   TensorFile file = KA_TRY(read_safetensors(bytes, name));
   const auto text = file.metadata.find(header_key);
-  const Json header =
-      text == file.metadata.end() ? Json() : Json::parse(text->second, nullptr, false);
-  if (!header.is_object() || header.value("schema", "") != schema) {
+  if (text == file.metadata.end()) {
+    return Failure(Error{name, 0, "a model of kinalign (schema kinalign.model/1)", "another file"});
+  }
+  KA_TRY(parse_strict_json(text->second, name));  // which forgets the order of members
+  const Json header = Json::parse(text->second, nullptr, false);
+  if (!header.is_object() || !header.contains("schema") || header.at("schema") != schema) {
     return Failure(Error{name, 0, "a model of kinalign (schema kinalign.model/1)", "another file"});
   }
   DenoiseModel out;

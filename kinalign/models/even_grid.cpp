@@ -13,7 +13,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_frames = 10'000'000;
+constexpr double most_frames = 1e7;
 constexpr double least_size = 0.4, most_size = 2.6;  // m, from the lowest to the highest joint
 
 std::string text_of(double value, const char* unit) {
@@ -103,10 +103,11 @@ Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
   };
   const double span = at_s(points.size() - 1);
   // Half a step of room: stamps of 33.3 ms with jitter still give a row for each frame.
-  const auto frames = static_cast<std::size_t>(span * rate_hz + 0.5) + 1;
-  if (frames > most_frames) {
-    return Failure(Error{"", 0, "at most 10,000,000 frames", std::to_string(frames)});
+  const double steps = span * rate_hz + 0.5;
+  if (steps >= most_frames) {
+    return Failure(Error{"", 0, "at most 10,000,000 frames", text_of(steps, "frames")});
   }
+  const auto frames = static_cast<std::size_t>(steps) + 1;
   EvenFrames out{{wanted.size(), std::vector<float>(frames * wanted.size() * 3, 0.0F),
                   std::vector<std::uint8_t>(frames * wanted.size(), 0)},
                  points.stamps.front(),

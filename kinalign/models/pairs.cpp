@@ -27,10 +27,11 @@ std::vector<std::uint8_t> seen_of(const StretchStream& stream, std::size_t rows,
   const auto valid = stream.arrays.find("valid"), state = stream.arrays.find("state");
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (state != stream.arrays.end() && state->second.size() == out.size()) {
-      out[i] = static_cast<std::uint8_t>(state->second[i]);
+      out[i] = static_cast<std::uint8_t>(std::clamp(state->second[i], 0.0F, 2.0F));
     }
     if (valid == stream.arrays.end()) continue;
-    const bool one_flag = valid->second.size() == rows;
+    const bool one_flag = valid->second.size() == rows;  // of a skeleton
+    if (!one_flag && valid->second.size() != out.size()) continue;
     if (valid->second[one_flag ? i / joints : i] == 0.0F) out[i] = 0;
   }
   return out;
@@ -58,6 +59,16 @@ Chosen choose(const std::vector<std::string>& joints) {
   return known.names.size() < least_known ? all : known;
 }
 
+/// The positions [T,J,3] of a stream in a stretch; nothing where it has none, or not of all joints.
+const std::vector<float>* positions_of(const Stretch& stretch, const std::string& stream,
+                                       std::size_t joints) {
+  const auto found = stretch.streams.find(stream);
+  if (found == stretch.streams.end()) return nullptr;
+  const auto positions = found->second.arrays.find("positions");
+  if (positions == found->second.arrays.end()) return nullptr;
+  return positions->second.size() == stretch.rows * joints * 3 ? &positions->second : nullptr;
+}
+
 /// The chosen joints of rows of all of them, `values` numbers each.
 template <class Value>
 std::vector<Value> chosen_of(const std::vector<Value>& all, const Chosen& chosen,
@@ -83,18 +94,18 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
             .rate_hz = windows.facts.rate_hz};
   for (const Stretch& stretch : windows.stretches) {
     if (stretch.rows < least) continue;
-    const StretchStream& rough = stretch.streams.at(input);
-    const StretchStream& precise = stretch.streams.at(truth);
-    if (!rough.arrays.contains("positions") || !precise.arrays.contains("positions")) {
-      return Failure(Error{"", 0, "positions of " + input + " and " + truth, "none"});
+    const auto* rough = positions_of(stretch, input, joints.size());
+    const auto* precise = positions_of(stretch, truth, out.outputs.size());
+    if (rough == nullptr || precise == nullptr) {
+      return Failure(Error{"", 0, "positions of all joints of " + input + " and " + truth, "none"});
     }
     Pair pair;
     pair.input.joints = out.inputs.size();
-    pair.input.positions = chosen_of(rough.arrays.at("positions"), chosen, joints.size(), 3);
-    pair.input.seen =
-        chosen_of(seen_of(rough, stretch.rows, joints.size()), chosen, joints.size(), 1);
-    pair.truth = precise.arrays.at("positions");
-    pair.valid = seen_of(precise, stretch.rows, out.outputs.size());
+    pair.input.positions = chosen_of(*rough, chosen, joints.size(), 3);
+    pair.input.seen = chosen_of(seen_of(stretch.streams.at(input), stretch.rows, joints.size()),
+                                chosen, joints.size(), 1);
+    pair.truth = *precise;
+    pair.valid = seen_of(stretch.streams.at(truth), stretch.rows, out.outputs.size());
     for (std::uint8_t& one : pair.valid) one = one == 0 ? 0 : 1;
     if (stretch.take < windows.facts.takes.size()) {
       const WindowsFacts::Take& take = windows.facts.takes[stretch.take];

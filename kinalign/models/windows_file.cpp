@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -17,6 +18,8 @@ constexpr std::uint32_t end_mark = 0x06054b50, entry_mark = 0x02014b50, local_ma
                         end64_mark = 0x06064b50;
 constexpr std::size_t end_size = 22, entry_size = 46, local_size = 30;
 constexpr std::size_t most_dimensions = 8;
+constexpr std::size_t most_length = std::size_t{1} << 40U;  // of one dimension
+constexpr std::int64_t most_rows = std::int64_t{1} << 40U;
 
 /// Little-endian numbers of the file; 0 beyond its end, which the callers' checks then refuse.
 class Bytes {
@@ -127,7 +130,9 @@ std::optional<StoredArray> read_header(std::string_view header) {
     }
     std::size_t value = 0;
     const auto [end, fault] = std::from_chars(shape.data(), shape.data() + shape.size(), value);
-    if (fault != std::errc() || out.shape.size() == most_dimensions) return std::nullopt;
+    if (fault != std::errc() || value > most_length || out.shape.size() == most_dimensions) {
+      return std::nullopt;
+    }
     out.shape.push_back(value);
     shape.remove_prefix(static_cast<std::size_t>(end - shape.data()));
   }
@@ -200,12 +205,16 @@ Result<std::vector<std::int64_t>> integers(const std::map<std::string, StoredArr
   if (found == arrays.end()) return broken(name, "an array " + key, "none");
   const StoredArray& array = found->second;
   const std::size_t size = value_size(array.type);
-  if (array.type.size() < 3 || (array.type[1] != 'i' && array.type[1] != 'u') || size > 8) {
+  const bool has_sign = array.type.size() > 1 && array.type[1] == 'i';
+  if (size == 0 || size > 8 || (!has_sign && array.type[1] != 'u')) {
     return broken(name, key + " of integers", array.type);
   }
+  const std::size_t unused = 8 * (8 - size);  // bits above the value, which get its sign
   std::vector<std::int64_t> out;
   for (std::size_t at = 0; at + size <= array.bytes.size(); at += size) {
-    out.push_back(static_cast<std::int64_t>(Bytes(array.bytes.substr(at, size)).number(0, size)));
+    const std::uint64_t bits = Bytes(array.bytes).number(at, size);
+    const auto value = static_cast<std::int64_t>(bits << unused) >> unused;
+    out.push_back(has_sign ? value : static_cast<std::int64_t>(bits));
   }
   return out;
 }
@@ -221,7 +230,12 @@ std::string utf8_of(const StoredArray& array) {
       out += static_cast<char>(0xc0U | code >> 6U);
       out += static_cast<char>(0x80U | (code & 0x3fU));
     } else {
-      out += static_cast<char>(0xe0U | code >> 12U);
+      if (code < 0x10000) {
+        out += static_cast<char>(0xe0U | code >> 12U);
+      } else {
+        out += static_cast<char>(0xf0U | (code >> 18U & 0x07U));
+        out += static_cast<char>(0x80U | (code >> 12U & 0x3fU));
+      }
       out += static_cast<char>(0x80U | (code >> 6U & 0x3fU));
       out += static_cast<char>(0x80U | (code & 0x3fU));
     }
@@ -260,8 +274,13 @@ Result<WindowsFacts> read_facts(const std::string& text, const std::string& name
 }
 
 struct Places {
-  std::vector<std::int64_t> take, part, first, rows;
+  std::vector<std::int64_t> take, part, rows, time_ns;
 };
+
+/// Whether an array of this name has a row of the stream for each of a window's: [N,T,...].
+bool is_of_rows(const std::string& key, const std::string& stream, const StoredArray& array) {
+  return key.starts_with(stream + "_") && array.shape.size() > 2 && !key.ends_with("_rest_offsets");
+}
 
 /// Appends rows `skip` ... of window `w` to the last stretch.
 Result<void> append_window(const std::map<std::string, StoredArray>& arrays, Windows& out,
@@ -271,12 +290,12 @@ Result<void> append_window(const std::map<std::string, StoredArray>& arrays, Win
   for (const WindowsFacts::Stream& about : out.facts.streams) {
     const std::string& stream = about.name;
     for (const auto& [key, array] : arrays) {
-      if (!key.starts_with(stream + "_") || array.shape.size() < 3) continue;
+      if (!is_of_rows(key, stream, array)) continue;
       const std::size_t length = array.shape[1];
       std::vector<std::size_t> flat{array.shape[0] * length};
       flat.insert(flat.end(), array.shape.begin() + 2, array.shape.end());
       const StoredArray lines{array.type, flat, array.bytes};
-      if (skip + rows > length || (window + 1) * length > flat[0]) {
+      if (skip + rows > length || window >= array.shape[0]) {
         return broken(name, key + " with a row for each", "fewer");
       }
       if (!append_row(lines, window * length + skip, rows,
@@ -287,26 +306,34 @@ Result<void> append_window(const std::map<std::string, StoredArray>& arrays, Win
   }
   stretch.rows += rows;
   return {};
+}  /// How many rows window `w` begins behind the one before it. Stamps say so: of windows at
+   /// another
+/// rate than the take's, `first` is rounded.
+std::int64_t rows_between(const Places& places, std::size_t w, double rate_hz) {
+  const auto step = static_cast<double>(places.time_ns[w] - places.time_ns[w - 1]);
+  return std::llround(step * 1e-9 * rate_hz);
 }
 
 Result<void> join(const std::map<std::string, StoredArray>& arrays, const Places& places,
                   Windows& out, const std::string& name) {
-  std::int64_t reached = 0;
+  std::int64_t begin = 0, reached = 0;
   for (std::size_t w = 0; w < places.take.size(); ++w) {
-    const std::int64_t first = places.first[w], rows = places.rows[w];
-    const bool goes_on = w > 0 && places.take[w] == places.take[w - 1] && first <= reached &&
-                         first + rows > reached && first >= places.first[w - 1];
+    const std::int64_t rows = places.rows[w];
+    if (rows <= 0) return broken(name, "rows of a window", std::to_string(rows));
+    const bool same_take = w > 0 && places.take[w] == places.take[w - 1];
+    if (same_take) begin += rows_between(places, w, out.facts.rate_hz);
+    const bool goes_on = same_take && begin <= reached && begin + rows > reached &&
+                         places.time_ns[w] > places.time_ns[w - 1];
     if (!goes_on) {
       out.stretches.push_back({static_cast<std::size_t>(places.take[w]),
                                static_cast<std::size_t>(places.part[w]),
                                0,
                                {}});
-      reached = first;
+      reached = begin;
     }
-    if (rows < 0 || first < 0) return broken(name, "rows of a take", std::to_string(rows));
-    KA_TRY(append_window(arrays, out, w, static_cast<std::size_t>(reached - first),
-                         static_cast<std::size_t>(first + rows - reached), name));
-    reached = first + rows;
+    KA_TRY(append_window(arrays, out, w, static_cast<std::size_t>(reached - begin),
+                         static_cast<std::size_t>(begin + rows - reached), name));
+    reached = begin + rows;
   }
   return {};
 }
@@ -354,10 +381,11 @@ Result<Windows> read_windows(std::string_view npz, const std::string& name) {
   out.facts = KA_TRY(read_facts(utf8_of(manifest->second), name));
   const Places places{
       KA_TRY(integers(arrays, "take", name)), KA_TRY(integers(arrays, "part", name)),
-      KA_TRY(integers(arrays, "first", name)), KA_TRY(integers(arrays, "rows", name))};
+      KA_TRY(integers(arrays, "rows", name)), KA_TRY(integers(arrays, "time_ns", name))};
   const std::size_t count = places.take.size();
-  if (places.part.size() != count || places.first.size() != count || places.rows.size() != count) {
-    return broken(name, "arrays of one length", "take, part, first and rows differ");
+  if (places.part.size() != count || places.rows.size() != count ||
+      places.time_ns.size() != count) {
+    return broken(name, "arrays of one length", "take, part, rows and time_ns differ");
   }
   KA_TRY(join(arrays, places, out, name));
   for (const auto& [key, array] : arrays) {

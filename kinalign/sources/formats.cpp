@@ -268,11 +268,12 @@ Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
 
 Result<FileKind> kind_of_file(FileSystem& files, const std::string& path) {
   InputFile file = KA_TRY(InputFile::open(files, path));
-  std::array<char, 8> start{};  // the longest signature
+  std::array<char, 10> start{};  // the longest signature
   const std::string_view signature(start.data(), KA_TRY(file.read_at(0, start)));
   if (looks_like_recording(signature)) return FileKind::recording;
   if (looks_like_xdf(signature)) return FileKind::xdf;
   if (looks_like_hdf5(signature)) return FileKind::take;
+  if (looks_like_model(signature)) return FileKind::model;
   if (path.ends_with(".toml")) return FileKind::manifest;
   const Recognized known = KA_TRY(recognize(KA_TRY(file.next()), path));
   return known.format != nullptr || known.layout ? FileKind::stream : FileKind::unknown;

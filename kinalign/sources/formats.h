@@ -38,7 +38,8 @@ Result<FoundFormat> find_format(FileSystem& files, const StreamOptions& options,
 enum class FileKind : std::uint8_t {
   recording,  // MCAP
   xdf,
-  take,  // HDF5
+  take,   // HDF5
+  model,  // SafeTensors
   manifest,
   stream,   // a format or a built-in layout knows it; its reader may still refuse it
   unknown,  // also an empty file; a layout that the user names may read it as a stream

@@ -133,12 +133,14 @@ TEST_CASE("a file's kind is told by its first bytes, whatever its name is") {
     return kind_of_file(files, folder.write(name, bytes)).value();
   };
   const std::string mcap = "\x89MCAP0\r\n", hdf5 = "\x89HDF\r\n\x1a\n";
+  const std::string model("\x20\x03\0\0\0\0\0\0{\"__metadata__\"", 22);
   for (const std::string name : {"a.mcap", "a.h5", "a.toml", "a"}) {
     CAPTURE(name);
     CHECK(kind(name, mcap) == FileKind::recording);
     CHECK(kind(name, mcap + "and more") == FileKind::recording);
     CHECK(kind(name, "XDF:") == FileKind::xdf);
     CHECK(kind(name, hdf5) == FileKind::take);
+    CHECK(kind(name, model) == FileKind::model);
   }
   CHECK(kind("walk.bvh", "HIERARCHY\nROOT Hips\n") == FileKind::stream);
   CHECK(kind("walk.mcap", "HIERARCHY\nROOT Hips\n") == FileKind::stream);

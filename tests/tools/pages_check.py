@@ -4,7 +4,7 @@
 Every command of a block fenced as ```console runs, each page in a fresh folder that holds what ./dev
 demo leaves: a recording in demo/ (seed 1, 60 s) and its take; what it prints must be what stands below it. A line `...` stands
 for any number of lines. A block that names ../shared/data or docs/examples is skipped where that
-data is absent. Each command is a case. --write puts what is printed into the pages instead.
+data is absent, one that trains where kinalign-learn was not built. Each command is a case. --write puts what is printed into the pages instead.
 """
 import os
 import pathlib
@@ -16,6 +16,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 SHARED = ROOT.parent / "shared"
+LEARN = pathlib.Path(sys.argv[1]).resolve().parents[1] / "kinalign-learn/kinalign-learn"
 BLOCK = re.compile(r"^```console\n(.*?)^```$", re.S | re.M)
 # ./dev demo builds and makes the recording, which is done here already; what it prints is align's.
 STANDS_FOR = {"./dev demo": "kinalign align demo/recording.toml -o demo/take.h5 --force"}
@@ -73,10 +74,11 @@ def check_page(page, folder, environment, say):
     for block in BLOCK.finditer(page.read_text()):
         line = page.read_text()[: block.start()].count("\n") + 1
         needs_data = "../shared/" in block[1] or "docs/examples/" in block[1]
+        trains = "kinalign train" in block[1]
         for command, _, expected in commands_of(block[1]):
             name = f"{page.relative_to(ROOT)}:{line} shows what `{command}` prints"
-            if needs_data and not SHARED.exists():
-                say("skipped", name)
+            if (needs_data and not SHARED.exists()) or (trains and not LEARN.exists()):
+                say("skipped", f"{name}\tneeds kinalign-learn (libtorch-dev)" if trains else name)
                 outputs.append(expected)
                 continue
             printed = run(command, folder, environment)

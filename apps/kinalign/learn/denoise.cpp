@@ -3,6 +3,7 @@
 #include "apps/kinalign/learn/point_source.h"
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/describe_model.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/inputs.h"
 
@@ -27,7 +28,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_model_bytes = std::size_t{1} << 30U;
 constexpr double longest_gap_s = 0.2;     // between samples that are joined by a line
 constexpr double longest_unseen_s = 2.0;  // a joint that is missing longer is told
 constexpr double radius_90 = 2.5003;      // of a Gaussian in space, in its standard deviations
@@ -171,12 +171,12 @@ Result<void> write_cleaned(FileSystem& files, const DenoiseModel& model, const C
                                       : write_skeleton(files, model, cleaned, common);
 }
 
-void print(const Json& about, const std::string& in, const std::string& out, Call& call) {
+void print(const Json& about, const std::string& out, Call& call) {
   std::string text = fmt::format(
       "{}: {} frames at {:g} Hz, {} joints\ncleaned  joints moved by {:.1f} cm on average, bones "
       "of one "
       "length each\n",
-      harmless(in), about.at("frames").get<std::size_t>(), about.at("rate_hz").get<double>(),
+      harmless(out), about.at("frames").get<std::size_t>(), about.at("rate_hz").get<double>(),
       about.at("joints").get<std::size_t>(), about.at("moved_cm").get<double>());
   text += fmt::format("seen     {:.1f} % missing, {:.1f} % inferred\n",
                       100.0 * about.at("missing").get<double>(),
@@ -190,7 +190,6 @@ void print(const Json& about, const std::string& in, const std::string& out, Cal
                         harmless(joint), seconds.get<double>());
   }
   call.console.print(text);
-  call.console.note(fmt::format("wrote {}", harmless(out)));
   call.console.print_json(about.dump(1, ' ', false, Json::error_handler_t::replace));
 }
 
@@ -223,7 +222,8 @@ Result<int> run_denoise(Denoise& o, Call& call) {
   } else {
     about = KA_TRY(work(points_of_file(in, o.stream, call)));
   }
-  print(about, in, call.common.out, call);
+  call.console.wrote(call.common.out);
+  print(about, call.common.out, call);
   return about.at("long_missing_s").empty() ? 0 : 1;
 }
 

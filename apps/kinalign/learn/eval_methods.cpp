@@ -61,7 +61,7 @@ Result<Answer> trained(const std::string& method, const EvalTask& task, Call& ca
   std::error_code fault;
   if (!std::filesystem::exists(model, fault)) {
     KA_TRY(write_whole(files, file, job.dump(1), Overwrite::yes));
-    KA_TRY(run_worker(file, call.console.progress()));
+    KA_TRY(run_worker(file, {.progress = call.console.progress()}));
   }
   const std::string bytes = KA_TRY(read_whole(files, model, most_trained_bytes));
   auto denoiser =

@@ -143,8 +143,11 @@ Result<int> run_train(Train& o, Call& call) {
   const Json job = job_of(o, windows, KA_TRY(hash_of(files, windows)), call);
   const std::string job_file = folder + "/job.json";
   KA_TRY(write_whole(files, job_file, job.dump(1), Overwrite::yes));
-  const Json last =
-      Json::parse(KA_TRY(run_worker(job_file, call.console.progress())), nullptr, false);
+  const WorkerWatch watch{.progress = call.console.progress(),
+                          .warn = [&](const std::string& text) {
+                            call.console.note("kinalign train: warning: " + harmless(text));
+                          }};
+  const Json last = Json::parse(KA_TRY(run_worker(job_file, watch)), nullptr, false);
   if (o.windows.empty()) fs::remove(windows, fault);
   call.console.wrote(out);
   std::string text =

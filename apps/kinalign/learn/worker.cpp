@@ -97,7 +97,7 @@ Error told_error(const nlohmann::json& error) {
 
 }  // namespace
 
-Result<std::string> run_worker(const std::string& job_file, const Progress& progress) {
+Result<std::string> run_worker(const std::string& job_file, const WorkerWatch& watch) {
   const Child child = KA_TRY(start(KA_TRY(worker_program()), job_file));
   Lines lines(child.out);
   std::string line, last;
@@ -105,9 +105,13 @@ Result<std::string> run_worker(const std::string& job_file, const Progress& prog
   while (lines.next(line)) {
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (!json.is_object()) continue;
+    if (json.contains("warning")) {
+      if (watch.warn) watch.warn(json.value("warning", ""));
+      continue;
+    }
     last = line;
     if (!json.contains("done") || stopped) continue;
-    if (go_on(progress, json.value("what", ""), json.value("done", std::uint64_t{0}),
+    if (go_on(watch.progress, json.value("what", ""), json.value("done", std::uint64_t{0}),
               json.value("total", std::uint64_t{0}))) {
       continue;
     }

@@ -209,6 +209,7 @@ Result<Checked> check_file(const Check& o, const std::string& path, Call& call) 
       return check_take(o, path, call);
     case FileKind::manifest:
     case FileKind::stream:
+    case FileKind::model:    // no motion: opening it says so
     case FileKind::unknown:  // unless --layout says what it is, opening it says what is wrong
       break;
   }

@@ -230,6 +230,7 @@ Result<Findings> convert(const Job& job, const Convert& o, Call& call) {
     case FileKind::manifest:
       return call.console.refuse(Error{job.from, 0, "a take, or one stream's file", "a manifest"});
     case FileKind::stream:
+    case FileKind::model:    // no motion: opening it says so
     case FileKind::unknown:  // unless --layout says what it is, opening it says what is wrong
       break;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
 #include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/text/describe_model.h"
 #include "apps/kinalign/text/describe_xdf.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/inputs.h"
@@ -21,7 +22,7 @@ struct Info {
 Usage describe_info(Info& o) {
   Usage usage;
   usage.positionals = {{"FILE",
-                        "a take, a recording, a recording.toml, an XDF or a stream's file",
+                        "a take, a recording, a recording.toml, an XDF, a model or a stream's file",
                         &o.file,
                         1,
                         1,
@@ -67,6 +68,8 @@ Result<Description> describe(const Info& o, Call& call) {
       return describe_xdf(path, KA_TRY(survey_xdf(files, path, progress)), names);
     case FileKind::take:
       return describe_take(files, path, names);
+    case FileKind::model:
+      return describe_model(path, KA_TRY(read_whole(files, path, most_model_bytes)));
     case FileKind::manifest:
     case FileKind::stream:
     case FileKind::unknown:  // unless --layout says what it is, opening it says what is wrong
@@ -92,7 +95,8 @@ Verb info_verb() {
                "own, with limits: HDF5 files from outside can crash the library.",
        .examples = {{"kinalign info demo/mocap.bvh", "joints, frames, rate"},
                     {"kinalign info demo/mocap.bvh -v", "with the joints' names"},
-                    {"kinalign info demo/take.h5 --json", "everything, with the report"}},
+                    {"kinalign info demo/take.h5 --json", "everything, with the report"},
+                    {"kinalign info denoise.safetensors", "a model: joints, network, training"}},
        .common = {"json"}},
       describe_info, run);
 }

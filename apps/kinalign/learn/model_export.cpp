@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/kinalign/text/describe_model.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/infer/onnx.h"
+#include "kinalign/infer/shapes.h"
+#include "kinalign/models/denoise_model.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Export {
+  std::vector<std::string> model;
+  std::string network = "net";
+};
+
+Usage describe_export(Export& o) {
+  Usage usage;
+  usage.positionals = {{"MODEL", "the model's file", &o.model}};
+  usage.flags = {{"network",
+                  "which: net, or the one behind it that bra-p has",
+                  &o.network,
+                  0.0,
+                  0.0,
+                  {"net", "second"}}};
+  usage.check = [](const Common& common, const Sources&) -> Result<void> {
+    if (common.out.ends_with(".onnx")) return {};
+    return Failure(Error{"-o", 0, "-o FILE.onnx", common.out.empty() ? "none" : shown(common.out)});
+  };
+  return usage;
+}
+
+/// A network with the tensors of its layers.
+struct Parts {
+  Architecture architecture;
+  std::map<std::string, Tensor> tensors;
+};
+
+/// y = factor x + offset, channel by channel.
+struct Scaling {
+  std::vector<float> factor, offset;
+};
+
+void put_scaling(const Scaling& scaling, const std::string& path,
+                 std::map<std::string, Tensor>& out) {
+  const std::size_t n = scaling.factor.size();
+  Tensor weight{{n, n}, std::vector<float>(n * n, 0.0F)};
+  for (std::size_t c = 0; c < n; ++c) weight.values[c * n + c] = scaling.factor[c];
+  out[path + ".weight"] = std::move(weight);
+  out[path + ".bias"] = {{n}, scaling.offset};
+}
+
+/// The network with its scales in front and behind, as linear layers.
+Parts scaled(const Parts& network, const Scaling& before, const Scaling& after) {
+  Parts out{network.architecture, {}};
+  auto& layers = out.architecture.layers;
+  layers.insert(layers.begin(), {.kind = LayerKind::linear, .out = before.factor.size()});
+  layers.push_back({.kind = LayerKind::linear, .out = after.factor.size()});
+  for (const auto& [name, tensor] : network.tensors) {  // "3.1.0.weight" is now "4.1.0.weight"
+    const std::size_t dot = name.find('.');
+    out.tensors[std::to_string(std::stoul(name.substr(0, dot)) + 1) + name.substr(dot)] = tensor;
+  }
+  put_scaling(before, "0", out.tensors);
+  put_scaling(after, std::to_string(layers.size() - 1), out.tensors);
+  return out;
+}
+
+/// The network of that name with the tensors that its layers use: a file may hold others.
+Parts parts_of(const DenoiseModel& model, const std::string& name) {
+  Parts out{name == "net" ? model.architecture : *model.second, {}};
+  for (const Parameter& parameter : parameters(out.architecture)) {
+    out.tensors[parameter.name] = model.tensors.at(name + "." + parameter.name);
+  }
+  return out;
+}
+
+/// From features as they are to metres and logarithms of centimetres.
+Parts whole_network(const DenoiseModel& model) {
+  Scaling before, after;
+  for (std::size_t c = 0; c < model.input_mean.size(); ++c) {
+    before.factor.push_back(1.0F / model.input_scale[c]);
+    before.offset.push_back(-model.input_mean[c] / model.input_scale[c]);
+  }
+  after.factor.assign(model.layout.answers(), static_cast<float>(model.answer_scale));
+  after.offset = model.answer_mean;
+  if (model.states_spread) {
+    after.factor.resize(after.factor.size() + model.layout.outputs.size(), 1.0F);
+    after.offset.resize(after.factor.size(), 0.0F);
+  }
+  return scaled(parts_of(model, "net"), before, after);
+}
+
+std::map<std::string, std::string> metadata_of(const DenoiseModel& model, bool second) {
+  const DenoiseLayout& layout = model.layout;
+  Json bases = Json::array();
+  for (const int base : layout.bases) {
+    bases.push_back(base < 0 ? Json() : Json(layout.inputs[static_cast<std::size_t>(base)]));
+  }
+  std::string output = "positions of the output joints in the body's frame, m";
+  if (!second) {
+    output = "what is added to the smoothed base joint of each output joint, m";
+    if (model.states_spread) output += "; then ln of each joint's standard deviation per axis, cm";
+  }
+  return {{"kinalign.task", model.facts.task},
+          {"kinalign.method", model.facts.method},
+          {"kinalign.rate_hz", fmt::format("{:g}", layout.rate_hz)},
+          {"kinalign.input", second ? "positions of the output joints in the body's frame, m"
+                                    : "positions of the input joints in the body's frame, m; their "
+                                      "differences to the frame before; 1 tracked, 0.5 inferred, 0 "
+                                      "missing"},
+          {"kinalign.output", output},
+          {"kinalign.input_joints", Json(layout.inputs).dump()},
+          {"kinalign.output_joints", Json(layout.outputs).dump()},
+          {"kinalign.bases", bases.dump()},
+          {"kinalign.training", model.facts.training}};
+}
+
+Result<int> run_export(Export& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string &in = o.model.front(), &out = call.common.out;
+  KA_TRY(keep_inputs(out, o.model));
+  DenoiseModel model =
+      KA_TRY(read_denoise_model(KA_TRY(read_whole(files, in, most_model_bytes)), in));
+  auto usable = Denoiser::make(model);
+  if (!usable) {
+    Error error = usable.error();
+    error.file = in;
+    return Failure(std::move(error));
+  }
+  const bool second = o.network == "second";
+  if (second && !model.second) {
+    return Failure(Error{in, 0, "a network behind the first one", "none"});
+  }
+  const Parts parts = second ? parts_of(model, "second") : whole_network(model);
+  const OnnxOptions options{.prefix = "", .metadata = metadata_of(model, second)};
+  KA_TRY(write_whole(files, out, KA_TRY(onnx_of(parts.architecture, parts.tensors, options)),
+                     call.common.overwrite()));
+  call.console.wrote(out);
+  const std::size_t channels = parts.architecture.inputs, answers = outputs(parts.architecture);
+  call.console.print(fmt::format("{}: input [1,T,{}], output [1,T,{}], ONNX opset 13\n",
+                                 harmless(out), channels, answers));
+  call.console.print_json(Json{{"file", out}, {"inputs", channels}, {"outputs", answers}}.dump(
+      -1, ' ', false, Json::error_handler_t::replace));
+  return 0;
+}
+
+}  // namespace
+
+Verb model_export_verb() {
+  return make_verb<Export>(
+      {.name = "model export",
+       .summary = "a model's network as ONNX",
+       .text = "Writes the network for ONNX Runtime and its like. The scales of its numbers are "
+               "part of the graph; what stands in the channels is said in the metadata and in "
+               "docs/formats/model.md. The body's frame before it and the steadying behind it are "
+               "no part of it.",
+       .examples = {{"kinalign model export denoise.safetensors -o denoise.onnx",
+                     "for ONNX Runtime"}},
+       .common = {"out", "force", "json"}},
+      describe_export, run_export);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// The methods that clean skeletons, on one short pair.
+#include "kinalign/learn/denoise_task.h"
+
+#include "tests/models/bodies.h"
+
+#include "kinalign/learn/clean_motion.h"
+#include "kinalign/learn/fit_denoise.h"
+#include "kinalign/learn/methods/methods.h"
+#include "kinalign/models/denoise_model.h"
+
+#include <doctest/doctest.h>
+
+using namespace kinalign;
+
+namespace {
+
+/// A rough motion and its truth: other waves about the same body.
+Pair one_pair(std::size_t frames) {
+  Pair out;
+  out.input = moving_body(frames, 1);
+  out.truth = moving_body(frames, 2).positions;
+  out.valid.assign(frames * standing_body.size(), 1);
+  out.take = "S01-A1";
+  out.part = "train";
+  return out;
+}
+
+DenoiseLayout layout_of(const DenoiseMethod& method) {
+  DenoiseLayout out = *denoise_layout(body_joint_names(), body_joint_names(), 30.0);
+  if (!method.from_base) out.bases.assign(out.outputs.size(), -1);
+  return out;
+}
+
+void narrow(std::vector<Layer>& layers, std::size_t wide, std::size_t width) {
+  for (Layer& one : layers) {
+    one.rate = 0.0;
+    if (one.out == wide) one.out = width;
+    for (auto& branch : one.branches) narrow(branch, wide, width);
+  }
+}
+
+/// The method's network with few channels and without dropout.
+Architecture narrow_network(const DenoiseMethod& method, const DenoiseLayout& layout) {
+  Architecture out = method.architecture(layout);
+  for (const std::size_t wide : {128U, 256U}) narrow(out.layers, wide, 48);
+  return out;
+}
+
+DenoiseTraining small_training(const DenoiseMethod& method) {
+  DenoiseTraining out = method.training;
+  out.batch = 2;
+  out.crop = 61;
+  out.mirror = false;
+  out.loss.smooth = 0.0;  // holds the answer back, whatever the truth is
+  return out;
+}
+
+/// The judgement after the fit as a share of the one before.
+double left_over(const DenoiseMethod& method, std::int64_t steps) {
+  const DenoiseLayout layout = layout_of(method);
+  const std::vector<Pair> pairs{one_pair(61)};
+  DenoiseTask task(layout, small_training(method), pairs, pairs, torch::kCPU);
+  torch::manual_seed(1);
+  TorchNetwork network(narrow_network(method, layout));
+  if (method.zero_last) network.zero_last();
+  const double before = *task.judge(network);
+  REQUIRE(train(network, task, {.steps = steps, .rate = 1e-2, .average = false}, {}, {}));
+  const double after = *task.judge(network);
+  MESSAGE(std::string(method.name), ": ", before, " to ", after);
+  return after / before;
+}
+
+Pairs pairs_about() {
+  return {.inputs = body_joint_names(), .outputs = body_joint_names(), .rate_hz = 30.0, .all = {}};
+}
+
+/// A model of the method at its full width, after two steps.
+Result<DenoiseFit> fitted(DenoiseMethod method, std::uint64_t seed) {
+  method.training.batch = 2;
+  method.training.crop = 16;
+  const FitOptions options{{.steps = 2, .rate = 1e-3, .seed = seed}, torch::kCPU};
+  return fit_denoise(method, pairs_about(), {{one_pair(64)}, {}}, options, {}, {});
+}
+
+}  // namespace
+
+TEST_CASE("denoise task: each network learns one window by heart") {
+  CHECK(left_over(refine_method(), 300) < 0.05);
+  CHECK(left_over(cnn_method(), 1000) < 0.05);
+  CHECK(left_over(bra_method(), 400) < 0.05);
+}
+
+TEST_CASE("denoise task: every gradient is there and finite") {
+  for (const DenoiseMethod& method : denoise_methods()) {
+    CAPTURE(method.name);
+    const DenoiseLayout layout = layout_of(method);
+    DenoiseTraining training = small_training(method);
+    training.crop = 16;
+    DenoiseTask task(layout, training, {one_pair(30)}, {}, torch::kCPU);
+    torch::manual_seed(1);
+    const TorchNetwork clean(clean_motion_architecture(layout.answers()));
+    if (method.perceptual) {
+      task.compare_features(
+          [&](const torch::Tensor& answers) { return motion_features(clean, answers); });
+    }
+    TorchNetwork network(method.architecture(layout));
+    const auto loss = task.loss(network, 1, 0);
+    loss.backward();
+    CHECK(std::isfinite(loss.item<double>()));
+    for (const auto& [name, tensor] : network.tensors()) {
+      CAPTURE(name);
+      REQUIRE(tensor.grad().defined());
+      CHECK(torch::isfinite(tensor.grad()).all().item<bool>());
+    }
+  }
+}
+
+TEST_CASE("denoise task: the loss of a step depends on seed and step alone") {
+  const DenoiseMethod method = refine_method();
+  const DenoiseLayout layout = layout_of(method);
+  DenoiseTask task(layout, small_training(method), {one_pair(90)}, {}, torch::kCPU);
+  torch::manual_seed(1);
+  const TorchNetwork network(narrow_network(method, layout));
+  const auto loss = [&](std::uint64_t seed, std::uint64_t step) {
+    torch::NoGradGuard guard;
+    return task.loss(network, seed, step).item<double>();
+  };
+  const double first = loss(1, 0);
+  CHECK(loss(1, 1) != first);
+  CHECK(loss(2, 0) != first);
+  CHECK(loss(1, 0) == first);
+  CHECK_FALSE(task.judge(network));
+}
+
+TEST_CASE("denoise task: joints without truth do not count") {
+  const DenoiseMethod method = refine_method();
+  const DenoiseLayout layout = layout_of(method);
+  Pair pair = one_pair(61), wrong = pair;
+  for (std::size_t t = 0; t < 61; ++t) {
+    const std::size_t at = t * 21 + 7;
+    pair.valid[at] = wrong.valid[at] = 0;
+    wrong.truth[3 * at] += 5.0F;
+  }
+  DenoiseTraining training = small_training(method);
+  training.states_spread = false;
+  const auto loss = [&](const Pair& one) {
+    DenoiseTask task(layout, training, {one}, {}, torch::kCPU);
+    torch::manual_seed(1);
+    torch::NoGradGuard guard;
+    return task.loss(TorchNetwork(narrow_network(method, layout)), 1, 0).item<double>();
+  };
+  // Second differences weigh whole frames: 3 of 3 frames of the joint are not valid.
+  CHECK(loss(pair) == doctest::Approx(loss(wrong)).epsilon(1e-6));
+}
+
+TEST_CASE("fit: each method gives a model that is written, read and used") {
+  for (const DenoiseMethod& method : denoise_methods()) {
+    CAPTURE(method.name);
+    auto fit = fitted(method, 1);
+    REQUIRE(fit);
+    CHECK(fit->model.second.has_value() == method.perceptual);
+    auto read = read_denoise_model(write_denoise_model(fit->model), "m");
+    REQUIRE(read);
+    auto denoiser = Denoiser::make(*std::move(read));
+    REQUIRE(denoiser);
+    const Denoised out = denoiser->clean(moving_body(20, 5));
+    CHECK(out.positions.size() == 20 * 63);
+    for (const float value : out.positions) CHECK(std::isfinite(value));
+    CHECK(out.spread.empty() != method.training.states_spread);
+  }
+}
+
+TEST_CASE("fit: the same seed gives the same model, byte for byte") {
+  const auto bytes = [](std::uint64_t seed) {
+    return write_denoise_model(fitted(refine_method(), seed)->model);
+  };
+  const std::string first = bytes(3);
+  CHECK(bytes(3) == first);
+  CHECK(bytes(4) != first);
+}
+
+TEST_CASE("fit: no pairs, and no whole stretch for the second network of bra-p, are refused") {
+  const FitOptions options{{.steps = 2}, torch::kCPU};
+  const auto none = fit_denoise(refine_method(), pairs_about(), {}, options, {}, {});
+  REQUIRE_FALSE(none);
+  CHECK(to_string(none.error()) == "expected pairs to train on, found none");
+  const auto brief =
+      fit_denoise(bra_p_method(), pairs_about(), {{one_pair(30)}, {}}, options, {}, {});
+  REQUIRE_FALSE(brief);
+  CHECK(to_string(brief.error()) == "expected stretches of 61 rows of clean motion, found none");
+}
