@@ -24,7 +24,7 @@ void check(const NtpAsked& asked, std::span<const std::uint8_t> answer) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   NtpResponder responder(SipHashKey{},
-                         {Network{mapped_ipv4(std::array<std::uint8_t, 4>{10}), 104}});
+                         {AddressBlock{mapped_ipv4(std::array<std::uint8_t, 4>{10}), 104}});
   std::map<HostAddress, std::int64_t> answered;
   ByteReader reader({data, size});
   HostTime now{std::chrono::hours(1)};

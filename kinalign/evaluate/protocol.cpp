@@ -52,7 +52,7 @@ ProtocolMarks protocol_marks(const Sequence& sequence, Prediction prediction,
   return out;
 }
 
-ProtocolRow protocol_row(std::span<const ProtocolMarks> repetitions) {
+ProtocolMeans protocol_row(std::span<const ProtocolMarks> repetitions) {
   Mean position, fitted, bone, constancy, acceleration, jitter, true_jitter;
   const auto add = [](Mean& mean, const std::optional<double>& value) {
     if (value) mean.add(*value);
@@ -66,8 +66,8 @@ ProtocolRow protocol_row(std::span<const ProtocolMarks> repetitions) {
     jitter.add(one.jitter_mm);
     true_jitter.add(one.true_jitter_mm);
   }
-  ProtocolRow out{position.value(),           fitted.value(), bone.value(), constancy.value(),
-                  acceleration.value_or(0.0), std::nullopt};
+  ProtocolMeans out{position.value(),           fitted.value(), bone.value(), constancy.value(),
+                    acceleration.value_or(0.0), std::nullopt};
   if (true_jitter.value_or(0.0) > 0.0)
     out.jitter = jitter.value_or(0.0) / true_jitter.value_or(1.0);
   return out;

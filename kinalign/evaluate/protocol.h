@@ -27,11 +27,11 @@ ProtocolMarks protocol_marks(const Sequence& sequence, Prediction prediction,
 std::vector<std::optional<double>> limb_lengths(std::span<const Sequence> take);
 
 /// A fold's row: means over repetitions; JIT is the ratio of the means.
-struct ProtocolRow {
+struct ProtocolMeans {
   std::optional<double> position_cm, fitted_cm, bone_cm, constancy_cm;
   double acceleration_mm = 0.0;
   std::optional<double> jitter;  // times the truth's; absent where the truth is at rest
 };
-ProtocolRow protocol_row(std::span<const ProtocolMarks> repetitions);
+ProtocolMeans protocol_row(std::span<const ProtocolMarks> repetitions);
 
 }  // namespace kinalign

@@ -50,7 +50,7 @@ TEST_CASE("the marks are those of the protocol's script" * doctest::skip(!has_pr
     check_near(ours.true_jitter_mm, marks[6]);
     ProtocolMarks shaky = ours;
     shaky.jitter_mm *= 2.0;
-    const ProtocolRow row = protocol_row(std::array{ours, shaky});
+    const ProtocolMeans row = protocol_row(std::array{ours, shaky});
     check_near(row.position_cm, found.at("row")[0]);
     check_near(row.constancy_cm, found.at("row")[3]);
     check_near(row.jitter, found.at("row")[5]);
@@ -61,7 +61,7 @@ TEST_CASE("the truth's row has the truth's own bones and jitter 1") {
   const MovingBody body = moving_body(1);
   const Sequence s = body.sequence();
   const ProtocolMarks marks = protocol_marks(s, body.truth, limb_lengths(std::span(&s, 1)));
-  const ProtocolRow row = protocol_row(std::array{marks});
+  const ProtocolMeans row = protocol_row(std::array{marks});
   CHECK(row.position_cm == 0.0);
   CHECK(row.acceleration_mm == 0.0);
   CHECK(row.jitter == 1.0);
@@ -75,7 +75,7 @@ TEST_CASE("a mark that a repetition lacks does not count in its fold") {
   with.true_jitter_mm = 1.0;
   with.jitter_mm = 2.0;
   without.position_cm = 6.0;
-  const ProtocolRow row = protocol_row(std::array{with, without});
+  const ProtocolMeans row = protocol_row(std::array{with, without});
   CHECK(row.position_cm == 5.0);
   CHECK(row.fitted_cm == 3.0);
   CHECK_FALSE(row.bone_cm);

@@ -67,7 +67,7 @@ void put_marks(const std::vector<Repetition>& pieces, Figures& figures) {
       smoothed_marks.push_back(protocol_marks(sequences[i], smoothed(take[i]), lengths));
     }
   }
-  const ProtocolRow row = protocol_row(marks);
+  const ProtocolMeans row = protocol_row(marks);
   figures.mpjpe = row.position_cm.value_or(0.0);
   figures.pa = row.fitted_cm.value_or(0.0);
   figures.bone = row.bone_cm.value_or(0.0);

@@ -270,7 +270,7 @@ Result<std::vector<Marked>> marks_for(const Bench& bench, const Fold& fold,
 }
 
 /// Values of one method, a row for each fold (of a single fold: for each person).
-using FoldRows = std::vector<ProtocolRow>;
+using FoldRows = std::vector<ProtocolMeans>;
 
 std::vector<std::vector<const Marked*>> groups_of(const std::vector<std::vector<Marked>>& folds) {
   std::vector<std::vector<const Marked*>> out;
@@ -312,7 +312,7 @@ std::vector<Cell> row_of(const std::string& method, const std::vector<std::vecto
       radius += m.radius_cm * n;
       cells += n;
     }
-    const ProtocolRow row = protocol_row(marks);
+    const ProtocolMeans row = protocol_row(marks);
     const auto put = [&](std::size_t i, const std::optional<double>& value) {
       if (value) values[i].push_back(*value);
     };

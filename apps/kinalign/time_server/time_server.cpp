@@ -29,8 +29,8 @@ struct TimeServerFlags {
   std::string lab_key;
 };
 
-Result<std::vector<Network>> networks_of(const std::vector<std::string>& texts) {
-  std::vector<Network> networks;
+Result<std::vector<AddressBlock>> networks_of(const std::vector<std::string>& texts) {
+  std::vector<AddressBlock> networks;
   for (const std::string& text : texts) {
     auto network = parse_network(text);
     if (!network) return Failure(Error{"--exempt", 0, network.error().expected, shown(text)});

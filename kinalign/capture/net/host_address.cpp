@@ -35,7 +35,7 @@ std::string to_string(const HostAddress& address) {
   return text.data();
 }
 
-bool Network::has(const HostAddress& address) const {
+bool AddressBlock::has(const HostAddress& address) const {
   for (std::size_t i = 0; i < bits / 8; ++i) {
     if (address[i] != prefix[i]) return false;
   }
@@ -44,7 +44,7 @@ bool Network::has(const HostAddress& address) const {
   return differing >> (8 - bits % 8) == 0;
 }
 
-Result<Network> parse_network(const std::string& text) {
+Result<AddressBlock> parse_network(const std::string& text) {
   const std::size_t slash = text.find('/');
   const auto address = parse_address(text.substr(0, slash));
   const bool four = address && is_ipv4(*address) && text.find(':') == std::string::npos;
@@ -54,7 +54,7 @@ Result<Network> parse_network(const std::string& text) {
   if (!address || !bits) {
     return Failure(Error{"", 0, "an address or a network as 192.168.7.0/24", shown(text)});
   }
-  return Network{*address, four ? *bits + 96 : *bits};
+  return AddressBlock{*address, four ? *bits + 96 : *bits};
 }
 
 }  // namespace kinalign

@@ -45,7 +45,7 @@ constexpr std::span<const std::uint8_t, 8> stranger(const HostAddress& address) 
 }
 
 /// The addresses whose first `bits` bits are those of `prefix`.
-struct Network {
+struct AddressBlock {
   HostAddress prefix{};
   std::size_t bits = 0;  // of the 16 bytes: 96 more than an IPv4 network says
 
@@ -53,6 +53,6 @@ struct Network {
 };
 
 /// "192.168.7.0/24", "fd00::/8" or an address alone.
-Result<Network> parse_network(const std::string& text);
+Result<AddressBlock> parse_network(const std::string& text);
 
 }  // namespace kinalign

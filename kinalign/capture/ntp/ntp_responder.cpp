@@ -49,8 +49,9 @@ bool is_from_node(std::span<const std::uint8_t> bytes) {
 std::string_view name_of(NtpOutcome outcome) { return names[static_cast<std::size_t>(outcome)]; }
 
 RateLimit::Verdict NtpResponder::limit(const HostAddress& from, HostTime now) {
-  const bool exempt = std::any_of(exempt_.begin(), exempt_.end(),
-                                  [&from](const Network& network) { return network.has(from); });
+  const bool exempt =
+      std::any_of(exempt_.begin(), exempt_.end(),
+                  [&from](const AddressBlock& network) { return network.has(from); });
   return exempt ? RateLimit::Verdict::answer : limit_.ask(siphash_2_4(key_, stranger(from)), now);
 }
 

@@ -56,7 +56,7 @@ class NtpResponder {
  public:
   /// `key`: random in each run, known to nobody. `exempt`: networks that are answered however often
   /// they ask.
-  NtpResponder(const SipHashKey& key, std::vector<Network> exempt)
+  NtpResponder(const SipHashKey& key, std::vector<AddressBlock> exempt)
       : key_(key), exempt_(std::move(exempt)) {}
 
   /// Fills `answer` where the outcome is answered or kissed. `now`: for the transmit stamp, so the
@@ -71,7 +71,7 @@ class NtpResponder {
   RateLimit::Verdict limit(const HostAddress& from, HostTime now);
 
   SipHashKey key_;
-  std::vector<Network> exempt_;
+  std::vector<AddressBlock> exempt_;
   RateLimit limit_;
   NtpServerState state_;
 };

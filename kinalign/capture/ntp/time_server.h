@@ -23,7 +23,7 @@ struct TimeServerOptions {
   std::vector<std::string> addresses;         // to serve on; empty: all, of IPv4 and IPv6
   std::uint16_t port = 123;                   // 0: any free one, the same for all addresses
   std::optional<std::uint8_t> local_stratum;  // see ClockPolicy
-  std::vector<Network> exempt;                // from the limit on how often one may ask
+  std::vector<AddressBlock> exempt;           // from the limit on how often one may ask
   SipHashKey key{};                           // random in each run
   std::uint16_t chrony_port = 323;            // where a chronyd of this host takes commands
 };

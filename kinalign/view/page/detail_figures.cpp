@@ -83,8 +83,8 @@ void add_raw(const RawPoints& raw, const RawMove& move, Time first, PageDetail& 
   }
 }
 
-Stretch raw_node_stretch(const std::vector<RawNode>& raw, const Stretch& stretch,
-                         std::size_t most) {
+DetailStretch raw_node_stretch(const std::vector<RawNode>& raw, const DetailStretch& stretch,
+                               std::size_t most) {
   std::size_t samples = 0;
   for (const RawNode& node : raw) samples += node.stamps.size();
   if (samples <= most) return stretch;
@@ -94,8 +94,8 @@ Stretch raw_node_stretch(const std::vector<RawNode>& raw, const Stretch& stretch
   return {middle - half, middle + half};
 }
 
-void add_raw(const RawNode& raw, const Quat& sensor_from_bone, Time first, const Stretch& stretch,
-             NodeFigures& figures) {
+void add_raw(const RawNode& raw, const Quat& sensor_from_bone, Time first,
+             const DetailStretch& stretch, NodeFigures& figures) {
   const Quat back = sensor_from_bone.conjugate();
   for (std::size_t t = 0; t < raw.stamps.size(); ++t) {
     const double at = seconds(raw.stamps[t] - first);

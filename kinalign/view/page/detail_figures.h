@@ -59,17 +59,18 @@ struct RawMove {
 void add_raw(const RawPoints& raw, const RawMove& move, Time first, PageDetail& detail);
 
 /// A stretch of the take, s from its first row.
-struct Stretch {
+struct DetailStretch {
   double begin_s = 0.0, end_s = 0.0;
 };
 
 /// The part of a stretch, around its middle, in which all nodes together have at most `most` raw
 /// samples, if they come evenly.
-Stretch raw_node_stretch(const std::vector<RawNode>& raw, const Stretch& stretch, std::size_t most);
+DetailStretch raw_node_stretch(const std::vector<RawNode>& raw, const DetailStretch& stretch,
+                               std::size_t most);
 
 /// Puts a node's raw samples of a stretch into its figures, as the node is worn: turned back by
 /// `sensor_from_bone`.
-void add_raw(const RawNode& raw, const Quat& sensor_from_bone, Time first, const Stretch& stretch,
-             NodeFigures& figures);
+void add_raw(const RawNode& raw, const Quat& sensor_from_bone, Time first,
+             const DetailStretch& stretch, NodeFigures& figures);
 
 }  // namespace kinalign

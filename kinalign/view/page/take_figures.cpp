@@ -244,8 +244,9 @@ void TakeFigures::State::add_raw_samples(PageDetail& detail) const {
 
 void TakeFigures::State::add_raw_node_samples() {
   if (options.raw_nodes.empty() || !first) return;
-  const Stretch detail{options.detail_begin_s, options.detail_begin_s + options.detail_length_s};
-  const Stretch stretch =
+  const DetailStretch detail{options.detail_begin_s,
+                             options.detail_begin_s + options.detail_length_s};
+  const DetailStretch stretch =
       raw_node_stretch(options.raw_nodes, detail, options.most_raw_node_samples);
   page.raw_nodes_begin_s = std::max(0.0, stretch.begin_s);
   page.raw_nodes_end_s = std::min(length_s, stretch.end_s);
@@ -345,7 +346,7 @@ void LongestGap::add(const TakeSlab& slab) {
       const auto begin = points->valid.begin() + static_cast<std::ptrdiff_t>(r * joints);
       const bool seen = std::any_of(begin, begin + static_cast<std::ptrdiff_t>(joints),
                                     [](std::uint8_t valid) { return valid != 0; });
-      Stretch& now = now_[g];
+      DetailStretch& now = now_[g];
       if (seen) {
         now.open = false;
         continue;

@@ -58,13 +58,13 @@ class LongestGap {
   std::optional<double> middle_s() const;
 
  private:
-  struct Stretch {
+  struct DetailStretch {
     Time begin{}, end{};
     bool open = false;
   };
   std::optional<Time> first_;
-  std::vector<Stretch> now_;  // [groups]
-  Stretch longest_;
+  std::vector<DetailStretch> now_;  // [groups]
+  DetailStretch longest_;
 };
 
 }  // namespace kinalign

@@ -33,10 +33,10 @@ TEST_CASE("a node's raw samples of a stretch are turned as the node is worn") {
 
 TEST_CASE("more raw samples than a page shall have are kept around the middle of the stretch") {
   const std::vector<RawNode> raw{node_of(60), node_of(40)};
-  const Stretch all = raw_node_stretch(raw, {10.0, 30.0}, 100);
+  const DetailStretch all = raw_node_stretch(raw, {10.0, 30.0}, 100);
   CHECK(all.begin_s == 10.0);
   CHECK(all.end_s == 30.0);
-  const Stretch half = raw_node_stretch(raw, {10.0, 30.0}, 50);
+  const DetailStretch half = raw_node_stretch(raw, {10.0, 30.0}, 50);
   CHECK(half.begin_s == doctest::Approx(15.0));
   CHECK(half.end_s == doctest::Approx(25.0));
 }
