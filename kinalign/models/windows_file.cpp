@@ -310,8 +310,10 @@ Result<void> append_window(const std::map<std::string, StoredArray>& arrays, Win
    /// another
 /// rate than the take's, `first` is rounded.
 std::int64_t rows_between(const Places& places, std::size_t w, double rate_hz) {
-  const auto step = static_cast<double>(places.time_ns[w] - places.time_ns[w - 1]);
-  return std::llround(step * 1e-9 * rate_hz);
+  const double step =
+      static_cast<double>(places.time_ns[w]) - static_cast<double>(places.time_ns[w - 1]);
+  const double rows = step * 1e-9 * rate_hz;
+  return std::abs(rows) < static_cast<double>(most_rows) ? std::llround(rows) : 2 * most_rows;
 }
 
 Result<void> join(const std::map<std::string, StoredArray>& arrays, const Places& places,
@@ -319,9 +321,15 @@ Result<void> join(const std::map<std::string, StoredArray>& arrays, const Places
   std::int64_t begin = 0, reached = 0;
   for (std::size_t w = 0; w < places.take.size(); ++w) {
     const std::int64_t rows = places.rows[w];
-    if (rows <= 0) return broken(name, "rows of a window", std::to_string(rows));
+    if (rows <= 0 || rows > most_rows) {
+      return broken(name, "rows of a window", std::to_string(rows));
+    }
     const bool same_take = w > 0 && places.take[w] == places.take[w - 1];
-    if (same_take) begin += rows_between(places, w, out.facts.rate_hz);
+    const std::int64_t step = same_take ? rows_between(places, w, out.facts.rate_hz) : 0;
+    begin = same_take ? begin + step : 0;
+    if (begin > most_rows || begin < -most_rows) {
+      return broken(name, "stamps of a take", std::to_string(begin) + " rows in it");
+    }
     const bool goes_on = same_take && begin <= reached && begin + rows > reached &&
                          places.time_ns[w] > places.time_ns[w - 1];
     if (!goes_on) {

@@ -87,6 +87,12 @@ double difference(const std::vector<float>& a, const std::vector<float>& b) {
   return worst / largest;
 }
 
+/// The result computed in doubles.
+std::vector<float> exact(TorchNetwork network, const torch::Tensor& batch) {
+  for (auto& [name, tensor] : network.tensors()) tensor = tensor.to(torch::kFloat64);
+  return values_of(network.forward(batch.to(torch::kFloat64), false));
+}
+
 void compare(const Architecture& architecture, std::size_t frames, std::uint64_t seed) {
   CAPTURE(architecture_json(architecture));
   REQUIRE(validate(architecture));
@@ -100,7 +106,10 @@ void compare(const Architecture& architecture, std::size_t frames, std::uint64_t
   auto wanted = result_of(same, {in.begin(), in.begin() + static_cast<std::ptrdiff_t>(half)});
   const auto second = result_of(same, {in.begin() + static_cast<std::ptrdiff_t>(half), in.end()});
   wanted.insert(wanted.end(), second.begin(), second.end());
-  CHECK(difference(values_of(network.forward(batch, false)), wanted) < 1e-5);
+  // A layer_norm over values that hardly differ enlarges rounding, in both alike.
+  const double rounding =
+      difference(values_of(network.forward(batch, false)), exact(network, batch));
+  CHECK(difference(values_of(network.forward(batch, false)), wanted) < 1e-5 + 2.0 * rounding);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/text/describe_model.h"
 #include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
 #include "kinalign/formats/bvh/bvh.h"

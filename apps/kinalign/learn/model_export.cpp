@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
-#include "apps/kinalign/text/describe_model.h"
 #include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
 #include "kinalign/infer/onnx.h"

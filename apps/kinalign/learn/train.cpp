@@ -131,7 +131,7 @@ Result<int> run_train(Train& o, Call& call) {
   const std::string& out = call.common.out;
   std::error_code fault;
   if (fs::exists(out, fault) && !call.common.force) {
-    return Failure(Error{out, 0, "no file of that name (--force replaces it)", "one"});
+    return Failure(Error{out, 0, "no file of that name (--force overwrites)", "one"});
   }
   const std::string folder = run_folder(out);
   KA_TRY(make_folders(folder));

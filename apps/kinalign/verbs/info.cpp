@@ -4,6 +4,7 @@
 #include "apps/kinalign/text/describe_model.h"
 #include "apps/kinalign/text/describe_xdf.h"
 #include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
 #include "kinalign/recording/streams/recording_source.h"

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/verbs/describe_model.h"
+
+#include "apps/cli/json_text.h"
+
+#include "kinalign/infer/architecture_json.h"
+#include "kinalign/infer/layer_kinds.h"
+#include "kinalign/infer/shapes.h"
+#include "kinalign/models/denoise_model.h"
+#include "kinalign/view/report_words.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string line(std::string_view name, const std::string& value) {
+  return fmt::format("  {:<12}{}\n", name, value);
+}
+
+std::string counted(std::size_t n, std::string_view word) {
+  return fmt::format("{} {}{}", grouped(n), word, n == 1 ? "" : "s");
+}
+
+std::size_t parameters_of(const Architecture& architecture) {
+  std::size_t sum = 0;
+  for (const Parameter& parameter : parameters(architecture)) {
+    std::size_t size = 1;
+    for (const std::size_t length : parameter.shape) size *= length;
+    sum += size;
+  }
+  return sum;
+}
+
+/// "conv 128, kernel 5, dilation 2, causal"
+std::string layer_text(const Layer& layer) {
+  const LayerKind kind = layer.kind;
+  std::string text(row_of(kind).name);
+  if (uses(kind, member_out)) text += fmt::format(" {}", layer.out);
+  if (uses(kind, member_kernel)) text += fmt::format(", kernel {}", layer.kernel);
+  if (layer.dilation > 1) text += fmt::format(", dilation {}", layer.dilation);
+  if (layer.causal) text += ", causal";
+  if (layer.bidirectional) text += ", both directions";
+  if (uses(kind, member_slope)) text += fmt::format(" {:g}", layer.slope);
+  if (uses(kind, member_rate)) text += fmt::format(" {:g}", layer.rate);
+  if (uses(kind, member_begin)) text += fmt::format(" from {}", layer.begin);
+  return text;
+}
+
+std::string layer_lines(const std::vector<Layer>& layers, std::size_t indent) {
+  std::string text;
+  for (const Layer& layer : layers) {
+    text += std::string(indent, ' ') + layer_text(layer) + "\n";
+    for (const auto& branch : layer.branches) {
+      text += std::string(indent + 2, ' ') + (branch.empty() ? "branch: as it is\n" : "branch\n");
+      text += layer_lines(branch, indent + 4);
+    }
+  }
+  return text;
+}
+
+std::string frames_text(const std::optional<std::size_t>& frames, std::string_view way) {
+  return frames ? fmt::format("{} {}", *frames, way) : fmt::format("all {}", way);
+}
+
+/// A network: "net: 147 in, 84 out, 166,228 parameters; a frame sees 17 before and 17 after it".
+std::string network_lines(const std::string& name, const Architecture& architecture) {
+  const std::string about =
+      fmt::format("{}: {} in, {} out, {}; a frame sees {} and {} it", name, architecture.inputs,
+                  outputs(architecture), counted(parameters_of(architecture), "parameter"),
+                  frames_text(look_back(architecture), "before"),
+                  frames_text(look_ahead(architecture), "after"));
+  return line("network", about) + layer_lines(architecture.layers, 14);
+}
+
+Json frames_json(const std::optional<std::size_t>& frames) {
+  return frames ? Json(*frames) : Json();
+}
+
+std::string smoothing_text(const Smoothing& how) {
+  if (how.window < 2) return "no smoothing";
+  return fmt::format("smoothed over {} frames (order {}{})", how.window, how.order,
+                     how.causal ? ", causal" : "");
+}
+
+std::string joint_lines(std::string_view name, const std::vector<std::string>& joints) {
+  std::string names;
+  for (const std::string& joint : joints) names += (names.empty() ? "" : ", ") + shown(joint);
+  return line(name, fmt::format("{}: {}", counted(joints.size(), "joint"), names));
+}
+
+/// A text member of an object that any program may have written, on one line; empty where it is
+/// none.
+std::string text_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_string()) return "";
+  std::string text = found->get<std::string>();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string number_of(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? fmt::format("{:g}", found->get<double>())
+                                                     : "";
+}
+
+std::string data_lines(const Json& data) {
+  std::string text;
+  for (const Json& one : data.is_array() ? data : Json::array()) {
+    if (!one.is_object()) continue;
+    std::string about = text_of(one, "name");
+    if (const auto frames = number_of(one, "frames"); !frames.empty())
+      about += ", " + frames + " frames";
+    const std::string licence = text_of(one, "licence"), citation = text_of(one, "citation");
+    about += licence.empty() ? ", no licence stated" : ", licence " + licence;
+    text += line("trained on", about);
+    if (!citation.empty()) text += line("  cite", citation);
+  }
+  return text;
+}
+
+std::string training_lines(const Json& training) {
+  std::string text = data_lines(training.value("data", Json::array()));
+  std::string how;
+  for (const char* key : {"steps", "rate", "seed"}) {
+    const std::string value = number_of(training, key);
+    if (!value.empty()) how += fmt::format("{}{} {}", how.empty() ? "" : ", ", key, value);
+  }
+  return how.empty() ? text : text + line("training", how);
+}
+
+std::string metric_lines(const Json& metrics) {
+  std::string text;
+  for (const auto& [name, value] : metrics.items()) {
+    text += line("metric", fmt::format("{} {}", shown(name), shown(value.dump())));
+  }
+  return text;
+}
+
+Json parsed_object(const std::string& text) {
+  Json out = Json::parse(text, nullptr, false);
+  return out.is_object() ? out : Json::object();
+}
+
+Json network_json(const Architecture& architecture) {
+  Json out = Json::parse(architecture_json(architecture));
+  out["outputs"] = outputs(architecture);
+  out["parameters"] = parameters_of(architecture);
+  out["look_back"] = frames_json(look_back(architecture));
+  out["look_ahead"] = frames_json(look_ahead(architecture));
+  return out;
+}
+
+Json smoothing_json(const Smoothing& how) {
+  return {{"window", how.window}, {"order", how.order}, {"causal", how.causal}};
+}
+
+std::string text_of(const std::string& path, const DenoiseModel& model, const Json& training,
+                    const Json& metrics) {
+  std::string text = path + "\n";
+  text += line("model",
+               fmt::format("{}, method {}", shown(model.facts.task), shown(model.facts.method)));
+  text += line("rate", fmt::format("{:g} Hz", model.layout.rate_hz));
+  text += joint_lines("input", model.layout.inputs);
+  text += joint_lines("output", model.layout.outputs);
+  text += line("spread", model.states_spread ? "stated for each joint" : "not stated");
+  text += network_lines("net", model.architecture);
+  if (model.second) text += network_lines("second", *model.second);
+  const Steadying& steadying = model.steadying;
+  text += line("steadying", fmt::format("{}{}{}", smoothing_text(steadying.smoothing),
+                                        steadying.mirror ? ", mean with the mirror image" : "",
+                                        steadying.bones ? ", bones of constant length" : ""));
+  return text + training_lines(training) + metric_lines(metrics);
+}
+
+}  // namespace
+
+Result<Description> describe_model(const std::string& path, std::string_view bytes) {
+  DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
+  const Json training = parsed_object(model.facts.training);
+  const Json metrics = parsed_object(model.facts.metrics);
+  std::string text = text_of(path, model, training, metrics);
+  Json networks{{"net", network_json(model.architecture)}};
+  if (model.second) networks["second"] = network_json(*model.second);
+  const Json json{
+      {"file", path},
+      {"kind", "model"},
+      {"bytes", bytes.size()},
+      {"task", model.facts.task},
+      {"method", model.facts.method},
+      {"software", model.facts.software},
+      {"rate_hz", model.layout.rate_hz},
+      {"input",
+       {{"joints", model.layout.inputs}, {"smoothing", smoothing_json(model.layout.smoothing)}}},
+      {"output",
+       {{"joints", model.layout.outputs},
+        {"parents", model.layout.parents},
+        {"spread", model.states_spread}}},
+      {"networks", std::move(networks)},
+      {"steadying",
+       {{"mirror", model.steadying.mirror},
+        {"smoothing", smoothing_json(model.steadying.smoothing)},
+        {"bones", model.steadying.bones}}},
+      {"training", training},
+      {"metrics", metrics}};
+  auto usable = Denoiser::make(std::move(model));
+  if (!usable) {
+    Error error = usable.error();
+    error.file = path;
+    return Failure(std::move(error));
+  }
+  return Description{std::move(text), json_text(json)};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/verbs/describe_model.h"
+
+#include "tests/models/small_model.h"
+
+#include <nlohmann/json.hpp>
+
+using namespace kinalign;
+
+namespace {
+
+DenoiseModel model_with_facts() {
+  DenoiseModel model = small_model(1);
+  model.facts.training =
+      R"({"data":[{"name":"walks","licence":"CC-BY-4.0","citation":"Someone, 2026","frames":600}],)"
+      R"("steps":1200,"rate":0.003,"seed":1})";
+  model.facts.metrics = R"({"mpjpe_cm":3.5})";
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("info tells a model: joints, network, training, metrics, steadying") {
+  const auto found = describe_model("m.safetensors", write_denoise_model(model_with_facts()));
+  REQUIRE(found);
+  CHECK(found->text ==
+        "m.safetensors\n"
+        "  model       denoise, method refine\n"
+        "  rate        30 Hz\n"
+        "  input       5 joints: SpineBase, HipLeft, HipRight, KneeLeft, KneeRight\n"
+        "  output      5 joints: SpineBase, HipLeft, HipRight, KneeLeft, KneeRight\n"
+        "  spread      stated for each joint\n"
+        "  network     net: 35 in, 20 out, 720 parameters; a frame sees 0 before and 0 after it\n"
+        "              linear 20\n"
+        "  steadying   smoothed over 11 frames (order 2), mean with the mirror image, bones of "
+        "constant length\n"
+        "  trained on  walks, 600 frames, licence CC-BY-4.0\n"
+        "    cite      Someone, 2026\n"
+        "  training    steps 1200, rate 0.003, seed 1\n"
+        "  metric      mpjpe_cm 3.5\n");
+  const auto json = nlohmann::json::parse(found->json);
+  CHECK(json.at("kind") == "model");
+  CHECK(json.at("task") == "denoise");
+  CHECK(json.at("networks").at("net").at("parameters") == 720);
+  CHECK(json.at("training").at("data").at(0).at("licence") == "CC-BY-4.0");
+  CHECK(json.at("metrics").at("mpjpe_cm") == 3.5);
+}
+
+TEST_CASE("info tells branches, and what a network does not see") {
+  DenoiseModel model = small_model(1);
+  model.architecture.layers = {
+      branches(sum, {{}, {causal_conv(35, 3, 2), {.kind = LayerKind::dropout, .rate = 0.25}}}),
+      {.kind = LayerKind::lstm, .out = 10, .bidirectional = true}};
+  model.tensors.clear();
+  for (auto& [name, tensor] : random_tensors(model.architecture, 1)) {
+    model.tensors["net." + name] = tensor;
+  }
+  const auto found = describe_model("m", write_denoise_model(model));
+  REQUIRE(found);
+  CHECK(found->text.find("a frame sees all before and all after it\n"
+                         "              sum\n"
+                         "                branch: as it is\n"
+                         "                branch\n"
+                         "                  conv 35, kernel 3, dilation 2, causal\n"
+                         "                  dropout 0.25\n"
+                         "              lstm 10, both directions\n") != std::string::npos);
+}
+
+TEST_CASE("info tells no model that can't be used, and takes facts of any shape") {
+  DenoiseModel model = small_model(1);
+  model.tensors.erase("net.0.bias");
+  const auto broken = describe_model("m", write_denoise_model(model));
+  REQUIRE_FALSE(broken);
+  CHECK(to_string(broken.error()) == "m: expected tensor 0.bias [20], found none");
+  CHECK_FALSE(describe_model("m", "no model"));
+  for (const char* facts : {"{}", "[]", R"({"data":3,"steps":"x"})", R"({"data":[1,{"name":2}]})",
+                            R"({"data":[{"citation":"two\nlines"}]})"}) {
+    CAPTURE(facts);
+    model = small_model(1);
+    model.facts.training = model.facts.metrics = facts;
+    const auto found = describe_model("m", write_denoise_model(model));
+    REQUIRE(found);
+    CHECK(found->text.find("two\n") == std::string::npos);
+  }
+}
