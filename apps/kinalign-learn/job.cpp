@@ -4,6 +4,8 @@
 #include "kinalign/learn/checkpoint.h"
 #include "kinalign/learn/fit_denoise.h"
 #include "kinalign/learn/methods/methods.h"
+#include "kinalign/learn/pose/fit_pose.h"
+#include "kinalign/learn/pose/pose_marks.h"
 #include "kinalign/models/windows_file.h"
 
 #include <nlohmann/json.hpp>
@@ -16,6 +18,7 @@
 #include <iostream>
 #include <iterator>
 #include <optional>
+#include <set>
 
 namespace kinalign {
 
@@ -43,10 +46,20 @@ Result<void> write_file(const std::string& path, const std::string& bytes) {
   return {};
 }
 
-const DenoiseMethod* find_method(const std::vector<DenoiseMethod>& all, const std::string& name) {
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [&](const DenoiseMethod& one) { return one.name == name; });
+template <class Method>
+const Method* find_method(const std::vector<Method>& all, const std::string& name) {
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Method& one) { return one.name == name; });
   return found == all.end() ? nullptr : &*found;
+}
+
+/// The settings of the method, of whatever task.
+Result<TrainingOptions> options_of(const std::string& method, const std::string& name) {
+  const auto denoise = denoise_methods();
+  const auto pose = pose_methods();
+  if (const auto* found = find_method(denoise, method)) return found->options;
+  if (const auto* found = find_method(pose, method)) return found->options;
+  return Failure(Error{name, 0, "a method that is known", method});
 }
 
 void read_options(const Json& json, TrainingOptions& out) {
@@ -77,24 +90,27 @@ Progress progress_lines() {
   };
 }
 
-std::string training_json(const TrainingJob& job, const WindowsFacts& facts,
-                          const std::vector<Pair>& learnt) {
-  std::vector<std::string> subjects;
-  std::size_t frames = 0;
-  for (const Pair& pair : learnt) {
-    frames += pair.input.frames();
-    if (std::find(subjects.begin(), subjects.end(), pair.subject) == subjects.end()) {
-      subjects.push_back(pair.subject);
-    }
+/// What a model was learnt from.
+struct LearntFrom {
+  std::size_t stretches = 0, frames = 0;
+  std::set<std::string> subjects;
+
+  void add(const std::string& subject, std::size_t count) {
+    ++stretches;
+    frames += count;
+    subjects.insert(subject);
   }
-  std::sort(subjects.begin(), subjects.end());
+};
+
+std::string training_json(const TrainingJob& job, const WindowsFacts& facts,
+                          const LearntFrom& from) {
   return Json{{"data",
                {{{"name", facts.dataset},
                  {"licence", facts.licence},
                  {"citation", facts.citation},
-                 {"stretches", learnt.size()},
-                 {"frames", frames},
-                 {"subjects", subjects}}}},
+                 {"stretches", from.stretches},
+                 {"frames", from.frames},
+                 {"subjects", from.subjects}}}},
               {"steps", job.options.steps},
               {"rate", job.options.rate},
               {"seed", job.options.seed},
@@ -123,6 +139,64 @@ DividedPairs divide(const TrainingJob& job, std::vector<Pair> all) {
   return out;
 }
 
+/// A model's file, and how its training went.
+struct Fitted {
+  std::string model;
+  std::vector<TrainingPoint> points;
+};
+
+FitOptions fit_options(const TrainingJob& job) {
+  return {job.options, job.device == "cuda" ? torch::Device(torch::kCUDA) : torch::kCPU};
+}
+
+Result<Fitted> fit_denoise_job(const TrainingJob& job, const DenoiseMethod& method,
+                               const Windows& windows, TrainingState state,
+                               const TrainingHooks& hooks) {
+  Pairs pairs = KA_TRY(pairs_of(windows, job.input, job.truth, least_rows));
+  const DividedPairs divided = divide(job, std::move(pairs.all));
+  DenoiseFit fit =
+      KA_TRY(fit_denoise(method, pairs, divided, fit_options(job), std::move(state), hooks));
+  LearntFrom from;
+  for (const Pair& pair : divided.learnt) from.add(pair.subject, pair.input.frames());
+  fit.model.facts.training = training_json(job, windows.facts, from);
+  return Fitted{write_denoise_model(fit.model), std::move(fit.points)};
+}
+
+Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
+                            const Windows& windows, TrainingState state,
+                            const TrainingHooks& hooks) {
+  const PoseData data = KA_TRY(pose_data(windows, job.truth, job.nodes));
+  PoseFit fit = KA_TRY(fit_pose(method, data, fit_options(job), std::move(state), hooks));
+  LearntFrom from;
+  for (const PoseSequence& one : data.learnt) from.add(one.subject, one.frames());
+  fit.model.facts.training = training_json(job, windows.facts, from);
+  return Fitted{write_pose_model(fit.model), std::move(fit.points)};
+}
+
+Json errors_json(const PoseErrors& errors) {
+  return {{"sip_deg", errors.sip_deg},
+          {"angle_deg", errors.angle_deg},
+          {"head_deg", errors.head_deg},
+          {"position_cm", errors.position_cm},
+          {"jitter_ratio", errors.jitter_ratio()},
+          {"frames", errors.frames}};
+}
+
+/// Judges a model on the people of the file's test part, a row for each state of the nodes.
+Result<void> evaluate_pose(const TrainingJob& job, const Windows& windows) {
+  auto solver = KA_TRY(
+      PoseSolver::make(KA_TRY(read_pose_model(KA_TRY(bytes_of(job.evaluate)), job.evaluate))));
+  const PoseData data = KA_TRY(pose_data(windows, job.truth, solver.model().layout.nodes));
+  for (const PoseMark& mark : KA_TRY(pose_marks(solver, data, 0))) {
+    std::cout << Json{{"nodes", mark.nodes},
+                      {"answer", errors_json(mark.answer)},
+                      {"smoothed", errors_json(mark.smoothed)}}
+                     .dump()
+              << std::endl;
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
@@ -132,24 +206,24 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
   }
   TrainingJob out;
   try {
-    out.method = json.at("method").get<std::string>();
     out.windows = json.at("windows").get<std::string>();
     out.input = json.value("input", "kinect");
     out.truth = json.value("truth", "mocap");
+    out.nodes = json.value("nodes", usual_pose_nodes());
+    out.threads = json.value("threads", std::int64_t{1});
+    out.evaluate = json.value("evaluate", "");
+    if (!out.evaluate.empty()) return out;
+    out.method = json.at("method").get<std::string>();
     out.out = json.at("out").get<std::string>();
     out.log = json.value("log", "");
     out.checkpoint = json.value("checkpoint", "");
     out.keep_every = json.value("keep_every", out.keep_every);
     out.resume = json.value("resume", false);
     out.device = json.value("device", "cpu");
-    out.threads = json.value("threads", std::int64_t{1});
     out.identity = json.value("identity", "");
     if (json.contains("learn")) json.at("learn").get_to(out.learn);
     if (json.contains("judge")) json.at("judge").get_to(out.judge);
-    const auto methods = denoise_methods();
-    const DenoiseMethod* method = find_method(methods, out.method);
-    if (method == nullptr) return Failure(Error{name, 0, "a method that is known", out.method});
-    out.options = method->options;
+    out.options = KA_TRY(options_of(out.method, name));
     if (json.contains("options")) read_options(json.at("options"), out.options);
   } catch (const Json::exception& fault) {
     return Failure(Error{name, 0, "a whole job", shown(fault.what())});
@@ -160,10 +234,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
 Result<void> run_job(const TrainingJob& job) {
   const std::string bytes = KA_TRY(bytes_of(job.windows));
   const Windows windows = KA_TRY(read_windows(bytes, job.windows));
-  Pairs pairs = KA_TRY(pairs_of(windows, job.input, job.truth, least_rows));
-  const DividedPairs divided = divide(job, std::move(pairs.all));
-  const auto methods = denoise_methods();
-  const DenoiseMethod& method = *find_method(methods, job.method);
+  if (!job.evaluate.empty()) return evaluate_pose(job, windows);
   TrainingState state;
   if (job.resume && std::filesystem::exists(job.checkpoint)) {
     state = KA_TRY(read_checkpoint(KA_TRY(bytes_of(job.checkpoint)), job.identity, job.checkpoint));
@@ -174,12 +245,15 @@ Result<void> run_job(const TrainingJob& job) {
       return write_file(job.checkpoint, write_checkpoint(now, job.identity));
     };
   }
-  const FitOptions options{job.options,
-                           job.device == "cuda" ? torch::Device(torch::kCUDA) : torch::kCPU};
-  DenoiseFit fit = KA_TRY(fit_denoise(method, pairs, divided, options, std::move(state), hooks));
-  fit.model.facts.training = training_json(job, windows.facts, divided.learnt);
+  const auto pose = pose_methods();
+  const auto denoise = denoise_methods();
+  const PoseMethod* pose_method = find_method(pose, job.method);
+  const Fitted fit = KA_TRY(pose_method != nullptr
+                                ? fit_pose_job(job, *pose_method, windows, std::move(state), hooks)
+                                : fit_denoise_job(job, *find_method(denoise, job.method), windows,
+                                                  std::move(state), hooks));
   KA_TRY(save_log(job, fit.points));
-  KA_TRY(write_file(job.out, write_denoise_model(fit.model)));
+  KA_TRY(write_file(job.out, fit.model));
   std::error_code ignored;
   if (!job.checkpoint.empty()) std::filesystem::remove(job.checkpoint, ignored);
   Json last{{"written", job.out}, {"loss", fit.points.empty() ? 0.0 : fit.points.back().loss}};

@@ -11,14 +11,16 @@ namespace kinalign {
 
 struct TrainingJob {
   std::string method;
-  std::string windows;            // the file of windows
-  std::string input, truth;       // streams
-  std::string out;                // the model
-  std::string log;                // CSV, and events beside it; empty: none
-  std::string checkpoint;         // kept there while it runs; empty: nowhere
-  std::int64_t keep_every = 200;  // steps between checkpoints
-  bool resume = false;            // from that file, where it is there
-  std::string device = "cpu";     // cpu, cuda
+  std::string windows;             // the file of windows
+  std::string input, truth;        // streams
+  std::vector<std::string> nodes;  // of a method for poses; the root's last
+  std::string evaluate;            // a model for poses to judge instead of training; empty: none
+  std::string out;                 // the model
+  std::string log;                 // CSV, and events beside it; empty: none
+  std::string checkpoint;          // kept there while it runs; empty: nowhere
+  std::int64_t keep_every = 200;   // steps between checkpoints
+  bool resume = false;             // from that file, where it is there
+  std::string device = "cpu";      // cpu, cuda
   std::int64_t threads = 1;
   TrainingOptions options;
   /// Names of takes that are trained on, and that judge; empty: by the parts of the file's split.

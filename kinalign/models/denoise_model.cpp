@@ -2,25 +2,13 @@
 #include "kinalign/models/denoise_model.h"
 
 #include "kinalign/models/bones.h"
+#include "kinalign/models/model_file.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace kinalign {
-
-namespace {
-
-std::map<std::string, Tensor> below(const std::map<std::string, Tensor>& tensors,
-                                    const std::string& prefix) {
-  std::map<std::string, Tensor> out;
-  for (const auto& [name, tensor] : tensors) {
-    if (name.starts_with(prefix)) out[name.substr(prefix.size())] = tensor;
-  }
-  return out;
-}
-
-}  // namespace
 
 void mirror_answer(Denoised& answer, const std::vector<std::size_t>& partners) {
   const std::size_t joints = partners.size();
@@ -44,7 +32,7 @@ void steady(const Steadying& how, const std::vector<int>& parents,
 Result<Denoiser> Denoiser::make(DenoiseModel model) {
   const std::size_t answers = model.layout.answers();
   const std::size_t outputs = answers + (model.states_spread ? model.layout.outputs.size() : 0);
-  Network network = KA_TRY(Network::make(model.architecture, below(model.tensors, "net.")));
+  Network network = KA_TRY(Network::make(model.architecture, tensors_below(model.tensors, "net.")));
   const auto fits = [](const Network& one, std::size_t in, std::size_t out) -> Result<void> {
     const auto count = [&](LayerKind kind) {
       const auto& layers = one.architecture().layers;
@@ -63,7 +51,7 @@ Result<Denoiser> Denoiser::make(DenoiseModel model) {
   KA_TRY(fits(network, model.layout.channels(), outputs));
   std::optional<Network> second;
   if (model.second) {
-    second = KA_TRY(Network::make(*model.second, below(model.tensors, "second.")));
+    second = KA_TRY(Network::make(*model.second, tensors_below(model.tensors, "second.")));
     KA_TRY(fits(*second, answers, answers));
   }
   return Denoiser(std::move(model), std::move(network), std::move(second));

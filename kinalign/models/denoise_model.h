@@ -5,6 +5,7 @@
 
 #include "kinalign/infer/network.h"
 #include "kinalign/models/denoise_features.h"
+#include "kinalign/models/model_facts.h"
 
 #include <optional>
 #include <string>
@@ -19,13 +20,6 @@ struct Steadying {
   bool bones = true;                  // each bone has one length over the take
 
   bool operator==(const Steadying&) const = default;
-};
-
-/// What a model says of itself beside its numbers.
-struct ModelFacts {
-  std::string task, method, software;
-  std::string training;  // JSON: data, licences, hashes, settings
-  std::string metrics;   // JSON
 };
 
 struct DenoiseModel {

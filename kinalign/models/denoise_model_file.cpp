@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/infer/architecture_json.h"
-#include "kinalign/infer/safetensors.h"
-#include "kinalign/infer/strict_json.h"
 #include "kinalign/models/denoise_model.h"
+#include "kinalign/models/model_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -14,10 +12,8 @@ namespace kinalign {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = ModelHeader;
 
-constexpr const char* header_key = "kinalign";
-constexpr const char* schema = "kinalign.model/1";
 constexpr std::size_t most_joints = 1000, most_window = 1001;
 constexpr double least_rate_hz = 0.1, most_rate_hz = 10'000.0;
 constexpr double least_scale = 1e-6, most_scale = 1e6;
@@ -26,20 +22,9 @@ Json smoothing_json(const Smoothing& how) {
   return {{"window", how.window}, {"order", how.order}, {"causal", how.causal}};
 }
 
-Json parsed(const std::string& text) {
-  Json out = Json::parse(text.empty() ? "{}" : text, nullptr, false);
-  return out.is_discarded() ? Json::object() : out;
-}
-
 Json header_of(const DenoiseModel& model) {
   const DenoiseLayout& layout = model.layout;
-  Json networks{{"net", Json::parse(architecture_json(model.architecture))}};
-  if (model.second) networks["second"] = Json::parse(architecture_json(*model.second));
-  return {{"schema", schema},
-          {"task", model.facts.task},
-          {"method", model.facts.method},
-          {"software", model.facts.software},
-          {"rate_hz", layout.rate_hz},
+  return {{"rate_hz", layout.rate_hz},
           {"input", {{"joints", layout.inputs}, {"smoothing", smoothing_json(layout.smoothing)}}},
           {"output",
            {{"joints", layout.outputs},
@@ -51,13 +36,8 @@ Json header_of(const DenoiseModel& model) {
           {"steadying",
            {{"mirror", model.steadying.mirror},
             {"smoothing", smoothing_json(model.steadying.smoothing)},
-            {"bones", model.steadying.bones}}},
-          {"networks", std::move(networks)},
-          {"training", parsed(model.facts.training)},
-          {"metrics", parsed(model.facts.metrics)}};
+            {"bones", model.steadying.bones}}}};
 }
-
-Tensor row_of(const std::vector<float>& values) { return {{values.size()}, values}; }
 
 /// Reads members of the header; a member of another type throws, and read_denoise_model() says so.
 Smoothing smoothing_of(const Json& json) {
@@ -66,11 +46,7 @@ Smoothing smoothing_of(const Json& json) {
 }
 
 void read_header(const Json& header, DenoiseModel& out) {
-  out.facts.task = header.at("task").get<std::string>();
-  out.facts.method = header.at("method").get<std::string>();
-  out.facts.software = header.value("software", "");
-  out.facts.training = header.value("training", Json::object()).dump();
-  out.facts.metrics = header.value("metrics", Json::object()).dump();
+  out.facts = facts_of(header);
   DenoiseLayout& layout = out.layout;
   layout.rate_hz = header.at("rate_hz").get<double>();
   layout.inputs = header.at("input").at("joints").get<std::vector<std::string>>();
@@ -147,54 +123,38 @@ std::string misfit(const DenoiseModel& model) {
   return "";
 }
 
-Result<void> take_row(std::map<std::string, Tensor>& tensors, const std::string& name,
-                      const std::string& file, std::vector<float>& out) {
-  const auto found = tensors.find(name);
-  if (found == tensors.end()) return Failure(Error{file, 0, "a tensor " + name, "none"});
-  out = std::move(found->second.values);
-  tensors.erase(found);
-  return {};
-}
-
 }  // namespace
 
 std::string write_denoise_model(const DenoiseModel& model) {
-  TensorFile file{{{header_key, header_of(model).dump()}}, model.tensors};
-  file.tensors["input.mean"] = row_of(model.input_mean);
-  file.tensors["input.scale"] = row_of(model.input_scale);
-  file.tensors["answer.mean"] = row_of(model.answer_mean);
-  return write_safetensors(file);
+  std::map<std::string, Architecture> networks{{"net", model.architecture}};
+  if (model.second) networks["second"] = *model.second;
+  std::map<std::string, Tensor> tensors = model.tensors;
+  tensors["input.mean"] = row_of(model.input_mean);
+  tensors["input.scale"] = row_of(model.input_scale);
+  tensors["answer.mean"] = row_of(model.answer_mean);
+  return write_model_file(model.facts, header_of(model), networks, std::move(tensors));
 }
 
 Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::string& name) {
   TensorFile file = KA_TRY(read_safetensors(bytes, name));
-  const auto text = file.metadata.find(header_key);
-  if (text == file.metadata.end()) {
-    return Failure(Error{name, 0, "a model of kinalign (schema kinalign.model/1)", "another file"});
-  }
-  KA_TRY(parse_strict_json(text->second, name));  // which forgets the order of members
-  const Json header = Json::parse(text->second, nullptr, false);
-  if (!header.is_object() || !header.contains("schema") || header.at("schema") != schema) {
-    return Failure(Error{name, 0, "a model of kinalign (schema kinalign.model/1)", "another file"});
-  }
+  const Json header = KA_TRY(read_model_header(file, name));
   DenoiseModel out;
   try {
     read_header(header, out);
-    const Json& networks = header.at("networks");
-    out.architecture = KA_TRY(parse_architecture_json(networks.at("net").dump(), name));
-    if (networks.contains("second")) {
-      out.second = KA_TRY(parse_architecture_json(networks.at("second").dump(), name));
+    out.architecture = KA_TRY(network_of(header, "net", name));
+    if (header.at("networks").contains("second")) {
+      out.second = KA_TRY(network_of(header, "second", name));
     }
   } catch (const nlohmann::json::exception& fault) {
-    return Failure(Error{name, 0, "a whole header of a model", shown(fault.what())});
+    return broken_header(name, fault);
   }
   if (out.facts.task != "denoise") {
     return Failure(
         Error{name, 0, "a model that cleans skeletons", "task " + shown(out.facts.task)});
   }
-  KA_TRY(take_row(file.tensors, "input.mean", name, out.input_mean));
-  KA_TRY(take_row(file.tensors, "input.scale", name, out.input_scale));
-  KA_TRY(take_row(file.tensors, "answer.mean", name, out.answer_mean));
+  out.input_mean = KA_TRY(take_row(file.tensors, "input.mean", name));
+  out.input_scale = KA_TRY(take_row(file.tensors, "input.scale", name));
+  out.answer_mean = KA_TRY(take_row(file.tensors, "answer.mean", name));
   out.tensors = std::move(file.tensors);
   const std::string fault = misfit(out);
   if (!fault.empty()) return Failure(Error{name, 0, "parts that fit together", fault});

@@ -21,7 +21,8 @@ struct EvenFrames {
 /// there is missing in every frame. Between two samples a joint lies on the line between both, and
 /// is seen as well as the worse of them; farther than `gap_s` from a sample it is missing. Fails
 /// where there are no samples, where stamps fall, where root or hips are not there, where the usual
-/// step is more than twice or less than a quarter of the grid's, and where the body is no person's size.
+/// step is more than twice or less than a quarter of the grid's, and where the body is no person's
+/// size.
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
                                double rate_hz, double gap_s);

@@ -83,7 +83,8 @@ class AxisSmoother {
     for (std::size_t i = steps_.size() - 1; i-- > 0;) {
       const Step& here = steps_[i];
       const Step& next = steps_[i + 1];
-      const Matrix gain = here.filtered_spread * turn_.transpose() * next.predicted_spread.inverse();
+      const Matrix gain =
+          here.filtered_spread * turn_.transpose() * next.predicted_spread.inverse();
       after = here.filtered + gain * (after - next.predicted);
       out[i] = after(0);
     }

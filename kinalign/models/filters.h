@@ -14,8 +14,8 @@ namespace kinalign {
 void hold(JointFrames& body, double rate_hz);
 
 struct OneEuro {
-  double least_hz = 1.2;         // cut-off at rest
-  double slope = 3.0;            // Hz more for each m/s
+  double least_hz = 1.2;  // cut-off at rest
+  double slope = 3.0;     // Hz more for each m/s
   double derivative_hz = 1.0;
 };
 /// Casiez, Roussel, Vogel, CHI 2012, with the speed of the joint in space for all its axes. Causal.

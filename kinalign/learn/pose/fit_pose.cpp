@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/pose/fit_pose.h"
+
+#include <utility>
+
+namespace kinalign {
+
+Result<PoseFit> fit_pose(const PoseMethod& method, const PoseData& data, const FitOptions& options,
+                         TrainingState state, const TrainingHooks& hooks) {
+  const PoseLayout layout{data.nodes, data.body.bones, method.inputs, data.rate_hz};
+  PoseTask task(layout, method.training, data, options.device);
+  torch::manual_seed(options.training.seed);
+  TorchNetwork network(method.architecture(layout));
+  network.to(options.device);
+  PoseFit out;
+  if (method.begin != nullptr) method.begin(task, options.training.seed, network);
+  out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
+  if (out.points.empty()) out.points.push_back({.judgement = task.judge(network)});
+  out.model.facts.task = "pose";
+  out.model.facts.method = method.name;
+  out.model.layout = layout;
+  out.model.body = data.body;
+  out.model.input_mean = task.input_mean();
+  out.model.input_scale = task.input_scale();
+  out.model.architecture = network.architecture();
+  put_tensors(network, "net.", out.model.tensors);
+  return out;
+}
+
+}  // namespace kinalign

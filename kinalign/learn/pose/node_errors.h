@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors of calibrated nodes, drawn at random: what is left after a T-pose, and what time adds.
+#pragma once
+
+#include "kinalign/models/pose_features.h"
+#include "kinalign/simulate/random.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace kinalign {
+
+/// Each node's errors are constant over the frames; the noise is drawn for each sample. Without
+/// members changed: a calibration's.
+struct NodeErrors {
+  double mount_deg = 5.0;     // of the node on its bone, about each axis, 1 sigma
+  double tilt_deg = 1.5;      // of the vertical, about x and z, 1 sigma
+  double yaw_deg = 10.0;      // of the heading, even within +- this
+  double drift_deg = 0.0;     // of the heading since the calibration, 1 sigma
+  double gravity_leak = 0.5;  // share of the gravity that the tilt leaves in the acceleration
+  double acceleration_noise = 0.15;  // m/s2, 1 sigma
+  double angular_noise = 0.02;       // rad/s, 1 sigma
+  double lost_share = 0.1;           // of the leaves: no sample at all
+};
+
+/// No errors.
+NodeErrors no_node_errors();
+/// The drift of a heading that walks by 3 degrees in a minute, degrees, 1 sigma.
+double drift_after(double minutes);
+
+/// `nodes` with errors. The last node, the root's, is never lost. The same stream gives the same
+/// errors.
+NodeFrames with_errors(NodeFrames nodes, const NodeErrors& errors, const RandomStream& random);
+
+/// `nodes` without the samples of node `lost`.
+NodeFrames without_node(NodeFrames nodes, std::size_t lost);
+
+}  // namespace kinalign

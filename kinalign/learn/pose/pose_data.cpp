@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/pose/pose_data.h"
+
+#include "kinalign/learn/pose/upright_zero.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Mat3 = Eigen::Matrix3d;
+
+constexpr double pose_rate_hz = 30.0;
+constexpr double acceleration_reach_s = 4.0 / 60.0;  // about the band of a node at 15 Hz
+constexpr double least_seconds = 1.5;
+constexpr std::size_t least_upright = 60;  // frames
+
+/// Where a node sits: on a bone, at a share of the way to another joint, moved by a lever.
+struct NodePlace {
+  std::string_view name, bone, towards;
+  double share;
+  std::array<double, 3> lever;  // m, in the bone's space
+};
+
+constexpr std::array<NodePlace, 6> node_places{{
+    {"wrist_left", "lwrist", "lhand", 0.6, {}},
+    {"wrist_right", "rwrist", "rhand", 0.6, {}},
+    {"ankle_left", "ltibia", "lfoot", 0.35, {}},
+    {"ankle_right", "rtibia", "rfoot", 0.35, {}},
+    {"head", "head", "head", 0.0, {0.0, 0.08, 0.0}},
+    {"waist", "root", "root", 0.0, {0.0, 0.05, -0.1}},
+}};
+
+/// Indices into the joints of the file.
+struct NodeJoints {
+  std::size_t bone, towards;
+  double share;
+  Vec3 lever;
+};
+
+struct FileSkeleton {
+  std::vector<std::string> names;
+  std::vector<int> parents;
+  std::vector<std::size_t> joints;  // [pose_joints]
+  std::vector<std::size_t> bones;   // [pose_bones]
+  std::vector<NodeJoints> nodes;
+  std::size_t head = 0;
+};
+
+Result<std::size_t> joint_named(const std::vector<std::string>& names, std::string_view name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
+  return Failure(
+      Error{"", 0, "a skeleton with CMU's joints (ASF/AMC)", "none named " + std::string(name)});
+}
+
+Result<NodeJoints> node_joints(const std::vector<std::string>& names, const std::string& node) {
+  const auto place = std::find_if(node_places.begin(), node_places.end(),
+                                  [&](const NodePlace& one) { return one.name == node; });
+  if (place == node_places.end()) {
+    std::string known;
+    for (const NodePlace& one : node_places)
+      known += (known.empty() ? "" : ", ") + std::string(one.name);
+    return Failure(Error{"", 0, "nodes among " + known, shown(node)});
+  }
+  return NodeJoints{KA_TRY(joint_named(names, place->bone)),
+                    KA_TRY(joint_named(names, place->towards)), place->share,
+                    Vec3(place->lever[0], place->lever[1], place->lever[2])};
+}
+
+Result<FileSkeleton> file_skeleton(const Windows& windows, const std::string& stream,
+                                   const std::vector<std::string>& nodes) {
+  FileSkeleton out;
+  if (const WindowsFacts::Stream* found = windows.facts.find(stream)) {
+    out.names = found->names;
+    out.parents = found->parents;
+  }
+  if (out.names.empty() || out.names.size() != out.parents.size()) {
+    return Failure(Error{"", 0, "a stream \"" + stream + "\" of a skeleton", "none"});
+  }
+  for (std::size_t j = 0; j < out.parents.size(); ++j) {
+    if (out.parents[j] < (j == 0 ? -1 : 0) || out.parents[j] >= static_cast<int>(j)) {
+      return Failure(Error{"", 0, "one root, and parents before their children", "another order"});
+    }
+  }
+  for (const PoseJoint& joint : pose_joints) {
+    out.joints.push_back(KA_TRY(joint_named(out.names, joint.name)));
+  }
+  for (const std::string_view bone : pose_bones) {
+    out.bones.push_back(KA_TRY(joint_named(out.names, bone)));
+  }
+  for (const std::string& node : nodes) out.nodes.push_back(KA_TRY(node_joints(out.names, node)));
+  out.head = KA_TRY(joint_named(out.names, "head"));
+  return out;
+}
+
+/// A stretch of the file: global rotations and positions, frame by frame.
+class GlobalFrames {
+ public:
+  static Result<GlobalFrames> make(const FileSkeleton& skeleton, const Stretch& stretch,
+                                   const std::string& stream) {
+    const auto found = stretch.streams.find(stream);
+    const std::size_t joints = skeleton.names.size();
+    if (found != stretch.streams.end()) {
+      const auto& arrays = found->second.arrays;
+      const auto rotations = arrays.find("local_rotations"), positions = arrays.find("positions");
+      if (rotations != arrays.end() && positions != arrays.end() &&
+          rotations->second.size() == stretch.rows * joints * 4 &&
+          positions->second.size() == stretch.rows * joints * 3) {
+        return GlobalFrames(skeleton, rotations->second, positions->second);
+      }
+    }
+    return Failure(Error{"", 0, "positions and local_rotations of " + stream, "none"});
+  }
+
+  std::size_t frames() const { return rotations_->size() / (4 * skeleton_->names.size()); }
+
+  /// Fills `out` [J] with the global rotations of frame `t`.
+  void rotations(std::size_t t, std::vector<Mat3>& out) const {
+    const std::size_t joints = skeleton_->names.size();
+    out.resize(joints);
+    for (std::size_t j = 0; j < joints; ++j) {
+      const float* q = &(*rotations_)[4 * (t * joints + j)];
+      const Mat3 local =
+          Eigen::Quaternionf(q[0], q[1], q[2], q[3]).cast<double>().normalized().toRotationMatrix();
+      const int parent = skeleton_->parents[j];
+      out[j] = parent < 0 ? local : Mat3(out[static_cast<std::size_t>(parent)] * local);
+    }
+  }
+
+  Vec3 position(std::size_t t, std::size_t joint) const {
+    const float* p = &(*positions_)[3 * (t * skeleton_->names.size() + joint)];
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  }
+
+ private:
+  GlobalFrames(const FileSkeleton& skeleton, const std::vector<float>& rotations,
+               const std::vector<float>& positions)
+      : skeleton_(&skeleton), rotations_(&rotations), positions_(&positions) {}
+
+  const FileSkeleton* skeleton_;
+  const std::vector<float>* rotations_;
+  const std::vector<float>* positions_;
+};
+
+/// Nodes without errors at the file's rate.
+struct NodeMotion {
+  std::vector<Mat3> orientation;  // [T,N]
+  std::vector<Vec3> position;     // [T,N] m
+};
+
+/// Angular velocity in the turned space, rad/s, between two frames that lie `step_s` apart. Exact
+/// to the third order of the angle.
+Vec3 angular_velocity(const Mat3& from, const Mat3& to, double step_s) {
+  const Mat3 turn = from.transpose() * to;
+  return Vec3(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) /
+         (2.0 * step_s);
+}
+
+void append(std::vector<float>& out, const Vec3& vector) {
+  for (const double value : vector) out.push_back(static_cast<float>(value));
+}
+
+/// Makes sequences at 30 Hz.
+class SequenceMaker {
+ public:
+  SequenceMaker(const FileSkeleton& skeleton, double file_rate_hz)
+      : skeleton_(skeleton),
+        step_s_(1.0 / file_rate_hz),
+        stride_(static_cast<std::size_t>(std::lround(file_rate_hz / pose_rate_hz))),
+        reach_(static_cast<std::size_t>(std::lround(file_rate_hz * acceleration_reach_s))) {}
+
+  PoseSequence make(const GlobalFrames& frames, const std::vector<Mat3>& turns) const {
+    PoseSequence out;
+    out.nodes.nodes = skeleton_.nodes.size();
+    NodeMotion motion;
+    std::vector<Mat3> rotations;
+    for (std::size_t t = 0; t < frames.frames(); ++t) {
+      frames.rotations(t, rotations);
+      for (std::size_t j = 0; j < rotations.size(); ++j) rotations[j] = rotations[j] * turns[j];
+      add_nodes(frames, t, rotations, motion);
+      if (is_kept(t, frames.frames())) add_truth(rotations, out);
+    }
+    for (std::size_t t = reach_; t + reach_ < frames.frames(); t += stride_) {
+      for (std::size_t n = 0; n < out.nodes.nodes; ++n) add_sample(motion, t, n, out.nodes);
+    }
+    return out;
+  }
+
+ private:
+  bool is_kept(std::size_t t, std::size_t frames) const {
+    return t >= reach_ && t + reach_ < frames && (t - reach_) % stride_ == 0;
+  }
+
+  void add_nodes(const GlobalFrames& frames, std::size_t t, const std::vector<Mat3>& rotations,
+                 NodeMotion& motion) const {
+    for (const NodeJoints& node : skeleton_.nodes) {
+      const Vec3 begin = frames.position(t, node.bone), end = frames.position(t, node.towards);
+      motion.position.push_back(begin + node.share * (end - begin) +
+                                rotations[node.bone] * node.lever);
+      motion.orientation.push_back(rotations[node.bone]);
+    }
+  }
+
+  void add_truth(const std::vector<Mat3>& rotations, PoseSequence& out) const {
+    for (const std::size_t bone : skeleton_.bones) {
+      out.rotations.emplace_back((rotations[0].transpose() * rotations[bone]).cast<float>());
+    }
+  }
+
+  void add_sample(const NodeMotion& motion, std::size_t t, std::size_t n, NodeFrames& out) const {
+    const std::size_t count = skeleton_.nodes.size();
+    const auto at = [&](std::size_t frame) { return frame * count + n; };
+    const Quat q(motion.orientation[at(t)]);
+    for (const double value : {q.w(), q.x(), q.y(), q.z()}) {
+      out.orientation.push_back(static_cast<float>(value));
+    }
+    const double reach_s = static_cast<double>(reach_) * step_s_;
+    append(out.acceleration, (motion.position[at(t - reach_)] - 2.0 * motion.position[at(t)] +
+                              motion.position[at(t + reach_)]) /
+                                 (reach_s * reach_s));
+    append(out.angular_velocity,
+           angular_velocity(motion.orientation[at(t)], motion.orientation[at(t + 1)], step_s_));
+    out.valid.push_back(1);
+  }
+
+  const FileSkeleton& skeleton_;
+  double step_s_;
+  std::size_t stride_, reach_;
+};
+
+bool is_all_valid(const Stretch& stretch, const std::string& stream) {
+  const auto& arrays = stretch.streams.at(stream).arrays;
+  const auto valid = arrays.find("valid");
+  return valid == arrays.end() ||
+         std::all_of(valid->second.begin(), valid->second.end(), [](float v) { return v > 0.0F; });
+}
+
+Result<std::vector<Vec3>> own_offsets(const Windows& windows, const std::string& stream,
+                                      const Stretch& stretch, std::size_t joints) {
+  const auto found = windows.rest_offsets.find(stream);
+  const std::size_t at = stretch.take * joints * 3;
+  if (found == windows.rest_offsets.end() || found->second.size() < at + 3 * joints) {
+    return Failure(Error{"", 0, stream + "_rest_offsets of each take", "fewer"});
+  }
+  std::vector<Vec3> out;
+  for (std::size_t j = 0; j < joints; ++j) {
+    const float* offset = &found->second[at + 3 * j];
+    out.emplace_back(offset[0], offset[1], offset[2]);
+  }
+  return out;
+}
+
+std::vector<Vec3> chosen(const std::vector<Vec3>& all, const std::vector<std::size_t>& which) {
+  std::vector<Vec3> out;
+  for (const std::size_t i : which) out.push_back(all[i]);
+  return out;
+}
+
+/// The mean body of the people in `sequences`, each person once.
+std::vector<Vec3> mean_offsets(const std::vector<PoseSequence>& sequences) {
+  std::map<std::string, const PoseSequence*> people;
+  for (const PoseSequence& one : sequences) people.emplace(one.subject, &one);
+  std::vector<Vec3> out(pose_joints.size(), Vec3::Zero());
+  for (const auto& [subject, one] : people) {
+    for (std::size_t j = 0; j < out.size(); ++j) out[j] += one->rest_offsets[j];
+  }
+  for (Vec3& offset : out) offset /= static_cast<double>(people.size());
+  return out;
+}
+
+/// Who and what a stretch shows.
+WindowsFacts::Take take_of(const Windows& windows, const Stretch& stretch) {
+  const auto& takes = windows.facts.takes;
+  return stretch.take < takes.size() ? takes[stretch.take] : WindowsFacts::Take{};
+}
+
+std::vector<PoseSequence>& part_of(const Windows& windows, const Stretch& stretch, PoseData& out) {
+  const auto& parts = windows.facts.parts;
+  const std::string name = stretch.part < parts.size() ? parts[stretch.part] : "";
+  if (parts.size() == 1 || name == "train") return out.learnt;
+  return name == "validation" ? out.judged : out.tested;
+}
+
+/// Upright frames of each person, over all parts: people's zeros come from their own frames.
+Result<std::map<std::string, UprightFrames>> upright_frames(const Windows& windows,
+                                                            const FileSkeleton& skeleton,
+                                                            const std::string& stream) {
+  std::map<std::string, UprightFrames> out;
+  std::vector<Mat3> rotations;
+  for (const Stretch& stretch : windows.stretches) {
+    const GlobalFrames frames = KA_TRY(GlobalFrames::make(skeleton, stretch, stream));
+    const auto person = out.try_emplace(take_of(windows, stretch).subject, skeleton.names).first;
+    for (std::size_t t = 0; t < frames.frames(); ++t) {
+      frames.rotations(t, rotations);
+      person->second.add(rotations, frames.position(t, skeleton.head) - frames.position(t, 0));
+    }
+  }
+  return out;
+}
+
+Result<void> check_nodes(const std::vector<std::string>& nodes) {
+  PoseLayout layout;
+  layout.nodes = nodes;
+  layout.bones = {"any"};
+  KA_TRY(validate(layout));
+  if (nodes.back() != "waist")
+    return Failure(Error{"", 0, "the node waist as the last one", nodes.back()});
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> known_pose_nodes() {
+  std::vector<std::string> out;
+  for (const NodePlace& one : node_places) out.emplace_back(one.name);
+  return out;
+}
+
+std::vector<std::string> usual_pose_nodes() {
+  return {"wrist_left", "wrist_right", "ankle_left", "ankle_right", "waist"};
+}
+
+Result<PoseData> pose_data(const Windows& windows, const std::string& stream,
+                           const std::vector<std::string>& nodes) {
+  KA_TRY(check_nodes(nodes));
+  const FileSkeleton skeleton = KA_TRY(file_skeleton(windows, stream, nodes));
+  const double rate_hz = windows.facts.rate_hz, times = rate_hz / pose_rate_hz;
+  if (times < 0.99 || std::abs(times - std::round(times)) > 0.01 * times) {
+    return Failure(Error{"", 0, "a multiple of 30 Hz", std::to_string(rate_hz) + " Hz"});
+  }
+  const auto upright = KA_TRY(upright_frames(windows, skeleton, stream));
+  PoseData out;
+  out.nodes = nodes;
+  for (const auto& [subject, frames] : upright) {
+    if (frames.count() < least_upright) out.left_out.push_back(subject);
+  }
+  const SequenceMaker maker(skeleton, rate_hz);
+  for (const Stretch& stretch : windows.stretches) {
+    const std::string subject = take_of(windows, stretch).subject;
+    const UprightFrames& person = upright.at(subject);
+    if (person.count() < least_upright || !is_all_valid(stretch, stream) ||
+        static_cast<double>(stretch.rows) < least_seconds * rate_hz) {
+      continue;
+    }
+    const std::vector<Mat3> turns = person.turns();
+    const auto own = KA_TRY(own_offsets(windows, stream, stretch, skeleton.names.size()));
+    PoseSequence one = maker.make(KA_TRY(GlobalFrames::make(skeleton, stretch, stream)), turns);
+    one.subject = subject;
+    one.action = take_of(windows, stretch).action;
+    one.rest_offsets = chosen(turned_offsets(skeleton.parents, own, turns), skeleton.joints);
+    part_of(windows, stretch, out).push_back(std::move(one));
+  }
+  if (out.learnt.empty()) {
+    return Failure(
+        Error{"", 0, "stretches of 1.5 s to learn from, of people who stand upright", "none"});
+  }
+  out.body = pose_body(mean_offsets(out.learnt));
+  return out;
+}
+
+}  // namespace kinalign

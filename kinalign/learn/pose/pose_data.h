@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sequences to learn poses from: motion capture of CMU's skeleton in a file of windows, with the
+// samples that nodes on these people would have given.
+#pragma once
+
+#include "kinalign/models/pose_body.h"
+#include "kinalign/models/pose_features.h"
+#include "kinalign/models/windows_file.h"
+
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// A stretch of T frames at 30 Hz. Each person's rotations begin at an upright stand
+/// (upright_zero.h).
+struct PoseSequence {
+  std::string subject, action;
+  NodeFrames nodes;                // without errors
+  std::vector<Turn> rotations;     // [T,B] global, against the root
+  std::vector<Vec3> rest_offsets;  // [J] m, the person's own
+
+  std::size_t frames() const { return nodes.frames(); }
+};
+
+struct PoseData {
+  std::vector<std::string> nodes;  // [N] the last one is the root's
+  PoseBody body;                   // the mean of the people who are learnt from
+  double rate_hz = 30.0;
+  /// Of the parts train, validation and all others. A file with one part is learnt from.
+  std::vector<PoseSequence> learnt, judged, tested;
+  std::vector<std::string> left_out;  // people who never stand upright for 60 frames
+};
+
+/// Where nodes can be: waist, wrist_left, wrist_right, ankle_left, ankle_right, head.
+std::vector<std::string> known_pose_nodes();
+/// The five of most suits, the root last.
+std::vector<std::string> usual_pose_nodes();
+
+/// `stream`: a skeleton with CMU's joints, at a multiple of 30 Hz. `nodes`: 3 to 6 that are known,
+/// the root ("waist") last. Stretches shorter than 1.5 s are left out. Fails where the stream, its
+/// arrays or a joint are missing and where nothing is left to learn from.
+Result<PoseData> pose_data(const Windows& windows, const std::string& stream,
+                           const std::vector<std::string>& nodes);
+
+}  // namespace kinalign

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a model says of itself beside its numbers.
+#pragma once
+
+#include <string>
+
+namespace kinalign {
+
+struct ModelFacts {
+  std::string task, method, software;
+  std::string training;  // JSON: data, licences, hashes, settings
+  std::string metrics;   // JSON
+};
+
+}  // namespace kinalign

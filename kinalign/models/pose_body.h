@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// The body that a pose is answered on: its joints, and the bone whose rotation turns each of them.
+// A joint carries the name of the bone that begins there. The names are CMU's (ASF/AMC).
+#pragma once
+
+#include "kinalign/motion/clip.h"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+/// A rotation as a network answers it. Its memory is column after column, so that the six numbers
+/// of a network are the first six of nine.
+using Turn = Eigen::Matrix3f;
+
+struct PoseJoint {
+  std::string_view name, parent;  // the root has no parent
+  std::string_view bone;          // whose rotation the joint has; empty: the root's
+};
+
+/// Joints of the answer, parents first. The foot turns with the shank and the hand with the
+/// forearm: no node shows how they move by themselves.
+inline constexpr std::array<PoseJoint, 27> pose_joints{{
+    {"root", "", ""},
+    {"lfemur", "root", "lfemur"},
+    {"ltibia", "lfemur", "ltibia"},
+    {"lfoot", "ltibia", "ltibia"},
+    {"ltoes", "lfoot", "ltibia"},
+    {"rfemur", "root", "rfemur"},
+    {"rtibia", "rfemur", "rtibia"},
+    {"rfoot", "rtibia", "rtibia"},
+    {"rtoes", "rfoot", "rtibia"},
+    {"lowerback", "root", "lowerback"},
+    {"upperback", "lowerback", "upperback"},
+    {"thorax", "upperback", "thorax"},
+    {"lowerneck", "thorax", "upperneck"},
+    {"upperneck", "lowerneck", "upperneck"},
+    {"head", "upperneck", "head"},
+    {"lclavicle", "thorax", "lclavicle"},
+    {"lhumerus", "lclavicle", "lhumerus"},
+    {"lradius", "lhumerus", "lwrist"},
+    {"lwrist", "lradius", "lwrist"},
+    {"lhand", "lwrist", "lwrist"},
+    {"lfingers", "lhand", "lwrist"},
+    {"rclavicle", "thorax", "rclavicle"},
+    {"rhumerus", "rclavicle", "rhumerus"},
+    {"rradius", "rhumerus", "rwrist"},
+    {"rwrist", "rradius", "rwrist"},
+    {"rhand", "rwrist", "rwrist"},
+    {"rfingers", "rhand", "rwrist"},
+}};
+
+/// Bones whose rotations a network answers.
+inline constexpr std::array<std::string_view, 15> pose_bones{
+    "lfemur", "ltibia",    "rfemur",   "rtibia", "lowerback", "upperback", "thorax", "upperneck",
+    "head",   "lclavicle", "lhumerus", "lwrist", "rclavicle", "rhumerus",  "rwrist"};
+
+struct PoseBody {
+  Skeleton skeleton;               // joint 0 is the only root
+  std::vector<std::string> bones;  // [B]
+  std::vector<int> turned_by;      // [J] index of the bone; -1: the root's rotation
+};
+
+/// The body of pose_joints. `rest_offsets` [J] m.
+PoseBody pose_body(std::vector<Vec3> rest_offsets);
+
+/// Fails where the parts do not fit together or joint 0 is not the only root.
+Result<void> validate(const PoseBody& body);
+
+/// A rotation from any six numbers: the first column along a, the second one in the plane of a and
+/// b (Zhou et al., CVPR 2019). The loss on tensors computes the same (pose_task.cpp).
+Turn turn_of_six(const float* six);
+
+/// The rotation nearest to the sum of rotations, as turn_of_six() takes it.
+inline Turn turned_back_to_rotation(const Turn& sum) { return turn_of_six(sum.data()); }
+
+/// Positions [T,J,3] m about the root and in its space, from the bones' rotations [T,B] against the
+/// root. `rest_offsets` [J] are those of the body or of another person.
+std::vector<float> bone_positions(const PoseBody& body, std::span<const Vec3> rest_offsets,
+                                  std::span<const Turn> rotations);
+
+/// Frames of body.skeleton with constant bones. `root` [T]: the root in the world. Nodes do not
+/// show where a person is, so x and z of the root are 0 and the lowest joint of each frame is at y
+/// = 0.
+ClipFrames clip_frames(const PoseBody& body, std::span<const Turn> rotations,
+                       std::span<const Eigen::Quaternionf> root, double rate_hz, Time start);
+
+}  // namespace kinalign

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/pose_model.h"
+
+#include "kinalign/models/model_file.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+void standardise(const PoseModel& model, std::span<float> input) {
+  const std::size_t channels = model.input_mean.size();
+  for (std::size_t i = 0; i < input.size(); ++i) {
+    const std::size_t c = i % channels;
+    input[i] = (input[i] - model.input_mean[c]) / model.input_scale[c];
+  }
+}
+
+/// The rotation of six numbers as a network says them.
+Turn turn_of_answer(const float* answer) {
+  std::array<float, 6> six = six_of_identity;
+  for (std::size_t k = 0; k < six.size(); ++k) six[k] += answer[k];
+  return turn_of_six(six.data());
+}
+
+}  // namespace
+
+void smooth_turns(std::size_t bones, std::vector<Turn>& rotations) {
+  static constexpr std::array<float, 5> weights{1.0F, 4.0F, 6.0F, 4.0F, 1.0F};
+  const std::vector<Turn> before = rotations;
+  const auto frames = static_cast<std::ptrdiff_t>(bones == 0 ? 0 : rotations.size() / bones);
+  for (std::ptrdiff_t t = 0; t < frames; ++t) {
+    for (std::size_t b = 0; b < bones; ++b) {
+      Turn sum = Turn::Zero();
+      for (std::ptrdiff_t i = 0; i < 5; ++i) {
+        const auto u =
+            static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(t + i - 2, 0, frames - 1));
+        sum += weights[static_cast<std::size_t>(i)] / 16.0F * before[u * bones + b];
+      }
+      rotations[static_cast<std::size_t>(t) * bones + b] = turned_back_to_rotation(sum);
+    }
+  }
+}
+
+Result<PoseSolver> PoseSolver::make(PoseModel model) {
+  Network network = KA_TRY(Network::make(model.architecture, tensors_below(model.tensors, "net.")));
+  const std::size_t in = model.layout.channels(), out = model.layout.answers();
+  if (network.inputs() != in || network.outputs() != out) {
+    return Failure(
+        Error{"", 0, std::to_string(in) + " channels in and " + std::to_string(out) + " out",
+              std::to_string(network.inputs()) + " and " + std::to_string(network.outputs())});
+  }
+  return PoseSolver(std::move(model), std::move(network));
+}
+
+PoseSolver::PoseSolver(PoseModel model, Network network)
+    : model_(std::move(model)), network_(std::move(network)) {}
+
+SolvedPose PoseSolver::answer(const NodeFrames& nodes) {
+  PoseFeatures features = pose_features(model_.layout, nodes);
+  standardise(model_, features.input);
+  std::vector<float> answers;
+  network_.run(features.input, nodes.frames(), workspace_, answers);
+  SolvedPose out{.rotations = {}, .root = std::move(features.root)};
+  out.rotations.reserve(answers.size() / 6);
+  for (std::size_t at = 0; at + 6 <= answers.size(); at += 6) {
+    out.rotations.push_back(turn_of_answer(&answers[at]));
+  }
+  return out;
+}
+
+SolvedPose PoseSolver::solve(const NodeFrames& nodes) {
+  SolvedPose out = answer(nodes);
+  if (model_.smoothing) smooth_turns(model_.layout.bones.size(), out.rotations);
+  return out;
+}
+
+Clip PoseSolver::clip(const NodeFrames& nodes, Time start) {
+  const SolvedPose pose = solve(nodes);
+  return {model_.body.skeleton,
+          clip_frames(model_.body, pose.rotations, pose.root, model_.layout.rate_hz, start)};
+}
+
+Result<void> PoseSolver::use_body(const Skeleton& body) {
+  Skeleton own = model_.body.skeleton;
+  for (std::size_t j = 0; j < own.joints(); ++j) {
+    const auto at = std::find(body.joint_names.begin(), body.joint_names.end(), own.joint_names[j]);
+    if (at == body.joint_names.end()) {
+      return Failure(Error{"", 0, "a body with a joint " + own.joint_names[j], "none"});
+    }
+    own.rest_offsets[j] =
+        body.rest_offsets[static_cast<std::size_t>(at - body.joint_names.begin())];
+  }
+  model_.body.skeleton = std::move(own);
+  return {};
+}
+
+Result<OnlinePoseSolver> OnlinePoseSolver::make(const PoseSolver& solver) {
+  return OnlinePoseSolver(solver, KA_TRY(OnlineNetwork::make(solver.network_)));
+}
+
+OnlinePoseSolver::OnlinePoseSolver(const PoseSolver& solver, OnlineNetwork network)
+    : model_(&solver.model_),
+      network_(std::move(network)),
+      maker_(model_->layout),
+      input_(model_->layout.channels()),
+      rotations_(model_->layout.bones.size()) {}
+
+std::span<const Turn> OnlinePoseSolver::step(const NodeFrames& nodes, std::size_t t) {
+  maker_.make(nodes, t, input_);
+  standardise(*model_, input_);
+  const std::span<const float> answers = network_.step(input_);
+  for (std::size_t b = 0; b < rotations_.size(); ++b)
+    rotations_[b] = turn_of_answer(&answers[6 * b]);
+  return rotations_;
+}
+
+void OnlinePoseSolver::reset() {
+  network_.reset();
+  maker_.reset();
+}
+
+}  // namespace kinalign

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// A model that answers with a person's pose to inertial nodes: its network, and everything needed
+// to use it. Layout of its file: docs/formats/model.md.
+#pragma once
+
+#include "kinalign/infer/network.h"
+#include "kinalign/infer/online.h"
+#include "kinalign/models/model_facts.h"
+#include "kinalign/models/pose_body.h"
+#include "kinalign/models/pose_features.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// A network answers with six numbers a bone; these are added to each: the identity.
+inline constexpr std::array<float, 6> six_of_identity{1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F};
+
+struct PoseModel {
+  ModelFacts facts;  // task "pose"
+  PoseLayout layout;
+  PoseBody body;          // the mean body of the training people
+  bool smoothing = true;  // of whole sequences: weights 1, 4, 6, 4, 1 over five frames
+  std::vector<float> input_mean, input_scale;  // [C]
+  Architecture architecture;
+  std::map<std::string, Tensor> tensors;  // "net." before the names
+};
+
+/// The bytes of a model's file. The same model gives the same bytes.
+std::string write_pose_model(const PoseModel& model);
+
+/// Fails where the file is no model of this task or its parts do not fit together.
+Result<PoseModel> read_pose_model(std::string_view bytes, const std::string& name);
+
+struct SolvedPose {
+  std::vector<Turn> rotations;           // [T,B] against the root
+  std::vector<Eigen::Quaternionf> root;  // [T] in the world
+};
+
+/// A model ready for whole sequences. It can be used by one thread at a time.
+class PoseSolver {
+ public:
+  static Result<PoseSolver> make(PoseModel model);
+
+  const PoseModel& model() const { return model_; }
+
+  /// `nodes`: the layout's, at its rate.
+  SolvedPose solve(const NodeFrames& nodes);
+  /// The same without smoothing.
+  SolvedPose answer(const NodeFrames& nodes);
+  /// A skeleton with constant bones (clip_frames()). The first frame has the stamp `start`.
+  Clip clip(const NodeFrames& nodes, Time start);
+
+  /// Answers on a person's own body from now on. Fails where a joint of the model's body is not
+  /// among `body`'s, by name.
+  Result<void> use_body(const Skeleton& body);
+
+ private:
+  friend class OnlinePoseSolver;
+  PoseSolver(PoseModel model, Network network);
+
+  PoseModel model_;
+  Network network_;
+  Workspace workspace_;
+};
+
+/// A model that runs frame by frame, without later frames and without smoothing.
+class OnlinePoseSolver {
+ public:
+  /// `solver` must live longer and must not be moved. Fails where its network needs later frames.
+  static Result<OnlinePoseSolver> make(const PoseSolver& solver);
+
+  /// The rotations [B] at frame `t` of `nodes`, the frame after the one before. They are valid
+  /// until the next step. Nothing is allocated.
+  std::span<const Turn> step(const NodeFrames& nodes, std::size_t t);
+  /// The root in the world, at that frame.
+  const Eigen::Quaternionf& root() const { return maker_.root(); }
+  /// As if no frame had come.
+  void reset();
+
+ private:
+  OnlinePoseSolver(const PoseSolver& solver, OnlineNetwork network);
+
+  const PoseModel* model_;
+  OnlineNetwork network_;
+  PoseFeatureMaker maker_;
+  std::vector<float> input_;
+  std::vector<Turn> rotations_;
+};
+
+/// Rotations [T,B], each the mean of five frames with weights 1, 4, 6, 4, 1, brought back to a
+/// rotation. The first and the last frame stand for the frames beyond them.
+void smooth_turns(std::size_t bones, std::vector<Turn>& rotations);
+
+}  // namespace kinalign
