@@ -42,6 +42,7 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
     return Failure(Error{"", 0, "pairs to train on", "none"});
   }
   DenoiseLayout layout = KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz));
+  if (!pairs.parents.empty()) layout.parents = pairs.parents;
   if (!method.from_base) layout.bases.assign(layout.outputs.size(), -1);
   DenoiseTask task(layout, method.training, divided.learnt, divided.judged, options.device);
   DenoiseFit out{begun_model(method, layout, task), {}};

@@ -5,6 +5,7 @@
 #include "kinalign/motion/kinect_joints.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace kinalign {
 
@@ -89,9 +90,12 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
                        std::size_t least) {
   const auto joints = KA_TRY(joints_of(windows, input));
   const Chosen chosen = choose(joints);
-  Pairs out{.inputs = chosen.names,
-            .outputs = KA_TRY(joints_of(windows, truth)),
-            .rate_hz = windows.facts.rate_hz};
+  // An aggregate whose later member fails leaks the earlier ones.
+  auto outputs = KA_TRY(joints_of(windows, truth));
+  Pairs out{
+      .inputs = chosen.names, .outputs = std::move(outputs), .rate_hz = windows.facts.rate_hz};
+  const std::vector<int>& parents = windows.facts.find(truth)->parents;
+  if (parents.size() == out.outputs.size()) out.parents = parents;
   for (const Stretch& stretch : windows.stretches) {
     if (stretch.rows < least) continue;
     const auto* rough = positions_of(stretch, input, joints.size());

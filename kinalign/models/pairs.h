@@ -24,6 +24,7 @@ struct Pair {
 struct Pairs {
   std::vector<std::string> inputs, outputs;  // joints
   double rate_hz = 0.0;
+  std::vector<int> parents{};  // of the outputs, where their stream is a skeleton; else empty
   std::vector<Pair> all{};
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/skeleton_of_points.h"
 
+#include "kinalign/models/joint_names.h"
+
 #include <Eigen/SVD>
 
 #include <array>
@@ -27,11 +29,11 @@ constexpr std::array<Direction, 20> rest_directions{
      {"FootLeft", 0, 0, 1},    {"HipRight", -1, 0, 0},     {"KneeRight", 0, -1, 0},
      {"AnkleRight", 0, -1, 0}, {"FootRight", 0, 0, 1}}};
 
-Vec3 rest_direction(const std::string& joint) {
+std::optional<Vec3> known_direction(const std::string& joint) {
   for (const Direction& known : rest_directions) {
-    if (known.joint == joint) return {known.x, known.y, known.z};
+    if (known.joint == joint) return Vec3{known.x, known.y, known.z};
   }
-  return Vec3::UnitY();
+  return std::nullopt;
 }
 
 /// The tree from its root outward, and which joint of the clip turns each bone.
@@ -77,6 +79,28 @@ Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
   return plan;
 }
 
+/// The way to each joint from its parent in the rest pose. A joint that the table lacks goes the
+/// way of a known joint below it (a clavicle), else its parent's (a finger).
+std::vector<Vec3> rest_ways(const PointBody& body, const Plan& plan) {
+  const auto names = kinect_names(body.names);
+  std::vector<std::optional<Vec3>> ways;
+  for (const std::string& name : names) ways.push_back(known_direction(name));
+  for (std::size_t i = plan.order.size(); i-- > 1;) {
+    const auto p = static_cast<std::size_t>(body.parents[plan.order[i]]);
+    if (!ways[p]) ways[p] = ways[plan.order[i]];
+  }
+  std::vector<Vec3> out(names.size(), Vec3::UnitY());
+  for (const std::size_t j : plan.order) {
+    const int parent = body.parents[j];
+    if (ways[j]) {
+      out[j] = *ways[j];
+    } else if (parent >= 0) {
+      out[j] = out[static_cast<std::size_t>(parent)];
+    }
+  }
+  return out;
+}
+
 /// The rotation that turns the rest directions of a joint's children best to where they are; the
 /// smallest from `before` where there is one child.
 Quat turn_of(const std::vector<Vec3>& rest, const std::vector<Vec3>& now, const Quat& before) {
@@ -94,14 +118,18 @@ Quat turn_of(const std::vector<Vec3>& rest, const std::vector<Vec3>& now, const 
 class Poser {
  public:
   Poser(const PointBody& body, const Plan& plan, Clip& clip)
-      : body_(body), plan_(plan), clip_(clip), global_(clip.skeleton.joints()) {}
+      : body_(body),
+        plan_(plan),
+        rest_(rest_ways(body, plan)),
+        clip_(clip),
+        global_(clip.skeleton.joints()) {}
 
   void set_lengths(const float* frame) {
     for (std::size_t j = 0; j < body_.parents.size(); ++j) {
       if (body_.parents[j] < 0) continue;
       const auto p = static_cast<std::size_t>(body_.parents[j]);
       clip_.skeleton.rest_offsets[static_cast<std::size_t>(plan_.joint[j])] =
-          rest_direction(body_.names[j]) * (at(frame, j) - at(frame, p)).norm();
+          rest_[j] * (at(frame, j) - at(frame, p)).norm();
     }
   }
 
@@ -131,7 +159,7 @@ class Poser {
   Vec3 direction(const float* frame, std::size_t from, std::size_t to) const {
     const Vec3 way = at(frame, to) - at(frame, from);
     const double length = way.norm();
-    return length > 1e-9 ? Vec3(way / length) : rest_direction(body_.names[to]);
+    return length > 1e-9 ? Vec3(way / length) : rest_[to];
   }
 
   void turn_all(const float* frame) {
@@ -141,7 +169,7 @@ class Poser {
       const Quat before = above < 0 ? Quat::Identity() : global_[static_cast<std::size_t>(above)];
       std::vector<Vec3> rest, now;
       for (const std::size_t j : plan_.children[p]) {
-        rest.push_back(rest_direction(body_.names[j]));
+        rest.push_back(rest_[j]);
         now.push_back(direction(frame, p, j));
       }
       global_[own] = turn_of(rest, now, before);
@@ -154,6 +182,7 @@ class Poser {
 
   const PointBody& body_;
   const Plan& plan_;
+  std::vector<Vec3> rest_;  // of each point
   Clip& clip_;
   std::vector<Quat> global_;
 };

@@ -387,9 +387,11 @@ Result<Windows> read_windows(std::string_view npz, const std::string& name) {
   }
   Windows out;
   out.facts = KA_TRY(read_facts(utf8_of(manifest->second), name));
-  const Places places{
-      KA_TRY(integers(arrays, "take", name)), KA_TRY(integers(arrays, "part", name)),
-      KA_TRY(integers(arrays, "rows", name)), KA_TRY(integers(arrays, "time_ns", name))};
+  Places places;  // member by member: an aggregate whose later member fails leaks the earlier ones
+  places.take = KA_TRY(integers(arrays, "take", name));
+  places.part = KA_TRY(integers(arrays, "part", name));
+  places.rows = KA_TRY(integers(arrays, "rows", name));
+  places.time_ns = KA_TRY(integers(arrays, "time_ns", name));
   const std::size_t count = places.take.size();
   if (places.part.size() != count || places.rows.size() != count ||
       places.time_ns.size() != count) {

@@ -71,7 +71,7 @@ def a_network_is_trained_shown_used_and_exported(folder):
     assert len(shown["input"]["joints"]) == 25 and "SpineBase" in shown["input"]["joints"], shown["input"]
     assert shown["networks"]["net"]["look_back"] == 17 and shown["networks"]["net"]["look_ahead"] == 17, shown["networks"]
     used, = shown["training"]["data"]
-    assert used["stretches"] == 3 and used["subjects"] == ["00", "01", "02"], used
+    assert used["stretches"] >= 3 and used["frames"] > 200 and used["subjects"] == ["00", "01", "02"], used
     assert (shown["training"]["steps"], shown["training"]["seed"]) == (3, 1), shown["training"]
     take = next(iter(sorted(data.rglob("*.h5"))))
     for out in ("clean.bvh", "clean.trc"):
@@ -118,7 +118,7 @@ def info_shows_a_model_as_lines(_):
 @case
 def a_model_is_no_motion(folder):
     model = SMALL / "one.safetensors"
-    for words in (("check", model), ("convert", model, folder / "o.npz"), ("align", model, "-o", folder / "t.h5"),
+    for words in (("check", model), ("convert", model, folder / "o.npz"),
                   ("denoise", model, "--model", model, "-o", folder / "o.bvh")):
         first = refused(*words, naming=model)
         assert first.endswith("found a model (SafeTensors): kinalign info shows what is in it"), first

@@ -85,6 +85,26 @@ TEST_CASE("skeleton of points: the rest pose is a T-pose that faces +z") {
   CHECK(offset("Head") == Vec3::UnitY());
 }
 
+TEST_CASE("skeleton of points: a suit's joints have the same rest pose, fingers go on") {
+  const PointBody body{{"Hips", "Spine", "Spine3", "LeftShoulder", "LeftArm", "LeftForeArm",
+                        "LeftHand", "LeftHandThumb1", "RightUpLeg", "RightLeg"},
+                       {-1, 0, 1, 2, 3, 4, 5, 6, 0, 8}};
+  const std::vector<float> positions{0,    1,    0,    0,    1.2F,  0,    0, 1.4F,  0,    0.1F,
+                                     1.4F, 0.1F, 0.2F, 1.3F, 0,     0.2F, 1, 0,     0.3F, 0.8F,
+                                     0,    0.3F, 0.7F, 0,    -0.1F, 1,    0, -0.1F, 0.5F, 0};
+  const auto clip = skeleton_of_points(body, positions, utc_time(0), 30.0);
+  REQUIRE(clip);
+  const auto offset = [&](const char* name) {
+    return clip->skeleton.rest_offsets[place_of(clip->skeleton, name)].normalized().eval();
+  };
+  CHECK(offset("Spine") == Vec3::UnitY());
+  for (const char* name : {"LeftShoulder", "LeftArm", "LeftForeArm", "LeftHandThumb1"}) {
+    CHECK(offset(name) == Vec3::UnitX());
+  }
+  CHECK(offset("RightUpLeg") == Vec3(-Vec3::UnitX()));
+  CHECK(offset("RightLeg") == Vec3(-Vec3::UnitY()));
+}
+
 TEST_CASE("skeleton of points: a joint with several children has one more joint for each") {
   const PointBody body{{"SpineBase", "HipLeft", "HipRight", "KneeLeft"}, {-1, 0, 0, 1}};
   const std::vector<float> positions{0, 1, 0, 0.1F, 1, 0, -0.1F, 1, 0, 0.1F, 0.5F, 0};

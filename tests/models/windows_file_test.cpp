@@ -206,6 +206,7 @@ TEST_CASE("pairs: of the input the joints of a Kinect, seen as state and validit
   CHECK(pairs->inputs == std::vector<std::string>{"SpineBase", "HipLeft", "HipRight"});
   CHECK(pairs->outputs == std::vector<std::string>{"Hips", "LeftUpLeg", "RightUpLeg"});
   CHECK(pairs->rate_hz == 30.0);
+  CHECK(pairs->parents == std::vector<int>{-1, 0, 0});
   REQUIRE(pairs->all.size() == 3);
   const Pair& first = pairs->all[0];
   CHECK(first.take == "S01-A1");

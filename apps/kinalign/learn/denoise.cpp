@@ -16,6 +16,7 @@
 #include "kinalign/models/joint_names.h"
 #include "kinalign/models/skeleton_of_points.h"
 #include "kinalign/sources/formats.h"
+#include "kinalign/view/report_words.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -75,9 +76,10 @@ double mean_of(const std::vector<double>& values) {
 std::vector<double> moves(const DenoiseModel& model, const Cleaned& cleaned) {
   std::vector<double> out;
   const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
+  const auto names = kinect_names(model.layout.outputs);
   for (std::size_t t = 0; t < cleaned.input.body.frames(); ++t) {
     for (std::size_t j = 0; j < joints; ++j) {
-      const auto from = index_of(model.layout.inputs, model.layout.outputs[j]);
+      const auto from = index_of(model.layout.inputs, names[j]);
       if (!from || cleaned.input.body.seen[t * in + *from] != 2) continue;
       const float* a = &cleaned.input.body.positions[(t * in + *from) * 3];
       const float* b = &cleaned.answer.positions[(t * joints + j) * 3];
@@ -177,8 +179,9 @@ void print(const Json& about, const std::string& out, Call& call) {
       "{}: {} frames at {:g} Hz, {} joints\ncleaned  joints moved by {:.1f} cm on average, bones "
       "of one "
       "length each\n",
-      harmless(out), about.at("frames").get<std::size_t>(), about.at("rate_hz").get<double>(),
-      about.at("joints").get<std::size_t>(), about.at("moved_cm").get<double>());
+      harmless(out), grouped(about.at("frames").get<std::size_t>()),
+      about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>(),
+      about.at("moved_cm").get<double>());
   text += fmt::format("seen     {:.1f} % missing, {:.1f} % inferred\n",
                       100.0 * about.at("missing").get<double>(),
                       100.0 * about.at("inferred").get<double>());

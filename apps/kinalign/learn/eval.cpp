@@ -211,6 +211,7 @@ Result<Bench> open_bench(const Eval& o, Call& call) {
   out.pairs =
       KA_TRY(pairs_of(KA_TRY(read_windows(bytes, out.windows)), o.input, o.truth, least_rows));
   out.layout = KA_TRY(denoise_layout(out.pairs.inputs, out.pairs.outputs, out.pairs.rate_hz));
+  if (!out.pairs.parents.empty()) out.layout.parents = out.pairs.parents;
   out.folds = KA_TRY(folds_of(o.folds, takes_of(out.pairs)));
   return out;
 }

@@ -109,14 +109,14 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   if (o.patience > 0) options.update({{"patience", o.patience}, {"judge_every", 100}});
   Json job{{"schema", "kinalign.training_job/1"},
            {"method", o.method.front()},
-           {"windows", windows},
            {"input", o.input},
            {"truth", o.truth},
            {"options", options}};
   Sha256 identity;
   identity.update(job.dump());
   identity.update(hash);
-  job["identity"] = identity.hex();
+  job["identity"] = identity.hex();  // the same wherever the files lie
+  job["windows"] = windows;
   job["out"] = call.common.out;
   job["log"] = folder + "/log.csv";
   job["checkpoint"] = folder + "/checkpoint.safetensors";
