@@ -90,7 +90,7 @@ Progress progress_lines() {
   };
 }
 
-/// What a model was learnt from.
+/// The data that a model was learnt from.
 struct LearntFrom {
   std::size_t stretches = 0, frames = 0;
   std::set<std::string> subjects;

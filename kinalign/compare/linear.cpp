@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 namespace kinalign {
 
@@ -204,6 +206,54 @@ std::vector<float> Ridge::clean(const DenoiseLayout& layout, const JointFrames& 
     }
   }
   return out;
+}
+
+namespace {
+
+constexpr std::size_t most_groups = 5;
+constexpr double ratio_of_one_person = 1.5;
+
+/// Appends the distances of valid joints to the truth, m.
+void put_errors(const DenoiseLayout& layout, const Ridge& ridge, const Pair& pair,
+                std::vector<double>& out) {
+  const std::vector<float> answer = ridge.clean(layout, pair.input);
+  for (std::size_t i = 0; i < pair.valid.size(); ++i) {
+    if (pair.valid[i] == 0) continue;
+    out.push_back(std::hypot(answer[3 * i] - pair.truth[3 * i],
+                             answer[3 * i + 1] - pair.truth[3 * i + 1],
+                             answer[3 * i + 2] - pair.truth[3 * i + 2]));
+  }
+}
+
+double quantile_90(std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs) {
+  std::map<std::string, std::size_t> group_of;
+  for (const Pair& pair : pairs) group_of.try_emplace(pair.subject, 0);
+  std::size_t next = 0;
+  for (auto& [subject, group] : group_of) group = next++ % most_groups;
+  const std::size_t groups = std::min(next, most_groups);
+  if (groups < 2) return ratio_of_one_person;
+  std::vector<double> seen, unseen;
+  for (std::size_t g = 0; g < groups; ++g) {
+    std::vector<const Pair*> learnt;
+    for (const Pair& pair : pairs) {
+      if (group_of.at(pair.subject) != g) learnt.push_back(&pair);
+    }
+    const Ridge ridge(layout, learnt);
+    for (const Pair& pair : pairs) {
+      put_errors(layout, ridge, pair, group_of.at(pair.subject) == g ? unseen : seen);
+    }
+  }
+  const double least = quantile_90(seen);
+  return least > 0.0 ? std::max(1.0, quantile_90(unseen) / least) : 1.0;
 }
 
 }  // namespace kinalign

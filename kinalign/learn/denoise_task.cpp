@@ -14,6 +14,7 @@ namespace kinalign {
 namespace {
 
 constexpr double centimetres = 100.0;
+constexpr double radius_90 = 2.5003;  // of a Gaussian in space, in standard deviations of an axis
 constexpr double least_position_scale = 0.01, least_step_scale = 0.001;  // m
 constexpr std::uint64_t lanes_per_example = 8;
 
@@ -198,6 +199,24 @@ torch::Tensor DenoiseTask::loss(const TorchNetwork& network, std::uint64_t seed,
                       out.slice(2, 0, numbers).reshape(batch.base.sizes()) * training_.answer_scale;
   const auto spread = training_.states_spread ? out.slice(2, numbers) : torch::Tensor();
   return weigh(batch, answer, spread);
+}
+
+double DenoiseTask::spread_factor(const TorchNetwork& network) const {
+  if (!training_.states_spread) return 1.0;
+  torch::NoGradGuard guard;
+  std::vector<torch::Tensor> ratios;
+  for (const auto& variants : examples_) {
+    const Example& one = variants.front();
+    const auto input = one.input.unsqueeze(0).to(device_), base = one.base.unsqueeze(0).to(device_);
+    const auto out = network.forward((input - input_mean_) / input_scale_, false);
+    const auto spread = torch::exp(out.slice(2, whole(layout_.answers())));  // cm
+    const auto error = answers(network, input, base, false) - one.truth.unsqueeze(0).to(device_);
+    const auto ratio = lengths_of(error * centimetres) / spread;
+    ratios.push_back(ratio.masked_select(one.valid.unsqueeze(0).to(device_).gt(0.5)).cpu());
+  }
+  const auto sorted = std::get<0>(torch::cat(ratios).sort());
+  if (sorted.size(0) == 0) return 1.0;
+  return sorted[sorted.size(0) * 9 / 10].item<double>() / radius_90;
 }
 
 std::optional<double> DenoiseTask::judge(const TorchNetwork& network) {

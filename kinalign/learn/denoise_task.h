@@ -53,6 +53,10 @@ class DenoiseTask : public TrainingTask {
   torch::Tensor answers(const TorchNetwork& network, const torch::Tensor& input,
                         const torch::Tensor& base, bool training) const;
 
+  /// By what the stated spread must be multiplied so that 90 % of the pairs that were learnt lie
+  /// within the 90 % radius; 1 where none is stated.
+  double spread_factor(const TorchNetwork& network) const;
+
   const DenoiseScales& scales() const { return scales_; }
   void compare_features(std::function<torch::Tensor(const torch::Tensor&)> features) {
     features_ = std::move(features);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/fit_denoise.h"
 
+#include "kinalign/compare/linear.h"
 #include "kinalign/learn/clean_motion.h"
 #include "kinalign/learn/tensors.h"
 
@@ -61,6 +62,9 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   if (method.zero_last) network.zero_last();
   network.to(options.device);
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
+  if (method.training.states_spread) {
+    out.model.spread_factor = task.spread_factor(network) * unseen_ratio(layout, divided.learnt);
+  }
   out.model.architecture = network.architecture();
   put_tensors(network, "net.", out.model.tensors);
   return out;

@@ -137,11 +137,11 @@ class Runner {
       case LayerKind::lstm: {
         const auto zero = state(layer, x);
         return std::get<0>(torch::lstm(x, {zero, zero}, recurrent(layer, path), true, 1, 0.0,
-                                       training_, layer.bidirectional, true));
+                                       has_gradients(), layer.bidirectional, true));
       }
       case LayerKind::gru:
         return std::get<0>(torch::gru(x, state(layer, x), recurrent(layer, path), true, 1, 0.0,
-                                      training_, layer.bidirectional, true));
+                                      has_gradients(), layer.bidirectional, true));
       case LayerKind::layer_norm:
         return torch::layer_norm(x, {x.size(2)}, at(path + ".weight"), at(path + ".bias"), 1e-5);
       case LayerKind::relu:
@@ -204,6 +204,10 @@ class Runner {
     }
     return out;
   }
+
+  /// cuDNN's recurrent layers go backward only from their training form, which differs by the
+  /// dropout between layers; ours have one layer each.
+  static bool has_gradients() { return torch::GradMode::is_enabled(); }
 
   static torch::Tensor state(const Layer& layer, const torch::Tensor& x) {
     return torch::zeros({layer.bidirectional ? 2 : 1, x.size(0), whole(layer.out)}, x.options());

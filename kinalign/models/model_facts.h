@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a model says of itself beside its numbers.
+// Facts that a model's file states beside the numbers.
 #pragma once
 
 #include <string>

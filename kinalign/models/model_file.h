@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the files of all models have in common: SafeTensors whose header says what the model is.
+// Parts that the files of all models share: SafeTensors with a header that describes the model.
 // Layout: docs/formats/model.md.
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/record/lab_advice.h"
 
-#include "apps/kinalign/text/port_advice.h"
+#include "apps/kinalign/text/advice.h"
 
 #include "kinalign/documents/toml_entries.h"
 #include "kinalign/protocols/protocols.h"

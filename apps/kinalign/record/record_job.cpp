@@ -4,7 +4,7 @@
 #include "apps/cli/field_text.h"
 #include "apps/cli/settings.h"
 #include "apps/cli/verb.h"
-#include "apps/kinalign/text/key_advice.h"
+#include "apps/kinalign/text/advice.h"
 
 #include "kinalign/capture/nodes/node_keys.h"
 #include "kinalign/documents/lab_toml.h"

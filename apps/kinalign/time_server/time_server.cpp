@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/capture/ntp/time_server.h"
 
-#include "apps/kinalign/text/key_advice.h"
-#include "apps/kinalign/text/port_advice.h"
+#include "apps/kinalign/text/advice.h"
 #include "apps/kinalign/text/summary.h"
 #include "apps/kinalign/text/time_server_text.h"
 #include "apps/kinalign/time_server/node_herald.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
-#include "apps/kinalign/text/key_advice.h"
+#include "apps/kinalign/text/advice.h"
 #include "apps/kinalign/verbs.h"
 
 #include "kinalign/capture/nodes/node_keys.h"

@@ -4,7 +4,7 @@
 
 #include "kinalign/learn/fit_denoise.h"
 #include "kinalign/learn/pose/pose_methods.h"
-#include "kinalign/models/pose_model.h"
+#include "kinalign/models/pose/pose_model.h"
 
 namespace kinalign {
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ours: a linear map of eleven stacked frames and what a temporal convolutional network over 61
-// frames corrects of it. The network sees what GlobalPose's inputs hold (Yi et al., 2024: angular
-// velocity, the vertical, the root's own acceleration) and which nodes are valid, and it is trained
-// with the errors of a calibration and with lost nodes.
+// Ours: a temporal convolutional network over 61 frames. It sees what GlobalPose's inputs hold (Yi
+// et al., 2024: angular velocity, the vertical, the root's own acceleration) and which nodes are
+// valid, and it is trained with the errors of a calibration and with lost nodes.
 #include "kinalign/learn/pose/pose_methods.h"
-#include "kinalign/learn/pose/ridge.h"
 
 namespace kinalign {
 
@@ -27,21 +25,13 @@ Layer inertial_block(std::size_t dilation, bool causal) {
 }
 
 Architecture inertial_layers(const PoseLayout& layout, bool causal) {
-  const Layer linear{
-      .kind = LayerKind::conv, .out = layout.answers(), .kernel = 11, .causal = causal};
-  const std::vector<Layer> correction{{.kind = LayerKind::linear, .out = inertial_width},
-                                      inertial_block(1, causal),
-                                      inertial_block(2, causal),
-                                      inertial_block(4, causal),
-                                      inertial_block(8, causal),
-                                      {.kind = LayerKind::linear, .out = layout.answers()}};
-  return {layout.channels(), {{.kind = LayerKind::sum, .branches = {{linear}, correction}}}};
-}
-
-/// Ridge regression, and no correction yet.
-void begin_inertial(const PoseTask& task, std::uint64_t seed, TorchNetwork& network) {
-  network.zero_last();
-  set_ridge(task, seed, network.architecture().layers[0].branches[0][0], "0.0.0", network);
+  return {layout.channels(),
+          {{.kind = LayerKind::linear, .out = inertial_width},
+           inertial_block(1, causal),
+           inertial_block(2, causal),
+           inertial_block(4, causal),
+           inertial_block(8, causal),
+           {.kind = LayerKind::linear, .out = layout.answers()}}};
 }
 
 Architecture inertial_architecture(const PoseLayout& layout) {
@@ -60,8 +50,7 @@ PoseMethod inertial_method() {
           .source = "kinalign",
           .architecture = inertial_architecture,
           .training = {},
-          .options = {.steps = 1500, .rate = 2e-3, .rise = 0.1, .average = false},
-          .begin = begin_inertial};
+          .options = {.steps = 1500, .rate = 2e-3, .rise = 0.1, .average = false}};
 }
 
 PoseMethod inertial_online_method() {

@@ -42,7 +42,7 @@ Eigen::Quaternionf turned_by_vector(const Eigen::Vector3f& vector) {
   return Eigen::Quaternionf(Eigen::AngleAxisf(angle, vector / angle));
 }
 
-/// What one node is off by over all frames.
+/// Errors of one node that are constant over all frames.
 struct NodeError {
   Eigen::Quaternionf world, mount;  // before and behind the orientation
   Eigen::Vector3f leak;             // m/s2

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors of calibrated nodes, drawn at random: what is left after a T-pose, and what time adds.
+// Random errors of calibrated nodes: those that a T-pose leaves, and the drift of the heading
+// since.
 #pragma once
 
-#include "kinalign/models/pose_features.h"
+#include "kinalign/models/pose/pose_features.h"
 #include "kinalign/simulate/random.h"
 
 #include <cstddef>
@@ -10,8 +11,8 @@
 
 namespace kinalign {
 
-/// Each node's errors are constant over the frames; the noise is drawn for each sample. Without
-/// members changed: a calibration's.
+/// Each node's errors are constant over the frames; the noise is drawn for each sample. The
+/// defaults are the errors that a calibration leaves.
 struct NodeErrors {
   double mount_deg = 5.0;     // of the node on its bone, about each axis, 1 sigma
   double tilt_deg = 1.5;      // of the vertical, about x and z, 1 sigma

@@ -22,7 +22,7 @@ constexpr double acceleration_reach_s = 4.0 / 60.0;  // about the band of a node
 constexpr double least_seconds = 1.5;
 constexpr std::size_t least_upright = 60;  // frames
 
-/// Where a node sits: on a bone, at a share of the way to another joint, moved by a lever.
+/// A node's place: on a bone, at a share of the way to another joint, moved by a lever.
 struct NodePlace {
   std::string_view name, bone, towards;
   double share;
@@ -260,6 +260,7 @@ Result<std::vector<Vec3>> own_offsets(const Windows& windows, const std::string&
 
 std::vector<Vec3> chosen(const std::vector<Vec3>& all, const std::vector<std::size_t>& which) {
   std::vector<Vec3> out;
+  out.reserve(which.size());
   for (const std::size_t i : which) out.push_back(all[i]);
   return out;
 }
@@ -306,6 +307,30 @@ Result<std::map<std::string, UprightFrames>> upright_frames(const Windows& windo
   return out;
 }
 
+/// Fills the parts of `out` with all stretches that are long enough and valid.
+Result<void> add_sequences(const Windows& windows, const std::string& stream,
+                           const FileSkeleton& skeleton,
+                           const std::map<std::string, UprightFrames>& upright, PoseData& out) {
+  const double rate_hz = windows.manifest.value("rate_hz", 0.0);
+  const SequenceMaker maker(skeleton, rate_hz);
+  for (const Stretch& stretch : windows.stretches) {
+    const std::string subject = take_of(windows, stretch).subject;
+    const UprightFrames& person = upright.at(subject);
+    if (person.count() < least_upright || !is_all_valid(stretch, stream) ||
+        static_cast<double>(stretch.rows) < least_seconds * rate_hz) {
+      continue;
+    }
+    const std::vector<Mat3> turns = person.turns();
+    const auto own = KA_TRY(own_offsets(windows, stream, stretch, skeleton.names.size()));
+    PoseSequence one = maker.make(KA_TRY(GlobalFrames::make(skeleton, stretch, stream)), turns);
+    one.subject = subject;
+    one.action = take_of(windows, stretch).action;
+    one.rest_offsets = chosen(turned_offsets(skeleton.parents, own, turns), skeleton.joints);
+    part_of(windows, stretch, out).push_back(std::move(one));
+  }
+  return {};
+}
+
 Result<void> check_nodes(const std::vector<std::string>& nodes) {
   PoseLayout layout;
   layout.nodes = nodes;
@@ -320,6 +345,7 @@ Result<void> check_nodes(const std::vector<std::string>& nodes) {
 
 std::vector<std::string> known_pose_nodes() {
   std::vector<std::string> out;
+  out.reserve(node_places.size());
   for (const NodePlace& one : node_places) out.emplace_back(one.name);
   return out;
 }
@@ -342,22 +368,7 @@ Result<PoseData> pose_data(const Windows& windows, const std::string& stream,
   for (const auto& [subject, frames] : upright) {
     if (frames.count() < least_upright) out.left_out.push_back(subject);
   }
-  const SequenceMaker maker(skeleton, rate_hz);
-  for (const Stretch& stretch : windows.stretches) {
-    const std::string subject = take_of(windows, stretch).subject;
-    const UprightFrames& person = upright.at(subject);
-    if (person.count() < least_upright || !is_all_valid(stretch, stream) ||
-        static_cast<double>(stretch.rows) < least_seconds * rate_hz) {
-      continue;
-    }
-    const std::vector<Mat3> turns = person.turns();
-    const auto own = KA_TRY(own_offsets(windows, stream, stretch, skeleton.names.size()));
-    PoseSequence one = maker.make(KA_TRY(GlobalFrames::make(skeleton, stretch, stream)), turns);
-    one.subject = subject;
-    one.action = take_of(windows, stretch).action;
-    one.rest_offsets = chosen(turned_offsets(skeleton.parents, own, turns), skeleton.joints);
-    part_of(windows, stretch, out).push_back(std::move(one));
-  }
+  KA_TRY(add_sequences(windows, stream, skeleton, upright, out));
   if (out.learnt.empty()) {
     return Failure(
         Error{"", 0, "stretches of 1.5 s to learn from, of people who stand upright", "none"});

@@ -3,8 +3,8 @@
 // samples that nodes on these people would have given.
 #pragma once
 
-#include "kinalign/models/pose_body.h"
-#include "kinalign/models/pose_features.h"
+#include "kinalign/models/pose/pose_body.h"
+#include "kinalign/models/pose/pose_features.h"
 #include "kinalign/models/windows_file.h"
 
 #include <string>
@@ -27,14 +27,15 @@ struct PoseData {
   std::vector<std::string> nodes;  // [N] the last one is the root's
   PoseBody body;                   // the mean of the people who are learnt from
   double rate_hz = 30.0;
-  /// Of the parts train, validation and all others. A file with one part is learnt from.
+  /// Sequences of the parts train, validation and all others. If the file has one part alone, its
+  /// sequences are learnt from.
   std::vector<PoseSequence> learnt, judged, tested;
   std::vector<std::string> left_out;  // people who never stand upright for 60 frames
 };
 
-/// Where nodes can be: waist, wrist_left, wrist_right, ankle_left, ankle_right, head.
+/// Names of all places for nodes: waist, wrist_left, wrist_right, ankle_left, ankle_right, head.
 std::vector<std::string> known_pose_nodes();
-/// The five of most suits, the root last.
+/// The paper's five nodes, the root last.
 std::vector<std::string> usual_pose_nodes();
 
 /// `stream`: a skeleton with CMU's joints, at a multiple of 30 Hz. `nodes`: 3 to 6 that are known,

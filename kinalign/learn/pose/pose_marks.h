@@ -4,8 +4,8 @@
 #pragma once
 
 #include "kinalign/learn/pose/pose_data.h"
-#include "kinalign/models/pose_metrics.h"
-#include "kinalign/models/pose_model.h"
+#include "kinalign/models/pose/pose_metrics.h"
+#include "kinalign/models/pose/pose_model.h"
 
 #include <string>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include "kinalign/learn/losses.h"
 #include "kinalign/learn/tensors.h"
-#include "kinalign/models/pose_model.h"
+#include "kinalign/models/pose/pose_model.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "kinalign/learn/pose/node_errors.h"
 #include "kinalign/learn/pose/pose_data.h"
 #include "kinalign/learn/trainer.h"
-#include "kinalign/models/pose_metrics.h"
+#include "kinalign/models/pose/pose_metrics.h"
 
 #include <cstdint>
 #include <optional>

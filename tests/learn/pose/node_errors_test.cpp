@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/pose/node_errors.h"
 
-#include "tests/models/pose_people.h"
+#include "tests/models/pose/pose_people.h"
 
 #include <doctest/doctest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/pose/upright_zero.h"
 
-#include "tests/models/pose_people.h"
+#include "tests/models/pose/pose_people.h"
 #include "tests/seeds.h"
 
-#include "kinalign/models/pose_body.h"
+#include "kinalign/models/pose/pose_body.h"
 
 #include <doctest/doctest.h>
 

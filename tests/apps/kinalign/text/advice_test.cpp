@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is advised goes by an error's kind; its words may be any.
-#include "apps/kinalign/text/key_advice.h"
-#include "apps/kinalign/text/port_advice.h"
+#include "apps/kinalign/text/advice.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a network sees of inertial nodes, the same in training and at use. All channels stand in the
-// space of the root's node, so that the direction in which a person looks does not matter.
+// Channels that a network sees of inertial nodes, the same in training and at use. All channels are
+// in the space of the root's node, so the direction in which a person looks does not matter.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -28,11 +28,11 @@ struct NodeFrames {
 };
 
 enum class PoseInputs : std::uint8_t {
-  /// Of each leaf 6 numbers of its rotation against the root and its acceleration against the
-  /// root's; the vertical and the root's acceleration; all angular velocities; which leaves are
-  /// valid. Accelerations in 10 m/s2, angular velocities in 3 rad/s.
+  /// Each leaf gives 6 numbers of its rotation against the root and its acceleration minus the
+  /// root's. The root gives the vertical and its acceleration. All nodes give their angular
+  /// velocity. A flag for each leaf says whether it is valid. Units: 10 m/s2, 3 rad/s.
   ours,
-  /// Of each leaf 9 numbers of its rotation and its acceleration (Huang et al., «Deep inertial
+  /// Each leaf gives 9 numbers of its rotation and its acceleration (Huang et al., «Deep inertial
   /// poser», SIGGRAPH Asia 2018).
   dip,
 };

@@ -2,8 +2,8 @@
 // A body and motions for tests of poses.
 #pragma once
 
-#include "kinalign/models/pose_body.h"
-#include "kinalign/models/pose_features.h"
+#include "kinalign/models/pose/pose_body.h"
+#include "kinalign/models/pose/pose_features.h"
 
 #include <random>
 #include <vector>

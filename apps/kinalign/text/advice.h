@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to do where a port can't be opened.
+// What to do where a port can't be opened or a key can't be read.
 #pragma once
 
 #include "kinalign/core/error.h"
@@ -20,5 +20,8 @@ struct WantedPort {
 
 /// `error`: of opening it. Empty: nothing is known that would help.
 std::vector<std::string> port_advice(const Error& error, const WantedPort& wanted);
+
+/// What to do where --lab-key could not be read.
+std::vector<std::string> key_advice(const Error& error);
 
 }  // namespace kinalign

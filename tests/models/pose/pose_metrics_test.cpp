@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/models/pose_metrics.h"
+#include "kinalign/models/pose/pose_metrics.h"
 
-#include "tests/models/pose_people.h"
+#include "tests/models/pose/pose_people.h"
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 // nor the heading of a person counts.
 #pragma once
 
-#include "kinalign/models/pose_body.h"
+#include "kinalign/models/pose/pose_body.h"
 
 #include <cstddef>
 #include <span>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/models/pose_model.h"
+#include "kinalign/models/pose/pose_model.h"
 
 #include "kinalign/models/model_file.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/model_file.h"
-#include "kinalign/models/pose_model.h"
+#include "kinalign/models/pose/pose_model.h"
 
 #include <nlohmann/json.hpp>
 

@@ -6,8 +6,8 @@
 #include "kinalign/infer/network.h"
 #include "kinalign/infer/online.h"
 #include "kinalign/models/model_facts.h"
-#include "kinalign/models/pose_body.h"
-#include "kinalign/models/pose_features.h"
+#include "kinalign/models/pose/pose_body.h"
+#include "kinalign/models/pose/pose_features.h"
 
 #include <map>
 #include <string>
@@ -77,7 +77,7 @@ class OnlinePoseSolver {
   std::span<const Turn> step(const NodeFrames& nodes, std::size_t t);
   /// The root in the world, at that frame.
   const Eigen::Quaternionf& root() const { return maker_.root(); }
-  /// As if no frame had come.
+  /// Forgets all frames.
   void reset();
 
  private:

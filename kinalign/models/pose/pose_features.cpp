@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/models/pose_features.h"
+#include "kinalign/models/pose/pose_features.h"
 
 #include <algorithm>
 #include <array>
