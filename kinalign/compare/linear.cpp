@@ -184,6 +184,8 @@ Ridge::Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt
                                           : normal.solved(penalty);
 }
 
+Ridge::Ridge(Ridge&&) noexcept = default;
+Ridge& Ridge::operator=(Ridge&&) noexcept = default;
 Ridge::~Ridge() = default;
 
 std::vector<float> Ridge::clean(const DenoiseLayout& layout, const JointFrames& body) const {

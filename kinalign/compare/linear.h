@@ -29,6 +29,10 @@ class Ridge {
  public:
   Ridge(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt,
         double penalty = 300.0);
+  Ridge(const Ridge&) = delete;
+  Ridge& operator=(const Ridge&) = delete;
+  Ridge(Ridge&&) noexcept;
+  Ridge& operator=(Ridge&&) noexcept;
   ~Ridge();
   std::vector<float> clean(const DenoiseLayout& layout, const JointFrames& body) const;
 

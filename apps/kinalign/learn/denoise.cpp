@@ -3,7 +3,6 @@
 #include "apps/kinalign/learn/point_source.h"
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/text/describe_file.h"
-#include "apps/kinalign/text/describe_model.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
@@ -197,6 +196,31 @@ void print(const Json& about, const std::string& out, Call& call) {
   call.console.print_json(about.dump(1, ' ', false, Json::error_handler_t::replace));
 }
 
+/// Cleans the points and writes them; errors name the file `in`.
+Result<Json> clean_into(Denoiser& denoiser, Result<NamedPoints> points, const std::string& in,
+                        Call& call) {
+  auto cleaned = clean(denoiser, KA_TRY(std::move(points)));
+  if (!cleaned) {
+    Error error = cleaned.error();
+    if (error.file.empty()) error.file = in;
+    return Failure(error);
+  }
+  KA_TRY(write_cleaned(call.surroundings.files, denoiser.model(), *cleaned, call.common));
+  return cleaned->about;
+}
+
+/// The same of a take, in a child process.
+Result<Json> clean_take(Denoiser& denoiser, const std::string& in, const std::string& stream,
+                        Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const auto work = [&]() -> Result<std::string> {
+    return KA_TRY(clean_into(denoiser, points_of_take(files, in, stream), in, call)).dump();
+  };
+  Json about = Json::parse(KA_TRY(run_guarded(GuardLimits{}, blame(in), work)), nullptr, false);
+  if (about.is_object()) return about;
+  return Failure(Error{in, 0, "a take that can be read", "another answer"});
+}
+
 Result<int> run_denoise(Denoise& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& in = o.in.front();
@@ -204,28 +228,10 @@ Result<int> run_denoise(Denoise& o, Call& call) {
   const std::string path = o.model.empty() ? KA_TRY(shipped_model("denoise")) : o.model;
   const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
   Denoiser denoiser = KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, path))));
-  const auto work = [&](Result<NamedPoints> points) -> Result<Json> {
-    auto cleaned = clean(denoiser, KA_TRY(std::move(points)));
-    if (!cleaned) {
-      Error error = cleaned.error();
-      if (error.file.empty()) error.file = in;
-      return Failure(error);
-    }
-    KA_TRY(write_cleaned(files, denoiser.model(), *cleaned, call.common));
-    return cleaned->about;
-  };
-  Json about;
-  if (KA_TRY(kind_of_file(files, in)) == FileKind::take) {
-    const std::string text =
-        KA_TRY(run_guarded(GuardLimits{}, blame(in), [&]() -> Result<std::string> {
-          return KA_TRY(work(points_of_take(files, in, o.stream))).dump();
-        }));
-    about = Json::parse(text, nullptr, false);
-    if (!about.is_object())
-      return Failure(Error{in, 0, "a take that can be read", "another answer"});
-  } else {
-    about = KA_TRY(work(points_of_file(in, o.stream, call)));
-  }
+  const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
+  const Json about =
+      KA_TRY(is_take ? clean_take(denoiser, in, o.stream, call)
+                     : clean_into(denoiser, points_of_file(in, o.stream, call), in, call));
   call.console.wrote(call.common.out);
   print(about, call.common.out, call);
   return about.at("long_missing_s").empty() ? 0 : 1;

@@ -216,33 +216,41 @@ Result<Bench> open_bench(const Eval& o, Call& call) {
   return out;
 }
 
-std::string key_of(const Bench& bench, const Fold& fold, const std::string& method,
-                   std::int64_t seed, const Eval& o) {
-  Sha256 hash;
-  hash.update(Json{cache_version, bench.windows_hash, method, seed, o.steps, o.input, o.truth,
-                   fold.learnt, fold.tested}
-                  .dump());
-  return hash.hex().substr(0, 32);
-}
+/// One method on one fold, trained from one seed.
+struct Trial {
+  const Eval& options;
+  const Bench& bench;
+  const Fold& fold;
+  std::string method;
+  std::int64_t seed = 1;
 
-Result<std::vector<Marked>> compute(const Bench& bench, const Fold& fold, const std::string& method,
-                                    std::int64_t seed, const Eval& o, const DenoiseMarker& marker,
-                                    Call& call) {
+  std::string key() const {
+    Sha256 hash;
+    hash.update(Json{cache_version, bench.windows_hash, method, seed, options.steps, options.input,
+                     options.truth, fold.learnt, fold.tested}
+                    .dump());
+    return hash.hex().substr(0, 32);
+  }
+};
+
+Result<std::vector<Marked>> compute(const Trial& trial, const DenoiseMarker& marker, Call& call) {
+  const Bench& bench = trial.bench;
   const EvalTask task{.layout = bench.layout,
                       .pairs = bench.pairs.all,
-                      .learnt = fold.learnt,
+                      .learnt = trial.fold.learnt,
                       .windows = bench.windows,
-                      .input = o.input,
-                      .truth = o.truth,
-                      .folder = call.common.out + "/models/" + key_of(bench, fold, method, seed, o),
-                      .device = o.device,
-                      .seed = seed,
-                      .steps = o.steps};
-  const Answer answer = KA_TRY(make_answer(method, task, call));
+                      .input = trial.options.input,
+                      .truth = trial.options.truth,
+                      .folder = call.common.out + "/models/" + trial.key(),
+                      .device = trial.options.device,
+                      .seed = trial.seed,
+                      .steps = trial.options.steps};
+  const Answer answer = KA_TRY(make_answer(trial.method, task, call));
   const Steadier steadier(bench.layout);
+  const auto& tested = trial.fold.tested;
   std::vector<Marked> out;
   for (const Pair& pair : bench.pairs.all) {
-    if (std::find(fold.tested.begin(), fold.tested.end(), pair.take) == fold.tested.end()) continue;
+    if (std::find(tested.begin(), tested.end(), pair.take) == tested.end()) continue;
     Denoised plain = answer(pair.input);
     Marked one{pair.take, pair.subject, {}};
     one.marks[0] = marker.marks_of(pair, plain.positions, plain.spread);
@@ -254,18 +262,15 @@ Result<std::vector<Marked>> compute(const Bench& bench, const Fold& fold, const 
 }
 
 /// From the cache, or computed and put there.
-Result<std::vector<Marked>> marks_for(const Bench& bench, const Fold& fold,
-                                      const std::string& method, std::int64_t seed, const Eval& o,
-                                      const DenoiseMarker& marker, Call& call) {
+Result<std::vector<Marked>> marks_for(const Trial& trial, const DenoiseMarker& marker, Call& call) {
   FileSystem& files = call.surroundings.files;
-  const std::string file =
-      call.common.out + "/cache/" + key_of(bench, fold, method, seed, o) + ".json";
+  const std::string file = call.common.out + "/cache/" + trial.key() + ".json";
   std::error_code fault;
   if (fs::exists(file, fault)) {
     auto known = read_marks(KA_TRY(read_whole(files, file, most_cached_bytes)));
     if (!known.empty()) return known;
   }
-  auto made = KA_TRY(compute(bench, fold, method, seed, o, marker, call));
+  auto made = KA_TRY(compute(trial, marker, call));
   KA_TRY(write_whole(files, file, written_marks(made), Overwrite::yes));
   return made;
 }
@@ -387,7 +392,7 @@ Result<int> run_eval(Eval& o, Call& call) {
       folds.emplace_back();
       for (std::int64_t seed = 1; seed <= seeds; ++seed) {
         call.console.detail(fmt::format("{}: {}", method, fold.name));
-        auto marks = KA_TRY(marks_for(bench, fold, method, seed, o, marker, call));
+        auto marks = KA_TRY(marks_for({o, bench, fold, method, seed}, marker, call));
         folds.back().insert(folds.back().end(), std::make_move_iterator(marks.begin()),
                             std::make_move_iterator(marks.end()));
       }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
 #include "apps/kinalign/text/describe_file.h"
-#include "apps/kinalign/text/describe_model.h"
 #include "apps/kinalign/text/describe_xdf.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"

@@ -311,7 +311,7 @@ Result<std::map<std::string, UprightFrames>> upright_frames(const Windows& windo
 Result<void> add_sequences(const Windows& windows, const std::string& stream,
                            const FileSkeleton& skeleton,
                            const std::map<std::string, UprightFrames>& upright, PoseData& out) {
-  const double rate_hz = windows.manifest.value("rate_hz", 0.0);
+  const double rate_hz = windows.facts.rate_hz;
   const SequenceMaker maker(skeleton, rate_hz);
   for (const Stretch& stretch : windows.stretches) {
     const std::string subject = take_of(windows, stretch).subject;

@@ -18,13 +18,10 @@ Windows turning_person(const std::string& part = "train") {
   const PoseBody body = pose_body(test_offsets());
   const std::size_t joints = body.skeleton.joints(), rows = 120;
   Windows out;
-  out.manifest = {{"rate_hz", 60.0},
-                  {"parts", {"train", "validation", "test"}},
-                  {"takes", {{{"subject", "07"}, {"action", "turn"}}}},
-                  {"streams",
-                   {{{"name", "mocap"},
-                     {"names", body.skeleton.joint_names},
-                     {"parents", body.skeleton.parents}}}}};
+  out.facts.rate_hz = 60.0;
+  out.facts.parts = {"train", "validation", "test"};
+  out.facts.takes = {{"turn", "07", "turn"}};
+  out.facts.streams = {{"mocap", "skeleton", body.skeleton.joint_names, body.skeleton.parents}};
   Stretch stretch{.take = 0, .part = 0, .rows = rows, .streams = {}};
   stretch.part = part == "train" ? 0 : part == "validation" ? 1 : 2;
   auto& arrays = stretch.streams["mocap"].arrays;
@@ -102,11 +99,11 @@ TEST_CASE("what does not fit is refused by name") {
   CHECK(refusal(turning_person(), {"waist", "wrist_left", "wrist_right"}) ==
         "expected the node waist as the last one, found wrist_right");
   Windows other = turning_person();
-  other.manifest["streams"][0]["names"][7] = "foot";
+  other.facts.streams[0].names[7] = "foot";
   CHECK(refusal(other, usual_pose_nodes()) ==
         "expected a skeleton with CMU's joints (ASF/AMC), found none named rfoot");
   other = turning_person();
-  other.manifest["rate_hz"] = 50.0;
+  other.facts.rate_hz = 50.0;
   CHECK(refusal(other, usual_pose_nodes()).starts_with("expected a multiple of 30 Hz"));
   other = turning_person();
   other.stretches[0].streams["mocap"].arrays.erase("local_rotations");
@@ -123,7 +120,7 @@ TEST_CASE("a person who never stands upright is left out") {
   Windows both = turning_person();
   lying.stretches[0].take = 1;
   both.stretches.push_back(lying.stretches[0]);
-  both.manifest["takes"].push_back({{"subject", "golf"}, {"action", "lie"}});
+  both.facts.takes.push_back({"lie", "golf", "lie"});
   auto& offsets = both.rest_offsets["mocap"];
   offsets.insert(offsets.end(), offsets.begin(), offsets.begin() + 81);
   const auto data = pose_data(both, "mocap", usual_pose_nodes());
