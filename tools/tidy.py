@@ -52,7 +52,13 @@ def tidy(path, build):
 def sources(build):
     commands = json.loads((build / "compile_commands.json").read_text())
     files = sorted({pathlib.Path(c["file"]) for c in commands})
-    return [f for f in files if f.relative_to(ROOT).parts[0] in ("kinalign", "apps", "firmware")]
+    ours = [f for f in files if f.relative_to(ROOT).parts[0] in ("kinalign", "apps", "firmware")]
+    return [f for f in ours if not includes_torch(f)]
+
+
+def includes_torch(path):
+    """clang 14 can't compile LibTorch 1.13 as C++20 with g++ 12's library: an incomplete type in a vector."""
+    return any("#include <torch/" in part.read_text() for part in reached(path, set()))
 
 
 def changed_since_parent():

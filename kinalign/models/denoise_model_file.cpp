@@ -98,9 +98,8 @@ bool is_forest(const std::vector<int>& parents) {
   return true;
 }
 
-/// Why the parts do not fit together; empty where they do.
-std::string misfit(const DenoiseModel& model) {
-  const DenoiseLayout& layout = model.layout;
+/// Which part of the layout does not fit; empty where all do.
+std::string misfit(const DenoiseLayout& layout) {
   const std::size_t in = layout.inputs.size(), out = layout.outputs.size();
   if (in == 0 || out == 0 || in > most_joints || out > most_joints) return "number of joints";
   if (!are_unique(layout.inputs) || !are_unique(layout.outputs)) return "a joint twice";
@@ -109,15 +108,24 @@ std::string misfit(const DenoiseModel& model) {
   if (!is_forest(layout.parents)) return "parents in a circle";
   if (layout.bases.size() != out || !in_range(layout.bases, in)) return "bases";
   if (!is_within(layout.rate_hz, least_rate_hz, most_rate_hz)) return "rate_hz";
+  return is_sound(layout.smoothing) ? "" : "smoothing";
+}
+
+/// The same of the whole model.
+std::string misfit(const DenoiseModel& model) {
+  const DenoiseLayout& layout = model.layout;
+  std::string fault = misfit(layout);
+  if (!fault.empty()) return fault;
   if (!is_within(model.answer_scale, least_scale, most_scale)) return "scale_m";
   if (!is_within(model.spread_factor, least_scale, most_scale)) return "spread_factor";
-  if (!is_sound(layout.smoothing) || !is_sound(model.steadying.smoothing)) return "smoothing";
+  if (!is_sound(model.steadying.smoothing)) return "smoothing";
   if (model.input_mean.size() != layout.channels()) return "input.mean";
   if (model.input_scale.size() != layout.channels()) return "input.scale";
   if (model.answer_mean.size() != layout.answers()) return "answer.mean";
-  for (const float value : model.input_scale) {
-    if (!is_within(value, least_scale, most_scale)) return "input.scale";
-  }
+  const bool scales =
+      std::all_of(model.input_scale.begin(), model.input_scale.end(),
+                  [](float value) { return is_within(value, least_scale, most_scale); });
+  if (!scales) return "input.scale";
   if (!all_finite(model.input_mean)) return "input.mean";
   if (!all_finite(model.answer_mean)) return "answer.mean";
   return "";

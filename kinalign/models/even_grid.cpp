@@ -55,6 +55,7 @@ Result<void> check_stamps(const std::vector<Time>& stamps, double rate_hz) {
 Result<std::vector<std::optional<std::size_t>>> places_of(const std::vector<std::string>& wanted,
                                                           const std::vector<std::string>& names) {
   std::vector<std::optional<std::size_t>> out;
+  out.reserve(wanted.size());
   for (const std::string& name : wanted) out.push_back(index_of(names, name));
   const auto needed = body_joints(wanted);
   std::vector<std::size_t> joints = needed ? needed->root : std::vector<std::size_t>{};
@@ -91,6 +92,28 @@ double body_size(const JointFrames& body) {
   return *middle;
 }
 
+/// A joint between sample `before` and the next one.
+struct Between {
+  std::size_t before, joint;
+  double share;  // of the way to the next
+};
+
+/// Puts it at place `at` of the body's joints, where it is seen.
+void put_joint(const PointFrames& points, const Between& where, std::size_t at, JointFrames& body) {
+  const std::size_t names = points.state.size() / points.size();
+  const std::size_t a = where.before * names + where.joint, b = a + names;
+  const double share = where.share;
+  auto seen = std::min(points.state[a], points.state[b]);
+  if (share < 1e-6) seen = points.state[a];
+  if (share > 1 - 1e-6) seen = points.state[b];
+  body.seen[at] = static_cast<std::uint8_t>(seen);
+  if (seen == Tracking::missing) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    body.positions[at * 3 + k] = static_cast<float>(points.positions[3 * a + k] * (1.0 - share) +
+                                                    points.positions[3 * b + k] * share);
+  }
+}
+
 }  // namespace
 
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
@@ -120,17 +143,8 @@ Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
     const double share = to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0.0;
     if (std::min(time - from, to - time) > gap_s) continue;
     for (std::size_t j = 0; j < wanted.size(); ++j) {
-      if (!places[j]) continue;
-      const std::size_t a = before * names.size() + *places[j], b = a + names.size();
-      const auto seen = share < 1e-6       ? points.state[a]
-                        : share > 1 - 1e-6 ? points.state[b]
-                                           : std::min(points.state[a], points.state[b]);
-      out.body.seen[t * wanted.size() + j] = static_cast<std::uint8_t>(seen);
-      if (seen == Tracking::missing) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        out.body.positions[(t * wanted.size() + j) * 3 + k] = static_cast<float>(
-            points.positions[3 * a + k] * (1.0 - share) + points.positions[3 * b + k] * share);
-      }
+      if (places[j])
+        put_joint(points, {before, *places[j], share}, t * wanted.size() + j, out.body);
     }
   }
   const double size = body_size(out.body);

@@ -17,7 +17,10 @@ Result<std::vector<std::string>> joints_of(const Windows& windows, const std::st
   const WindowsFacts::Stream* found = windows.facts.find(stream);
   if (found != nullptr && !found->names.empty()) return found->names;
   std::string known;
-  for (const auto& one : windows.facts.streams) known += (known.empty() ? "" : ", ") + one.name;
+  for (const auto& one : windows.facts.streams) {
+    known += known.empty() ? "" : ", ";
+    known += one.name;
+  }
   return Failure(Error{"", 0, "a stream \"" + stream + "\" with names", known});
 }
 
@@ -96,12 +99,13 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
       .inputs = chosen.names, .outputs = std::move(outputs), .rate_hz = windows.facts.rate_hz};
   const std::vector<int>& parents = windows.facts.find(truth)->parents;
   if (parents.size() == out.outputs.size()) out.parents = parents;
+  const std::string missing = "positions of all joints of " + input + " and " + truth;
   for (const Stretch& stretch : windows.stretches) {
     if (stretch.rows < least) continue;
     const auto* rough = positions_of(stretch, input, joints.size());
     const auto* precise = positions_of(stretch, truth, out.outputs.size());
     if (rough == nullptr || precise == nullptr) {
-      return Failure(Error{"", 0, "positions of all joints of " + input + " and " + truth, "none"});
+      return Failure(Error{"", 0, missing, "none"});
     }
     Pair pair;
     pair.input.joints = out.inputs.size();

@@ -84,6 +84,7 @@ Result<Plan> plan_of(const PointBody& body, Skeleton& skeleton) {
 std::vector<Vec3> rest_ways(const PointBody& body, const Plan& plan) {
   const auto names = kinect_names(body.names);
   std::vector<std::optional<Vec3>> ways;
+  ways.reserve(names.size());
   for (const std::string& name : names) ways.push_back(known_direction(name));
   for (std::size_t i = plan.order.size(); i-- > 1;) {
     const auto p = static_cast<std::size_t>(body.parents[plan.order[i]]);

@@ -282,10 +282,16 @@ bool is_of_rows(const std::string& key, const std::string& stream, const StoredA
   return key.starts_with(stream + "_") && array.shape.size() > 2 && !key.ends_with("_rest_offsets");
 }
 
-/// Appends rows `skip` ... of window `w` to the last stretch.
-Result<void> append_window(const std::map<std::string, StoredArray>& arrays, Windows& out,
-                           std::size_t window, std::size_t skip, std::size_t rows,
-                           const std::string& name) {
+using Arrays = std::map<std::string, StoredArray>;
+
+/// Rows `skip` ... skip + rows - 1 of a window.
+struct Piece {
+  std::size_t window, skip, rows;
+};
+
+/// Appends them to the last stretch.
+Result<void> append_piece(const Arrays& arrays, const Piece& piece, Windows& out,
+                          const std::string& name) {
   Stretch& stretch = out.stretches.back();
   for (const WindowsFacts::Stream& about : out.facts.streams) {
     const std::string& stream = about.name;
@@ -295,19 +301,20 @@ Result<void> append_window(const std::map<std::string, StoredArray>& arrays, Win
       std::vector<std::size_t> flat{array.shape[0] * length};
       flat.insert(flat.end(), array.shape.begin() + 2, array.shape.end());
       const StoredArray lines{array.type, flat, array.bytes};
-      if (skip + rows > length || window >= array.shape[0]) {
+      if (piece.skip + piece.rows > length || piece.window >= array.shape[0]) {
         return broken(name, key + " with a row for each", "fewer");
       }
-      if (!append_row(lines, window * length + skip, rows,
+      if (!append_row(lines, piece.window * length + piece.skip, piece.rows,
                       stretch.streams[stream].arrays[key.substr(stream.size() + 1)])) {
         return broken(name, key + " of numbers", array.type);
       }
     }
   }
-  stretch.rows += rows;
+  stretch.rows += piece.rows;
   return {};
-}  /// How many rows window `w` begins behind the one before it. Stamps say so: of windows at
-   /// another
+}
+
+/// How many rows window `w` begins behind the one before it. Stamps say so: of windows at another
 /// rate than the take's, `first` is rounded.
 std::int64_t rows_between(const Places& places, std::size_t w, double rate_hz) {
   const double step =
@@ -316,8 +323,8 @@ std::int64_t rows_between(const Places& places, std::size_t w, double rate_hz) {
   return std::abs(rows) < static_cast<double>(most_rows) ? std::llround(rows) : 2 * most_rows;
 }
 
-Result<void> join(const std::map<std::string, StoredArray>& arrays, const Places& places,
-                  Windows& out, const std::string& name) {
+Result<void> join(const Arrays& arrays, const Places& places, Windows& out,
+                  const std::string& name) {
   std::int64_t begin = 0, reached = 0;
   for (std::size_t w = 0; w < places.take.size(); ++w) {
     const std::int64_t rows = places.rows[w];
@@ -339,11 +346,25 @@ Result<void> join(const std::map<std::string, StoredArray>& arrays, const Places
                                {}});
       reached = begin;
     }
-    KA_TRY(append_window(arrays, out, w, static_cast<std::size_t>(reached - begin),
-                         static_cast<std::size_t>(begin + rows - reached), name));
+    const Piece piece{w, static_cast<std::size_t>(reached - begin),
+                      static_cast<std::size_t>(begin + rows - reached)};
+    KA_TRY(append_piece(arrays, piece, out, name));
     reached = begin + rows;
   }
   return {};
+}
+
+Result<Places> places_of(const Arrays& arrays, const std::string& name) {
+  Places out;  // member by member: an aggregate whose later member fails leaks the earlier ones
+  out.take = KA_TRY(integers(arrays, "take", name));
+  out.part = KA_TRY(integers(arrays, "part", name));
+  out.rows = KA_TRY(integers(arrays, "rows", name));
+  out.time_ns = KA_TRY(integers(arrays, "time_ns", name));
+  const std::size_t count = out.take.size();
+  if (out.part.size() == count && out.rows.size() == count && out.time_ns.size() == count) {
+    return out;
+  }
+  return broken(name, "arrays of one length", "take, part, rows and time_ns differ");
 }
 
 }  // namespace
@@ -387,16 +408,7 @@ Result<Windows> read_windows(std::string_view npz, const std::string& name) {
   }
   Windows out;
   out.facts = KA_TRY(read_facts(utf8_of(manifest->second), name));
-  Places places;  // member by member: an aggregate whose later member fails leaks the earlier ones
-  places.take = KA_TRY(integers(arrays, "take", name));
-  places.part = KA_TRY(integers(arrays, "part", name));
-  places.rows = KA_TRY(integers(arrays, "rows", name));
-  places.time_ns = KA_TRY(integers(arrays, "time_ns", name));
-  const std::size_t count = places.take.size();
-  if (places.part.size() != count || places.rows.size() != count ||
-      places.time_ns.size() != count) {
-    return broken(name, "arrays of one length", "take, part, rows and time_ns differ");
-  }
+  const Places places = KA_TRY(places_of(arrays, name));
   KA_TRY(join(arrays, places, out, name));
   for (const auto& [key, array] : arrays) {
     const std::size_t at = key.rfind("_rest_offsets");

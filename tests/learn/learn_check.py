@@ -44,7 +44,8 @@ def windows(path, frames=70, length=70):
              "parts": ["train", "validation"],
              "takes": [{"name": f"S0{i}-A1", "subject": f"S0{i}", "action": "A1"} for i in (1, 2)],
              "streams": [{"name": name, "kind": "points", "names": JOINTS} for name in ("mocap", "kinect")]}
-    arrays = {"take": [0, 1], "part": [0, 1], "first": [0, 0], "rows": [frames, frames]}
+    arrays = {"take": [0, 1], "part": [0, 1], "first": [0, 0], "rows": [frames, frames],
+              "time_ns": [0, 0]}
     flat = {name: numpy.stack([moving(length, seed + k).reshape(length, -1) for k in (0, 1)])
             for name, seed in (("mocap", 10), ("kinect", 20))}
     numpy.savez(path, **{name: numpy.array(values, "<i8") for name, values in arrays.items()},

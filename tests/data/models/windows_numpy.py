@@ -5,6 +5,7 @@ import pathlib
 
 import numpy
 
+TIME_NS = [round(row * 1e9 / 30) for row in (0, 2, 10, 0)]
 FIRST, ROWS, TAKE, PART = [0, 2, 10, 0], [4, 4, 3, 4], [0, 0, 0, 1], [0, 0, 0, 1]
 LENGTH = 4
 
@@ -32,7 +33,7 @@ manifest = {"schema": "kinalign.windows/1", "dataset": "wal𝄞ks é", "licence"
             "streams": [{"name": "mocap", "kind": "skeleton", "names": mocap, "parents": [-1, 0, 0]},
                         {"name": "kinect", "kind": "points", "names": kinect}]}
 numpy.savez(pathlib.Path(__file__).with_name("windows_numpy.npz"), take=numpy.array(TAKE, "<i4"),
-            part=numpy.array(PART, "|u1"), first=numpy.array(FIRST, "<i8"), rows=numpy.array(ROWS, "<i4"),
+            part=numpy.array(PART, "|u1"), first=numpy.array(FIRST, "<i8"), rows=numpy.array(ROWS, "<i4"), time_ns=numpy.array(TIME_NS, "<i8"),
             mocap_positions=rows(9, 100), mocap_valid=real[:, :, None].astype("|u1"),
             mocap_rest_offsets=numpy.arange(18, dtype="<f4").reshape(2, 3, 3),
             kinect_positions=rows(9, 0), kinect_valid=valid, kinect_state=state,
