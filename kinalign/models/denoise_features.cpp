@@ -14,8 +14,9 @@ namespace {
 
 template <class Turn>
 void move(const std::vector<BodyFrame>& frames, std::span<float> positions, const Turn& turn) {
-  const std::size_t row = frames.empty() ? 0 : positions.size() / frames.size();
-  for (std::size_t i = 0; i < positions.size(); i += 3) turn(frames[i / row], &positions[i]);
+  if (frames.empty() || positions.size() < frames.size()) return;
+  const std::size_t row = positions.size() / frames.size();
+  for (std::size_t i = 0; i < row * frames.size(); i += 3) turn(frames[i / row], &positions[i]);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ struct Repetition {
   std::vector<double> kinect;        // [F,18,3] m
   std::vector<double> markers;       // [G,39,3] m, 50 Hz
   std::vector<std::uint8_t> seen;    // [G,39]
-  JointCentres truth;                 // [G]
+  JointCentres truth;                // [G]
   std::optional<FoundShift> found;   // absent: too little overlaps
   RigidTransform kinect_from_truth;  // of the person's movement
 

@@ -308,7 +308,7 @@ FunctionalShifts functional_shifts(const MarkerFrames& markers) {
 JointCentres joint_centres(const MarkerFrames& markers, const FunctionalShifts& shifts) {
   const std::size_t frames = markers.frames();
   JointCentres out{std::vector<double>(3 * shared_joint_count * frames),
-                  std::vector<std::uint8_t>(shared_joint_count * frames)};
+                   std::vector<std::uint8_t>(shared_joint_count * frames)};
   const PelvisSize size = pelvis_size(markers);
   for (std::size_t t = 0; t < frames; ++t) {
     const MarkerFrame m(markers, t);

@@ -147,7 +147,7 @@ TEST_CASE("the elbow goes where the forearm keeps its length") {
 
 TEST_CASE("invalid joints lie between the valid frames around, and stay marked") {
   JointCentres joints{std::vector<double>(5 * 3 * shared_joint_count),
-                     std::vector<std::uint8_t>(5 * shared_joint_count, 1)};
+                      std::vector<std::uint8_t>(5 * shared_joint_count, 1)};
   const auto place = [&joints](std::size_t t) {
     return vec3(joints.positions, t * shared_joint_count + 6);
   };
