@@ -11,8 +11,6 @@ namespace kinalign {
 
 namespace {
 
-constexpr double radius_90 = 2.5003;  // of a Gaussian in space, in standard deviations of an axis
-
 std::string person_and_action(const Pair& pair) { return pair.subject + "/" + pair.action; }
 
 /// The shared joints of [T,J,3], in their order.

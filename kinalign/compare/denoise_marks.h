@@ -4,7 +4,7 @@
 
 #include "kinalign/evaluate/protocol.h"
 #include "kinalign/evaluate/table_nine.h"
-#include "kinalign/models/denoise_features.h"
+#include "kinalign/models/denoise_model.h"
 #include "kinalign/models/pairs.h"
 #include "kinalign/motion/shared_joints.h"
 

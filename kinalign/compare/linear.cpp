@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace kinalign {
 
@@ -50,34 +51,41 @@ void add_turned(const BodyFrame& frame, const float* offset, float* at) {
   for (std::size_t k = 0; k < 3; ++k) at[k] += turned[k];
 }
 
+/// A body without gaps, its heading, and the input joints that stand for the outputs.
+struct Prepared {
+  JointFrames body;
+  std::vector<BodyFrame> frames;
+  std::vector<float> base;  // [T,Jout,3] m
+
+  Prepared(const DenoiseLayout& layout, JointFrames seen) : body(std::move(seen)) {
+    fill_missing(body, layout.smoothing.causal);
+    frames = headings(layout, body);
+    for (std::size_t t = 0; t < body.frames(); ++t) {
+      for (const int joint : layout.bases) {
+        const float* at =
+            joint < 0 ? frames[t].root.data()
+                      : &body.positions[(t * body.joints + static_cast<std::size_t>(joint)) * 3];
+        base.insert(base.end(), at, at + 3);
+      }
+    }
+  }
+};
+
 }  // namespace
 
 std::vector<float> base_joints(const DenoiseLayout& layout, JointFrames body) {
-  fill_missing(body, layout.smoothing.causal);
-  const auto frames = headings(layout, body);
-  std::vector<float> out;
-  for (std::size_t t = 0; t < body.frames(); ++t) {
-    for (const int base : layout.bases) {
-      const float* at =
-          base < 0 ? frames[t].root.data()
-                   : &body.positions[(t * body.joints + static_cast<std::size_t>(base)) * 3];
-      out.insert(out.end(), at, at + 3);
-    }
-  }
-  return out;
+  return Prepared(layout, std::move(body)).base;
 }
 
 MeanOffset::MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair*>& learnt) {
   const std::size_t joints = layout.outputs.size();
   std::vector<double> sums(3 * joints, 0.0), counts(joints, 0.0);
   for (const Pair* pair : learnt) {
-    JointFrames body = pair->input;
-    fill_missing(body, layout.smoothing.causal);
-    const auto frames = headings(layout, body);
-    const auto base = base_joints(layout, body);
+    const Prepared seen(layout, pair->input);
     for (std::size_t i = 0; i < pair->valid.size(); ++i) {
       if (pair->valid[i] == 0) continue;
-      const auto offset = offset_of(frames[i / joints], &pair->truth[3 * i], &base[3 * i]);
+      const auto offset =
+          offset_of(seen.frames[i / joints], &pair->truth[3 * i], &seen.base[3 * i]);
       for (std::size_t k = 0; k < 3; ++k) sums[3 * (i % joints) + k] += offset[k];
       counts[i % joints] += 1.0;
     }
@@ -88,13 +96,11 @@ MeanOffset::MeanOffset(const DenoiseLayout& layout, const std::vector<const Pair
 }
 
 std::vector<float> MeanOffset::clean(const DenoiseLayout& layout, const JointFrames& body) const {
-  JointFrames filled = body;
-  fill_missing(filled, layout.smoothing.causal);
-  const auto frames = headings(layout, filled);
-  std::vector<float> out = base_joints(layout, filled);
+  Prepared seen(layout, body);
+  std::vector<float> out = std::move(seen.base);
   const std::size_t joints = layout.outputs.size();
   for (std::size_t i = 0; 3 * i < out.size(); ++i) {
-    add_turned(frames[i / joints], &mean_[3 * (i % joints)], &out[3 * i]);
+    add_turned(seen.frames[i / joints], &mean_[3 * (i % joints)], &out[3 * i]);
   }
   return out;
 }
@@ -130,10 +136,8 @@ struct Normal {
 /// them; the targets beside them, m.
 void frames_of(const DenoiseLayout& layout, const Pair& pair, const Eigen::RowVectorXd& mean,
                Matrix& features, Matrix& targets) {
-  JointFrames body = pair.input;
-  fill_missing(body, layout.smoothing.causal);
-  const auto frames = headings(layout, body);
-  const auto base = base_joints(layout, body);
+  const Prepared seen(layout, pair.input);
+  const std::vector<BodyFrame>& frames = seen.frames;
   const std::size_t joints = layout.outputs.size();
   std::vector<std::size_t> rows;
   for (std::size_t t = 0; t < frames.size(); ++t) {
@@ -146,14 +150,14 @@ void frames_of(const DenoiseLayout& layout, const Pair& pair, const Eigen::RowVe
   targets.resize(whole(rows.size()), whole(3 * joints));
   std::vector<double> line(static_cast<std::size_t>(mean.size()));
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    put_features(body, frames, rows[r], line.data());
+    put_features(seen.body, frames, rows[r], line.data());
     for (Eigen::Index c = 0; c < mean.size(); ++c) {
       features(whole(r), c) = (line[static_cast<std::size_t>(c)] - mean(c)) / feature_scale;
     }
     features(whole(r), mean.size()) = 1.0;
     for (std::size_t j = 0; j < joints; ++j) {
       const std::size_t i = rows[r] * joints + j;
-      const auto offset = offset_of(frames[rows[r]], &pair.truth[3 * i], &base[3 * i]);
+      const auto offset = offset_of(frames[rows[r]], &pair.truth[3 * i], &seen.base[3 * i]);
       for (std::size_t k = 0; k < 3; ++k) targets(whole(r), whole(3 * j + k)) = offset[k];
     }
   }
@@ -189,14 +193,12 @@ Ridge& Ridge::operator=(Ridge&&) noexcept = default;
 Ridge::~Ridge() = default;
 
 std::vector<float> Ridge::clean(const DenoiseLayout& layout, const JointFrames& body) const {
-  JointFrames filled = body;
-  fill_missing(filled, layout.smoothing.causal);
-  const auto frames = headings(layout, filled);
-  std::vector<float> out = base_joints(layout, filled);
+  Prepared seen(layout, body);
+  std::vector<float> out = std::move(seen.base);
   const std::size_t joints = layout.outputs.size();
   Eigen::RowVectorXd line(fit_->mean.size() + 1);
-  for (std::size_t t = 0; t < frames.size(); ++t) {
-    put_features(filled, frames, t, line.data());
+  for (std::size_t t = 0; t < seen.frames.size(); ++t) {
+    put_features(seen.body, seen.frames, t, line.data());
     line.head(fit_->mean.size()) = (line.head(fit_->mean.size()) - fit_->mean) / feature_scale;
     line(fit_->mean.size()) = 1.0;
     const Eigen::RowVectorXd offsets = line * fit_->weights;
@@ -204,7 +206,7 @@ std::vector<float> Ridge::clean(const DenoiseLayout& layout, const JointFrames& 
       const std::array<float, 3> offset{static_cast<float>(offsets(whole(3 * j))),
                                         static_cast<float>(offsets(whole(3 * j + 1))),
                                         static_cast<float>(offsets(whole(3 * j + 2)))};
-      add_turned(frames[t], offset.data(), &out[(t * joints + j) * 3]);
+      add_turned(seen.frames[t], offset.data(), &out[(t * joints + j) * 3]);
     }
   }
   return out;

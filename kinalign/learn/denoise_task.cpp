@@ -3,6 +3,7 @@
 
 #include "kinalign/learn/losses.h"
 #include "kinalign/learn/tensors.h"
+#include "kinalign/models/denoise_model.h"
 #include "kinalign/simulate/random.h"
 
 #include <algorithm>
@@ -14,7 +15,6 @@ namespace kinalign {
 namespace {
 
 constexpr double centimetres = 100.0;
-constexpr double radius_90 = 2.5003;  // of a Gaussian in space, in standard deviations of an axis
 constexpr double least_position_scale = 0.01, least_step_scale = 0.001;  // m
 constexpr std::uint64_t lanes_per_example = 8;
 

@@ -10,23 +10,28 @@
 
 namespace kinalign {
 
-void mirror_answer(Denoised& answer, const std::vector<std::size_t>& partners) {
-  const std::size_t joints = partners.size();
-  JointFrames body{joints, std::move(answer.positions), {}};
-  body.seen.assign(body.positions.size() / 3, 2);
-  mirror(body, partners);
-  answer.positions = std::move(body.positions);
-  for (std::size_t at = 0; at + joints <= answer.spread.size(); at += joints) {
-    for (std::size_t j = 0; j < joints; ++j) {
-      if (partners[j] > j) std::swap(answer.spread[at + j], answer.spread[at + partners[j]]);
+Steadier::Steadier(const Steadying& how, const DenoiseLayout& layout)
+    : how_(how),
+      parents_(layout.parents),
+      inputs_(mirror_partners(layout.inputs)),
+      outputs_(mirror_partners(layout.outputs)) {}
+
+Denoised Steadier::steadied(const Answer& answer, const JointFrames& body, Denoised plain) const {
+  std::vector<float>& positions = plain.positions;
+  if (how_.mirror) {
+    JointFrames other = body;
+    mirror(other, inputs_);
+    std::vector<float> mirrored = answer(other).positions;
+    mirror_positions(mirrored, outputs_);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      positions[i] = 0.5F * (positions[i] + mirrored[i]);
     }
   }
-}
-
-void steady(const Steadying& how, const std::vector<int>& parents,
-            const std::vector<std::size_t>& partners, std::vector<float>& positions) {
-  smooth(how.smoothing, 3 * parents.size(), positions);
-  if (how.bones) impose_lengths(parents, typical_lengths(parents, partners, positions), positions);
+  smooth(how_.smoothing, 3 * parents_.size(), positions);
+  if (how_.bones) {
+    impose_lengths(parents_, typical_lengths(parents_, outputs_, positions), positions);
+  }
+  return plain;
 }
 
 Result<Denoiser> Denoiser::make(DenoiseModel model) {
@@ -61,10 +66,9 @@ Denoiser::Denoiser(DenoiseModel model, Network network, std::optional<Network> s
     : model_(std::move(model)),
       network_(std::move(network)),
       second_(std::move(second)),
-      input_partners_(mirror_partners(model_.layout.inputs)),
-      output_partners_(mirror_partners(model_.layout.outputs)) {}
+      steadier_(model_.steadying, model_.layout) {}
 
-Denoised Denoiser::answer_once(const JointFrames& body) {
+Denoised Denoiser::answer(const JointFrames& body) {
   DenoiseFeatures features = denoise_features(model_.layout, body);
   const std::size_t frames = body.frames(), channels = model_.layout.channels();
   const std::size_t answers = model_.layout.answers(), joints = model_.layout.outputs.size();
@@ -94,21 +98,9 @@ Denoised Denoiser::answer_once(const JointFrames& body) {
   return answer;
 }
 
-Denoised Denoiser::answer(const JointFrames& body) { return answer_once(body); }
-
 Denoised Denoiser::clean(const JointFrames& body) {
-  Denoised out = answer_once(body);
-  if (model_.steadying.mirror) {
-    JointFrames other = body;
-    mirror(other, input_partners_);
-    Denoised mirrored = answer_once(other);
-    mirror_answer(mirrored, output_partners_);
-    for (std::size_t i = 0; i < out.positions.size(); ++i) {
-      out.positions[i] = 0.5F * (out.positions[i] + mirrored.positions[i]);
-    }
-  }
-  steady(model_.steadying, model_.layout.parents, output_partners_, out.positions);
-  return out;
+  const auto again = [this](const JointFrames& other) { return answer(other); };
+  return steadier_.steadied(again, body, answer(body));
 }
 
 }  // namespace kinalign

@@ -7,6 +7,7 @@
 #include "kinalign/models/denoise_features.h"
 #include "kinalign/models/model_facts.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,10 +43,31 @@ std::string write_denoise_model(const DenoiseModel& model);
 /// Fails where the file is no model of this kind or its parts do not fit together.
 Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::string& name);
 
-/// What a model answers.
+/// The radius that holds 90 % of a Gaussian in space, in standard deviations of an axis.
+inline constexpr double radius_90 = 2.5003;
+
+/// A method's answer.
 struct Denoised {
   std::vector<float> positions;  // [T,Jout,3] m, in the input's space
   std::vector<float> spread;     // [T,Jout] m per axis (1 sigma); empty where none is stated
+};
+
+/// A method as a function: from a body to its answer, in the body's space.
+using Answer = std::function<Denoised(const JointFrames& body)>;
+
+/// Steadies answers, the same way for every method: the mean of the answers to a body and to its
+/// mirror image, smoothed, with bones of constant length.
+class Steadier {
+ public:
+  Steadier(const Steadying& how, const DenoiseLayout& layout);
+
+  /// `plain`: the answer to `body`. Its spread stays.
+  Denoised steadied(const Answer& answer, const JointFrames& body, Denoised plain) const;
+
+ private:
+  Steadying how_;
+  std::vector<int> parents_;                   // of the outputs
+  std::vector<std::size_t> inputs_, outputs_;  // each joint's partner on the other side
 };
 
 /// A model ready for use. It can be used by one thread at a time.
@@ -62,20 +84,12 @@ class Denoiser {
 
  private:
   Denoiser(DenoiseModel model, Network network, std::optional<Network> second);
-  Denoised answer_once(const JointFrames& body);
 
   DenoiseModel model_;
   Network network_;
   std::optional<Network> second_;
   Workspace workspace_;
-  std::vector<std::size_t> input_partners_, output_partners_;
+  Steadier steadier_;
 };
-
-/// Mirrors what a model answered to a mirrored body.
-void mirror_answer(Denoised& answer, const std::vector<std::size_t>& partners);
-
-/// Smoothing and bones of constant length, in place: the same for every method.
-void steady(const Steadying& how, const std::vector<int>& parents,
-            const std::vector<std::size_t>& partners, std::vector<float>& positions);
 
 }  // namespace kinalign

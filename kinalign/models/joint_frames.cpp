@@ -39,18 +39,24 @@ std::vector<std::size_t> mirror_partners(const std::vector<std::string>& names) 
   return out;
 }
 
-void mirror(JointFrames& body, const std::vector<std::size_t>& partners) {
-  const std::size_t joints = body.joints;
-  for (std::size_t t = 0; t < body.frames(); ++t) {
-    float* row = &body.positions[t * joints * 3];
-    std::uint8_t* seen = &body.seen[t * joints];
+void mirror_positions(std::vector<float>& positions, const std::vector<std::size_t>& partners) {
+  const std::size_t joints = partners.size();
+  for (std::size_t at = 0; at + 3 * joints <= positions.size() && joints > 0; at += 3 * joints) {
+    float* row = &positions[at];
     for (std::size_t j = 0; j < joints; ++j) {
-      const std::size_t other = partners[j];
-      if (other <= j) continue;
-      std::swap(seen[j], seen[other]);
-      std::swap_ranges(row + 3 * j, row + 3 * j + 3, row + 3 * other);
+      if (partners[j] > j) std::swap_ranges(row + 3 * j, row + 3 * j + 3, row + 3 * partners[j]);
     }
     for (std::size_t j = 0; j < joints; ++j) row[3 * j] = -row[3 * j];
+  }
+}
+
+void mirror(JointFrames& body, const std::vector<std::size_t>& partners) {
+  mirror_positions(body.positions, partners);
+  for (std::size_t t = 0; t < body.frames(); ++t) {
+    std::uint8_t* seen = &body.seen[t * body.joints];
+    for (std::size_t j = 0; j < body.joints; ++j) {
+      if (partners[j] > j) std::swap(seen[j], seen[partners[j]]);
+    }
   }
 }
 

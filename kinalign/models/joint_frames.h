@@ -22,6 +22,9 @@ struct JointFrames {
 /// "RightKnee", "lwrist" and "rwrist"; itself where there is none.
 std::vector<std::size_t> mirror_partners(const std::vector<std::string>& names);
 
+/// Positions [T,J,3] as a mirror shows them: x negated, left and right exchanged.
+void mirror_positions(std::vector<float>& positions, const std::vector<std::size_t>& partners);
+
 /// The body as a mirror shows it: x negated, left and right exchanged.
 void mirror(JointFrames& body, const std::vector<std::size_t>& partners);
 

@@ -31,7 +31,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double longest_gap_s = 0.2;     // between samples that are joined by a line
 constexpr double longest_unseen_s = 2.0;  // a joint that is missing longer is told
-constexpr double radius_90 = 2.5003;      // of a Gaussian in space, in its standard deviations
 
 struct Denoise {
   std::vector<std::string> in;

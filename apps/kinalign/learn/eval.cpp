@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t most_windows_bytes = std::size_t{4} << 30U;
 constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
 constexpr std::size_t least_rows = 8;
-/// Of what a cached result holds: another number lets all be computed again.
+/// The version of cached results: another number lets all be computed again.
 constexpr int cache_version = 1;
 
 struct Eval {
@@ -69,7 +69,7 @@ Usage describe_eval(Eval& o) {
   return usage;
 }
 
-/// What a method got on a tested stretch: its answer as it is, and steadied.
+/// Marks of a method on a tested stretch: of its answer as it is, and steadied.
 struct Marked {
   std::string take, subject;
   std::array<DenoiseMarks, 2> marks;
@@ -143,32 +143,6 @@ std::vector<Marked> read_marks(const std::string& text) {
     return {};
   }
 }
-
-/// The mean of the answers to a body and to its mirror image, smoothed, with constant bones: the
-/// same for every method.
-class Steadier {
- public:
-  explicit Steadier(const DenoiseLayout& layout)
-      : layout_(layout),
-        inputs_(mirror_partners(layout.inputs)),
-        outputs_(mirror_partners(layout.outputs)) {}
-
-  Denoised steadied(const Answer& answer, const JointFrames& body, Denoised plain) const {
-    JointFrames other = body;
-    mirror(other, inputs_);
-    Denoised mirrored = answer(other);
-    mirror_answer(mirrored, outputs_);
-    for (std::size_t i = 0; i < plain.positions.size(); ++i) {
-      plain.positions[i] = 0.5F * (plain.positions[i] + mirrored.positions[i]);
-    }
-    steady(Steadying{}, layout_.parents, outputs_, plain.positions);
-    return plain;
-  }
-
- private:
-  const DenoiseLayout& layout_;
-  std::vector<std::size_t> inputs_, outputs_;
-};
 
 /// All that a table is made from.
 struct Bench {
@@ -246,7 +220,7 @@ Result<std::vector<Marked>> compute(const Trial& trial, const DenoiseMarker& mar
                       .seed = trial.seed,
                       .steps = trial.options.steps};
   const Answer answer = KA_TRY(make_answer(trial.method, task, call));
-  const Steadier steadier(bench.layout);
+  const Steadier steadier({}, bench.layout);
   const auto& tested = trial.fold.tested;
   std::vector<Marked> out;
   for (const Pair& pair : bench.pairs.all) {

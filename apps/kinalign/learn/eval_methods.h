@@ -7,14 +7,10 @@
 #include "kinalign/models/denoise_model.h"
 #include "kinalign/models/pairs.h"
 
-#include <functional>
 #include <string>
 #include <vector>
 
 namespace kinalign {
-
-/// What a method answers to a body, in the body's space.
-using Answer = std::function<Denoised(const JointFrames& body)>;
 
 struct EvalMethod {
   std::string name, summary;
@@ -22,7 +18,7 @@ struct EvalMethod {
 };
 const std::vector<EvalMethod>& eval_methods();
 
-/// What a method is made from.
+/// All that a method is made from.
 struct EvalTask {
   const DenoiseLayout& layout;
   const std::vector<Pair>& pairs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to do where a port can't be opened or a key can't be read.
+// Advice where a port can't be opened or a key can't be read.
 #pragma once
 
 #include "kinalign/core/error.h"
