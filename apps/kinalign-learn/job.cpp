@@ -3,14 +3,18 @@
 
 #include "kinalign/learn/checkpoint.h"
 #include "kinalign/learn/fit_denoise.h"
+#include "kinalign/learn/fuse/fit_fuse.h"
+#include "kinalign/learn/fuse/fuse_marks.h"
 #include "kinalign/learn/methods/methods.h"
 #include "kinalign/learn/pose/fit_pose.h"
 #include "kinalign/learn/pose/pose_marks.h"
+#include "kinalign/models/model_file.h"
 #include "kinalign/models/windows_file.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -57,8 +61,10 @@ const Method* find_method(const std::vector<Method>& all, const std::string& nam
 Result<TrainingOptions> options_of(const std::string& method, const std::string& name) {
   const auto denoise = denoise_methods();
   const auto pose = pose_methods();
+  const auto fuse = fuse_methods();
   if (const auto* found = find_method(denoise, method)) return found->options;
   if (const auto* found = find_method(pose, method)) return found->options;
+  if (const auto* found = find_method(fuse, method)) return found->options;
   return Failure(Error{name, 0, "a method that is known", method});
 }
 
@@ -173,6 +179,17 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
   return Fitted{write_pose_model(fit.model), std::move(fit.points)};
 }
 
+Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
+                            const Windows& windows, TrainingState state,
+                            const TrainingHooks& hooks) {
+  const FuseData data = KA_TRY(fuse_data(windows, job.truth, job.nodes, {}));
+  FuseFit fit = KA_TRY(fit_fuse(method, data, fit_options(job), std::move(state), hooks));
+  LearntFrom from;
+  for (const PoseSequence& one : data.pose.learnt) from.add(one.subject, one.frames());
+  fit.model.facts.training = training_json(job, windows.facts, from);
+  return Fitted{write_fuse_model(fit.model), std::move(fit.points)};
+}
+
 Json errors_json(const PoseErrors& errors) {
   return {{"sip_deg", errors.sip_deg},
           {"angle_deg", errors.angle_deg},
@@ -182,19 +199,100 @@ Json errors_json(const PoseErrors& errors) {
           {"frames", errors.frames}};
 }
 
-/// Judges a model on the people of the file's test part, a row for each state of the nodes.
-Result<void> evaluate_pose(const TrainingJob& job, const Windows& windows) {
-  auto solver = KA_TRY(
-      PoseSolver::make(KA_TRY(read_pose_model(KA_TRY(bytes_of(job.evaluate)), job.evaluate))));
+void print_row(const Json& row) { std::cout << row.dump() << std::endl; }
+
+/// A row for each state of the nodes.
+Result<void> evaluate_pose(const TrainingJob& job, const Windows& windows, PoseModel model) {
+  auto solver = KA_TRY(PoseSolver::make(std::move(model)));
   const PoseData data = KA_TRY(pose_data(windows, job.truth, solver.model().layout.nodes));
   for (const PoseMark& mark : KA_TRY(pose_marks(solver, data, 0))) {
-    std::cout << Json{{"nodes", mark.nodes},
-                      {"answer", errors_json(mark.answer)},
-                      {"smoothed", errors_json(mark.smoothed)}}
-                     .dump()
-              << std::endl;
+    print_row({{"nodes", mark.nodes},
+               {"answer", errors_json(mark.answer)},
+               {"smoothed", errors_json(mark.smoothed)}});
   }
   return {};
+}
+
+Json mark_json(const std::string& method, const FuseMark& mark) {
+  static constexpr std::array<std::string_view, 3> devices{"both", "kinect", "nodes"};
+  return {{"method", method},
+          {"devices", devices[static_cast<std::size_t>(mark.devices)]},
+          {"all_cm", mark.all_cm},
+          {"hidden_cm", mark.hidden_cm},
+          {"seen_trunk_cm", mark.seen_trunk_cm},
+          {"seen_arms_cm", mark.seen_arms_cm},
+          {"seen_legs_cm", mark.seen_legs_cm},
+          {"sip_deg", mark.sip_deg},
+          {"frames", mark.frames},
+          {"hidden", mark.hidden}};
+}
+
+void print_headings(const std::string& method, const std::vector<HeadingMark>& marks) {
+  for (const HeadingMark& mark : marks) {
+    print_row({{"method", method},
+               {"node", mark.node},
+               {"before_deg", mark.before_deg},
+               {"after_deg", mark.after_deg},
+               {"worst_deg", mark.worst_deg},
+               {"people", mark.people}});
+  }
+}
+
+/// Rows for each device and both, of the model and of the filter, and one for each node's heading.
+Result<void> evaluate_fuse(const TrainingJob& job, const Windows& windows, FuseModel model) {
+  auto fuser = KA_TRY(Fuser::make(std::move(model)));
+  const FuseLayout layout = fuser.model().layout;
+  const FuseData data = KA_TRY(fuse_data(windows, job.truth, layout.nodes.nodes, {}));
+  const std::vector<Devices> all{Devices::both, Devices::kinect, Devices::nodes};
+  const Fusion network = [&](const FuseInput& input) { return fuser.solve(input); };
+  const Headings by_joints = [&](const FuseInput& input) {
+    FuseInput own = input;
+    unexchange(layout, own);
+    const HeadingFilter filter(layout, data.pose.body);
+    return node_headings(filter, own.nodes, directions_of_joints(filter, own.kinect));
+  };
+  const Headings by_model = [&](const FuseInput& input) { return fuser.headings(input); };
+  const Fusion filter = [&](const FuseInput& input) {
+    FuseInput own = input;
+    unexchange(layout, own);
+    own.nodes = with_headings(std::move(own.nodes), by_joints(own));
+    return filtered_pose(layout, data.pose.body, own);
+  };
+  for (const FuseMark& mark : KA_TRY(fuse_marks(network, layout, data, all))) {
+    print_row(mark_json(fuser.model().facts.method, mark));
+  }
+  for (const FuseMark& mark : KA_TRY(fuse_marks(filter, layout, data, all))) {
+    print_row(mark_json("filter", mark));
+  }
+  print_headings(fuser.model().facts.method, heading_marks(by_model, layout, data));
+  print_headings("filter", heading_marks(by_joints, layout, data));
+  return {};
+}
+
+/// Judges a model on the people of the file's test part.
+Result<void> evaluate(const TrainingJob& job, const Windows& windows) {
+  const std::string bytes = KA_TRY(bytes_of(job.evaluate));
+  const ModelHeader header =
+      KA_TRY(read_model_header(KA_TRY(read_safetensors(bytes, job.evaluate)), job.evaluate));
+  if (header.value("task", "") == "fuse") {
+    return evaluate_fuse(job, windows, KA_TRY(read_fuse_model(bytes, job.evaluate)));
+  }
+  return evaluate_pose(job, windows, KA_TRY(read_pose_model(bytes, job.evaluate)));
+}
+
+/// By the task of the method; read_job() has proven that there is one of that name.
+Result<Fitted> fit_job(const TrainingJob& job, const Windows& windows, TrainingState state,
+                       const TrainingHooks& hooks) {
+  const auto denoise = denoise_methods();
+  const auto pose = pose_methods();
+  const auto fuse = fuse_methods();
+  if (const auto* method = find_method(pose, job.method)) {
+    return fit_pose_job(job, *method, windows, std::move(state), hooks);
+  }
+  if (const auto* method = find_method(fuse, job.method)) {
+    return fit_fuse_job(job, *method, windows, std::move(state), hooks);
+  }
+  return fit_denoise_job(job, *find_method(denoise, job.method), windows, std::move(state), hooks);
 }
 
 }  // namespace
@@ -234,7 +332,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
 Result<void> run_job(const TrainingJob& job) {
   const std::string bytes = KA_TRY(bytes_of(job.windows));
   const Windows windows = KA_TRY(read_windows(bytes, job.windows));
-  if (!job.evaluate.empty()) return evaluate_pose(job, windows);
+  if (!job.evaluate.empty()) return evaluate(job, windows);
   TrainingState state;
   if (job.resume && std::filesystem::exists(job.checkpoint)) {
     state = KA_TRY(read_checkpoint(KA_TRY(bytes_of(job.checkpoint)), job.identity, job.checkpoint));
@@ -245,13 +343,7 @@ Result<void> run_job(const TrainingJob& job) {
       return write_file(job.checkpoint, write_checkpoint(now, job.identity));
     };
   }
-  const auto pose = pose_methods();
-  const auto denoise = denoise_methods();
-  const PoseMethod* pose_method = find_method(pose, job.method);
-  const Fitted fit = KA_TRY(pose_method != nullptr
-                                ? fit_pose_job(job, *pose_method, windows, std::move(state), hooks)
-                                : fit_denoise_job(job, *find_method(denoise, job.method), windows,
-                                                  std::move(state), hooks));
+  const Fitted fit = KA_TRY(fit_job(job, windows, std::move(state), hooks));
   KA_TRY(save_log(job, fit.points));
   KA_TRY(write_file(job.out, fit.model));
   std::error_code ignored;

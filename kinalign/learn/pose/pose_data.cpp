@@ -186,7 +186,9 @@ class SequenceMaker {
       frames.rotations(t, rotations);
       for (std::size_t j = 0; j < rotations.size(); ++j) rotations[j] = rotations[j] * turns[j];
       add_nodes(frames, t, rotations, motion);
-      if (is_kept(t, frames.frames())) add_truth(rotations, out);
+      if (!is_kept(t, frames.frames())) continue;
+      add_truth(rotations, out);
+      out.places.push_back(frames.position(t, 0));
     }
     for (std::size_t t = reach_; t + reach_ < frames.frames(); t += stride_) {
       for (std::size_t n = 0; n < out.nodes.nodes; ++n) add_sample(motion, t, n, out.nodes);

@@ -18,6 +18,7 @@ struct PoseSequence {
   std::string subject, action;
   NodeFrames nodes;                // without errors
   std::vector<Turn> rotations;     // [T,B] global, against the root
+  std::vector<Vec3> places;        // [T] m, of the root in the world
   std::vector<Vec3> rest_offsets;  // [J] m, the person's own
 
   std::size_t frames() const { return nodes.frames(); }

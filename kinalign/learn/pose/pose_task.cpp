@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 namespace kinalign {
@@ -18,7 +17,8 @@ constexpr double length_power = 0.75;  // long takes repeat themselves
 constexpr std::uint64_t judging_seed = 5;
 constexpr float least_scale = 1e-3F;
 
-/// Frames begin ... begin + count; the last frame is repeated where the sequence ends sooner.
+}  // namespace
+
 NodeFrames crop_of(const NodeFrames& nodes, std::size_t begin, std::size_t count) {
   NodeFrames out;
   out.nodes = nodes.nodes;
@@ -36,29 +36,33 @@ NodeFrames crop_of(const NodeFrames& nodes, std::size_t begin, std::size_t count
   return out;
 }
 
-/// Lengths of vectors [...,3] m, with a gradient at 0.
-torch::Tensor metres_of(const torch::Tensor& vectors) {
-  return (vectors.pow(2).sum(-1) + 1e-10).sqrt();
-}
-
-std::vector<Turn> turns_of(const torch::Tensor& rotations) {
-  const std::vector<float> values = values_of(rotations);
-  std::vector<Turn> out;
-  for (std::size_t at = 0; at < values.size(); at += 9) {
-    out.emplace_back(Eigen::Map<const Turn>(&values[at]));
+CropDraws::CropDraws(const std::vector<PoseSequence>& sequences) {
+  double sum = 0.0;
+  for (const PoseSequence& one : sequences) {
+    sum += std::pow(static_cast<double>(one.frames()), length_power);
+    reached_.push_back(sum);
+    frames_.push_back(one.frames());
   }
-  return out;
 }
-static_assert(sizeof(Turn) == 9 * sizeof(float));
 
-}  // namespace
+CropDraws::Place CropDraws::draw(const RandomStream& random, std::size_t crop) const {
+  const double weight = random.uniform(0, 0) * reached_.back();
+  const auto at = static_cast<std::size_t>(
+      std::upper_bound(reached_.begin(), reached_.end() - 1, weight) - reached_.begin());
+  const std::size_t places = frames_[at] > crop ? frames_[at] - crop + 1 : 1;
+  const auto begin = static_cast<std::size_t>(random.uniform(0, 1) * static_cast<double>(places));
+  return {at, std::min(begin, places - 1)};
+}
 
 PoseTask::PoseTask(PoseLayout layout, PoseTraining training, const PoseData& data,
                    torch::Device device)
-    : layout_(std::move(layout)), training_(training), data_(data), device_(device) {
-  weigh_sequences();
+    : layout_(std::move(layout)),
+      training_(training),
+      data_(data),
+      device_(device),
+      crops_(data.learnt),
+      body_(data.body, device) {
   find_scales();
-  find_paths();
   for (std::size_t i = 0; i < data_.judged.size(); ++i) {
     const PoseSequence& one = data_.judged[i];
     NodeErrors errors;
@@ -67,14 +71,6 @@ PoseTask::PoseTask(PoseLayout layout, PoseTraining training, const PoseData& dat
     standardise(input);
     judged_.push_back(
         {&one, to_torch(input, {1, whole(one.frames()), whole(layout_.channels())}).to(device_)});
-  }
-}
-
-void PoseTask::weigh_sequences() {
-  double sum = 0.0;
-  for (const PoseSequence& one : data_.learnt) {
-    sum += std::pow(static_cast<double>(one.frames()), length_power);
-    reached_.push_back(sum);
   }
 }
 
@@ -101,27 +97,6 @@ void PoseTask::find_scales() {
   }
 }
 
-void PoseTask::find_paths() {
-  const Skeleton& skeleton = data_.body.skeleton;
-  const std::size_t joints = skeleton.joints();
-  std::vector<std::int64_t> carriers;
-  std::vector<float> paths;
-  std::int64_t scored = 0;
-  for (std::size_t j = 1; j < joints; ++j) {
-    const int bone = data_.body.turned_by[static_cast<std::size_t>(skeleton.parents[j])];
-    carriers.push_back(bone < 0 ? whole(data_.body.bones.size()) : bone);
-    if (!is_scored_joint(skeleton.joint_names[j])) continue;
-    ++scored;
-    std::vector<float> path(joints - 1, 0.0F);
-    for (std::size_t at = j; at != 0; at = static_cast<std::size_t>(skeleton.parents[at])) {
-      path[at - 1] = 1.0F;
-    }
-    paths.insert(paths.end(), path.begin(), path.end());
-  }
-  carriers_ = torch::tensor(carriers, torch::kInt64).to(device_);
-  paths_ = to_torch(paths, {scored, whole(joints) - 1}).to(device_);
-}
-
 void PoseTask::standardise(std::vector<float>& input) const {
   if (!training_.standardised) return;
   for (std::size_t i = 0; i < input.size(); ++i) {
@@ -137,14 +112,8 @@ PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step) const {
   for (std::size_t k = 0; k < batch; ++k) {
     const RandomStream places(seed, 2 * (step * batch + k));
     const RandomStream errors(seed, 2 * (step * batch + k) + 1);
-    const double weight = places.uniform(0, 0) * reached_.back();
-    const auto at =
-        std::upper_bound(reached_.begin(), reached_.end() - 1, weight) - reached_.begin();
-    const PoseSequence& one = data_.learnt[static_cast<std::size_t>(at)];
-    const std::size_t places_left = one.frames() > crop ? one.frames() - crop + 1 : 1;
-    const auto begin =
-        std::min(static_cast<std::size_t>(places.uniform(0, 1) * static_cast<double>(places_left)),
-                 places_left - 1);
+    const auto [at, begin] = crops_.draw(places, crop);
+    const PoseSequence& one = data_.learnt[at];
     const NodeFrames nodes = with_errors(crop_of(one.nodes, begin, crop), training_.errors, errors);
     const auto features = pose_features(layout_, nodes).input;
     input.insert(input.end(), features.begin(), features.end());
@@ -160,35 +129,10 @@ PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step) const {
   standardise(input);
   Batch out;
   out.input = to_torch(input, {whole(batch), whole(crop), whole(layout_.channels())}).to(device_);
-  out.rotations = torch::empty({whole(batch), whole(crop), whole(bones), 3, 3});
-  std::memcpy(out.rotations.data_ptr<float>(), rotations.data(), rotations.size() * sizeof(Turn));
-  out.rotations = out.rotations.to(device_);
+  out.rotations = tensor_of(rotations, {whole(batch), whole(crop), whole(bones), 3, 3}).to(device_);
   out.offsets =
       to_torch(offsets, {whole(batch), whole(data_.body.skeleton.joints()), 3}).to(device_);
   return out;
-}
-
-torch::Tensor PoseTask::rotations_of(const torch::Tensor& answers) {
-  constexpr double least = 1e-6;
-  const std::int64_t bones = answers.size(2) / 6;
-  const auto identity =
-      torch::tensor(std::vector<float>(six_of_identity.begin(), six_of_identity.end()))
-          .to(answers.device());
-  const auto six = answers.reshape({answers.size(0), answers.size(1), bones, 6}) + identity;
-  // norm() has the gradient 0 at 0; the root of a sum of squares has none.
-  const auto unit = [&](const torch::Tensor& x) { return x / (x.norm(2, {-1}, true) + least); };
-  const auto a = unit(six.slice(3, 0, 3)), second = six.slice(3, 3, 6);
-  const auto b = unit(second - (a * second).sum(-1, true) * a);
-  return torch::stack({a, b, torch::cross(a, b, -1)}, 3);
-}
-
-torch::Tensor PoseTask::places_of(const torch::Tensor& rotations,
-                                  const torch::Tensor& offsets) const {
-  const auto identity =
-      torch::eye(3, rotations.options()).expand({rotations.size(0), rotations.size(1), 1, 3, 3});
-  const auto carriers = torch::cat({rotations, identity}, 2).index_select(2, carriers_);
-  const auto below_root = offsets.slice(1, 1).unsqueeze(1).unsqueeze(-1);  // [B,1,J-1,3,1]
-  return torch::matmul(paths_, (carriers * below_root).sum(-2));
 }
 
 torch::Tensor PoseTask::loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) {
@@ -198,7 +142,7 @@ torch::Tensor PoseTask::loss(const TorchNetwork& network, std::uint64_t seed, st
   auto out = weights.matrices * (rotations - batch.rotations).pow(2).sum({-1, -2}).mean();
   if (weights.position <= 0.0 && weights.acceleration <= 0.0) return out;
   const auto error =
-      places_of(rotations, batch.offsets) - places_of(batch.rotations, batch.offsets);
+      body_.places_of(rotations, batch.offsets) - body_.places_of(batch.rotations, batch.offsets);
   out = out + weights.position * metres_of(error).mean();
   if (weights.acceleration > 0.0) {
     out = out + weights.acceleration * metres_of(second_differences(error)).mean();

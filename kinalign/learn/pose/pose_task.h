@@ -2,6 +2,7 @@
 // Poses from nodes as a task: crops of sequences whose nodes get fresh errors, and their loss.
 #pragma once
 
+#include "kinalign/learn/pose/body_tensors.h"
 #include "kinalign/learn/pose/node_errors.h"
 #include "kinalign/learn/pose/pose_data.h"
 #include "kinalign/learn/trainer.h"
@@ -27,6 +28,25 @@ struct PoseTraining {
   std::size_t batch = 32, crop = 64;
 };
 
+/// Frames begin ... begin + count; the last frame is repeated where the nodes end sooner.
+NodeFrames crop_of(const NodeFrames& nodes, std::size_t begin, std::size_t count);
+
+/// Draws sequences of the parts that are learnt from, longer ones more often, and where a crop of
+/// them begins.
+class CropDraws {
+ public:
+  explicit CropDraws(const std::vector<PoseSequence>& sequences);
+
+  struct Place {
+    std::size_t sequence = 0, begin = 0;
+  };
+  Place draw(const RandomStream& random, std::size_t crop) const;
+
+ private:
+  std::vector<std::size_t> frames_;
+  std::vector<double> reached_;  // sums of the weights with which they are drawn
+};
+
 class PoseTask : public TrainingTask {
  public:
   /// `data` must live longer.
@@ -38,22 +58,15 @@ class PoseTask : public TrainingTask {
 
   struct Batch {
     torch::Tensor input;      // [B,T,C] standardised
-    torch::Tensor rotations;  // [B,T,bones,3,3]: row k is column k of the rotation
+    torch::Tensor rotations;  // [B,T,bones,3,3] (rotations_of())
     torch::Tensor offsets;    // [B,J,3] m
   };
   Batch draw(std::uint64_t seed, std::uint64_t step) const;
-  /// The rotations, as a batch has them, of a network's answers [B,T,6 bones].
-  static torch::Tensor rotations_of(const torch::Tensor& answers);
-  /// Positions [B,T,S,3] m of the joints that the loss counts, about the root.
-  torch::Tensor places_of(const torch::Tensor& rotations, const torch::Tensor& offsets) const;
-
   const std::vector<float>& input_mean() const { return input_mean_; }
   const std::vector<float>& input_scale() const { return input_scale_; }
 
  private:
-  void weigh_sequences();
   void find_scales();
-  void find_paths();
   void standardise(std::vector<float>& input) const;
 
   struct JudgedSequence {
@@ -65,10 +78,9 @@ class PoseTask : public TrainingTask {
   PoseTraining training_;
   const PoseData& data_;
   torch::Device device_;
-  std::vector<double> reached_;  // [sequences] sums of the weights with which they are drawn
+  CropDraws crops_;
   std::vector<float> input_mean_, input_scale_;
-  torch::Tensor carriers_;  // [J-1] whose rotation carries joint j+1; the last index: none
-  torch::Tensor paths_;     // [S,J-1] 1: the offset of joint j+1 leads to the scored joint
+  BodyTensors body_;
   std::vector<JudgedSequence> judged_;
 };
 

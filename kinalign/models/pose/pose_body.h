@@ -72,9 +72,18 @@ PoseBody pose_body(std::vector<Vec3> rest_offsets);
 /// Fails where the parts do not fit together or joint 0 is not the only root.
 Result<void> validate(const PoseBody& body);
 
+/// `body` with another person's bones. Fails where a joint of it is not among `own`'s, by name.
+Result<PoseBody> with_own_bones(PoseBody body, const Skeleton& own);
+
 /// A rotation from any six numbers: the first column along a, the second one in the plane of a and
 /// b (Zhou et al., CVPR 2019). The loss on tensors computes the same (pose_task.cpp).
 Turn turn_of_six(const float* six);
+
+/// A network answers with six numbers a bone; these are added to each: the identity.
+inline constexpr std::array<float, 6> six_of_identity{1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F};
+
+/// The rotation of six numbers as a network says them.
+Turn turn_of_answer(const float* answer);
 
 /// The rotation nearest to the sum of rotations, as turn_of_six() takes it.
 inline Turn turned_back_to_rotation(const Turn& sum) { return turn_of_six(sum.data()); }

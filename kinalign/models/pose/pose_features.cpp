@@ -78,12 +78,24 @@ Result<void> validate(const PoseLayout& layout) {
   return {};
 }
 
+std::optional<Eigen::Quaternionf> orientation_at(const NodeFrames& nodes, std::size_t t,
+                                                 std::size_t n) {
+  const NodeSample sample = sample_of(nodes, t, n);
+  if (!sample.valid) return std::nullopt;
+  return sample.orientation;
+}
+
 void PoseFeatureMaker::make(const NodeFrames& nodes, std::size_t t, std::span<float> out) {
+  make_in(orientation_at(nodes, t, layout_->leaves()).value_or(root_), nodes, t, out);
+}
+
+void PoseFeatureMaker::make_in(const Eigen::Quaternionf& own_root, const NodeFrames& nodes,
+                               std::size_t t, std::span<float> out) {
   assert(nodes.nodes == layout_->nodes.size() && out.size() == layout_->channels());
   const std::size_t leaves = layout_->leaves();
   const bool is_dip = layout_->inputs == PoseInputs::dip;
   const NodeSample root = sample_of(nodes, t, leaves);
-  if (root.valid) root_ = root.orientation;
+  root_ = own_root;
   const Eigen::Matrix3f root_from_world = root_.toRotationMatrix().transpose();
   std::array<NodeSample, most_nodes> all;
   for (std::size_t n = 0; n < leaves; ++n) all[n] = sample_of(nodes, t, n);
@@ -118,6 +130,14 @@ PoseFeatures pose_features(const PoseLayout& layout, const NodeFrames& nodes) {
     out.root.push_back(maker.root());
   }
   return out;
+}
+
+void standardise(std::span<const float> mean, std::span<const float> scale,
+                 std::span<float> input) {
+  for (std::size_t i = 0; i < input.size(); ++i) {
+    const std::size_t c = i % mean.size();
+    input[i] = (input[i] - mean[c]) / scale[c];
+  }
 }
 
 }  // namespace kinalign

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,10 @@ struct NodeFrames {
 
   std::size_t frames() const { return nodes == 0 ? 0 : valid.size() / nodes; }
 };
+
+/// The orientation of node `n` in frame `t`; none where the sample is not valid or not finite.
+std::optional<Eigen::Quaternionf> orientation_at(const NodeFrames& nodes, std::size_t t,
+                                                 std::size_t n);
 
 enum class PoseInputs : std::uint8_t {
   /// Each leaf gives 6 numbers of its rotation against the root and its acceleration minus the
@@ -64,6 +69,9 @@ class PoseFeatureMaker {
 
   /// Fills `out` [channels] from frame `t` of `nodes`, which are the layout's.
   void make(const NodeFrames& nodes, std::size_t t, std::span<float> out);
+  /// The same in a space that something else than the root's node gives: `root` in the world.
+  void make_in(const Eigen::Quaternionf& root, const NodeFrames& nodes, std::size_t t,
+               std::span<float> out);
   /// The root in the world, in the last frame made.
   const Eigen::Quaternionf& root() const { return root_; }
   void reset() { root_ = Eigen::Quaternionf::Identity(); }
@@ -79,5 +87,8 @@ struct PoseFeatures {
 };
 
 PoseFeatures pose_features(const PoseLayout& layout, const NodeFrames& nodes);
+
+/// Brings channels [T,C] to mean 0 and deviation 1. `mean`, `scale` [C].
+void standardise(std::span<const float> mean, std::span<const float> scale, std::span<float> input);
 
 }  // namespace kinalign

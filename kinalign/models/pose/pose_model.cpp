@@ -9,25 +9,6 @@
 
 namespace kinalign {
 
-namespace {
-
-void standardise(const PoseModel& model, std::span<float> input) {
-  const std::size_t channels = model.input_mean.size();
-  for (std::size_t i = 0; i < input.size(); ++i) {
-    const std::size_t c = i % channels;
-    input[i] = (input[i] - model.input_mean[c]) / model.input_scale[c];
-  }
-}
-
-/// The rotation of six numbers as a network says them.
-Turn turn_of_answer(const float* answer) {
-  std::array<float, 6> six = six_of_identity;
-  for (std::size_t k = 0; k < six.size(); ++k) six[k] += answer[k];
-  return turn_of_six(six.data());
-}
-
-}  // namespace
-
 void smooth_turns(std::size_t bones, std::vector<Turn>& rotations) {
   static constexpr std::array<float, 5> weights{1.0F, 4.0F, 6.0F, 4.0F, 1.0F};
   const std::vector<Turn> before = rotations;
@@ -61,7 +42,7 @@ PoseSolver::PoseSolver(PoseModel model, Network network)
 
 SolvedPose PoseSolver::answer(const NodeFrames& nodes) {
   PoseFeatures features = pose_features(model_.layout, nodes);
-  standardise(model_, features.input);
+  standardise(model_.input_mean, model_.input_scale, features.input);
   std::vector<float> answers;
   network_.run(features.input, nodes.frames(), workspace_, answers);
   SolvedPose out{.rotations = {}, .root = std::move(features.root)};
@@ -85,16 +66,7 @@ Clip PoseSolver::clip(const NodeFrames& nodes, Time start) {
 }
 
 Result<void> PoseSolver::use_body(const Skeleton& body) {
-  Skeleton own = model_.body.skeleton;
-  for (std::size_t j = 0; j < own.joints(); ++j) {
-    const auto at = std::find(body.joint_names.begin(), body.joint_names.end(), own.joint_names[j]);
-    if (at == body.joint_names.end()) {
-      return Failure(Error{"", 0, "a body with a joint " + own.joint_names[j], "none"});
-    }
-    own.rest_offsets[j] =
-        body.rest_offsets[static_cast<std::size_t>(at - body.joint_names.begin())];
-  }
-  model_.body.skeleton = std::move(own);
+  model_.body = KA_TRY(with_own_bones(model_.body, body));
   return {};
 }
 
@@ -111,7 +83,7 @@ OnlinePoseSolver::OnlinePoseSolver(const PoseSolver& solver, OnlineNetwork netwo
 
 std::span<const Turn> OnlinePoseSolver::step(const NodeFrames& nodes, std::size_t t) {
   maker_.make(nodes, t, input_);
-  standardise(*model_, input_);
+  standardise(model_->input_mean, model_->input_scale, input_);
   const std::span<const float> answers = network_.step(input_);
   for (std::size_t b = 0; b < rotations_.size(); ++b)
     rotations_[b] = turn_of_answer(&answers[6 * b]);

@@ -15,9 +15,6 @@
 
 namespace kinalign {
 
-/// A network answers with six numbers a bone; these are added to each: the identity.
-inline constexpr std::array<float, 6> six_of_identity{1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F};
-
 struct PoseModel {
   ModelFacts facts;  // task "pose"
   PoseLayout layout;

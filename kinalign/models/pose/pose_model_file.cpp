@@ -1,35 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/model_file.h"
+#include "kinalign/models/pose/pose_header.h"
 #include "kinalign/models/pose/pose_model.h"
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace kinalign {
 
 namespace {
 
-constexpr std::size_t most_pose_joints = 1000;
-
 ModelHeader pose_header_of(const PoseModel& model) {
   const PoseLayout& layout = model.layout;
-  const Skeleton& skeleton = model.body.skeleton;
-  ModelHeader offsets = ModelHeader::array();
-  for (const Vec3& one : skeleton.rest_offsets) offsets.push_back({one.x(), one.y(), one.z()});
   return {
       {"rate_hz", layout.rate_hz},
       {"input",
        {{"nodes", layout.nodes}, {"channels", layout.inputs == PoseInputs::dip ? "dip" : "ours"}}},
-      {"output",
-       {{"bones", layout.bones},
-        {"joints", skeleton.joint_names},
-        {"parents", skeleton.parents},
-        {"turned_by", model.body.turned_by},
-        {"rest_offsets_m", std::move(offsets)},
-        {"smoothing", model.smoothing}}}};
+      {"output", body_header(model.body, model.smoothing)}};
 }
 
 /// Throws where a member is missing or of another type.
@@ -47,41 +35,17 @@ Result<void> read_pose_header(const ModelHeader& header, const std::string& name
     return Failure(Error{name, 0, "channels \"ours\" or \"dip\"", shown(channels)});
   }
   layout.inputs = channels == "dip" ? PoseInputs::dip : PoseInputs::ours;
-  const ModelHeader& output = header.at("output");
-  layout.bones = output.at("bones").get<std::vector<std::string>>();
-  out.body.bones = layout.bones;
-  out.body.turned_by = output.at("turned_by").get<std::vector<int>>();
-  Skeleton& skeleton = out.body.skeleton;
-  skeleton.joint_names = output.at("joints").get<std::vector<std::string>>();
-  skeleton.parents = output.at("parents").get<std::vector<int>>();
-  for (const ModelHeader& one : output.at("rest_offsets_m")) {
-    const auto offset = one.get<std::array<double, 3>>();
-    skeleton.rest_offsets.emplace_back(offset[0], offset[1], offset[2]);
-  }
-  out.smoothing = output.at("smoothing").get<bool>();
+  BodyOfHeader body = body_of_header(header.at("output"));
+  out.body = std::move(body.body);
+  out.smoothing = body.smoothing;
+  layout.bones = out.body.bones;
   return {};
 }
 
 Result<void> check_parts(const PoseModel& model) {
   KA_TRY(validate(model.layout));
-  if (model.body.skeleton.joints() > most_pose_joints) {
-    return Failure(
-        Error{"", 0, "1000 joints at most", std::to_string(model.body.skeleton.joints())});
-  }
-  KA_TRY(validate(model.body));
-  for (const Vec3& offset : model.body.skeleton.rest_offsets) {
-    if (!offset.allFinite()) return Failure(Error{"", 0, "bones with a length", "none"});
-  }
-  const bool scales = std::all_of(model.input_scale.begin(), model.input_scale.end(),
-                                  [](float scale) { return std::isfinite(scale) && scale > 0.0F; });
-  const std::size_t channels = model.layout.channels();
-  if (model.input_mean.size() != channels || model.input_scale.size() != channels || !scales) {
-    return Failure(Error{
-        "", 0,
-        "input.mean and input.scale of " + std::to_string(channels) + " channels, scales above 0",
-        "others"});
-  }
-  return {};
+  KA_TRY(check_body(model.body));
+  return check_scales(model.layout.channels(), model.input_mean, model.input_scale);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/pose/fit_pose.h"
 
-#include "tests/models/pose/pose_people.h"
+#include "tests/learn/pose/swinging.h"
 
 #include "kinalign/learn/tensors.h"
 
@@ -12,53 +12,6 @@
 using namespace kinalign;
 
 namespace {
-
-/// A person whose bones swing, with nodes that show it.
-PoseSequence swinging(std::size_t frames, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
-  PoseSequence out{.subject = "01",
-                   .action = "swing",
-                   .nodes = {},
-                   .rotations = {},
-                   .rest_offsets = test_offsets()};
-  out.nodes.nodes = 5;
-  std::vector<Eigen::Vector3f> axes;
-  for (std::size_t b = 0; b < pose_bones.size(); ++b) {
-    const float x = uniform(random), y = uniform(random), z = uniform(random);
-    axes.emplace_back(x, y, z);
-  }
-  static constexpr std::array<std::size_t, 4> carriers{11, 14, 1, 3};  // wrists, shanks
-  for (std::size_t t = 0; t < frames; ++t) {
-    const float swing = std::sin(0.15F * static_cast<float>(t));
-    for (const Eigen::Vector3f& axis : axes) {
-      out.rotations.push_back(Eigen::AngleAxisf(swing, axis.normalized()).toRotationMatrix());
-    }
-    const Turn* frame = &out.rotations[t * axes.size()];
-    for (const std::size_t b : carriers) {
-      append_sample(out.nodes, Eigen::Quaternionf(frame[b]), swing * axes[b], axes[b]);
-    }
-    append_sample(out.nodes, Eigen::Quaternionf::Identity(), Eigen::Vector3f::Zero(),
-                  Eigen::Vector3f::Zero());
-  }
-  return out;
-}
-
-PoseData swinging_data() {
-  return {.nodes = usual_pose_nodes(),
-          .body = pose_body(test_offsets()),
-          .learnt = {swinging(24, 1)},
-          .judged = {swinging(24, 1)},
-          .tested = {},
-          .left_out = {}};
-}
-
-void without_dropout(std::vector<Layer>& layers) {
-  for (Layer& layer : layers) {
-    layer.rate = 0.0;
-    for (auto& branch : layer.branches) without_dropout(branch);
-  }
-}
 
 /// A method that sees one window again and again.
 PoseMethod one_window(PoseMethod method) {
@@ -79,14 +32,15 @@ TEST_CASE("rotations and positions on tensors are those of infer's side") {
   const PoseData data = swinging_data();
   const PoseTask task(test_layout(), {}, data, torch::kCPU);
   const auto six = torch::randn({2, 3, 90});
-  const auto rotations = PoseTask::rotations_of(six);
+  const auto rotations = rotations_of(six);
   std::vector<float> offsets;
   for (int k = 0; k < 2; ++k) {
     for (const Vec3& offset : test_offsets()) {
       for (const double value : offset) offsets.push_back(static_cast<float>(value));
     }
   }
-  const auto places = values_of(task.places_of(rotations, to_torch(offsets, {2, 27, 3})));
+  const auto places = values_of(
+      BodyTensors(data.body, torch::kCPU).places_of(rotations, to_torch(offsets, {2, 27, 3})));
   const auto numbers = values_of(six);
   std::vector<Turn> turns;
   for (std::size_t at = 0; at < numbers.size(); at += 6) {
@@ -131,7 +85,7 @@ TEST_CASE("what is learnt is what runs: every method's network to 1e-5") {
     torch::NoGradGuard guard;
     const auto input =
         to_torch(pose_features(layout, nodes).input, {1, 50, whole(layout.channels())});
-    const auto learnt = values_of(PoseTask::rotations_of(network.forward(input, false)));
+    const auto learnt = values_of(rotations_of(network.forward(input, false)));
     REQUIRE(learnt.size() == 9 * runs.size());
     float worst = 0.0F;
     for (std::size_t i = 0; i < learnt.size(); ++i) {

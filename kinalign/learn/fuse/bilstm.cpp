@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The paper's bidirectional LSTM (figure 10), which it names without sizes. One network is trained
+// for both devices, with each of them missing at times; two more for one device each.
+#include "kinalign/learn/fuse/fuse_methods.h"
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t bilstm_units = 192, bilstm_width = 256;
+
+Architecture bilstm_architecture(const FuseLayout& layout) {
+  const Layer recurrent{.kind = LayerKind::lstm, .out = bilstm_units, .bidirectional = true};
+  return {layout.channels(),
+          {{.kind = LayerKind::linear, .out = bilstm_width},
+           {.kind = LayerKind::relu},
+           {.kind = LayerKind::dropout, .rate = 0.2},
+           recurrent,
+           recurrent,
+           {.kind = LayerKind::linear, .out = bilstm_width},
+           {.kind = LayerKind::relu},
+           {.kind = LayerKind::linear, .out = layout.answers()}}};
+}
+
+}  // namespace
+
+FuseMethod bilstm_method(Devices devices) {
+  FuseMethod out{.name = "bilstm",
+                 .summary = "the paper's bidirectional LSTM on a Kinect and nodes",
+                 .source = "HFUT-MMD, figure 10",
+                 .architecture = bilstm_architecture,
+                 .training = {},
+                 .options = {.steps = 900, .rate = 2e-3, .rise = 0.1, .average = false}};
+  out.training.draws.devices = devices;
+  if (devices == Devices::kinect) {
+    out.name = "bilstm-kinect";
+    out.summary = "the same on a Kinect alone";
+  } else if (devices == Devices::nodes) {
+    out.name = "bilstm-nodes";
+    out.summary = "the same on nodes alone";
+  }
+  return out;
+}
+
+}  // namespace kinalign

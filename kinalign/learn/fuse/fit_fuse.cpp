@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/fuse/fit_fuse.h"
+
+#include <utility>
+
+namespace kinalign {
+
+FuseLayout fuse_layout(const FuseData& data) {
+  return {{data.pose.nodes, data.pose.body.bones, PoseInputs::ours, data.pose.rate_hz},
+          fuse_joint_names()};
+}
+
+Result<FuseFit> fit_fuse(const FuseMethod& method, const FuseData& data, const FitOptions& options,
+                         TrainingState state, const TrainingHooks& hooks) {
+  const FuseLayout layout = fuse_layout(data);
+  KA_TRY(validate(layout));
+  FuseTask task(layout, method.training, data, options.device);
+  torch::manual_seed(options.training.seed);
+  TorchNetwork network(method.architecture(layout));
+  network.to(options.device);
+  FuseFit out;
+  out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
+  out.model.facts.task = "fuse";
+  out.model.facts.method = method.name;
+  out.model.layout = layout;
+  out.model.body = data.pose.body;
+  out.model.input_mean = task.input_mean();
+  out.model.input_scale = task.input_scale();
+  out.model.architecture = network.architecture();
+  put_tensors(network, "net.", out.model.tensors);
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/fuse/fuse_data.h"
+
+#include "kinalign/simulate/kinect/kinect_camera.h"
+#include "kinalign/simulate/random.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double kinect_hz = 30.0;
+constexpr double nearest_m = 2.2, farthest_m = 3.2, camera_height_m = 0.9;
+constexpr double most_yaw_deg = 45.0;
+constexpr std::int64_t tick_100ns = 333'333;
+
+/// For each of the Kinect's 25 joints the body's. Tips of hands and thumbs lie at the fingers.
+std::array<std::size_t, kinect_joint_count> body_joints_of_kinect(const PoseBody& body) {
+  const auto& names = body.skeleton.joint_names;
+  std::array<std::size_t, kinect_joint_count> out{};
+  for (std::size_t k = 0; k < kinect_joint_count; ++k) {
+    const auto joint =
+        std::find_if(fuse_joints.begin(), fuse_joints.end(),
+                     [&](const FuseJoint& one) { return one.kinect == kinect_joints[k]; });
+    std::string_view name = kinect_joints[k].ends_with("Left") ? "lfingers" : "rfingers";
+    if (joint != fuse_joints.end()) name = joint->body;
+    out[k] = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+  return out;
+}
+
+/// The 25 true joints of each frame [T,25,3] m, in the world.
+std::vector<double> true_joints(const PoseBody& body, const PoseSequence& sequence) {
+  const auto which = body_joints_of_kinect(body);
+  const std::size_t joints = body.skeleton.joints(), frames = sequence.frames();
+  const auto places = bone_positions(body, sequence.rest_offsets, sequence.rotations);
+  const auto roots = true_roots(sequence);
+  std::vector<double> out;
+  out.reserve(frames * 3 * kinect_joint_count);
+  for (std::size_t t = 0; t < frames; ++t) {
+    const Eigen::Quaterniond root = roots[t].cast<double>();
+    for (const std::size_t j : which) {
+      const Eigen::Map<const Eigen::Vector3f> about_root(&places[3 * (t * joints + j)]);
+      const Vec3 place = sequence.places[t] + root * about_root.cast<double>();
+      out.insert(out.end(), {place.x(), place.y(), place.z()});
+    }
+  }
+  return out;
+}
+
+/// A camera that looks level at the middle of the sequence, somewhere before the person's front.
+RigidTransform camera_of(const PoseSequence& sequence, const RandomStream& random) {
+  Vec3 middle = Vec3::Zero(), front = Vec3::Zero();
+  const auto roots = true_roots(sequence);
+  for (std::size_t t = 0; t < sequence.frames(); ++t) {
+    middle += sequence.places[t] / static_cast<double>(sequence.frames());
+    front += roots[t].cast<double>() * Vec3::UnitZ();
+  }
+  front.y() = 0.0;
+  if (front.norm() < 1e-3) front = Vec3::UnitZ();
+  const double yaw = (2.0 * random.uniform(0, 0) - 1.0) * most_yaw_deg * std::numbers::pi / 180.0;
+  const double distance = nearest_m + random.uniform(0, 1) * (farthest_m - nearest_m);
+  const Vec3 to_camera = Eigen::AngleAxisd(yaw, Vec3::UnitY()) * front.normalized();
+  Eigen::Matrix3d axes;
+  axes.col(2) = -to_camera;
+  axes.col(1) = Vec3::UnitY();
+  axes.col(0) = axes.col(1).cross(axes.col(2));
+  Vec3 place = middle + distance * to_camera;
+  place.y() = camera_height_m;
+  return {Quat(axes), place};
+}
+
+/// The joints that fusion sees of 25, brought into the world.
+JointFrames seen_in_world(const PointFrames& said, const RigidTransform& world_from_kinect) {
+  JointFrames out{.joints = fuse_joints.size(), .positions = {}, .seen = {}};
+  for (std::size_t t = 0; t < said.size(); ++t) {
+    for (const FuseJoint& joint : fuse_joints) {
+      const auto k = static_cast<std::size_t>(
+          std::find(kinect_joints.begin(), kinect_joints.end(), joint.kinect) -
+          kinect_joints.begin());
+      const std::size_t at = t * kinect_joint_count + k;
+      const bool there = said.state[at] != Tracking::missing;
+      const Vec3 place = there ? world_from_kinect * Vec3(vec3(said.positions, at)) : Vec3::Zero();
+      for (const double value : place) out.positions.push_back(static_cast<float>(value));
+      out.seen.push_back(static_cast<std::uint8_t>(said.state[at]));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Eigen::Quaternionf> true_roots(const PoseSequence& sequence) {
+  std::vector<Eigen::Quaternionf> out;
+  const std::size_t nodes = sequence.nodes.nodes;
+  for (std::size_t t = 0; t < sequence.frames(); ++t) {
+    const float* q = &sequence.nodes.orientation[4 * (t * nodes + nodes - 1)];
+    out.emplace_back(q[0], q[1], q[2], q[3]);
+  }
+  return out;
+}
+
+JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
+                             std::uint64_t person, std::uint64_t seed, std::uint64_t take) {
+  const auto joints = true_joints(body, sequence);
+  const std::size_t frames = sequence.frames(), width = 3 * kinect_joint_count;
+  KinectOptions options;
+  options.world_from_kinect = camera_of(sequence, {seed, take});
+  std::vector<KinectTick> ticks;
+  for (std::size_t t = 0; t < frames; ++t) {
+    const auto number = static_cast<std::int64_t>(t);
+    ticks.push_back({number, static_cast<double>(t) / kinect_hz, number * tick_100ns});
+  }
+  const auto joints_at = [&](double seconds, std::span<double> out) {
+    const double at =
+        std::clamp(std::round(seconds * kinect_hz), 0.0, static_cast<double>(frames - 1));
+    const auto from =
+        joints.begin() + static_cast<std::ptrdiff_t>(at) * static_cast<std::ptrdiff_t>(width);
+    std::copy(from, from + static_cast<std::ptrdiff_t>(width), out.begin());
+  };
+  const PointFrames said =
+      simulate_kinect(joints_at, ticks, options, {.seed = seed, .person = person, .take = take});
+  return seen_in_world(said, options.world_from_kinect);
+}
+
+Result<FuseData> fuse_data(const Windows& windows, const std::string& stream,
+                           const std::vector<std::string>& nodes, const FuseDataOptions& options) {
+  FuseData out;
+  out.pose = KA_TRY(pose_data(windows, stream, nodes));
+  std::map<std::string, std::uint64_t> people;
+  std::uint64_t take = 0;
+  const auto simulate = [&](const std::vector<PoseSequence>& sequences, std::size_t draws,
+                            std::vector<std::vector<JointFrames>>& seen) {
+    for (const PoseSequence& one : sequences) {
+      const std::uint64_t person = people.try_emplace(one.subject, people.size() + 1).first->second;
+      auto& own = seen.emplace_back();
+      for (std::size_t k = 0; k < draws; ++k) {
+        own.push_back(simulated_kinect(out.pose.body, one, person, options.seed, ++take));
+      }
+    }
+  };
+  simulate(out.pose.learnt, options.draws, out.learnt);
+  simulate(out.pose.judged, 1, out.judged);
+  simulate(out.pose.tested, 1, out.tested);
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sequences to learn fusion from: those of pose_data.h, and what a simulated Kinect before these
+// people says (docs/kinect_noise.md).
+#pragma once
+
+#include "kinalign/learn/pose/pose_data.h"
+#include "kinalign/models/fuse/fuse_features.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+struct FuseData {
+  PoseData pose;
+  /// Of each sequence of the part with that name, what a Kinect says in the world of its nodes, in
+  /// several draws of noise and of the camera's place.
+  std::vector<std::vector<JointFrames>> learnt, judged, tested;
+};
+
+struct FuseDataOptions {
+  std::uint64_t seed = 1;
+  std::size_t draws = 2;  // of what is learnt from; else one
+};
+
+/// As pose_data(). The Kinect stands 2.2 to 3.2 m before the middle of a sequence, within 45
+/// degrees of the person's front.
+Result<FuseData> fuse_data(const Windows& windows, const std::string& stream,
+                           const std::vector<std::string>& nodes, const FuseDataOptions& options);
+
+/// What a Kinect says of one sequence [T,J], in the world of its nodes.
+JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
+                             std::uint64_t person, std::uint64_t seed, std::uint64_t take);
+
+/// The root's true rotations in the world [T].
+std::vector<Eigen::Quaternionf> true_roots(const PoseSequence& sequence);
+
+}  // namespace kinalign

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/fuse/fuse_draws.h"
+
+#include "kinalign/models/fuse/seen_bones.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+/// Lanes of the random numbers, one a decision.
+enum Lane : std::uint64_t {
+  lane_heading,
+  lane_device,
+  lane_part,
+  lane_which,
+  lane_begin,
+  lane_length
+};
+
+void lose_a_part(FuseInput& input, const FuseLayout& layout, const FuseDraws& draws,
+                 const RandomStream& random) {
+  const double frames = static_cast<double>(input.frames());
+  const double length =
+      layout.nodes.rate_hz * (draws.least_lost_s + random.uniform(0, lane_length) *
+                                                       (draws.most_lost_s - draws.least_lost_s));
+  const auto begin = static_cast<std::size_t>(random.uniform(0, lane_begin) * frames);
+  const auto end = std::min(input.frames(), begin + static_cast<std::size_t>(std::lround(length)));
+  const std::size_t limbs = kinect_limb_joints.size(), nodes = input.nodes.nodes;
+  const auto which = std::min(
+      static_cast<std::size_t>(random.uniform(0, lane_which) * static_cast<double>(limbs + nodes)),
+      limbs + nodes - 1);
+  if (which < limbs) {
+    lose_limb(input.kinect, layout.joints, which, begin, end);
+    return;
+  }
+  for (std::size_t t = begin; t < end; ++t) input.nodes.valid[t * nodes + which - limbs] = 0;
+}
+
+}  // namespace
+
+void lose_limb(JointFrames& kinect, const std::vector<std::string>& names, std::size_t limb,
+               std::size_t begin, std::size_t end) {
+  const auto& lost = kinect_limb_joints[limb].joints;
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    if (std::find(lost.begin(), lost.end(), names[j]) == lost.end()) continue;
+    for (std::size_t t = begin; t < std::min(end, kinect.frames()); ++t) {
+      kinect.seen[t * kinect.joints + j] = 0;
+    }
+  }
+}
+
+void lose_kinect(JointFrames& kinect) { std::fill(kinect.seen.begin(), kinect.seen.end(), 0); }
+
+void lose_nodes(NodeFrames& nodes) { std::fill(nodes.valid.begin(), nodes.valid.end(), 0); }
+
+FuseInput drawn_input(FuseInput input, const FuseLayout& layout, const FuseDraws& draws,
+                      std::uint64_t seed, std::uint64_t number) {
+  const RandomStream random(seed, 2 * number), of_errors(seed, 2 * number + 1);
+  NodeErrors errors = draws.errors;
+  if (random.uniform(0, lane_heading) < draws.unknown_heading) errors.yaw_deg = draws.unknown_deg;
+  input.nodes = with_errors(std::move(input.nodes), errors, of_errors);
+  if (draws.devices == Devices::kinect) lose_nodes(input.nodes);
+  if (draws.devices == Devices::nodes) lose_kinect(input.kinect);
+  if (draws.devices == Devices::both) {
+    const double device = random.uniform(0, lane_device);
+    if (device < draws.without_kinect) {
+      lose_kinect(input.kinect);
+    } else if (device < draws.without_kinect + draws.without_nodes) {
+      lose_nodes(input.nodes);
+    }
+  }
+  if (random.uniform(0, lane_part) < draws.lost_part) lose_a_part(input, layout, draws, random);
+  unexchange(layout, input);  // as at use
+  return input;
+}
+
+JointFrames crop_of(const JointFrames& kinect, std::size_t begin, std::size_t count) {
+  JointFrames out{.joints = kinect.joints, .positions = {}, .seen = {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t t = std::min(begin + i, kinect.frames() - 1);
+    const auto row = static_cast<std::ptrdiff_t>(t * kinect.joints);
+    const auto width = static_cast<std::ptrdiff_t>(kinect.joints);
+    out.positions.insert(out.positions.end(), kinect.positions.begin() + 3 * row,
+                         kinect.positions.begin() + 3 * (row + width));
+    out.seen.insert(out.seen.end(), kinect.seen.begin() + row, kinect.seen.begin() + row + width);
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/fuse/fuse_marks.h"
+
+#include "kinalign/learn/pose/pose_task.h"
+#include "kinalign/models/pose/pose_metrics.h"
+#include "kinalign/motion/mahony.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint64_t fuse_marks_seed = 7;
+constexpr std::array<double, 4> hidden_s{0.5, 1.0, 2.0, 5.0};
+constexpr double between_s = 2.0;
+constexpr float invented_m = 0.2F;
+constexpr double heading_seconds = 60.0;
+
+enum class JointGroup : std::uint8_t { trunk, arms, legs };
+
+/// A joint that is scored: of the body, and where the Kinect says it is (none: SIZE_MAX).
+struct ScoredJoint {
+  std::size_t body = 0;
+  std::optional<std::size_t> kinect;
+  JointGroup group = JointGroup::trunk;
+};
+
+JointGroup group_of(std::string_view name) {
+  static constexpr std::array<std::string_view, 2> legs{"tibia", "foot"};
+  static constexpr std::array<std::string_view, 3> arms{"radius", "wrist", "hand"};
+  const auto of = [&](std::string_view part) { return name.substr(1) == part; };
+  if (std::any_of(legs.begin(), legs.end(), of)) return JointGroup::legs;
+  return std::any_of(arms.begin(), arms.end(), of) ? JointGroup::arms : JointGroup::trunk;
+}
+
+std::vector<ScoredJoint> scored_joints(const FuseLayout& layout, const PoseBody& body) {
+  std::vector<ScoredJoint> out;
+  for (std::size_t j = 0; j < body.skeleton.joints(); ++j) {
+    const std::string& name = body.skeleton.joint_names[j];
+    if (!is_scored_joint(name)) continue;
+    ScoredJoint& one = out.emplace_back(ScoredJoint{j, std::nullopt, group_of(name)});
+    for (const FuseJoint& joint : fuse_joints) {
+      if (joint.body != name) continue;
+      const auto at = std::find(layout.joints.begin(), layout.joints.end(), joint.kinect);
+      if (at != layout.joints.end()) {
+        one.kinect = static_cast<std::size_t>(at - layout.joints.begin());
+      }
+    }
+  }
+  return out;
+}
+
+/// Limbs in turn, for half a second to five, with two seconds between.
+void hide_limbs(const FuseLayout& layout, JointFrames& kinect) {
+  const double rate_hz = layout.nodes.rate_hz;
+  double at_s = 1.0;
+  for (std::size_t k = 0; at_s * rate_hz < static_cast<double>(kinect.frames()); ++k) {
+    const double length_s = hidden_s[(k / kinect_limb_joints.size() + k) % hidden_s.size()];
+    lose_limb(kinect, layout.joints, k % kinect_limb_joints.size(),
+              static_cast<std::size_t>(at_s * rate_hz),
+              static_cast<std::size_t>((at_s + length_s) * rate_hz));
+    at_s += length_s + between_s;
+  }
+}
+
+struct MeanOf {
+  double sum = 0.0;
+  std::size_t count = 0;
+  void add(double value) {
+    sum += value;
+    ++count;
+  }
+  double value() const { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
+};
+
+/// The turn about the vertical that brings an answer's headings to the true ones.
+Eigen::Quaternionf heading_turn(const std::vector<Eigen::Quaternionf>& said,
+                                const std::vector<Eigen::Quaternionf>& roots) {
+  double sine = 0.0, cosine = 0.0;
+  for (std::size_t t = 0; t < said.size(); ++t) {
+    const double yaw = heading_of(roots[t].cast<double>()) - heading_of(said[t].cast<double>());
+    sine += std::sin(yaw);
+    cosine += std::cos(yaw);
+  }
+  return Eigen::Quaternionf(
+      Eigen::AngleAxisf(static_cast<float>(std::atan2(sine, cosine)), Eigen::Vector3f::UnitY()));
+}
+
+class FuseScore {
+ public:
+  FuseScore(Devices devices, const FuseLayout& layout, const PoseBody& body)
+      : devices_(devices), body_(body), joints_(scored_joints(layout, body)) {}
+
+  /// `kinect`: what it saw before devices were taken away.
+  void add(const PoseSequence& truth, const JointFrames& kinect, const FusedPose& answer) {
+    const auto roots = true_roots(truth);
+    const auto said = bone_positions(body_, truth.rest_offsets, answer.rotations);
+    const auto real = bone_positions(body_, truth.rest_offsets, truth.rotations);
+    const Eigen::Quaternionf turn = devices_ == Devices::nodes ? heading_turn(answer.root, roots)
+                                                               : Eigen::Quaternionf::Identity();
+    const std::size_t joints = body_.skeleton.joints();
+    for (std::size_t t = 0; t < truth.frames(); ++t) {
+      const Eigen::Quaternionf root = turn * answer.root[t];
+      for (const ScoredJoint& joint : joints_) {
+        const auto at = [&](const std::vector<float>& places) {
+          return Eigen::Vector3f(
+              Eigen::Map<const Eigen::Vector3f>(&places[3 * (t * joints + joint.body)]));
+        };
+        const Eigen::Vector3f place = roots[t] * at(real);
+        const double off_cm = 100.0 * static_cast<double>((root * at(said) - place).norm());
+        all_.add(off_cm);
+        if (!joint.kinect) continue;
+        const Eigen::Vector3f in_world = place + truth.places[t].cast<float>();
+        if (is_hidden(kinect, t, *joint.kinect, in_world)) {
+          hidden_.add(off_cm);
+        } else {
+          seen_[static_cast<std::size_t>(joint.group)].add(off_cm);
+        }
+      }
+    }
+    errors_.add(pose_errors(body_, answer.rotations, {truth.rotations, truth.rest_offsets}, 30.0));
+    frames_ += truth.frames();
+  }
+
+  FuseMark mark() const {
+    return {.devices = devices_,
+            .all_cm = all_.value(),
+            .hidden_cm = hidden_.value(),
+            .seen_trunk_cm = seen_[0].value(),
+            .seen_arms_cm = seen_[1].value(),
+            .seen_legs_cm = seen_[2].value(),
+            .sip_deg = errors_.sip_deg,
+            .frames = frames_,
+            .hidden = hidden_.count};
+  }
+
+ private:
+  static bool is_hidden(const JointFrames& kinect, std::size_t t, std::size_t j,
+                        const Eigen::Vector3f& true_place) {
+    const std::size_t at = t * kinect.joints + j;
+    if (kinect.seen[at] != 2) return true;
+    const Eigen::Map<const Eigen::Vector3f> said(&kinect.positions[3 * at]);
+    return (said - true_place).norm() > invented_m;
+  }
+
+  Devices devices_;
+  const PoseBody& body_;
+  std::vector<ScoredJoint> joints_;
+  MeanOf all_, hidden_;
+  std::array<MeanOf, 3> seen_;
+  PoseErrors errors_;
+  std::size_t frames_ = 0;
+};
+
+FuseInput without_others(FuseInput input, Devices devices) {
+  if (devices == Devices::kinect) lose_nodes(input.nodes);
+  if (devices == Devices::nodes) lose_kinect(input.kinect);
+  return input;
+}
+
+/// A person's sequences one behind the other, with nodes whose errors stay.
+struct Session {
+  FuseInput input;
+  std::vector<std::size_t> sequences;
+};
+
+void append_rows(const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); }
+
+std::map<std::string, Session> sessions_of(const FuseData& data, const NodeErrors& errors) {
+  std::map<std::string, Session> out;
+  for (std::size_t i = 0; i < data.pose.tested.size(); ++i) {
+    const PoseSequence& one = data.pose.tested[i];
+    Session& session = out[one.subject];
+    session.sequences.push_back(i);
+    FuseInput& input = session.input;
+    input.nodes.nodes = one.nodes.nodes;
+    append_rows(one.nodes.orientation, input.nodes.orientation);
+    append_rows(one.nodes.acceleration, input.nodes.acceleration);
+    append_rows(one.nodes.angular_velocity, input.nodes.angular_velocity);
+    append_rows(one.nodes.valid, input.nodes.valid);
+    input.kinect.joints = data.tested[i].front().joints;
+    append_rows(data.tested[i].front().positions, input.kinect.positions);
+    append_rows(data.tested[i].front().seen, input.kinect.seen);
+  }
+  std::uint64_t person = 0;
+  for (auto& [name, session] : out) {
+    session.input.nodes =
+        with_errors(std::move(session.input.nodes), errors, {fuse_marks_seed, ++person});
+  }
+  return out;
+}
+
+NodeErrors session_errors(double yaw_deg) {
+  NodeErrors out;
+  out.yaw_deg = yaw_deg;
+  out.lost_share = 0.0;
+  return out;
+}
+
+/// The turn about the vertical from what a node says to its bone, rad; the mean over frames.
+double heading_error(const NodeFrames& clean, const NodeFrames& said, std::size_t n) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t t = 0; t < said.frames(); ++t) {
+    const auto a = orientation_at(clean, t, n), b = orientation_at(said, t, n);
+    if (!a || !b) continue;
+    const Eigen::Quaternionf turn = *a * b->conjugate();
+    const double yaw =
+        2.0 * std::atan2(static_cast<double>(turn.y()), static_cast<double>(turn.w()));
+    sum += std::remainder(yaw, 2.0 * std::numbers::pi);
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+double size_deg(double radians) { return std::abs(radians) * 180.0 / std::numbers::pi; }
+
+}  // namespace
+
+Result<std::vector<FuseMark>> fuse_marks(const Fusion& fusion, const FuseLayout& layout,
+                                         const FuseData& data,
+                                         const std::vector<Devices>& devices) {
+  if (data.pose.tested.empty()) return Failure(Error{"", 0, "people of a test part", "none"});
+  FuseData hidden = data;
+  for (auto& one : hidden.tested) hide_limbs(layout, one.front());
+  std::vector<FuseMark> out;
+  for (const Devices these : devices) {
+    FuseScore score(these, layout, data.pose.body);
+    for (auto& [name, session] : sessions_of(hidden, session_errors(10.0))) {
+      const FuseInput seen = session.input;
+      session.input = without_others(std::move(session.input), these);
+      const FusedPose pose = fusion(session.input);
+      const std::size_t bones = layout.nodes.bones.size();
+      std::size_t begin = 0;
+      for (const std::size_t i : session.sequences) {
+        const PoseSequence& truth = data.pose.tested[i];
+        const auto at = static_cast<std::ptrdiff_t>(begin);
+        const auto end = at + static_cast<std::ptrdiff_t>(truth.frames());
+        const auto width = static_cast<std::ptrdiff_t>(bones);
+        const FusedPose part{
+            {pose.rotations.begin() + at * width, pose.rotations.begin() + end * width},
+            {pose.root.begin() + at, pose.root.begin() + end},
+            {pose.place.begin() + at, pose.place.begin() + end}};
+        score.add(truth, hidden.tested[i].front(), part);
+        begin += truth.frames();
+      }
+    }
+    out.push_back(score.mark());
+  }
+  return out;
+}
+
+std::vector<HeadingMark> heading_marks(const Headings& headings, const FuseLayout& layout,
+                                       const FuseData& data) {
+  NodeErrors errors = session_errors(20.0);
+  const auto after = static_cast<std::size_t>(heading_seconds * layout.nodes.rate_hz);
+  std::vector<HeadingMark> out;
+  for (const std::string& node : layout.nodes.nodes) out.push_back({.node = node});
+  const auto truths = sessions_of(data, no_node_errors());
+  for (const auto& [name, session] : sessions_of(data, errors)) {
+    if (session.input.frames() <= after) continue;
+    const FuseInput shown{crop_of(session.input.nodes, 0, after),
+                          crop_of(session.input.kinect, 0, after)};
+    const auto found = headings(shown);
+    // The states of the last frame, for all frames: what is known after that time.
+    std::vector<HeadingState> last;
+    for (std::size_t t = 0; t < after; ++t) {
+      last.insert(last.end(), found.end() - static_cast<std::ptrdiff_t>(out.size()), found.end());
+    }
+    const NodeFrames after_it = with_headings(shown.nodes, last);
+    for (std::size_t n = 0; n < out.size(); ++n) {
+      const NodeFrames& clean = truths.at(name).input.nodes;
+      const double left = size_deg(heading_error(clean, after_it, n));
+      out[n].before_deg += size_deg(heading_error(clean, shown.nodes, n));
+      out[n].after_deg += left;
+      out[n].worst_deg = std::max(out[n].worst_deg, left);
+      ++out[n].people;
+    }
+  }
+  for (HeadingMark& mark : out) {
+    const double people = static_cast<double>(std::max<std::size_t>(mark.people, 1));
+    mark.before_deg /= people;
+    mark.after_deg /= people;
+  }
+  return out;
+}
+
+}  // namespace kinalign

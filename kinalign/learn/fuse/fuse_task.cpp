@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/learn/fuse/fuse_task.h"
+
+#include "kinalign/learn/losses.h"
+#include "kinalign/learn/tensors.h"
+#include "kinalign/motion/mahony.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint64_t fuse_judging_seed = 5, scales_seed = 3;
+constexpr std::size_t scales_batches = 8;
+constexpr float least_scale_of_fusion = 0.05F;  // flags that hardly change stay small
+
+/// Without a Kinect nobody knows in which direction a person looks: the truth is turned to where
+/// the root's node says.
+Eigen::Quaternionf truth_turn(const FuseInput& input, const Eigen::Quaternionf& root) {
+  const bool is_seen = std::any_of(input.kinect.seen.begin(), input.kinect.seen.end(),
+                                   [](std::uint8_t seen) { return seen != 0; });
+  const auto said = orientation_at(input.nodes, 0, input.nodes.nodes - 1);
+  if (is_seen || !said) return Eigen::Quaternionf::Identity();
+  const double yaw = heading_of(said->cast<double>()) - heading_of(root.cast<double>());
+  return Eigen::Quaternionf(Eigen::AngleAxisf(static_cast<float>(yaw), Eigen::Vector3f::UnitY()));
+}
+
+}  // namespace
+
+FuseTask::FuseTask(FuseLayout layout, FuseTraining training, const FuseData& data,
+                   torch::Device device)
+    : layout_(std::move(layout)),
+      training_(training),
+      data_(data),
+      device_(device),
+      crops_(data.pose.learnt),
+      body_(data.pose.body, device) {
+  find_scales();
+  for (std::size_t i = 0; i < data_.pose.judged.size(); ++i) {
+    FuseDraws draws = training_.draws;
+    draws.errors.lost_share = 0.0;
+    draws.unknown_heading = draws.without_kinect = draws.without_nodes = draws.lost_part = 0.0;
+    const PoseSequence& one = data_.pose.judged[i];
+    const FuseInput input =
+        drawn_input({one.nodes, data_.judged[i].front()}, layout_, draws, fuse_judging_seed, i);
+    Rows rows;
+    add(one, input, 0, rows);
+    judged_.push_back(tensors_of(std::move(rows), 1, one.frames()));
+  }
+}
+
+void FuseTask::add(const PoseSequence& sequence, const FuseInput& input, std::size_t begin,
+                   Rows& rows) const {
+  const FuseFeatures features = fuse_features(layout_, input);
+  rows.input.insert(rows.input.end(), features.input.begin(), features.input.end());
+  const auto roots = true_roots(sequence);
+  const std::size_t bones = layout_.nodes.bones.size(), base = 0;  // SpineBase
+  const std::size_t last = sequence.frames() - 1;
+  const Eigen::Quaternionf turn = truth_turn(input, roots[std::min(begin, last)]);
+  for (std::size_t i = 0; i < input.frames(); ++i) {
+    const std::size_t t = std::min(begin + i, last);
+    const FuseSpace& space = features.space[i];
+    const Eigen::Matrix3f from_world = space.turn.toRotationMatrix().transpose();
+    const Turn root = from_world * (turn * roots[t]).toRotationMatrix();
+    for (std::size_t b = 0; b < bones; ++b) {
+      rows.rotations.emplace_back(root * sequence.rotations[t * bones + b]);
+    }
+    rows.rotations.push_back(root);
+    const Eigen::Vector3f way =
+        from_world * (sequence.places[t].cast<float>() - space.place) / fuse_place_unit_m;
+    rows.way.insert(rows.way.end(), {way.x(), way.y(), way.z()});
+    rows.placed.push_back(input.kinect.seen[i * input.kinect.joints + base] == 0 ? 0.0F : 1.0F);
+  }
+  for (const Vec3& offset : sequence.rest_offsets) {
+    for (const double value : offset) rows.offsets.push_back(static_cast<float>(value));
+  }
+}
+
+FuseTask::Batch FuseTask::tensors_of(Rows rows, std::size_t batch, std::size_t frames) const {
+  const std::int64_t b = whole(batch), t = whole(frames);
+  if (!input_mean_.empty()) standardise(input_mean_, input_scale_, rows.input);
+  return {
+      .input = to_torch(rows.input, {b, t, whole(layout_.channels())}).to(device_),
+      .rotations = tensor_of(rows.rotations, {b, t, whole(layout_.nodes.bones.size()) + 1, 3, 3})
+                       .to(device_),
+      .offsets =
+          to_torch(rows.offsets, {b, whole(data_.pose.body.skeleton.joints()), 3}).to(device_),
+      .way = to_torch(rows.way, {b, t, 3}).to(device_),
+      .placed = to_torch(rows.placed, {b, t}).to(device_)};
+}
+
+FuseTask::Batch FuseTask::draw(std::uint64_t seed, std::uint64_t step) const {
+  const std::size_t batch = training_.batch, crop = training_.crop;
+  Rows rows;
+  for (std::size_t k = 0; k < batch; ++k) {
+    const std::uint64_t number = step * batch + k;
+    const RandomStream places(seed, number);
+    const auto [at, begin] = crops_.draw(places, crop);
+    const auto& seen = data_.learnt[at];
+    const auto which =
+        std::min(static_cast<std::size_t>(places.uniform(0, 2) * static_cast<double>(seen.size())),
+                 seen.size() - 1);
+    const FuseInput clean{crop_of(data_.pose.learnt[at].nodes, begin, crop),
+                          crop_of(seen[which], begin, crop)};
+    add(data_.pose.learnt[at],
+        drawn_input(clean, layout_, training_.draws, mix64(seed + 1), number), begin, rows);
+  }
+  return tensors_of(std::move(rows), batch, crop);
+}
+
+void FuseTask::find_scales() {
+  const std::size_t channels = layout_.channels();
+  std::vector<double> sum(channels, 0.0), squares(channels, 0.0);
+  double frames = 0.0;
+  for (std::size_t k = 0; k < scales_batches; ++k) {
+    const auto input = values_of(draw(scales_seed, k).input);
+    for (std::size_t i = 0; i < input.size(); ++i) {
+      const double value = static_cast<double>(input[i]);
+      sum[i % channels] += value;
+      squares[i % channels] += value * value;
+    }
+    frames += static_cast<double>(input.size() / channels);
+  }
+  input_mean_.resize(channels);
+  input_scale_.resize(channels);
+  for (std::size_t c = 0; c < channels; ++c) {
+    const double mean = sum[c] / frames, variance = squares[c] / frames - mean * mean;
+    input_mean_[c] = static_cast<float>(mean);
+    input_scale_[c] =
+        std::max(static_cast<float>(std::sqrt(std::max(variance, 0.0))), least_scale_of_fusion);
+  }
+}
+
+torch::Tensor FuseTask::loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) {
+  const Batch batch = draw(seed, step);
+  const auto answers = network.forward(batch.input, true);
+  const auto sixes = answers.slice(2, 0, answers.size(2) - 3);
+  const auto rotations = rotations_of(sixes);
+  const PoseLoss& weights = training_.loss;
+  auto out = weights.matrices * (rotations - batch.rotations).pow(2).sum({-1, -2}).mean();
+  const auto miss = metres_of(answers.slice(2, answers.size(2) - 3) - batch.way);
+  out = out + training_.place * weighted_mean(miss, batch.placed);
+  const auto error =
+      body_.places_of(rotations, batch.offsets) - body_.places_of(batch.rotations, batch.offsets);
+  out = out + weights.position * metres_of(error).mean();
+  return out + weights.acceleration * metres_of(second_differences(error)).mean();
+}
+
+std::optional<double> FuseTask::judge(const TorchNetwork& network) {
+  if (judged_.empty()) return std::nullopt;
+  torch::NoGradGuard guard;
+  double sum = 0.0, frames = 0.0;
+  for (const Batch& one : judged_) {
+    const auto answers = network.forward(one.input, false);
+    const auto rotations = rotations_of(answers.slice(2, 0, answers.size(2) - 3));
+    const auto error =
+        body_.places_of(rotations, one.offsets) - body_.places_of(one.rotations, one.offsets);
+    const double count = static_cast<double>(one.input.size(1));
+    sum += 100.0 * count * metres_of(error).mean().item<double>();
+    frames += count;
+  }
+  return sum / frames;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ours: a branch of temporal convolutions for each device, and a gate that looks at what each
+// device shows and weighs the branches, channel by channel. A Kinect's joint that is missing or
+// guessed closes its part of the gate, and the nodes answer.
+#include "kinalign/learn/fuse/fuse_methods.h"
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t gated_width = 160;
+
+/// x + linear(dropout(gelu(conv(x)))), over five frames that lie `dilation` apart.
+Layer gated_block(std::size_t dilation, bool causal) {
+  return {.kind = LayerKind::sum,
+          .branches = {{},
+                       {{.kind = LayerKind::conv,
+                         .out = gated_width,
+                         .kernel = 5,
+                         .dilation = dilation,
+                         .causal = causal},
+                        {.kind = LayerKind::gelu},
+                        {.kind = LayerKind::dropout, .rate = 0.1},
+                        {.kind = LayerKind::linear, .out = gated_width}}}};
+}
+
+/// The channels of a device from `begin` on, its convolutions, and its half of the gate.
+std::vector<Layer> gated_branch(std::size_t begin, std::size_t channels, bool causal) {
+  return {
+      {.kind = LayerKind::product,
+       .branches = {{{.kind = LayerKind::slice, .out = channels, .begin = begin},
+                     {.kind = LayerKind::linear, .out = gated_width},
+                     gated_block(1, causal),
+                     gated_block(2, causal)},
+                    {{.kind = LayerKind::conv, .out = gated_width, .kernel = 5, .causal = causal},
+                     {.kind = LayerKind::sigmoid}}}}};
+}
+
+Architecture gated_layers(const FuseLayout& layout, bool causal) {
+  const std::size_t kinect = layout.kinect_channels(), nodes = layout.node_channels();
+  return {layout.channels(),
+          {{.kind = LayerKind::sum,
+            .branches = {gated_branch(0, kinect, causal), gated_branch(kinect, nodes, causal)}},
+           gated_block(4, causal),
+           gated_block(8, causal),
+           {.kind = LayerKind::linear, .out = layout.answers()}}};
+}
+
+Architecture gated_architecture(const FuseLayout& layout) { return gated_layers(layout, false); }
+
+Architecture gated_online_architecture(const FuseLayout& layout) {
+  return gated_layers(layout, true);
+}
+
+}  // namespace
+
+FuseMethod gated_method() {
+  return {.name = "gated",
+          .summary = "ours: a branch for each device, weighed by what each shows",
+          .source = "kinalign",
+          .architecture = gated_architecture,
+          .training = {},
+          .options = {.steps = 1500, .rate = 2e-3, .rise = 0.1, .average = false}};
+}
+
+FuseMethod gated_online_method() {
+  FuseMethod out = gated_method();
+  out.name = "gated-online";
+  out.summary = "the same without later frames";
+  out.architecture = gated_online_architecture;
+  return out;
+}
+
+std::vector<FuseMethod> fuse_methods() {
+  return {gated_method(), gated_online_method(), bilstm_method(Devices::both),
+          bilstm_method(Devices::kinect), bilstm_method(Devices::nodes)};
+}
+
+}  // namespace kinalign

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/fuse/bone_filter.h"
+
+#include "kinalign/models/body_frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace kinalign {
+
+namespace {
+
+constexpr float degrees = static_cast<float>(std::numbers::pi / 180.0);
+
+/// A bone, the bone above it ("" is the root), the way on it that a Kinect sees, and its node.
+struct FilteredBone {
+  std::string_view bone, above, from, to, node;
+};
+
+/// Those above come first. The trunk's bones turn as one: by the long way from the root to the
+/// neck, and about it by the shoulders. The Kinect's error is 10 degrees and more of a shorter way.
+constexpr std::array<FilteredBone, 15> filtered_bones{{
+    {"lowerback", "", "root", "lowerneck", ""},
+    {"upperback", "lowerback", "", "", ""},
+    {"thorax", "upperback", "rhumerus", "lhumerus", ""},
+    {"upperneck", "thorax", "lowerneck", "head", ""},
+    {"head", "upperneck", "", "", "head"},
+    {"lclavicle", "thorax", "", "", ""},
+    {"rclavicle", "thorax", "", "", ""},
+    {"lhumerus", "lclavicle", "lhumerus", "lradius", ""},
+    {"lwrist", "lhumerus", "lradius", "lwrist", "wrist_left"},
+    {"rhumerus", "rclavicle", "rhumerus", "rradius", ""},
+    {"rwrist", "rhumerus", "rradius", "rwrist", "wrist_right"},
+    {"lfemur", "", "lfemur", "ltibia", ""},
+    {"ltibia", "lfemur", "ltibia", "lfoot", "ankle_left"},
+    {"rfemur", "", "rfemur", "rtibia", ""},
+    {"rtibia", "rfemur", "rtibia", "rfoot", "ankle_right"},
+}};
+
+/// A FilteredBone with its indices; `above` B: the root.
+struct Part {
+  std::size_t bone = 0, above = 0;
+  std::optional<SeenBone> seen;
+  std::optional<std::size_t> node;
+};
+
+std::optional<std::size_t> index_in(const std::vector<std::string>& names, std::string_view name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - names.begin());
+}
+
+std::vector<Part> parts_of(const FuseLayout& layout, const PoseBody& body) {
+  std::vector<Part> out;
+  for (const FilteredBone& one : filtered_bones) {
+    const auto bone = index_in(body.bones, one.bone);
+    if (!bone) continue;
+    out.push_back({*bone, index_in(body.bones, one.above).value_or(body.bones.size()),
+                   seen_bone(body, layout.joints, one.from, one.to, one.bone),
+                   index_in(layout.nodes.nodes, one.node)});
+  }
+  return out;
+}
+
+JointFrames smoothed_kinect(const FuseInput& input, const Smoothing& smoothing) {
+  JointFrames out = input.kinect;
+  fill_missing(out, false);
+  smooth(smoothing, 3 * out.joints, out.positions);
+  return out;
+}
+
+/// Goes over the frames. A bone that nothing shows holds to the one above it as it last did.
+class BoneFilter {
+ public:
+  BoneFilter(const FuseLayout& layout, const PoseBody& body, const BoneFilterOptions& options)
+      : layout_(layout),
+        options_(options),
+        parts_(parts_of(layout, body)),
+        hips_(seen_bone(body, layout.joints, "rfemur", "lfemur", "")),
+        spine_(seen_bone(body, layout.joints, "root", "upperback", "")),
+        held_(body.bones.size(), Turn::Identity()),
+        world_(body.bones.size() + 1, Turn::Identity()) {}
+
+  void step(const FuseInput& input, const JointFrames& kinect, std::size_t t, FusedPose& out) {
+    Turn& root = world_.back();
+    if (const auto node = orientation_at(input.nodes, t, layout_.nodes.leaves())) {
+      root = node->toRotationMatrix();
+    } else {
+      turn_root(kinect, t, root);
+    }
+    for (const Part& part : parts_) turn_part(part, input, kinect, t);
+    out.root.emplace_back(root);
+    for (std::size_t b = 0; b < held_.size(); ++b) {
+      out.rotations.emplace_back(root.transpose() * world_[b]);
+    }
+  }
+
+ private:
+  /// Without its node the root turns with the hips and the spine.
+  void turn_root(const JointFrames& kinect, std::size_t t, Turn& root) const {
+    if (!hips_ || !spine_) return;
+    const auto across = direction_at(kinect, t, *hips_), up = direction_at(kinect, t, *spine_);
+    if (!across || !up) return;
+    const Eigen::Vector3f x = across->direction;
+    const Eigen::Vector3f y = (up->direction - x.dot(up->direction) * x).normalized();
+    root.col(0) = x;
+    root.col(1) = y;
+    root.col(2) = x.cross(y);
+  }
+
+  void turn_part(const Part& part, const FuseInput& input, const JointFrames& kinect,
+                 std::size_t t) {
+    const Turn& above = world_[part.above];
+    Turn& own = world_[part.bone];
+    std::optional<Eigen::Quaternionf> node;
+    if (part.node) node = orientation_at(input.nodes, t, *part.node);
+    std::optional<SeenDirection> seen;
+    if (part.seen) seen = direction_at(kinect, t, *part.seen);
+    if (node) {
+      own = node->toRotationMatrix();
+    } else {
+      // From rest each time: turns along shortest ways one behind the other would add a twist.
+      own = seen ? above : turned_back_to_rotation(above * held_[part.bone]);
+    }
+    if (seen) turn_along(part.seen->axis, *seen, node.has_value(), own);
+    held_[part.bone] = above.transpose() * own;
+  }
+
+  /// Turns `own` towards what the Kinect sees, along the shortest way.
+  void turn_along(const Eigen::Vector3f& axis, const SeenDirection& seen, bool has_node,
+                  Turn& own) const {
+    const auto kinect_deg =
+        static_cast<float>(seen.tracked ? options_.tracked_deg : options_.inferred_deg);
+    const auto node_deg = static_cast<float>(options_.node_deg);
+    const Eigen::AngleAxisf way(Eigen::Quaternionf::FromTwoVectors(own * axis, seen.direction));
+    float share = 1.0F;
+    if (has_node) {
+      const float both = node_deg * node_deg + kinect_deg * kinect_deg;
+      if (way.angle() > static_cast<float>(options_.gate) * degrees * std::sqrt(both)) return;
+      share = node_deg * node_deg / both;
+    }
+    own = turned_back_to_rotation(Eigen::AngleAxisf(share * way.angle(), way.axis()) * own);
+  }
+
+  const FuseLayout& layout_;
+  const BoneFilterOptions& options_;
+  std::vector<Part> parts_;
+  std::optional<SeenBone> hips_, spine_;
+  std::vector<Turn> held_;   // [B] against the bone above
+  std::vector<Turn> world_;  // [B+1] the last one is the root
+};
+
+}  // namespace
+
+FusedPose filtered_pose(const FuseLayout& layout, const PoseBody& body, const FuseInput& input,
+                        const BoneFilterOptions& options) {
+  JointFrames kinect = smoothed_kinect(input, options.smoothing);
+  kinect.seen = input.kinect.seen;
+  const auto base = index_in(layout.joints, "SpineBase");
+  BoneFilter filter(layout, body, options);
+  FusedPose out;
+  for (std::size_t t = 0; t < input.frames(); ++t) {
+    filter.step(input, kinect, t, out);
+    out.place.emplace_back(
+        Eigen::Map<const Eigen::Vector3f>(&kinect.positions[3 * (t * kinect.joints + *base)]));
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/fuse/fuse_features.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace kinalign {
+
+namespace {
+
+constexpr float smoothing_s = 0.15F;  // of the heading that the Kinect sees
+constexpr float least_width_m = 0.15F;
+
+std::size_t place_of_joint(const std::vector<std::string>& joints, std::string_view name) {
+  return static_cast<std::size_t>(std::find(joints.begin(), joints.end(), name) - joints.begin());
+}
+
+Eigen::Vector3f joint_at(const JointFrames& kinect, std::size_t t, std::size_t j) {
+  return Eigen::Map<const Eigen::Vector3f>(&kinect.positions[3 * (t * kinect.joints + j)]);
+}
+
+bool is_seen(const JointFrames& kinect, std::size_t t, std::size_t j) {
+  return kinect.seen[t * kinect.joints + j] != 0 && joint_at(kinect, t, j).allFinite();
+}
+
+}  // namespace
+
+std::vector<std::string> fuse_joint_names() {
+  std::vector<std::string> out;
+  out.reserve(fuse_joints.size());
+  for (const FuseJoint& joint : fuse_joints) out.emplace_back(joint.kinect);
+  return out;
+}
+
+Result<void> validate(const FuseLayout& layout) {
+  KA_TRY(validate(layout.nodes));
+  for (const char* name : {"SpineBase", "HipLeft", "HipRight", "ShoulderLeft", "ShoulderRight"}) {
+    if (place_of_joint(layout.joints, name) == layout.joints.size()) {
+      return Failure(Error{"", 0, std::string("a joint ") + name, "none"});
+    }
+  }
+  if (layout.nodes.inputs != PoseInputs::ours) {
+    return Failure(Error{"", 0, "nodes with the channels \"ours\"", "others"});
+  }
+  return {};
+}
+
+FuseFeatureMaker::FuseFeatureMaker(const FuseLayout& layout)
+    : layout_(&layout),
+      nodes_(layout.nodes),
+      base_(place_of_joint(layout.joints, "SpineBase")),
+      pairs_{{{place_of_joint(layout.joints, "HipLeft"), place_of_joint(layout.joints, "HipRight")},
+              {place_of_joint(layout.joints, "ShoulderLeft"),
+               place_of_joint(layout.joints, "ShoulderRight")}}} {}
+
+void FuseFeatureMaker::reset() {
+  space_ = {};
+  left_.reset();
+}
+
+void FuseFeatureMaker::find_space(const FuseInput& input, std::size_t t) {
+  const JointFrames& kinect = input.kinect;
+  Eigen::Vector2f across = Eigen::Vector2f::Zero();
+  for (const auto& [left, right] : pairs_) {
+    if (!is_seen(kinect, t, left) || !is_seen(kinect, t, right)) continue;
+    const Eigen::Vector3f way = joint_at(kinect, t, left) - joint_at(kinect, t, right);
+    across += Eigen::Vector2f(way.x(), way.z());
+  }
+  if (across.norm() >= 2.0F * least_width_m) {
+    const float keep = std::exp(-1.0F / (smoothing_s * static_cast<float>(layout_->nodes.rate_hz)));
+    left_ = left_ ? Eigen::Vector2f(keep * *left_ + (1.0F - keep) * across) : across;
+  }
+  if (is_seen(kinect, t, base_)) space_.place = joint_at(kinect, t, base_);
+  if (const auto root = orientation_at(input.nodes, t, layout_->nodes.leaves())) {
+    space_.turn = *root;
+  } else if (left_ && left_->norm() > 1e-3F) {
+    // x of the body is its left: the turn about y that brings (1, 0, 0) there.
+    space_.turn = Eigen::AngleAxisf(std::atan2(-left_->y(), left_->x()), Eigen::Vector3f::UnitY());
+  }
+}
+
+void FuseFeatureMaker::make(const FuseInput& input, std::size_t t, std::span<float> out) {
+  assert(out.size() == layout_->channels() && input.kinect.joints == layout_->joints.size());
+  find_space(input, t);
+  const JointFrames& kinect = input.kinect;
+  const Eigen::Matrix3f from_world = space_.turn.toRotationMatrix().transpose();
+  const bool is_there = is_seen(kinect, t, base_);
+  std::size_t next = 0;
+  for (std::size_t j = 0; j < kinect.joints; ++j) {
+    const bool seen = is_there && is_seen(kinect, t, j);
+    const Eigen::Vector3f place =
+        seen ? Eigen::Vector3f(from_world * (joint_at(kinect, t, j) - space_.place))
+             : Eigen::Vector3f::Zero();
+    for (int k = 0; k < 3; ++k) out[next++] = place(k);
+    out[next++] = seen ? 0.5F * static_cast<float>(kinect.seen[t * kinect.joints + j]) : 0.0F;
+  }
+  out[next++] = is_there ? 1.0F : 0.0F;
+  nodes_.make_in(space_.turn, input.nodes, t, out.subspan(next, layout_->nodes.channels()));
+  out.back() = orientation_at(input.nodes, t, layout_->nodes.leaves()) ? 1.0F : 0.0F;
+}
+
+FuseFeatures fuse_features(const FuseLayout& layout, const FuseInput& input) {
+  const std::size_t frames = input.frames(), channels = layout.channels();
+  FuseFeatures out;
+  out.input.resize(frames * channels);
+  out.space.reserve(frames);
+  FuseFeatureMaker maker(layout);
+  for (std::size_t t = 0; t < frames; ++t) {
+    maker.make(input, t, std::span(out.input).subspan(t * channels, channels));
+    out.space.push_back(maker.space());
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/fuse/fuse_model.h"
+
+#include "kinalign/models/model_file.h"
+#include "kinalign/models/pose/pose_model.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+/// Whether any frame shows the root's place.
+bool is_placed(const FuseInput& input) {
+  return std::any_of(input.kinect.seen.begin(), input.kinect.seen.end(),
+                     [](std::uint8_t seen) { return seen != 0; });
+}
+
+}  // namespace
+
+FusedFrame fused_frame(const FuseSpace& space, std::span<const float> answers,
+                       std::span<Turn> rotations) {
+  const Turn root = turn_of_answer(&answers[6 * rotations.size()]);
+  for (std::size_t b = 0; b < rotations.size(); ++b) {
+    rotations[b] = root.transpose() * turn_of_answer(&answers[6 * b]);
+  }
+  const Eigen::Map<const Eigen::Vector3f> way(&answers[6 * (rotations.size() + 1)]);
+  FusedFrame out;
+  out.root = (space.turn * Eigen::Quaternionf(root)).normalized();
+  out.place = space.place + space.turn * (fuse_place_unit_m * way);
+  return out;
+}
+
+Result<Fuser> Fuser::make(FuseModel model) {
+  Network network = KA_TRY(Network::make(model.architecture, tensors_below(model.tensors, "net.")));
+  const std::size_t in = model.layout.channels(), out = model.layout.answers();
+  if (network.inputs() != in || network.outputs() != out) {
+    return Failure(
+        Error{"", 0, std::to_string(in) + " channels in and " + std::to_string(out) + " out",
+              std::to_string(network.inputs()) + " and " + std::to_string(network.outputs())});
+  }
+  return Fuser(std::move(model), std::move(network));
+}
+
+Fuser::Fuser(FuseModel model, Network network)
+    : model_(std::move(model)), network_(std::move(network)) {}
+
+FusedPose Fuser::answer(const FuseInput& input) {
+  FuseFeatures features = fuse_features(model_.layout, input);
+  standardise(model_.input_mean, model_.input_scale, features.input);
+  std::vector<float> answers;
+  network_.run(features.input, input.frames(), workspace_, answers);
+  const std::size_t bones = model_.layout.nodes.bones.size(), width = model_.layout.answers();
+  FusedPose out;
+  out.rotations.resize(input.frames() * bones);
+  for (std::size_t t = 0; t < input.frames(); ++t) {
+    const FusedFrame frame =
+        fused_frame(features.space[t], std::span(answers).subspan(t * width, width),
+                    std::span(out.rotations).subspan(t * bones, bones));
+    out.root.push_back(frame.root);
+    out.place.push_back(frame.place);
+  }
+  return out;
+}
+
+std::vector<HeadingState> Fuser::headings(const FuseInput& given) {
+  FuseInput input = given;
+  unexchange(model_.layout, input);
+  FuseInput kinect = input;
+  std::fill(kinect.nodes.valid.begin(), kinect.nodes.valid.end(), std::uint8_t{0});
+  const FusedPose seen = answer(kinect);
+  const HeadingFilter filter(model_.layout, model_.body);
+  return node_headings(filter, input.nodes,
+                       directions_of_pose(filter, input.kinect, seen.rotations, seen.root));
+}
+
+FusedPose Fuser::solve(const FuseInput& given) {
+  FuseInput input = given;
+  unexchange(model_.layout, input);
+  FuseInput own = input;
+  own.nodes = with_headings(std::move(own.nodes), headings(input));
+  FusedPose out = answer(own);
+  if (!model_.smoothing) return out;
+  smooth_turns(model_.layout.nodes.bones.size(), out.rotations);
+  std::vector<Turn> roots;
+  for (const Eigen::Quaternionf& root : out.root) roots.emplace_back(root.toRotationMatrix());
+  smooth_turns(1, roots);
+  for (std::size_t t = 0; t < roots.size(); ++t) out.root[t] = Eigen::Quaternionf(roots[t]);
+  std::vector<float> places;
+  for (const Eigen::Vector3f& place : out.place) {
+    places.insert(places.end(), {place.x(), place.y(), place.z()});
+  }
+  smooth(Smoothing{}, 3, places);
+  for (std::size_t t = 0; t < out.place.size(); ++t) {
+    out.place[t] = Eigen::Map<const Eigen::Vector3f>(&places[3 * t]);
+  }
+  return out;
+}
+
+Clip Fuser::clip(const FuseInput& input, Time start) {
+  const FusedPose pose = solve(input);
+  Clip out{model_.body.skeleton,
+           clip_frames(model_.body, pose.rotations, pose.root, model_.layout.nodes.rate_hz, start)};
+  if (!is_placed(input)) return out;
+  const std::size_t joints = model_.body.skeleton.joints();
+  for (std::size_t t = 0; t < pose.place.size(); ++t) {
+    vec3(out.frames.local_positions, t * joints) = pose.place[t].cast<double>();
+  }
+  return out;
+}
+
+Result<void> Fuser::use_body(const Skeleton& body) {
+  model_.body = KA_TRY(with_own_bones(model_.body, body));
+  return {};
+}
+
+Result<OnlineFuser> OnlineFuser::make(const Fuser& fuser) {
+  OnlineNetwork network = KA_TRY(OnlineNetwork::make(fuser.network_));
+  return OnlineFuser(fuser, std::move(network), KA_TRY(OnlineNetwork::make(fuser.network_)));
+}
+
+OnlineFuser::OnlineFuser(const Fuser& fuser, OnlineNetwork network, OnlineNetwork of_kinect)
+    : model_(&fuser.model_),
+      network_(std::move(network)),
+      of_kinect_(std::move(of_kinect)),
+      headings_(model_->layout, model_->body),
+      maker_(model_->layout),
+      kinect_maker_(model_->layout),
+      states_(model_->layout.nodes.nodes.size()),
+      input_(model_->layout.channels()),
+      rotations_(model_->layout.nodes.bones.size()) {}
+
+void OnlineFuser::find_headings(const FuseInput& input) {
+  corrected_ = input;  // of the same size in each step: nothing is allocated
+  std::fill(corrected_.nodes.valid.begin(), corrected_.nodes.valid.end(), std::uint8_t{0});
+  kinect_maker_.make(corrected_, 0, input_);
+  standardise(model_->input_mean, model_->input_scale, input_);
+  const FusedFrame seen = fused_frame(kinect_maker_.space(), of_kinect_.step(input_), rotations_);
+  headings_.step(input.nodes, 0,
+                 directions_of_pose(headings_, input.kinect, rotations_, std::span(&seen.root, 1)));
+  for (std::size_t n = 0; n < states_.size(); ++n) states_[n] = headings_.state(n);
+}
+
+std::span<const Turn> OnlineFuser::step(const FuseInput& given) {
+  FuseInput input = given;  // of the same size in each step: nothing is allocated
+  unexchange(model_->layout, input);
+  find_headings(input);
+  corrected_ = input;
+  correct_frame(corrected_.nodes, 0, states_);
+  maker_.make(corrected_, 0, input_);
+  standardise(model_->input_mean, model_->input_scale, input_);
+  frame_ = fused_frame(maker_.space(), network_.step(input_), rotations_);
+  return rotations_;
+}
+
+void OnlineFuser::reset() {
+  network_.reset();
+  of_kinect_.reset();
+  headings_.reset();
+  maker_.reset();
+  kinect_maker_.reset();
+}
+
+}  // namespace kinalign

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// A model that answers with a person's pose to a Kinect and inertial nodes together: its network,
+// and everything needed to use it. Layout of its file: docs/formats/model.md.
+#pragma once
+
+#include "kinalign/infer/network.h"
+#include "kinalign/infer/online.h"
+#include "kinalign/models/fuse/bone_filter.h"
+#include "kinalign/models/fuse/fuse_features.h"
+#include "kinalign/models/fuse/node_headings.h"
+#include "kinalign/models/model_facts.h"
+#include "kinalign/models/pose/pose_body.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// Metres of a network's 1, of the root's place against the Kinect's.
+inline constexpr float fuse_place_unit_m = 0.1F;
+
+struct FuseModel {
+  ModelFacts facts;  // task "fuse"
+  FuseLayout layout;
+  PoseBody body;                               // the mean body of the training people
+  bool smoothing = true;                       // of whole sequences, as a PoseModel's
+  std::vector<float> input_mean, input_scale;  // [C]
+  Architecture architecture;
+  std::map<std::string, Tensor> tensors;  // "net." before the names
+};
+
+/// The bytes of a model's file. The same model gives the same bytes.
+std::string write_fuse_model(const FuseModel& model);
+
+/// Fails where the file is no model of this task or its parts do not fit together.
+Result<FuseModel> read_fuse_model(std::string_view bytes, const std::string& name);
+
+/// One frame of a network's answers [answers], brought into the world.
+struct FusedFrame {
+  Eigen::Quaternionf root = Eigen::Quaternionf::Identity();
+  Eigen::Vector3f place = Eigen::Vector3f::Zero();
+};
+/// Fills `rotations` [B] against the root.
+FusedFrame fused_frame(const FuseSpace& space, std::span<const float> answers,
+                       std::span<Turn> rotations);
+
+/// A model ready for whole sequences. It can be used by one thread at a time.
+class Fuser {
+ public:
+  static Result<Fuser> make(FuseModel model);
+
+  const FuseModel& model() const { return model_; }
+
+  /// `input`: the layout's, at its rate. The network answers to the Kinect alone first; that pose
+  /// shows the nodes' headings (node_headings.h), and with these it answers to both. The answer is
+  /// smoothed.
+  FusedPose solve(const FuseInput& input);
+  /// The headings alone [T,N].
+  std::vector<HeadingState> headings(const FuseInput& input);
+  /// The network's answer alone. `input`: with corrected headings.
+  FusedPose answer(const FuseInput& input);
+  /// A skeleton with constant bones, at its place in the Kinect's world. Where no Kinect has seen
+  /// anything, x and z of the root are 0 and the lowest joint is at y = 0.
+  Clip clip(const FuseInput& input, Time start);
+
+  /// As PoseSolver::use_body().
+  Result<void> use_body(const Skeleton& body);
+
+ private:
+  friend class OnlineFuser;
+  Fuser(FuseModel model, Network network);
+
+  FuseModel model_;
+  Network network_;
+  Workspace workspace_;
+};
+
+/// A model that runs frame by frame, with headings by the frames so far and without smoothing. Its
+/// network runs twice a frame: on the Kinect alone, for the headings, and on both.
+class OnlineFuser {
+ public:
+  /// `fuser` must live longer and must not be moved. Fails where its network needs later frames.
+  static Result<OnlineFuser> make(const Fuser& fuser);
+
+  /// Takes one frame: `input` holds it alone. The rotations [B] are valid until the next step.
+  std::span<const Turn> step(const FuseInput& input);
+  /// Root and place of the last step.
+  const FusedFrame& frame() const { return frame_; }
+  void reset();
+
+ private:
+  OnlineFuser(const Fuser& fuser, OnlineNetwork network, OnlineNetwork of_kinect);
+  void find_headings(const FuseInput& input);
+
+  const FuseModel* model_;
+  OnlineNetwork network_, of_kinect_;
+  HeadingFilter headings_;
+  FuseFeatureMaker maker_, kinect_maker_;
+  FuseInput corrected_;
+  std::vector<HeadingState> states_;
+  std::vector<float> input_;
+  std::vector<Turn> rotations_;
+  FusedFrame frame_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/fuse/node_headings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// The bone that carries a node, and the way on it that a Kinect sees.
+struct CarriedNode {
+  std::string_view node, from, to, bone;
+};
+constexpr std::array<CarriedNode, 5> carried_nodes{{{"wrist_left", "lradius", "lwrist", "lwrist"},
+                                                    {"wrist_right", "rradius", "rwrist", "rwrist"},
+                                                    {"ankle_left", "ltibia", "lfoot", "ltibia"},
+                                                    {"ankle_right", "rtibia", "rfoot", "rtibia"},
+                                                    {"waist", "rfemur", "lfemur", ""}}};
+
+Eigen::Matrix3d crossing(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d out;
+  out << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return out;
+}
+
+Eigen::Quaternionf turn_by(const Eigen::Vector3f& vector) {
+  const float angle = vector.norm();
+  if (angle < 1e-9F) return Eigen::Quaternionf::Identity();
+  return Eigen::Quaternionf(Eigen::AngleAxisf(angle, vector / angle));
+}
+
+Eigen::Quaternionf yaw_turn(float yaw) {
+  return Eigen::Quaternionf(Eigen::AngleAxisf(yaw, Eigen::Vector3f::UnitY()));
+}
+
+HeadingState state_of(const Eigen::Matrix<double, 4, 1>& mean,
+                      const Eigen::Matrix<double, 4, 4>& spread) {
+  return {.yaw = static_cast<float>(mean(0)),
+          .spread = static_cast<float>(std::sqrt(std::max(spread(0, 0), 0.0))),
+          .mount = mean.tail<3>().cast<float>()};
+}
+
+}  // namespace
+
+Eigen::Quaternionf corrected(const HeadingState& state, const Eigen::Quaternionf& orientation) {
+  return yaw_turn(state.yaw) * orientation * turn_by(state.mount);
+}
+
+HeadingFilter::HeadingFilter(const FuseLayout& layout, const PoseBody& body, HeadingOptions options)
+    : layout_(&layout), options_(options), filters_(layout.nodes.nodes.size()) {
+  for (std::size_t n = 0; n < filters_.size(); ++n) {
+    const auto carried =
+        std::find_if(carried_nodes.begin(), carried_nodes.end(),
+                     [&](const CarriedNode& one) { return one.node == layout.nodes.nodes[n]; });
+    if (carried == carried_nodes.end()) continue;
+    filters_[n].bone = seen_bone(body, layout.joints, carried->from, carried->to, carried->bone);
+  }
+  reset();
+}
+
+void HeadingFilter::reset() {
+  const double heading = options_.heading_deg * degree, mount = options_.mount_deg * degree;
+  for (Filter& filter : filters_) {
+    filter.mean.setZero();
+    filter.spread.setZero();
+    filter.spread.diagonal() << heading * heading, mount * mount, mount * mount, mount * mount;
+  }
+}
+
+void HeadingFilter::predict(Filter& filter) const {
+  const double walk = options_.walk_deg_per_minute * degree;
+  filter.spread(0, 0) += walk * walk / (60.0 * layout_->nodes.rate_hz);
+}
+
+void HeadingFilter::measure(Filter& filter, const Eigen::Quaternionf& orientation,
+                            const SeenDirection& seen) const {
+  const HeadingState now = state_of(filter.mean, filter.spread);
+  const Eigen::Quaternionf turn = corrected(now, orientation);
+  const Eigen::Vector3d axis = filter.bone->axis.cast<double>();
+  const Eigen::Vector3d expected = (turn * filter.bone->axis).cast<double>();
+  const Eigen::Vector3d miss = seen.direction.cast<double>() - expected;
+  Eigen::Matrix<double, 3, 4> slope;
+  slope.col(0) = Eigen::Vector3d::UnitY().cross(expected);
+  slope.rightCols<3>() = -turn.cast<double>().toRotationMatrix() * crossing(axis);
+  const double sigma = (seen.tracked ? options_.tracked_deg : options_.inferred_deg) * degree;
+  const Eigen::Matrix3d known = slope * filter.spread * slope.transpose();
+  const Eigen::Matrix3d one = known + sigma * sigma * Eigen::Matrix3d::Identity();
+  if (miss.dot(one.ldlt().solve(miss)) > options_.gate * options_.gate) return;
+  const Eigen::Matrix3d all =
+      known + options_.frames_as_one * sigma * sigma * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix<double, 4, 3> gain = all.ldlt().solve(slope * filter.spread).transpose();
+  filter.mean += gain * miss;
+  filter.spread = ((Spread::Identity() - gain * slope) * filter.spread).eval();
+  filter.spread = (0.5 * (filter.spread + filter.spread.transpose())).eval();
+}
+
+void HeadingFilter::step(const NodeFrames& nodes, std::size_t t,
+                         std::span<const std::optional<SeenDirection>> directions) {
+  for (std::size_t n = 0; n < filters_.size(); ++n) {
+    predict(filters_[n]);
+    if (!filters_[n].bone || !directions[n]) continue;
+    const auto orientation = orientation_at(nodes, t, n);
+    if (orientation) measure(filters_[n], *orientation, *directions[n]);
+  }
+}
+
+std::vector<std::optional<SeenBone>> HeadingFilter::bones() const {
+  std::vector<std::optional<SeenBone>> out;
+  for (const Filter& filter : filters_) out.push_back(filter.bone);
+  return out;
+}
+
+HeadingState HeadingFilter::state(std::size_t node) const {
+  return state_of(filters_[node].mean, filters_[node].spread);
+}
+
+/// Keeps what the filter says frame by frame, and goes back over it.
+class HeadingSmoother {
+ public:
+  static std::vector<HeadingState> smoothed(HeadingFilter filter, const NodeFrames& input,
+                                            const NodeDirections& directions) {
+    const std::size_t frames = input.frames(), nodes = filter.filters_.size();
+    std::vector<HeadingFilter::Filter> after;
+    after.reserve(frames * nodes);
+    for (std::size_t t = 0; t < frames; ++t) {
+      filter.step(input, t, std::span(directions).subspan(t * nodes, nodes));
+      after.insert(after.end(), filter.filters_.begin(), filter.filters_.end());
+    }
+    std::vector<HeadingState> out(frames * nodes);
+    for (std::size_t n = 0; n < nodes; ++n) {
+      HeadingFilter::Filter later;
+      for (std::size_t t = frames; t-- > 0;) {
+        HeadingFilter::Filter& now = after[t * nodes + n];
+        if (t + 1 < frames) {
+          HeadingFilter::Filter expected = now;
+          filter.predict(expected);
+          const HeadingFilter::Spread gain = expected.spread.ldlt().solve(now.spread).transpose();
+          now.mean += gain * (later.mean - expected.mean);
+          now.spread += gain * (later.spread - expected.spread) * gain.transpose();
+        }
+        later = now;
+        out[t * nodes + n] = state_of(now.mean, now.spread);
+      }
+    }
+    return out;
+  }
+};
+
+NodeDirections directions_of_joints(const HeadingFilter& filter, const JointFrames& kinect) {
+  const auto bones = filter.bones();
+  NodeDirections out;
+  for (std::size_t t = 0; t < kinect.frames(); ++t) {
+    for (const auto& bone : bones) {
+      out.push_back(bone ? direction_at(kinect, t, *bone) : std::nullopt);
+    }
+  }
+  return out;
+}
+
+NodeDirections directions_of_pose(const HeadingFilter& filter, const JointFrames& kinect,
+                                  std::span<const Turn> rotations,
+                                  std::span<const Eigen::Quaternionf> root) {
+  NodeDirections out = directions_of_joints(filter, kinect);
+  const auto bones = filter.bones();
+  const std::size_t count = root.empty() ? 0 : rotations.size() / root.size();
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (!out[i]) continue;
+    const std::size_t t = i / bones.size();
+    const SeenBone& bone = *bones[i % bones.size()];
+    const Turn turn = bone.bone < count ? rotations[t * count + bone.bone] : Turn(Turn::Identity());
+    out[i]->direction = root[t] * (turn * bone.axis);
+  }
+  return out;
+}
+
+std::vector<HeadingState> node_headings(HeadingFilter filter, const NodeFrames& nodes,
+                                        const NodeDirections& directions) {
+  return HeadingSmoother::smoothed(std::move(filter), nodes, directions);
+}
+
+void correct_frame(NodeFrames& nodes, std::size_t t, std::span<const HeadingState> states) {
+  for (std::size_t n = 0; n < nodes.nodes; ++n) {
+    const auto orientation = orientation_at(nodes, t, n);
+    if (!orientation) continue;
+    const std::size_t at = t * nodes.nodes + n;
+    const Eigen::Quaternionf turned = corrected(states[n], *orientation);
+    const std::array<float, 4> values{turned.w(), turned.x(), turned.y(), turned.z()};
+    std::copy(values.begin(), values.end(), &nodes.orientation[4 * at]);
+    Eigen::Map<Eigen::Vector3f> acceleration(&nodes.acceleration[3 * at]);
+    acceleration = (yaw_turn(states[n].yaw) * Eigen::Vector3f(acceleration)).eval();
+    Eigen::Map<Eigen::Vector3f> rate(&nodes.angular_velocity[3 * at]);
+    rate = (turn_by(states[n].mount).conjugate() * Eigen::Vector3f(rate)).eval();
+  }
+}
+
+NodeFrames with_headings(NodeFrames nodes, const std::vector<HeadingState>& states) {
+  for (std::size_t t = 0; t < nodes.frames(); ++t) {
+    correct_frame(nodes, t, std::span(states).subspan(t * nodes.nodes, nodes.nodes));
+  }
+  return nodes;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/fuse/seen_bones.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr float least_length_m = 0.03F;
+constexpr float against = -0.5F;  // the cosine of 120 degrees
+
+std::optional<std::size_t> kinect_joint_at(const std::vector<std::string>& kinect,
+                                           std::string_view body_joint) {
+  const auto joint = std::find_if(fuse_joints.begin(), fuse_joints.end(),
+                                  [&](const FuseJoint& one) { return one.body == body_joint; });
+  if (joint == fuse_joints.end()) return std::nullopt;
+  const auto at = std::find(kinect.begin(), kinect.end(), joint->kinect);
+  if (at == kinect.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - kinect.begin());
+}
+
+/// Where a joint lies at rest, all bones unturned, m.
+std::optional<Vec3> rest_place(const Skeleton& skeleton, std::string_view name) {
+  const auto at = std::find(skeleton.joint_names.begin(), skeleton.joint_names.end(), name);
+  if (at == skeleton.joint_names.end()) return std::nullopt;
+  Vec3 out = Vec3::Zero();
+  for (auto j = static_cast<int>(at - skeleton.joint_names.begin());
+       skeleton.parents[static_cast<std::size_t>(j)] >= 0;
+       j = skeleton.parents[static_cast<std::size_t>(j)]) {
+    out += skeleton.rest_offsets[static_cast<std::size_t>(j)];
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<SeenBone> seen_bone(const PoseBody& body, const std::vector<std::string>& kinect,
+                                  std::string_view from, std::string_view to,
+                                  std::string_view bone) {
+  const auto begin = kinect_joint_at(kinect, from), end = kinect_joint_at(kinect, to);
+  const auto rest_begin = rest_place(body.skeleton, from), rest_end = rest_place(body.skeleton, to);
+  if (!begin || !end || !rest_begin || !rest_end) return std::nullopt;
+  const Eigen::Vector3f way = (*rest_end - *rest_begin).cast<float>();
+  const auto turner = std::find(body.bones.begin(), body.bones.end(), bone);
+  if (way.norm() < least_length_m || (!bone.empty() && turner == body.bones.end())) {
+    return std::nullopt;
+  }
+  return SeenBone{*begin, *end, way.normalized(),
+                  static_cast<std::size_t>(turner - body.bones.begin())};
+}
+
+std::optional<SeenDirection> direction_at(const JointFrames& kinect, std::size_t t,
+                                          const SeenBone& bone) {
+  const std::size_t from = t * kinect.joints + bone.from, to = t * kinect.joints + bone.to;
+  if (kinect.seen[from] == 0 || kinect.seen[to] == 0) return std::nullopt;
+  const Eigen::Vector3f way = Eigen::Map<const Eigen::Vector3f>(&kinect.positions[3 * to]) -
+                              Eigen::Map<const Eigen::Vector3f>(&kinect.positions[3 * from]);
+  const float length = way.norm();
+  if (!std::isfinite(length) || length < least_length_m) return std::nullopt;
+  return SeenDirection{way / length, kinect.seen[from] == 2 && kinect.seen[to] == 2};
+}
+
+void unexchange(const FuseLayout& layout, FuseInput& input) {
+  const std::vector<std::string>& names = layout.joints;
+  JointFrames& kinect = input.kinect;
+  const auto at = [&](std::string_view name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  const SeenBone hips{at("HipRight"), at("HipLeft"), Eigen::Vector3f::UnitX(), 0};
+  const auto partners = mirror_partners(names);
+  for (std::size_t t = 0; t < kinect.frames(); ++t) {
+    const auto across = direction_at(kinect, t, hips);
+    const auto root = orientation_at(input.nodes, t, layout.nodes.leaves());
+    if (!across || !root) continue;
+    const Eigen::Vector3f left = *root * hips.axis;
+    if (across->direction.dot(left) > against) continue;
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      if (partners[j] <= j) continue;
+      const std::size_t a = t * kinect.joints + j, b = t * kinect.joints + partners[j];
+      std::swap_ranges(&kinect.positions[3 * a], &kinect.positions[3 * a] + 3,
+                       &kinect.positions[3 * b]);
+      std::swap(kinect.seen[a], kinect.seen[b]);
+    }
+  }
+}
+
+}  // namespace kinalign
