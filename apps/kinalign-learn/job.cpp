@@ -179,10 +179,18 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
   return Fitted{write_pose_model(fit.model), std::move(fit.points)};
 }
 
+/// The file's own Kinect where it has one of the job's name, else simulated ones.
+FuseDataOptions fuse_options(const TrainingJob& job, const Windows& windows) {
+  FuseDataOptions out;
+  if (windows.facts.find(job.input) != nullptr) out.kinect = job.input;
+  return out;
+}
+
 Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
                             const Windows& windows, TrainingState state,
                             const TrainingHooks& hooks) {
-  const FuseData data = KA_TRY(fuse_data(windows, job.truth, job.nodes, {}));
+  const FuseData data =
+      KA_TRY(fuse_data(windows, job.truth, job.nodes, fuse_options(job, windows)));
   FuseFit fit = KA_TRY(fit_fuse(method, data, fit_options(job), std::move(state), hooks));
   LearntFrom from;
   for (const PoseSequence& one : data.pose.learnt) from.add(one.subject, one.frames());
@@ -242,7 +250,8 @@ void print_headings(const std::string& method, const std::vector<HeadingMark>& m
 Result<void> evaluate_fuse(const TrainingJob& job, const Windows& windows, FuseModel model) {
   auto fuser = KA_TRY(Fuser::make(std::move(model)));
   const FuseLayout layout = fuser.model().layout;
-  const FuseData data = KA_TRY(fuse_data(windows, job.truth, layout.nodes.nodes, {}));
+  const FuseData data =
+      KA_TRY(fuse_data(windows, job.truth, layout.nodes.nodes, fuse_options(job, windows)));
   const std::vector<Devices> all{Devices::both, Devices::kinect, Devices::nodes};
   const Fusion network = [&](const FuseInput& input) { return fuser.solve(input); };
   const Headings by_joints = [&](const FuseInput& input) {

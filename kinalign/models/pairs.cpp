@@ -127,4 +127,25 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
   return out;
 }
 
+Result<JointFrames> kinect_frames(const Windows& windows, const Stretch& stretch,
+                                  const std::string& stream,
+                                  const std::vector<std::string>& wanted) {
+  const auto names = kinect_names(KA_TRY(joints_of(windows, stream)));
+  const auto* positions = positions_of(stretch, stream, names.size());
+  if (positions == nullptr) return Failure(Error{"", 0, "positions of " + stream, "none"});
+  const auto seen = seen_of(stretch.streams.at(stream), stretch.rows, names.size());
+  JointFrames out{wanted.size(), std::vector<float>(stretch.rows * wanted.size() * 3, 0.0F),
+                  std::vector<std::uint8_t>(stretch.rows * wanted.size(), 0)};
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const auto j = index_of(names, wanted[k]);
+    if (!j) continue;
+    for (std::size_t t = 0; t < stretch.rows; ++t) {
+      const std::size_t from = t * names.size() + *j, to = t * wanted.size() + k;
+      out.seen[to] = seen[from];
+      if (seen[from] != 0) std::copy_n(&(*positions)[3 * from], 3, &out.positions[3 * to]);
+    }
+  }
+  return out;
+}
+
 }  // namespace kinalign

@@ -34,4 +34,10 @@ struct Pairs {
 Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const std::string& truth,
                        std::size_t least);
 
+/// What a Kinect's stream says in a stretch, of the joints `wanted` by its names; those that it
+/// lacks are missing. Fails where the stretch has no such stream.
+Result<JointFrames> kinect_frames(const Windows& windows, const Stretch& stretch,
+                                  const std::string& stream,
+                                  const std::vector<std::string>& wanted);
+
 }  // namespace kinalign

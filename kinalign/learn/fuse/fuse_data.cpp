@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/fuse/fuse_data.h"
 
+#include "kinalign/models/pairs.h"
 #include "kinalign/simulate/kinect/kinect_camera.h"
 #include "kinalign/simulate/random.h"
 
@@ -129,25 +130,72 @@ JointFrames simulated_kinect(const PoseBody& body, const PoseSequence& sequence,
   return seen_in_world(said, options.world_from_kinect);
 }
 
+namespace {
+
+/// Of every part; the same person has the same number in all of them.
+class SimulatedKinects {
+ public:
+  SimulatedKinects(const PoseBody& body, std::uint64_t seed) : body_(body), seed_(seed) {}
+
+  std::vector<std::vector<JointFrames>> before(const std::vector<PoseSequence>& sequences,
+                                               std::size_t draws) {
+    std::vector<std::vector<JointFrames>> out;
+    for (const PoseSequence& one : sequences) {
+      const std::uint64_t person =
+          people_.try_emplace(one.subject, people_.size() + 1).first->second;
+      auto& own = out.emplace_back();
+      for (std::size_t k = 0; k < draws; ++k) {
+        own.push_back(simulated_kinect(body_, one, person, seed_, ++take_));
+      }
+    }
+    return out;
+  }
+
+ private:
+  const PoseBody& body_;
+  std::uint64_t seed_;
+  std::map<std::string, std::uint64_t> people_;
+  std::uint64_t take_ = 0;
+};
+
+/// The file's own stream at the frames of each sequence.
+Result<std::vector<std::vector<JointFrames>>> own_kinect(
+    const Windows& windows, const std::string& stream, const std::vector<PoseSequence>& sequences) {
+  const auto names = fuse_joint_names();
+  std::vector<std::vector<JointFrames>> out;
+  for (const PoseSequence& one : sequences) {
+    const JointFrames all =
+        KA_TRY(kinect_frames(windows, windows.stretches[one.stretch], stream, names));
+    JointFrames& own = out.emplace_back().emplace_back();
+    own.joints = names.size();
+    for (std::size_t t = 0; t < one.frames(); ++t) {
+      const std::size_t row = one.first_row + t * one.rows_a_frame;
+      const auto at = static_cast<std::ptrdiff_t>(row * names.size());
+      const auto end = at + static_cast<std::ptrdiff_t>(names.size());
+      own.positions.insert(own.positions.end(), all.positions.begin() + 3 * at,
+                           all.positions.begin() + 3 * end);
+      own.seen.insert(own.seen.end(), all.seen.begin() + at, all.seen.begin() + end);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 Result<FuseData> fuse_data(const Windows& windows, const std::string& stream,
                            const std::vector<std::string>& nodes, const FuseDataOptions& options) {
   FuseData out;
   out.pose = KA_TRY(pose_data(windows, stream, nodes));
-  std::map<std::string, std::uint64_t> people;
-  std::uint64_t take = 0;
-  const auto simulate = [&](const std::vector<PoseSequence>& sequences, std::size_t draws,
-                            std::vector<std::vector<JointFrames>>& seen) {
-    for (const PoseSequence& one : sequences) {
-      const std::uint64_t person = people.try_emplace(one.subject, people.size() + 1).first->second;
-      auto& own = seen.emplace_back();
-      for (std::size_t k = 0; k < draws; ++k) {
-        own.push_back(simulated_kinect(out.pose.body, one, person, options.seed, ++take));
-      }
-    }
-  };
-  simulate(out.pose.learnt, options.draws, out.learnt);
-  simulate(out.pose.judged, 1, out.judged);
-  simulate(out.pose.tested, 1, out.tested);
+  if (!options.kinect.empty()) {
+    out.learnt = KA_TRY(own_kinect(windows, options.kinect, out.pose.learnt));
+    out.judged = KA_TRY(own_kinect(windows, options.kinect, out.pose.judged));
+    out.tested = KA_TRY(own_kinect(windows, options.kinect, out.pose.tested));
+    return out;
+  }
+  SimulatedKinects kinects(out.pose.body, options.seed);
+  out.learnt = kinects.before(out.pose.learnt, options.draws);
+  out.judged = kinects.before(out.pose.judged, 1);
+  out.tested = kinects.before(out.pose.tested, 1);
   return out;
 }
 

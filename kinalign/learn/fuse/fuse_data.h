@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sequences to learn fusion from: those of pose_data.h, and what a simulated Kinect before these
-// people says (docs/kinect_noise.md).
+// Sequences to learn fusion from: those of pose_data.h, and what a Kinect before these people says:
+// the file's own, or simulated ones (docs/kinect_noise.md).
 #pragma once
 
 #include "kinalign/learn/pose/pose_data.h"
@@ -22,10 +22,11 @@ struct FuseData {
 struct FuseDataOptions {
   std::uint64_t seed = 1;
   std::size_t draws = 2;  // of what is learnt from; else one
+  std::string kinect;     // the file's own stream of a Kinect in place of simulated ones
 };
 
-/// As pose_data(). The Kinect stands 2.2 to 3.2 m before the middle of a sequence, within 45
-/// degrees of the person's front.
+/// As pose_data(), and where the file's own Kinect lacks its stream. A simulated one stands 2.2
+/// to 3.2 m before the middle of a sequence, within 45 degrees of the person's front.
 Result<FuseData> fuse_data(const Windows& windows, const std::string& stream,
                            const std::vector<std::string>& nodes, const FuseDataOptions& options);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/pose/pose_data.h"
 
+#include "kinalign/learn/pose/pose_skeleton.h"
 #include "kinalign/learn/pose/upright_zero.h"
 
 #include <algorithm>
@@ -45,23 +46,29 @@ struct NodeJoints {
   Vec3 lever;
 };
 
+/// Indices are those of pose_joints.
 struct FileSkeleton {
-  std::vector<std::string> names;
-  std::vector<int> parents;
-  std::vector<std::size_t> joints;  // [pose_joints]
-  std::vector<std::size_t> bones;   // [pose_bones]
+  PoseSkeleton pose;
+  std::vector<std::size_t> bones;  // [pose_bones] the joint of that name
   std::vector<NodeJoints> nodes;
   std::size_t head = 0;
 };
 
-Result<std::size_t> joint_named(const std::vector<std::string>& names, std::string_view name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
-  return Failure(
-      Error{"", 0, "a skeleton with CMU's joints (ASF/AMC)", "none named " + std::string(name)});
+std::vector<std::string> pose_joint_names() {
+  std::vector<std::string> out;
+  for (const PoseJoint& joint : pose_joints) out.emplace_back(joint.name);
+  return out;
 }
 
-Result<NodeJoints> node_joints(const std::vector<std::string>& names, const std::string& node) {
+std::vector<int> pose_joint_parents() { return pose_body({}).skeleton.parents; }
+
+std::size_t joint_named(std::string_view name) {
+  const auto at = std::find_if(pose_joints.begin(), pose_joints.end(),
+                               [&](const PoseJoint& one) { return one.name == name; });
+  return static_cast<std::size_t>(at - pose_joints.begin());
+}
+
+Result<NodeJoints> node_joints(const std::string& node) {
   const auto place = std::find_if(node_places.begin(), node_places.end(),
                                   [&](const NodePlace& one) { return one.name == node; });
   if (place == node_places.end()) {
@@ -70,84 +77,89 @@ Result<NodeJoints> node_joints(const std::vector<std::string>& names, const std:
       known += (known.empty() ? "" : ", ") + std::string(one.name);
     return Failure(Error{"", 0, "nodes among " + known, shown(node)});
   }
-  return NodeJoints{KA_TRY(joint_named(names, place->bone)),
-                    KA_TRY(joint_named(names, place->towards)), place->share,
+  return NodeJoints{joint_named(place->bone), joint_named(place->towards), place->share,
                     Vec3(place->lever[0], place->lever[1], place->lever[2])};
 }
 
 Result<FileSkeleton> file_skeleton(const Windows& windows, const std::string& stream,
                                    const std::vector<std::string>& nodes) {
-  FileSkeleton out;
-  if (const WindowsFacts::Stream* found = windows.facts.find(stream)) {
-    out.names = found->names;
-    out.parents = found->parents;
-  }
-  if (out.names.empty() || out.names.size() != out.parents.size()) {
+  const WindowsFacts::Stream* found = windows.facts.find(stream);
+  if (found == nullptr || found->names.empty() || found->names.size() != found->parents.size()) {
     return Failure(Error{"", 0, "a stream \"" + stream + "\" of a skeleton", "none"});
   }
-  for (std::size_t j = 0; j < out.parents.size(); ++j) {
-    if (out.parents[j] < (j == 0 ? -1 : 0) || out.parents[j] >= static_cast<int>(j)) {
-      return Failure(Error{"", 0, "one root, and parents before their children", "another order"});
-    }
-  }
-  for (const PoseJoint& joint : pose_joints) {
-    out.joints.push_back(KA_TRY(joint_named(out.names, joint.name)));
-  }
-  for (const std::string_view bone : pose_bones) {
-    out.bones.push_back(KA_TRY(joint_named(out.names, bone)));
-  }
-  for (const std::string& node : nodes) out.nodes.push_back(KA_TRY(node_joints(out.names, node)));
-  out.head = KA_TRY(joint_named(out.names, "head"));
+  FileSkeleton out;
+  out.pose = KA_TRY(pose_skeleton(found->names, found->parents));
+  for (const std::string_view bone : pose_bones) out.bones.push_back(joint_named(bone));
+  for (const std::string& node : nodes) out.nodes.push_back(KA_TRY(node_joints(node)));
+  out.head = joint_named("head");
   return out;
 }
 
-/// A stretch of the file: global rotations and positions, frame by frame.
+/// A stretch of the file: global rotations and positions of the pose's joints, frame by frame.
 class GlobalFrames {
  public:
   static Result<GlobalFrames> make(const FileSkeleton& skeleton, const Stretch& stretch,
                                    const std::string& stream) {
     const auto found = stretch.streams.find(stream);
-    const std::size_t joints = skeleton.names.size();
+    const std::size_t joints = skeleton.pose.file_joints();
     if (found != stretch.streams.end()) {
       const auto& arrays = found->second.arrays;
       const auto rotations = arrays.find("local_rotations"), positions = arrays.find("positions");
       if (rotations != arrays.end() && positions != arrays.end() &&
           rotations->second.size() == stretch.rows * joints * 4 &&
           positions->second.size() == stretch.rows * joints * 3) {
-        return GlobalFrames(skeleton, rotations->second, positions->second);
+        return GlobalFrames(skeleton.pose, rotations->second, positions->second);
       }
     }
     return Failure(Error{"", 0, "positions and local_rotations of " + stream, "none"});
   }
 
-  std::size_t frames() const { return rotations_->size() / (4 * skeleton_->names.size()); }
+  std::size_t frames() const { return rotations_->size() / (4 * skeleton_->file_joints()); }
 
-  /// Fills `out` [J] with the global rotations of frame `t`.
-  void rotations(std::size_t t, std::vector<Mat3>& out) const {
-    const std::size_t joints = skeleton_->names.size();
-    out.resize(joints);
+  /// Goes to frame `t`.
+  void go_to(std::size_t t) {
+    const std::size_t joints = skeleton_->file_joints();
+    file_rotations_.resize(joints);
     for (std::size_t j = 0; j < joints; ++j) {
       const float* q = &(*rotations_)[4 * (t * joints + j)];
       const Mat3 local =
           Eigen::Quaternionf(q[0], q[1], q[2], q[3]).cast<double>().normalized().toRotationMatrix();
-      const int parent = skeleton_->parents[j];
-      out[j] = parent < 0 ? local : Mat3(out[static_cast<std::size_t>(parent)] * local);
+      const int parent = skeleton_->file_parents[j];
+      file_rotations_[j] =
+          parent < 0 ? local : Mat3(file_rotations_[static_cast<std::size_t>(parent)] * local);
     }
+    all_rotations_.clear();
+    for (const JointSource& one : skeleton_->joints) {
+      all_rotations_.push_back(file_rotations_[one.turner]);
+    }
+    frame_ = t;
   }
 
-  Vec3 position(std::size_t t, std::size_t joint) const {
-    const float* p = &(*positions_)[3 * (t * skeleton_->names.size() + joint)];
-    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  /// [pose_joints] global rotations, as the file has them.
+  const std::vector<Mat3>& rotations() const { return all_rotations_; }
+
+  Vec3 position(std::size_t joint) const {
+    const JointSource& one = skeleton_->joints[joint];
+    const Vec3 from = file_position(one.from);
+    return from + one.share * (file_position(one.to) - from) +
+           file_rotations_[one.turner] * one.along;
   }
 
  private:
-  GlobalFrames(const FileSkeleton& skeleton, const std::vector<float>& rotations,
+  GlobalFrames(const PoseSkeleton& skeleton, const std::vector<float>& rotations,
                const std::vector<float>& positions)
       : skeleton_(&skeleton), rotations_(&rotations), positions_(&positions) {}
 
-  const FileSkeleton* skeleton_;
+  Vec3 file_position(std::size_t joint) const {
+    const float* p = &(*positions_)[3 * (frame_ * skeleton_->file_joints() + joint)];
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  }
+
+  const PoseSkeleton* skeleton_;
   const std::vector<float>* rotations_;
   const std::vector<float>* positions_;
+  std::size_t frame_ = 0;
+  std::vector<Mat3> file_rotations_, all_rotations_;
 };
 
 /// Nodes without errors at the file's rate.
@@ -177,18 +189,21 @@ class SequenceMaker {
         stride_(static_cast<std::size_t>(std::lround(file_rate_hz / pose_rate_hz))),
         reach_(static_cast<std::size_t>(std::lround(file_rate_hz * acceleration_reach_s))) {}
 
-  PoseSequence make(const GlobalFrames& frames, const std::vector<Mat3>& turns) const {
+  PoseSequence make(GlobalFrames frames, const std::vector<Mat3>& turns) const {
     PoseSequence out;
     out.nodes.nodes = skeleton_.nodes.size();
+    out.first_row = reach_;
+    out.rows_a_frame = stride_;
     NodeMotion motion;
     std::vector<Mat3> rotations;
     for (std::size_t t = 0; t < frames.frames(); ++t) {
-      frames.rotations(t, rotations);
+      frames.go_to(t);
+      rotations = frames.rotations();
       for (std::size_t j = 0; j < rotations.size(); ++j) rotations[j] = rotations[j] * turns[j];
-      add_nodes(frames, t, rotations, motion);
+      add_nodes(frames, rotations, motion);
       if (!is_kept(t, frames.frames())) continue;
       add_truth(rotations, out);
-      out.places.push_back(frames.position(t, 0));
+      out.places.push_back(frames.position(0));
     }
     for (std::size_t t = reach_; t + reach_ < frames.frames(); t += stride_) {
       for (std::size_t n = 0; n < out.nodes.nodes; ++n) add_sample(motion, t, n, out.nodes);
@@ -201,10 +216,10 @@ class SequenceMaker {
     return t >= reach_ && t + reach_ < frames && (t - reach_) % stride_ == 0;
   }
 
-  void add_nodes(const GlobalFrames& frames, std::size_t t, const std::vector<Mat3>& rotations,
+  void add_nodes(const GlobalFrames& frames, const std::vector<Mat3>& rotations,
                  NodeMotion& motion) const {
     for (const NodeJoints& node : skeleton_.nodes) {
-      const Vec3 begin = frames.position(t, node.bone), end = frames.position(t, node.towards);
+      const Vec3 begin = frames.position(node.bone), end = frames.position(node.towards);
       motion.position.push_back(begin + node.share * (end - begin) +
                                 rotations[node.bone] * node.lever);
       motion.orientation.push_back(rotations[node.bone]);
@@ -260,13 +275,6 @@ Result<std::vector<Vec3>> own_offsets(const Windows& windows, const std::string&
   return out;
 }
 
-std::vector<Vec3> chosen(const std::vector<Vec3>& all, const std::vector<std::size_t>& which) {
-  std::vector<Vec3> out;
-  out.reserve(which.size());
-  for (const std::size_t i : which) out.push_back(all[i]);
-  return out;
-}
-
 /// The mean body of the people in `sequences`, each person once.
 std::vector<Vec3> mean_offsets(const std::vector<PoseSequence>& sequences) {
   std::map<std::string, const PoseSequence*> people;
@@ -297,15 +305,24 @@ Result<std::map<std::string, UprightFrames>> upright_frames(const Windows& windo
                                                             const FileSkeleton& skeleton,
                                                             const std::string& stream) {
   std::map<std::string, UprightFrames> out;
-  std::vector<Mat3> rotations;
+  const std::vector<std::string> names = pose_joint_names();
   for (const Stretch& stretch : windows.stretches) {
-    const GlobalFrames frames = KA_TRY(GlobalFrames::make(skeleton, stretch, stream));
-    const auto person = out.try_emplace(take_of(windows, stretch).subject, skeleton.names).first;
+    GlobalFrames frames = KA_TRY(GlobalFrames::make(skeleton, stretch, stream));
+    const auto person = out.try_emplace(take_of(windows, stretch).subject, names).first;
     for (std::size_t t = 0; t < frames.frames(); ++t) {
-      frames.rotations(t, rotations);
-      person->second.add(rotations, frames.position(t, skeleton.head) - frames.position(t, 0));
+      frames.go_to(t);
+      person->second.add(frames.rotations(), frames.position(skeleton.head) - frames.position(0));
     }
   }
+  return out;
+}
+
+/// Of the trunk by the upright stand, of limbs by CMU's zero.
+std::vector<Mat3> all_turns(const UprightFrames& person, const PoseSkeleton& skeleton,
+                            const std::vector<Vec3>& offsets) {
+  std::vector<Mat3> out = person.turns();
+  const std::vector<Mat3> limbs = limb_turns(skeleton, offsets);
+  for (std::size_t j = 0; j < out.size(); ++j) out[j] = out[j] * limbs[j];
   return out;
 }
 
@@ -315,6 +332,7 @@ Result<void> add_sequences(const Windows& windows, const std::string& stream,
                            const std::map<std::string, UprightFrames>& upright, PoseData& out) {
   const double rate_hz = windows.facts.rate_hz;
   const SequenceMaker maker(skeleton, rate_hz);
+  const std::vector<int> parents = pose_joint_parents();
   for (const Stretch& stretch : windows.stretches) {
     const std::string subject = take_of(windows, stretch).subject;
     const UprightFrames& person = upright.at(subject);
@@ -322,12 +340,14 @@ Result<void> add_sequences(const Windows& windows, const std::string& stream,
         static_cast<double>(stretch.rows) < least_seconds * rate_hz) {
       continue;
     }
-    const std::vector<Mat3> turns = person.turns();
-    const auto own = KA_TRY(own_offsets(windows, stream, stretch, skeleton.names.size()));
+    const auto in_file = KA_TRY(own_offsets(windows, stream, stretch, skeleton.pose.file_joints()));
+    const std::vector<Vec3> own = pose_offsets(skeleton.pose, in_file);
+    const std::vector<Mat3> turns = all_turns(person, skeleton.pose, own);
     PoseSequence one = maker.make(KA_TRY(GlobalFrames::make(skeleton, stretch, stream)), turns);
     one.subject = subject;
+    one.stretch = static_cast<std::size_t>(&stretch - windows.stretches.data());
     one.action = take_of(windows, stretch).action;
-    one.rest_offsets = chosen(turned_offsets(skeleton.parents, own, turns), skeleton.joints);
+    one.rest_offsets = turned_offsets(parents, own, turns);
     part_of(windows, stretch, out).push_back(std::move(one));
   }
   return {};

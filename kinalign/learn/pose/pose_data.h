@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sequences to learn poses from: motion capture of CMU's skeleton in a file of windows, with the
-// samples that nodes on these people would have given.
+// Sequences to learn poses from: motion capture in a file of windows, with the samples that nodes
+// on these people would have given.
 #pragma once
 
 #include "kinalign/models/pose/pose_body.h"
@@ -20,6 +20,8 @@ struct PoseSequence {
   std::vector<Turn> rotations;     // [T,B] global, against the root
   std::vector<Vec3> places;        // [T] m, of the root in the world
   std::vector<Vec3> rest_offsets;  // [J] m, the person's own
+  /// Where it comes from: frame t is row first_row + t rows_a_frame of this stretch of the file.
+  std::size_t stretch = 0, first_row = 0, rows_a_frame = 1;
 
   std::size_t frames() const { return nodes.frames(); }
 };
@@ -39,9 +41,10 @@ std::vector<std::string> known_pose_nodes();
 /// The paper's five nodes, the root last.
 std::vector<std::string> usual_pose_nodes();
 
-/// `stream`: a skeleton with CMU's joints, at a multiple of 30 Hz. `nodes`: 3 to 6 that are known,
-/// the root ("waist") last. Stretches shorter than 1.5 s are left out. Fails where the stream, its
-/// arrays or a joint are missing and where nothing is left to learn from.
+/// `stream`: a skeleton with CMU's joints or a suit's (pose_skeleton.h), at a multiple of 30 Hz.
+/// `nodes`: 3 to 6 that are known, the root ("waist") last. Stretches shorter than 1.5 s are left
+/// out. Fails where the stream, its arrays or a joint are missing and where nothing is left to
+/// learn from.
 Result<PoseData> pose_data(const Windows& windows, const std::string& stream,
                            const std::vector<std::string>& nodes);
 
