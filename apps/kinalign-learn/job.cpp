@@ -168,6 +168,21 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, const DenoiseMethod& meth
   return Fitted{write_denoise_model(fit.model), std::move(fit.points)};
 }
 
+/// Marks on the people of the test part; empty where there are none.
+Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& data) {
+  if (data.tested.empty()) return std::string();
+  auto solver = KA_TRY(PoseSolver::make(model));
+  Json out;
+  for (const PoseMark& mark : KA_TRY(pose_marks(solver, data, 0))) {
+    std::string state = mark.nodes;  // "20 minutes later"
+    std::replace(state.begin(), state.end(), ' ', '_');
+    out[state + "_position_cm"] = mark.smoothed.position_cm;
+    out[state + "_sip_deg"] = mark.smoothed.sip_deg;
+    out[state + "_angle_deg"] = mark.smoothed.angle_deg;
+  }
+  return out.dump();
+}
+
 Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
                             const Windows& windows, TrainingState state,
                             const TrainingHooks& hooks) {
@@ -176,6 +191,7 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
   LearntFrom from;
   for (const PoseSequence& one : data.learnt) from.add(one.subject, one.frames());
   fit.model.facts.training = training_json(job, windows.facts, from);
+  fit.model.facts.metrics = KA_TRY(pose_metrics_json(fit.model, data));
   return Fitted{write_pose_model(fit.model), std::move(fit.points)};
 }
 
@@ -254,13 +270,13 @@ Result<void> evaluate_fuse(const TrainingJob& job, const Windows& windows, FuseM
       KA_TRY(fuse_data(windows, job.truth, layout.nodes.nodes, fuse_options(job, windows)));
   const std::vector<Devices> all{Devices::both, Devices::kinect, Devices::nodes};
   const Fusion network = [&](const FuseInput& input) { return fuser.solve(input); };
-  const Headings by_joints = [&](const FuseInput& input) {
+  const HeadingsOf by_joints = [&](const FuseInput& input) {
     FuseInput own = input;
     unexchange(layout, own);
     const HeadingFilter filter(layout, data.pose.body);
     return node_headings(filter, own.nodes, directions_of_joints(filter, own.kinect));
   };
-  const Headings by_model = [&](const FuseInput& input) { return fuser.headings(input); };
+  const HeadingsOf by_model = [&](const FuseInput& input) { return fuser.headings(input); };
   const Fusion filter = [&](const FuseInput& input) {
     FuseInput own = input;
     unexchange(layout, own);
@@ -281,9 +297,7 @@ Result<void> evaluate_fuse(const TrainingJob& job, const Windows& windows, FuseM
 /// Judges a model on the people of the file's test part.
 Result<void> evaluate(const TrainingJob& job, const Windows& windows) {
   const std::string bytes = KA_TRY(bytes_of(job.evaluate));
-  const ModelHeader header =
-      KA_TRY(read_model_header(KA_TRY(read_safetensors(bytes, job.evaluate)), job.evaluate));
-  if (header.value("task", "") == "fuse") {
+  if (KA_TRY(task_of_model(bytes, job.evaluate)) == "fuse") {
     return evaluate_fuse(job, windows, KA_TRY(read_fuse_model(bytes, job.evaluate)));
   }
   return evaluate_pose(job, windows, KA_TRY(read_pose_model(bytes, job.evaluate)));

@@ -4,15 +4,39 @@
 namespace kinalign {
 
 std::vector<Verb> all_verbs() {
-  return {
-      align_verb(),          info_verb(),          check_verb(),           report_verb(),
-      convert_verb(),        rebuild_verb(),       record_verb(),          recover_verb(),
-      dataset_init_verb(),   dataset_add_verb(),   dataset_import_verb(),  dataset_build_verb(),
-      dataset_list_verb(),   dataset_query_verb(), dataset_tables_verb(),  dataset_report_verb(),
-      dataset_verify_verb(), dataset_split_verb(), dataset_windows_verb(), dataset_export_verb(),
-      dataset_rename_verb(), dataset_rm_verb(),    train_verb(),           denoise_verb(),
-      eval_verb(),           model_export_verb(),  simulate_verb(),        time_server_verb(),
-      node_key_verb(),       config_verb(),        completion_verb(),      man_verb()};
+  return {align_verb(),
+          info_verb(),
+          check_verb(),
+          report_verb(),
+          convert_verb(),
+          rebuild_verb(),
+          record_verb(),
+          recover_verb(),
+          dataset_init_verb(),
+          dataset_add_verb(),
+          dataset_import_verb(),
+          dataset_build_verb(),
+          dataset_list_verb(),
+          dataset_query_verb(),
+          dataset_tables_verb(),
+          dataset_report_verb(),
+          dataset_verify_verb(),
+          dataset_split_verb(),
+          dataset_windows_verb(),
+          dataset_export_verb(),
+          dataset_rename_verb(),
+          dataset_rm_verb(),
+          train_verb(),
+          denoise_verb(),
+          pose_verb(),
+          eval_verb(),
+          model_export_verb(),
+          simulate_verb(),
+          time_server_verb(),
+          node_key_verb(),
+          config_verb(),
+          completion_verb(),
+          man_verb()};
 }
 
 }  // namespace kinalign

@@ -33,6 +33,7 @@ Verb dataset_rename_verb();
 Verb dataset_rm_verb();
 Verb train_verb();
 Verb denoise_verb();
+Verb pose_verb();
 Verb eval_verb();
 Verb model_export_verb();
 Verb time_server_verb();

@@ -119,4 +119,42 @@ void bring_to_root(const ImuGroup& group, ImuRows& rows) {
   }
 }
 
+namespace {
+
+/// One node of a row from the root's space into the world, its vectors into its own.
+void turn_back(const Quat& from_root, const Vec3& root_acceleration, std::size_t i, ImuRows& rows) {
+  const Quat to_node = quat(rows.orientation, i).conjugate();
+  if (!rows.acceleration.empty()) {
+    auto a = vec3(std::span(rows.acceleration), i);
+    a = (to_node * (from_root * Vec3(a) + root_acceleration)).eval();
+  }
+  if (!rows.angular_velocity.empty()) {
+    auto w = vec3(std::span(rows.angular_velocity), i);
+    w = (to_node * (from_root * Vec3(w))).eval();
+  }
+}
+
+}  // namespace
+
+void bring_from_root(const ImuGroup& group, ImuRows& rows) {
+  const std::size_t nodes = group.node_names.size();
+  const auto root = static_cast<std::size_t>(
+      std::find(group.node_names.begin(), group.node_names.end(), group.root_node) -
+      group.node_names.begin());
+  for (std::size_t first = 0; first < rows.valid.size(); first += nodes) {
+    if (rows.valid[first + root] == 0) continue;
+    const Quat from_root = quat(rows.orientation, first + root);
+    Vec3 acceleration = Vec3::Zero();
+    if (!rows.acceleration.empty()) {
+      acceleration = from_root * vec3(std::span(rows.acceleration), first + root);
+    }
+    for (std::size_t i = first; i < first + nodes; ++i) {
+      if (rows.valid[i] == 0) continue;
+      const bool is_root = i == first + root;
+      if (!is_root) put_quat(rows.orientation, i, from_root * quat(rows.orientation, i));
+      turn_back(from_root, is_root ? Vec3::Zero() : acceleration, i, rows);
+    }
+  }
+}
+
 }  // namespace kinalign

@@ -32,4 +32,8 @@ void apply_mounting(const ImuGroup& group, const Mounting& mounting, ImuRows& ro
 /// world's space. Rows without the root are invalid.
 void bring_to_root(const ImuGroup& group, ImuRows& rows);
 
+/// The way back from bring_to_root(): orientations in the world, vectors in each node's own space.
+/// Rows without the root stay invalid. Where gravity stood in all accelerations it does so again.
+void bring_from_root(const ImuGroup& group, ImuRows& rows);
+
 }  // namespace kinalign

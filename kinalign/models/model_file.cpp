@@ -54,6 +54,12 @@ Result<ModelHeader> read_model_header(const TensorFile& file, const std::string&
   return header;
 }
 
+Result<std::string> task_of_model(std::string_view bytes, const std::string& name) {
+  const ModelHeader header = KA_TRY(read_model_header(KA_TRY(read_safetensors(bytes, name)), name));
+  const auto task = header.find("task");
+  return task != header.end() && task->is_string() ? task->get<std::string>() : std::string();
+}
+
 ModelFacts facts_of(const ModelHeader& header) {
   return {.task = header.at("task").get<std::string>(),
           .method = header.at("method").get<std::string>(),

@@ -27,6 +27,9 @@ std::string write_model_file(const ModelFacts& facts, const ModelHeader& own,
 /// The whole header. Fails where the file is no model of kinalign.
 Result<ModelHeader> read_model_header(const TensorFile& file, const std::string& name);
 
+/// The task of a model, "denoise" or "pose": which reader it needs. Fails as read_model_header().
+Result<std::string> task_of_model(std::string_view bytes, const std::string& name);
+
 /// Throws the JSON library's exception where a member is missing or of another type; the reader of
 /// each task catches it and calls broken_header().
 ModelFacts facts_of(const ModelHeader& header);

@@ -87,6 +87,26 @@ TEST_CASE("from the root's space every node turns back into the world, as it was
   }
 }
 
+TEST_CASE("nodes come back from the root's space, with their vectors in their own spaces") {
+  for (const std::uint64_t seed : fresh_seeds(100)) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const ImuRows world = any_rows(20, 3, random);
+    ImuRows rows = world;
+    bring_to_root(three, rows);
+    const std::vector<std::uint8_t> valid = rows.valid;
+    bring_from_root(three, rows);
+    CHECK(rows.valid == valid);
+    for (std::size_t i = 0; i < valid.size(); ++i) {
+      if (valid[i] == 0) continue;
+      const Quat turn = quat(world.orientation, i);
+      CHECK(quat(rows.orientation, i).angularDistance(turn) < 1e-7);
+      CHECK((turn * acceleration(rows, i) - acceleration(world, i)).norm() < 1e-12);
+      CHECK((turn * angular_velocity(rows, i) - angular_velocity(world, i)).norm() < 1e-12);
+    }
+  }
+}
+
 TEST_CASE("a mounting and its inverse cancel, and no mounting changes nothing") {
   ImuGroup group = three;
   for (const char* root : {"", "left"}) {

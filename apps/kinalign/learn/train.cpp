@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -19,21 +20,62 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 4> denoise_words{"refine", "cnn", "bra", "bra-p"};
+enum class Learns : std::uint8_t { denoise, pose };
+
+struct TrainWord {
+  std::string_view method;
+  Learns task;
+};
+
+/// Methods by the names that kinalign-learn knows them by.
+constexpr std::array<TrainWord, 10> train_words{{{"refine", Learns::denoise},
+                                                 {"cnn", Learns::denoise},
+                                                 {"bra", Learns::denoise},
+                                                 {"bra-p", Learns::denoise},
+                                                 {"inertial", Learns::pose},
+                                                 {"inertial-online", Learns::pose},
+                                                 {"dip", Learns::pose},
+                                                 {"dip-512", Learns::pose},
+                                                 {"dip-robust", Learns::pose},
+                                                 {"wouda", Learns::pose}}};
+
+constexpr double pose_windows_hz = 60.0;  // nodes are simulated from it
 
 struct Train {
   std::vector<std::string> method;
   std::string data, windows, split, where;
-  std::string input = "kinect", truth = "mocap", device = "cpu";
+  std::string input = "kinect", truth = "mocap", nodes, device = "cpu";
   double rate_hz = 30.0;
   std::int64_t steps = 0, seed = 1, patience = 0;
   bool resume = false;
 };
 
+bool learns_pose(const Train& o) {
+  return std::any_of(train_words.begin(), train_words.end(), [&](const TrainWord& one) {
+    return one.task == Learns::pose && one.method == o.method.front();
+  });
+}
+
+/// Fails for a flag that the method has no use for.
+Result<void> check_task(const Train& o, const Sources& given) {
+  const bool is_pose = learns_pose(o);
+  if (!is_pose && given.count("nodes") > 0) {
+    return Failure(Error{"--nodes", 0, "a method for poses", o.method.front()});
+  }
+  for (const char* flag : {"input", "rate"}) {
+    if (!is_pose || given.count(flag) == 0) continue;
+    return Failure(Error{std::string("--") + flag, 0, "a method that cleans a stream",
+                         o.method.front() + ", which sees simulated nodes at 30 Hz"});
+  }
+  return {};
+}
+
 Usage describe_train(Train& o) {
   Usage usage;
   usage.positionals = {{"METHOD", "what is trained", &o.method}};
-  usage.positionals.front().choices.assign(denoise_words.begin(), denoise_words.end());
+  for (const TrainWord& one : train_words) {
+    usage.positionals.front().choices.emplace_back(one.method);
+  }
   usage.flags = {
       {"data", "the data set's folder", &o.data, 0.0, 0.0, {}, "FOLDER"},
       {"windows", "a file of windows in its place", &o.windows, 0.0, 0.0, {}, "FILE"},
@@ -53,6 +95,14 @@ Usage describe_train(Train& o) {
        "SQL"},
       {"input", "the rough stream", &o.input, 0.0, 0.0, {}, "NAME"},
       {"truth", "the precise stream", &o.truth, 0.0, 0.0, {}, "NAME"},
+      {"nodes",
+       "of a method for poses: 3 to 6 of waist, which is the last, wrist_left, wrist_right, "
+       "ankle_left, ankle_right, head (default: all but the head)",
+       &o.nodes,
+       0.0,
+       0.0,
+       {},
+       "NAME,NAME,..."},
       {"rate", "frames a second that the model works at", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
       {"steps", "batches; 0: the method's own number", &o.steps, 0.0, 1e8},
       {"seed", "of everything that is random", &o.seed, 0.0, 1e9},
@@ -60,7 +110,8 @@ Usage describe_train(Train& o) {
        1e6},
       {"device", "where it is trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
       {"resume", "go on with a run that was stopped", &o.resume}};
-  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+  usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
+    KA_TRY(check_task(o, given));
     if (!common.out.ends_with(".safetensors")) {
       return Failure(
           Error{"-o", 0, "-o FILE.safetensors", common.out.empty() ? "none" : shown(common.out)});
@@ -80,16 +131,32 @@ std::string run_folder(const std::string& model) {
 }
 
 Result<void> make_windows(const Train& o, const std::string& file) {
+  const bool is_pose = learns_pose(o);
+  const std::string length = is_pose ? "64" : "32";
+  const double rate_hz = is_pose ? pose_windows_hz : o.rate_hz;
   std::vector<std::string> words{
       "dataset",  "windows", o.data,     "-o",     file,
-      "--force",  "--quiet", "--length", "32",     "--step",
-      "32",       "--valid", "0.2",      "--rate", fmt::format("{:g}", o.rate_hz),
-      "--stream", o.input,   "--stream", o.truth};
+      "--force",  "--quiet", "--length", length,   "--step",
+      length,     "--valid", "0.2",      "--rate", fmt::format("{:g}", rate_hz),
+      "--stream", o.truth};
+  if (!is_pose) words.insert(words.end(), {"--stream", o.input});
   if (!o.split.empty()) words.insert(words.end(), {"--split", o.split});
   if (!o.where.empty()) words.insert(words.end(), {"--where", o.where});
   const Ended ended = KA_TRY(run_own_process(words));
   if (ended.code == 0) return {};
   return Failure(Error{o.data, 0, "a data set that windows can be cut from", ended.complaint});
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> out{""};
+  for (const char c : text) {
+    if (c == ',') {
+      out.emplace_back();
+    } else {
+      out.back() += c;
+    }
+  }
+  return out;
 }
 
 Result<std::string> hash_of(FileSystem& files, const std::string& path) {
@@ -107,11 +174,11 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   Json options{{"seed", o.seed}};
   if (o.steps > 0) options["steps"] = o.steps;
   if (o.patience > 0) options.update({{"patience", o.patience}, {"judge_every", 100}});
-  Json job{{"schema", "kinalign.training_job/1"},
-           {"method", o.method.front()},
-           {"input", o.input},
-           {"truth", o.truth},
-           {"options", options}};
+  Json job{{"schema", "kinalign.training_job/1"}, {"method", o.method.front()}};
+  if (!learns_pose(o)) job["input"] = o.input;
+  job["truth"] = o.truth;
+  job["options"] = options;
+  if (!o.nodes.empty()) job["nodes"] = split_at_commas(o.nodes);
   Sha256 identity;
   identity.update(job.dump());
   identity.update(hash);
@@ -167,8 +234,11 @@ Verb train_verb() {
   return make_verb<Train>(
       {.name = "train",
        .summary = "a model from a data set",
-       .text = "Trains a network and writes one SafeTensors file, which denoise reads and PyTorch "
-               "and NumPy open. The same seed gives the same weights on the same machine. A run "
+       .text = "Trains a network and writes one SafeTensors file, which denoise or pose reads and "
+               "PyTorch and NumPy open. refine, cnn, bra and bra-p clean a Kinect; inertial, "
+               "inertial-online, dip, dip-512, dip-robust and wouda answer nodes with a pose, and "
+               "learn from a skeleton alone. The same seed gives the same weights on the same "
+               "machine. A run "
                "that was stopped goes on with --resume. The program kinalign-learn does the work; "
                "it is built where LibTorch is installed.",
        .examples =
@@ -176,7 +246,9 @@ Verb train_verb() {
              "a network that cleans a Kinect, from the pairs of a data set"},
             {"kinalign train bra --data walks --split walks/splits/people.json -o bra.safetensors "
              "--patience 10",
-             "stops when the validation part gets no better"}},
+             "stops when the validation part gets no better"},
+            {"kinalign train inertial --data walks -o pose.safetensors",
+             "a network that answers five nodes with a pose"}},
        .common = {"out", "force", "json", "jobs"}},
       describe_train, run_train);
 }

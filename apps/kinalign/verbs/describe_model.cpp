@@ -7,6 +7,8 @@
 #include "kinalign/infer/layer_kinds.h"
 #include "kinalign/infer/shapes.h"
 #include "kinalign/models/denoise_model.h"
+#include "kinalign/models/model_file.h"
+#include "kinalign/models/pose/pose_model.h"
 #include "kinalign/view/report_words.h"
 
 #include <fmt/format.h>
@@ -163,6 +165,57 @@ Json smoothing_json(const Smoothing& how) {
   return {{"window", how.window}, {"order", how.order}, {"causal", how.causal}};
 }
 
+/// Height of a body at rest, from its lowest joint to its highest, m.
+double height_at_rest(const Skeleton& skeleton) {
+  std::vector<double> heights;
+  for (std::size_t j = 0; j < skeleton.joints(); ++j) {
+    const int parent = skeleton.parents[j];
+    heights.push_back(parent < 0 ? 0.0
+                                 : heights[static_cast<std::size_t>(parent)] +
+                                       skeleton.rest_offsets[j].y());
+  }
+  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+  return *high - *low;
+}
+
+std::string_view channels_name(PoseInputs inputs) {
+  return inputs == PoseInputs::dip ? "dip" : "ours";
+}
+
+std::string pose_text(const std::string& path, const PoseModel& model, const Json& training,
+                      const Json& metrics) {
+  const PoseLayout& layout = model.layout;
+  std::string nodes;
+  for (const std::string& node : layout.nodes) nodes += (nodes.empty() ? "" : ", ") + shown(node);
+  std::string text = path + "\n";
+  text += line("model",
+               fmt::format("{}, method {}", shown(model.facts.task), shown(model.facts.method)));
+  text += line("rate", fmt::format("{:g} Hz", layout.rate_hz));
+  text +=
+      line("input", fmt::format("{}: {}; {} channels ({})", counted(layout.nodes.size(), "node"),
+                                nodes, layout.channels(), channels_name(layout.inputs)));
+  text += line("output", fmt::format("rotations of {}", counted(layout.bones.size(), "bone")));
+  text += line("body", fmt::format("{}, {:.2f} m from the lowest to the highest at rest",
+                                   counted(model.body.skeleton.joints(), "joint"),
+                                   height_at_rest(model.body.skeleton)));
+  text += network_lines("net", model.architecture);
+  text += line("smoothing", model.smoothing ? "over 5 frames" : "none");
+  return text + training_lines(training) + metric_lines(metrics);
+}
+
+Json pose_json(const PoseModel& model) {
+  const PoseLayout& layout = model.layout;
+  return {{"rate_hz", layout.rate_hz},
+          {"input", {{"nodes", layout.nodes}, {"channels", channels_name(layout.inputs)}}},
+          {"output",
+           {{"bones", layout.bones},
+            {"joints", model.body.skeleton.joint_names},
+            {"parents", model.body.skeleton.parents},
+            {"height_m", height_at_rest(model.body.skeleton)},
+            {"smoothing", model.smoothing}}},
+          {"networks", {{"net", network_json(model.architecture)}}}};
+}
+
 std::string text_of(const std::string& path, const DenoiseModel& model, const Json& training,
                     const Json& metrics) {
   std::string text = path + "\n";
@@ -181,43 +234,65 @@ std::string text_of(const std::string& path, const DenoiseModel& model, const Js
   return text + training_lines(training) + metric_lines(metrics);
 }
 
-}  // namespace
+/// What every model states of itself.
+Json facts_json(const std::string& path, std::string_view bytes, const ModelFacts& facts) {
+  return {{"file", path},       {"kind", "model"},        {"bytes", bytes.size()},
+          {"task", facts.task}, {"method", facts.method}, {"software", facts.software}};
+}
 
-Result<Description> describe_model(const std::string& path, std::string_view bytes) {
+/// The error of a model that can't be used, with its file.
+template <class Usable>
+Result<void> check_usable(const Result<Usable>& usable, const std::string& path) {
+  if (usable) return {};
+  Error error = usable.error();
+  error.file = path;
+  return Failure(std::move(error));
+}
+
+Result<Description> describe_pose_model(const std::string& path, std::string_view bytes) {
+  PoseModel model = KA_TRY(read_pose_model(bytes, path));
+  const Json training = parsed_object(model.facts.training);
+  const Json metrics = parsed_object(model.facts.metrics);
+  std::string text = pose_text(path, model, training, metrics);
+  Json json = facts_json(path, bytes, model.facts);
+  json.update(pose_json(model));
+  json.update({{"training", training}, {"metrics", metrics}});
+  KA_TRY(check_usable(PoseSolver::make(std::move(model)), path));
+  return Description{std::move(text), json_text(json)};
+}
+
+Result<Description> describe_denoise_model(const std::string& path, std::string_view bytes) {
   DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
   const Json training = parsed_object(model.facts.training);
   const Json metrics = parsed_object(model.facts.metrics);
   std::string text = text_of(path, model, training, metrics);
   Json networks{{"net", network_json(model.architecture)}};
   if (model.second) networks["second"] = network_json(*model.second);
-  const Json json{
-      {"file", path},
-      {"kind", "model"},
-      {"bytes", bytes.size()},
-      {"task", model.facts.task},
-      {"method", model.facts.method},
-      {"software", model.facts.software},
-      {"rate_hz", model.layout.rate_hz},
-      {"input",
-       {{"joints", model.layout.inputs}, {"smoothing", smoothing_json(model.layout.smoothing)}}},
-      {"output",
-       {{"joints", model.layout.outputs},
-        {"parents", model.layout.parents},
-        {"spread", model.states_spread}}},
-      {"networks", std::move(networks)},
-      {"steadying",
-       {{"mirror", model.steadying.mirror},
-        {"smoothing", smoothing_json(model.steadying.smoothing)},
-        {"bones", model.steadying.bones}}},
-      {"training", training},
-      {"metrics", metrics}};
-  auto usable = Denoiser::make(std::move(model));
-  if (!usable) {
-    Error error = usable.error();
-    error.file = path;
-    return Failure(std::move(error));
-  }
+  Json json = facts_json(path, bytes, model.facts);
+  json.update(
+      {{"rate_hz", model.layout.rate_hz},
+       {"input",
+        {{"joints", model.layout.inputs}, {"smoothing", smoothing_json(model.layout.smoothing)}}},
+       {"output",
+        {{"joints", model.layout.outputs},
+         {"parents", model.layout.parents},
+         {"spread", model.states_spread}}},
+       {"networks", std::move(networks)},
+       {"steadying",
+        {{"mirror", model.steadying.mirror},
+         {"smoothing", smoothing_json(model.steadying.smoothing)},
+         {"bones", model.steadying.bones}}},
+       {"training", training},
+       {"metrics", metrics}});
+  KA_TRY(check_usable(Denoiser::make(std::move(model)), path));
   return Description{std::move(text), json_text(json)};
+}
+
+}  // namespace
+
+Result<Description> describe_model(const std::string& path, std::string_view bytes) {
+  const std::string task = KA_TRY(task_of_model(bytes, path));
+  return task == "pose" ? describe_pose_model(path, bytes) : describe_denoise_model(path, bytes);
 }
 
 }  // namespace kinalign

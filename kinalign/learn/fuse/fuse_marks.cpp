@@ -255,7 +255,7 @@ Result<std::vector<FuseMark>> fuse_marks(const Fusion& fusion, const FuseLayout&
   return out;
 }
 
-std::vector<HeadingMark> heading_marks(const Headings& headings, const FuseLayout& layout,
+std::vector<HeadingMark> heading_marks(const HeadingsOf& headings, const FuseLayout& layout,
                                        const FuseData& data) {
   NodeErrors errors = session_errors(20.0);
   const auto after = static_cast<std::size_t>(heading_seconds * layout.nodes.rate_hz);

@@ -42,10 +42,10 @@ struct HeadingMark {
 };
 
 /// Headings [T,N] of nodes before a Kinect.
-using Headings = std::function<std::vector<HeadingState>(const FuseInput& input)>;
+using HeadingsOf = std::function<std::vector<HeadingState>(const FuseInput& input)>;
 
 /// Headings are off by up to 20 degrees at first. Only the first 60 s of a session are shown.
-std::vector<HeadingMark> heading_marks(const Headings& headings, const FuseLayout& layout,
+std::vector<HeadingMark> heading_marks(const HeadingsOf& headings, const FuseLayout& layout,
                                        const FuseData& data);
 
 }  // namespace kinalign

@@ -72,8 +72,8 @@ Result<void> validate(const PoseLayout& layout) {
   const std::set<std::string> names(layout.nodes.begin(), layout.nodes.end());
   if (names.size() != n) return Failure(Error{"", 0, "nodes of different names", "a name twice"});
   if (layout.bones.empty()) return Failure(Error{"", 0, "bones to answer", "none"});
-  if (!std::isfinite(layout.rate_hz) || layout.rate_hz <= 0.0) {
-    return Failure(Error{"", 0, "a rate above 0", std::to_string(layout.rate_hz)});
+  if (!(layout.rate_hz >= 0.1 && layout.rate_hz <= 10'000.0)) {
+    return Failure(Error{"", 0, "0.1 to 10,000 frames a second", std::to_string(layout.rate_hz)});
   }
   return {};
 }

@@ -57,7 +57,8 @@ struct PoseLayout {
 
 inline constexpr std::size_t least_nodes = 3, most_nodes = 6;
 
-/// Fails where the number of nodes is not 3 to 6 or a name occurs twice.
+/// Fails where the number of nodes is not 3 to 6, a name occurs twice, or the rate is not 0.1 to
+/// 10,000 Hz.
 Result<void> validate(const PoseLayout& layout);
 
 /// Makes the channels frame after frame. While the root's node is not valid, its last orientation

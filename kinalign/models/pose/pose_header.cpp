@@ -12,6 +12,7 @@ namespace kinalign {
 namespace {
 
 constexpr std::size_t most_body_joints = 1000;
+constexpr double longest_bone_m = 100.0;
 
 }  // namespace
 
@@ -47,7 +48,9 @@ Result<void> check_body(const PoseBody& body) {
   }
   KA_TRY(validate(body));
   for (const Vec3& offset : body.skeleton.rest_offsets) {
-    if (!offset.allFinite()) return Failure(Error{"", 0, "bones with a length", "none"});
+    if (!(offset.norm() <= longest_bone_m)) {
+      return Failure(Error{"", 0, "bones of at most 100 m", "another length"});
+    }
   }
   return {};
 }
@@ -55,7 +58,8 @@ Result<void> check_body(const PoseBody& body) {
 Result<void> check_scales(std::size_t channels, const std::vector<float>& mean,
                           const std::vector<float>& scale) {
   const bool sound = std::all_of(scale.begin(), scale.end(),
-                                 [](float one) { return std::isfinite(one) && one > 0.0F; });
+                                 [](float one) { return std::isfinite(one) && one > 0.0F; }) &&
+                     std::all_of(mean.begin(), mean.end(), [](float one) { return std::isfinite(one); });
   if (mean.size() == channels && scale.size() == channels && sound) return {};
   return Failure(Error{
       "", 0,

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
 using namespace kinalign;
 
 namespace {
@@ -64,6 +66,18 @@ TEST_CASE("a model whose parts do not fit is refused") {
   other.input_scale[3] = 0.0F;
   CHECK(refusal(write_pose_model(other)) ==
         "m: expected input.mean and input.scale of 61 channels, scales above 0, found others");
+  other = model;
+  other.input_mean[0] = std::numeric_limits<float>::infinity();
+  CHECK(refusal(write_pose_model(other)) ==
+        "m: expected input.mean and input.scale of 61 channels, scales above 0, found others");
+  other = model;
+  other.layout.rate_hz = 1e-9;
+  CHECK(refusal(write_pose_model(other)) ==
+        "m: expected 0.1 to 10,000 frames a second, found 0.000000");
+  other = model;
+  other.body.skeleton.rest_offsets[3].x() = 1e30;
+  CHECK(refusal(write_pose_model(other)) ==
+        "m: expected bones of at most 100 m, found another length");
   other = model;
   other.body.skeleton.parents[2] = 9;
   CHECK(refusal(write_pose_model(other)) != "none");

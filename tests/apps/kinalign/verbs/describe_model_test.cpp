@@ -5,6 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <fstream>
+#include <iterator>
+
 using namespace kinalign;
 
 namespace {
@@ -82,4 +85,36 @@ TEST_CASE("info tells no model that can't be used, and takes facts of any shape"
     REQUIRE(found);
     CHECK(found->text.find("two\n") == std::string::npos);
   }
+}
+
+TEST_CASE("info tells a model for poses: nodes, bones, body, network, training, metrics") {
+  std::ifstream in(KINALIGN_SOURCE_DIR "/tests/data/fuzz/pose_model_fuzz/two.safetensors",
+                   std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(in), {});
+  const auto found = describe_model("m.safetensors", bytes);
+  REQUIRE(found);
+  CHECK(
+      found->text ==
+      "m.safetensors\n"
+      "  model       pose, method small\n"
+      "  rate        30 Hz\n"
+      "  input       5 nodes: wrist_left, wrist_right, ankle_left, ankle_right, waist; 48 channels "
+      "(dip)\n"
+      "  output      rotations of 4 bones\n"
+      "  body        9 joints, 1.37 m from the lowest to the highest at rest\n"
+      "  network     net: 48 in, 24 out, 1,440 parameters; a frame sees all before and all after "
+      "it\n"
+      "              lstm 3, both directions\n"
+      "              linear 24\n"
+      "  smoothing   over 5 frames\n"
+      "  trained on  small, licence own\n"
+      "  training    steps 1, seed 1\n"
+      "  metric      calibrated_position_cm 12.5\n");
+  const auto json = nlohmann::json::parse(found->json);
+  CHECK(json.at("kind") == "model");
+  CHECK(json.at("task") == "pose");
+  CHECK(json.at("input").at("nodes").size() == 5);
+  CHECK(json.at("output").at("bones").size() == 4);
+  CHECK(json.at("output").at("height_m") == doctest::Approx(1.37));
+  CHECK(json.at("metrics").at("calibrated_position_cm") == 12.5);
 }

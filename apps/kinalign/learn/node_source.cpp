@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/learn/node_source.h"
+
+#include "apps/cli/console.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/align/nodes.h"
+#include "kinalign/formats/take/take_hdf5.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_samples = std::size_t{1} << 26U;  // of all nodes
+
+Failure no_nodes(const std::string& path, const std::string& wanted, const std::string& known) {
+  const std::string expected = wanted.empty() ? "one stream of inertial nodes (--stream NAME)"
+                                              : "a stream of inertial nodes \"" + wanted + "\"";
+  return Failure(Error{path, 0, expected, known.empty() ? "none" : known});
+}
+
+void add_known(std::string& all, const std::string& name) {
+  all += (all.empty() ? "" : ", ") + name;
+}
+
+/// n samples of S nodes; empty arrays: not measured.
+struct NodeBlock {
+  const std::vector<Time>& stamps;
+  const std::vector<double>&orientation, &acceleration, &angular_velocity;
+  const std::vector<std::uint8_t>& valid;
+};
+
+void append_numbers(const std::vector<double>& from, std::size_t i, std::size_t width,
+                    std::vector<double>& to) {
+  if (from.empty()) return;
+  const auto begin = from.begin() + static_cast<std::ptrdiff_t>(i * width);
+  to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+}
+
+/// Appends a block to the tracks from `first` on.
+Result<void> append_block(const NodeBlock& block, std::size_t first, NamedNodes& out) {
+  if (block.stamps.empty()) return {};
+  const std::size_t nodes = block.valid.size() / block.stamps.size();
+  for (std::size_t i = 0; i < block.valid.size(); ++i) {
+    NodeTrack& track = out.tracks[first + i % nodes];
+    const Time stamp = block.stamps[i / nodes];
+    if (block.valid[i] == 0 || (!track.stamps.empty() && stamp <= track.stamps.back())) continue;
+    if (track.stamps.size() * out.tracks.size() > most_samples) {
+      return Failure(Error{"", 0, "a stream that fits into memory", "a longer one"});
+    }
+    track.stamps.push_back(stamp);
+    append_numbers(block.orientation, i, 4, track.orientation);
+    append_numbers(block.acceleration, i, 3, track.acceleration);
+    append_numbers(block.angular_velocity, i, 3, track.angular_velocity);
+  }
+  return {};
+}
+
+/// Tracks for nodes that are added. A node with a stated mounting (sensor_from_bone) is `worn` as
+/// it says.
+void add_tracks(const std::vector<std::string>& names, const ImuContent& content,
+                const std::vector<std::optional<Quat>>& worn, NamedNodes& out) {
+  for (const std::string& name : names) {
+    out.names.push_back(name);
+    out.tracks.emplace_back();
+    out.tracks.back().gravity = content.gravity;
+  }
+  out.worn.insert(out.worn.end(), worn.begin(), worn.end());
+}
+
+std::vector<std::optional<Quat>> worn_by(const StreamOptions& options,
+                                         const std::vector<std::string>& names, bool is_applied) {
+  std::vector<std::optional<Quat>> out;
+  for (const std::string& name : names) {
+    out.emplace_back();
+    const auto stated = options.mounting.find(name);
+    if (stated == options.mounting.end() || stated->second.size() != 4) continue;
+    // In a T-pose the bone's axes are the world's.
+    out.back() = is_applied ? Quat::Identity() : quat(stated->second, 0).normalized().conjugate();
+  }
+  return out;
+}
+
+Result<std::size_t> node_group_of(const TakeHeader& header, const std::string& path,
+                                  const std::string& wanted) {
+  std::optional<std::size_t> found;
+  std::string known;
+  for (std::size_t g = 0; g < header.groups.size(); ++g) {
+    const TakeGroup& group = header.groups[g];
+    if (!std::holds_alternative<ImuGroup>(group.kind)) continue;
+    add_known(known, group.name);
+    if (!wanted.empty() && group.name != wanted) continue;
+    if (found) return no_nodes(path, wanted, known);
+    found = g;
+  }
+  if (!found) return no_nodes(path, wanted, known);
+  return *found;
+}
+
+/// Streams of nodes with the wanted name; with the only one there is where none is wanted.
+Result<std::vector<const RecordedStream*>> node_streams(const Recording& recording,
+                                                        const std::string& path,
+                                                        const std::string& wanted) {
+  std::vector<const RecordedStream*> out;
+  std::string known;
+  bool one_name = true;
+  for (const RecordedStream& one : recording.streams) {
+    if (!std::holds_alternative<ImuInput>(one.data)) continue;
+    if (out.empty() || out.back()->name != one.name) add_known(known, one.name);
+    if (!wanted.empty() && one.name != wanted) continue;
+    one_name = one_name && (out.empty() || out.back()->name == one.name);
+    out.push_back(&one);
+  }
+  if (out.empty() || !one_name) return no_nodes(path, wanted, known);
+  return out;
+}
+
+Result<void> read_nodes(const RecordedStream& stream, const ImuInput& input, std::size_t first,
+                        NamedNodes& out) {
+  const auto pass = KA_TRY(input.passes());
+  ImuSamples block;
+  while (KA_TRY(pass(block))) {
+    for (Time& stamp : block.stamps) stamp = take_time(stream.clock, stamp);
+    KA_TRY(append_block(
+        {block.stamps, block.orientation, block.acceleration, block.angular_velocity, block.valid},
+        first, out));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
+                                 const std::string& stream) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  const std::size_t wanted = KA_TRY(node_group_of(reader.header(), path, stream));
+  const auto group = std::get<ImuGroup>(reader.header().groups[wanted].kind);
+  NamedNodes out{reader.header().groups[wanted].name, {}, {}, {}};
+  const StreamOptions& options = options_of(reader.header().parameters, out.stream);
+  add_tracks(group.node_names, group.content, worn_by(options, group.node_names, true), out);
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) {
+    auto& rows = std::get<ImuRows>(slab.rows[wanted]);
+    if (!group.root_node.empty()) bring_from_root(group, rows);
+    KA_TRY(append_block(
+        {slab.stamps, rows.orientation, rows.acceleration, rows.angular_velocity, rows.valid}, 0,
+        out));
+  }
+  return out;
+}
+
+Result<NamedNodes> nodes_of_file(const std::string& path, const std::string& stream, Call& call) {
+  const Input input =
+      KA_TRY(open_input(call.surroundings.files, path, StreamFlags{}, call.console.progress()));
+  const auto streams = KA_TRY(node_streams(input.recording, path, stream));
+  NamedNodes out{streams.front()->name, {}, {}, {}};
+  for (const RecordedStream* one : streams) {
+    const auto& nodes = std::get<ImuInput>(one->data);
+    const std::size_t first = out.tracks.size();
+    const StreamOptions options =
+        input.manifest ? options_of(*input.manifest, one->name) : StreamOptions{};
+    add_tracks(nodes.node_names, nodes.content, worn_by(options, nodes.node_names, false), out);
+    KA_TRY(read_nodes(*one, nodes, first, out));
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pose from nodes as users meet it: simulated, aligned, answered. pose_check.py BUILD_FOLDER [CASE...]"""
+import json
+import pathlib
+import sys
+
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import data_sets
+import samples
+from cases import BUILD, Skip, case, done_with, kinalign, law, main, refused, wrong
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SMALL = ROOT / "tests/data/fuzz/pose_model_fuzz"  # one: three nodes; two: the five usual ones
+SHIPPED = ROOT / "models/pose.safetensors"
+
+# Joints of the answer and of the simulated suit.
+SAME = {"ltibia": "LeftLeg", "lfoot": "LeftFoot", "rtibia": "RightLeg", "rfoot": "RightFoot", "lradius": "LeftForeArm",
+        "lhand": "LeftHand", "rradius": "RightForeArm", "rhand": "RightHand", "lhumerus": "LeftArm",
+        "rhumerus": "RightArm", "head": "Head"}
+
+# CMU's joints (ASF/AMC), parents first: parent, offset in cm.
+CMU = {"root": ("", (0, 0, 0)), "lfemur": ("root", (8, -8, 3)), "ltibia": ("lfemur", (13, -36, 0)),
+       "lfoot": ("ltibia", (14, -38, 0)), "ltoes": ("lfoot", (0, -5, 12)), "rfemur": ("root", (-8, -8, 3)),
+       "rtibia": ("rfemur", (-13, -36, 0)), "rfoot": ("rtibia", (-14, -38, 0)), "rtoes": ("rfoot", (0, -5, 12)),
+       "lowerback": ("root", (0, 5, 0)), "upperback": ("lowerback", (0, 11, 0)), "thorax": ("upperback", (0, 11, 0)),
+       "lowerneck": ("thorax", (0, 12, 0)), "upperneck": ("lowerneck", (0, 9, 0)), "head": ("upperneck", (0, 9, 0)),
+       "lclavicle": ("thorax", (2, 8, 0)), "lhumerus": ("lclavicle", (15, 4, 0)), "lradius": ("lhumerus", (28, 0, 0)),
+       "lwrist": ("lradius", (18, 0, 0)), "lhand": ("lwrist", (9, 0, 0)), "lfingers": ("lhand", (6, 0, 0)),
+       "rclavicle": ("thorax", (-2, 8, 0)), "rhumerus": ("rclavicle", (-15, 4, 0)),
+       "rradius": ("rhumerus", (-28, 0, 0)), "rwrist": ("rradius", (-18, 0, 0)), "rhand": ("rwrist", (-9, 0, 0)),
+       "rfingers": ("rhand", (-6, 0, 0))}
+
+
+def simulated(folder, seconds=30, seed=1):
+    """A take of a simulated person with suit and nodes, and its manifest."""
+    done_with(0, "simulate", "built-in", "-o", folder, "--seconds", seconds, "--seed", seed, "--quiet")
+    done_with(0, "align", folder / "recording.toml", "-o", folder / "take.h5", "--quiet")
+    return folder / "take.h5", folder / "recording.toml"
+
+
+def told(*words, code=0):
+    return json.loads(done_with(code, *words, "--json")[0])
+
+
+def arrays(path, folder, prefix=""):
+    """Joints' positions about the middle of both hips, in the root's space: by name [T,3] m."""
+    done_with(0, "convert", path, folder / "arrays.npz", "--force", "--quiet")
+    data = numpy.load(folder / "arrays.npz")
+    names = list(data[prefix + "joint_names"])
+    places = data[prefix + "positions"].astype(float)
+    w, x, y, z = data[prefix + "local_rotations"][:, 0].astype(float).T
+    to_world = numpy.stack([1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
+                            2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+                            2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)], -1).reshape(-1, 3, 3)
+    hips = [names.index(name) for name in (("LeftUpLeg", "RightUpLeg") if "LeftUpLeg" in names else ("lfemur", "rfemur"))]
+    about = places - places[:, hips].mean(1, keepdims=True)
+    return {name: numpy.einsum("tij,ti->tj", to_world, about[:, j]) for j, name in enumerate(names)}
+
+
+def errors(pose, take, folder):
+    """Mean distance of each joint from the suit's, cm. The grid of the pose begins with the take."""
+    ours, truth = arrays(pose, folder), arrays(take, folder, "mocap_")
+    frames = len(ours["head"])
+    rows = numpy.arange(frames) * 2  # 30 of 60 Hz
+    return {name: 100 * numpy.linalg.norm(ours[name] - truth[suit][rows], axis=-1).mean() for name, suit in SAME.items()}
+
+
+@case
+def the_shipped_model_answers_a_simulated_persons_nodes_within_20_cm_of_the_suit(folder):
+    if not SHIPPED.exists():
+        raise Skip("no models/pose.safetensors")
+    for seed in (1, 2):
+        take, _ = simulated(folder / f"{seed}", seed=seed)
+        said = told("pose", take, "-o", folder / f"{seed}.bvh")
+        assert said["headings"] == "mounting" and said["t_pose"]["found"], said
+        apart = errors(folder / f"{seed}.bvh", take, folder)
+        mean = sum(apart.values()) / len(apart)
+        assert mean < 14, apart
+        assert max(apart.values()) < 25, apart
+        told("pose", take, "-o", folder / "wrong.bvh", "--heading", "shared", "--force")
+        wrong_mean = sum(errors(folder / "wrong.bvh", take, folder).values()) / len(apart)
+        assert wrong_mean > mean + 4, (wrong_mean, mean)
+
+
+@case
+def a_take_and_the_files_it_was_made_of_give_a_pose(folder):
+    take, manifest = simulated(folder / "sim", seconds=12)
+    for name, path in (("a", take), ("b", manifest)):
+        said = told("pose", path, "--model", SMALL / "two.safetensors", "-o", folder / f"{name}.bvh")
+        assert said["schema"] == "kinalign.pose/1" and said["stream"] == "imu" and said["method"] == "small", said
+        assert (said["rate_hz"], said["joints"], said["warnings"]) == (30, 9, []), said
+        assert said["valid"] > 0.99 and said["t_pose"]["found"] and said["t_pose"]["to_s"] > 2, said
+        assert set(said["nodes"]) == {"wrist_left", "wrist_right", "ankle_left", "ankle_right", "waist"}, said
+        assert all(node["tilt_deg"] < 20 for node in said["nodes"].values()), said
+        seen = told("info", folder / f"{name}.bvh")["streams"][0]
+        assert seen["samples"] == said["frames"], seen
+    text, _ = done_with(0, "pose", take, "--model", SMALL / "two.safetensors", "-o", folder / "c.bvh")
+    assert "c.bvh: 330 frames at 30 Hz, 9 joints\nnodes    5 of 5, 100.0 % valid\nT-pose   0.0 to " in text, text
+    assert (folder / "a.bvh").read_bytes() == (folder / "c.bvh").read_bytes()
+
+
+@case
+def arms_that_hang_and_a_T_pose_that_is_not_held_still_are_told(folder):
+    take, _ = simulated(folder / "sim", seconds=12)
+    said = told("pose", take, "--model", SMALL / "two.safetensors", "-o", folder / "a.bvh", "--tpose", "6,7", code=1)
+    assert len(said["warnings"]) == 3, said["warnings"]
+    assert "it was not held still" in said["warnings"][0], said["warnings"]
+    assert said["warnings"][1].startswith("wrist_left is held ") and "arms hung" in said["warnings"][1], said["warnings"]
+    assert said["t_pose"]["from_s"] == 6 and not said["t_pose"]["found"], said
+
+
+@case
+def a_node_that_is_lost_is_told_and_too_few_are_refused(folder):
+    _, manifest = simulated(folder / "sim", seconds=12)
+    whole = manifest.read_text()
+    manifest.write_text(whole.replace(', ankle_left = "imu_ankle_left.csv"', "")
+                        .replace('wrist_left = "', 'LeftForeArm = "'))
+    text, _ = done_with(1, "pose", manifest, "--model", SMALL / "two.safetensors", "-o", folder / "a.bvh")
+    assert "nodes    4 of 5" in text, text
+    assert "warning  ankle_left has no samples: its limb is a guess" in text, text
+    manifest.write_text(whole.replace("wrist_left = ", "knee = ").replace("ankle_left = ", "elbow = ")
+                        .replace("ankle_right = ", "chest = "))
+    first = refused("pose", manifest, "--model", SMALL / "two.safetensors", "-o", folder / "b.bvh", naming=manifest)
+    assert first.endswith("expected a node waist and two of wrist_left, wrist_right, ankle_left, ankle_right with samples, "
+                          "found waist, knee, wrist_right, elbow, chest"), first
+
+
+@case
+def what_has_no_nodes_or_is_no_model_is_refused(folder):
+    walk = folder / "walk.bvh"
+    walk.write_text(samples.bvh())
+    first = refused("pose", walk, "--model", SMALL / "two.safetensors", "-o", folder / "o.bvh", naming=walk)
+    assert first.endswith("expected one stream of inertial nodes (--stream NAME), found none"), first
+    take, _ = simulated(folder / "sim", seconds=6)
+    first = refused("pose", take, "--model", SMALL / "two.safetensors", "--stream", "kinect", "-o", folder / "o.bvh", naming=take)
+    assert first.endswith('expected a stream of inertial nodes "kinect", found imu'), first
+    other = ROOT / "tests/data/fuzz/denoise_model_fuzz/one.safetensors"
+    first = refused("pose", take, "--model", other, "-o", folder / "o.bvh", naming=other)
+    assert first.endswith("expected a model for poses from inertial nodes, found task denoise"), first
+    refused("denoise", take, "--model", SMALL / "two.safetensors", "-o", folder / "o.bvh", naming=SMALL / "two.safetensors")
+    (folder / "o.bvh").write_text("mine")
+    refused("pose", take, "--model", SMALL / "two.safetensors", "-o", folder / "o.bvh", naming=folder / "o.bvh")
+    assert (folder / "o.bvh").read_text() == "mine"
+
+
+@case
+def wrong_words_are_told(_):
+    wrong("pose", "take.h5", says="-o: expected -o FILE.bvh, found none")
+    wrong("pose", "take.h5", "-o", "pose.trc", says="-o: expected -o FILE.bvh, found pose.trc")
+    for text in ("3", "a,b", "4,2", "-1,2", "1,2,3"):
+        wrong("pose", "take.h5", "-o", "pose.bvh", f"--tpose={text}",
+              says=f"--tpose: expected START,END in seconds, such as 1.5,4, found {text}")
+    wrong("train", "refine", "--windows", "w.npz", "-o", "m.safetensors", "--nodes", "waist",
+          says="--nodes: expected a method for poses, found refine")
+    wrong("train", "wouda", "--windows", "w.npz", "-o", "m.safetensors", "--rate", "15",
+          says="--rate: expected a method that cleans a stream, found wouda, which sees simulated nodes at 30 Hz")
+
+
+def cmu_bvh(frames, phase):
+    """A person with CMU's joints who stands and moves arms and legs, 60 Hz."""
+    lines = []
+
+    def joint(name, depth):
+        pad = "  " * depth
+        places = "6 Xposition Yposition Zposition" if depth == 0 else "3"
+        lines.extend([f"{pad}{'ROOT' if depth == 0 else 'JOINT'} {name}", f"{pad}{{",
+                      f"{pad}  OFFSET {' '.join(map(str, CMU[name][1]))}",
+                      f"{pad}  CHANNELS {places} Zrotation Yrotation Xrotation"])
+        below = [child for child, (parent, _) in CMU.items() if parent == name]
+        for child in below:
+            joint(child, depth + 1)
+        if not below:
+            lines.extend([f"{pad}  End Site", f"{pad}  {{", f"{pad}    OFFSET 0 4 0", f"{pad}  }}"])
+        lines.append(f"{pad}}}")
+        order.append(name)
+
+    order = []
+    joint("root", 0)
+    order = [line.split()[1] for line in lines if line.split()[0] in ("ROOT", "JOINT")]
+    rows = []
+    for t in range(frames):
+        swing = numpy.sin(t / 20 + phase)
+        turns = {"lhumerus": -60 + 20 * swing, "rhumerus": 60 + 20 * swing, "lfemur": -18, "rfemur": 18}
+        row = ["0", "92", f"{t / 10:g}"]
+        for name in order:
+            row += [f"{turns.get(name, 0):.4f}", "0", f"{25 * swing if name in ('lfemur', 'rtibia') else 0:.4f}"]
+        rows.append(" ".join(row))
+    return "\n".join(["HIERARCHY", *lines, "MOTION", f"Frames: {frames}", "Frame Time: 0.0166667", *rows]) + "\n"
+
+
+@case
+def a_model_for_poses_is_trained_on_a_skeleton_alone_and_used(folder):
+    if not (BUILD / "apps/kinalign-learn/kinalign-learn").exists():
+        raise Skip("kinalign-learn was not built: it needs libtorch-dev")
+    raw = folder / "raw"
+    raw.mkdir()
+    for person in (1, 2, 3):
+        (raw / f"{person:02}_01.bvh").write_text(cmu_bvh(240 + person, person))
+    data_sets.done("import", folder / "set", raw, code=None)
+    data_sets.done("build", folder / "set", code=None)
+    data_sets.done("split", folder / "set", "--by", "subject", "--test", "0.3", "-o", folder / "set/people.json")
+    model = folder / "m.safetensors"
+    words = ("train", "wouda", "--data", folder / "set", "--split", folder / "set/people.json", "-o", model, "--nodes",
+             "wrist_left,ankle_left,ankle_right,waist", "--jobs", "1", "--json")
+    ran = kinalign(*words, memory=1 << 36, seconds=300)
+    ran.stderr = b"".join(line for line in ran.stderr.splitlines(True) if not line.startswith(b"kinalign train: warning: "))
+    law(ran, words)
+    assert ran.returncode == 0, ran.stderr
+    shown = told("info", model)
+    assert (shown["task"], shown["method"], shown["rate_hz"]) == ("pose", "wouda", 30), shown
+    assert shown["input"]["nodes"] == ["wrist_left", "ankle_left", "ankle_right", "waist"], shown["input"]
+    assert len(shown["output"]["bones"]) == 15 and 1.2 < shown["output"]["height_m"] < 1.7, shown["output"]
+    assert 0 < shown["metrics"]["clean_position_cm"] < 20, shown["metrics"]
+    assert len(shown["training"]["data"][0]["subjects"]) == 2, shown["training"]
+    take, _ = simulated(folder / "sim", seconds=6)
+    said = told("pose", take, "--model", model, "-o", folder / "o.bvh")
+    assert said["joints"] == 27 and "wrist_right" not in said["nodes"], said
+
+
+@case
+def a_skeleton_that_is_not_CMUs_is_told_by_name(folder):
+    if not (BUILD / "apps/kinalign-learn/kinalign-learn").exists():
+        raise Skip("kinalign-learn was not built: it needs libtorch-dev")
+    data = data_sets.small_set(folder, takes=1)
+    data_sets.done("build", data)
+    words = ("train", "wouda", "--data", data, "-o", folder / "m.safetensors", "--jobs", "1")
+    ran = kinalign(*words, memory=1 << 36, seconds=300)
+    ran.stderr = b"".join(line for line in ran.stderr.splitlines(True) if not line.startswith(b"kinalign train: warning: "))
+    said = law(ran, words, folder / "m.safetensors")
+    assert ran.returncode == 3 and "expected a skeleton with CMU's joints (ASF/AMC), found none named root" in said, said
+
+
+sys.exit(main())
