@@ -29,6 +29,7 @@ std::vector<Verb> all_verbs() {
           train_verb(),
           denoise_verb(),
           pose_verb(),
+          fuse_verb(),
           eval_verb(),
           model_export_verb(),
           simulate_verb(),

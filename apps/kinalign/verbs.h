@@ -34,6 +34,7 @@ Verb dataset_rm_verb();
 Verb train_verb();
 Verb denoise_verb();
 Verb pose_verb();
+Verb fuse_verb();
 Verb eval_verb();
 Verb model_export_verb();
 Verb time_server_verb();

@@ -116,28 +116,38 @@ void put_joint(const PointFrames& points, const Between& where, std::size_t at, 
 
 }  // namespace
 
+EvenSpan span_of(Time first, Time last, double rate_hz) {
+  // Half a step of room: stamps of 33.3 ms with jitter still give a row for each frame.
+  const double steps = static_cast<double>(to_ns(last) - to_ns(first)) * 1e-9 * rate_hz + 0.5;
+  return {first, static_cast<std::size_t>(std::clamp(steps, 0.0, most_frames)) + 1};
+}
+
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
-                               double rate_hz, double gap_s) {
+                               double rate_hz, double gap_s, std::optional<EvenSpan> span) {
   KA_TRY(check_stamps(points.stamps, rate_hz));
   const auto places = KA_TRY(places_of(wanted, names));
   const auto at_s = [&](std::size_t i) {
     return static_cast<double>(to_ns(points.stamps[i]) - to_ns(points.stamps.front())) * 1e-9;
   };
-  const double span = at_s(points.size() - 1);
-  // Half a step of room: stamps of 33.3 ms with jitter still give a row for each frame.
-  const double steps = span * rate_hz + 0.5;
-  if (steps >= most_frames) {
-    return Failure(Error{"", 0, "at most 10,000,000 frames", text_of(steps, "frames")});
+  const EvenSpan grid =
+      span ? *span : span_of(points.stamps.front(), points.stamps.back(), rate_hz);
+  if (static_cast<double>(grid.frames) >= most_frames) {
+    return Failure(Error{"", 0, "at most 10,000,000 frames",
+                         text_of(at_s(points.size() - 1) * rate_hz, "frames")});
   }
-  const auto frames = static_cast<std::size_t>(steps) + 1;
+  const std::size_t frames = grid.frames;
+  const double last = at_s(points.size() - 1), edge = 0.5 / rate_hz;
+  const double begin = static_cast<double>(to_ns(grid.start) - to_ns(points.stamps.front())) * 1e-9;
   EvenFrames out{{wanted.size(), std::vector<float>(frames * wanted.size() * 3, 0.0F),
                   std::vector<std::uint8_t>(frames * wanted.size(), 0)},
-                 points.stamps.front(),
+                 grid.start,
                  rate_hz};
   std::size_t before = 0;
   for (std::size_t t = 0; t < frames; ++t) {
-    const double time = std::min(static_cast<double>(t) / rate_hz, span);
+    const double asked = begin + static_cast<double>(t) / rate_hz;
+    if (asked < -edge || asked > last + edge) continue;
+    const double time = std::clamp(asked, 0.0, last);
     while (before + 2 < points.size() && at_s(before + 1) <= time) ++before;
     const double from = at_s(before), to = at_s(before + 1);
     const double share = to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0.0;

@@ -6,10 +6,20 @@
 #include "kinalign/models/joint_frames.h"
 #include "kinalign/motion/streams.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace kinalign {
+
+/// Frame t is at start + t / rate.
+struct EvenSpan {
+  Time start{};
+  std::size_t frames = 0;
+};
+
+/// From the first stamp to the last one, of the device that has them.
+EvenSpan span_of(Time first, Time last, double rate_hz);
 
 struct EvenFrames {
   JointFrames body;
@@ -23,8 +33,10 @@ struct EvenFrames {
 /// where there are no samples, where stamps fall, where root or hips are not there, where the usual
 /// step is more than twice or less than a quarter of the grid's, and where the body is no person's
 /// size.
+/// `span`: the frames; else those from the first sample to the last one.
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
-                               double rate_hz, double gap_s);
+                               double rate_hz, double gap_s,
+                               std::optional<EvenSpan> span = std::nullopt);
 
 }  // namespace kinalign

@@ -15,6 +15,7 @@ enum Lane : std::uint64_t {
   lane_heading,
   lane_device,
   lane_part,
+  lane_kind,
   lane_which,
   lane_begin,
   lane_length
@@ -28,15 +29,16 @@ void lose_a_part(FuseInput& input, const FuseLayout& layout, const FuseDraws& dr
                                                        (draws.most_lost_s - draws.least_lost_s));
   const auto begin = static_cast<std::size_t>(random.uniform(0, lane_begin) * frames);
   const auto end = std::min(input.frames(), begin + static_cast<std::size_t>(std::lround(length)));
-  const std::size_t limbs = kinect_limb_joints.size(), nodes = input.nodes.nodes;
-  const auto which = std::min(
-      static_cast<std::size_t>(random.uniform(0, lane_which) * static_cast<double>(limbs + nodes)),
-      limbs + nodes - 1);
-  if (which < limbs) {
-    lose_limb(input.kinect, layout.joints, which, begin, end);
+  const auto one_of = [&](std::size_t count) {
+    const double which = random.uniform(0, lane_which) * static_cast<double>(count);
+    return std::min(static_cast<std::size_t>(which), count - 1);
+  };
+  if (random.uniform(0, lane_kind) < draws.lost_limb) {
+    lose_limb(input.kinect, layout.joints, one_of(kinect_limb_joints.size()), begin, end);
     return;
   }
-  for (std::size_t t = begin; t < end; ++t) input.nodes.valid[t * nodes + which - limbs] = 0;
+  const std::size_t nodes = input.nodes.nodes, node = one_of(nodes);
+  for (std::size_t t = begin; t < end; ++t) input.nodes.valid[t * nodes + node] = 0;
 }
 
 }  // namespace

@@ -19,9 +19,10 @@ struct FuseDraws {
   NodeErrors errors{.yaw_deg = 8.0};
   /// Shares of crops: headings still unknown, as they are before a Kinect has seen anything; the
   /// whole Kinect missing; all nodes missing; a limb of the Kinect or a node missing for a while.
-  double unknown_heading = 0.15, without_kinect = 0.2, without_nodes = 0.2, lost_part = 0.3;
+  double unknown_heading = 0.15, without_kinect = 0.2, without_nodes = 0.2, lost_part = 0.5;
+  double lost_limb = 0.7;     // of the lost parts: a limb of the Kinect; else a node
   double unknown_deg = 20.0;  // headings lie within +- this
-  double least_lost_s = 0.3, most_lost_s = 2.0;
+  double least_lost_s = 0.3, most_lost_s = 5.0;
 };
 
 /// A Kinect's joints of one limb.

@@ -60,7 +60,7 @@ FuseMethod gated_method() {
           .source = "kinalign",
           .architecture = gated_architecture,
           .training = {},
-          .options = {.steps = 1500, .rate = 2e-3, .rise = 0.1, .average = false}};
+          .options = {.steps = 2000, .rate = 2e-3, .rise = 0.1, .average = false}};
 }
 
 FuseMethod gated_online_method() {

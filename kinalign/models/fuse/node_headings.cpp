@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/fuse/node_headings.h"
 
+#include "kinalign/motion/mahony.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -182,6 +184,39 @@ NodeDirections directions_of_pose(const HeadingFilter& filter, const JointFrames
 std::vector<HeadingState> node_headings(HeadingFilter filter, const NodeFrames& nodes,
                                         const NodeDirections& directions) {
   return HeadingSmoother::smoothed(std::move(filter), nodes, directions);
+}
+
+std::optional<double> shared_heading(const FuseLayout& layout, const FuseInput& input) {
+  FuseInput kinect = input;
+  std::fill(kinect.nodes.valid.begin(), kinect.nodes.valid.end(), std::uint8_t{0});
+  const auto seen = fuse_features(layout, kinect);
+  const std::size_t base = 4 * layout.joints.size(), channels = layout.channels();
+  std::vector<double> yaws;
+  for (std::size_t t = 0; t < input.frames(); ++t) {
+    const auto root = orientation_at(input.nodes, t, layout.nodes.leaves());
+    if (!root || seen.input[t * channels + base] == 0.0F) continue;
+    yaws.push_back(heading_of(seen.space[t].turn.cast<double>()) -
+                   heading_of(root->cast<double>()));
+  }
+  if (static_cast<double>(yaws.size()) < layout.nodes.rate_hz) return std::nullopt;
+  // About the mean direction, so that the median does not depend on where angles wrap.
+  double sine = 0.0, cosine = 0.0;
+  for (const double yaw : yaws) {
+    sine += std::sin(yaw);
+    cosine += std::cos(yaw);
+  }
+  const double mean = std::atan2(sine, cosine);
+  for (double& yaw : yaws) yaw = std::remainder(yaw - mean, 2.0 * std::numbers::pi);
+  const auto middle = yaws.begin() + static_cast<std::ptrdiff_t>(yaws.size() / 2);
+  std::nth_element(yaws.begin(), middle, yaws.end());
+  return mean + *middle;
+}
+
+void turn_world(NodeFrames& nodes, double yaw) {
+  HeadingState state;
+  state.yaw = static_cast<float>(yaw);
+  const std::vector<HeadingState> states(nodes.nodes, state);
+  for (std::size_t t = 0; t < nodes.frames(); ++t) correct_frame(nodes, t, states);
 }
 
 void correct_frame(NodeFrames& nodes, std::size_t t, std::span<const HeadingState> states) {

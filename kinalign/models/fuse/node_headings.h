@@ -88,6 +88,13 @@ NodeDirections directions_of_pose(const HeadingFilter& filter, const JointFrames
 std::vector<HeadingState> node_headings(HeadingFilter filter, const NodeFrames& nodes,
                                         const NodeDirections& directions);
 
+/// The turn about the vertical, rad, that brings the world of all nodes to the Kinect's: the median
+/// of what hips and shoulders show against the root's node. Nothing where both are never seen
+/// together for a second. It sets a filter near the truth; nodes may still differ.
+std::optional<double> shared_heading(const FuseLayout& layout, const FuseInput& input);
+/// All nodes with their world turned about the vertical.
+void turn_world(NodeFrames& nodes, double yaw);
+
 /// The nodes with corrected orientations and accelerations; angular velocities turn with the mount.
 NodeFrames with_headings(NodeFrames nodes, const std::vector<HeadingState>& states);
 /// The same of frame `t` alone; `states` [N].

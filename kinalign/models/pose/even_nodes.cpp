@@ -113,7 +113,8 @@ Result<void> complete(NodeTrack& track) {
   return {};
 }
 
-Result<EvenNodes> even_nodes(const std::vector<NodeTrack>& tracks, double rate_hz) {
+Result<EvenNodes> even_nodes(const std::vector<NodeTrack>& tracks, double rate_hz,
+                             std::optional<EvenSpan> span) {
   const std::vector<Time>& root = tracks.back().stamps;
   if (root.size() < 2) {
     return Failure(
@@ -123,8 +124,9 @@ Result<EvenNodes> even_nodes(const std::vector<NodeTrack>& tracks, double rate_h
   if (steps >= most_node_frames) {
     return Failure(Error{"", 0, "at most 10,000,000 frames", std::to_string(steps)});
   }
-  const std::size_t frames = static_cast<std::size_t>(steps) + 1, nodes = tracks.size();
-  EvenNodes out{{}, root.front()};
+  const EvenSpan grid = span ? *span : EvenSpan{root.front(), static_cast<std::size_t>(steps) + 1};
+  const std::size_t frames = grid.frames, nodes = tracks.size();
+  EvenNodes out{{}, grid.start};
   out.worn.nodes = nodes;
   out.worn.orientation.resize(frames * nodes * 4);
   out.worn.acceleration.resize(frames * nodes * 3);

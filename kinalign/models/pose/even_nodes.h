@@ -3,9 +3,11 @@
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/models/even_grid.h"
 #include "kinalign/models/pose/node_calibration.h"
 #include "kinalign/wire/time.h"
 
+#include <optional>
 #include <vector>
 
 namespace kinalign {
@@ -37,7 +39,9 @@ struct EvenNodes {
 /// weights that fall in a line to 0 within 67 ms: the second difference of positions that models
 /// are trained on (pose_data.cpp) is the same mean. Its angular velocity is averaged likewise
 /// within half a frame. Samples that lie farther apart than that are joined by a line. Fails where
-/// the root has fewer than two samples or the grid has more than 10,000,000 frames.
-Result<EvenNodes> even_nodes(const std::vector<NodeTrack>& tracks, double rate_hz);
+/// the root has fewer than two samples or the grid has more than 10,000,000 frames. `span`: the
+/// frames, in place of the root's.
+Result<EvenNodes> even_nodes(const std::vector<NodeTrack>& tracks, double rate_hz,
+                             std::optional<EvenSpan> span = std::nullopt);
 
 }  // namespace kinalign

@@ -57,9 +57,10 @@ Result<void> check_body(const PoseBody& body) {
 
 Result<void> check_scales(std::size_t channels, const std::vector<float>& mean,
                           const std::vector<float>& scale) {
-  const bool sound = std::all_of(scale.begin(), scale.end(),
-                                 [](float one) { return std::isfinite(one) && one > 0.0F; }) &&
-                     std::all_of(mean.begin(), mean.end(), [](float one) { return std::isfinite(one); });
+  const bool sound =
+      std::all_of(scale.begin(), scale.end(),
+                  [](float one) { return std::isfinite(one) && one > 0.0F; }) &&
+      std::all_of(mean.begin(), mean.end(), [](float one) { return std::isfinite(one); });
   if (mean.size() == channels && scale.size() == channels && sound) return {};
   return Failure(Error{
       "", 0,

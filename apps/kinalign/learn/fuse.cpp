@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/kinalign/learn/point_source.h"
+#include "apps/kinalign/learn/shipped_models.h"
+#include "apps/kinalign/learn/worn_nodes.h"
+#include "apps/kinalign/text/describe_file.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/describe_model.h"
+#include "apps/kinalign/verbs/inputs.h"
+
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/formats/take/guarded.h"
+#include "kinalign/models/even_grid.h"
+#include "kinalign/models/fuse/fuse_model.h"
+#include "kinalign/models/joint_names.h"
+#include "kinalign/sources/formats.h"
+#include "kinalign/view/report_words.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double longest_kinect_gap_s = 0.2;  // between samples that are joined by a line
+constexpr double most_unsure_deg = 10.0;      // of a node's heading, 1 sigma
+
+struct FuseWords {
+  std::vector<std::string> in;
+  std::string model, kinect, nodes;
+  WornWords worn;
+};
+
+Usage describe_fuse(FuseWords& o) {
+  Usage usage;
+  usage.positionals = {{"IN", "a take, a recording or a manifest with a Kinect and nodes", &o.in}};
+  usage.flags = {
+      {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
+      {"kinect",
+       "the stream of the Kinect (default: the only one of joints)",
+       &o.kinect,
+       0.0,
+       0.0,
+       {},
+       "NAME"},
+      {"nodes",
+       "the stream of the nodes (default: the only one of nodes)",
+       &o.nodes,
+       0.0,
+       0.0,
+       {},
+       "NAME"}};
+  for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
+  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+    KA_TRY(check(o.worn));
+    if (common.out.ends_with(".bvh")) return {};
+    return Failure(Error{"-o", 0, "-o FILE.bvh", common.out.empty() ? "none" : shown(common.out)});
+  };
+  return usage;
+}
+
+/// Both devices as they came.
+struct BothDevices {
+  NamedPoints kinect;
+  NamedNodes nodes;
+};
+
+/// From the first stamp of either device to the last one.
+EvenSpan span_of_both(const BothDevices& both, const NodeChoice& choice, double rate_hz) {
+  Time first = both.kinect.frames.stamps.front(), last = both.kinect.frames.stamps.back();
+  for (const auto& node : choice) {
+    if (!node) continue;
+    const auto& stamps = both.nodes.tracks[*node].stamps;
+    first = std::min(first, stamps.front());
+    last = std::max(last, stamps.back());
+  }
+  return span_of(first, last, rate_hz);
+}
+
+/// What the network is given, and what is to be said of it.
+struct FusedInput {
+  FuseInput input;
+  Time start{};
+  Json about;
+};
+
+double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t value) {
+  return static_cast<double>(std::count(seen.begin(), seen.end(), value)) /
+         static_cast<double>(std::max<std::size_t>(seen.size(), 1));
+}
+
+Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn) {
+  const FuseLayout& layout = model.layout;
+  const NodeChoice choice = KA_TRY(choose(layout.nodes, both.nodes));
+  if (both.kinect.frames.stamps.size() < 2) {
+    return Failure(Error{"", 0, "a Kinect with two frames at least", "fewer"});
+  }
+  const EvenSpan span = span_of_both(both, choice, layout.nodes.rate_hz);
+  const NamedNodes names{both.nodes.stream, both.nodes.names, {}, {}};
+  const PosedNodes posed = KA_TRY(calibrated_nodes(layout.nodes, model.body.skeleton,
+                                                   std::move(both.nodes), choice, worn, span));
+  FusedInput out;
+  out.start = span.start;
+  out.input.nodes = on_bones(posed.calibration, posed.even.worn);
+  const EvenFrames seen =
+      KA_TRY(even_frames(layout.joints, kinect_names(both.kinect.joints), both.kinect.frames,
+                         layout.nodes.rate_hz, longest_kinect_gap_s, span));
+  out.input.kinect = seen.body;
+  const auto yaw = shared_heading(layout, out.input);
+  if (!yaw) {
+    return Failure(Error{"", 0,
+                         "a second in which the Kinect sees the person and the waist's node sends",
+                         "none (denoise and pose take one device alone)"});
+  }
+  turn_world(out.input.nodes, *yaw);
+  out.about = {{"kinect", both.kinect.stream},
+               {"imu", names.stream},
+               {"frames", span.frames},
+               {"rate_hz", layout.nodes.rate_hz},
+               {"joints", model.body.skeleton.joints()},
+               {"method", model.facts.method},
+               {"missing", share_of(seen.body.seen, 0)},
+               {"inferred", share_of(seen.body.seen, 1)}};
+  out.about.update(about_nodes(layout.nodes, posed, out.input.nodes, names, choice));
+  return out;
+}
+
+/// What the Kinect says of each node's heading, at the end; and warnings where it says little.
+void tell_headings(Fuser& fuser, const FuseInput& input, Json& about) {
+  const auto states = fuser.headings(input);
+  const auto& names = fuser.model().layout.nodes.nodes;
+  Json found = Json::object();
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const HeadingState& last = states[states.size() - names.size() + n];
+    const double degrees = 180.0 / std::numbers::pi;
+    const double spread = degrees * static_cast<double>(last.spread);
+    found[names[n]] = {{"turned_deg", degrees * static_cast<double>(last.yaw)},
+                       {"spread_deg", spread}};
+    const bool is_there = about.at("nodes").at(names[n]).at("valid").get<double>() > 0.0;
+    if (!is_there || spread <= most_unsure_deg) continue;
+    about["warnings"].push_back(
+        fmt::format("{}: the Kinect hardly shows its heading (± {:.0f} deg)", names[n], spread));
+  }
+  about["found_headings"] = std::move(found);
+}
+
+Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call& call) {
+  FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), o.worn));
+  tell_headings(fuser, given.input, given.about);
+  Clip clip = fuser.clip(given.input, given.start);
+  OutputFile file =
+      KA_TRY(OutputFile::create(call.surroundings.files, call.common.out, call.common.overwrite()));
+  const double period_s = 1.0 / fuser.model().layout.nodes.rate_hz;
+  KA_TRY(write_bvh(bvh_from_clip(std::move(clip), period_s),
+                   [&](std::string_view text) { return file.write(text); }));
+  KA_TRY(file.commit());
+  return std::move(given.about);
+}
+
+/// Fuses and writes; errors without a file name `in`.
+Result<Json> fuse_named(Fuser& fuser, Result<NamedPoints> kinect, Result<NamedNodes> nodes,
+                        const FuseWords& o, Call& call) {
+  BothDevices both;
+  both.kinect = KA_TRY(std::move(kinect));
+  both.nodes = KA_TRY(std::move(nodes));
+  auto about = fuse_into(fuser, std::move(both), o, call);
+  if (!about && about.error().file.empty()) about.error().file = o.in.front();
+  return about;
+}
+
+/// The same of a take, in a child process.
+Result<Json> fuse_take(Fuser& fuser, const FuseWords& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string& in = o.in.front();
+  const auto work = [&]() -> Result<std::string> {
+    return KA_TRY(fuse_named(fuser, points_of_take(files, in, o.kinect),
+                             nodes_of_take(files, in, o.nodes), o, call))
+        .dump();
+  };
+  Json about = Json::parse(KA_TRY(run_guarded(GuardLimits{}, blame(in), work)), nullptr, false);
+  if (about.is_object()) return about;
+  return Failure(Error{in, 0, "a take that can be read", "another answer"});
+}
+
+void print_fuse(const Json& about, const std::string& out, Call& call) {
+  std::string found;
+  for (const auto& [name, one] : about.at("found_headings").items()) {
+    found += fmt::format("{}{} {:+.0f} ± {:.0f}", found.empty() ? "" : ", ", harmless(name),
+                         one.at("turned_deg").get<double>(), one.at("spread_deg").get<double>());
+  }
+  std::string text =
+      fmt::format(
+          "{}: {} frames at {:g} Hz, {} joints\nkinect   {:.1f} % missing, {:.1f} % "
+          "inferred\n",
+          harmless(out), grouped(about.at("frames").get<std::size_t>()),
+          about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>(),
+          100.0 * about.at("missing").get<double>(), 100.0 * about.at("inferred").get<double>()) +
+      node_lines(about) + fmt::format("turned   by the Kinect, deg: {}\n", found);
+  for (const Json& warning : about.at("warnings")) {
+    text += fmt::format("warning  {}\n", harmless(warning.get<std::string>()));
+  }
+  call.console.print(text);
+  call.console.print_json(about.dump(1, ' ', false, Json::error_handler_t::replace));
+}
+
+Result<int> run_fuse(FuseWords& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string& in = o.in.front();
+  KA_TRY(keep_inputs(call.common.out, o.in));
+  const std::string path = o.model.empty() ? KA_TRY(shipped_model("fuse")) : o.model;
+  const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
+  Fuser fuser = KA_TRY(Fuser::make(KA_TRY(read_fuse_model(bytes, path))));
+  const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
+  const Json about = KA_TRY(is_take ? fuse_take(fuser, o, call)
+                                    : fuse_named(fuser, points_of_file(in, o.kinect, call),
+                                                 nodes_of_file(in, o.nodes, call), o, call));
+  call.console.wrote(call.common.out);
+  print_fuse(about, call.common.out, call);
+  return about.at("warnings").empty() ? 0 : 1;
+}
+
+}  // namespace
+
+Verb fuse_verb() {
+  return make_verb<FuseWords>(
+      {.name = "fuse",
+       .summary = "a person's pose from a Kinect and inertial nodes together",
+       .text =
+           "A model answers with the whole body, at its place before the Kinect. Where the Kinect "
+           "loses a limb the nodes show it; where the Kinect sees it, it shows how far each node's "
+           "heading is off. The person holds a T-pose for a second or more, as for pose.",
+       .examples = {{"kinalign fuse take.h5 -o fused.bvh", "a skeleton that Blender opens"},
+                    {"kinalign fuse take.h5 -o fused.bvh --kinect kinect --nodes imu --tpose 2,5",
+                     "the streams by name, the T-pose from second 2 to 5"}},
+       .common = {"out", "force", "json"}},
+      describe_fuse, run_fuse);
+}
+
+}  // namespace kinalign
