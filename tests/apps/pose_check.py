@@ -10,6 +10,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import data_sets
 import samples
 from cases import BUILD, Skip, case, done_with, kinalign, law, main, refused, wrong
+from rehearsing import recorded_by_its_lab
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SMALL = ROOT / "tests/data/fuzz/pose_model_fuzz"  # one: three nodes; two: the five usual ones
@@ -99,6 +100,27 @@ def a_take_and_the_files_it_was_made_of_give_a_pose(folder):
     text, _ = done_with(0, "pose", take, "--model", SMALL / "two.safetensors", "-o", folder / "c.bvh")
     assert "c.bvh: 330 frames at 30 Hz, 9 joints\nnodes    5 of 5, 100.0 % valid\nT-pose   0.0 to " in text, text
     assert (folder / "a.bvh").read_bytes() == (folder / "c.bvh").read_bytes()
+
+
+@case
+def a_recording_of_a_labs_devices_gives_a_pose_and_a_clean_Kinect(folder):
+    recording = recorded_by_its_lab(folder)
+    said = told("pose", recording, "--model", SMALL / "two.safetensors", "-o", folder / "pose.bvh")
+    assert said["valid"] > 0.98 and said["t_pose"]["found"] and said["headings"] == "mounting", said
+    told("denoise", recording, "-o", folder / "clean.bvh")
+
+
+@case
+def nodes_that_say_no_orientation_get_one_of_their_rates_and_forces(folder):
+    _, manifest = simulated(folder / "sim", seconds=12)
+    said = told("pose", manifest, "--model", SMALL / "two.safetensors", "-o", folder / "a.bvh")
+    for path in folder.glob("sim/imu_*.csv"):
+        rows = [line.split(",") for line in path.read_text().splitlines()]
+        path.write_text("\n".join(",".join([row[0], *row[5:]]) for row in rows) + "\n")
+    bare = told("pose", manifest, "--model", SMALL / "two.safetensors", "-o", folder / "b.bvh")
+    assert bare["warnings"] == [] and bare["headings"] == "mounting", bare
+    for node, one in bare["nodes"].items():
+        assert abs(one["tilt_deg"] - said["nodes"][node]["tilt_deg"]) < 3, (node, one)
 
 
 @case

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/learn/node_source.h"
 
-#include "apps/cli/console.h"
-#include "apps/kinalign/verbs/inputs.h"
+#include "apps/kinalign/learn/motion_input.h"
 
 #include "kinalign/align/nodes.h"
 #include "kinalign/formats/take/take_hdf5.h"
@@ -154,8 +153,7 @@ Result<NamedNodes> nodes_of_take(FileSystem& files, const std::string& path,
 }
 
 Result<NamedNodes> nodes_of_file(const std::string& path, const std::string& stream, Call& call) {
-  const Input input =
-      KA_TRY(open_input(call.surroundings.files, path, StreamFlags{}, call.console.progress()));
+  const Input input = KA_TRY(open_motion(path, call));
   const auto streams = KA_TRY(node_streams(input.recording, path, stream));
   NamedNodes out{streams.front()->name, {}, {}, {}};
   for (const RecordedStream* one : streams) {

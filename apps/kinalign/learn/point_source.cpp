@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/learn/point_source.h"
 
-#include "apps/cli/console.h"
-#include "apps/kinalign/verbs/inputs.h"
+#include "apps/kinalign/learn/motion_input.h"
 
 #include "kinalign/align/own_rows.h"
 #include "kinalign/formats/take/take_hdf5.h"
@@ -128,8 +127,7 @@ Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
 }
 
 Result<NamedPoints> points_of_file(const std::string& path, const std::string& stream, Call& call) {
-  const Input input =
-      KA_TRY(open_input(call.surroundings.files, path, StreamFlags{}, call.console.progress()));
+  const Input input = KA_TRY(open_motion(path, call));
   std::string known;
   const RecordedStream* found = nullptr;
   for (const RecordedStream& one : input.recording.streams) {

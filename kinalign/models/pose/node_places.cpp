@@ -10,8 +10,10 @@ namespace {
 
 using Direction = std::array<double, 3>;
 
-// CMU's ankle joint lies behind the knee in a person who stands: the shank's direction is 20
-// degrees off the vertical. Measured on the stands of 16 people: 12 to 31 degrees, in the mean 20.
+// CMU's ankle joint lies behind the knee in a person who stands: the shank's direction is 12 to 31
+// degrees off the vertical in the stands of 16 people, 20 in the mean. Over a recorded walk with
+// optical truth (UNSW) ankles were 11 to 16 cm off with these 20 degrees and 18 to 20 cm without.
+// A simulated suit's shanks stand upright: there 13 cm with them and 7 cm without.
 constexpr Direction cmu_shank{0.0, -0.94, -0.34};
 
 constexpr std::array<WornPlace, 6> places{{

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/learn/motion_input.h"
+
+#include "apps/cli/console.h"
+
+#include "kinalign/recording/streams/recording_source.h"
+#include "kinalign/sources/formats.h"
+#include "kinalign/sources/open_recording.h"
+
+#include <utility>
+
+namespace kinalign {
+
+Result<Input> open_motion(const std::string& path, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const Progress progress = call.console.progress();
+  if (KA_TRY(kind_of_file(files, path)) != FileKind::recording) {
+    return open_input(files, path, StreamFlags{}, progress);
+  }
+  const auto source =
+      KA_TRY(RecordingSource::open(files, path, RecordingSource::Devices::heard, {}, progress));
+  Input out;
+  out.manifest = KA_TRY(recorded_manifest(source->survey(), path));
+  OpenedInPart opened =
+      KA_TRY(open_what_can_be(files, *out.manifest, std::string(folder(path)),
+                              {.progress = progress, .jobs = call.jobs, .recording = source}));
+  out.recording = std::move(opened.recording);
+  return out;
+}
+
+}  // namespace kinalign
