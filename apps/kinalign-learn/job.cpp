@@ -195,6 +195,30 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
   return Fitted{write_pose_model(fit.model), std::move(fit.points)};
 }
 
+constexpr std::array<Devices, 3> all_devices{Devices::both, Devices::kinect, Devices::nodes};
+
+std::string name_of(Devices devices) {
+  static constexpr std::array<std::string_view, 3> names{"both", "kinect", "nodes"};
+  return std::string(names[static_cast<std::size_t>(devices)]);
+}
+
+Fusion fusion_of(Fuser& fuser) {
+  return [&](const FuseInput& input) { return fuser.solve(input); };
+}
+
+/// Marks on the people of the test part; empty where there are none.
+Result<std::string> fuse_metrics_json(const FuseModel& model, const FuseData& data) {
+  if (data.pose.tested.empty()) return std::string();
+  auto fuser = KA_TRY(Fuser::make(model));
+  Json out;
+  for (const FuseMark& mark : KA_TRY(fuse_marks(fusion_of(fuser), model.layout, data,
+                                                {all_devices.begin(), all_devices.end()}))) {
+    out[name_of(mark.devices) + "_position_cm"] = mark.all_cm;
+    out[name_of(mark.devices) + "_hidden_cm"] = mark.hidden_cm;
+  }
+  return out.dump();
+}
+
 /// The file's own Kinect where it has one of the job's name, else simulated ones.
 FuseDataOptions fuse_options(const TrainingJob& job, const Windows& windows) {
   FuseDataOptions out;
@@ -211,6 +235,7 @@ Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
   LearntFrom from;
   for (const PoseSequence& one : data.pose.learnt) from.add(one.subject, one.frames());
   fit.model.facts.training = training_json(job, windows.facts, from);
+  fit.model.facts.metrics = KA_TRY(fuse_metrics_json(fit.model, data));
   return Fitted{write_fuse_model(fit.model), std::move(fit.points)};
 }
 
@@ -238,9 +263,8 @@ Result<void> evaluate_pose(const TrainingJob& job, const Windows& windows, PoseM
 }
 
 Json mark_json(const std::string& method, const FuseMark& mark) {
-  static constexpr std::array<std::string_view, 3> devices{"both", "kinect", "nodes"};
   return {{"method", method},
-          {"devices", devices[static_cast<std::size_t>(mark.devices)]},
+          {"devices", name_of(mark.devices)},
           {"all_cm", mark.all_cm},
           {"hidden_cm", mark.hidden_cm},
           {"seen_trunk_cm", mark.seen_trunk_cm},
@@ -268,8 +292,7 @@ Result<void> evaluate_fuse(const TrainingJob& job, const Windows& windows, FuseM
   const FuseLayout layout = fuser.model().layout;
   const FuseData data =
       KA_TRY(fuse_data(windows, job.truth, layout.nodes.nodes, fuse_options(job, windows)));
-  const std::vector<Devices> all{Devices::both, Devices::kinect, Devices::nodes};
-  const Fusion network = [&](const FuseInput& input) { return fuser.solve(input); };
+  const std::vector<Devices> all{all_devices.begin(), all_devices.end()};
   const HeadingsOf by_joints = [&](const FuseInput& input) {
     FuseInput own = input;
     unexchange(layout, own);
@@ -283,7 +306,7 @@ Result<void> evaluate_fuse(const TrainingJob& job, const Windows& windows, FuseM
     own.nodes = with_headings(std::move(own.nodes), by_joints(own));
     return filtered_pose(layout, data.pose.body, own);
   };
-  for (const FuseMark& mark : KA_TRY(fuse_marks(network, layout, data, all))) {
+  for (const FuseMark& mark : KA_TRY(fuse_marks(fusion_of(fuser), layout, data, all))) {
     print_row(mark_json(fuser.model().facts.method, mark));
   }
   for (const FuseMark& mark : KA_TRY(fuse_marks(filter, layout, data, all))) {
@@ -328,7 +351,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
   TrainingJob out;
   try {
     out.windows = json.at("windows").get<std::string>();
-    out.input = json.value("input", "kinect");
+    out.input = json.value("input", "");
     out.truth = json.value("truth", "mocap");
     out.nodes = json.value("nodes", usual_pose_nodes());
     out.threads = json.value("threads", std::int64_t{1});

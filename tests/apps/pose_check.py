@@ -10,16 +10,12 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import data_sets
 import samples
 from cases import BUILD, Skip, case, done_with, kinalign, law, main, refused, wrong
+from posed import SAME, simulated, told
 from rehearsing import recorded_by_its_lab
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SMALL = ROOT / "tests/data/fuzz/pose_model_fuzz"  # one: three nodes; two: the five usual ones
 SHIPPED = ROOT / "models/pose.safetensors"
-
-# Joints of the answer and of the simulated suit.
-SAME = {"ltibia": "LeftLeg", "lfoot": "LeftFoot", "rtibia": "RightLeg", "rfoot": "RightFoot", "lradius": "LeftForeArm",
-        "lhand": "LeftHand", "rradius": "RightForeArm", "rhand": "RightHand", "lhumerus": "LeftArm",
-        "rhumerus": "RightArm", "head": "Head"}
 
 # CMU's joints (ASF/AMC), parents first: parent, offset in cm.
 CMU = {"root": ("", (0, 0, 0)), "lfemur": ("root", (8, -8, 3)), "ltibia": ("lfemur", (13, -36, 0)),
@@ -32,17 +28,6 @@ CMU = {"root": ("", (0, 0, 0)), "lfemur": ("root", (8, -8, 3)), "ltibia": ("lfem
        "rclavicle": ("thorax", (-2, 8, 0)), "rhumerus": ("rclavicle", (-15, 4, 0)),
        "rradius": ("rhumerus", (-28, 0, 0)), "rwrist": ("rradius", (-18, 0, 0)), "rhand": ("rwrist", (-9, 0, 0)),
        "rfingers": ("rhand", (-6, 0, 0))}
-
-
-def simulated(folder, seconds=30, seed=1):
-    """A take of a simulated person with suit and nodes, and its manifest."""
-    done_with(0, "simulate", "built-in", "-o", folder, "--seconds", seconds, "--seed", seed, "--quiet")
-    done_with(0, "align", folder / "recording.toml", "-o", folder / "take.h5", "--quiet")
-    return folder / "take.h5", folder / "recording.toml"
-
-
-def told(*words, code=0):
-    return json.loads(done_with(code, *words, "--json")[0])
 
 
 def arrays(path, folder, prefix=""):
@@ -175,9 +160,9 @@ def wrong_words_are_told(_):
         wrong("pose", "take.h5", "-o", "pose.bvh", f"--tpose={text}",
               says=f"--tpose: expected START,END in seconds, such as 1.5,4, found {text}")
     wrong("train", "refine", "--windows", "w.npz", "-o", "m.safetensors", "--nodes", "waist",
-          says="--nodes: expected a method for poses, found refine")
+          says="--nodes: expected a method for poses or for fusion, found refine")
     wrong("train", "wouda", "--windows", "w.npz", "-o", "m.safetensors", "--rate", "15",
-          says="--rate: expected a method that cleans a stream, found wouda, which sees simulated nodes at 30 Hz")
+          says="--rate: expected a method that cleans a stream, found wouda, which works at 30 Hz")
 
 
 def cmu_bvh(frames, phase):
@@ -251,7 +236,7 @@ def a_skeleton_that_is_not_CMUs_is_told_by_name(folder):
     ran = kinalign(*words, memory=1 << 36, seconds=300)
     ran.stderr = b"".join(line for line in ran.stderr.splitlines(True) if not line.startswith(b"kinalign train: warning: "))
     said = law(ran, words, folder / "m.safetensors")
-    assert ran.returncode == 3 and "expected a skeleton with CMU's joints (ASF/AMC), found none named root" in said, said
+    assert ran.returncode == 3 and "expected a skeleton with the joints of a suit (LeftUpLeg) or of CMU (lfemur), found none named root" in said, said
 
 
 sys.exit(main())

@@ -164,12 +164,23 @@ Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call&
   return std::move(given.about);
 }
 
+/// What a source says of its stream, with the flag that chooses it here.
+template <class Stream>
+Result<Stream> by_flag(Result<Stream> stream, const std::string& flag) {
+  if (stream) return stream;
+  Error error = stream.error();
+  const std::string general = "--stream";
+  const std::size_t at = error.expected.find(general);
+  if (at != std::string::npos) error.expected.replace(at, general.size(), flag);
+  return Failure(std::move(error));
+}
+
 /// Fuses and writes; errors without a file name `in`.
 Result<Json> fuse_named(Fuser& fuser, Result<NamedPoints> kinect, Result<NamedNodes> nodes,
                         const FuseWords& o, Call& call) {
   BothDevices both;
-  both.kinect = KA_TRY(std::move(kinect));
-  both.nodes = KA_TRY(std::move(nodes));
+  both.nodes = KA_TRY(by_flag(std::move(nodes), "--nodes"));
+  both.kinect = KA_TRY(by_flag(std::move(kinect), "--kinect"));
   auto about = fuse_into(fuser, std::move(both), o, call);
   if (!about && about.error().file.empty()) about.error().file = o.in.front();
   return about;

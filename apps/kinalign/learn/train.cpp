@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-enum class Learns : std::uint8_t { denoise, pose };
+enum class Learns : std::uint8_t { denoise, pose, fuse };
 
 struct TrainWord {
   std::string_view method;
@@ -28,7 +28,7 @@ struct TrainWord {
 };
 
 /// Methods by the names that kinalign-learn knows them by.
-constexpr std::array<TrainWord, 10> train_words{{{"refine", Learns::denoise},
+constexpr std::array<TrainWord, 15> train_words{{{"refine", Learns::denoise},
                                                  {"cnn", Learns::denoise},
                                                  {"bra", Learns::denoise},
                                                  {"bra-p", Learns::denoise},
@@ -37,35 +37,49 @@ constexpr std::array<TrainWord, 10> train_words{{{"refine", Learns::denoise},
                                                  {"dip", Learns::pose},
                                                  {"dip-512", Learns::pose},
                                                  {"dip-robust", Learns::pose},
-                                                 {"wouda", Learns::pose}}};
+                                                 {"wouda", Learns::pose},
+                                                 {"gated", Learns::fuse},
+                                                 {"gated-online", Learns::fuse},
+                                                 {"bilstm", Learns::fuse},
+                                                 {"bilstm-kinect", Learns::fuse},
+                                                 {"bilstm-nodes", Learns::fuse}}};
 
 constexpr double pose_windows_hz = 60.0;  // nodes are simulated from it
 
 struct Train {
   std::vector<std::string> method;
   std::string data, windows, split, where;
-  std::string input = "kinect", truth = "mocap", nodes, device = "cpu";
+  std::string input, truth = "mocap", nodes, device = "cpu";
   double rate_hz = 30.0;
   std::int64_t steps = 0, seed = 1, patience = 0;
   bool resume = false;
 };
 
-bool learns_pose(const Train& o) {
-  return std::any_of(train_words.begin(), train_words.end(), [&](const TrainWord& one) {
-    return one.task == Learns::pose && one.method == o.method.front();
-  });
+Learns task_of(const Train& o) {
+  const auto word =
+      std::find_if(train_words.begin(), train_words.end(),
+                   [&](const TrainWord& one) { return one.method == o.method.front(); });
+  return word == train_words.end() ? Learns::denoise : word->task;
+}
+
+/// The rough stream: a Kinect's, unless the method sees none or a simulated one.
+std::string input_of(const Train& o) {
+  return o.input.empty() && task_of(o) == Learns::denoise ? "kinect" : o.input;
 }
 
 /// Fails for a flag that the method has no use for.
 Result<void> check_task(const Train& o, const Sources& given) {
-  const bool is_pose = learns_pose(o);
-  if (!is_pose && given.count("nodes") > 0) {
-    return Failure(Error{"--nodes", 0, "a method for poses", o.method.front()});
+  const Learns task = task_of(o);
+  if (task == Learns::denoise && given.count("nodes") > 0) {
+    return Failure(Error{"--nodes", 0, "a method for poses or for fusion", o.method.front()});
   }
-  for (const char* flag : {"input", "rate"}) {
-    if (!is_pose || given.count(flag) == 0) continue;
-    return Failure(Error{std::string("--") + flag, 0, "a method that cleans a stream",
-                         o.method.front() + ", which sees simulated nodes at 30 Hz"});
+  if (task == Learns::pose && given.count("input") > 0) {
+    return Failure(Error{"--input", 0, "a method that sees a Kinect",
+                         o.method.front() + ", which sees simulated nodes"});
+  }
+  if (task != Learns::denoise && given.count("rate") > 0) {
+    return Failure(Error{"--rate", 0, "a method that cleans a stream",
+                         o.method.front() + ", which works at 30 Hz"});
   }
   return {};
 }
@@ -93,10 +107,12 @@ Usage describe_train(Train& o) {
        0.0,
        {},
        "SQL"},
-      {"input", "the rough stream", &o.input, 0.0, 0.0, {}, "NAME"},
+      {"input",
+       "the rough stream (default: kinect; of a method that fuses: a simulated Kinect)",
+       &o.input, 0.0, 0.0, {}, "NAME"},
       {"truth", "the precise stream", &o.truth, 0.0, 0.0, {}, "NAME"},
       {"nodes",
-       "of a method for poses: 3 to 6 of waist, which is the last, wrist_left, wrist_right, "
+       "of poses and fusion: 3 to 6 of waist, which is the last, wrist_left, wrist_right, "
        "ankle_left, ankle_right, head (default: all but the head)",
        &o.nodes,
        0.0,
@@ -131,15 +147,15 @@ std::string run_folder(const std::string& model) {
 }
 
 Result<void> make_windows(const Train& o, const std::string& file) {
-  const bool is_pose = learns_pose(o);
-  const std::string length = is_pose ? "64" : "32";
-  const double rate_hz = is_pose ? pose_windows_hz : o.rate_hz;
+  const bool is_denoise = task_of(o) == Learns::denoise;
+  const std::string length = is_denoise ? "32" : "64", input = input_of(o);
+  const double rate_hz = is_denoise ? o.rate_hz : pose_windows_hz;
   std::vector<std::string> words{
       "dataset",  "windows", o.data,     "-o",     file,
       "--force",  "--quiet", "--length", length,   "--step",
       length,     "--valid", "0.2",      "--rate", fmt::format("{:g}", rate_hz),
       "--stream", o.truth};
-  if (!is_pose) words.insert(words.end(), {"--stream", o.input});
+  if (!input.empty()) words.insert(words.end(), {"--stream", input});
   if (!o.split.empty()) words.insert(words.end(), {"--split", o.split});
   if (!o.where.empty()) words.insert(words.end(), {"--where", o.where});
   const Ended ended = KA_TRY(run_own_process(words));
@@ -175,7 +191,7 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   if (o.steps > 0) options["steps"] = o.steps;
   if (o.patience > 0) options.update({{"patience", o.patience}, {"judge_every", 100}});
   Json job{{"schema", "kinalign.training_job/1"}, {"method", o.method.front()}};
-  if (!learns_pose(o)) job["input"] = o.input;
+  if (!input_of(o).empty()) job["input"] = input_of(o);
   job["truth"] = o.truth;
   job["options"] = options;
   if (!o.nodes.empty()) job["nodes"] = split_at_commas(o.nodes);
@@ -234,13 +250,13 @@ Verb train_verb() {
   return make_verb<Train>(
       {.name = "train",
        .summary = "a model from a data set",
-       .text = "Trains a network and writes one SafeTensors file, which denoise or pose reads and "
-               "PyTorch and NumPy open. refine, cnn, bra and bra-p clean a Kinect; inertial, "
-               "inertial-online, dip, dip-512, dip-robust and wouda answer nodes with a pose, and "
-               "learn from a skeleton alone. The same seed gives the same weights on the same "
-               "machine. A run "
-               "that was stopped goes on with --resume. The program kinalign-learn does the work; "
-               "it is built where LibTorch is installed.",
+       .text = "Trains a network and writes one SafeTensors file, which denoise, pose or fuse reads "
+               "and PyTorch and NumPy open. refine, cnn, bra and bra-p clean a Kinect; inertial, "
+               "inertial-online, dip, dip-512, dip-robust and wouda answer nodes with a pose; "
+               "gated, gated-online and bilstm answer a Kinect and nodes together. The last two "
+               "kinds learn from a skeleton alone. The same seed gives the same weights on the "
+               "same machine. A run that was stopped goes on with --resume. The program "
+               "kinalign-learn does the work; it is built where LibTorch is installed.",
        .examples =
            {{"kinalign train refine --data walks -o denoise.safetensors",
              "a network that cleans a Kinect, from the pairs of a data set"},
@@ -248,7 +264,9 @@ Verb train_verb() {
              "--patience 10",
              "stops when the validation part gets no better"},
             {"kinalign train inertial --data walks -o pose.safetensors",
-             "a network that answers five nodes with a pose"}},
+             "a network that answers five nodes with a pose"},
+            {"kinalign train gated --data walks -o fuse.safetensors",
+             "a network for a Kinect and nodes together"}},
        .common = {"out", "force", "json", "jobs"}},
       describe_train, run_train);
 }

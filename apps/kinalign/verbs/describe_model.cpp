@@ -8,6 +8,7 @@
 #include "kinalign/infer/shapes.h"
 #include "kinalign/models/denoise_model.h"
 #include "kinalign/models/model_file.h"
+#include "kinalign/models/fuse/fuse_model.h"
 #include "kinalign/models/pose/pose_model.h"
 #include "kinalign/view/report_words.h"
 
@@ -182,37 +183,70 @@ std::string_view channels_name(PoseInputs inputs) {
   return inputs == PoseInputs::dip ? "dip" : "ours";
 }
 
+std::string name_list(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + shown(name);
+  return out;
+}
+
+std::string model_line(const ModelFacts& facts) {
+  return line("model", fmt::format("{}, method {}", shown(facts.task), shown(facts.method)));
+}
+
+/// The body that a model answers on.
+std::string body_lines(const PoseBody& body, bool smoothing, const Architecture& network) {
+  return line("output", fmt::format("rotations of {}", counted(body.bones.size(), "bone"))) +
+         line("body", fmt::format("{}, {:.2f} m from the lowest to the highest at rest",
+                                  counted(body.skeleton.joints(), "joint"),
+                                  height_at_rest(body.skeleton))) +
+         network_lines("net", network) + line("smoothing", smoothing ? "over 5 frames" : "none");
+}
+
 std::string pose_text(const std::string& path, const PoseModel& model, const Json& training,
                       const Json& metrics) {
   const PoseLayout& layout = model.layout;
-  std::string nodes;
-  for (const std::string& node : layout.nodes) nodes += (nodes.empty() ? "" : ", ") + shown(node);
-  std::string text = path + "\n";
-  text += line("model",
-               fmt::format("{}, method {}", shown(model.facts.task), shown(model.facts.method)));
+  std::string text = path + "\n" + model_line(model.facts);
   text += line("rate", fmt::format("{:g} Hz", layout.rate_hz));
-  text +=
-      line("input", fmt::format("{}: {}; {} channels ({})", counted(layout.nodes.size(), "node"),
-                                nodes, layout.channels(), channels_name(layout.inputs)));
-  text += line("output", fmt::format("rotations of {}", counted(layout.bones.size(), "bone")));
-  text += line("body", fmt::format("{}, {:.2f} m from the lowest to the highest at rest",
-                                   counted(model.body.skeleton.joints(), "joint"),
-                                   height_at_rest(model.body.skeleton)));
-  text += network_lines("net", model.architecture);
-  text += line("smoothing", model.smoothing ? "over 5 frames" : "none");
+  text += line("input", fmt::format("{}: {}; {} channels ({})",
+                                    counted(layout.nodes.size(), "node"), name_list(layout.nodes),
+                                    layout.channels(), channels_name(layout.inputs)));
+  text += body_lines(model.body, model.smoothing, model.architecture);
   return text + training_lines(training) + metric_lines(metrics);
+}
+
+std::string fuse_text(const std::string& path, const FuseModel& model, const Json& training,
+                      const Json& metrics) {
+  const FuseLayout& layout = model.layout;
+  std::string text = path + "\n" + model_line(model.facts);
+  text += line("rate", fmt::format("{:g} Hz", layout.nodes.rate_hz));
+  text += joint_lines("kinect", layout.joints);
+  text += line("nodes", fmt::format("{}: {}", counted(layout.nodes.nodes.size(), "node"),
+                                    name_list(layout.nodes.nodes)));
+  text += body_lines(model.body, model.smoothing, model.architecture);
+  return text + training_lines(training) + metric_lines(metrics);
+}
+
+Json body_json(const PoseBody& body, bool smoothing) {
+  return {{"bones", body.bones},
+          {"joints", body.skeleton.joint_names},
+          {"parents", body.skeleton.parents},
+          {"height_m", height_at_rest(body.skeleton)},
+          {"smoothing", smoothing}};
 }
 
 Json pose_json(const PoseModel& model) {
   const PoseLayout& layout = model.layout;
   return {{"rate_hz", layout.rate_hz},
           {"input", {{"nodes", layout.nodes}, {"channels", channels_name(layout.inputs)}}},
-          {"output",
-           {{"bones", layout.bones},
-            {"joints", model.body.skeleton.joint_names},
-            {"parents", model.body.skeleton.parents},
-            {"height_m", height_at_rest(model.body.skeleton)},
-            {"smoothing", model.smoothing}}},
+          {"output", body_json(model.body, model.smoothing)},
+          {"networks", {{"net", network_json(model.architecture)}}}};
+}
+
+Json fuse_json(const FuseModel& model) {
+  const FuseLayout& layout = model.layout;
+  return {{"rate_hz", layout.nodes.rate_hz},
+          {"input", {{"nodes", layout.nodes.nodes}, {"joints", layout.joints}}},
+          {"output", body_json(model.body, model.smoothing)},
           {"networks", {{"net", network_json(model.architecture)}}}};
 }
 
@@ -261,6 +295,18 @@ Result<Description> describe_pose_model(const std::string& path, std::string_vie
   return Description{std::move(text), json_text(json)};
 }
 
+Result<Description> describe_fuse_model(const std::string& path, std::string_view bytes) {
+  FuseModel model = KA_TRY(read_fuse_model(bytes, path));
+  const Json training = parsed_object(model.facts.training);
+  const Json metrics = parsed_object(model.facts.metrics);
+  std::string text = fuse_text(path, model, training, metrics);
+  Json json = facts_json(path, bytes, model.facts);
+  json.update(fuse_json(model));
+  json.update({{"training", training}, {"metrics", metrics}});
+  KA_TRY(check_usable(Fuser::make(std::move(model)), path));
+  return Description{std::move(text), json_text(json)};
+}
+
 Result<Description> describe_denoise_model(const std::string& path, std::string_view bytes) {
   DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
   const Json training = parsed_object(model.facts.training);
@@ -292,7 +338,8 @@ Result<Description> describe_denoise_model(const std::string& path, std::string_
 
 Result<Description> describe_model(const std::string& path, std::string_view bytes) {
   const std::string task = KA_TRY(task_of_model(bytes, path));
-  return task == "pose" ? describe_pose_model(path, bytes) : describe_denoise_model(path, bytes);
+  if (task == "pose") return describe_pose_model(path, bytes);
+  return task == "fuse" ? describe_fuse_model(path, bytes) : describe_denoise_model(path, bytes);
 }
 
 }  // namespace kinalign
