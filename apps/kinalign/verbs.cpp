@@ -31,6 +31,7 @@ std::vector<Verb> all_verbs() {
           pose_verb(),
           fuse_verb(),
           eval_verb(),
+          benchmark_twin_verb(),
           model_export_verb(),
           simulate_verb(),
           time_server_verb(),

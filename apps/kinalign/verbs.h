@@ -36,6 +36,7 @@ Verb denoise_verb();
 Verb pose_verb();
 Verb fuse_verb();
 Verb eval_verb();
+Verb benchmark_twin_verb();
 Verb model_export_verb();
 Verb time_server_verb();
 Verb node_key_verb();

@@ -13,36 +13,42 @@ namespace {
 
 std::string person_and_action(const Pair& pair) { return pair.subject + "/" + pair.action; }
 
-/// The shared joints of [T,J,3], in their order.
-std::vector<double> shared_of(const std::array<std::size_t, shared_joint_count>& places,
-                              std::size_t joints, const std::vector<float>& positions) {
+constexpr std::size_t least_marked_joints = 12;
+
+using Places = std::array<std::optional<std::size_t>, shared_joint_count>;
+
+/// The shared joints of [T,J,3], in their order; zeros for those that are missing.
+std::vector<double> shared_of(const Places& places, std::size_t joints,
+                              const std::vector<float>& positions) {
   std::vector<double> out;
-  out.reserve(positions.size() / joints * shared_joint_count);
+  out.reserve(positions.size() / joints * shared_joint_count * 3);
   for (std::size_t row = 0; row + 3 * joints <= positions.size(); row += 3 * joints) {
-    for (const std::size_t j : places) {
-      for (std::size_t k = 0; k < 3; ++k) out.push_back(positions[row + 3 * j + k]);
+    for (const auto& j : places) {
+      for (std::size_t k = 0; k < 3; ++k) out.push_back(j ? positions[row + 3 * *j + k] : 0.0);
     }
   }
   return out;
 }
 
-std::vector<std::uint8_t> shared_valid(const std::array<std::size_t, shared_joint_count>& places,
-                                       std::size_t joints, const std::vector<std::uint8_t>& valid) {
+/// Cells of the shared joints that count; those of missing joints don't.
+std::vector<std::uint8_t> shared_valid(const Places& places, std::size_t joints,
+                                       const std::vector<std::uint8_t>& valid) {
   std::vector<std::uint8_t> out;
   for (std::size_t row = 0; row + joints <= valid.size(); row += joints) {
-    for (const std::size_t j : places) out.push_back(valid[row + j]);
+    for (const auto& j : places) out.push_back(j ? valid[row + *j] : std::uint8_t{0});
   }
   return out;
 }
 
-std::vector<double> in_centimetres(std::vector<double> values) {
-  for (double& value : values) value *= 100.0;
-  return values;
-}
-
-std::array<Bone, limb_bones.size()> limbs() {
-  std::array<Bone, limb_bones.size()> out{};
-  for (std::size_t b = 0; b < out.size(); ++b) out[b] = {limb_bones[b].a, limb_bones[b].b};
+/// These joints of [T,J,3] m, in cm.
+std::vector<double> in_centimetres(const std::vector<std::size_t>& places, std::size_t joints,
+                                   const std::vector<float>& positions) {
+  std::vector<double> out;
+  for (std::size_t row = 0; row + 3 * joints <= positions.size(); row += 3 * joints) {
+    for (const std::size_t j : places) {
+      for (std::size_t k = 0; k < 3; ++k) out.push_back(100.0 * positions[row + 3 * j + k]);
+    }
+  }
   return out;
 }
 
@@ -52,7 +58,21 @@ Result<DenoiseMarker> DenoiseMarker::make(const DenoiseLayout& layout,
                                           const std::vector<Pair>& pairs) {
   DenoiseMarker out;
   const auto names = kinect_names(layout.outputs);
-  out.places_ = KA_TRY(shared_joints_among(names));
+  out.places_ = shared_joints_there(names);
+  std::array<std::size_t, shared_joint_count> own{};
+  for (std::size_t j = 0; j < shared_joint_count; ++j) {
+    own[j] = out.there_.size();
+    if (out.places_[j]) out.there_.push_back(*out.places_[j]);
+  }
+  if (out.there_.size() < least_marked_joints) {
+    return Failure(
+        Error{"", 0, "12 of the 18 joints that a Kinect and a truth share",
+              std::to_string(out.there_.size()) + " among " + std::to_string(names.size())});
+  }
+  for (const SharedBone& bone : limb_bones) {
+    if (out.places_[bone.a] && out.places_[bone.b])
+      out.bones_.push_back({own[bone.a], own[bone.b]});
+  }
   out.joints_ = layout.outputs.size();
   out.rate_hz_ = layout.rate_hz;
   struct Copy {
@@ -82,14 +102,13 @@ DenoiseMarks DenoiseMarker::marks_of(const Pair& pair, const std::vector<float>&
   const Sequence sequence{shared_joint_count, rate_hz_, truth, valid};
   DenoiseMarks out;
   out.protocol = protocol_marks(sequence, predicted, lengths_.at(person_and_action(pair)));
-  const auto bones = limbs();
-  out.table_nine =
-      table_nine(in_centimetres(truth), in_centimetres(predicted), shared_joint_count, bones);
+  out.table_nine = table_nine(in_centimetres(there_, joints_, pair.truth),
+                              in_centimetres(there_, joints_, answer), there_.size(), bones_);
   double radii = 0.0;
   std::size_t within = 0;
   for (std::size_t i = 0; i < valid.size() && !spread.empty(); ++i) {
     if (valid[i] == 0) continue;
-    const std::size_t frame = i / shared_joint_count, joint = places_[i % shared_joint_count];
+    const std::size_t frame = i / shared_joint_count, joint = *places_[i % shared_joint_count];
     const double radius = radius_90 * spread[frame * joints_ + joint];
     const double distance =
         std::hypot(predicted[3 * i] - truth[3 * i], predicted[3 * i + 1] - truth[3 * i + 1],

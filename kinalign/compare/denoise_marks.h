@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The marks of a cleaned skeleton, on the joints that Kinect and truth share.
+// The marks of a cleaned skeleton, on the joints that Kinect and truth share: 18 of UI-PRMD, 16 of
+// a suit, whose skeleton has no tips of the feet.
 #pragma once
 
 #include "kinalign/evaluate/protocol.h"
@@ -28,7 +29,8 @@ struct DenoiseMarks {
 /// Marks many answers of one layout.
 class DenoiseMarker {
  public:
-  /// Fails where the outputs lack one of the 18 shared joints.
+  /// Fails where the outputs have fewer than 12 of the 18 shared joints: a pose can't be fitted
+  /// then.
   static Result<DenoiseMarker> make(const DenoiseLayout& layout, const std::vector<Pair>& pairs);
 
   /// `answer`: [T,Jout,3] m; `spread`: [T,Jout] m per axis, or empty.
@@ -36,7 +38,9 @@ class DenoiseMarker {
                         const std::vector<float>& spread) const;
 
  private:
-  std::array<std::size_t, shared_joint_count> places_{};
+  std::array<std::optional<std::size_t>, shared_joint_count> places_;  // absent: not marked
+  std::vector<std::size_t> there_;  // the outputs that are marked, in the order of places_
+  std::vector<Bone> bones_;         // limbs between them, by their place in there_
   std::size_t joints_ = 0;
   double rate_hz_ = 0.0;
   /// Median true lengths of the limb bones, m, by person and action.

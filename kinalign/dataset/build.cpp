@@ -135,50 +135,37 @@ class BuildProgress {
   bool stopped_ = false;
 };
 
-class Builder {
- public:
-  Builder(FileSystem& files, const std::string& folder, const Catalogue& catalogue)
-      : files_(files), folder_(folder), catalogue_(catalogue) {}
-
-  Result<TakeSummary> make(const BuildJob& job, const Progress& progress) {
-    const Manifest manifest = KA_TRY(take_manifest(files_, folder_, catalogue_, job.name));
-    const Recording recording = KA_TRY(
-        open_recording(files_, manifest, folder_of(folder_, job.name), {progress, 1, nullptr}));
-    const std::string path = place(folder_, job.name, TakeFile::take);
-    std::optional<TakeWriter> writer;
-    TakeHeader header;
-    TakeSink sink;
-    sink.begin = [&](const TakeHeader& of_take) -> Result<void> {
-      header = of_take;
-      const std::lock_guard lock(hdf5_);
-      writer.emplace(KA_TRY(TakeWriter::create(files_, path, Overwrite::yes, header)));
-      return {};
-    };
-    sink.rows = [&](const TakeSlab& slab) { return writer->append(slab); };
-    const AlignmentReport report = KA_TRY(align(recording, manifest, sink, progress, 1));
-    {
-      const std::lock_guard lock(hdf5_);
-      KA_TRY(writer->finish(report));
-    }
-    TakeSummary summary = KA_TRY(summary_of(header, report_json(report)));
-    summary.software = take_software();
-    return keep_summary(files_, folder_, job.name, std::move(summary));
-  }
-
-  /// A take that was added as a take. A child process opens it: before other threads begin.
-  Result<TakeSummary> summarise(const BuildJob& job) {
-    return keep_summary(files_, folder_, job.name,
-                        KA_TRY(summarise_takes(files_, folder_, {job.name}).front()));
-  }
-
- private:
-  FileSystem& files_;
-  const std::string& folder_;
-  const Catalogue& catalogue_;
-  std::mutex hdf5_;  // the library is not safe to use from several threads
-};
+/// A take that was added as a take. A child process opens it: before other threads begin.
+Result<TakeSummary> summarised(FileSystem& files, const std::string& folder, const TakeName& name) {
+  return keep_summary(files, folder, name, KA_TRY(summarise_takes(files, folder, {name}).front()));
+}
 
 }  // namespace
+
+Result<TakeSummary> TakeMaker::make(const TakeName& name, const Manifest& manifest,
+                                    const std::string& base, const Progress& progress) {
+  const Recording recording =
+      KA_TRY(open_recording(files_, manifest, base, {progress, 1, nullptr}));
+  const std::string path = place(folder_, name, TakeFile::take);
+  std::optional<TakeWriter> writer;
+  TakeHeader header;
+  TakeSink sink;
+  sink.begin = [&](const TakeHeader& of_take) -> Result<void> {
+    header = of_take;
+    const std::lock_guard lock(hdf5_);
+    writer.emplace(KA_TRY(TakeWriter::create(files_, path, Overwrite::yes, header)));
+    return {};
+  };
+  sink.rows = [&](const TakeSlab& slab) { return writer->append(slab); };
+  const AlignmentReport report = KA_TRY(align(recording, manifest, sink, progress, 1));
+  {
+    const std::lock_guard lock(hdf5_);
+    KA_TRY(writer->finish(report));
+  }
+  TakeSummary summary = KA_TRY(summary_of(header, report_json(report)));
+  summary.software = take_software();
+  return keep_summary(files_, folder_, name, std::move(summary));
+}
 
 Result<Manifest> take_manifest(FileSystem& files, const std::string& folder,
                                const Catalogue& catalogue, const TakeName& name) {
@@ -224,17 +211,21 @@ Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
 Result<void> build(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                    const BuildPlan& plan, const BuildWatch& watch) {
   const std::vector<BuildJob>& jobs = plan.jobs;
-  Builder builder(files, folder, catalogue);
+  TakeMaker maker(files, folder);
+  const auto make = [&](const BuildJob& job, const Progress& progress) -> Result<TakeSummary> {
+    const Manifest manifest = KA_TRY(take_manifest(files, folder, catalogue, job.name));
+    return maker.make(job.name, manifest, folder_of(folder, job.name), progress);
+  };
   BuildProgress all(watch.progress, jobs);
   for (std::size_t i = 0; i < jobs.size() && !all.stopped(); ++i) {
     if (jobs[i].reason != BuildReason::no_summary) continue;
-    watch.done({jobs[i].name, builder.summarise(jobs[i])});
+    watch.done({jobs[i].name, summarised(files, folder, jobs[i].name)});
     all.reach(i, jobs[i].input_bytes);
   }
   std::mutex telling;
   parallel_for(jobs.size(), plan.at_once, [&](std::size_t i) {
     if (all.stopped() || jobs[i].reason == BuildReason::no_summary) return;
-    Built built{jobs[i].name, builder.make(jobs[i], all.part(i, jobs[i].input_bytes))};
+    Built built{jobs[i].name, make(jobs[i], all.part(i, jobs[i].input_bytes))};
     all.reach(i, jobs[i].input_bytes);
     if (!built.summary && is_interruption(built.summary.error())) return;
     const std::lock_guard lock(telling);

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,24 @@ Result<BuildPlan> plan_build(FileSystem& files, const std::string& folder,
 /// Fails where the user stops it.
 Result<void> build(FileSystem& files, const std::string& folder, const Catalogue& catalogue,
                    const BuildPlan& plan, const BuildWatch& watch);
+
+/// Aligns raw files into takes of one data set. Several threads may make takes at once.
+class TakeMaker {
+ public:
+  /// Both must outlive it.
+  TakeMaker(FileSystem& files, const std::string& folder) : files_(files), folder_(folder) {}
+
+  /// Writes the take and its summary; each file appears as a whole, in place of an older one.
+  /// `base` ("" or ending in '/') is the folder of the manifest's paths; subject and action are the
+  /// manifest's.
+  Result<TakeSummary> make(const TakeName& name, const Manifest& manifest, const std::string& base,
+                           const Progress& progress);
+
+ private:
+  FileSystem& files_;
+  const std::string& folder_;
+  std::mutex hdf5_;  // the library is not safe to use from several threads
+};
 
 /// The manifest of a take as it is aligned: with what dataset.toml says of [align], and with the
 /// subject and the action of the take's name.

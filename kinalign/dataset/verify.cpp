@@ -24,9 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Names that may lie in the folder beside the takes.
-constexpr std::array<std::string_view, 10> known_names{
-    "dataset.toml", "README.md", "LICENSE", "LICENCE",     "CHANGES",
-    "sourcedata",   "splits",    "windows", "report.html", "report"};
+constexpr std::array<std::string_view, 11> known_names{
+    "dataset.toml", "README.md", "LICENSE",     "LICENCE", "CHANGES", "sourcedata",
+    "splits",       "windows",   "report.html", "report",  "truth"};
 
 /// A file whose bytes are to be read.
 struct ToHash {

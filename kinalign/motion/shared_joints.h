@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,11 @@ inline constexpr std::array<SharedBone, 11> limb_bones{{{4, 5},
                                                         {14, 15},
                                                         {15, 16},
                                                         {16, 17}}};
+
+/// The index of each shared joint in `joint_names`, which are named by the SDK or as in UI-PRMD's
+/// Kinect files; absent for joints that are missing. A suit's skeleton has no tip of the foot.
+std::array<std::optional<std::size_t>, shared_joint_count> shared_joints_there(
+    std::span<const std::string> joint_names);
 
 /// The index of each shared joint in `joint_names`, which are named by the SDK or as in UI-PRMD's
 /// Kinect files. Fails where joints are missing, and names the first.

@@ -58,7 +58,7 @@ def law(done, words, out=None):
         assert not re.search(rb"[\x00-\x09\x0b-\x1f\x7f]", stream), "control characters: " + said
     if done.returncode in (2, 3):
         assert done.stdout == b"", "stdout of a failure: " + said
-        verb = " ".join(map(str, words[:2])) if words[0] in ("dataset", "model") else words[0]
+        verb = " ".join(map(str, words[:2])) if words[0] in ("dataset", "model", "benchmark") else words[0]
         assert re.fullmatch(rf"kinalign {verb}: (.+: )?expected .+, found .+(\n  .*)*\n", err), said
         if out is not None:
             assert not pathlib.Path(out).exists(), "half a file: " + said

@@ -34,3 +34,11 @@ TEST_CASE("a missing joint is named") {
   CHECK(to_string(places.error()) ==
         "expected a joint SpineShoulder among those of a Kinect, found 2 others");
 }
+
+TEST_CASE("joints that are missing have no place, the others keep theirs") {
+  const std::vector<std::string> names{"Hand", "SpineMid", "SpineBase"};
+  const auto places = shared_joints_there(names);
+  CHECK(places[0] == 2);
+  CHECK(places[1] == 1);
+  for (std::size_t j = 2; j < shared_joint_count; ++j) CHECK_FALSE(places[j]);
+}

@@ -150,7 +150,7 @@ Result<int> write_files(const Job& job, Call& call) {
   const Simulate& o = job.o;
   TrueRecording truth = named(truth_of(job.rehearsal, job.motion, utc_time(start_ns)), o);
   const NodeStamps stamps = o.node_stamps == "own" ? NodeStamps::own : NodeStamps::arrival;
-  KA_TRY(write_devices(job.folder, job.rehearsal, job.motion, stamps, truth));
+  KA_TRY(write_devices(job.folder, job.rehearsal, job.motion, {.stamps = stamps}, truth));
   KA_TRY(write_truth(job.folder, truth));
   call.console.if_it_fails({});
   tell_files({truth, job.rehearsal, job.folder.path, o.seconds}, call.console);

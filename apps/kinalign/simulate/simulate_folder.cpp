@@ -69,7 +69,7 @@ StreamOptions stream_of(std::string name, std::vector<StreamFile> files) {
   return stream;
 }
 
-Manifest manifest_of(const TrueRecording& truth, NodeStamps stamps) {
+Manifest manifest_of(const TrueRecording& truth, const DeviceChoice& devices) {
   Manifest manifest;
   manifest.subject = fmt::format("simulated_{}", truth.seed);
   manifest.action = truth.motion;
@@ -81,18 +81,24 @@ Manifest manifest_of(const TrueRecording& truth, NodeStamps stamps) {
   mocap.click_latency_ms = std::round(1e5 * click_latency_s) / 100.0;
   manifest.streams.push_back(mocap);
 
-  StreamOptions kinect = stream_of("kinect", {{"kinect.csv", ""}});
-  kinect.interval_ms = interval_ms(truth.length_s);
-  manifest.streams.push_back(kinect);
-  manifest.spaces["kinect"].method = "fit";
+  if (devices.kinect) {
+    StreamOptions kinect = stream_of("kinect", {{"kinect.csv", ""}});
+    kinect.interval_ms = interval_ms(truth.length_s);
+    manifest.streams.push_back(kinect);
+    manifest.spaces["kinect"].method = "fit";
+  }
+  if (!devices.nodes) return manifest;
 
   StreamOptions imu = stream_of("imu", {});
   for (const TrueNode& node : truth.nodes) {
     imu.files.push_back({node_file_name(node.node), node.node});
   }
   imu.root_node = "waist";
-  if (stamps == NodeStamps::own) imu.interval_ms = interval_ms(truth.length_s);
-  if (stamps == NodeStamps::arrival) imu.offset_ms = -arrival_delay_ms;
+  if (devices.stamps == NodeStamps::arrival) {
+    imu.offset_ms = -arrival_delay_ms;
+  } else {
+    imu.interval_ms = interval_ms(truth.length_s);
+  }
   manifest.streams.push_back(imu);
   return manifest;
 }
@@ -105,6 +111,8 @@ Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehears
     TextOut out = KA_TRY(table(folder, node_file_name(node.mounting.node_name)));
     if (stamps == NodeStamps::own) {
       KA_TRY(write_node(node_file(node, zero), out));
+    } else if (stamps == NodeStamps::received) {
+      KA_TRY(write_node(received_node(node, arrival_link, zero), out));
     } else {
       ArrivedNode arrived = arrived_node(node, arrival_link, zero);
       KA_TRY(write_node(arrived.stream, out));
@@ -112,7 +120,7 @@ Result<void> write_nodes(const RehearsalFolder& folder, const Rehearsal& rehears
     }
     KA_TRY(out.commit());
   }
-  if (stamps == NodeStamps::arrival) truth.link = letter(arrival_link);
+  if (stamps != NodeStamps::own) truth.link = letter(arrival_link);
   return {};
 }
 
@@ -179,14 +187,21 @@ Result<void> write_truth(const RehearsalFolder& folder, const TrueRecording& tru
 }
 
 Result<void> write_devices(const RehearsalFolder& folder, const Rehearsal& rehearsal,
-                           const Motion& motion, NodeStamps stamps, TrueRecording& truth) {
+                           const Motion& motion, const DeviceChoice& devices,
+                           TrueRecording& truth) {
   const Time zero = utc_time(truth.start_ns);
   KA_TRY(write_clip(folder, "mocap.bvh", motion, rehearsal.mocap));
-  TextOut kinect = KA_TRY(table(folder, "kinect.csv"));
-  KA_TRY(write_points(kinect_file(rehearsal, zero), kinect));
-  KA_TRY(kinect.commit());
-  KA_TRY(write_nodes(folder, rehearsal, stamps, truth));
-  return write_text(folder, "recording.toml", manifest_toml(manifest_of(truth, stamps)));
+  if (devices.kinect) {
+    TextOut kinect = KA_TRY(table(folder, "kinect.csv"));
+    KA_TRY(write_points(kinect_file(rehearsal, zero), kinect));
+    KA_TRY(kinect.commit());
+  }
+  if (devices.nodes) {
+    KA_TRY(write_nodes(folder, rehearsal, devices.stamps, truth));
+  } else {
+    truth.nodes.clear();
+  }
+  return write_text(folder, "recording.toml", manifest_toml(manifest_of(truth, devices)));
 }
 
 }  // namespace kinalign

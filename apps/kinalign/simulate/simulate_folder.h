@@ -13,7 +13,14 @@
 namespace kinalign {
 
 /// What nodes' samples are stamped by: each node's own clock, or their arrival over a link.
-enum class NodeStamps { own, arrival };
+/// `received`: by their own clocks, without the samples that the link loses.
+enum class NodeStamps { own, arrival, received };
+
+/// The devices that recorded together with the suit.
+struct DeviceChoice {
+  NodeStamps stamps = NodeStamps::own;
+  bool kinect = true, nodes = true;
+};
 
 struct RehearsalFolder {
   FileSystem& files;
@@ -42,8 +49,8 @@ Result<void> write_live_manifest(const RehearsalFolder& folder, const Rehearsal&
 Result<void> write_truth(const RehearsalFolder& folder, const TrueRecording& truth);
 
 /// mocap.bvh, kinect.csv, imu_<node>.csv and recording.toml. `truth` gets the clocks that the
-/// files' stamps have.
+/// files' stamps have, and loses nodes that were not there.
 Result<void> write_devices(const RehearsalFolder& folder, const Rehearsal& rehearsal,
-                           const Motion& motion, NodeStamps stamps, TrueRecording& truth);
+                           const Motion& motion, const DeviceChoice& devices, TrueRecording& truth);
 
 }  // namespace kinalign

@@ -18,6 +18,7 @@ using std::numbers::pi;
 constexpr double longest_leg = 0.9985;  // share of its bones' length that hip and ankle are apart
 constexpr double bend_depth = 0.75;     // rad, of the pelvis
 constexpr double squat_depth = 0.30;    // m
+constexpr double deep = 1.3;            // a deep squat, in those of a usual one
 
 Quat about_x(double angle) { return rotation(Vec3(angle, 0, 0)); }
 Quat about_y(double angle) { return rotation(Vec3(0, angle, 0)); }
@@ -30,6 +31,52 @@ double repeated(const Act& act, double t) {
   const double each = room / times;
   const double x = (t - act.begin_s) / each;
   return act.amplitude * bump(x - std::clamp(std::floor(x), 0.0, times - 1.0));
+}
+
+/// Both arms do the same.
+void do_with_both(Doing& doing, const ArmDoing& arm) { doing.left = doing.right = arm; }
+
+/// A push: the hand comes before the chest, goes away from there and back, and comes down.
+ArmDoing push_of(const Repetition& one, double t) {
+  const double x = one.share(t);
+  ArmDoing arm;
+  arm.guard = rise(x / 0.3) * rise((1.0 - x) / 0.3);
+  arm.reach = one.amplitude * rise((x - 0.22) / 0.3) * rise((0.84 - x) / 0.3);
+  return arm;
+}
+
+/// Adds the movement of a slow act. Shapes are estimates; tests hold each within people's ranges.
+void do_slowly(const Act& act, double t, Doing& doing) {
+  const Repetition& one = repetition_at(act.repetitions, t);
+  const double size = one.size(t);
+  ArmDoing& near = one.side > 0.0 ? doing.left : doing.right;
+  ArmDoing& far = one.side > 0.0 ? doing.right : doing.left;
+  switch (act.piece) {
+    case Piece::raise_front:
+      do_with_both(doing, {.front = size});
+      break;
+    case Piece::raise_side:
+      do_with_both(doing, {.side = size});
+      break;
+    case Piece::push:
+      near = push_of(one, t);
+      break;
+    case Piece::push_both:
+      do_with_both(doing, push_of(one, t));
+      break;
+    case Piece::bend_side:
+      doing.lean = one.side * size;
+      far.side = size;
+      break;
+    case Piece::twist:
+      doing.twist = one.side * size;
+      break;
+    case Piece::deep_squat:
+      doing.squat = deep * size;
+      break;
+    default:
+      break;
+  }
 }
 
 FootShape foot_shape(const Skeleton& skeleton, const RandomStream& random) {
@@ -54,23 +101,24 @@ double SlowNoise::at(double t) const {
   return std::numbers::sqrt2 / 2.0 * sum;
 }
 
-BuiltInBody::BuiltInBody(double height_m, std::uint64_t seed, std::vector<Act> acts)
-    : skeleton_(perception_neuron(height_m, seed)),
+BuiltInBody::BuiltInBody(double height_m, std::uint64_t person, std::uint64_t seed,
+                         std::vector<Act> acts)
+    : skeleton_(perception_neuron(height_m, person)),
       scale_(height_m / 1.75),
       acts_(std::move(acts)),
       path_(acts_, seed, scale_),
       bones_{skeleton_.rest_offsets[index(NeuronJoint::left_leg)].norm(),
              skeleton_.rest_offsets[index(NeuronJoint::left_foot)].norm()},
-      left_(acts_, path_, foot_shape(skeleton_, RandomStream(seed, 104)), 1.0, scale_),
-      right_(acts_, path_, foot_shape(skeleton_, RandomStream(seed, 104)), -1.0, scale_),
+      left_(acts_, path_, foot_shape(skeleton_, RandomStream(person, 104)), 1.0, scale_),
+      right_(acts_, path_, foot_shape(skeleton_, RandomStream(person, 104)), -1.0, scale_),
       sway_x_(RandomStream(seed, 104), 0, 0.07),
       sway_z_(RandomStream(seed, 104), 1, 0.07),
       breath_(RandomStream(seed, 104), 2, 0.2),
       glance_(RandomStream(seed, 104), 3, 0.05),
       nod_(RandomStream(seed, 104), 4, 0.06),
       lean_(RandomStream(seed, 104), 5, 0.05),
-      hang_(1.32 + 0.1 * RandomStream(seed, 104).uniform(10, 1)),
-      elbow_(0.2 + 0.15 * RandomStream(seed, 104).uniform(10, 2)) {}
+      hang_(1.32 + 0.1 * RandomStream(person, 104).uniform(10, 1)),
+      elbow_(0.2 + 0.15 * RandomStream(person, 104).uniform(10, 2)) {}
 
 Doing BuiltInBody::doing_at(double t) const {
   const Act& act = act_at(acts_, t);
@@ -107,6 +155,9 @@ Doing BuiltInBody::doing_at(double t) const {
     }
     case Piece::stand:
       break;
+    default:
+      do_slowly(act, t, doing);
+      break;
   }
   return doing;
 }
@@ -134,11 +185,13 @@ BuiltInBody::Pelvis BuiltInBody::pelvis_at(double t, const Doing& doing, const F
   const double over = std::cos(doing.gait_phase - 0.4 * pi);
   const double front = std::cos(doing.gait_phase - 0.85 * pi);
   Pelvis pelvis;
-  pelvis.yaw = body.yaw - 0.08 * doing.gait * doing.reach * front + 0.01 * lean_.at(t);
+  pelvis.yaw =
+      body.yaw - 0.08 * doing.gait * doing.reach * front + 0.01 * lean_.at(t) + 0.2 * doing.twist;
   const double pitch = bend_depth * doing.bend + 0.35 * doing.squat + 0.02 * doing.gait;
   pelvis.rotation = about_y(pelvis.yaw) * about_x(pitch) *
-                    about_z(-0.05 * doing.gait * over + 0.006 * lean_.at(t));
-  const double aside = scale_ * (0.005 * sway_x_.at(t) - 0.022 * doing.gait * over);
+                    about_z(-0.05 * doing.gait * over + 0.006 * lean_.at(t) - 0.08 * doing.lean);
+  const double aside =
+      scale_ * (0.005 * sway_x_.at(t) - 0.022 * doing.gait * over - 0.05 * doing.lean);
   const double back = scale_ * (0.005 * sway_z_.at(t) - 0.11 * doing.bend - 0.13 * doing.squat);
   pelvis.position = Vec3(body.x, 0, body.z) + about_y(body.yaw) * Vec3(aside, 0, back);
   const double width = scale_ * (0.003 + 0.05 * doing.gait);
@@ -165,16 +218,18 @@ void BuiltInBody::put_trunk(double t, const Doing& doing, Pose& pose) const {
   for (const auto joint :
        {NeuronJoint::spine, NeuronJoint::spine1, NeuronJoint::spine2, NeuronJoint::spine3}) {
     const double chest = joint == NeuronJoint::spine2 || joint == NeuronJoint::spine3 ? -2.0 : 1.0;
-    pose.local_rotations[index(joint)] = about_y(0.04 * front + 0.006 * lean_.at(t)) *
-                                         about_x(pitch + chest * breath + 0.004 * nod_.at(t)) *
-                                         about_z(0.012 * over);
+    pose.local_rotations[index(joint)] =
+        about_y(0.04 * front + 0.006 * lean_.at(t) + 0.15 * doing.twist) *
+        about_x(pitch + chest * breath + 0.004 * nod_.at(t)) *
+        about_z(0.012 * over - 0.11 * doing.lean);
   }
   const double bent = bend_depth * doing.bend + 0.35 * doing.squat + 4.0 * pitch;
   const double free = 1.0 - 0.7 * (1.0 - doing.down);  // in T-pose one looks ahead
   for (const auto joint : {NeuronJoint::neck, NeuronJoint::head}) {
-    pose.local_rotations[index(joint)] = about_y(0.07 * free * glance_.at(t + 3.0) - 0.04 * front) *
-                                         about_x(-0.2 * bent + 0.03 * free * nod_.at(t)) *
-                                         about_z(0.015 * glance_.at(t));
+    pose.local_rotations[index(joint)] =
+        about_y(0.07 * free * glance_.at(t + 3.0) - 0.04 * front + 0.25 * doing.twist) *
+        about_x(-0.2 * bent + 0.03 * free * nod_.at(t)) *
+        about_z(0.015 * glance_.at(t) - 0.06 * doing.lean);
   }
 }
 
@@ -182,22 +237,28 @@ void BuiltInBody::put_arm(double t, const Doing& doing, double side, Pose& pose)
   const std::size_t shoulder =
       index(side > 0 ? NeuronJoint::left_shoulder : NeuronJoint::right_shoulder);
   const double wave = doing.side == side ? doing.wave : 0.0;
+  const ArmDoing& arm = side > 0 ? doing.left : doing.right;
   const double front = doing.gait * std::cos(doing.gait_phase - 0.85 * pi);
   const double bent = bend_depth * doing.bend + 4.0 * 0.13 * doing.bend;
   const double slow = side * sway_x_.at(t + 7.0 * side) + breath_.at(t);
   // Back (+) as the leg of its side goes forward; forward in a bend, so that it hangs.
-  const double swing = doing.down * (side * (0.08 + 0.27 * doing.reach) * front - 0.85 * bent -
-                                     1.1 * doing.squat + 0.01 * slow);
-  const double lowered = hang_ * doing.down * (1.0 - wave) - 0.2 * wave + 0.006 * slow;
+  const double swing =
+      doing.down * (side * (0.08 + 0.27 * doing.reach) * front - 0.85 * bent - 1.1 * doing.squat +
+                    0.01 * slow - 2.2 * arm.front - 0.4 * arm.guard - 0.95 * arm.reach);
+  const double lowered =
+      hang_ * doing.down * (1.0 - wave) - 0.2 * wave + 0.006 * slow - 2.35 * arm.side;
   const double forth = std::sin(doing.wave_phase);
   const double elbow = elbow_ * doing.down * (1.0 - wave) + wave * (1.35 + 0.42 * forth) +
-                       0.15 * doing.gait * doing.reach * (1.0 - side * front) + 0.03;
+                       0.15 * doing.gait * doing.reach * (1.0 - side * front) + 0.03 +
+                       1.85 * arm.guard - 1.45 * arm.reach;
   const double outward = -1.4 * wave;  // the forearm, which bends forward, comes to point up
-  pose.local_rotations[shoulder] = about_z(side * (0.22 * wave + 0.003 * breath_.at(t)));
+  pose.local_rotations[shoulder] =
+      about_z(side * (0.22 * wave + 0.003 * breath_.at(t) + 0.3 * arm.side + 0.2 * arm.front));
   pose.local_rotations[shoulder + 1] = about_x(swing) * about_z(-side * lowered) * about_x(outward);
   pose.local_rotations[shoulder + 2] = about_y(-side * elbow);
   pose.local_rotations[shoulder + 3] =
-      about_y(0.2 * side * wave * std::sin(doing.wave_phase - 0.8)) * about_z(0.01 * slow);
+      about_y(0.2 * side * wave * std::sin(doing.wave_phase - 0.8)) *
+      about_z(0.01 * slow + side * 0.8 * arm.reach);
   put_fingers(0.3 * doing.down * (1.0 - 0.8 * wave), side, pose);
 }
 

@@ -23,6 +23,12 @@ class SlowNoise {
   std::array<double, 4> rate_{}, phase_{};  // rad/s, rad
 };
 
+/// The share of each slow movement in one arm's pose; 1: as far as an amplitude of 1 goes.
+struct ArmDoing {
+  double front = 0.0, side = 0.0;   // raised
+  double guard = 0.0, reach = 0.0;  // the hand before the chest; pushed away from there
+};
+
 /// How much of each movement there is at a moment.
 struct Doing {
   double down = 1.0;  // the arms; 0 in T-pose
@@ -30,11 +36,14 @@ struct Doing {
   double bend = 0.0, squat = 0.0;                    // 1: as far as an amplitude of 1 goes
   double gait = 0.0, gait_phase = 0.0, reach = 0.0;  // reach: 1 where one walks at 0.8 m/s
   double side = 1.0;                                 // of the waving hand
+  double lean = 0.0, twist = 0.0;                    // of the trunk; above 0 to the left
+  ArmDoing left, right;
 };
 
 class BuiltInBody {
  public:
-  BuiltInBody(double height_m, std::uint64_t seed, std::vector<Act> acts);
+  /// `person`: whose proportions and habits; `seed`: of all that differs from time to time.
+  BuiltInBody(double height_m, std::uint64_t person, std::uint64_t seed, std::vector<Act> acts);
 
   void pose_at(double t, Pose& pose) const;
   const Skeleton& skeleton() const { return skeleton_; }

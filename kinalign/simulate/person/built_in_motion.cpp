@@ -22,7 +22,8 @@ Result<Motion> built_in_motion(const BuiltInOptions& options) {
   const Programme programme = options.programme.empty()
                                   ? default_programme(options.length_s, options.seed)
                                   : options.programme;
-  BuiltInBody body(options.height_m, options.seed, acts_of(programme, options.seed));
+  BuiltInBody body(options.height_m, options.person.value_or(options.seed), options.seed,
+                   acts_of(programme, options.seed));
   Skeleton skeleton = body.skeleton();
   return Motion{std::move(skeleton), length,
                 [body = std::move(body)](double t, Pose& pose) { body.pose_at(t, pose); }};

@@ -15,6 +15,8 @@
 #include "kinalign/motion/pose.h"
 #include "kinalign/simulate/person/programme.h"
 
+#include <optional>
+
 namespace kinalign {
 
 struct BuiltInOptions {
@@ -22,6 +24,7 @@ struct BuiltInOptions {
   double length_s = 60.0;  // of the default programme, where none is given
   Programme programme{};   // empty: default_programme; a given one is as long as its pieces
   std::uint64_t seed = 1;  // of the person and of all that differs from one time to the next
+  std::optional<std::uint64_t> person{};  // whose proportions and habits, where not the seed's
 };
 
 /// y up, floor at y = 0; the person begins at x = z = 0, facing +z, and comes back there.

@@ -31,8 +31,9 @@ double usual_length(Piece piece) {
     case Piece::bend:
     case Piece::squat:
       return 7.0;
+    default:  // slow pieces stand in no default programme
+      return 0.0;
   }
-  return 0.0;
 }
 
 /// s, of one repetition: least and most.
@@ -52,9 +53,10 @@ std::pair<double, double> tempo(Piece piece) {
       return {1.0, 1.2};
     case Piece::t_pose:
     case Piece::stand:
-      break;
+      return {1.0, 1.0};
+    default:
+      return {5.5, 8.5};
   }
-  return {1.0, 1.0};
 }
 
 Act drawn(const RandomStream& random, std::uint64_t number, Piece piece) {
@@ -121,6 +123,10 @@ std::vector<Act> acts_of(const Programme& programme, std::uint64_t seed) {
     Act act = drawn(random, acts.size(), piece.piece);
     act.begin_s = begin;
     act.end_s = begin += piece.length_s;
+    if (is_slow(act.piece)) {
+      act.repetitions =
+          drawn_repetitions({act.begin_s, act.end_s, act.tempo_s, act.side, act.number}, seed);
+    }
     acts.push_back(act);
   }
   if (acts.empty()) acts.push_back(drawn(random, 0, Piece::stand));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/core/error.h"
+#include "kinalign/simulate/person/repetitions.h"
 
 #include <array>
 #include <cstdint>
@@ -21,10 +22,21 @@ enum class Piece : std::uint8_t {
   wave,       // with one raised hand
   bend,       // forward from the hips, arms hanging
   turn,       // in place, by quarters and halves
-  squat
+  squat,
+  // Slow ones, as in Baduanjin: each repetition has its own length and a pause.
+  raise_front,  // both arms, forward and up
+  raise_side,   // both arms, sideways and up
+  push,         // forward with one hand, then with the other
+  push_both,
+  bend_side,  // to one side, the other arm over the head, then to the other side
+  twist,      // the trunk to one side, eyes back, then to the other side
+  deep_squat
 };
-inline constexpr std::array<std::string_view, 9> piece_names{
-    "t_pose", "stand", "step", "walk", "walk_turn", "wave", "bend", "turn", "squat"};
+inline constexpr std::array<std::string_view, 16> piece_names{
+    "t_pose", "stand",       "step",       "walk", "walk_turn", "wave",      "bend",  "turn",
+    "squat",  "raise_front", "raise_side", "push", "push_both", "bend_side", "twist", "deep_squat"};
+/// Whether a piece is done in slow repetitions.
+constexpr bool is_slow(Piece piece) { return piece >= Piece::raise_front; }
 constexpr std::string_view to_string(Piece piece) {
   return piece_names[static_cast<std::size_t>(piece)];
 }
@@ -37,8 +49,8 @@ struct ProgrammePiece {
 };
 using Programme = std::vector<ProgrammePiece>;
 
-/// T-pose first, then every other piece in a drawn order, in a new order each time round, until the
-/// length is reached; the last piece is cut.
+/// T-pose first, then every other piece that is not slow in a drawn order, in a new order each time
+/// round, until the length is reached; the last piece is cut.
 Programme default_programme(double length_s, std::uint64_t seed);
 
 /// A piece as it is done this time. Ranges of tempo are estimates: strides of 1.05 to 1.35 s are
@@ -46,12 +58,13 @@ Programme default_programme(double length_s, std::uint64_t seed);
 struct Act {
   Piece piece = Piece::stand;
   double begin_s = 0.0, end_s = 0.0;
-  bool first = false, last = false;  // nothing to come from, nothing to go to
-  double side = 1.0;                 // +1: the left hand, foot or way round first
-  double amplitude = 1.0;            // of the movement, 0.85 to 1.15
-  double tempo_s = 1.0;              // of one repetition: a wave, a bend, a squat, a stride
-  double speed = 0.0;                // m/s of a person of 1.75 m, where one walks
-  std::uint64_t number = 0;          // of the act, for further draws
+  bool first = false, last = false;       // nothing to come from, nothing to go to
+  double side = 1.0;                      // +1: the left hand, foot or way round first
+  double amplitude = 1.0;                 // of the movement, 0.85 to 1.15
+  double tempo_s = 1.0;                   // of one repetition: a wave, a bend, a squat, a stride
+  double speed = 0.0;                     // m/s of a person of 1.75 m, where one walks
+  std::uint64_t number = 0;               // of the act, for further draws
+  std::vector<Repetition> repetitions{};  // of a slow piece; else none
 
   bool has_steps() const {
     return piece == Piece::step || piece == Piece::walk || piece == Piece::walk_turn ||

@@ -90,6 +90,20 @@ TrueClock kinect_clock(const Rehearsal& rehearsal, Time zero) {
   return thinned(clock);
 }
 
+/// Appends sample `i` of one node with another stamp.
+void append_sample(const ImuSamples& all, std::size_t i, Time stamp, ImuSamples& to) {
+  const auto copy = [i](const std::vector<double>& from, std::size_t width,
+                        std::vector<double>& onto) {
+    if (from.empty()) return;
+    onto.insert(onto.end(), &from[i * width], &from[i * width] + width);
+  };
+  to.stamps.push_back(stamp);
+  copy(all.orientation, 4, to.orientation);
+  copy(all.acceleration, 3, to.acceleration);
+  copy(all.angular_velocity, 3, to.angular_velocity);
+  to.valid.push_back(1);
+}
+
 TrueNode true_node(const SimulatedNode& node, const Motion& motion, Time zero) {
   TrueNode truth;
   truth.stream = "imu";
@@ -153,7 +167,7 @@ Result<Rehearsal> rehearse(const Motion& motion, const RehearsalOptions& options
   const KinectMap map = KA_TRY(kinect_map(motion.skeleton));
   done.camera.world_from_kinect = KA_TRY(camera_before(motion, seed));
   done.camera.drift_ppm = 40.0 * draws(seed).uniform(0, 6) - 20.0;
-  const KinectIds ids{.seed = seed, .person = seed};
+  const KinectIds ids{.seed = seed, .person = options.person.value_or(seed)};
   done.ticks = kinect_ticks(done.camera, ids, 0.0, motion.length_s);
   JointsOf joints_of(motion, map);
   done.kinect = simulate_kinect(std::ref(joints_of), done.ticks, done.camera, ids);
@@ -199,6 +213,16 @@ ImuStream node_file(const SimulatedNode& node, Time zero) {
   return imu_stream(node, time_at(zero, -SimulatedClock(node.seed, 1.0).reading(0.0)));
 }
 
+ImuStream received_node(const SimulatedNode& node, Link link, Time zero) {
+  const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
+  const ImuStream all = node_file(node, zero);
+  ImuStream out{all.node_names, all.content, {}};
+  for (std::size_t i = 0; i < arrivals.size(); ++i) {
+    if (arrivals[i].first) append_sample(all.samples, i, all.samples.stamps[i], out.samples);
+  }
+  return out;
+}
+
 ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
   const auto arrivals = transmit({.link = link}, node.seed, Way::up, node.truth.times);
   std::vector<std::pair<double, std::size_t>> heard;  // at, which
@@ -208,19 +232,9 @@ ArrivedNode arrived_node(const SimulatedNode& node, Link link, Time zero) {
   std::sort(heard.begin(), heard.end());
   const ImuStream all = imu_stream(node, Time{});
   ArrivedNode out{{all.node_names, all.content, {}}, {}};
-  ImuSamples& to = out.stream.samples;
-  const auto copy = [](const std::vector<double>& from, std::size_t i, std::size_t width,
-                       std::vector<double>& onto) {
-    if (from.empty()) return;
-    onto.insert(onto.end(), &from[i * width], &from[i * width] + width);
-  };
   for (const auto& [at, i] : heard) {
-    to.stamps.push_back(time_at(zero, at));
-    copy(all.samples.orientation, i, 4, to.orientation);
-    copy(all.samples.acceleration, i, 3, to.acceleration);
-    copy(all.samples.angular_velocity, i, 3, to.angular_velocity);
-    to.valid.push_back(1);
-    out.clock.stamps_ns.push_back(to_ns(to.stamps.back()));
+    append_sample(all.samples, i, time_at(zero, at), out.stream.samples);
+    out.clock.stamps_ns.push_back(to_ns(out.stream.samples.stamps.back()));
     out.clock.times_ns.push_back(to_ns(time_at(zero, node.truth.times[i])));
   }
   return out;

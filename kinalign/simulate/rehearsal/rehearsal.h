@@ -9,6 +9,8 @@
 #include "kinalign/simulate/nodes/link.h"
 #include "kinalign/take/truth.h"
 
+#include <optional>
+
 namespace kinalign {
 
 inline constexpr double least_rehearsal_s = 3.0;  // two clicks and a second between them
@@ -33,6 +35,7 @@ inline constexpr double most_drift = 25e-6;
 struct RehearsalOptions {
   std::uint64_t seed = 1;
   std::uint32_t node_rate_hz = 100;
+  std::optional<std::uint64_t> person{};  // whose body the camera sees, where not the seed's
 };
 
 struct Rehearsal {
@@ -61,6 +64,10 @@ PointStream kinect_file(const Rehearsal& rehearsal, Time zero);
 
 /// Likewise a node, whose counter was read when it stood at its first value.
 ImuStream node_file(const SimulatedNode& node, Time zero);
+
+/// The stream of node_file() without the samples that the link loses. Each sample has its own
+/// packet.
+ImuStream received_node(const SimulatedNode& node, Link link, Time zero);
 
 /// Each sample in a packet of its own over the link, stamped when it arrived: as the paper's nodes
 /// without a clock. What is lost is not there.

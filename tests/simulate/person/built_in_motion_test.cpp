@@ -17,9 +17,12 @@ using namespace kinalign;
 
 namespace {
 
-constexpr std::array all_pieces{Piece::t_pose, Piece::stand,     Piece::step,
-                                Piece::walk,   Piece::walk_turn, Piece::wave,
-                                Piece::bend,   Piece::turn,      Piece::squat};
+constexpr std::array all_pieces{
+    Piece::t_pose,    Piece::stand,       Piece::step,       Piece::walk,
+    Piece::walk_turn, Piece::wave,        Piece::bend,       Piece::turn,
+    Piece::squat,     Piece::raise_front, Piece::raise_side, Piece::push,
+    Piece::push_both, Piece::bend_side,   Piece::twist,      Piece::deep_squat};
+static_assert(all_pieces.size() == piece_names.size());
 
 Motion motion_with(Piece piece, std::uint64_t seed, double height_m = 1.75) {
   auto motion =
@@ -279,6 +282,74 @@ TEST_CASE("each piece does what its name says") {
         lowest(stand, NeuronJoint::hips) - 0.2);
   CHECK(highest(motion_with(Piece::step, 4), NeuronJoint::left_foot) > 0.15);
   CHECK(highest(stand, NeuronJoint::left_foot) < 0.09);
+}
+
+TEST_CASE("slow pieces do what their names say") {
+  struct Reached {
+    double high = -1.0, low_head = 9.0, low_hips = 9.0, wide = 0.0, ahead = 0.0, yaw = 0.0;
+  };
+  const auto reached = [](Piece piece, const std::vector<NeuronJoint>& hands) {
+    const auto motion = built_in_motion(
+        {.programme = {{Piece::t_pose, 2.5}, {piece, 30.0}, {Piece::stand, 1.5}}, .seed = 4});
+    REQUIRE(motion);
+    Reached out;
+    for (double t = 2.5; t < 32.5; t += 0.05) {
+      const GlobalPose pose = global_at(*motion, t);
+      const auto at = [&](NeuronJoint joint) { return pose.positions[index(joint)]; };
+      // All the hands that are asked for reach it at once.
+      double high = 9.0, wide = 9.0, ahead = 9.0;
+      for (const NeuronJoint hand : hands) {
+        high = std::min(high, at(hand).y());
+        wide = std::min(wide, std::abs((at(hand) - at(NeuronJoint::hips)).x()));
+        ahead = std::min(ahead, (at(hand) - at(NeuronJoint::spine3)).z());
+      }
+      out.high = std::max(out.high, high);
+      out.wide = std::max(out.wide, wide);
+      out.ahead = std::max(out.ahead, ahead);
+      out.low_head = std::min(out.low_head, at(NeuronJoint::head).y());
+      out.low_hips = std::min(out.low_hips, at(NeuronJoint::hips).y());
+      const Vec3 nose = pose.rotations[index(NeuronJoint::head)] * Vec3::UnitZ();
+      out.yaw = std::max(out.yaw, std::abs(std::atan2(nose.x(), nose.z())));
+    }
+    return out;
+  };
+  const std::vector both{NeuronJoint::left_hand, NeuronJoint::right_hand};
+  const Reached stand = reached(Piece::stand, both);
+  const Reached front = reached(Piece::raise_front, both), side = reached(Piece::raise_side, both);
+  CHECK(front.high > 1.6);  // m: over the head of a person of 1.75 m
+  CHECK(side.high > 1.6);
+  CHECK(front.ahead > 0.45);
+  CHECK(side.ahead < 0.2);
+  CHECK(side.wide > 0.6);
+  CHECK(reached(Piece::push_both, both).ahead > 0.4);
+  CHECK(reached(Piece::push, both).ahead < 0.2);  // one at a time
+  for (const NeuronJoint hand : both) CHECK(reached(Piece::push, {hand}).ahead > 0.4);
+  CHECK(reached(Piece::bend_side, both).low_head < stand.low_head - 0.05);
+  for (const NeuronJoint hand : both) CHECK(reached(Piece::bend_side, {hand}).high > 1.5);
+  CHECK(reached(Piece::twist, both).yaw > 1.0);  // rad
+  CHECK(stand.yaw < 0.6);                        // glances
+  const Reached squat = reached(Piece::squat, both), deep = reached(Piece::deep_squat, both);
+  CHECK(deep.low_hips < squat.low_hips - 0.05);
+}
+
+TEST_CASE("another seed of the same person has that person's bones, but moves differently") {
+  const auto motion_of = [](std::uint64_t seed) {
+    auto motion =
+        built_in_motion({.programme = {{Piece::raise_front, 20.0}}, .seed = seed, .person = 7});
+    REQUIRE(motion);
+    return *std::move(motion);
+  };
+  const Motion one = motion_of(1), other = motion_of(2), own = motion_of(7);
+  CHECK(one.skeleton.rest_offsets == other.skeleton.rest_offsets);
+  double apart = 0.0;
+  for (double t = 0.0; t < 20.0; t += 0.1) {
+    apart = std::max(apart,
+                     (global_at(one, t).positions[16] - global_at(other, t).positions[16]).norm());
+  }
+  CHECK(apart > 0.1);
+  const auto plain = built_in_motion({.programme = {{Piece::raise_front, 20.0}}, .seed = 7});
+  REQUIRE(plain);
+  CHECK(global_at(own, 9.3).positions == global_at(*plain, 9.3).positions);
 }
 
 TEST_CASE("walking goes to and fro, walk_turn everywhere, turn about oneself; all come home") {

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <set>
 
@@ -22,10 +23,10 @@ TEST_CASE("every piece has a name that finds it, and a wrong one is told the rig
   CHECK(
       to_string(none.error()) ==
       "expected a piece of motion: t_pose, stand, step, walk, walk_turn, wave, bend, turn, squat, "
-      "found 'jump'");
+      "raise_front, raise_side, push, push_both, bend_side, twist, deep_squat, found 'jump'");
 }
 
-TEST_CASE("the default programme begins in T-pose, holds all pieces, and is as long as asked") {
+TEST_CASE("the default programme begins in T-pose, holds all but slow pieces, as long as asked") {
   for (const auto seed : fresh_seeds(50)) {
     CAPTURE(seed);
     const Programme programme = default_programme(300.0, seed);
@@ -37,6 +38,8 @@ TEST_CASE("the default programme begins in T-pose, holds all pieces, and is as l
     std::set<Piece> all;
     for (std::size_t i = 0; i < 9; ++i) all.insert(programme[i].piece);
     CHECK(all.size() == 9);
+    CHECK(std::none_of(programme.begin(), programme.end(),
+                       [](const ProgrammePiece& one) { return is_slow(one.piece); }));
   }
   CHECK(default_programme(2.0, 1).size() == 1);
   CHECK(default_programme(0.0, 1).empty());
@@ -83,4 +86,13 @@ TEST_CASE("an act comes in and goes out, but for the first and the last") {
   CHECK(acts[0].within(4.0, 1.0) == 0.0);
   CHECK(acts[1].within(4.5, 1.0) == about(0.5));
   CHECK(acts[1].within(8.0, 1.0) == 1.0);
+}
+
+TEST_CASE("a slow act is filled with repetitions, another one is not") {
+  const auto acts = acts_of({{Piece::twist, 40.0}, {Piece::squat, 9.0}}, 3);
+  REQUIRE(acts.size() == 2);
+  CHECK(acts[0].repetitions.size() >= 4);
+  CHECK(acts[0].repetitions.front().begin_s == 0.0);
+  CHECK(acts[0].repetitions.back().end_s == about(40.0));
+  CHECK(acts[1].repetitions.empty());
 }

@@ -155,3 +155,35 @@ TEST_CASE("a motion that is too short, or of no body that we know, is refused") 
   };
   CHECK(!rehearse(stick, {}));
 }
+
+TEST_CASE("a node over a link that loses has its own stamps, and gaps") {
+  const Motion motion = person(3, 6.0);
+  const Rehearsal done = rehearsed(motion, 2);
+  for (const SimulatedNode& node : done.nodes) {
+    const ImuSamples all = node_file(node, zero).samples;
+    const ImuSamples received = received_node(node, Link::paper, zero).samples;
+    const double share =
+        static_cast<double>(received.stamps.size()) / static_cast<double>(all.stamps.size());
+    CHECK(share > 0.85);
+    CHECK(share < 1.0);
+    std::size_t i = 0;
+    for (std::size_t k = 0; k < received.stamps.size(); ++k, ++i) {
+      while (i < all.stamps.size() && all.stamps[i] != received.stamps[k]) ++i;
+      REQUIRE(i < all.stamps.size());
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        CHECK(received.angular_velocity[3 * k + axis] == all.angular_velocity[3 * i + axis]);
+      }
+    }
+  }
+}
+
+TEST_CASE("the camera errs on a person as it does, whatever the seed of the take") {
+  const Motion motion = person(3, 4.0);
+  const auto of = [&](std::uint64_t seed, std::optional<std::uint64_t> who) {
+    auto done = rehearse(motion, {.seed = seed, .person = who});
+    REQUIRE(done);
+    return done->kinect.positions;
+  };
+  CHECK(of(2, {}) == of(2, 2));
+  CHECK(of(2, 9) != of(2, 2));
+}

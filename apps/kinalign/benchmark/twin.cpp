@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/benchmark/twin_maker.h"
+#include "apps/kinalign/benchmark/twin_tables.h"
+#include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/text/counts_text.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/core/parallel.h"
+#include "kinalign/dataset/scan.h"
+#include "kinalign/dataset/twin/twin_actions.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <mutex>
+#include <numeric>
+#include <set>
+#include <system_error>
+
+namespace kinalign {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* plan_file = "truth/twin.json";
+constexpr std::size_t longest_plan = std::size_t{16} << 20;
+
+struct TwinVerb {
+  double scale = 0.02;
+  std::int64_t seed = 1;
+  std::string motion;
+
+  TwinOptions options() const { return {scale, static_cast<std::uint64_t>(seed)}; }
+};
+
+Usage describe_twin(TwinVerb& o) {
+  Usage usage;
+  usage.flags = {
+      {"scale", "share of the paper's frames; 1: 13.7 hours of motion", &o.scale, 1e-6, 1.0},
+      {"seed", "of the people and of all that is drawn", &o.seed, 0.0, 9e15},
+      {"motion",
+       "BVH files of a Perception Neuron or CMU skeleton for every second take",
+       &o.motion,
+       0.0,
+       0.0,
+       {},
+       "FOLDER"}};
+  usage.check = [](const Common& common, const Sources&) -> Result<void> {
+    if (!common.out.empty()) return {};
+    return Failure(Error{"-o", 0, "-o FOLDER for the data set", "none"});
+  };
+  return usage;
+}
+
+/// The input of all takes.
+struct TwinJob {
+  const TwinVerb& o;
+  std::string folder;
+  std::vector<TwinTake> takes;
+  std::vector<std::string> motions;  // paths
+  std::string plan;                  // the text of the plan's file
+};
+
+/// The BVH files of a folder, by name. Fails where there is none.
+Result<std::vector<std::string>> motions_in(const std::string& folder) {
+  std::vector<std::string> out;
+  if (folder.empty()) return out;
+  const std::string below = folder + "/";
+  for (const std::string& name : KA_TRY(names_in_folder(folder))) {
+    if (name.ends_with(".bvh") || name.ends_with(".BVH")) out.push_back(below + name);
+  }
+  if (!out.empty()) return out;
+  return Failure(Error{folder, 0, "a folder with BVH files", "none in it"});
+}
+
+/// The nearest folder above a path that is there.
+fs::path folder_that_is_there(fs::path path) {
+  std::error_code fault;
+  path = fs::absolute(path, fault);
+  while (!fs::exists(path, fault) && path.has_relative_path()) path = path.parent_path();
+  return path;
+}
+
+/// Free bytes on the disk of a folder that is there or will be; 0 if they are not known.
+std::uint64_t free_bytes(const std::string& folder) {
+  std::error_code fault;
+  const auto space = fs::space(folder_that_is_there(folder), fault);
+  return fault ? 0 : space.available;
+}
+
+/// Fails where the folder holds anything but the same twin, and where the disk has no room.
+Result<void> check_folder(const TwinJob& job, Call& call) {
+  std::error_code fault;
+  const std::string path = job.folder + "/" + plan_file;
+  if (is_there(path)) {
+    if (KA_TRY(read_whole(call.surroundings.files, path, longest_plan)) == job.plan) return {};
+    return Failure(Error{path, 0, "a twin of the same scale, seed and motions", "another twin"});
+  }
+  if (is_there(job.folder) && !fs::is_empty(job.folder, fault)) {
+    return Failure(Error{job.folder, 0, "a new folder, or a twin that was begun",
+                         "a folder with other files"});
+  }
+  const std::uint64_t wanted = bytes_of(job.takes), there = free_bytes(job.folder);
+  if (there == 0 || wanted < there) return {};
+  return Failure(
+      Error{job.folder, 0, size_text(wanted) + " of room on the disk", size_text(there)});
+}
+
+Result<void> begin_folder(const TwinJob& job, FileSystem& files) {
+  KA_TRY(make_folders(job.folder + "/truth"));
+  KA_TRY(make_folders(job.folder + "/splits"));
+  const std::string catalogue = job.folder + "/" + std::string(catalogue_file);
+  if (!is_there(catalogue)) {
+    std::error_code fault;
+    const std::string name = fs::weakly_canonical(job.folder, fault).filename().string();
+    KA_TRY(write_whole(files, catalogue, KA_TRY(twin_catalogue(name)), Overwrite::no));
+  }
+  const std::string path = job.folder + "/" + plan_file;
+  return is_there(path) ? Result<void>{} : write_whole(files, path, job.plan, Overwrite::no);
+}
+
+/// The result of a plan.
+struct TwinMade {
+  TwinCounts counts;
+  std::uint64_t made = 0, were_there = 0, bytes = 0;
+  std::vector<std::pair<TakeName, Error>> failed;
+
+  void add(const TwinTake& take, const TakeSummary& summary) {
+    count(take, summary.frames, counts);
+    bytes += summary.bytes;
+  }
+};
+
+/// Makes what is missing, several takes at once. A take that fails stops no other.
+Result<TwinMade> make_takes(const TwinJob& job, const Catalogue& catalogue, Call& call) {
+  TwinMaker maker({call.surroundings.files, job.folder, catalogue, job.motions});
+  const Progress progress = call.console.progress();
+  TwinMade out;
+  std::vector<std::size_t> missing;  // numbers of takes
+  std::uint64_t all = 0, done = 0;   // frames
+  for (std::size_t number = 0; number < job.takes.size(); ++number) {
+    const TwinTake& take = job.takes[number];
+    if (const auto known = maker.known(take)) {
+      ++out.were_there;
+      out.add(take, *known);
+    } else {
+      missing.push_back(number);
+      all += take.frames;
+    }
+  }
+  std::mutex telling;
+  bool stopped = false;
+  const auto is_wanted = [&](std::uint64_t frames) {
+    const std::lock_guard lock(telling);
+    done += frames;
+    stopped = stopped || !go_on(progress, "making takes", done, all);
+    return !stopped;
+  };
+  parallel_for(missing.size(), call.jobs, [&](std::size_t i) {
+    if (!is_wanted(0)) return;
+    const TwinTake& take = job.takes[missing[i]];
+    const auto summary =
+        maker.make(take, missing[i],
+                   [&](std::string_view, std::uint64_t, std::uint64_t) { return is_wanted(0); });
+    if (!is_wanted(take.frames) && !summary) return;
+    const std::lock_guard lock(telling);
+    if (summary) {
+      ++out.made;
+      out.add(take, *summary);
+    } else {
+      out.failed.emplace_back(take.name, summary.error());
+    }
+  });
+  std::error_code ignored;
+  fs::remove_all(job.folder + "/" + std::string(cache_folder) + "/twin", ignored);
+  if (stopped) return Failure(interruption());
+  return out;
+}
+
+/// The splits that a twin comes with; those that were written before stay.
+Result<std::vector<std::string>> write_splits(const TwinJob& job, const DatasetIndex& index,
+                                              Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const auto takes = KA_TRY(built_takes(files, job.folder, index, ""));
+  std::vector<std::string> out;
+  for (const auto& [file, by] :
+       {std::pair("people", "subject"), std::pair("denoise", "hfut-denoise"),
+        std::pair("imu", "hfut-imu")}) {
+    const std::string name = std::string("splits/") + file + ".json",
+                      path = job.folder + "/" + name;
+    const auto split = make_split(takes, index.catalogue(), {.by = by, .seed = job.o.seed});
+    if (!split) continue;  // a small twin may have too few takes for a split
+    if (!is_there(path)) {
+      KA_TRY(write_whole(files, path, split_json(*split, takes), Overwrite::no));
+    }
+    out.push_back(name);
+  }
+  return out;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+double hours_of(std::uint64_t frames) {
+  return static_cast<double>(frames) / twin_rate_hz / 3600.0;
+}
+
+/// "mocap + Kinect 13 takes, mocap + IMU 1 take, all three 10 takes".
+std::string pairs_text(const TwinCounts& counts) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < device_choices.size(); ++i) {
+    words.push_back(fmt::format("{} {}", device_choices[i], counted(counts.takes[i], "take")));
+  }
+  return joined(words);
+}
+
+Json json_of(const TwinCounts& counts) {
+  const ModalityFrames sum = counts.sum();
+  Json takes;
+  for (std::size_t i = 0; i < device_choices.size(); ++i) {
+    takes[std::string(device_choices[i])] = counts.takes[i];
+  }
+  return {{"frames", {{"mocap", sum.mocap}, {"kinect", sum.kinect}, {"imu", sum.imu}}},
+          {"takes_by_devices", takes}};
+}
+
+std::string tables_text(const std::vector<Table>& tables) {
+  std::string text;
+  for (const Table& table : tables) text += written(table, TableFormat::text) + "\n";
+  return text;
+}
+
+Result<int> show_twin_plan(const TwinJob& job, Call& call) {
+  TwinCounts counts;
+  for (const TwinTake& take : job.takes) count(take, take.frames, counts);
+  call.console.print(tables_text(twin_tables(job.o.scale, counts)));
+  call.console.print(harmless(fmt::format(
+      "{}: {} to make, {:.2f} h\n  pairs  {}\n  disk   about {}; {} free\n", job.folder,
+      counted(job.takes.size(), "take"), hours_of(counts.sum().mocap), pairs_text(counts),
+      size_text(bytes_of(job.takes)), size_text(free_bytes(job.folder)))));
+  Json json = json_of(counts);
+  json["to_make"] = job.takes.size();
+  json["bytes"] = bytes_of(job.takes);
+  call.console.print_json(json.dump());
+  return 0;
+}
+
+void say_made(const TwinJob& job, const TwinMade& made, const std::vector<std::string>& splits,
+              Call& call) {
+  std::set<std::string> people, actions;
+  for (const TwinTake& take : job.takes) {
+    people.insert(take.name.subject);
+    actions.insert(take.name.action);
+  }
+  call.console.print(tables_text(twin_tables(job.o.scale, made.counts)));
+  call.console.print(harmless(fmt::format(
+      "{}: {}, {:.2f} h, {}{}\n  people  {}, {}\n  pairs   {}\n  splits  {}\n"
+      "  next    kinalign eval raw offset ridge --data {} -o results --folds people\n",
+      job.folder, counted(made.made + made.were_there, "take"), hours_of(made.counts.sum().mocap),
+      size_text(made.bytes),
+      made.were_there > 0 ? fmt::format("; {} were there already", made.were_there) : "",
+      counted(people.size(), "person", "people"), counted(actions.size(), "action"),
+      pairs_text(made.counts), splits.empty() ? "none" : joined(splits), job.folder)));
+  for (const auto& [name, error] : made.failed) {
+    call.console.print(
+        harmless(fmt::format("failed  {}: {}\n", to_string(name), to_string(error))));
+  }
+  Json json = json_of(made.counts);
+  json["made"] = made.made;
+  json["were_there"] = made.were_there;
+  json["failed"] = made.failed.size();
+  json["people"] = people.size();
+  json["bytes"] = made.bytes;
+  json["splits"] = splits;
+  call.console.print_json(json.dump(1, ' ', false, Json::error_handler_t::replace));
+}
+
+Result<TwinJob> job_of(const TwinVerb& o, const Call& call) {
+  auto motions = KA_TRY(motions_in(o.motion));
+  TwinJob job{o, folder_of({call.common.out}), plan_twin(o.options()), std::move(motions), ""};
+  std::vector<std::string> names;
+  for (const std::string& path : job.motions) names.emplace_back(file_name(path));
+  job.plan = twin_json(o.options(), names, job.takes);
+  return job;
+}
+
+Result<int> run_twin(TwinVerb& o, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  call.console.if_it_fails(
+      [](const Error&) { return std::vector<std::string>{"nothing was written"}; });
+  const TwinJob job = KA_TRY(job_of(o, call));
+  KA_TRY(check_folder(job, call));
+  if (call.common.dry_run) return show_twin_plan(job, call);
+  call.console.detail(fmt::format("{} to make: about {}", counted(job.takes.size(), "take"),
+                                  size_text(bytes_of(job.takes))));
+  call.console.if_it_fails([](const Error&) {
+    return std::vector<std::string>{"the same command goes on where it stopped"};
+  });
+  KA_TRY(begin_folder(job, files));
+  const std::string path = job.folder + "/" + std::string(catalogue_file);
+  const Catalogue catalogue =
+      KA_TRY(read_catalogue(KA_TRY(read_whole(files, path, longest_manifest)), path));
+  const TwinMade made = KA_TRY(make_takes(job, catalogue, call));
+  const DatasetIndex index = KA_TRY(open_index(job.folder, call));
+  const auto splits = KA_TRY(write_splits(job, index, call));
+  say_made(job, made, splits, call);
+  return made.failed.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+Verb benchmark_twin_verb() {
+  return make_verb<TwinVerb>(
+      {.name = "benchmark twin",
+       .summary = "a simulated twin of the paper's data set",
+       .text = "Makes a data set of the paper's 12 people, 6 classes and combinations of devices, "
+               "each take by simulation and alignment. --scale is the share of the paper's "
+               "frames. With --motion every second take has a recorded motion on the body of its "
+               "person. The same seed gives the same takes; a stopped job goes on where it was. "
+               "With --dry-run it says how much room it needs.",
+       .examples = {{"kinalign benchmark twin --scale 0.01 -o twin",
+                     "10 minutes of motion, then: kinalign eval raw offset ridge --data twin -o "
+                     "results"},
+                    {"kinalign benchmark twin --scale 1 -o whole --dry-run",
+                     "as much as the paper has: how much room that takes"}},
+       .common = {"out", "json", "dry_run", "jobs"},
+       .out_is_folder = true},
+      describe_twin, run_twin);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/benchmark/twin_maker.h"
+
+#include "apps/kinalign/simulate/simulate_folder.h"
+
+#include "kinalign/dataset/scan.h"
+#include "kinalign/dataset/twin/twin_actions.h"
+#include "kinalign/documents/manifest_toml.h"
+#include "kinalign/documents/truth_json.h"
+#include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/motion/interpolation/clip_motion.h"
+#include "kinalign/simulate/person/built_in_motion.h"
+#include "kinalign/simulate/person/carried_motion.h"
+#include "kinalign/simulate/person/perception_neuron.h"
+#include "kinalign/simulate/random.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <system_error>
+
+namespace kinalign {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double clicks_s = 1.0;  // of a motion before the suit's start and behind its stop
+constexpr double usual_height_cm = 175.0;
+constexpr std::size_t most_bvh_bytes = std::size_t{256} << 20;
+constexpr double skipped_frames = 2.0;  // of a file
+constexpr double smooth_s = 0.02;       // optical files jitter more than a suit's
+
+/// s, from the first frame to the second; 0 where there is none.
+double step_s(const ClipFrames& frames) {
+  if (frames.size() < 2) return 0.0;
+  return std::chrono::duration<double>(frames.stamps[1] - frames.stamps[0]).count();
+}
+
+/// A folder for the devices' files of one take, gone when the take is made or has failed.
+class RawFolder {
+ public:
+  explicit RawFolder(std::string path) : path_(std::move(path)) { remove(); }
+  RawFolder(const RawFolder&) = delete;
+  RawFolder& operator=(const RawFolder&) = delete;
+  ~RawFolder() { remove(); }
+
+  const std::string& path() const { return path_; }
+
+ private:
+  void remove() const {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+
+  std::string path_;
+};
+
+}  // namespace
+
+std::string twin_truth_path(const TakeName& name) { return "truth/" + to_string(name) + ".json"; }
+
+std::optional<TakeSummary> TwinMaker::known(const TwinTake& take) const {
+  const std::string& folder = place_.folder;
+  auto summary = read_summary(place_.files, folder, take.name);
+  if (!summary) return std::nullopt;
+  std::error_code fault;
+  const auto bytes = fs::file_size(folder + "/" + path_of(take.name, TakeFile::take), fault);
+  if (fault || bytes != summary->bytes) return std::nullopt;
+  return *std::move(summary);
+}
+
+double TwinMaker::height_m(const TwinTake& take) const {
+  const Subject* person = find_subject(place_.catalogue, take.name.subject);
+  const auto height_cm = person == nullptr ? std::nullopt : person->height_cm;
+  return 0.01 * height_cm.value_or(usual_height_cm);
+}
+
+Result<Motion> TwinMaker::built_in(const TwinTake& take, double length_s) const {
+  const auto& actions = twin_actions();
+  const auto action = std::find_if(actions.begin(), actions.end(), [&](const TwinAction& one) {
+    return one.id == take.name.action;
+  });
+  return built_in_motion({.height_m = height_m(take),
+                          .programme = twin_programme(*action, length_s, take.seed),
+                          .seed = take.seed,
+                          .person = take.person_seed});
+}
+
+Result<Motion> TwinMaker::carried(const TwinTake& take, double length_s,
+                                  const std::string& file) const {
+  const auto named = [&file](Error error) {
+    if (error.file.empty()) error.file = file;
+    return error;
+  };
+  const std::string text = KA_TRY(read_whole(place_.files, file, most_bvh_bytes));
+  const BvhFile bvh = KA_TRY(read_bvh(text, file, {}));
+  Motion recorded = KA_TRY(kinalign::motion_of(bvh.clip, {.smooth_s = smooth_s}).map_error(named));
+  // CMU's files by cgspeed begin with a frame in T-pose, from which the motion jumps.
+  const double first_s = skipped_frames * step_s(bvh.clip.frames);
+  const double room_s = std::max(0.0, recorded.length_s - first_s - length_s);
+  const double begin_s = first_s + room_s * RandomStream(take.seed, 133).uniform(0, 0);
+  const double end_s = std::min(recorded.length_s, begin_s + length_s);
+  Motion carried =
+      KA_TRY(carried_over(std::move(recorded), perception_neuron(height_m(take), take.person_seed))
+                 .map_error(named));
+  return there_and_back(std::move(carried), begin_s, end_s, length_s).map_error(named);
+}
+
+Result<TwinMaker::Named> TwinMaker::motion_of(const TwinTake& take, std::size_t number) const {
+  const double length_s = clicks_s + static_cast<double>(take.frames) / twin_rate_hz;
+  const auto& motions = place_.motions;
+  if (motions.empty() || number % 2 == 0) {
+    Motion motion = KA_TRY(built_in(take, length_s));
+    return Named{std::move(motion), "built-in " + take.name.action};
+  }
+  const std::string& file = motions[number / 2 % motions.size()];
+  Motion motion = KA_TRY(carried(take, length_s, file));
+  return Named{std::move(motion), std::string(file_name(file))};
+}
+
+Result<TakeSummary> TwinMaker::make(const TwinTake& take, std::size_t number,
+                                    const Progress& progress) {
+  FileSystem& files = place_.files;
+  const std::string& folder = place_.folder;
+  const auto [motion, name] = KA_TRY(motion_of(take, number));
+  const Rehearsal rehearsal =
+      KA_TRY(rehearse(motion, {.seed = take.seed, .person = take.person_seed}));
+  TrueRecording truth = truth_of(rehearsal, motion, utc_time(take.start_ns));
+  truth.seed = take.seed;
+  truth.motion = name;
+  const RawFolder raw(folder + "/" + std::string(cache_folder) + "/twin/" + to_string(take.name));
+  KA_TRY(make_folders(raw.path()));
+  KA_TRY(make_folders(folder + "/sub-" + take.name.subject));
+  KA_TRY(write_devices({files, raw.path()}, rehearsal, motion,
+                       {.stamps = NodeStamps::received, .kinect = take.kinect, .nodes = take.imu},
+                       truth));
+  KA_TRY(write_whole(files, folder + "/" + twin_truth_path(take.name), truth_json(truth),
+                     Overwrite::yes));
+  const std::string recording = raw.path() + "/recording.toml";
+  Manifest manifest =
+      KA_TRY(read_manifest(KA_TRY(read_whole(files, recording, longest_manifest)), recording));
+  manifest.subject = take.name.subject;
+  manifest.action = take.name.action;
+  return takes_.make(take.name, manifest, raw.path() + "/", progress);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// One take of a twin, by the whole chain: a motion, the devices' files, alignment, the take.
+#pragma once
+
+#include "kinalign/core/files.h"
+#include "kinalign/core/progress.h"
+#include "kinalign/dataset/build.h"
+#include "kinalign/dataset/twin/twin_plan.h"
+#include "kinalign/motion/pose.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+/// "truth/sub-03_task-S2A03_run-01.json", below the data set's folder.
+std::string twin_truth_path(const TakeName& name);
+
+/// The data set and the input of its takes. `folder` has a folder truth/.
+struct TwinPlace {
+  FileSystem& files;
+  const std::string& folder;
+  const Catalogue& catalogue;
+  const std::vector<std::string>& motions;  // BVH files; none: the built-in person alone
+};
+
+/// Makes takes of one data set. Several threads may make takes at once.
+class TwinMaker {
+ public:
+  explicit TwinMaker(const TwinPlace& place) : place_(place), takes_(place.files, place.folder) {}
+
+  /// The summary of a take that is there with all its bytes; else it has to be made.
+  std::optional<TakeSummary> known(const TwinTake& take) const;
+  /// Writes the truth, the take and its summary, in this order. The devices' files are deleted.
+  /// `number`: of the take in the plan. Every second take has a motion of a file, where there are
+  /// files, on the body of the take's person.
+  Result<TakeSummary> make(const TwinTake& take, std::size_t number, const Progress& progress);
+
+ private:
+  /// A motion, and what the truth calls it.
+  struct Named {
+    Motion motion;
+    std::string name;
+  };
+  Result<Named> motion_of(const TwinTake& take, std::size_t number) const;
+  Result<Motion> built_in(const TwinTake& take, double length_s) const;
+  Result<Motion> carried(const TwinTake& take, double length_s, const std::string& file) const;
+  double height_m(const TwinTake& take) const;
+
+  TwinPlace place_;
+  TakeMaker takes_;
+};
+
+}  // namespace kinalign

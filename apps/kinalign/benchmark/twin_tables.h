@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The counts of a twin next to the paper's counts.
+#pragma once
+
+#include "kinalign/dataset/twin/twin_plan.h"
+#include "kinalign/view/table.h"
+
+#include <vector>
+
+namespace kinalign {
+
+/// Frames by people (the paper's table 6), by classes (table 7), and by devices: in the paper,
+/// asked for by the scale, and made.
+std::vector<Table> twin_tables(double scale, const TwinCounts& made);
+
+}  // namespace kinalign

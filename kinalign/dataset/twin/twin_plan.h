@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The list of takes of a twin of the paper's data set. The paper counts frames, not takes: a scale
+// is a share of its frames. Takes of half a minute at most are our choice.
+#pragma once
+
+#include "kinalign/core/error.h"
+#include "kinalign/dataset/take_name.h"
+#include "kinalign/dataset/twin/paper_counts.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace kinalign {
+
+inline constexpr double twin_rate_hz = 60.0;
+inline constexpr std::uint64_t longest_twin_take = 1800, shortest_twin_take = 600;  // frames
+
+struct TwinTake {
+  TakeName name;
+  std::size_t people = 0, of_class = 0;  // rows of the paper's tables
+  bool kinect = true, imu = false;
+  std::uint64_t frames = 0;       // the alignment may cut some
+  std::uint64_t seed = 0;         // of everything that differs between takes
+  std::uint64_t person_seed = 0;  // of the body, its habits, and how a Kinect errs on it
+  std::int64_t start_ns = 0;      // UTC; takes follow each other
+
+  bool operator==(const TwinTake&) const = default;
+};
+
+struct TwinOptions {
+  double scale = 0.02;  // share of the paper's frames
+  std::uint64_t seed = 1;
+};
+
+/// A cell of the paper's tables (paper_cells) becomes takes of nearly equal length, none shorter
+/// than `shortest_twin_take`: a small scale has more frames than were asked for. People of a row
+/// and actions of a class take turns.
+std::vector<TwinTake> plan_twin(const TwinOptions& options);
+
+/// Frames of each kind in the rows of the paper's tables.
+struct TwinCounts {
+  std::array<ModalityFrames, paper_people.size()> people;
+  std::array<ModalityFrames, paper_classes.size()> classes;
+  std::array<ModalityFrames, 3> choices;  // mocap + Kinect, mocap + nodes, all three
+  std::array<std::uint64_t, 3> takes{};   // of each choice
+
+  ModalityFrames sum() const;
+};
+inline constexpr std::array<std::string_view, 3> device_choices{"mocap + Kinect", "mocap + IMU",
+                                                                "all three"};
+
+void count(const TwinTake& take, std::uint64_t frames, TwinCounts& counts);
+/// The paper's own counts times `scale`, rounded.
+TwinCounts paper_counts(double scale);
+
+/// Bytes on the disk of takes and truths, estimated.
+std::uint64_t bytes_of(const std::vector<TwinTake>& takes);
+
+/// The plan as a file, schema kinalign.twin/1: what a stopped job goes on with. `motions`: names of
+/// the motions that are cycled over the takes; none: the built-in person.
+std::string twin_json(const TwinOptions& options, const std::vector<std::string>& motions,
+                      const std::vector<TwinTake>& takes);
+
+}  // namespace kinalign
