@@ -81,20 +81,24 @@ Result<std::size_t> group_of(const TakeHeader& header, const std::string& path,
   return *found;
 }
 
-Result<void> read_points(const PointInput& input, NamedPoints& out) {
+Result<void> read_points(const TimeModel& clock, const PointInput& input, NamedPoints& out) {
   out.joints = input.joint_names;
   const auto pass = KA_TRY(input.passes());
   PointFrames block;
-  while (KA_TRY(pass(block))) KA_TRY(append(out, block.stamps, block.positions, block.state));
+  while (KA_TRY(pass(block))) {
+    for (Time& stamp : block.stamps) stamp = take_time(clock, stamp);
+    KA_TRY(append(out, block.stamps, block.positions, block.state));
+  }
   return {};
 }
 
-Result<void> read_clip(const ClipInput& input, NamedPoints& out) {
+Result<void> read_clip(const TimeModel& clock, const ClipInput& input, NamedPoints& out) {
   out.joints = input.skeleton.joint_names;
   const auto pass = KA_TRY(input.passes());
   ClipFrames block;
   while (KA_TRY(pass(block))) {
-    const std::vector<Time> stamps = block.stamps;
+    std::vector<Time> stamps = block.stamps;
+    for (Time& stamp : stamps) stamp = take_time(clock, stamp);
     const ClipRows rows = own_rows(input.skeleton, std::move(block));
     KA_TRY(append(out, stamps, rows.positions, all_tracked(stamps.size(), out.joints.size(), {})));
     block = {};
@@ -143,9 +147,9 @@ Result<NamedPoints> points_of_file(const std::string& path, const std::string& s
   if (found == nullptr) return no_stream(path, stream, known);
   NamedPoints out{found->name, {}, {}};
   if (const auto* points = std::get_if<PointInput>(&found->data)) {
-    KA_TRY(read_points(*points, out));
+    KA_TRY(read_points(found->clock, *points, out));
   } else {
-    KA_TRY(read_clip(std::get<ClipInput>(found->data), out));
+    KA_TRY(read_clip(found->clock, std::get<ClipInput>(found->data), out));
   }
   return out;
 }
