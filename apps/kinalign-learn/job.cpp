@@ -68,6 +68,12 @@ Result<TrainingOptions> options_of(const std::string& method, const std::string&
   return Failure(Error{name, 0, "a method that is known", method});
 }
 
+/// A model that goes on learns a fifth as fast, so that it forgets little, and not for long.
+void go_on_gently(TrainingOptions& options) {
+  options.rate *= 0.2;
+  options.steps = std::min<std::int64_t>(options.steps, 300);
+}
+
 void read_options(const Json& json, TrainingOptions& out) {
   out.steps = json.value("steps", out.steps);
   out.rate = json.value("rate", out.rate);
@@ -108,9 +114,10 @@ struct LearntFrom {
   }
 };
 
-std::string training_json(const TrainingJob& job, const WindowsFacts& facts,
-                          const LearntFrom& from) {
-  return Json{{"data",
+/// `before`: what the model that it went on from says of its own training; "" where there is none.
+std::string training_json(const TrainingJob& job, const WindowsFacts& facts, const LearntFrom& from,
+                          const std::string& before) {
+  Json out{{"data",
                {{{"name", facts.dataset},
                  {"licence", facts.licence},
                  {"citation", facts.citation},
@@ -120,8 +127,23 @@ std::string training_json(const TrainingJob& job, const WindowsFacts& facts,
               {"steps", job.options.steps},
               {"rate", job.options.rate},
               {"seed", job.options.seed},
-              {"identity", job.identity}}
-      .dump();
+              {"identity", job.identity}};
+  if (!job.from.empty()) out["from"] = Json::parse(before, nullptr, false);
+  return out.dump();
+}
+
+/// The model to go on from, of this method; nothing where the job names none.
+template <class Model, class Read>
+Result<std::optional<Model>> model_before(const TrainingJob& job, Read read) {
+  if (job.from.empty()) return std::optional<Model>();
+  Model model = KA_TRY(read(KA_TRY(bytes_of(job.from)), job.from));
+  if (model.facts.method == job.method) return std::optional<Model>(std::move(model));
+  return Failure(Error{job.from, 0, "a model of the method " + job.method,
+                       "one of " + shown(model.facts.method)});
+}
+
+Failure cannot_go_on(const TrainingJob& job, const std::string& expected) {
+  return Failure(Error{job.from, 0, expected, "another one"});
 }
 
 /// By the job's lists of takes where it has them, else by the parts of the file's split; all is
@@ -155,16 +177,34 @@ FitOptions fit_options(const TrainingJob& job) {
   return {job.options, job.device == "cuda" ? torch::Device(torch::kCUDA) : torch::kCPU};
 }
 
+/// The file's joints, or those of the model that it goes on from.
+Result<Pairs> pairs_to_learn(const TrainingJob& job, const Windows& windows,
+                             const std::optional<DenoiseModel>& from) {
+  if (!from) return pairs_of(windows, job.input, job.truth, least_rows);
+  const DenoiseLayout& layout = from->layout;
+  if (std::abs(windows.facts.rate_hz - layout.rate_hz) > 0.01 * layout.rate_hz) {
+    return Failure(Error{job.windows, 0, "windows at the model's rate", "another one"});
+  }
+  const Pairs joints{layout.inputs, layout.outputs, layout.rate_hz, layout.parents};
+  return pairs_for(windows, job.input, job.truth, joints, least_rows);
+}
+
 Result<Fitted> fit_denoise_job(const TrainingJob& job, const DenoiseMethod& method,
                                const Windows& windows, TrainingState state,
                                const TrainingHooks& hooks) {
-  Pairs pairs = KA_TRY(pairs_of(windows, job.input, job.truth, least_rows));
+  const auto from = KA_TRY(model_before<DenoiseModel>(job, read_denoise_model));
+  if (from && method.perceptual) {
+    return Failure(Error{job.from, 0, "a method of one network to go on with", job.method});
+  }
+  Pairs pairs = KA_TRY(pairs_to_learn(job, windows, from));
   const DividedPairs divided = divide(job, std::move(pairs.all));
   DenoiseFit fit =
-      KA_TRY(fit_denoise(method, pairs, divided, fit_options(job), std::move(state), hooks));
-  LearntFrom from;
-  for (const Pair& pair : divided.learnt) from.add(pair.subject, pair.input.frames());
-  fit.model.facts.training = training_json(job, windows.facts, from);
+      KA_TRY(fit_denoise(method, pairs, divided, fit_options(job), std::move(state), hooks,
+                         from ? &*from : nullptr));
+  LearntFrom learnt;
+  for (const Pair& pair : divided.learnt) learnt.add(pair.subject, pair.input.frames());
+  fit.model.facts.training =
+      training_json(job, windows.facts, learnt, from ? from->facts.training : "");
   return Fitted{write_denoise_model(fit.model), std::move(fit.points)};
 }
 
@@ -186,11 +226,17 @@ Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& da
 Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
                             const Windows& windows, TrainingState state,
                             const TrainingHooks& hooks) {
+  const auto from = KA_TRY(model_before<PoseModel>(job, read_pose_model));
   const PoseData data = KA_TRY(pose_data(windows, job.truth, job.nodes));
-  PoseFit fit = KA_TRY(fit_pose(method, data, fit_options(job), std::move(state), hooks));
-  LearntFrom from;
-  for (const PoseSequence& one : data.learnt) from.add(one.subject, one.frames());
-  fit.model.facts.training = training_json(job, windows.facts, from);
+  if (from && (method.begin != nullptr || from->layout.nodes != data.nodes)) {
+    return cannot_go_on(job, "a network of the same nodes");
+  }
+  PoseFit fit = KA_TRY(fit_pose(method, data, fit_options(job), std::move(state), hooks,
+                                from ? &*from : nullptr));
+  LearntFrom learnt;
+  for (const PoseSequence& one : data.learnt) learnt.add(one.subject, one.frames());
+  fit.model.facts.training =
+      training_json(job, windows.facts, learnt, from ? from->facts.training : "");
   fit.model.facts.metrics = KA_TRY(pose_metrics_json(fit.model, data));
   return Fitted{write_pose_model(fit.model), std::move(fit.points)};
 }
@@ -229,12 +275,18 @@ FuseDataOptions fuse_options(const TrainingJob& job, const Windows& windows) {
 Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
                             const Windows& windows, TrainingState state,
                             const TrainingHooks& hooks) {
+  const auto from = KA_TRY(model_before<FuseModel>(job, read_fuse_model));
   const FuseData data =
       KA_TRY(fuse_data(windows, job.truth, job.nodes, fuse_options(job, windows)));
-  FuseFit fit = KA_TRY(fit_fuse(method, data, fit_options(job), std::move(state), hooks));
-  LearntFrom from;
-  for (const PoseSequence& one : data.pose.learnt) from.add(one.subject, one.frames());
-  fit.model.facts.training = training_json(job, windows.facts, from);
+  if (from && from->layout != fuse_layout(data)) {
+    return cannot_go_on(job, "a network of the same nodes and joints");
+  }
+  FuseFit fit = KA_TRY(fit_fuse(method, data, fit_options(job), std::move(state), hooks,
+                                from ? &*from : nullptr));
+  LearntFrom learnt;
+  for (const PoseSequence& one : data.pose.learnt) learnt.add(one.subject, one.frames());
+  fit.model.facts.training =
+      training_json(job, windows.facts, learnt, from ? from->facts.training : "");
   fit.model.facts.metrics = KA_TRY(fuse_metrics_json(fit.model, data));
   return Fitted{write_fuse_model(fit.model), std::move(fit.points)};
 }
@@ -367,7 +419,9 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     out.identity = json.value("identity", "");
     if (json.contains("learn")) json.at("learn").get_to(out.learn);
     if (json.contains("judge")) json.at("judge").get_to(out.judge);
+    out.from = json.value("from", "");
     out.options = KA_TRY(options_of(out.method, name));
+    if (!out.from.empty()) go_on_gently(out.options);
     if (json.contains("options")) read_options(json.at("options"), out.options);
   } catch (const Json::exception& fault) {
     return Failure(Error{name, 0, "a whole job", shown(fault.what())});

@@ -16,6 +16,7 @@ struct TrainingJob {
   std::vector<std::string> nodes;  // of a method for poses; the root's last
   std::string evaluate;            // a model for poses to judge instead of training; empty: none
   std::string out;                 // the model
+  std::string from;                // a model to go on from; empty: from random weights
   std::string log;                 // CSV, and events beside it; empty: none
   std::string checkpoint;          // kept there while it runs; empty: nowhere
   std::int64_t keep_every = 200;   // steps between checkpoints

@@ -86,6 +86,16 @@ DenoiseTask::Example DenoiseTask::mirrored(const Pair& pair) const {
   return example_of(other);
 }
 
+void DenoiseTask::use_scales(DenoiseScales scales) {
+  scales_ = std::move(scales);
+  const auto on_device = [&](const std::vector<float>& values) {
+    return to_torch(values, {whole(values.size())}).to(device_);
+  };
+  input_mean_ = on_device(scales_.input_mean);
+  input_scale_ = on_device(scales_.input_scale);
+  answer_mean_ = on_device(scales_.answer_mean).reshape({-1, 3});
+}
+
 void DenoiseTask::set_scales() {
   std::vector<torch::Tensor> inputs;
   torch::Tensor sum, count;
@@ -105,13 +115,7 @@ void DenoiseTask::set_scales() {
   scale.slice(0, 0, positions).clamp_min_(least_position_scale);
   scale.slice(0, positions, 2 * positions).clamp_min_(least_step_scale);
   scale.slice(0, 2 * positions).fill_(1.0);
-  input_mean_ = all.mean(0).to(torch::kFloat32);
-  input_scale_ = scale.to(torch::kFloat32);
-  answer_mean_ = (sum / count.clamp_min(1.0)).to(torch::kFloat32);
-  scales_ = {values_of(input_mean_), values_of(input_scale_), values_of(answer_mean_)};
-  input_mean_ = input_mean_.to(device_);
-  input_scale_ = input_scale_.to(device_);
-  answer_mean_ = answer_mean_.to(device_);
+  use_scales({values_of(all.mean(0)), values_of(scale), values_of(sum / count.clamp_min(1.0))});
 }
 
 DenoiseTask::Batch DenoiseTask::draw(std::uint64_t seed, std::uint64_t step) const {

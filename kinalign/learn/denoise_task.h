@@ -58,6 +58,8 @@ class DenoiseTask : public TrainingTask {
   double spread_factor(const TorchNetwork& network) const;
 
   const DenoiseScales& scales() const { return scales_; }
+  /// In place of those of the pairs: a model's, to go on from it.
+  void use_scales(DenoiseScales scales);
   void compare_features(std::function<torch::Tensor(const torch::Tensor&)> features) {
     features_ = std::move(features);
   }

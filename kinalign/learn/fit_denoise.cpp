@@ -36,16 +36,34 @@ void put_tensors(const TorchNetwork& network, const std::string& prefix,
   }
 }
 
+Result<void> take_tensors(const std::map<std::string, Tensor>& tensors, const std::string& prefix,
+                          TorchNetwork& network) {
+  torch::NoGradGuard guard;
+  for (auto& [name, tensor] : network.tensors()) {
+    const auto found = tensors.find(prefix + name);
+    const bool fits = found != tensors.end() &&
+                      to_torch(found->second).sizes().vec() == tensor.sizes().vec();
+    if (!fits) {
+      return Failure(Error{"", 0, "a model of this method's network", "another one at " + name});
+    }
+    tensor.copy_(to_torch(found->second));
+  }
+  return {};
+}
+
 Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
                                const DividedPairs& divided, const FitOptions& options,
-                               TrainingState state, const TrainingHooks& hooks) {
+                               TrainingState state, const TrainingHooks& hooks,
+                               const DenoiseModel* from) {
   if (divided.learnt.empty()) {
     return Failure(Error{"", 0, "pairs to train on", "none"});
   }
   DenoiseLayout layout = KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz));
   if (!pairs.parents.empty()) layout.parents = pairs.parents;
   if (!method.from_base) layout.bases.assign(layout.outputs.size(), -1);
+  if (from != nullptr) layout = from->layout;
   DenoiseTask task(layout, method.training, divided.learnt, divided.judged, options.device);
+  if (from != nullptr) task.use_scales({from->input_mean, from->input_scale, from->answer_mean});
   DenoiseFit out{begun_model(method, layout, task), {}};
   std::optional<TorchNetwork> clean;
   if (method.perceptual) {
@@ -60,6 +78,7 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
   if (method.zero_last) network.zero_last();
+  if (from != nullptr) KA_TRY(take_tensors(from->tensors, "net.", network));
   network.to(options.device);
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
   if (method.training.states_spread) {

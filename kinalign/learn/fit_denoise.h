@@ -24,12 +24,17 @@ struct DividedPairs {
 };
 
 /// `pairs`: the joints and the rate; those in `divided` are used.
+/// `from`: a model of that method to go on from; `pairs` are of its joints (pairs_for()).
 Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
                                const DividedPairs& divided, const FitOptions& options,
-                               TrainingState state, const TrainingHooks& hooks);
+                               TrainingState state, const TrainingHooks& hooks,
+                               const DenoiseModel* from = nullptr);
 
 /// The network's weights as a model's file holds them, `prefix` before each name.
 void put_tensors(const TorchNetwork& network, const std::string& prefix,
                  std::map<std::string, Tensor>& out);
+/// The way back. Fails where a tensor is missing or has another shape.
+Result<void> take_tensors(const std::map<std::string, Tensor>& tensors, const std::string& prefix,
+                          TorchNetwork& network);
 
 }  // namespace kinalign

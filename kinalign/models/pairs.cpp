@@ -87,6 +87,17 @@ std::vector<Value> chosen_of(const std::vector<Value>& all, const Chosen& chosen
   return out;
 }
 
+/// Whose it is, and of which part of the split.
+void name_pair(const Windows& windows, const Stretch& stretch, Pair& pair) {
+  if (stretch.take < windows.facts.takes.size()) {
+    const WindowsFacts::Take& take = windows.facts.takes[stretch.take];
+    pair.take = take.name;
+    pair.subject = take.subject;
+    pair.action = take.action;
+  }
+  if (stretch.part < windows.facts.parts.size()) pair.part = windows.facts.parts[stretch.part];
+}
+
 }  // namespace
 
 Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const std::string& truth,
@@ -115,13 +126,24 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
     pair.truth = *precise;
     pair.valid = seen_of(stretch.streams.at(truth), stretch.rows, out.outputs.size());
     for (std::uint8_t& one : pair.valid) one = one == 0 ? 0 : 1;
-    if (stretch.take < windows.facts.takes.size()) {
-      const WindowsFacts::Take& take = windows.facts.takes[stretch.take];
-      pair.take = take.name;
-      pair.subject = take.subject;
-      pair.action = take.action;
-    }
-    if (stretch.part < windows.facts.parts.size()) pair.part = windows.facts.parts[stretch.part];
+    name_pair(windows, stretch, pair);
+    out.all.push_back(std::move(pair));
+  }
+  return out;
+}
+
+Result<Pairs> pairs_for(const Windows& windows, const std::string& input, const std::string& truth,
+                        const Pairs& joints, std::size_t least) {
+  Pairs out = joints;
+  out.all.clear();
+  for (const Stretch& stretch : windows.stretches) {
+    if (stretch.rows < least) continue;
+    Pair pair;
+    pair.input = KA_TRY(kinect_frames(windows, stretch, input, joints.inputs));
+    JointFrames precise = KA_TRY(kinect_frames(windows, stretch, truth, joints.outputs));
+    pair.truth = std::move(precise.positions);
+    for (const std::uint8_t seen : precise.seen) pair.valid.push_back(seen == 0 ? 0 : 1);
+    name_pair(windows, stretch, pair);
     out.all.push_back(std::move(pair));
   }
   return out;
@@ -131,13 +153,14 @@ Result<JointFrames> kinect_frames(const Windows& windows, const Stretch& stretch
                                   const std::string& stream,
                                   const std::vector<std::string>& wanted) {
   const auto names = kinect_names(KA_TRY(joints_of(windows, stream)));
+  const auto wanted_names = kinect_names(wanted);
   const auto* positions = positions_of(stretch, stream, names.size());
   if (positions == nullptr) return Failure(Error{"", 0, "positions of " + stream, "none"});
   const auto seen = seen_of(stretch.streams.at(stream), stretch.rows, names.size());
   JointFrames out{wanted.size(), std::vector<float>(stretch.rows * wanted.size() * 3, 0.0F),
                   std::vector<std::uint8_t>(stretch.rows * wanted.size(), 0)};
   for (std::size_t k = 0; k < wanted.size(); ++k) {
-    const auto j = index_of(names, wanted[k]);
+    const auto j = index_of(names, wanted_names[k]);
     if (!j) continue;
     for (std::size_t t = 0; t < stretch.rows; ++t) {
       const std::size_t from = t * names.size() + *j, to = t * wanted.size() + k;

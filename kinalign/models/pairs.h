@@ -34,6 +34,11 @@ struct Pairs {
 Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const std::string& truth,
                        std::size_t least);
 
+/// The same for the joints of a model, by the Kinect's names for them (kinect_names()). Joints that
+/// a stream lacks are missing in the input and not valid in the truth.
+Result<Pairs> pairs_for(const Windows& windows, const std::string& input, const std::string& truth,
+                        const Pairs& joints, std::size_t least);
+
 /// What a Kinect's stream says in a stretch, of the joints `wanted` by its names; those that it
 /// lacks are missing. Fails where the stretch has no such stream.
 Result<JointFrames> kinect_frames(const Windows& windows, const Stretch& stretch,

@@ -49,7 +49,7 @@ constexpr double pose_windows_hz = 60.0;  // nodes are simulated from it
 struct Train {
   std::vector<std::string> method;
   std::string data, windows, split, where;
-  std::string input, truth = "mocap", nodes, device = "cpu";
+  std::string from, input, truth = "mocap", nodes, device = "cpu";
   double rate_hz = 30.0;
   std::int64_t steps = 0, seed = 1, patience = 0;
   bool resume = false;
@@ -120,6 +120,13 @@ Usage describe_train(Train& o) {
        {},
        "NAME,NAME,..."},
       {"rate", "frames a second that the model works at", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
+      {"from",
+       "a model of the same method to go on from, such as one that comes with the program",
+       &o.from,
+       0.0,
+       0.0,
+       {},
+       "MODEL"},
       {"steps", "batches; 0: the method's own number", &o.steps, 0.0, 1e8},
       {"seed", "of everything that is random", &o.seed, 0.0, 1e9},
       {"patience", "judgements without a better one before it stops; 0: never", &o.patience, 0.0,
@@ -185,7 +192,9 @@ Result<std::string> hash_of(FileSystem& files, const std::string& path) {
   }
 }
 
-Json job_of(const Train& o, const std::string& windows, const std::string& hash, Call& call) {
+/// `hash`, `from_hash`: of the windows, and of the model that it goes on from.
+Json job_of(const Train& o, const std::string& windows, const std::string& hash,
+            const std::string& from_hash, Call& call) {
   const std::string folder = run_folder(call.common.out);
   Json options{{"seed", o.seed}};
   if (o.steps > 0) options["steps"] = o.steps;
@@ -195,10 +204,12 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   job["truth"] = o.truth;
   job["options"] = options;
   if (!o.nodes.empty()) job["nodes"] = split_at_commas(o.nodes);
+  if (!from_hash.empty()) job["from_sha256"] = from_hash;
   Sha256 identity;
   identity.update(job.dump());
   identity.update(hash);
   job["identity"] = identity.hex();  // the same wherever the files lie
+  if (!o.from.empty()) job["from"] = o.from;
   job["windows"] = windows;
   job["out"] = call.common.out;
   job["log"] = folder + "/log.csv";
@@ -223,7 +234,8 @@ Result<int> run_train(Train& o, Call& call) {
     windows = folder + "/windows.npz";
     KA_TRY(make_windows(o, windows));
   }
-  const Json job = job_of(o, windows, KA_TRY(hash_of(files, windows)), call);
+  const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
+  const Json job = job_of(o, windows, KA_TRY(hash_of(files, windows)), from_hash, call);
   const std::string job_file = folder + "/job.json";
   KA_TRY(write_whole(files, job_file, job.dump(1), Overwrite::yes));
   const WorkerWatch watch{.progress = call.console.progress(),
@@ -266,7 +278,9 @@ Verb train_verb() {
             {"kinalign train inertial --data walks -o pose.safetensors",
              "a network that answers five nodes with a pose"},
             {"kinalign train gated --data walks -o fuse.safetensors",
-             "a network for a Kinect and nodes together"}},
+             "a network for a Kinect and nodes together"},
+            {"kinalign train refine --data own --from models/denoise.safetensors -o own.safetensors",
+             "the model that comes with the program, fitted to one's own takes"}},
        .common = {"out", "force", "json", "jobs"}},
       describe_train, run_train);
 }

@@ -11,12 +11,17 @@ FuseLayout fuse_layout(const FuseData& data) {
 }
 
 Result<FuseFit> fit_fuse(const FuseMethod& method, const FuseData& data, const FitOptions& options,
-                         TrainingState state, const TrainingHooks& hooks) {
+                         TrainingState state, const TrainingHooks& hooks,
+                         const FuseModel* from) {
   const FuseLayout layout = fuse_layout(data);
   KA_TRY(validate(layout));
   FuseTask task(layout, method.training, data, options.device);
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
+  if (from != nullptr) {
+    task.use_scales(from->input_mean, from->input_scale);
+    KA_TRY(take_tensors(from->tensors, "net.", network));
+  }
   network.to(options.device);
   FuseFit out;
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;

@@ -15,6 +15,7 @@ struct FuseFit {
 FuseLayout fuse_layout(const FuseData& data);
 
 Result<FuseFit> fit_fuse(const FuseMethod& method, const FuseData& data, const FitOptions& options,
-                         TrainingState state, const TrainingHooks& hooks);
+                         TrainingState state, const TrainingHooks& hooks,
+                         const FuseModel* from = nullptr);
 
 }  // namespace kinalign

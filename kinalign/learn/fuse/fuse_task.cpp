@@ -39,6 +39,17 @@ FuseTask::FuseTask(FuseLayout layout, FuseTraining training, const FuseData& dat
       crops_(data.pose.learnt),
       body_(data.pose.body, device) {
   find_scales();
+  make_judged();
+}
+
+void FuseTask::use_scales(std::vector<float> mean, std::vector<float> scale) {
+  input_mean_ = std::move(mean);
+  input_scale_ = std::move(scale);
+  make_judged();
+}
+
+void FuseTask::make_judged() {
+  judged_.clear();
   for (std::size_t i = 0; i < data_.pose.judged.size(); ++i) {
     FuseDraws draws = training_.draws;
     draws.errors.lost_share = 0.0;

@@ -38,6 +38,8 @@ class FuseTask : public TrainingTask {
   };
   Batch draw(std::uint64_t seed, std::uint64_t step) const;
 
+  /// In place of those of the data: a model's, to go on from it.
+  void use_scales(std::vector<float> mean, std::vector<float> scale);
   const std::vector<float>& input_mean() const { return input_mean_; }
   const std::vector<float>& input_scale() const { return input_scale_; }
 
@@ -55,6 +57,7 @@ class FuseTask : public TrainingTask {
            Rows& rows) const;
   Batch tensors_of(Rows rows, std::size_t batch, std::size_t frames) const;
   void find_scales();
+  void make_judged();
 
   FuseLayout layout_;
   FuseTraining training_;

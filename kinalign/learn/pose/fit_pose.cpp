@@ -6,11 +6,16 @@
 namespace kinalign {
 
 Result<PoseFit> fit_pose(const PoseMethod& method, const PoseData& data, const FitOptions& options,
-                         TrainingState state, const TrainingHooks& hooks) {
+                         TrainingState state, const TrainingHooks& hooks,
+                         const PoseModel* from) {
   const PoseLayout layout{data.nodes, data.body.bones, method.inputs, data.rate_hz};
   PoseTask task(layout, method.training, data, options.device);
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
+  if (from != nullptr) {
+    task.use_scales(from->input_mean, from->input_scale);
+    KA_TRY(take_tensors(from->tensors, "net.", network));
+  }
   network.to(options.device);
   PoseFit out;
   if (method.begin != nullptr) method.begin(task, options.training.seed, network);

@@ -14,6 +14,7 @@ struct PoseFit {
 };
 
 Result<PoseFit> fit_pose(const PoseMethod& method, const PoseData& data, const FitOptions& options,
-                         TrainingState state, const TrainingHooks& hooks);
+                         TrainingState state, const TrainingHooks& hooks,
+                         const PoseModel* from = nullptr);
 
 }  // namespace kinalign

@@ -63,6 +63,17 @@ PoseTask::PoseTask(PoseLayout layout, PoseTraining training, const PoseData& dat
       crops_(data.learnt),
       body_(data.body, device) {
   find_scales();
+  make_judged();
+}
+
+void PoseTask::use_scales(std::vector<float> mean, std::vector<float> scale) {
+  input_mean_ = std::move(mean);
+  input_scale_ = std::move(scale);
+  make_judged();
+}
+
+void PoseTask::make_judged() {
+  judged_.clear();
   for (std::size_t i = 0; i < data_.judged.size(); ++i) {
     const PoseSequence& one = data_.judged[i];
     NodeErrors errors;

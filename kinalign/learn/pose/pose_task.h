@@ -62,11 +62,14 @@ class PoseTask : public TrainingTask {
     torch::Tensor offsets;    // [B,J,3] m
   };
   Batch draw(std::uint64_t seed, std::uint64_t step) const;
+  /// In place of those of the data: a model's, to go on from it.
+  void use_scales(std::vector<float> mean, std::vector<float> scale);
   const std::vector<float>& input_mean() const { return input_mean_; }
   const std::vector<float>& input_scale() const { return input_scale_; }
 
  private:
   void find_scales();
+  void make_judged();
   void standardise(std::vector<float>& input) const;
 
   struct JudgedSequence {
