@@ -118,16 +118,16 @@ struct LearntFrom {
 std::string training_json(const TrainingJob& job, const WindowsFacts& facts, const LearntFrom& from,
                           const std::string& before) {
   Json out{{"data",
-               {{{"name", facts.dataset},
-                 {"licence", facts.licence},
-                 {"citation", facts.citation},
-                 {"stretches", from.stretches},
-                 {"frames", from.frames},
-                 {"subjects", from.subjects}}}},
-              {"steps", job.options.steps},
-              {"rate", job.options.rate},
-              {"seed", job.options.seed},
-              {"identity", job.identity}};
+            {{{"name", facts.dataset},
+              {"licence", facts.licence},
+              {"citation", facts.citation},
+              {"stretches", from.stretches},
+              {"frames", from.frames},
+              {"subjects", from.subjects}}}},
+           {"steps", job.options.steps},
+           {"rate", job.options.rate},
+           {"seed", job.options.seed},
+           {"identity", job.identity}};
   if (!job.from.empty()) out["from"] = Json::parse(before, nullptr, false);
   return out.dump();
 }
@@ -198,9 +198,8 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, const DenoiseMethod& meth
   }
   Pairs pairs = KA_TRY(pairs_to_learn(job, windows, from));
   const DividedPairs divided = divide(job, std::move(pairs.all));
-  DenoiseFit fit =
-      KA_TRY(fit_denoise(method, pairs, divided, fit_options(job), std::move(state), hooks,
-                         from ? &*from : nullptr));
+  DenoiseFit fit = KA_TRY(fit_denoise(method, pairs, divided, fit_options(job), std::move(state),
+                                      hooks, from ? &*from : nullptr));
   LearntFrom learnt;
   for (const Pair& pair : divided.learnt) learnt.add(pair.subject, pair.input.frames());
   fit.model.facts.training =
@@ -231,8 +230,8 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
   if (from && (method.begin != nullptr || from->layout.nodes != data.nodes)) {
     return cannot_go_on(job, "a network of the same nodes");
   }
-  PoseFit fit = KA_TRY(fit_pose(method, data, fit_options(job), std::move(state), hooks,
-                                from ? &*from : nullptr));
+  PoseFit fit = KA_TRY(
+      fit_pose(method, data, fit_options(job), std::move(state), hooks, from ? &*from : nullptr));
   LearntFrom learnt;
   for (const PoseSequence& one : data.learnt) learnt.add(one.subject, one.frames());
   fit.model.facts.training =
@@ -281,8 +280,8 @@ Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
   if (from && from->layout != fuse_layout(data)) {
     return cannot_go_on(job, "a network of the same nodes and joints");
   }
-  FuseFit fit = KA_TRY(fit_fuse(method, data, fit_options(job), std::move(state), hooks,
-                                from ? &*from : nullptr));
+  FuseFit fit = KA_TRY(
+      fit_fuse(method, data, fit_options(job), std::move(state), hooks, from ? &*from : nullptr));
   LearntFrom learnt;
   for (const PoseSequence& one : data.pose.learnt) learnt.add(one.subject, one.frames());
   fit.model.facts.training =

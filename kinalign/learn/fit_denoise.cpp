@@ -41,8 +41,8 @@ Result<void> take_tensors(const std::map<std::string, Tensor>& tensors, const st
   torch::NoGradGuard guard;
   for (auto& [name, tensor] : network.tensors()) {
     const auto found = tensors.find(prefix + name);
-    const bool fits = found != tensors.end() &&
-                      to_torch(found->second).sizes().vec() == tensor.sizes().vec();
+    const bool fits =
+        found != tensors.end() && to_torch(found->second).sizes().vec() == tensor.sizes().vec();
     if (!fits) {
       return Failure(Error{"", 0, "a model of this method's network", "another one at " + name});
     }

@@ -190,3 +190,23 @@ TEST_CASE("fit: no pairs, and no whole stretch for the second network of bra-p, 
   REQUIRE_FALSE(brief);
   CHECK(to_string(brief.error()) == "expected stretches of 61 rows of clean motion, found none");
 }
+
+TEST_CASE("fit: a model goes on from another one, with its scales, and begins where it stood") {
+  auto first = fitted(refine_method(), 3);
+  REQUIRE(first);
+  const FitOptions none{{.steps = 0}, torch::kCPU};
+  const auto again = fit_denoise(refine_method(), pairs_about(), {{one_pair(61)}, {}}, none, {}, {},
+                                 &first->model);
+  REQUIRE(again);
+  for (const auto& [name, tensor] : first->model.tensors) {
+    CAPTURE(name);
+    CHECK(again->model.tensors.at(name) == tensor);
+  }
+  CHECK(again->model.input_mean == first->model.input_mean);
+  CHECK(again->model.answer_mean == first->model.answer_mean);
+  const auto other =
+      fit_denoise(cnn_method(), pairs_about(), {{one_pair(61)}, {}}, none, {}, {}, &first->model);
+  REQUIRE_FALSE(other);
+  CHECK(to_string(other.error())
+            .starts_with("expected a model of this method's network, found another one at "));
+}

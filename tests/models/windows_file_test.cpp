@@ -266,3 +266,24 @@ TEST_CASE("pairs: of a Kinect's 25 joints and others the Kinect's are taken") {
   CHECK(pairs->all[0].input.positions[3] == 6.0F);
   CHECK(pairs->all[0].input.seen == std::vector<std::uint8_t>(10, 2));
 }
+
+TEST_CASE("pairs: for a model, joints are found by the Kinect's names and missing ones are told") {
+  const Windows windows = windows_of(numpy_file());
+  const Pairs joints{{"HipRight", "Head", "SpineBase"}, {"HipLeft", "LeftLeg"}, 30.0};
+  const auto pairs = pairs_for(windows, "kinect", "mocap", joints, 1);
+  const auto plain = pairs_of(windows, "kinect", "mocap", 1);
+  REQUIRE(pairs);
+  REQUIRE(pairs->all.size() == plain->all.size());
+  CHECK(pairs->inputs == joints.inputs);
+  const Pair &one = pairs->all[0], &same = plain->all[0];
+  for (std::size_t t = 0; t < one.input.frames(); ++t) {
+    CHECK(one.input.seen[3 * t] == same.input.seen[3 * t + 2]);
+    CHECK(one.input.seen[3 * t + 1] == 0);
+    CHECK(one.input.seen[3 * t + 2] == same.input.seen[3 * t]);
+    CHECK(one.valid[2 * t] == 1);
+    CHECK(one.valid[2 * t + 1] == 0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      CHECK(one.truth[6 * t + k] == same.truth[9 * t + 3 + k]);
+    }
+  }
+}

@@ -56,9 +56,9 @@ struct Train {
 };
 
 Learns task_of(const Train& o) {
-  const auto word =
-      std::find_if(train_words.begin(), train_words.end(),
-                   [&](const TrainWord& one) { return one.method == o.method.front(); });
+  const auto word = std::find_if(train_words.begin(), train_words.end(), [&](const TrainWord& one) {
+    return one.method == o.method.front();
+  });
   return word == train_words.end() ? Learns::denoise : word->task;
 }
 
@@ -109,7 +109,11 @@ Usage describe_train(Train& o) {
        "SQL"},
       {"input",
        "the rough stream (default: kinect; of a method that fuses: a simulated Kinect)",
-       &o.input, 0.0, 0.0, {}, "NAME"},
+       &o.input,
+       0.0,
+       0.0,
+       {},
+       "NAME"},
       {"truth", "the precise stream", &o.truth, 0.0, 0.0, {}, "NAME"},
       {"nodes",
        "of poses and fusion: 3 to 6 of waist, which is the last, wrist_left, wrist_right, "
@@ -262,13 +266,14 @@ Verb train_verb() {
   return make_verb<Train>(
       {.name = "train",
        .summary = "a model from a data set",
-       .text = "Trains a network and writes one SafeTensors file, which denoise, pose or fuse reads "
-               "and PyTorch and NumPy open. refine, cnn, bra and bra-p clean a Kinect; inertial, "
-               "inertial-online, dip, dip-512, dip-robust and wouda answer nodes with a pose; "
-               "gated, gated-online and bilstm answer a Kinect and nodes together. The last two "
-               "kinds learn from a skeleton alone. The same seed gives the same weights on the "
-               "same machine. A run that was stopped goes on with --resume. The program "
-               "kinalign-learn does the work; it is built where LibTorch is installed.",
+       .text =
+           "Trains a network and writes one SafeTensors file, which denoise, pose or fuse reads "
+           "and PyTorch and NumPy open. refine, cnn, bra and bra-p clean a Kinect; inertial, "
+           "inertial-online, dip, dip-512, dip-robust and wouda answer nodes with a pose; "
+           "gated, gated-online and bilstm answer a Kinect and nodes together. The last two "
+           "kinds learn from a skeleton alone. The same seed gives the same weights on the "
+           "same machine. A run that was stopped goes on with --resume. The program "
+           "kinalign-learn does the work; it is built where LibTorch is installed.",
        .examples =
            {{"kinalign train refine --data walks -o denoise.safetensors",
              "a network that cleans a Kinect, from the pairs of a data set"},
@@ -279,7 +284,8 @@ Verb train_verb() {
              "a network that answers five nodes with a pose"},
             {"kinalign train gated --data walks -o fuse.safetensors",
              "a network for a Kinect and nodes together"},
-            {"kinalign train refine --data own --from models/denoise.safetensors -o own.safetensors",
+            {"kinalign train refine --data own --from models/denoise.safetensors -o "
+             "own.safetensors",
              "the model that comes with the program, fitted to one's own takes"}},
        .common = {"out", "force", "json", "jobs"}},
       describe_train, run_train);

@@ -11,8 +11,7 @@ FuseLayout fuse_layout(const FuseData& data) {
 }
 
 Result<FuseFit> fit_fuse(const FuseMethod& method, const FuseData& data, const FitOptions& options,
-                         TrainingState state, const TrainingHooks& hooks,
-                         const FuseModel* from) {
+                         TrainingState state, const TrainingHooks& hooks, const FuseModel* from) {
   const FuseLayout layout = fuse_layout(data);
   KA_TRY(validate(layout));
   FuseTask task(layout, method.training, data, options.device);

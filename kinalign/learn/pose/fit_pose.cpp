@@ -6,8 +6,7 @@
 namespace kinalign {
 
 Result<PoseFit> fit_pose(const PoseMethod& method, const PoseData& data, const FitOptions& options,
-                         TrainingState state, const TrainingHooks& hooks,
-                         const PoseModel* from) {
+                         TrainingState state, const TrainingHooks& hooks, const PoseModel* from) {
   const PoseLayout layout{data.nodes, data.body.bones, method.inputs, data.rate_hz};
   PoseTask task(layout, method.training, data, options.device);
   torch::manual_seed(options.training.seed);

@@ -62,8 +62,8 @@ TEST_CASE("another zero leaves every joint where it was") {
     for (std::size_t j = 0; j < after.size(); ++j) after[j] = before[j] * turns[j];
     const auto here = positions_of(body, body.skeleton.rest_offsets, before);
     const auto there = positions_of(body, offsets, after);
-    // Eight products of rotations, each exact to 2e-16.
-    for (std::size_t j = 0; j < here.size(); ++j) CHECK((here[j] - there[j]).norm() < 5e-15);
+    // Eight products of rotations of a body of 2 m, each exact to 2e-16, on both sides.
+    for (std::size_t j = 0; j < here.size(); ++j) CHECK((here[j] - there[j]).norm() < 5e-14);
   }
 }
 
