@@ -5,6 +5,7 @@
 #include "kinalign/learn/fit_denoise.h"
 #include "kinalign/learn/fuse/fit_fuse.h"
 #include "kinalign/learn/fuse/fuse_marks.h"
+#include "kinalign/learn/loss_curve.h"
 #include "kinalign/learn/methods/methods.h"
 #include "kinalign/learn/pose/fit_pose.h"
 #include "kinalign/learn/pose/pose_marks.h"
@@ -85,8 +86,9 @@ void read_options(const Json& json, TrainingOptions& out) {
 Result<void> save_log(const TrainingJob& job, const std::vector<TrainingPoint>& points) {
   if (job.log.empty()) return {};
   KA_TRY(write_file(job.log, csv_of(points)));
-  return write_file(std::filesystem::path(job.log).parent_path() / "events.out.tfevents.0.kinalign",
-                    events_of(points));
+  const auto folder = std::filesystem::path(job.log).parent_path();
+  KA_TRY(write_file(folder / "curves.svg", loss_curve(points, job.method)));
+  return write_file(folder / "events.out.tfevents.0.kinalign", events_of(points));
 }
 
 /// A line a second at most, and the last one.

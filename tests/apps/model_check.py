@@ -190,4 +190,32 @@ def ONNX_Runtime_computes_with_the_scales_in_the_graph(folder):
     assert numpy.abs(found - out).max() < 1e-5
 
 
+@case
+def ONNX_Runtime_answers_with_rotations_and_a_way_for_poses_and_fusion(folder):
+    if not shutil.which("node") or not (NODE_MODULES / "onnxruntime-node").is_dir():
+        raise Skip("needs node and npm's onnxruntime-node")
+    if not importlib.util.find_spec("torch"):
+        raise Skip("needs python3-torch")
+    import torch
+    import torch_networks
+    for task, path in (("pose", "pose_model_fuzz/two"), ("fuse", "fuse_model_fuzz/one")):
+        path = SMALL.parent / f"{path}.safetensors"
+        model, tensors = tensors_of(path)
+        network = torch_networks.Model(model["networks"]["net"])
+        for place, module in network.modules.items():
+            module.load_state_dict({key: torch.tensor(tensors[f"net.{place}.{key}"]) for key in module.state_dict()})
+        channels = len(tensors["input.mean"])
+        given = numpy.random.default_rng(1).standard_normal((31, channels)).astype("<f4")
+        out = network(((given - tensors["input.mean"]) / tensors["input.scale"]).astype("<f4"))
+        bones = len(model["output"]["bones"]) + (task == "fuse")
+        out[:, :6 * bones] += numpy.tile([1, 0, 0, 0, 1, 0], bones)
+        out[:, 6 * bones:] *= 0.1
+        told("model", "export", path, "-o", folder / "0.onnx", "--force")
+        given.tofile(folder / "0.in")
+        subprocess.run(["node", ROOT / "tests/witness/onnx_runtime.mjs", NODE_MODULES, folder, "0:31"], check=True,
+                       capture_output=True)
+        found = numpy.fromfile(folder / "0.out", "<f4").reshape(31, -1)
+        assert found.shape == out.shape and numpy.abs(found - out).max() < 1e-5, task
+
+
 sys.exit(main())

@@ -30,7 +30,7 @@ constexpr std::size_t most_windows_bytes = std::size_t{4} << 30U;
 constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
 constexpr std::size_t least_rows = 8;
 /// The version of cached results: another number lets all be computed again.
-constexpr int cache_version = 1;
+constexpr int cache_version = 2;
 
 struct Eval {
   std::vector<std::string> methods;

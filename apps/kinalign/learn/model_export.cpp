@@ -7,6 +7,9 @@
 #include "kinalign/infer/onnx.h"
 #include "kinalign/infer/shapes.h"
 #include "kinalign/models/denoise_model.h"
+#include "kinalign/models/fuse/fuse_model.h"
+#include "kinalign/models/model_file.h"
+#include "kinalign/models/pose/pose_model.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -73,29 +76,47 @@ Parts scaled(const Parts& network, const Scaling& before, const Scaling& after) 
   return out;
 }
 
-/// The network of that name with the tensors that its layers use: a file may hold others.
-Parts parts_of(const DenoiseModel& model, const std::string& name) {
-  Parts out{name == "net" ? model.architecture : *model.second, {}};
-  for (const Parameter& parameter : parameters(out.architecture)) {
-    out.tensors[parameter.name] = model.tensors.at(name + "." + parameter.name);
+/// A network with the tensors that its layers use: a file may hold others.
+Parts parts_of(const Architecture& architecture, const std::map<std::string, Tensor>& tensors,
+               const std::string& name) {
+  Parts out{architecture, {}};
+  for (const Parameter& parameter : parameters(architecture)) {
+    out.tensors[parameter.name] = tensors.at(name + "." + parameter.name);
+  }
+  return out;
+}
+
+/// From channels as they are to mean 0 and deviation 1.
+Scaling standardising(const std::vector<float>& mean, const std::vector<float>& scale) {
+  Scaling out;
+  for (std::size_t c = 0; c < mean.size(); ++c) {
+    out.factor.push_back(1.0F / scale[c]);
+    out.offset.push_back(-mean[c] / scale[c]);
   }
   return out;
 }
 
 /// From features as they are to metres and logarithms of centimetres.
 Parts whole_network(const DenoiseModel& model) {
-  Scaling before, after;
-  for (std::size_t c = 0; c < model.input_mean.size(); ++c) {
-    before.factor.push_back(1.0F / model.input_scale[c]);
-    before.offset.push_back(-model.input_mean[c] / model.input_scale[c]);
-  }
+  Scaling after;
   after.factor.assign(model.layout.answers(), static_cast<float>(model.answer_scale));
   after.offset = model.answer_mean;
   if (model.states_spread) {
     after.factor.resize(after.factor.size() + model.layout.outputs.size(), 1.0F);
     after.offset.resize(after.factor.size(), 0.0F);
   }
-  return scaled(parts_of(model, "net"), before, after);
+  return scaled(parts_of(model.architecture, model.tensors, "net"),
+                standardising(model.input_mean, model.input_scale), after);
+}
+
+/// Of `bones` rotations: the identity stands in the six numbers.
+Scaling onto_identity(std::size_t bones) {
+  Scaling out;
+  out.factor.assign(6 * bones, 1.0F);
+  for (std::size_t b = 0; b < bones; ++b) {
+    out.offset.insert(out.offset.end(), six_of_identity.begin(), six_of_identity.end());
+  }
+  return out;
 }
 
 std::map<std::string, std::string> metadata_of(const DenoiseModel& model, bool second) {
@@ -123,24 +144,89 @@ std::map<std::string, std::string> metadata_of(const DenoiseModel& model, bool s
           {"kinalign.training", model.facts.training}};
 }
 
+/// What a model's graph holds, and what is said of it.
+struct Exported {
+  Parts parts;
+  std::map<std::string, std::string> metadata;
+};
+
+/// The error of a model that can't be used, with its file.
+template <class Usable>
+Result<void> check_use(const Result<Usable>& usable, const std::string& path) {
+  if (usable) return {};
+  Error error = usable.error();
+  error.file = path;
+  return Failure(std::move(error));
+}
+
+Result<Exported> exported_denoise(const std::string& bytes, const std::string& path, bool second) {
+  const DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
+  KA_TRY(check_use(Denoiser::make(model), path));
+  if (second && !model.second) {
+    return Failure(Error{path, 0, "a network behind the first one", "none"});
+  }
+  Parts parts = second ? parts_of(*model.second, model.tensors, "second") : whole_network(model);
+  return Exported{std::move(parts), metadata_of(model, second)};
+}
+
+std::map<std::string, std::string> body_metadata(const ModelFacts& facts, const PoseLayout& layout,
+                                                 const std::string& output) {
+  return {{"kinalign.task", facts.task},
+          {"kinalign.method", facts.method},
+          {"kinalign.rate_hz", fmt::format("{:g}", layout.rate_hz)},
+          {"kinalign.input", "channels as docs/formats/model.md says"},
+          {"kinalign.output", output},
+          {"kinalign.nodes", Json(layout.nodes).dump()},
+          {"kinalign.bones", Json(layout.bones).dump()},
+          {"kinalign.training", facts.training}};
+}
+
+Result<Exported> exported_pose(const std::string& bytes, const std::string& path) {
+  const PoseModel model = KA_TRY(read_pose_model(bytes, path));
+  KA_TRY(check_use(PoseSolver::make(model), path));
+  return Exported{scaled(parts_of(model.architecture, model.tensors, "net"),
+                         standardising(model.input_mean, model.input_scale),
+                         onto_identity(model.layout.bones.size())),
+                  body_metadata(model.facts, model.layout,
+                                "two columns of each bone's rotation against the root, not yet "
+                                "orthonormal")};
+}
+
+Result<Exported> exported_fuse(const std::string& bytes, const std::string& path) {
+  const FuseModel model = KA_TRY(read_fuse_model(bytes, path));
+  KA_TRY(check_use(Fuser::make(model), path));
+  Scaling after = onto_identity(model.layout.nodes.bones.size() + 1);
+  after.factor.resize(model.layout.answers(), fuse_place_unit_m);
+  after.offset.resize(model.layout.answers(), 0.0F);
+  Exported out{scaled(parts_of(model.architecture, model.tensors, "net"),
+                      standardising(model.input_mean, model.input_scale), after),
+               body_metadata(model.facts, model.layout.nodes,
+                             "two columns of the rotation of each bone and of the root in the "
+                             "frame's space, not yet orthonormal; the way from SpineBase to the "
+                             "root, m")};
+  out.metadata["kinalign.joints"] = Json(model.layout.joints).dump();
+  return out;
+}
+
+Result<Exported> exported(const std::string& bytes, const std::string& path,
+                          const std::string& network) {
+  const std::string task = KA_TRY(task_of_model(bytes, path));
+  const bool second = network == "second";
+  if (second && task != "denoise") {
+    return Failure(Error{path, 0, "a network behind the first one", "none"});
+  }
+  if (task == "pose") return exported_pose(bytes, path);
+  return task == "fuse" ? exported_fuse(bytes, path) : exported_denoise(bytes, path, second);
+}
+
 Result<int> run_export(Export& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string &in = o.model.front(), &out = call.common.out;
   KA_TRY(keep_inputs(out, o.model));
-  DenoiseModel model =
-      KA_TRY(read_denoise_model(KA_TRY(read_whole(files, in, most_model_bytes)), in));
-  auto usable = Denoiser::make(model);
-  if (!usable) {
-    Error error = usable.error();
-    error.file = in;
-    return Failure(std::move(error));
-  }
-  const bool second = o.network == "second";
-  if (second && !model.second) {
-    return Failure(Error{in, 0, "a network behind the first one", "none"});
-  }
-  const Parts parts = second ? parts_of(model, "second") : whole_network(model);
-  const OnnxOptions options{.prefix = "", .metadata = metadata_of(model, second)};
+  const std::string bytes = KA_TRY(read_whole(files, in, most_model_bytes));
+  const Exported whole = KA_TRY(exported(bytes, in, o.network));
+  const Parts& parts = whole.parts;
+  const OnnxOptions options{.prefix = "", .metadata = whole.metadata};
   KA_TRY(write_whole(files, out, KA_TRY(onnx_of(parts.architecture, parts.tensors, options)),
                      call.common.overwrite()));
   call.console.wrote(out);
@@ -160,8 +246,8 @@ Verb model_export_verb() {
        .summary = "a model's network as ONNX",
        .text = "Writes the network for ONNX Runtime and its like. The scales of its numbers are "
                "part of the graph; what stands in the channels is said in the metadata and in "
-               "docs/formats/model.md. The body's frame before it and the steadying behind it are "
-               "no part of it.",
+               "docs/formats/model.md. What makes the channels, and the steadying or the rotations "
+               "behind it, are no part of it.",
        .examples = {{"kinalign model export denoise.safetensors -o denoise.onnx",
                      "for ONNX Runtime"}},
        .common = {"out", "force", "json"}},

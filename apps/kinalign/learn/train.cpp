@@ -254,8 +254,9 @@ Result<int> run_train(Train& o, Call& call) {
   if (last.contains("judgement")) {
     text += fmt::format(", {:.4g} on the validation part", last.at("judgement").get<double>());
   }
-  call.console.print(text + fmt::format("\nlog      {}/log.csv, events for TensorBoard beside it\n",
-                                        harmless(folder)));
+  call.console.print(
+      text + fmt::format("\nlog      {}/curves.svg, log.csv, events for TensorBoard beside them\n",
+                         harmless(folder)));
   call.console.print_json(last.dump(1));
   return 0;
 }
