@@ -176,7 +176,7 @@ NodeDirections directions_of_pose(const HeadingFilter& filter, const JointFrames
     const std::size_t t = i / bones.size();
     const SeenBone& bone = *bones[i % bones.size()];
     const Turn turn = bone.bone < count ? rotations[t * count + bone.bone] : Turn(Turn::Identity());
-    out[i]->direction = root[t] * (turn * bone.axis);
+    out[i]->direction = (out[i]->direction + root[t] * (turn * bone.axis)).normalized();
   }
   return out;
 }

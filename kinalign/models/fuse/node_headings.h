@@ -2,8 +2,9 @@
 // The heading of each node's world, found from a Kinect that sees the bone which carries the node.
 // A node knows the vertical; its heading is unknown at first and walks. Wherever a bone does not
 // hang along the vertical, its direction by the Kinect says how far the heading is off. That
-// direction comes from the joints as they are, or from a pose that a model answers to them: a
-// Kinect puts an elbow 5 cm off, which is 10 degrees of a forearm.
+// direction comes from the joints as they are, or from these and a pose that a model answers to
+// them: a Kinect puts an elbow 5 cm off, which is 10 degrees of a forearm, and the model knows some
+// of it.
 //
 // For each node an extended Kalman filter of four numbers: the heading's error, and the turn of the
 // node on its bone. A measurement is the bone's direction. Whole sequences are smoothed behind it
@@ -78,7 +79,8 @@ using NodeDirections = std::vector<std::optional<SeenDirection>>;
 
 /// As the Kinect's joints lie.
 NodeDirections directions_of_joints(const HeadingFilter& filter, const JointFrames& kinect);
-/// As a pose has them, where the Kinect sees the bone. `rotations` [T,B] against the root, `root`
+/// Half as the joints lie, half as a pose has them, where the Kinect sees the bone: their errors
+/// differ, and each alone is worse (docs/models.md). `rotations` [T,B] against the root, `root`
 /// [T] in the world.
 NodeDirections directions_of_pose(const HeadingFilter& filter, const JointFrames& kinect,
                                   std::span<const Turn> rotations,
