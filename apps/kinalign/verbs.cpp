@@ -32,6 +32,7 @@ std::vector<Verb> all_verbs() {
           fuse_verb(),
           eval_verb(),
           benchmark_twin_verb(),
+          benchmark_run_verb(),
           model_export_verb(),
           simulate_verb(),
           time_server_verb(),

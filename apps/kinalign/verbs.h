@@ -37,6 +37,7 @@ Verb pose_verb();
 Verb fuse_verb();
 Verb eval_verb();
 Verb benchmark_twin_verb();
+Verb benchmark_run_verb();
 Verb model_export_verb();
 Verb time_server_verb();
 Verb node_key_verb();

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A twin of the paper's data set: its counts, its bytes, stopped and gone on. benchmark_check.py BUILD_FOLDER [CASE...]"""
+"""A twin of the paper's data set: its counts, its bytes, stopped and gone on; methods run on it. benchmark_check.py BUILD_FOLDER [CASE...]"""
 import collections
 import hashlib
 import json
@@ -9,13 +9,18 @@ import subprocess
 import sys
 import time
 
+import h5py
+import numpy
+
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
 import cases
 import hfut
 import samples
+from bvh_places import bvh_places
 from cases import case, done_with, kinalign, main
 from data_sets import done
+from page_reader import Page
 
 SCALE = "0.0001"  # each cell of the paper's tables is one take of ten seconds
 
@@ -155,6 +160,171 @@ def methods_are_held_against_each_other_on_a_twin(folder):
     assert ran.returncode == 0, ran.stderr
     rows = {row["method"]: row for row in json.loads(ran.stdout)["rows"]}
     assert 3 < rows["offset"]["mpjpe_cm"] < rows["raw"]["mpjpe_cm"] < 15, rows
+
+
+def run(data, folder, *words, code=0, name="results"):
+    """The folder of results, and what the verb says: as JSON, or on stderr."""
+    out, err = done_with(code, "benchmark", "run", data, *words, "-o", folder / name, "--json", memory=1 << 36,
+                         seconds=600)  # LibTorch alone maps a gigabyte
+    return folder / name, json.loads(out) if code == 0 else err
+
+
+def test_people(data):
+    parts = {part["name"]: part["takes"] for part in json.loads((data / "splits/people.json").read_text())["parts"]}
+    return {take["name"].split("_")[0][4:] for take in parts["test"]}
+
+
+def header_of(model):
+    """What a SafeTensors file says of itself."""
+    with open(model, "rb") as file:
+        length = int.from_bytes(file.read(8), "little")
+        return json.loads(file.read(length))["__metadata__"]
+
+
+@case
+def methods_run_on_a_twin_make_tables_and_a_page_that_loads_nothing(folder):
+    data, _ = twin(folder)
+    results, said = run(data, folder, "raw", "offset", "ridge")
+    rows = {row["method"]: row for row in said["rows"]}
+    assert list(rows) == [name + end for name in ("raw", "offset", "ridge") for end in ("", ", steadied")], list(rows)
+    assert 3 < rows["offset"]["position_cm"] < rows["raw"]["position_cm"] < 15, rows
+    assert rows["ridge, steadied"]["constancy_cm"] < 0.2 < rows["ridge"]["constancy_cm"], rows
+    for file in ("table_9.md", "table_9.tex", "table_9.csv"):
+        assert "offset, steadied" in (results / file).read_text(), file
+    page = Page((results / "benchmark.html").read_text())
+    assert all(link.startswith("#") and link[1:] in page.ids for link in page.links), page.links
+    assert not {"script", "img", "iframe", "link", "object"} & set(page.tags), set(page.tags)
+    assert {"table-9", "table-8", "errors", "figure-8", "figure-9", "figure-10"} <= set(page.ids), page.ids
+    for word in ("standing", "waving", "bending", "turning right", "turning left"):
+        assert word in page.sections["table-8"], word
+    assert f"{rows['raw']['position_cm']:.2f}" in page.sections["table-9"]
+    # The Kinect, three methods and the truth, five instants each; the figures beside.
+    assert page.tags.count("svg") >= 25, page.tags.count("svg")
+    assert "five nodes" in page.sections["figure-8"] and "--head-model" in page.sections["figure-9"]
+
+
+# Joints of a suit and of CMU at the same places: the middle of the hips, then those that are marked.
+PLACES = {"LeftUpLeg": "lfemur", "RightUpLeg": "rfemur", "LeftArm": "lhumerus", "RightArm": "rhumerus",
+          "LeftForeArm": "lradius", "RightForeArm": "rradius", "LeftHand": "lwrist", "RightHand": "rwrist",
+          "LeftLeg": "ltibia", "RightLeg": "rtibia", "LeftFoot": "lfoot", "RightFoot": "rfoot", "Head": "head"}
+
+
+def about_the_hips(places):
+    """Moved to the middle of the hips and turned so that hips and shoulders point to +x."""
+    places = places - places[:, :2].mean(axis=1, keepdims=True)
+    left = places[:, 0] - places[:, 1] + places[:, 2] - places[:, 3]
+    angle = numpy.arctan2(left[:, 2], left[:, 0])[:, None]
+    x, y, z = numpy.moveaxis(places, 2, 0)
+    return numpy.stack([numpy.cos(angle) * x + numpy.sin(angle) * z, y,
+                        numpy.cos(angle) * z - numpy.sin(angle) * x], axis=2)
+
+
+@case
+def the_errors_of_figure_8_are_those_of_the_bvh_that_pose_writes(folder):
+    data, _ = twin(folder)
+    _, said = run(data, folder, "raw")
+    row, = said["figures"]["figure-8"]
+    names = [path.name[:-8] for path in sorted(data.glob("sub-*/*_take.h5"))]
+    with_nodes = [name for name in names if "imu" in h5py.File(data / name[:6] / f"{name}_take.h5")]
+    tested = [name for name in with_nodes if name[4:6] in test_people(data)] or with_nodes
+    sums, wrists, frames = 0.0, 0.0, 0
+    for name in tested[:12]:
+        take = data / name[:6] / f"{name}_take.h5"
+        done_with((0, 1), "pose", take, "-o", folder / f"{name}.bvh", "--tpose", "0,0.5")
+        joints, answer = bvh_places(folder / f"{name}.bvh")
+        with h5py.File(take) as file:
+            suit = list(file["mocap/joint_names"].asstr())
+            truth = file["mocap/positions"][::2]  # 60 Hz, and 30 Hz of the model
+        count = min(len(truth), len(answer))
+        apart = 100 * numpy.linalg.norm(
+            about_the_hips(numpy.stack([answer[:count, joints.index(one)] for one in PLACES.values()], axis=1)) -
+            about_the_hips(numpy.stack([truth[:count, suit.index(one)] for one in PLACES], axis=1)), axis=2)
+        sums, wrists, frames = sums + apart[:, 2:].mean(axis=1).sum(), wrists + apart[:, 6:8].mean(axis=1).sum(), frames + count
+    # The model's grid begins at the waist's first sample here, and at the mocap's there: up to 33 ms apart.
+    assert abs(row["all_cm"] - sums / frames) < 0.02 * row["all_cm"], (row, sums / frames)
+    assert abs(row["wrists_cm"] - wrists / frames) < 0.03 * row["wrists_cm"], (row, wrists / frames)
+
+
+@case
+def a_network_is_trained_once_on_the_training_people_and_kept(folder):
+    if not (cases.BUILD / "apps/kinalign-learn/kinalign-learn").exists():
+        raise cases.Skip("kinalign-learn was not built: it needs libtorch-dev")
+    data, _ = twin(folder)
+    results, _ = run(data, folder, "raw", "cnn", "--steps", "2", "--jobs", "1")
+    model = results / "models/cnn.safetensors"
+    learnt = set(json.loads(header_of(model)["kinalign"])["training"]["data"][0]["subjects"])
+    assert learnt and not learnt & test_people(data), (learnt, test_people(data))
+    before, then = digests(results), model.stat().st_mtime_ns
+    run(data, folder, "raw", "cnn", "--steps", "2", "--jobs", "1")
+    assert digests(results) == before and model.stat().st_mtime_ns == then
+    _, err = run(data, folder, "raw", "cnn", "--steps", "3", "--jobs", "1", code=3)
+    assert "expected a model trained on these takes with this seed and these steps" in err, err
+    run(data, folder, "raw", "cnn", "--steps", "3", "--jobs", "1", "--force")
+    assert model.stat().st_mtime_ns != then
+
+
+@case
+def a_dry_run_says_what_would_be_trained_and_writes_nothing(folder):
+    data, _ = twin(folder)
+    results, said = run(data, folder, "raw", "cnn", "bra", "--steps", "10", "--dry-run")
+    assert [(one["method"], one["is_there"], one["steps"]) for one in said["trainings"]] == [
+        ("cnn", False, 10), ("bra", False, 10)], said
+    assert said["seconds"] > 0 and not results.exists()
+
+
+PROGRAM = """#!/usr/bin/python3
+import sys, numpy
+asked = numpy.load(sys.argv[1])
+joints, wanted = list(asked["joint_names"]), list(asked["output_names"])
+words = {"Hips": "SpineBase", "Spine1": "SpineMid", "Spine3": "SpineShoulder", "Head": "Head"}
+for side in ("Left", "Right"):
+    for suit, kinect in (("Arm", "Shoulder"), ("ForeArm", "Elbow"), ("Hand", "Wrist"), ("UpLeg", "Hip"),
+                         ("Leg", "Knee"), ("Foot", "Ankle")):
+        words[side + suit] = kinect + side
+assert asked["rate_hz"] == 30 and asked["seen"].shape == asked["positions"].shape[:2]
+out = numpy.zeros((len(asked["positions"]), len(wanted), 3), "f4")
+for place, name in enumerate(wanted):
+    if name in words:
+        out[:, place] = asked["positions"][:, joints.index(words[name])]
+numpy.savez(sys.argv[2], positions=out[:LAST])
+"""
+
+
+def program(folder, last="None"):
+    file = folder / f"own_{last}.py"
+    file.write_text(PROGRAM.replace("LAST", last))
+    file.chmod(0o755)
+    return file
+
+
+@case
+def a_program_of_others_is_marked_as_the_methods_are(folder):
+    data, _ = twin(folder)
+    results, said = run(data, folder, "raw", "--method", f"own={program(folder)}")
+    rows = {row["method"]: row for row in said["rows"]}
+    # It gives the Kinect's joints back under the suit's names, as raw does.
+    for key in ("position_cm", "fitted_cm", "bone_cm", "table_9_position_cm2"):
+        assert abs(rows["own"][key] - rows["raw"][key]) < 0.02 * rows["raw"][key], (key, rows)
+    assert not (results / "programs").exists()
+    _, err = run(data, folder, "raw", "--method", f"own={program(folder, '-1')}", code=3)
+    assert "of finite float32 or float64, found another array" in err, err
+    _, err = run(data, folder, "raw", "--method", "own=false", code=3)
+    assert "false: expected a program that ends with 0" in err, err
+    for words in ("own", "=x", "o/n=x"):
+        _, err = run(data, folder, "raw", "--method", words, code=2)
+        assert "--method: expected NAME=PROGRAM" in err, err
+
+
+@case
+def a_page_of_another_kind_is_not_overwritten(folder):
+    data, _ = twin(folder)
+    page = folder / "results/benchmark.html"
+    page.parent.mkdir()
+    page.write_text("mine")
+    _, err = run(data, folder, "raw", code=3)
+    assert "or a page of a benchmark (--force overwrites)" in err and page.read_text() == "mine", err
+    run(data, folder, "raw", "--force")
+    assert page.read_text().startswith("<!doctype html>")
 
 
 sys.exit(main())

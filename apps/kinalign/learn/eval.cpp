@@ -184,12 +184,7 @@ Result<Bench> open_bench(const Eval& o, Call& call) {
   out.windows_hash = hash.hex();
   out.pairs =
       KA_TRY(pairs_of(KA_TRY(read_windows(bytes, out.windows)), o.input, o.truth, least_rows));
-  out.layout = KA_TRY(denoise_layout(out.pairs.inputs, out.pairs.outputs, out.pairs.rate_hz));
-  // Steadied bones lead from one joint that a Kinect has to the next: a suit's joints in between
-  // are answered by no filter. Where the Kinect has none of the joints, the suit's own bones count.
-  const auto& parents = out.layout.parents;
-  const bool known = std::any_of(parents.begin(), parents.end(), [](int one) { return one >= 0; });
-  if (!known && !out.pairs.parents.empty()) out.layout.parents = out.pairs.parents;
+  out.layout = KA_TRY(eval_layout(out.pairs));
   out.folds = KA_TRY(folds_of(o.folds, takes_of(out.pairs)));
   return out;
 }
@@ -340,12 +335,6 @@ std::vector<std::string> chosen_methods(const Eval& o) {
     if (!method.trained) out.push_back(method.name);
   }
   return out;
-}
-
-bool is_trained(const std::string& method) {
-  const auto& all = eval_methods();
-  return std::any_of(all.begin(), all.end(),
-                     [&](const EvalMethod& one) { return one.name == method && one.trained; });
 }
 
 Result<void> write_tables(const Table& table, const std::string& folder, Call& call) {

@@ -63,10 +63,7 @@ Result<Answer> trained(const std::string& method, const EvalTask& task, Call& ca
     KA_TRY(write_whole(files, file, job.dump(1), Overwrite::yes));
     KA_TRY(run_worker(file, {.progress = call.console.progress()}));
   }
-  const std::string bytes = KA_TRY(read_whole(files, model, most_trained_bytes));
-  auto denoiser =
-      std::make_shared<Denoiser>(KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, model)))));
-  return Answer([denoiser](const JointFrames& body) { return denoiser->answer(body); });
+  return answer_of_model(KA_TRY(read_whole(files, model, most_trained_bytes)), model);
 }
 
 }  // namespace
@@ -86,6 +83,28 @@ const std::vector<EvalMethod>& eval_methods() {
       {"bra-p", "the same, perceptual (Li 2020)", true},
       {"refine", "ours", true}};
   return all;
+}
+
+bool is_trained(const std::string& method) {
+  const auto& all = eval_methods();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const EvalMethod& one) { return one.name == method && one.trained; });
+}
+
+Result<DenoiseLayout> eval_layout(const Pairs& pairs) {
+  DenoiseLayout out = KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz));
+  // Steadied bones lead from one joint that a Kinect has to the next: a suit's joints in between
+  // are answered by no filter. Where the Kinect has none of the joints, the suit's own bones count.
+  const bool known =
+      std::any_of(out.parents.begin(), out.parents.end(), [](int one) { return one >= 0; });
+  if (!known && !pairs.parents.empty()) out.parents = pairs.parents;
+  return out;
+}
+
+Result<Answer> answer_of_model(const std::string& bytes, const std::string& name) {
+  auto denoiser =
+      std::make_shared<Denoiser>(KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, name)))));
+  return Answer([denoiser](const JointFrames& body) { return denoiser->answer(body); });
 }
 
 Result<Answer> make_answer(const std::string& method, const EvalTask& task, Call& call) {

@@ -18,6 +18,12 @@ struct EvalMethod {
 };
 const std::vector<EvalMethod>& eval_methods();
 
+/// Whether it is trained by kinalign-learn.
+bool is_trained(const std::string& method);
+
+/// What methods see and answer on these pairs. Fails as denoise_layout().
+Result<DenoiseLayout> eval_layout(const Pairs& pairs);
+
 /// All that a method is made from.
 struct EvalTask {
   const DenoiseLayout& layout;
@@ -29,7 +35,10 @@ struct EvalTask {
   std::int64_t seed = 1, steps = 0;
 };
 
-/// Fits or trains it.
+/// Fits or trains it. `task.layout` and `task.pairs` must live longer.
 Result<Answer> make_answer(const std::string& method, const EvalTask& task, Call& call);
+
+/// The answer of a model's file, without the steadying.
+Result<Answer> answer_of_model(const std::string& bytes, const std::string& name);
 
 }  // namespace kinalign

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
-#include "apps/kinalign/learn/point_source.h"
+#include "apps/kinalign/learn/fused_input.h"
 #include "apps/kinalign/learn/shipped_models.h"
-#include "apps/kinalign/learn/worn_nodes.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
@@ -10,9 +9,7 @@
 
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/take/guarded.h"
-#include "kinalign/models/even_grid.h"
 #include "kinalign/models/fuse/fuse_model.h"
-#include "kinalign/models/joint_names.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/view/report_words.h"
 
@@ -29,8 +26,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_kinect_gap_s = 0.2;  // between samples that are joined by a line
-constexpr double most_unsure_deg = 10.0;      // of a node's heading, 1 sigma
+constexpr double most_unsure_deg = 10.0;  // of a node's heading, 1 sigma
 
 struct FuseWords {
   std::vector<std::string> in;
@@ -66,72 +62,6 @@ Usage describe_fuse(FuseWords& o) {
   return usage;
 }
 
-/// Both devices as they came.
-struct BothDevices {
-  NamedPoints kinect;
-  NamedNodes nodes;
-};
-
-/// From the first stamp of either device to the last one.
-EvenSpan span_of_both(const BothDevices& both, const NodeChoice& choice, double rate_hz) {
-  Time first = both.kinect.frames.stamps.front(), last = both.kinect.frames.stamps.back();
-  for (const auto& node : choice) {
-    if (!node) continue;
-    const auto& stamps = both.nodes.tracks[*node].stamps;
-    first = std::min(first, stamps.front());
-    last = std::max(last, stamps.back());
-  }
-  return span_of(first, last, rate_hz);
-}
-
-/// What the network is given, and what is to be said of it.
-struct FusedInput {
-  FuseInput input;
-  Time start{};
-  Json about;
-};
-
-double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t value) {
-  return static_cast<double>(std::count(seen.begin(), seen.end(), value)) /
-         static_cast<double>(std::max<std::size_t>(seen.size(), 1));
-}
-
-Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn) {
-  const FuseLayout& layout = model.layout;
-  const NodeChoice choice = KA_TRY(choose(layout.nodes, both.nodes));
-  if (both.kinect.frames.stamps.size() < 2) {
-    return Failure(Error{"", 0, "a Kinect with two frames at least", "fewer"});
-  }
-  const EvenSpan span = span_of_both(both, choice, layout.nodes.rate_hz);
-  const NamedNodes names{both.nodes.stream, both.nodes.names, {}, {}};
-  const PosedNodes posed = KA_TRY(calibrated_nodes(layout.nodes, model.body.skeleton,
-                                                   std::move(both.nodes), choice, worn, span));
-  FusedInput out;
-  out.start = span.start;
-  out.input.nodes = on_bones(posed.calibration, posed.even.worn);
-  const EvenFrames seen =
-      KA_TRY(even_frames(layout.joints, kinect_names(both.kinect.joints), both.kinect.frames,
-                         layout.nodes.rate_hz, longest_kinect_gap_s, span));
-  out.input.kinect = seen.body;
-  const auto yaw = shared_heading(layout, out.input);
-  if (!yaw) {
-    return Failure(Error{"", 0,
-                         "a second in which the Kinect sees the person and the waist's node sends",
-                         "none (denoise and pose take one device alone)"});
-  }
-  turn_world(out.input.nodes, *yaw);
-  out.about = {{"kinect", both.kinect.stream},
-               {"imu", names.stream},
-               {"frames", span.frames},
-               {"rate_hz", layout.nodes.rate_hz},
-               {"joints", model.body.skeleton.joints()},
-               {"method", model.facts.method},
-               {"missing", share_of(seen.body.seen, 0)},
-               {"inferred", share_of(seen.body.seen, 1)}};
-  out.about.update(about_nodes(layout.nodes, posed, out.input.nodes, names, choice));
-  return out;
-}
-
 /// What the Kinect says of each node's heading, at the end; and warnings where it says little.
 void tell_headings(Fuser& fuser, const FuseInput& input, Json& about) {
   const auto states = fuser.headings(input);
@@ -152,8 +82,9 @@ void tell_headings(Fuser& fuser, const FuseInput& input, Json& about) {
 }
 
 Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call& call) {
-  FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), o.worn));
-  tell_headings(fuser, given.input, given.about);
+  const FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), o.worn));
+  Json about = about_fused(fuser.model(), given);
+  tell_headings(fuser, given.input, about);
   Clip clip = fuser.clip(given.input, given.start);
   OutputFile file =
       KA_TRY(OutputFile::create(call.surroundings.files, call.common.out, call.common.overwrite()));
@@ -161,7 +92,7 @@ Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call&
   KA_TRY(write_bvh(bvh_from_clip(std::move(clip), period_s),
                    [&](std::string_view text) { return file.write(text); }));
   KA_TRY(file.commit());
-  return std::move(given.about);
+  return about;
 }
 
 /// What a source says of its stream, with the flag that chooses it here.

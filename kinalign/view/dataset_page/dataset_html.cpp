@@ -3,6 +3,7 @@
 
 #include "kinalign/view/dataset_page/assets.h"
 #include "kinalign/view/dataset_page/skeleton_svg.h"
+#include "kinalign/view/dataset_page/table_html.h"
 #include "kinalign/view/page/assets.h"
 #include "kinalign/view/page/page_html.h"
 #include "kinalign/view/page/page_template.h"
@@ -113,28 +114,6 @@ std::string row_of(const DatasetTake& take) {
       fmt::format("<td>{}</td><td>{}</td><td>{}</td></tr>\n", number_or_none(take.residual_cm, 1.0),
                   number_or_none(take.kinect_valid, 100.0), number_or_none(take.imu_valid, 100.0));
   return out;
-}
-
-std::string table_html(const Table& table) {
-  const std::vector<bool> right = numeric_columns(table);
-  const auto cell = [&](std::string_view tag, std::size_t column, const std::string& text) {
-    return fmt::format("<{0}{1}>{2}</{0}>", tag, right[column] ? "" : " class=\"text\"",
-                       escaped(text));
-  };
-  std::string out = "<figure><div class=\"scroll\"><table><thead><tr>";
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    out += cell("th", c, table.columns[c].title);
-  }
-  out += "</tr></thead><tbody>";
-  for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    out += table.has_sum && r + 1 == table.rows.size() ? "<tr class=\"sum\">" : "<tr>";
-    for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      out += cell("td", c, cell_text(table.rows[r][c], table.columns[c]));
-    }
-    out += "</tr>";
-  }
-  return out + "</tbody></table></div><figcaption>" + escaped(table.caption) +
-         ".</figcaption></figure>\n";
 }
 
 std::string about_list(const DatasetPage& page) {

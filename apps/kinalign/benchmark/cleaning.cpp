@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/benchmark/cleaning.h"
+
+#include "apps/cli/console.h"
+#include "apps/kinalign/benchmark/program_method.h"
+#include "apps/kinalign/dataset/own_process.h"
+#include "apps/kinalign/learn/eval_methods.h"
+#include "apps/kinalign/learn/worker.h"
+#include "apps/kinalign/text/counts_text.h"
+
+#include "kinalign/core/hash.h"
+#include "kinalign/evaluate/statistics.h"
+#include "kinalign/models/joint_names.h"
+#include "kinalign/motion/shared_joints.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_bench_windows = std::size_t{4} << 30U;
+constexpr std::size_t most_bench_model = std::size_t{1} << 30U;
+constexpr std::size_t least_bench_rows = 8;
+constexpr const char *rough_stream = "kinect", *true_stream = "mocap";
+
+/// Seconds a step with one thread, on a core that other programs used too: 150 steps on the twin of
+/// scale 0.02. An idle machine needs less.
+struct TrainingSpeed {
+  std::string_view method;
+  std::int64_t own_steps = 1200;
+  double step_s = 0.0;
+};
+constexpr std::array<TrainingSpeed, 4> training_speeds{
+    {{"cnn", 1200, 0.73}, {"bra", 1200, 2.7}, {"bra-p", 1200, 5.9}, {"refine", 1200, 0.24}}};
+
+std::string model_file(const CleaningOptions& o, const std::string& method) {
+  return o.folder + "/models/" + method + ".safetensors";
+}
+
+Result<void> cut_windows(const CleaningOptions& o, const std::string& file) {
+  const Ended ended = KA_TRY(run_own_process(
+      {"dataset",  "windows",  o.data,       "-o",       file,        "--force", "--quiet",
+       "--length", "32",       "--step",     "32",       "--valid",   "0",       "--rate",
+       "30",       "--stream", rough_stream, "--stream", true_stream, "--split", o.split}));
+  if (ended.code == 0) return {};
+  return Failure(Error{o.data, 0, "a data set that windows can be cut from", ended.complaint});
+}
+
+/// The job of kinalign-learn. Its identity is the same wherever the files lie.
+Json job_of_method(const CleaningOptions& o, const CleaningData& data, const std::string& method) {
+  Json options{{"seed", o.seed}};
+  if (o.steps > 0) options["steps"] = o.steps;
+  Json job{{"schema", "kinalign.training_job/1"},
+           {"method", method},
+           {"input", rough_stream},
+           {"truth", true_stream},
+           {"learn", data.learnt},
+           {"options", options}};
+  Sha256 identity;
+  identity.update(job.dump());
+  identity.update(data.windows_hash);
+  job["identity"] = identity.hex();
+  return job;
+}
+
+/// Whether the model was trained by a job of that identity.
+Result<bool> has_identity(const std::string& bytes, const std::string& file,
+                          const std::string& identity) {
+  const DenoiseModel model = KA_TRY(read_denoise_model(bytes, file));
+  const Json training = Json::parse(model.facts.training, nullptr, false);
+  return training.is_object() && training.value("identity", "") == identity;
+}
+
+Result<Answer> trained_method(const CleaningOptions& o, const CleaningData& data,
+                              const std::string& method, Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string file = model_file(o, method);
+  Json job = job_of_method(o, data, method);
+  const auto identity = job.at("identity").get<std::string>();
+  std::error_code fault;
+  if (fs::exists(file, fault)) {
+    const std::string bytes = KA_TRY(read_whole(files, file, most_bench_model));
+    if (KA_TRY(has_identity(bytes, file, identity))) return answer_of_model(bytes, file);
+    if (!call.common.force) {
+      return Failure(Error{file, 0, "a model trained on these takes with this seed and these steps",
+                           "another one (--force trains it again)"});
+    }
+  }
+  const std::string run = o.folder + "/models/" + method + ".training";
+  KA_TRY(make_folders(run));
+  job.update({{"windows", data.windows},
+              {"out", file},
+              {"log", run + "/log.csv"},
+              {"checkpoint", run + "/checkpoint.safetensors"},
+              {"resume", fs::exists(run + "/checkpoint.safetensors", fault)},
+              {"device", o.device},
+              {"threads", call.jobs}});
+  KA_TRY(write_whole(files, run + "/job.json", job.dump(1), Overwrite::yes));
+  call.console.detail("training " + method);
+  KA_TRY(run_worker(run + "/job.json", {.progress = call.console.progress()}));
+  return answer_of_model(KA_TRY(read_whole(files, file, most_bench_model)), file);
+}
+
+Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
+                          const std::string& method, Call& call) {
+  if (is_trained(method)) return trained_method(o, data, method, call);
+  const EvalTask task{.layout = data.layout,
+                      .pairs = data.pairs.all,
+                      .learnt = data.learnt,
+                      .windows = data.windows,
+                      .input = rough_stream,
+                      .truth = true_stream,
+                      .folder = o.folder,
+                      .device = o.device,
+                      .seed = o.seed,
+                      .steps = o.steps};
+  return make_answer(method, task, call);
+}
+
+CleanedTakes run_answer(const std::string& method, const Answer& answer, const CleaningData& data,
+                        const DenoiseMarker& marker) {
+  const Steadier steadier({}, data.layout);
+  CleanedTakes out;
+  out.method = method;
+  for (const Pair* pair : data.tested) {
+    Denoised plain = answer(pair->input);
+    out.answers.push_back(plain.positions);
+    out.marks.emplace_back();
+    out.marks.back()[0] = marker.marks_of(*pair, plain.positions, plain.spread);
+    const Denoised steadied = steadier.steadied(answer, pair->input, std::move(plain));
+    out.marks.back()[1] = marker.marks_of(*pair, steadied.positions, steadied.spread);
+  }
+  return out;
+}
+
+/// The same of answers that are there already. They are steadied without a mirror image, since a
+/// program is asked once.
+CleanedTakes marked_answers(const std::string& method,
+                            const std::vector<std::vector<float>>& answers,
+                            const CleaningData& data, const DenoiseMarker& marker) {
+  const Steadier steadier({.mirror = false}, data.layout);
+  CleanedTakes out;
+  out.method = method;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const Pair& pair = *data.tested[i];
+    const Answer same = [&](const JointFrames&) { return Denoised{answers[i], {}}; };
+    const Denoised steadied = steadier.steadied(same, pair.input, {answers[i], {}});
+    out.answers.push_back(answers[i]);
+    out.marks.push_back(
+        {marker.marks_of(pair, answers[i], {}), marker.marks_of(pair, steadied.positions, {})});
+  }
+  return out;
+}
+
+struct MarksColumn {
+  const char *key, *title;
+  int decimals;
+};
+constexpr std::array<MarksColumn, 9> marks_columns{
+    {{"table_9_position_cm2", "E_p, cm²", 1},
+     {"table_9_bone_cm", "E_b, cm", 2},
+     {"table_9_smooth_cm", "E_s, cm", 3},
+     {"position_cm", "position, cm", 2},
+     {"fitted_cm", "fitted, cm", 2},
+     {"bone_cm", "bones, cm", 2},
+     {"constancy_cm", "constancy, cm", 2},
+     {"acceleration_mm", "acceleration, mm/frame²", 2},
+     {"jitter", "jitter, × truth", 1}}};
+
+using PersonMarks = std::array<std::optional<double>, marks_columns.size()>;
+
+/// Means over the stretches of one person; of the paper's columns weighted by frames.
+PersonMarks marks_of_person(const CleaningData& data, const CleanedTakes& method,
+                            const std::string& person, std::size_t which) {
+  std::vector<ProtocolMarks> protocol;
+  std::array<double, 3> sums{};
+  double frames = 0.0;
+  for (std::size_t i = 0; i < data.tested.size(); ++i) {
+    if (data.tested[i]->subject != person) continue;
+    const DenoiseMarks& marks = method.marks[i][which];
+    protocol.push_back(marks.protocol);
+    const auto n = static_cast<double>(data.tested[i]->input.frames());
+    const TableNine& nine = marks.table_nine;
+    const std::array<double, 3> values{nine.position, nine.bone, nine.smooth};
+    for (std::size_t k = 0; k < values.size(); ++k) sums[k] += n * values[k];
+    frames += n;
+  }
+  const ProtocolMeans means = protocol_row(protocol);
+  return {sums[0] / frames,   sums[1] / frames,      sums[2] / frames,
+          means.position_cm,  means.fitted_cm,       means.bone_cm,
+          means.constancy_cm, means.acceleration_mm, means.jitter};
+}
+
+/// The truth's own E_s, cm: the mean over frames.
+double true_smoothness(const CleaningData& data, const CleanedTakes& method) {
+  double sum = 0.0, frames = 0.0;
+  for (std::size_t i = 0; i < data.tested.size(); ++i) {
+    const auto n = static_cast<double>(data.tested[i]->input.frames());
+    sum += n * method.marks[i][0].table_nine.true_smooth;
+    frames += n;
+  }
+  return sum / frames;
+}
+
+std::set<std::string> people_of(const std::vector<const Pair*>& pairs) {
+  std::set<std::string> out;
+  for (const Pair* pair : pairs) out.insert(pair->subject);
+  return out;
+}
+
+std::vector<Cell> marks_row(const CleaningData& data, const CleanedTakes& method,
+                            std::size_t which) {
+  std::array<std::vector<double>, marks_columns.size()> values;
+  for (const std::string& person : people_of(data.tested)) {
+    const PersonMarks marks = marks_of_person(data, method, person, which);
+    for (std::size_t c = 0; c < marks.size(); ++c) {
+      if (marks[c]) values[c].push_back(*marks[c]);
+    }
+  }
+  std::vector<Cell> out{method.method + (which == 1 ? ", steadied" : "")};
+  for (const auto& one : values) {
+    double sum = 0.0;
+    for (const double value : one) sum += value;
+    const bool known = !one.empty();
+    out.push_back(known ? Cell(sum / static_cast<double>(one.size())) : Cell());
+    out.push_back(known ? Cell(deviation(one)) : Cell());
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<CleaningData> open_cleaning(const CleaningOptions& o, Call& call) {
+  KA_TRY(make_folders(o.folder + "/models"));
+  CleaningData out;
+  out.windows = o.folder + "/windows.npz";
+  KA_TRY(cut_windows(o, out.windows));
+  const std::string bytes =
+      KA_TRY(read_whole(call.surroundings.files, out.windows, most_bench_windows));
+  Sha256 hash;
+  hash.update(bytes);
+  out.windows_hash = hash.hex();
+  out.pairs = KA_TRY(pairs_of(KA_TRY(read_windows(bytes, out.windows)), rough_stream, true_stream,
+                              least_bench_rows));
+  out.layout = KA_TRY(eval_layout(out.pairs));
+  std::set<std::string> learnt, learnt_people, tested_takes;
+  for (const Pair& pair : out.pairs.all) {
+    if (pair.part == "train") {
+      learnt.insert(pair.take);
+      learnt_people.insert(pair.subject);
+    } else if (pair.part == "test") {
+      out.tested.push_back(&pair);
+      tested_takes.insert(pair.take);
+    }
+  }
+  out.learnt.assign(learnt.begin(), learnt.end());
+  if (out.learnt.empty() || out.tested.empty()) {
+    return Failure(Error{o.split, 0, "takes with a Kinect and mocap in the parts train and test",
+                         out.learnt.empty() ? "none to train on" : "none to test"});
+  }
+  out.learnt_people = learnt_people.size();
+  out.tested_takes = tested_takes.size();
+  out.tested_people = people_of(out.tested).size();
+  return out;
+}
+
+Result<std::vector<CleanedTakes>> run_methods(const CleaningOptions& o, const CleaningData& data,
+                                              Call& call) {
+  const DenoiseMarker marker = KA_TRY(DenoiseMarker::make(data.layout, data.pairs.all));
+  std::vector<CleanedTakes> out;
+  for (const std::string& method : o.methods) {
+    call.console.detail(method);
+    out.push_back(run_answer(method, KA_TRY(answer_for(o, data, method, call)), data, marker));
+  }
+  for (const std::string& words : o.programs) {
+    const ProgramMethod method = KA_TRY(program_method(words));
+    call.console.detail(method.name);
+    const auto answers = KA_TRY(answers_of_program(method, o.folder, data, call));
+    out.push_back(marked_answers(method.name, answers, data, marker));
+  }
+  return out;
+}
+
+std::vector<TrainingPlan> training_plan(const CleaningOptions& o) {
+  std::vector<TrainingPlan> out;
+  for (const std::string& method : o.methods) {
+    const auto speed = std::find_if(training_speeds.begin(), training_speeds.end(),
+                                    [&](const TrainingSpeed& one) { return one.method == method; });
+    if (speed == training_speeds.end()) continue;
+    std::error_code fault;
+    const std::int64_t steps = o.steps > 0 ? o.steps : speed->own_steps;
+    out.push_back({method, fs::exists(model_file(o, method), fault), steps,
+                   speed->step_s * static_cast<double>(steps)});
+  }
+  return out;
+}
+
+Table marks_table(const CleaningData& data, const std::vector<CleanedTakes>& all) {
+  Table out;
+  out.caption = fmt::format(
+      "Table 9: mean ± standard deviation over {} of the test part, {}. E_p, E_b and E_s are the "
+      "paper's columns, for which it states no units; the truth's own E_s is {:.3f} cm",
+      counted(data.tested_people, "person", "people"), counted(data.tested_takes, "take"),
+      all.empty() ? 0.0 : true_smoothness(data, all.front()));
+  out.columns = {{"method", "method"}};
+  for (const MarksColumn& column : marks_columns) {
+    out.columns.push_back({column.key, column.title, column.decimals});
+    out.columns.push_back({std::string(column.key) + "_sd", "±", column.decimals});
+  }
+  for (const CleanedTakes& method : all) {
+    for (const std::size_t which : {std::size_t{0}, std::size_t{1}}) {
+      out.rows.push_back(marks_row(data, method, which));
+    }
+  }
+  return out;
+}
+
+Table with_joined_deviations(const Table& table) {
+  Table out;
+  out.caption = table.caption;
+  out.columns = {table.columns.front()};
+  for (std::size_t c = 1; c + 1 < table.columns.size(); c += 2) {
+    out.columns.push_back(table.columns[c]);
+  }
+  for (const auto& row : table.rows) {
+    out.rows.push_back({row.front()});
+    for (std::size_t c = 1; c + 1 < table.columns.size(); c += 2) {
+      const TableColumn& column = table.columns[c];
+      const std::string mean = cell_text(row[c], column);
+      const bool is_known = !std::holds_alternative<std::monostate>(row[c]);
+      out.rows.back().emplace_back(is_known ? mean + " ± " + cell_text(row[c + 1], column) : mean);
+    }
+  }
+  return out;
+}
+
+std::vector<float> errors_over_time(const CleaningData& data, const Pair& pair,
+                                    const std::vector<float>& answer) {
+  const std::size_t joints = data.layout.outputs.size();
+  const auto places = shared_joints_there(kinect_names(data.layout.outputs));
+  std::vector<float> out;
+  for (std::size_t t = 0; t < pair.input.frames(); ++t) {
+    double sum = 0.0, count = 0.0;
+    for (const auto& place : places) {
+      if (!place || pair.valid[t * joints + *place] == 0) continue;
+      const std::size_t at = 3 * (t * joints + *place);
+      sum += static_cast<double>(std::hypot(answer[at] - pair.truth[at],
+                                            answer[at + 1] - pair.truth[at + 1],
+                                            answer[at + 2] - pair.truth[at + 2]));
+      count += 1.0;
+    }
+    out.push_back(count > 0.0 ? static_cast<float>(100.0 * sum / count) : 0.0F);
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/benchmark/compared_motion.h"
+
+#include "apps/kinalign/learn/fused_input.h"
+#include "apps/kinalign/learn/worn_nodes.h"
+#include "apps/kinalign/text/describe_file.h"
+
+#include "kinalign/formats/take/guarded.h"
+#include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/models/body_frame.h"
+#include "kinalign/models/denoise_features.h"
+#include "kinalign/models/even_grid.h"
+#include "kinalign/models/joint_names.h"
+#include "kinalign/motion/kinematics.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <variant>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr float nose_m = 0.14F, crown_m = 0.16F;  // from the head's joint, to be drawn
+constexpr double hidden_s = 3.0;                  // a limb, and the time between two
+constexpr double kinect_gap_s = 0.2;
+constexpr const char* true_group = "mocap";
+
+/// Where the compared joints stand among a skeleton's: a suit's by a Kinect's names, or CMU's.
+Result<std::array<std::size_t, compared_joints>> joints_among(
+    const std::vector<std::string>& names) {
+  const auto as_kinect = kinect_names(names);
+  std::array<std::size_t, compared_joints> out{};
+  for (std::size_t p = 0; p < compared_joints; ++p) {
+    const std::string wanted(compared_places[p]);
+    auto at = index_of(as_kinect, wanted);
+    for (const FuseJoint& joint : fuse_joints) {
+      if (!at && joint.kinect == wanted) at = index_of(names, std::string(joint.body));
+    }
+    if (!at) return Failure(Error{"", 0, "a skeleton with the joint " + wanted, "none"});
+    out[p] = *at;
+  }
+  return out;
+}
+
+/// The rotation of a joint in the world.
+Eigen::Quaternionf turned_in_world(const Clip& clip, std::size_t t, std::size_t joint) {
+  Eigen::Quaternionf out = Eigen::Quaternionf::Identity();
+  for (int j = static_cast<int>(joint); j >= 0;
+       j = clip.skeleton.parents[static_cast<std::size_t>(j)]) {
+    const std::size_t at = t * clip.skeleton.joints() + static_cast<std::size_t>(j);
+    out = quat(clip.frames.local_rotations, at).cast<float>() * out;
+  }
+  return out;
+}
+
+/// The compared places of frame `t`, in the world.
+using WorldPlaces = std::vector<float>;  // [T,17,3] m
+
+Result<WorldPlaces> places_of(const Clip& clip) {
+  const auto joints = KA_TRY(joints_among(clip.skeleton.joint_names));
+  const std::size_t count = clip.skeleton.joints(), frames = clip.frames.size();
+  std::vector<double> global(frames * count * 3);
+  forward_kinematics(clip.skeleton, clip.frames, global);
+  WorldPlaces out;
+  out.reserve(frames * compared_count * 3);
+  for (std::size_t t = 0; t < frames; ++t) {
+    for (const std::size_t j : joints) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        out.push_back(static_cast<float>(global[3 * (t * count + j) + k]));
+      }
+    }
+    const std::size_t head = joints[2];
+    const Eigen::Vector3f base(&out[3 * (t * compared_count + 2)]);
+    const Eigen::Quaternionf turn = turned_in_world(clip, t, head);
+    for (const Eigen::Vector3f& way :
+         {Eigen::Vector3f(0.0F, 0.0F, nose_m), Eigen::Vector3f(0.0F, crown_m, 0.0F)}) {
+      const Eigen::Vector3f place = base + turn * way;
+      out.insert(out.end(), place.data(), place.data() + 3);
+    }
+  }
+  return out;
+}
+
+/// About the middle of the hips, x to the body's left.
+BodyPlaces in_body(WorldPlaces places) {
+  const BodyJoints joints{{9, 12}, {{9, 12}, {3, 6}}};
+  const std::size_t cells = places.size() / 3;
+  const JointFrames body{compared_count, places, std::vector<std::uint8_t>(cells, std::uint8_t{2})};
+  to_body(body_frames(joints, body), places);
+  return places;
+}
+
+/// The skeleton of a take's reference.
+Result<Clip> true_clip(FileSystem& files, const std::string& path) {
+  TakeReader reader = KA_TRY(TakeReader::open(files, path));
+  const auto& groups = reader.header().groups;
+  const auto wanted = std::find_if(groups.begin(), groups.end(), [](const TakeGroup& group) {
+    return group.name == true_group && std::holds_alternative<ClipGroup>(group.kind);
+  });
+  if (wanted == groups.end()) return Failure(Error{path, 0, "a skeleton \"mocap\"", "none"});
+  const auto at = static_cast<std::size_t>(wanted - groups.begin());
+  Clip out;
+  out.skeleton = std::get<ClipGroup>(wanted->kind).skeleton;
+  TakeSlab slab;
+  while (KA_TRY(reader.next(slab))) {
+    const auto* rows = std::get_if<ClipRows>(&slab.rows[at]);
+    if (rows == nullptr) continue;
+    ClipFrames& f = out.frames;
+    f.stamps.insert(f.stamps.end(), slab.stamps.begin(), slab.stamps.end());
+    f.local_positions.insert(f.local_positions.end(), rows->local_positions.begin(),
+                             rows->local_positions.end());
+    f.local_rotations.insert(f.local_rotations.end(), rows->local_rotations.begin(),
+                             rows->local_rotations.end());
+  }
+  if (out.frames.size() > 1) return out;
+  return Failure(Error{path, 0, "a skeleton with two frames at least", "fewer"});
+}
+
+/// The row whose stamp is nearest to each frame of the grid.
+std::vector<std::size_t> nearest_rows(const std::vector<Time>& stamps, const EvenSpan& span,
+                                      double rate_hz) {
+  std::vector<std::size_t> out;
+  std::size_t row = 0;
+  for (std::size_t t = 0; t < span.frames; ++t) {
+    const auto since = std::chrono::duration_cast<Duration>(
+        std::chrono::duration<double>(static_cast<double>(t) / rate_hz));
+    const Time wanted = span.start + since;
+    const auto off = [&](std::size_t i) { return std::abs((stamps[i] - wanted).count()); };
+    while (row + 1 < stamps.size() && off(row + 1) <= off(row)) ++row;
+    out.push_back(row);
+  }
+  return out;
+}
+
+std::vector<float> rows_of(const std::vector<float>& values, std::size_t width,
+                           const std::vector<std::size_t>& rows) {
+  std::vector<float> out;
+  for (const std::size_t row : rows) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(row * width);
+    out.insert(out.end(), first, first + static_cast<std::ptrdiff_t>(width));
+  }
+  return out;
+}
+
+/// The truth on a grid: the places, and how the head and the hips are turned in the world.
+struct TrueFrames {
+  WorldPlaces places;                    // [T,17,3]
+  std::vector<Eigen::Quaternionf> head;  // [T]
+};
+
+Result<TrueFrames> true_frames(const Clip& clip, const EvenSpan& span, double rate_hz) {
+  const auto rows = nearest_rows(clip.frames.stamps, span, rate_hz);
+  const auto joints = KA_TRY(joints_among(clip.skeleton.joint_names));
+  TrueFrames out;
+  out.places = rows_of(KA_TRY(places_of(clip)), 3 * compared_count, rows);
+  for (const std::size_t row : rows) out.head.push_back(turned_in_world(clip, row, joints[2]));
+  return out;
+}
+
+double heading_of(const BodyFrame& frame) {
+  return static_cast<double>(std::atan2(-frame.sine, frame.cosine));
+}
+
+/// By how much the truth's heading is ahead of an answer's, rad: the mean direction over all
+/// frames.
+float turned_against(const WorldPlaces& truth, const WorldPlaces& answer) {
+  const BodyJoints joints{{9, 12}, {{9, 12}, {3, 6}}};
+  const auto frames = [&](const WorldPlaces& places) {
+    return body_frames(joints, {compared_count, places,
+                                std::vector<std::uint8_t>(places.size() / 3, std::uint8_t{2})});
+  };
+  const auto a = frames(truth), b = frames(answer);
+  double sine = 0.0, cosine = 0.0;
+  for (std::size_t t = 0; t < std::min(a.size(), b.size()); ++t) {
+    const double apart = heading_of(a[t]) - heading_of(b[t]);
+    sine += std::sin(apart);
+    cosine += std::cos(apart);
+  }
+  return static_cast<float>(std::atan2(sine, cosine));
+}
+
+/// Puts a node on the head of the truth into `nodes`, as number `n`, in the world of the nodes:
+/// theirs is turned by `yaw` against the truth's.
+void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size_t n,
+                   NodeFrames& nodes) {
+  const Eigen::Quaternionf turn(Eigen::AngleAxisf(-yaw, Eigen::Vector3f::UnitY()));
+  const std::size_t frames = nodes.frames();
+  const auto rate = static_cast<float>(rate_hz);
+  const auto place = [&](std::size_t t) {
+    return Eigen::Vector3f(&truth.places[3 * (std::min(t, frames - 1) * compared_count + 2)]);
+  };
+  for (std::size_t t = 0; t < frames; ++t) {
+    const std::size_t before = t == 0 ? 0 : t - 1, after = std::min(t + 1, frames - 1);
+    const Eigen::Quaternionf now = turn * truth.head[t];
+    // As in training: second differences over 67 ms, two frames to each side.
+    const std::size_t early = t < 2 ? 0 : t - 2, late = std::min(t + 2, frames - 1);
+    Eigen::Vector3f acceleration = Eigen::Vector3f::Zero();
+    if (late - early == 4) {
+      acceleration = turn * (place(late) - 2.0F * place(t) + place(early)) * (rate * rate / 4.0F);
+    }
+    const Eigen::AngleAxisf step(truth.head[before].conjugate() * truth.head[after]);
+    float angle = step.angle();
+    if (angle > static_cast<float>(EIGEN_PI)) angle -= static_cast<float>(2.0 * EIGEN_PI);
+    const float span = static_cast<float>(std::max<std::size_t>(after - before, 1)) / rate;
+    const Eigen::Vector3f angular = step.axis() * (angle / span);
+    const std::size_t at = t * nodes.nodes + n;
+    const std::array<float, 4> orientation{now.w(), now.x(), now.y(), now.z()};
+    std::copy(orientation.begin(), orientation.end(),
+              nodes.orientation.begin() + static_cast<std::ptrdiff_t>(4 * at));
+    std::copy(acceleration.data(), acceleration.data() + 3,
+              nodes.acceleration.begin() + static_cast<std::ptrdiff_t>(3 * at));
+    std::copy(angular.data(), angular.data() + 3,
+              nodes.angular_velocity.begin() + static_cast<std::ptrdiff_t>(3 * at));
+    nodes.valid[at] = 1;
+  }
+}
+
+Json json_of(const ComparedMotion& motion) {
+  return {{"take", motion.take},    {"rate_hz", motion.rate_hz}, {"frames", motion.frames},
+          {"truth", motion.truth},  {"answers", motion.answers}, {"states", motion.states},
+          {"hidden", motion.hidden}};
+}
+
+Result<ComparedMotion> motion_of_json(const std::string& text, const std::string& path) {
+  try {
+    const Json json = Json::parse(text);
+    ComparedMotion out;
+    json.at("take").get_to(out.take);
+    json.at("rate_hz").get_to(out.rate_hz);
+    json.at("frames").get_to(out.frames);
+    json.at("truth").get_to(out.truth);
+    json.at("answers").get_to(out.answers);
+    json.at("states").get_to(out.states);
+    json.at("hidden").get_to(out.hidden);
+    return out;
+  } catch (const Json::exception&) {
+    // No number of JSON is infinite: a model that answers with none gives null.
+    return Failure(Error{path, 0, "models that answer with numbers", "others"});
+  }
+}
+
+/// Does the work in a child; errors without a file name the take's.
+Result<ComparedMotion> guarded(const ComparedTake& take,
+                               const std::function<Result<ComparedMotion>()>& work) {
+  const auto in_child = [&]() -> Result<std::string> {
+    auto made = work();
+    if (!made && made.error().file.empty()) made.error().file = take.path;
+    return json_of(KA_TRY(std::move(made))).dump();
+  };
+  return motion_of_json(KA_TRY(run_guarded(GuardLimits{}, blame(take.path), in_child)), take.path);
+}
+
+Result<NodeFrames> nodes_for(const PoseModel& model, const NamedNodes& named, const WornWords& worn,
+                             const EvenSpan& span) {
+  const NodeChoice choice = KA_TRY(choose(model.layout, named));
+  const PosedNodes posed =
+      KA_TRY(calibrated_nodes(model.layout, model.body.skeleton, named, choice, worn, span));
+  return on_bones(posed.calibration, posed.even.worn);
+}
+
+Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const ComparedTake& take,
+                                FileSystem& files) {
+  const Clip clip = KA_TRY(true_clip(files, take.path));
+  const NamedNodes named = KA_TRY(nodes_of_take(files, take.path, ""));
+  const double rate_hz = solvers.front().model().layout.rate_hz;
+  const EvenSpan span = span_of(clip.frames.stamps.front(), clip.frames.stamps.back(), rate_hz);
+  const TrueFrames truth = KA_TRY(true_frames(clip, span, rate_hz));
+  ComparedMotion out{take.name, rate_hz, span.frames, in_body(truth.places), {}, {}, {}};
+  for (PoseSolver& solver : solvers) {
+    const PoseLayout& layout = solver.model().layout;
+    if (layout.rate_hz != rate_hz) {
+      return Failure(Error{"", 0, "models of one rate", "several"});
+    }
+    NodeFrames nodes = KA_TRY(nodes_for(solver.model(), named, {take.t_pose, "auto"}, span));
+    const auto head = std::find(layout.nodes.begin(), layout.nodes.end(), "head");
+    WorldPlaces places = KA_TRY(places_of(solver.clip(nodes, span.start)));
+    if (head != layout.nodes.end()) {
+      const float yaw = turned_against(truth.places, places);
+      put_head_node(truth, yaw, rate_hz, static_cast<std::size_t>(head - layout.nodes.begin()),
+                    nodes);
+      places = KA_TRY(places_of(solver.clip(nodes, span.start)));
+    }
+    out.answers.push_back(in_body(std::move(places)));
+  }
+  return out;
+}
+
+/// The limbs that are hidden in turn, by a Kinect's names.
+const std::array<std::vector<std::string>, 4>& hidden_limbs() {
+  static const std::array<std::vector<std::string>, 4> all{
+      {{"ElbowRight", "WristRight", "HandRight"},
+       {"ElbowLeft", "WristLeft", "HandLeft"},
+       {"KneeRight", "AnkleRight", "FootRight"},
+       {"KneeLeft", "AnkleLeft", "FootLeft"}}};
+  return all;
+}
+
+/// The limb that is hidden in frame `t`; none in every second stretch.
+std::optional<std::size_t> hidden_limb_at(std::size_t t, double rate_hz) {
+  const auto stretch = static_cast<std::size_t>(static_cast<double>(t) / rate_hz / hidden_s);
+  if (stretch % 2 == 0) return std::nullopt;
+  return (stretch / 2) % hidden_limbs().size();
+}
+
+bool is_hidden(std::size_t t, double rate_hz, const std::string& joint) {
+  const auto limb = hidden_limb_at(t, rate_hz);
+  if (!limb) return false;
+  const auto& joints = hidden_limbs()[*limb];
+  return std::find(joints.begin(), joints.end(), joint) != joints.end();
+}
+
+void hide_limbs(const std::vector<std::string>& joints, double rate_hz, JointFrames& kinect) {
+  for (std::size_t t = 0; t < kinect.frames(); ++t) {
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (!is_hidden(t, rate_hz, joints[j])) continue;
+      const std::size_t at = t * joints.size() + j;
+      kinect.seen[at] = 0;
+      std::fill_n(kinect.positions.begin() + static_cast<std::ptrdiff_t>(3 * at), 3, 0.0F);
+    }
+  }
+}
+
+/// The Kinect's own joints as compared places; what is missing lies where it was last.
+void put_kinect(const FuseLayout& layout, JointFrames kinect, ComparedMotion& out) {
+  const JointFrames seen = kinect;
+  fill_missing(kinect, true);
+  WorldPlaces places;
+  for (std::size_t t = 0; t < kinect.frames(); ++t) {
+    for (std::size_t p = 0; p < compared_count; ++p) {
+      const auto j = index_of(layout.joints, std::string(compared_places[p]));
+      const std::size_t at = t * kinect.joints + j.value_or(0);
+      places.insert(places.end(), &kinect.positions[3 * at], &kinect.positions[3 * at] + 3);
+      out.states.push_back(j ? seen.seen[at] : std::uint8_t{0});
+    }
+  }
+  out.answers.push_back(in_body(std::move(places)));
+}
+
+Result<ComparedMotion> devices_of(Fuser& fuser, const ComparedTake& take, FileSystem& files) {
+  const FuseLayout& layout = fuser.model().layout;
+  const double rate_hz = layout.nodes.rate_hz;
+  const Clip clip = KA_TRY(true_clip(files, take.path));
+  BothDevices both;
+  both.kinect = KA_TRY(points_of_take(files, take.path, ""));
+  both.nodes = KA_TRY(nodes_of_take(files, take.path, ""));
+  FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), {take.t_pose, "auto"}));
+  hide_limbs(layout.joints, rate_hz, given.input.kinect);
+  const EvenSpan span{given.start, given.input.frames()};
+  ComparedMotion out{take.name, rate_hz, span.frames, {}, {}, {}, {}};
+  out.truth = in_body(KA_TRY(true_frames(clip, span, rate_hz)).places);
+  put_kinect(layout, given.input.kinect, out);
+  FuseInput kinect_alone = given.input, nodes_alone = given.input;
+  std::fill(kinect_alone.nodes.valid.begin(), kinect_alone.nodes.valid.end(), std::uint8_t{0});
+  std::fill(nodes_alone.kinect.seen.begin(), nodes_alone.kinect.seen.end(), std::uint8_t{0});
+  for (const FuseInput* input : {&kinect_alone, &nodes_alone, &given.input}) {
+    out.answers.push_back(in_body(KA_TRY(places_of(fuser.clip(*input, given.start)))));
+  }
+  for (std::size_t t = 0; t < span.frames; ++t) {
+    for (const std::string_view place : compared_places) {
+      out.hidden.push_back(is_hidden(t, rate_hz, std::string(place)) ? 1 : 0);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<ComparedMotion> compare_poses(std::vector<PoseSolver>& solvers, const ComparedTake& take,
+                                     Call& call) {
+  return guarded(take, [&] { return poses_of(solvers, take, call.surroundings.files); });
+}
+
+Result<ComparedMotion> compare_devices(Fuser& fuser, const ComparedTake& take, Call& call) {
+  return guarded(take, [&] { return devices_of(fuser, take, call.surroundings.files); });
+}
+
+}  // namespace kinalign

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/benchmark/pose_table.h"
+
+#include "kinalign/models/body_frame.h"
+#include "kinalign/models/joint_names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace kinalign {
+
+namespace {
+
+constexpr float bin_s = 0.5F;
+constexpr double half_turn_window_s = 0.25;
+
+/// The joints that say what a person does.
+struct ActingJoints {
+  std::size_t wrist_left = 0, wrist_right = 0;
+  std::array<std::size_t, 2> hips{}, shoulders{};
+  std::vector<std::size_t> all;  // of the shared joints
+};
+
+std::optional<ActingJoints> acting_joints(const std::vector<std::string>& outputs) {
+  const auto names = kinect_names(outputs);
+  std::array<std::size_t, 6> found{};
+  const std::array<const char*, 6> wanted{"WristLeft", "WristRight",   "HipLeft",
+                                          "HipRight",  "ShoulderLeft", "ShoulderRight"};
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto at = index_of(names, wanted[i]);
+    if (!at) return std::nullopt;
+    found[i] = *at;
+  }
+  ActingJoints out{found[0], found[1], {found[2], found[3]}, {found[4], found[5]}, {}};
+  for (const auto& place : shared_joints_there(names)) {
+    if (place) out.all.push_back(*place);
+  }
+  return out;
+}
+
+/// A stretch's truth, with what is asked of it frame by frame.
+class TrueMotion {
+ public:
+  TrueMotion(const CleaningData& data, const ActingJoints& joints, const Pair& pair)
+      : pair_(pair),
+        joints_(joints),
+        count_(data.layout.outputs.size()),
+        rate_hz_(data.layout.rate_hz) {
+    JointFrames body{count_, pair.truth,
+                     std::vector<std::uint8_t>(pair.valid.size(), std::uint8_t{2})};
+    if (const auto found = body_joints(data.layout.outputs)) frames_ = body_frames(*found, body);
+  }
+
+  std::size_t frames() const { return pair_.input.frames(); }
+  bool is_whole(std::size_t t) const {
+    return std::all_of(joints_.all.begin(), joints_.all.end(),
+                       [&](std::size_t j) { return pair_.valid[t * count_ + j] != 0; });
+  }
+  const float* place(std::size_t t, std::size_t joint) const {
+    return &pair_.truth[3 * (t * count_ + joint)];
+  }
+  double height(std::size_t t, const std::array<std::size_t, 2>& both) const {
+    return 0.5 * static_cast<double>(place(t, both[0])[1] + place(t, both[1])[1]);
+  }
+  /// m/s, the mean over joints and a quarter of a second to each side.
+  double speed(std::size_t t) const {
+    const std::size_t a = earlier(t), b = later(t);
+    double sum = 0.0;
+    for (const std::size_t j : joints_.all) {
+      const float *from = place(a, j), *to = place(b, j);
+      sum += static_cast<double>(std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
+    }
+    return sum / static_cast<double>(joints_.all.size()) / seconds(a, b);
+  }
+  /// rad/s to the person's left.
+  double turning(std::size_t t) const {
+    if (frames_.empty()) return 0.0;
+    const std::size_t a = earlier(t), b = later(t);
+    const double turned = heading(b) - heading(a);
+    return std::remainder(turned, 2.0 * std::numbers::pi) / seconds(a, b);
+  }
+
+ private:
+  std::size_t window() const {
+    return std::max<std::size_t>(static_cast<std::size_t>(half_turn_window_s * rate_hz_), 1);
+  }
+  std::size_t earlier(std::size_t t) const { return t < window() ? 0 : t - window(); }
+  std::size_t later(std::size_t t) const { return std::min(t + window(), frames() - 1); }
+  double seconds(std::size_t a, std::size_t b) const {
+    return static_cast<double>(std::max<std::size_t>(b - a, 1)) / rate_hz_;
+  }
+  /// The body's left is (cosine, 0, sine): +x at 0, and seen from above a turn to the left goes
+  /// from +x to -z.
+  double heading(std::size_t t) const {
+    return static_cast<double>(std::atan2(-frames_[t].sine, frames_[t].cosine));
+  }
+
+  const Pair& pair_;
+  const ActingJoints& joints_;
+  std::size_t count_;
+  double rate_hz_;
+  std::vector<BodyFrame> frames_;
+};
+
+/// A column of table 8: the frame where the score is highest.
+struct PoseSearch {
+  const char* name;
+  std::function<double(const TrueMotion&, const ActingJoints&, std::size_t)> score;
+};
+
+std::vector<PoseSearch> pose_searches() {
+  using Motion = const TrueMotion&;
+  using Joints = const ActingJoints&;
+  const auto trunk = [](Motion m, Joints j, std::size_t t) {
+    return m.height(t, j.shoulders) - m.height(t, j.hips);
+  };
+  const auto hands = [](Motion m, Joints j, std::size_t t) {
+    return std::array{static_cast<double>(m.place(t, j.wrist_left)[1]),
+                      static_cast<double>(m.place(t, j.wrist_right)[1])};
+  };
+  return {{"standing",
+           [=](Motion m, Joints j, std::size_t t) {
+             const auto [left, right] = hands(m, j, t);
+             const double raised = std::max(left, right) - m.height(t, j.hips);
+             return trunk(m, j, t) - std::max(raised, 0.0) - m.speed(t);
+           }},
+          {"waving",
+           [=](Motion m, Joints j, std::size_t t) {
+             const auto [left, right] = hands(m, j, t);
+             return std::abs(left - right);
+           }},
+          {"bending", [=](Motion m, Joints j, std::size_t t) { return -trunk(m, j, t); }},
+          {"turning right", [](Motion m, Joints, std::size_t t) { return -m.turning(t); }},
+          {"turning left", [](Motion m, Joints, std::size_t t) { return m.turning(t); }}};
+}
+
+struct ChosenFrame {
+  std::size_t pair = 0, frame = 0;  // of data.tested
+  double score = -std::numeric_limits<double>::infinity();
+};
+
+/// The best frame for each search. Frames of the first and last half second are not chosen.
+std::vector<ChosenFrame> choose_frames(const CleaningData& data, const ActingJoints& joints,
+                                       const std::vector<PoseSearch>& searches) {
+  std::vector<ChosenFrame> out(searches.size());
+  const auto edge = static_cast<std::size_t>(0.5 * data.layout.rate_hz);
+  for (std::size_t p = 0; p < data.tested.size(); ++p) {
+    const TrueMotion motion(data, joints, *data.tested[p]);
+    for (std::size_t t = edge; t + edge < motion.frames(); ++t) {
+      if (!motion.is_whole(t)) continue;
+      for (std::size_t s = 0; s < searches.size(); ++s) {
+        const double score = searches[s].score(motion, joints, t);
+        if (score > out[s].score) out[s] = {p, t, score};
+      }
+    }
+  }
+  return out;
+}
+
+/// Where a picture's origin lies: below the truth's hips, at its lowest joint.
+std::array<float, 3> origin_of(const CleaningData& data, const ActingJoints& joints,
+                               const ChosenFrame& at) {
+  const TrueMotion motion(data, joints, *data.tested[at.pair]);
+  const float *left = motion.place(at.frame, joints.hips[0]),
+              *right = motion.place(at.frame, joints.hips[1]);
+  float lowest = std::numeric_limits<float>::max();
+  for (const std::size_t j : joints.all) {
+    lowest = std::min(lowest, motion.place(at.frame, j)[1]);
+  }
+  return {0.5F * (left[0] + right[0]), lowest, 0.5F * (left[2] + right[2])};
+}
+
+/// Frame `t` of [T,J,3], about the origin.
+StickFigure figure_at(const std::vector<float>& positions, std::size_t t,
+                      const std::vector<int>& parents, const std::array<float, 3>& origin,
+                      FigureColour colour) {
+  StickFigure out{colour, false, {}, parents, {}};
+  const std::size_t first = 3 * t * parents.size();
+  for (std::size_t i = 0; i < 3 * parents.size(); ++i) {
+    out.positions.push_back(positions[first + i] - origin[i % 3]);
+  }
+  return out;
+}
+
+StickFigure kinect_at(const CleaningData& data, const ChosenFrame& at,
+                      const std::array<float, 3>& origin) {
+  const JointFrames& input = data.tested[at.pair]->input;
+  StickFigure out = figure_at(input.positions, at.frame, kinect_parents_of(data.layout.inputs),
+                              origin, FigureColour::kinect);
+  const auto first = input.seen.begin() + static_cast<std::ptrdiff_t>(at.frame * input.joints);
+  out.states.assign(first, first + static_cast<std::ptrdiff_t>(input.joints));
+  return out;
+}
+
+/// What stands above a column.
+std::string where_of(const CleaningData& data, const ChosenFrame& at) {
+  const Pair& pair = *data.tested[at.pair];
+  return fmt::format("sub-{} {}, {:.1f} s", pair.subject, pair.action,
+                     static_cast<double>(at.frame) / data.layout.rate_hz);
+}
+
+}  // namespace
+
+PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes>& all) {
+  PosePictures out;
+  out.id = "table-8";
+  out.title = "Table 8: instants of the test takes";
+  const auto joints = acting_joints(data.layout.outputs);
+  if (!joints) {
+    out.absent = "The truth lacks hips, shoulders or wrists, so that no instants can be chosen.";
+    return out;
+  }
+  out.caption =
+      "All pictures have one scale and one direction of view. Green: the Kinect, dashed where a "
+      "joint is inferred. Red: the truth, pale behind each answer. A method's answer, not "
+      "steadied, has "
+      "the colour of the text. Below: mean distance to the truth. The truth alone chooses the "
+      "instants among all "
+      "test takes: where the person stands upright and still, where the hands differ most in "
+      "height, where the trunk is lowest, and where the body turns fastest to either side.";
+  const auto searches = pose_searches();
+  const auto chosen = choose_frames(data, *joints, searches);
+  std::vector<StickFigure> truths;
+  std::vector<std::array<float, 3>> origins;
+  out.rows.emplace_back("Kinect", std::vector<PosePicture>{});
+  for (std::size_t c = 0; c < chosen.size(); ++c) {
+    out.columns.emplace_back(searches[c].name, where_of(data, chosen[c]));
+    origins.push_back(origin_of(data, *joints, chosen[c]));
+    truths.push_back(figure_at(data.tested[chosen[c].pair]->truth, chosen[c].frame,
+                               data.layout.parents, origins[c], FigureColour::truth));
+    out.rows.back().second.push_back({{kinect_at(data, chosen[c], origins[c])}, ""});
+  }
+  for (const CleanedTakes& method : all) {
+    out.rows.emplace_back(method.method, std::vector<PosePicture>{});
+    for (std::size_t c = 0; c < chosen.size(); ++c) {
+      const auto& [p, t, score] = chosen[c];
+      StickFigure behind = truths[c];
+      behind.is_pale = true;
+      const float cm = errors_over_time(data, *data.tested[p], method.answers[p])[t];
+      out.rows.back().second.push_back(
+          {{behind,
+            figure_at(method.answers[p], t, data.layout.parents, origins[c], FigureColour::method)},
+           fmt::format("{:.1f} cm", cm)});
+    }
+  }
+  out.rows.emplace_back("truth", std::vector<PosePicture>{});
+  for (const StickFigure& truth : truths) out.rows.back().second.push_back({{truth}, ""});
+  return out;
+}
+
+ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& all) {
+  std::size_t longest = 0;
+  for (std::size_t p = 1; p < data.tested.size(); ++p) {
+    if (data.tested[p]->input.frames() > data.tested[longest]->input.frames()) longest = p;
+  }
+  const Pair& pair = *data.tested[longest];
+  ErrorPlot out;
+  out.step_s = bin_s;
+  out.caption = fmt::format(
+      "Mean distance to the truth in {}, the longest test take: means over half a second of the "
+      "answers that are not steadied.",
+      pair.take);
+  const auto bin = static_cast<std::size_t>(bin_s * static_cast<float>(data.layout.rate_hz));
+  for (const CleanedTakes& method : all) {
+    const auto errors = errors_over_time(data, pair, method.answers[longest]);
+    ErrorCurve curve{method.method, {}};
+    for (std::size_t t = 0; t + bin <= errors.size(); t += bin) {
+      float sum = 0.0F;
+      for (std::size_t i = t; i < t + bin; ++i) sum += errors[i];
+      curve.cm.push_back(sum / static_cast<float>(bin));
+    }
+    out.curves.push_back(std::move(curve));
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Table 8 and the errors over time: what the page shows of methods that clean a Kinect.
+#pragma once
+
+#include "apps/kinalign/benchmark/cleaning.h"
+
+#include "kinalign/view/models_page/models_page.h"
+
+#include <vector>
+
+namespace kinalign {
+
+/// Rows: the Kinect, each method (not steadied), the truth. Columns: an instant each of standing,
+/// waving, bending, turning right and turning left, which the truth of all tested takes chooses.
+PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes>& all);
+
+/// Of the longest tested stretch: means over half a second.
+ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& all);
+
+}  // namespace kinalign

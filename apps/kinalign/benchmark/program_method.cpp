@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/benchmark/program_method.h"
+
+#include "apps/cli/console.h"
+
+#include "kinalign/formats/take/take_npz.h"
+#include "kinalign/models/windows_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t most_answer_bytes = std::size_t{1} << 30U;
+
+template <class T>
+std::string_view bytes_of_values(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+/// What the program reads: positions, seen, joint_names, output_names, rate_hz.
+Result<void> write_question(const CleaningData& data, const Pair& pair, const std::string& path,
+                            Call& call) {
+  const std::uint64_t frames = pair.input.frames(), joints = pair.input.joints;
+  const NpzTexts inputs = npz_texts("joint_names", data.layout.inputs),
+                 outputs = npz_texts("output_names", data.layout.outputs);
+  const std::vector<double> rate{data.layout.rate_hz};
+  NpzWriter writer =
+      KA_TRY(NpzWriter::create(call.surroundings.files, path, Overwrite::yes,
+                               {npz_numbers("positions", Stored::float32, {frames, joints, 3}),
+                                npz_numbers("seen", Stored::uint8, {frames, joints}), inputs.array,
+                                outputs.array, npz_numbers("rate_hz", Stored::float64, {1})}));
+  KA_TRY(writer.append(0, bytes_of_values(pair.input.positions)));
+  KA_TRY(writer.append(1, bytes_of_values(pair.input.seen)));
+  KA_TRY(writer.append(2, inputs.bytes));
+  KA_TRY(writer.append(3, outputs.bytes));
+  KA_TRY(writer.append(4, bytes_of_values(rate)));
+  return writer.finish();
+}
+
+/// Starts the program and waits; its output goes to stderr. The exit code.
+Result<int> run_program_on(const std::string& program, std::string question, std::string answer) {
+  std::string name = program;
+  const std::array<char*, 4> words{name.data(), question.data(), answer.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  ::posix_spawn_file_actions_adddup2(&actions, 2, 1);
+  pid_t child = 0;
+  const int fault =
+      ::posix_spawnp(&child, program.c_str(), &actions, nullptr, words.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (fault != 0) {
+    return Failure(Error{program, 0, "a program that can be started", std::strerror(fault)});
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// The array's numbers, where they are f32 or f64.
+std::vector<float> floats_of(const StoredArray& array) {
+  std::vector<float> out;
+  if (array.type == "<f4") {
+    out.resize(array.bytes.size() / sizeof(float));
+    std::memcpy(out.data(), array.bytes.data(), out.size() * sizeof(float));
+  } else if (array.type == "<f8") {
+    std::vector<double> values(array.bytes.size() / sizeof(double));
+    std::memcpy(values.data(), array.bytes.data(), values.size() * sizeof(double));
+    for (const double value : values) out.push_back(static_cast<float>(value));
+  }
+  return out;
+}
+
+Result<std::vector<float>> read_answer(const std::string& path, std::size_t frames,
+                                       std::size_t joints, Call& call) {
+  const std::string bytes = KA_TRY(read_whole(call.surroundings.files, path, most_answer_bytes));
+  const auto arrays = KA_TRY(stored_arrays(bytes, path));
+  const auto positions = arrays.find("positions");
+  const std::vector<std::size_t> shape{frames, joints, 3};
+  if (positions != arrays.end() && positions->second.shape == shape) {
+    auto out = floats_of(positions->second);
+    const auto is_number = [](float value) { return std::isfinite(value); };
+    if (out.size() == 3 * frames * joints && std::all_of(out.begin(), out.end(), is_number)) {
+      return out;
+    }
+  }
+  return Failure(Error{
+      path, 0, fmt::format("\"positions\" [{},{},3] of finite float32 or float64", frames, joints),
+      "another array"});
+}
+
+}  // namespace
+
+Result<ProgramMethod> program_method(const std::string& words) {
+  const std::size_t equals = words.find('=');
+  const std::string name = words.substr(0, equals);
+  const auto is_fit = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
+  if (equals == std::string::npos || name.empty() || equals + 1 == words.size() ||
+      !std::all_of(name.begin(), name.end(), is_fit)) {
+    return Failure(Error{"--method", 0, "NAME=PROGRAM, such as mine=./mine.py", shown(words)});
+  }
+  return ProgramMethod{name, words.substr(equals + 1)};
+}
+
+Result<std::vector<std::vector<float>>> answers_of_program(const ProgramMethod& method,
+                                                           const std::string& folder,
+                                                           const CleaningData& data, Call& call) {
+  const std::string below = folder + "/programs/" + method.name;
+  KA_TRY(make_folders(below));
+  std::vector<std::vector<float>> out;
+  std::error_code ignored;
+  for (const Pair* pair : data.tested) {
+    const std::string question = below + "/input.npz", answer = below + "/output.npz";
+    std::filesystem::remove(answer, ignored);
+    KA_TRY(write_question(data, *pair, question, call));
+    const int code = KA_TRY(run_program_on(method.program, question, answer));
+    if (code != 0) {
+      return Failure(Error{method.program, 0, "a program that ends with 0 for " + pair->take,
+                           fmt::format("exit code {}", code)});
+    }
+    out.push_back(
+        KA_TRY(read_answer(answer, pair->input.frames(), data.layout.outputs.size(), call)));
+  }
+  std::filesystem::remove_all(below, ignored);
+  std::filesystem::remove(folder + "/programs", ignored);  // if it is empty
+  return out;
+}
+
+}  // namespace kinalign

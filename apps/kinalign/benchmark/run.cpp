@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/cli/help.h"
+#include "apps/kinalign/benchmark/cleaning.h"
+#include "apps/kinalign/benchmark/node_figures.h"
+#include "apps/kinalign/benchmark/pose_table.h"
+#include "apps/kinalign/benchmark/program_method.h"
+#include "apps/kinalign/dataset/dataset_folder.h"
+#include "apps/kinalign/dataset/table_output.h"
+#include "apps/kinalign/learn/eval_methods.h"
+#include "apps/kinalign/text/counts_text.h"
+#include "apps/kinalign/verbs.h"
+
+#include "kinalign/view/models_page/models_html.h"
+#include "kinalign/view/report_words.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t longest_page = std::size_t{1} << 28U;
+
+struct BenchmarkRun {
+  std::vector<std::string> data, methods, programs;
+  std::string split, device = "cpu", format = "text";
+  std::string pose_model, head_model, fuse_model;
+  std::int64_t seed = 1, steps = 0;
+
+  CleaningOptions cleaning(const Call& call) const {
+    CleaningOptions out;
+    out.data = folder_of(data);
+    out.split = split.empty() ? out.data + "/splits/people.json" : split;
+    out.folder = folder_of({call.common.out});
+    out.methods = methods;
+    if (methods.empty()) {
+      out.methods = {"raw", "savgol", "offset", "ridge", "cnn", "bra", "bra-p", "refine"};
+    }
+    out.programs = programs;
+    out.device = device;
+    out.seed = seed;
+    out.steps = steps;
+    return out;
+  }
+};
+
+Usage describe_benchmark_run(BenchmarkRun& o) {
+  Usage usage;
+  usage.positionals = {folder_word(o.data),
+                       {"METHOD",
+                        "which methods clean the Kinect (default: raw, savgol, offset, ridge, cnn, "
+                        "bra, bra-p, refine)",
+                        &o.methods, 0, 100}};
+  for (const EvalMethod& method : eval_methods()) {
+    usage.positionals.back().choices.push_back(method.name);
+  }
+  usage.flags = {
+      {"split",
+       "whom to train on and test (default: FOLDER/splits/people.json)",
+       &o.split,
+       0.0,
+       0.0,
+       {},
+       "FILE"},
+      {"steps", "batches of each training; 0: the method's own number", &o.steps, 0.0, 1e8},
+      {"seed", "of each training", &o.seed, 0.0, 1e9},
+      {"device", "where networks are trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+      format_field(o.format)};
+  usage.flags.push_back({"method",
+                         "another method: a program that reads one NPZ and writes another",
+                         &o.programs,
+                         0.0,
+                         0.0,
+                         {},
+                         "NAME=PROGRAM"});
+  const auto model = [&usage](const char* name, const char* meaning, std::string& file) {
+    usage.flags.push_back({name, meaning, &file, 0.0, 0.0, {}, "FILE"});
+  };
+  model("pose-model", "of figure 8: for five nodes (default: the shipped one)", o.pose_model);
+  model("head-model", "of figure 9: for nodes with one on the head", o.head_model);
+  model("fuse-model", "of figure 10: for a Kinect and nodes (default: the shipped one)",
+        o.fuse_model);
+  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+    for (const std::string& words : o.programs) KA_TRY(program_method(words));
+    if (!common.out.empty()) return {};
+    return Failure(Error{"-o", 0, "-o FOLDER for results", "none"});
+  };
+  return usage;
+}
+
+/// Fails where a page's place is taken by another file.
+Result<void> check_page(const std::string& path, Call& call) {
+  std::error_code fault;
+  if (call.common.force || !std::filesystem::exists(path, fault)) return {};
+  const std::string text = KA_TRY(read_whole(call.surroundings.files, path, longest_page));
+  if (text.find(models_page_mark) != std::string::npos) return {};
+  return Failure(Error{path, 0,
+                       "no file of that name, or a page of a benchmark (--force overwrites)",
+                       "another file"});
+}
+
+Result<int> show_training_plan(const CleaningOptions& o, Call& call) {
+  std::string text;
+  Json json = Json::array();
+  double seconds = 0.0;
+  for (const TrainingPlan& one : training_plan(o)) {
+    text += one.is_there ? fmt::format("{:<8} is there\n", one.method)
+                         : fmt::format("{:<8} to train, {} steps, at most about {}\n", one.method,
+                                       grouped(static_cast<std::uint64_t>(one.steps)),
+                                       duration_text(one.seconds));
+    if (!one.is_there) seconds += one.seconds;
+    json.push_back({{"method", one.method},
+                    {"is_there", one.is_there},
+                    {"steps", one.steps},
+                    {"seconds", one.is_there ? 0.0 : one.seconds}});
+  }
+  text += seconds > 0.0
+              ? fmt::format("at most about {} of training on one core\n", duration_text(seconds))
+              : "nothing to train\n";
+  call.console.print(text);
+  call.console.print_json(Json{{"trainings", json}, {"seconds", seconds}}.dump());
+  return 0;
+}
+
+Result<void> write_tables(const Table& table, const std::string& folder, Call& call) {
+  const Table for_people = with_joined_deviations(table);
+  for (const auto& [name, format] :
+       {std::pair("table_9.md", TableFormat::markdown),
+        std::pair("table_9.tex", TableFormat::latex), std::pair("table_9.csv", TableFormat::csv)}) {
+    const bool is_csv = format == TableFormat::csv;
+    KA_TRY(write_whole(call.surroundings.files, folder + "/" + name,
+                       written(is_csv ? table : for_people, format), Overwrite::yes));
+  }
+  return {};
+}
+
+/// The row with the smallest number in a column, by the column's key.
+const std::vector<Cell>* best_row(const Table& table, const std::string& key) {
+  std::size_t column = 0;
+  while (column < table.columns.size() && table.columns[column].key != key) ++column;
+  const std::vector<Cell>* best = nullptr;
+  for (const auto& row : table.rows) {
+    const auto* value = std::get_if<double>(&row[column]);
+    if (value == nullptr) continue;
+    if (best == nullptr || *value < std::get<double>((*best)[column])) best = &row;
+  }
+  return best;
+}
+
+double value_of(const Table& table, const std::vector<Cell>& row, const std::string& key) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (table.columns[c].key == key) return std::get<double>(row[c]);
+  }
+  return 0.0;
+}
+
+ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
+                   const std::vector<CleanedTakes>& all, const Table& table) {
+  ModelsPage page;
+  page.name = "Benchmark on " + std::filesystem::path(o.data).filename().string();
+  page.software = "kinalign " + program_version();
+  page.facts = {fmt::format("tested on {} of {}", counted(data.tested_takes, "take"),
+                            counted(data.tested_people, "person", "people")),
+                fmt::format("trained on {} of {} others", counted(data.learnt.size(), "take"),
+                            grouped(data.learnt_people)),
+                fmt::format("seed {}", o.seed)};
+  if (o.steps > 0) {
+    page.facts.push_back(
+        fmt::format("{} steps a network", grouped(static_cast<std::uint64_t>(o.steps))));
+  }
+  if (const auto* best = best_row(table, "position_cm")) {
+    const auto& name = std::get<std::string>(best->front());
+    const double cm = value_of(table, *best, "position_cm");
+    page.headline = fmt::format("{} is nearest to the truth: {:.1f} cm", name, cm);
+    page.numbers.emplace_back(fmt::format("{:.1f} cm", cm), "position error of " + name);
+    const auto& first = table.rows.front();
+    page.numbers.emplace_back(fmt::format("{:.1f} cm", value_of(table, first, "position_cm")),
+                              "position error of " + std::get<std::string>(first.front()));
+    const auto* bones = best_row(table, "bone_cm");
+    page.numbers.emplace_back(fmt::format("{:.1f} cm", value_of(table, *bones, "bone_cm")),
+                              "error of bones of " + std::get<std::string>(bones->front()));
+  }
+  page.marks = with_joined_deviations(table);
+  page.marks_note =
+      "E_p is the mean square of a coordinate's error, E_b the mean error of a bone's length, E_s "
+      "the answer's own roughness, which has no truth in it: judge E_s by the truth's. Position is "
+      "the mean distance; fitted the same after a similarity fit of each frame; constancy the "
+      "deviation of bones within a take; acceleration the difference of second differences; jitter "
+      "the third difference. Steadied rows have the mean of the answer and of the answer to the "
+      "mirror image, Savitzky-Golay over 11 frames, and bones of one length.";
+  page.poses = pose_table(data, all);
+  page.errors = error_plot(data, all);
+  page.command = "kinalign benchmark run " + o.data + " -o " + o.folder;
+  return page;
+}
+
+/// A line for each row of the figures' tables: "figure 8   five nodes: all 8.7 cm".
+std::string figure_lines(const std::vector<PosePictures>& figures) {
+  std::string out;
+  for (const PosePictures& figure : figures) {
+    std::string name = figure.id;
+    std::replace(name.begin(), name.end(), '-', ' ');
+    if (!figure.absent.empty()) out += fmt::format("{:<9}  {}\n", name, harmless(figure.absent));
+    for (const Table& table : figure.tables) {
+      for (const auto& row : table.rows) {
+        std::string words;
+        for (std::size_t c = 1; c < row.size(); ++c) {
+          words += fmt::format("{}{} {}", c == 1 ? "" : ", ", table.columns[c].title,
+                               cell_text(row[c], table.columns[c]));
+        }
+        out += fmt::format("{:<9}  {}: {}\n", name, std::get<std::string>(row.front()), words);
+      }
+    }
+  }
+  return out;
+}
+
+/// Rows of a table as JSON has them.
+Json rows_of_table(const Table& table) { return Json::parse(written(table, TableFormat::json)); }
+
+void print_results(const Table& table, const std::vector<PosePictures>& figures,
+                   const std::string& format, const std::string& page_path, Call& call) {
+  Json json{{"rows", rows_of_table(table)}, {"figures", Json::object()}, {"page", page_path}};
+  for (const PosePictures& figure : figures) {
+    Json rows = Json::array();
+    for (const Table& one : figure.tables) {
+      for (Json& row : rows_of_table(one)) rows.push_back(std::move(row));
+    }
+    json["figures"][figure.id] = rows;
+  }
+  call.console.print_json(json.dump(1, ' ', false, Json::error_handler_t::replace));
+  if (call.common.json) return;
+  print_table(with_joined_deviations(table), format, "rows", call);
+  call.console.print(figure_lines(figures) + harmless(fmt::format("page       {}\n", page_path)));
+}
+
+Result<int> run_benchmark(BenchmarkRun& o, Call& call) {
+  const CleaningOptions cleaning = o.cleaning(call);
+  const std::string page_path = cleaning.folder + "/benchmark.html";
+  if (call.common.dry_run) return show_training_plan(cleaning, call);
+  KA_TRY(check_page(page_path, call));
+  call.console.if_it_fails(
+      [](const Error&) { return std::vector<std::string>{"networks that are trained are kept"}; });
+  const CleaningData data = KA_TRY(open_cleaning(cleaning, call));
+  const auto all = KA_TRY(run_methods(cleaning, data, call));
+  const Table table = marks_table(data, all);
+  KA_TRY(write_tables(table, cleaning.folder, call));
+  ModelsPage page = page_of(cleaning, data, all, table);
+  page.figures = KA_TRY(node_figures(
+      {cleaning.data, cleaning.split, o.pose_model, o.head_model, o.fuse_model}, call));
+  KA_TRY(write_whole(call.surroundings.files, page_path, models_html(page), Overwrite::yes));
+  call.console.wrote(page_path);
+  print_results(table, page.figures, o.format, page_path, call);
+  return 0;
+}
+
+}  // namespace
+
+Verb benchmark_run_verb() {
+  return make_verb<BenchmarkRun>(
+      {.name = "benchmark run",
+       .summary = "the paper's methods on a twin, as tables and a page",
+       .text =
+           "Fits or trains each method on the training people of a data set, runs it on the takes "
+           "of the test people, and writes the paper's tables 8 and 9 and figures 8 to 10 as one "
+           "page (benchmark.html), with table 9 also as Markdown, LaTeX and CSV. Networks are kept "
+           "in the folder and used again. With --dry-run it says what would be trained, and for "
+           "how long.",
+       .examples = {{"kinalign benchmark run twin -o results",
+                     "all methods; first: kinalign benchmark twin --scale 0.02 -o twin"},
+                    {"kinalign benchmark run twin raw offset ridge -o quick",
+                     "without training: a page in seconds"}},
+       .common = {"out", "force", "json", "dry_run", "jobs"},
+       .out_is_folder = true},
+      describe_benchmark_run, run_benchmark);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/learn/fused_input.h"
+
+#include "kinalign/models/even_grid.h"
+#include "kinalign/models/joint_names.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double longest_kinect_gap_s = 0.2;  // between samples that are joined by a line
+
+/// From the first stamp of either device to the last one.
+EvenSpan span_of_both(const BothDevices& both, const NodeChoice& choice, double rate_hz) {
+  Time first = both.kinect.frames.stamps.front(), last = both.kinect.frames.stamps.back();
+  for (const auto& node : choice) {
+    if (!node) continue;
+    const auto& stamps = both.nodes.tracks[*node].stamps;
+    first = std::min(first, stamps.front());
+    last = std::max(last, stamps.back());
+  }
+  return span_of(first, last, rate_hz);
+}
+
+double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t value) {
+  return static_cast<double>(std::count(seen.begin(), seen.end(), value)) /
+         static_cast<double>(std::max<std::size_t>(seen.size(), 1));
+}
+
+}  // namespace
+
+Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn) {
+  const FuseLayout& layout = model.layout;
+  FusedInput out;
+  out.choice = KA_TRY(choose(layout.nodes, both.nodes));
+  if (both.kinect.frames.stamps.size() < 2) {
+    return Failure(Error{"", 0, "a Kinect with two frames at least", "fewer"});
+  }
+  const EvenSpan span = span_of_both(both, out.choice, layout.nodes.rate_hz);
+  out.start = span.start;
+  out.kinect = both.kinect.stream;
+  out.nodes = {both.nodes.stream, both.nodes.names, {}, {}};
+  out.posed = KA_TRY(calibrated_nodes(layout.nodes, model.body.skeleton, std::move(both.nodes),
+                                      out.choice, worn, span));
+  out.input.nodes = on_bones(out.posed.calibration, out.posed.even.worn);
+  EvenFrames seen =
+      KA_TRY(even_frames(layout.joints, kinect_names(both.kinect.joints), both.kinect.frames,
+                         layout.nodes.rate_hz, longest_kinect_gap_s, span));
+  out.input.kinect = std::move(seen.body);
+  const auto yaw = shared_heading(layout, out.input);
+  if (!yaw) {
+    return Failure(Error{"", 0,
+                         "a second in which the Kinect sees the person and the waist's node sends",
+                         "none (denoise and pose take one device alone)"});
+  }
+  turn_world(out.input.nodes, *yaw);
+  return out;
+}
+
+nlohmann::ordered_json about_fused(const FuseModel& model, const FusedInput& given) {
+  const PoseLayout& layout = model.layout.nodes;
+  const auto& seen = given.input.kinect.seen;
+  nlohmann::ordered_json out{{"kinect", given.kinect},
+                             {"imu", given.nodes.stream},
+                             {"frames", given.input.frames()},
+                             {"rate_hz", layout.rate_hz},
+                             {"joints", model.body.skeleton.joints()},
+                             {"method", model.facts.method},
+                             {"missing", share_of(seen, 0)},
+                             {"inferred", share_of(seen, 1)}};
+  out.update(about_nodes(layout, given.posed, given.input.nodes, given.nodes, given.choice));
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Kinect and nodes of one recording as a model that fuses them is given both: one grid, nodes on
+// their bones, one heading.
+#pragma once
+
+#include "apps/kinalign/learn/point_source.h"
+#include "apps/kinalign/learn/worn_nodes.h"
+
+#include "kinalign/models/fuse/fuse_model.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace kinalign {
+
+/// Both devices as they came.
+struct BothDevices {
+  NamedPoints kinect;
+  NamedNodes nodes;
+};
+
+/// What a network is given, and where it comes from.
+struct FusedInput {
+  FuseInput input;
+  Time start{};
+  std::string kinect;  // its stream
+  NamedNodes nodes;    // names alone
+  NodeChoice choice;
+  PosedNodes posed;
+};
+
+/// Fails where the Kinect has fewer than two frames, nodes do not fit, or both devices are never
+/// seen together for a second. Errors may have no file's name.
+Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn);
+
+/// What there is to be said of it: the members of about_nodes() and of both streams.
+nlohmann::ordered_json about_fused(const FuseModel& model, const FusedInput& given);
+
+}  // namespace kinalign

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fixed parts of the page, which the build joins into the library (cmake/embed_page.cmake).
+#pragma once
+
+#include <string_view>
+
+namespace kinalign {
+
+std::string_view models_style();     // assets/models.css, after the style of a take's page
+std::string_view models_template();  // assets/models.html
+
+}  // namespace kinalign

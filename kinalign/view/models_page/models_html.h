@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of a benchmark: one HTML text that needs nothing beside it. The same ModelsPage gives
+// the same text.
+#pragma once
+
+#include "kinalign/view/models_page/models_page.h"
+
+#include <string>
+#include <string_view>
+
+namespace kinalign {
+
+/// Stands in the head of every such page: a file that has it may be replaced.
+inline constexpr std::string_view models_page_mark =
+    "<meta name=\"kinalign-page\" content=\"benchmark\">";
+
+std::string models_html(const ModelsPage& page);
+
+}  // namespace kinalign

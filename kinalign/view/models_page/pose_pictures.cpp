@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/view/models_page/pose_pictures.h"
+
+#include "kinalign/motion/streams.h"
+#include "kinalign/view/page/page_html.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace kinalign {
+
+namespace {
+
+constexpr float units_per_m = 100.0F;
+constexpr int picture_margin = 8;  // units
+constexpr double from_left_deg = 25.0, from_above_deg = 8.0;
+constexpr float farthest_m = 10.0F;  // from the picture's origin; a joint beyond it is not drawn
+
+constexpr std::array<std::string_view, 5> colour_names{"mocap", "kinect", "imu", "method", "both"};
+
+/// A place in a picture, in its units: to the right and upwards from the origin.
+struct Spot {
+  int right = 0, up = 0;
+};
+
+Spot seen_from_camera(const float* place) {
+  constexpr double degree = std::numbers::pi / 180.0;
+  static const auto side = static_cast<float>(std::sin(from_left_deg * degree)),
+                    front = static_cast<float>(std::cos(from_left_deg * degree)),
+                    above = static_cast<float>(std::sin(from_above_deg * degree)),
+                    level = static_cast<float>(std::cos(from_above_deg * degree));
+  const float right = front * place[0] - side * place[2];
+  const float near = side * place[0] + front * place[2];
+  const float up = level * place[1] - above * near;
+  return {static_cast<int>(std::lround(units_per_m * right)),
+          static_cast<int>(std::lround(units_per_m * up))};
+}
+
+bool is_near(const float* place) {
+  return std::all_of(place, place + 3, [](float v) { return std::abs(v) < farthest_m; });
+}
+
+/// A bone as it is drawn.
+struct Line {
+  Spot from, to;
+  bool inferred = false;
+};
+
+std::vector<Line> lines_of(const StickFigure& figure) {
+  const auto state = [&](std::size_t joint) {
+    return figure.states.empty() ? Tracking::tracked : static_cast<Tracking>(figure.states[joint]);
+  };
+  std::vector<Line> out;
+  for (std::size_t j = 0; j < figure.parents.size(); ++j) {
+    if (figure.parents[j] < 0) continue;
+    const auto p = static_cast<std::size_t>(figure.parents[j]);
+    const float *from = &figure.positions[3 * p], *to = &figure.positions[3 * j];
+    const Tracking least = std::min(state(j), state(p));
+    if (least == Tracking::missing || !is_near(from) || !is_near(to)) continue;
+    out.push_back({seen_from_camera(from), seen_from_camera(to), least == Tracking::inferred});
+  }
+  return out;
+}
+
+/// What all pictures of a table must show, in units.
+struct Bounds {
+  int left = 0, right = 0, bottom = 0, top = 0;
+
+  void add(const Spot& spot) {
+    left = std::min(left, spot.right);
+    right = std::max(right, spot.right);
+    bottom = std::min(bottom, spot.up);
+    top = std::max(top, spot.up);
+  }
+};
+
+Bounds bounds_of(const PosePictures& pictures) {
+  Bounds out;
+  for (const auto& [name, row] : pictures.rows) {
+    for (const PosePicture& picture : row) {
+      for (const StickFigure& figure : picture.figures) {
+        for (const Line& line : lines_of(figure)) {
+          out.add(line.from);
+          out.add(line.to);
+        }
+      }
+    }
+  }
+  return out;
+}
+
+std::string path_of(const std::vector<Line>& lines, bool inferred, const Bounds& bounds) {
+  std::string out;
+  for (const Line& line : lines) {
+    if (line.inferred != inferred) continue;
+    out += fmt::format("M{} {}L{} {}", line.from.right - bounds.left, bounds.top - line.from.up,
+                       line.to.right - bounds.left, bounds.top - line.to.up);
+  }
+  return out;
+}
+
+std::string svg_of(const PosePicture& picture, const Bounds& bounds, const std::string& label) {
+  std::string out =
+      fmt::format("<svg viewBox=\"{} {} {} {}\" role=\"img\" aria-label=\"{}\">", -picture_margin,
+                  -picture_margin, bounds.right - bounds.left + 2 * picture_margin,
+                  bounds.top - bounds.bottom + 2 * picture_margin, escaped(label));
+  for (const StickFigure& figure : picture.figures) {
+    const auto lines = lines_of(figure);
+    for (const bool inferred : {false, true}) {
+      const std::string path = path_of(lines, inferred, bounds);
+      if (path.empty()) continue;
+      out += fmt::format("<path class=\"{}{}{}\" d=\"{}\"/>",
+                         colour_names[static_cast<std::size_t>(figure.colour)],
+                         figure.is_pale ? " pale" : "", inferred ? " dashed" : "", path);
+    }
+  }
+  return out + "</svg>";
+}
+
+}  // namespace
+
+std::string pictures_html(const PosePictures& pictures) {
+  if (pictures.rows.empty()) return "";
+  const Bounds bounds = bounds_of(pictures);
+  std::string out = "<div class=\"scroll\"><table class=\"poses\"><thead><tr><th></th>";
+  for (const auto& [what, where] : pictures.columns) {
+    out += fmt::format("<th>{}<small>{}</small></th>", escaped(what), escaped(where));
+  }
+  out += "</tr></thead><tbody>";
+  for (const auto& [name, row] : pictures.rows) {
+    out += fmt::format("<tr><th>{}</th>", escaped(name));
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const PosePicture& picture = row[c];
+      const std::string label =
+          fmt::format("{}, {}: {}", name, pictures.columns[c].first, picture.below);
+      out += fmt::format("<td>{}<small>{}</small></td>",
+                         picture.figures.empty() ? "" : svg_of(picture, bounds, label),
+                         escaped(picture.below));
+    }
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>";
+}
+
+}  // namespace kinalign
