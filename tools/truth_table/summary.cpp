@@ -18,23 +18,22 @@ namespace kinalign {
 namespace {
 
 /// What the person does in each piece of a programme, in the order of Piece.
-constexpr std::array<std::string_view, piece_names.size()> doings{
-    "holds a T-pose",
-    "stands",
-    "steps",
-    "walks",
-    "walks about",
-    "waves",
-    "bends",
-    "turns",
-    "squats",
-    "raises both arms in front",
-    "raises both arms to the sides",
-    "pushes with one hand",
-    "pushes with both hands",
-    "bends to the side",
-    "twists",
-    "squats deeply"};
+constexpr std::array<std::string_view, piece_names.size()> doings{"holds a T-pose",
+                                                                  "stands",
+                                                                  "steps",
+                                                                  "walks",
+                                                                  "walks about",
+                                                                  "waves",
+                                                                  "bends",
+                                                                  "turns",
+                                                                  "squats",
+                                                                  "raises both arms in front",
+                                                                  "raises both arms to the sides",
+                                                                  "pushes with one hand",
+                                                                  "pushes with both hands",
+                                                                  "bends to the side",
+                                                                  "twists",
+                                                                  "squats deeply"};
 
 /// "a, b and c"
 std::string listed(const std::vector<std::string>& parts) {

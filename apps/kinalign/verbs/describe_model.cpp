@@ -7,8 +7,8 @@
 #include "kinalign/infer/layer_kinds.h"
 #include "kinalign/infer/shapes.h"
 #include "kinalign/models/denoise_model.h"
-#include "kinalign/models/model_file.h"
 #include "kinalign/models/fuse/fuse_model.h"
+#include "kinalign/models/model_file.h"
 #include "kinalign/models/pose/pose_model.h"
 #include "kinalign/view/report_words.h"
 
