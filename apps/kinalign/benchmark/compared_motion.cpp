@@ -258,9 +258,8 @@ Result<ComparedMotion> guarded(const ComparedTake& take,
 
 Result<NodeFrames> nodes_for(const PoseModel& model, const NamedNodes& named, const WornWords& worn,
                              const EvenSpan& span) {
-  const NodeChoice choice = KA_TRY(choose(model.layout, named));
   const PosedNodes posed =
-      KA_TRY(calibrated_nodes(model.layout, model.body.skeleton, named, choice, worn, span));
+      KA_TRY(calibrated_nodes(model.layout, model.body.skeleton, named, worn, span));
   return on_bones(posed.calibration, posed.even.worn);
 }
 

@@ -37,16 +37,16 @@ double share_of(const std::vector<std::uint8_t>& seen, std::uint8_t value) {
 Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const WornWords& worn) {
   const FuseLayout& layout = model.layout;
   FusedInput out;
-  out.choice = KA_TRY(choose(layout.nodes, both.nodes));
+  const NodeChoice choice = KA_TRY(choose(layout.nodes, both.nodes));
   if (both.kinect.frames.stamps.size() < 2) {
     return Failure(Error{"", 0, "a Kinect with two frames at least", "fewer"});
   }
-  const EvenSpan span = span_of_both(both, out.choice, layout.nodes.rate_hz);
+  const EvenSpan span = span_of_both(both, choice, layout.nodes.rate_hz);
   out.start = span.start;
   out.kinect = both.kinect.stream;
   out.nodes = {both.nodes.stream, both.nodes.names, {}, {}};
-  out.posed = KA_TRY(calibrated_nodes(layout.nodes, model.body.skeleton, std::move(both.nodes),
-                                      out.choice, worn, span));
+  out.posed = KA_TRY(
+      calibrated_nodes(layout.nodes, model.body.skeleton, std::move(both.nodes), worn, span));
   out.input.nodes = on_bones(out.posed.calibration, out.posed.even.worn);
   EvenFrames seen =
       KA_TRY(even_frames(layout.joints, kinect_names(both.kinect.joints), both.kinect.frames,
@@ -73,7 +73,7 @@ nlohmann::ordered_json about_fused(const FuseModel& model, const FusedInput& giv
                              {"method", model.facts.method},
                              {"missing", share_of(seen, 0)},
                              {"inferred", share_of(seen, 1)}};
-  out.update(about_nodes(layout, given.posed, given.input.nodes, given.nodes, given.choice));
+  out.update(about_nodes(layout, given.posed, given.input.nodes, given.nodes));
   return out;
 }
 

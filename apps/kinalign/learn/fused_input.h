@@ -24,7 +24,6 @@ struct FusedInput {
   Time start{};
   std::string kinect;  // its stream
   NamedNodes nodes;    // names alone
-  NodeChoice choice;
   PosedNodes posed;
 };
 

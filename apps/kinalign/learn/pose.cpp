@@ -56,17 +56,16 @@ bool is_finite(const Clip& clip) {
 
 Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o, Call& call) {
   const PoseModel& model = solver.model();
-  const NodeChoice choice = KA_TRY(choose(model.layout, nodes));
   NamedNodes names{nodes.stream, nodes.names, {}, {}};
   const PosedNodes posed =
-      KA_TRY(calibrated_nodes(model.layout, model.body.skeleton, std::move(nodes), choice, o.worn));
+      KA_TRY(calibrated_nodes(model.layout, model.body.skeleton, std::move(nodes), o.worn));
   const NodeFrames calibrated = on_bones(posed.calibration, posed.even.worn);
   Json about{{"stream", names.stream},
              {"frames", calibrated.frames()},
              {"rate_hz", model.layout.rate_hz},
              {"joints", model.body.skeleton.joints()},
              {"method", model.facts.method}};
-  about.update(about_nodes(model.layout, posed, calibrated, names, choice));
+  about.update(about_nodes(model.layout, posed, calibrated, names));
   Clip clip = solver.clip(calibrated, posed.even.start);
   if (!is_finite(clip)) {
     return Failure(Error{o.model, 0, "a model that answers with numbers", "others"});

@@ -224,6 +224,19 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   return job;
 }
 
+/// `last`: what the program that trains said at its end.
+void print_trained(const Train& o, const Json& last, Call& call) {
+  std::string text =
+      fmt::format("{}: trained, loss {:.4g}", o.method.front(), last.value("loss", 0.0));
+  if (last.contains("judgement")) {
+    text += fmt::format(", {:.4g} on the validation part", last.at("judgement").get<double>());
+  }
+  text += fmt::format("\nlog      {}/curves.svg, log.csv, events for TensorBoard beside them\n",
+                      harmless(run_folder(call.common.out)));
+  call.console.print(text);
+  call.console.print_json(last.dump(1));
+}
+
 Result<int> run_train(Train& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& out = call.common.out;
@@ -249,15 +262,7 @@ Result<int> run_train(Train& o, Call& call) {
   const Json last = Json::parse(KA_TRY(run_worker(job_file, watch)), nullptr, false);
   if (o.windows.empty()) fs::remove(windows, fault);
   call.console.wrote(out);
-  std::string text =
-      fmt::format("{}: trained, loss {:.4g}", o.method.front(), last.value("loss", 0.0));
-  if (last.contains("judgement")) {
-    text += fmt::format(", {:.4g} on the validation part", last.at("judgement").get<double>());
-  }
-  call.console.print(
-      text + fmt::format("\nlog      {}/curves.svg, log.csv, events for TensorBoard beside them\n",
-                         harmless(folder)));
-  call.console.print_json(last.dump(1));
+  print_trained(o, last, call);
   return 0;
 }
 

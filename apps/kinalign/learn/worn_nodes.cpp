@@ -174,8 +174,11 @@ Result<NodeChoice> choose(const PoseLayout& layout, const NamedNodes& nodes) {
 }
 
 Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& body,
-                                    NamedNodes nodes, const NodeChoice& choice, const WornWords& o,
+                                    NamedNodes nodes, const WornWords& o,
                                     std::optional<EvenSpan> span) {
+  PosedNodes out;
+  out.choice = KA_TRY(choose(layout, nodes));
+  const NodeChoice& choice = out.choice;
   std::vector<NodeTrack> tracks(layout.nodes.size());
   CalibrationOptions options;
   for (std::size_t n = 0; n < choice.size(); ++n) {
@@ -185,7 +188,6 @@ Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& bo
     options.worn.back() = nodes.worn[*choice[n]];
     KA_TRY(complete(tracks[n]));
   }
-  PosedNodes out;
   out.even = KA_TRY(even_nodes(tracks, layout.rate_hz, span));
   out.t_pose = KA_TRY(choose_t_pose(o.t_pose, out.even.worn, layout.rate_hz));
   options.t_pose = out.t_pose.frames;
@@ -196,7 +198,8 @@ Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& bo
 }
 
 Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFrames& nodes,
-                 const NamedNodes& named, const NodeChoice& choice) {
+                 const NamedNodes& named) {
+  const NodeChoice& choice = posed.choice;
   Json each = Json::object(), warnings = Json::array();
   double valid = 0.0;
   const double fastest = fastest_turn_deg(posed.even.worn, posed.t_pose.frames);

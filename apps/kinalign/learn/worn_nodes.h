@@ -37,20 +37,20 @@ struct ChosenTPose {
 
 /// The nodes on the model's grid, calibrated.
 struct PosedNodes {
+  NodeChoice choice;
   EvenNodes even;
   ChosenTPose t_pose;
   NodeCalibration calibration;
 };
 
-/// `span`: the grid, in place of the root's.
+/// `span`: the grid, in place of the root's. Fails as choose() does, too.
 Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& body,
-                                    NamedNodes nodes, const NodeChoice& choice, const WornWords& o,
+                                    NamedNodes nodes, const WornWords& o,
                                     std::optional<EvenSpan> span = std::nullopt);
 
 /// The members valid, nodes, t_pose, headings and so on, and warnings. `nodes`: calibrated.
 nlohmann::ordered_json about_nodes(const PoseLayout& layout, const PosedNodes& posed,
-                                   const NodeFrames& nodes, const NamedNodes& named,
-                                   const NodeChoice& choice);
+                                   const NodeFrames& nodes, const NamedNodes& named);
 
 /// The lines nodes, T-pose and heading.
 std::string node_lines(const nlohmann::ordered_json& about);

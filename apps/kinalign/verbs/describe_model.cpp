@@ -137,7 +137,11 @@ std::string training_lines(const Json& training) {
     const std::string value = number_of(training, key);
     if (!value.empty()) how += fmt::format("{}{} {}", how.empty() ? "" : ", ", key, value);
   }
-  return how.empty() ? text : text + line("training", how);
+  if (!how.empty()) text += line("training", how);
+  const auto from = training.find("from");
+  if (from == training.end() || !from->is_object()) return text;
+  return text + line("went on", "from a model of the same method") +
+         data_lines(from->value("data", Json::array()));
 }
 
 std::string metric_lines(const Json& metrics) {

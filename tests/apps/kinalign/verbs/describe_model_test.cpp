@@ -118,3 +118,21 @@ TEST_CASE("info tells a model for poses: nodes, bones, body, network, training, 
   CHECK(json.at("output").at("height_m") == doctest::Approx(1.37));
   CHECK(json.at("metrics").at("calibrated_position_cm") == 12.5);
 }
+
+TEST_CASE("info tells what a model went on from, with the terms of that data") {
+  DenoiseModel model = small_model(1);
+  model.facts.training =
+      R"({"data":[{"name":"own","frames":9}],"from":{"data":[{"name":"base","licence":"PDDL"}]}})";
+  const auto found = describe_model("m", write_denoise_model(model));
+  REQUIRE(found);
+  const std::size_t own = found->text.find("trained on  own"),
+                    base = found->text.find("trained on  base");
+  CHECK(own < found->text.find("went on     from a model of the same method"));
+  CHECK(own < base);
+  CHECK(base != std::string::npos);
+  CHECK(found->text.find("licence PDDL") != std::string::npos);
+  for (const char* broken : {R"({"from":3})", R"({"from":{"data":4}})"}) {
+    model.facts.training = broken;
+    CHECK(describe_model("m", write_denoise_model(model)));
+  }
+}
