@@ -124,24 +124,24 @@ EvenSpan span_of(Time first, Time last, double rate_hz) {
 
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
-                               double rate_hz, double gap_s, std::optional<EvenSpan> span) {
+                               const EvenGrid& grid) {
+  const double rate_hz = grid.rate_hz;
   KA_TRY(check_stamps(points.stamps, rate_hz));
   const auto places = KA_TRY(places_of(wanted, names));
   const auto at_s = [&](std::size_t i) {
     return static_cast<double>(to_ns(points.stamps[i]) - to_ns(points.stamps.front())) * 1e-9;
   };
-  const EvenSpan grid =
-      span ? *span : span_of(points.stamps.front(), points.stamps.back(), rate_hz);
-  if (static_cast<double>(grid.frames) >= most_frames) {
-    return Failure(Error{"", 0, "at most 10,000,000 frames",
-                         text_of(at_s(points.size() - 1) * rate_hz, "frames")});
-  }
-  const std::size_t frames = grid.frames;
   const double last = at_s(points.size() - 1), edge = 0.5 / rate_hz;
-  const double begin = static_cast<double>(to_ns(grid.start) - to_ns(points.stamps.front())) * 1e-9;
+  const EvenSpan span =
+      grid.span ? *grid.span : span_of(points.stamps.front(), points.stamps.back(), rate_hz);
+  const std::size_t frames = span.frames;
+  if (static_cast<double>(frames) >= most_frames) {
+    return Failure(Error{"", 0, "at most 10,000,000 frames", text_of(last * rate_hz, "frames")});
+  }
+  const double begin = static_cast<double>(to_ns(span.start) - to_ns(points.stamps.front())) * 1e-9;
   EvenFrames out{{wanted.size(), std::vector<float>(frames * wanted.size() * 3, 0.0F),
                   std::vector<std::uint8_t>(frames * wanted.size(), 0)},
-                 grid.start,
+                 span.start,
                  rate_hz};
   std::size_t before = 0;
   for (std::size_t t = 0; t < frames; ++t) {
@@ -151,7 +151,7 @@ Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
     while (before + 2 < points.size() && at_s(before + 1) <= time) ++before;
     const double from = at_s(before), to = at_s(before + 1);
     const double share = to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0.0;
-    if (std::min(time - from, to - time) > gap_s) continue;
+    if (std::min(time - from, to - time) > grid.gap_s) continue;
     for (std::size_t j = 0; j < wanted.size(); ++j) {
       if (places[j])
         put_joint(points, {before, *places[j], share}, t * wanted.size() + j, out.body);

@@ -21,6 +21,12 @@ struct EvenSpan {
 /// From the first stamp to the last one, of the device that has them.
 EvenSpan span_of(Time first, Time last, double rate_hz);
 
+struct EvenGrid {
+  double rate_hz = 30.0;
+  double gap_s = 0.2;              // between samples that are joined by a line
+  std::optional<EvenSpan> span{};  // the frames; else those from the first sample to the last one
+};
+
 struct EvenFrames {
   JointFrames body;
   Time start{};  // stamp of the first frame
@@ -29,14 +35,12 @@ struct EvenFrames {
 
 /// `wanted`: the model's input joints, by name among `names` (kinect_names()); one that is not
 /// there is missing in every frame. Between two samples a joint lies on the line between both, and
-/// is seen as well as the worse of them; farther than `gap_s` from a sample it is missing. Fails
+/// is seen as well as the worse of them; farther than the gap from a sample it is missing. Fails
 /// where there are no samples, where stamps fall, where root or hips are not there, where the usual
 /// step is more than twice or less than a quarter of the grid's, and where the body is no person's
 /// size.
-/// `span`: the frames; else those from the first sample to the last one.
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
-                               double rate_hz, double gap_s,
-                               std::optional<EvenSpan> span = std::nullopt);
+                               const EvenGrid& grid);
 
 }  // namespace kinalign

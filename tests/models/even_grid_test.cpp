@@ -34,7 +34,7 @@ std::vector<std::int64_t> steps(std::size_t n, std::int64_t ms) {
 }
 
 Result<EvenFrames> even(const PointFrames& points, double rate_hz = rate) {
-  return even_frames(body_joint_names(), body_joint_names(), points, rate_hz, gap);
+  return even_frames(body_joint_names(), body_joint_names(), points, {rate_hz, gap});
 }
 
 std::string refusal(const Result<EvenFrames>& frames) {
@@ -109,7 +109,7 @@ TEST_CASE("even grid: rows far from any sample are missing") {
 TEST_CASE("even grid: a joint that the device does not have is missing") {
   auto names = body_joint_names();
   names.push_back("Tail");
-  const auto frames = even_frames(names, body_joint_names(), walking(steps(30, 33)), rate, gap);
+  const auto frames = even_frames(names, body_joint_names(), walking(steps(30, 33)), {rate, gap});
   REQUIRE(frames);
   const std::size_t joints = names.size();
   for (std::size_t t = 0; t < frames->body.frames(); ++t) {
@@ -129,7 +129,7 @@ TEST_CASE("even grid: what can't be cleaned is refused") {
         "expected about 30 frames a second, found 200 frames a second");
   auto names = body_joint_names();
   names[12] = "Tail";  // the left hip
-  CHECK(refusal(even_frames(body_joint_names(), names, walking(steps(30, 33)), rate, gap)) ==
+  CHECK(refusal(even_frames(body_joint_names(), names, walking(steps(30, 33)), {rate, gap})) ==
         "expected a joint \"HipLeft\", which the model needs, found none of that name");
 }
 
@@ -147,4 +147,22 @@ TEST_CASE("even grid: too many frames are refused before memory is taken") {
   PointFrames points = walking(steps(30, 33));
   points.stamps.back() = utc_time(9'000'000'000'000'000'000);
   CHECK(refusal(even(points)).starts_with("expected at most 10,000,000 frames"));
+}
+
+TEST_CASE("even grid: on a span of others, joints are missing where the device has no samples") {
+  const PointFrames points = walking(steps(30, 33));
+  const auto own = even_frames(body_joint_names(), body_joint_names(), points, {rate, gap});
+  REQUIRE(own);
+  const EvenSpan span{points.stamps.front() - Duration(1'000'000'000), 90};
+  const auto wide = even_frames(body_joint_names(), body_joint_names(), points, {rate, gap, span});
+  REQUIRE(wide);
+  CHECK(wide->body.frames() == 90);
+  CHECK(wide->start == span.start);
+  const std::size_t joints = body_joint_names().size();
+  CHECK(wide->body.seen[0] == 0);
+  CHECK(wide->body.seen[89 * joints] == 0);
+  for (std::size_t t = 0; t + 2 < own->body.frames(); ++t) {
+    const std::size_t from = 3 * t * joints, to = 3 * (t + 30) * joints;
+    CHECK(wide->body.positions[to] == doctest::Approx(own->body.positions[from]).epsilon(1e-4));
+  }
 }

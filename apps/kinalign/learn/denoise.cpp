@@ -126,10 +126,9 @@ Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string&
 
 Result<Cleaned> clean(Denoiser& denoiser, const NamedPoints& points) {
   const DenoiseLayout& layout = denoiser.model().layout;
-  Cleaned out{KA_TRY(even_frames(layout.inputs, kinect_names(points.joints), points.frames,
-                                 layout.rate_hz, longest_gap_s)),
-              {},
-              {}};
+  Cleaned out;
+  out.input = KA_TRY(even_frames(layout.inputs, kinect_names(points.joints), points.frames,
+                                 {layout.rate_hz, longest_gap_s}));
   out.answer = denoiser.clean(out.input.body);
   out.about = about(denoiser.model(), out, points.stream);
   return out;

@@ -50,7 +50,7 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
   out.input.nodes = on_bones(out.posed.calibration, out.posed.even.worn);
   EvenFrames seen =
       KA_TRY(even_frames(layout.joints, kinect_names(both.kinect.joints), both.kinect.frames,
-                         layout.nodes.rate_hz, longest_kinect_gap_s, span));
+                         {layout.nodes.rate_hz, longest_kinect_gap_s, span}));
   out.input.kinect = std::move(seen.body);
   const auto yaw = shared_heading(layout, out.input);
   if (!yaw) {

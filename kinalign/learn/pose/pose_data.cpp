@@ -56,6 +56,7 @@ struct FileSkeleton {
 
 std::vector<std::string> pose_joint_names() {
   std::vector<std::string> out;
+  out.reserve(pose_joints.size());
   for (const PoseJoint& joint : pose_joints) out.emplace_back(joint.name);
   return out;
 }
