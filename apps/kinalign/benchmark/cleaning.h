@@ -24,7 +24,7 @@ struct CleaningOptions {
   std::int64_t seed = 1, steps = 0;   // 0: each method's own number
 };
 
-/// What the methods learn from and are tested on.
+/// Pairs that the methods learn from, and takes that they are tested on.
 struct CleaningData {
   std::string windows, windows_hash;
   Pairs pairs;
@@ -50,7 +50,7 @@ struct CleanedTakes {
 Result<std::vector<CleanedTakes>> run_methods(const CleaningOptions& o, const CleaningData& data,
                                               Call& call);
 
-/// What a run would train.
+/// The trainings of a run, before they are done.
 struct TrainingPlan {
   std::string method;
   bool is_there = false;

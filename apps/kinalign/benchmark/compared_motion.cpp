@@ -198,7 +198,7 @@ void put_head_node(const TrueFrames& truth, float yaw, double rate_hz, std::size
   for (std::size_t t = 0; t < frames; ++t) {
     const std::size_t before = t == 0 ? 0 : t - 1, after = std::min(t + 1, frames - 1);
     const Eigen::Quaternionf now = turn * truth.head[t];
-    // As in training: second differences over 67 ms, two frames to each side.
+    // Second differences over 67 ms, as in training, two frames to each side.
     const std::size_t early = t < 2 ? 0 : t - 2, late = std::min(t + 2, frames - 1);
     Eigen::Vector3f acceleration = Eigen::Vector3f::Zero();
     if (late - early == 4) {

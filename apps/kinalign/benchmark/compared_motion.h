@@ -17,14 +17,15 @@
 
 namespace kinalign {
 
-/// What is compared of a body: joints by a Kinect's names, then two places that turn with the head.
+/// The places of a body that are compared: joints by a Kinect's names, then two places that turn
+/// with the head.
 inline constexpr std::array<std::string_view, 17> compared_places{
     "SpineBase",     "SpineShoulder", "Head",       "ShoulderLeft", "ElbowLeft", "WristLeft",
     "ShoulderRight", "ElbowRight",    "WristRight", "HipLeft",      "KneeLeft",  "AnkleLeft",
     "HipRight",      "KneeRight",     "AnkleRight", "Nose",         "Crown"};
 inline constexpr std::size_t compared_count = compared_places.size();
 inline constexpr std::size_t compared_joints = 15;  // without the places on the head
-/// What each place hangs on in a picture.
+/// The place that each one hangs on in a picture.
 inline constexpr std::array<int, 17> compared_parents{-1, 0, 1,  1, 3,  4,  1, 6, 7,
                                                       0,  9, 10, 0, 12, 13, 2, 2};
 

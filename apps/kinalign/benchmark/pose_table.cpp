@@ -199,7 +199,7 @@ StickFigure kinect_at(const CleaningData& data, const ChosenFrame& at,
   return out;
 }
 
-/// What stands above a column.
+/// The head of a column.
 std::string where_of(const CleaningData& data, const ChosenFrame& at) {
   const Pair& pair = *data.tested[at.pair];
   return fmt::format("sub-{} {}, {:.1f} s", pair.subject, pair.action,

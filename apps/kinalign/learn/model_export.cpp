@@ -150,18 +150,9 @@ struct Exported {
   std::map<std::string, std::string> metadata;
 };
 
-/// The error of a model that can't be used, with its file.
-template <class Usable>
-Result<void> check_use(const Result<Usable>& usable, const std::string& path) {
-  if (usable) return {};
-  Error error = usable.error();
-  error.file = path;
-  return Failure(std::move(error));
-}
-
 Result<Exported> exported_denoise(const std::string& bytes, const std::string& path, bool second) {
   const DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
-  KA_TRY(check_use(Denoiser::make(model), path));
+  KA_TRY(check_usable(Denoiser::make(model), path));
   if (second && !model.second) {
     return Failure(Error{path, 0, "a network behind the first one", "none"});
   }
@@ -183,7 +174,7 @@ std::map<std::string, std::string> body_metadata(const ModelFacts& facts, const 
 
 Result<Exported> exported_pose(const std::string& bytes, const std::string& path) {
   const PoseModel model = KA_TRY(read_pose_model(bytes, path));
-  KA_TRY(check_use(PoseSolver::make(model), path));
+  KA_TRY(check_usable(PoseSolver::make(model), path));
   return Exported{scaled(parts_of(model.architecture, model.tensors, "net"),
                          standardising(model.input_mean, model.input_scale),
                          onto_identity(model.layout.bones.size())),
@@ -194,7 +185,7 @@ Result<Exported> exported_pose(const std::string& bytes, const std::string& path
 
 Result<Exported> exported_fuse(const std::string& bytes, const std::string& path) {
   const FuseModel model = KA_TRY(read_fuse_model(bytes, path));
-  KA_TRY(check_use(Fuser::make(model), path));
+  KA_TRY(check_usable(Fuser::make(model), path));
   Scaling after = onto_identity(model.layout.nodes.bones.size() + 1);
   after.factor.resize(model.layout.answers(), fuse_place_unit_m);
   after.offset.resize(model.layout.answers(), 0.0F);

@@ -206,28 +206,24 @@ std::string body_lines(const PoseBody& body, bool smoothing, const Architecture&
          network_lines("net", network) + line("smoothing", smoothing ? "over 5 frames" : "none");
 }
 
-std::string pose_text(const std::string& path, const PoseModel& model, const Json& training,
-                      const Json& metrics) {
+std::string pose_text(const PoseModel& model) {
   const PoseLayout& layout = model.layout;
-  std::string text = path + "\n" + model_line(model.facts);
+  std::string text = model_line(model.facts);
   text += line("rate", fmt::format("{:g} Hz", layout.rate_hz));
   text += line("input", fmt::format("{}: {}; {} channels ({})",
                                     counted(layout.nodes.size(), "node"), name_list(layout.nodes),
                                     layout.channels(), channels_name(layout.inputs)));
-  text += body_lines(model.body, model.smoothing, model.architecture);
-  return text + training_lines(training) + metric_lines(metrics);
+  return text + body_lines(model.body, model.smoothing, model.architecture);
 }
 
-std::string fuse_text(const std::string& path, const FuseModel& model, const Json& training,
-                      const Json& metrics) {
+std::string fuse_text(const FuseModel& model) {
   const FuseLayout& layout = model.layout;
-  std::string text = path + "\n" + model_line(model.facts);
+  std::string text = model_line(model.facts);
   text += line("rate", fmt::format("{:g} Hz", layout.nodes.rate_hz));
   text += joint_lines("kinect", layout.joints);
   text += line("nodes", fmt::format("{}: {}", counted(layout.nodes.nodes.size(), "node"),
                                     name_list(layout.nodes.nodes)));
-  text += body_lines(model.body, model.smoothing, model.architecture);
-  return text + training_lines(training) + metric_lines(metrics);
+  return text + body_lines(model.body, model.smoothing, model.architecture);
 }
 
 Json body_json(const PoseBody& body, bool smoothing) {
@@ -254,11 +250,8 @@ Json fuse_json(const FuseModel& model) {
           {"networks", {{"net", network_json(model.architecture)}}}};
 }
 
-std::string text_of(const std::string& path, const DenoiseModel& model, const Json& training,
-                    const Json& metrics) {
-  std::string text = path + "\n";
-  text += line("model",
-               fmt::format("{}, method {}", shown(model.facts.task), shown(model.facts.method)));
+std::string denoise_text(const DenoiseModel& model) {
+  std::string text = model_line(model.facts);
   text += line("rate", fmt::format("{:g} Hz", model.layout.rate_hz));
   text += joint_lines("input", model.layout.inputs);
   text += joint_lines("output", model.layout.outputs);
@@ -266,76 +259,65 @@ std::string text_of(const std::string& path, const DenoiseModel& model, const Js
   text += network_lines("net", model.architecture);
   if (model.second) text += network_lines("second", *model.second);
   const Steadying& steadying = model.steadying;
-  text += line("steadying", fmt::format("{}{}{}", smoothing_text(steadying.smoothing),
-                                        steadying.mirror ? ", mean with the mirror image" : "",
-                                        steadying.bones ? ", bones of constant length" : ""));
-  return text + training_lines(training) + metric_lines(metrics);
+  return text +
+         line("steadying", fmt::format("{}{}{}", smoothing_text(steadying.smoothing),
+                                       steadying.mirror ? ", mean with the mirror image" : "",
+                                       steadying.bones ? ", bones of constant length" : ""));
 }
 
-/// What every model states of itself.
+Json denoise_json(const DenoiseModel& model) {
+  Json networks{{"net", network_json(model.architecture)}};
+  if (model.second) networks["second"] = network_json(*model.second);
+  return {
+      {"rate_hz", model.layout.rate_hz},
+      {"input",
+       {{"joints", model.layout.inputs}, {"smoothing", smoothing_json(model.layout.smoothing)}}},
+      {"output",
+       {{"joints", model.layout.outputs},
+        {"parents", model.layout.parents},
+        {"spread", model.states_spread}}},
+      {"networks", std::move(networks)},
+      {"steadying",
+       {{"mirror", model.steadying.mirror},
+        {"smoothing", smoothing_json(model.steadying.smoothing)},
+        {"bones", model.steadying.bones}}}};
+}
+
+/// Members that every model has.
 Json facts_json(const std::string& path, std::string_view bytes, const ModelFacts& facts) {
   return {{"file", path},       {"kind", "model"},        {"bytes", bytes.size()},
           {"task", facts.task}, {"method", facts.method}, {"software", facts.software}};
 }
 
-/// The error of a model that can't be used, with its file.
-template <class Usable>
-Result<void> check_usable(const Result<Usable>& usable, const std::string& path) {
-  if (usable) return {};
-  Error error = usable.error();
-  error.file = path;
-  return Failure(std::move(error));
+/// A model in words and as JSON. `text` and `members`: of its task.
+Description described(const std::string& path, std::string_view bytes, const ModelFacts& facts,
+                      const std::string& text, const Json& members) {
+  const Json training = parsed_object(facts.training), metrics = parsed_object(facts.metrics);
+  Json json = facts_json(path, bytes, facts);
+  json.update(members);
+  json.update({{"training", training}, {"metrics", metrics}});
+  return {path + "\n" + text + training_lines(training) + metric_lines(metrics), json_text(json)};
 }
 
 Result<Description> describe_pose_model(const std::string& path, std::string_view bytes) {
   PoseModel model = KA_TRY(read_pose_model(bytes, path));
-  const Json training = parsed_object(model.facts.training);
-  const Json metrics = parsed_object(model.facts.metrics);
-  std::string text = pose_text(path, model, training, metrics);
-  Json json = facts_json(path, bytes, model.facts);
-  json.update(pose_json(model));
-  json.update({{"training", training}, {"metrics", metrics}});
+  Description out = described(path, bytes, model.facts, pose_text(model), pose_json(model));
   KA_TRY(check_usable(PoseSolver::make(std::move(model)), path));
-  return Description{std::move(text), json_text(json)};
+  return out;
 }
 
 Result<Description> describe_fuse_model(const std::string& path, std::string_view bytes) {
   FuseModel model = KA_TRY(read_fuse_model(bytes, path));
-  const Json training = parsed_object(model.facts.training);
-  const Json metrics = parsed_object(model.facts.metrics);
-  std::string text = fuse_text(path, model, training, metrics);
-  Json json = facts_json(path, bytes, model.facts);
-  json.update(fuse_json(model));
-  json.update({{"training", training}, {"metrics", metrics}});
+  Description out = described(path, bytes, model.facts, fuse_text(model), fuse_json(model));
   KA_TRY(check_usable(Fuser::make(std::move(model)), path));
-  return Description{std::move(text), json_text(json)};
+  return out;
 }
 
 Result<Description> describe_denoise_model(const std::string& path, std::string_view bytes) {
   DenoiseModel model = KA_TRY(read_denoise_model(bytes, path));
-  const Json training = parsed_object(model.facts.training);
-  const Json metrics = parsed_object(model.facts.metrics);
-  std::string text = text_of(path, model, training, metrics);
-  Json networks{{"net", network_json(model.architecture)}};
-  if (model.second) networks["second"] = network_json(*model.second);
-  Json json = facts_json(path, bytes, model.facts);
-  json.update(
-      {{"rate_hz", model.layout.rate_hz},
-       {"input",
-        {{"joints", model.layout.inputs}, {"smoothing", smoothing_json(model.layout.smoothing)}}},
-       {"output",
-        {{"joints", model.layout.outputs},
-         {"parents", model.layout.parents},
-         {"spread", model.states_spread}}},
-       {"networks", std::move(networks)},
-       {"steadying",
-        {{"mirror", model.steadying.mirror},
-         {"smoothing", smoothing_json(model.steadying.smoothing)},
-         {"bones", model.steadying.bones}}},
-       {"training", training},
-       {"metrics", metrics}});
+  Description out = described(path, bytes, model.facts, denoise_text(model), denoise_json(model));
   KA_TRY(check_usable(Denoiser::make(std::move(model)), path));
-  return Description{std::move(text), json_text(json)};
+  return out;
 }
 
 }  // namespace

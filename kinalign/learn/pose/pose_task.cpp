@@ -109,11 +109,7 @@ void PoseTask::find_scales() {
 }
 
 void PoseTask::standardise(std::vector<float>& input) const {
-  if (!training_.standardised) return;
-  for (std::size_t i = 0; i < input.size(); ++i) {
-    const std::size_t c = i % input_mean_.size();
-    input[i] = (input[i] - input_mean_[c]) / input_scale_[c];
-  }
+  if (training_.standardised) kinalign::standardise(input_mean_, input_scale_, input);
 }
 
 PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step) const {
