@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
+#include "apps/kinalign/learn/answer_output.h"
 #include "apps/kinalign/learn/point_source.h"
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/text/describe_file.h"
@@ -9,7 +10,6 @@
 
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/points/trc.h"
-#include "kinalign/formats/take/guarded.h"
 #include "kinalign/models/denoise_model.h"
 #include "kinalign/models/even_grid.h"
 #include "kinalign/models/joint_names.h"
@@ -211,12 +211,8 @@ Result<Json> clean_into(Denoiser& denoiser, Result<NamedPoints> points, const st
 Result<Json> clean_take(Denoiser& denoiser, const std::string& in, const std::string& stream,
                         Call& call) {
   FileSystem& files = call.surroundings.files;
-  const auto work = [&]() -> Result<std::string> {
-    return KA_TRY(clean_into(denoiser, points_of_take(files, in, stream), in, call)).dump();
-  };
-  Json about = Json::parse(KA_TRY(run_guarded(GuardLimits{}, blame(in), work)), nullptr, false);
-  if (about.is_object()) return about;
-  return Failure(Error{in, 0, "a take that can be read", "another answer"});
+  return in_child(
+      in, [&] { return clean_into(denoiser, points_of_take(files, in, stream), in, call); });
 }
 
 Result<int> run_denoise(Denoise& o, Call& call) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
+#include "apps/kinalign/learn/answer_output.h"
 #include "apps/kinalign/learn/fused_input.h"
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/text/describe_file.h"
@@ -7,8 +8,6 @@
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
-#include "kinalign/formats/bvh/bvh.h"
-#include "kinalign/formats/take/guarded.h"
 #include "kinalign/models/fuse/fuse_model.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/view/report_words.h"
@@ -16,8 +15,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace kinalign {
@@ -63,9 +60,8 @@ Usage describe_fuse(FuseWords& o) {
 }
 
 /// What the Kinect says of each node's heading, at the end; and warnings where it says little.
-void tell_headings(Fuser& fuser, const FuseInput& input, Json& about) {
-  const auto states = fuser.headings(input);
-  const auto& names = fuser.model().layout.nodes.nodes;
+void tell_headings(const std::vector<std::string>& names, const std::vector<HeadingState>& states,
+                   Json& about) {
   Json found = Json::object();
   for (std::size_t n = 0; n < names.size(); ++n) {
     const HeadingState& last = states[states.size() - names.size() + n];
@@ -83,15 +79,12 @@ void tell_headings(Fuser& fuser, const FuseInput& input, Json& about) {
 
 Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call& call) {
   const FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), o.worn));
+  const PoseLayout& layout = fuser.model().layout.nodes;
   Json about = about_fused(fuser.model(), given);
-  tell_headings(fuser, given.input, about);
-  Clip clip = fuser.clip(given.input, given.start);
-  OutputFile file =
-      KA_TRY(OutputFile::create(call.surroundings.files, call.common.out, call.common.overwrite()));
-  const double period_s = 1.0 / fuser.model().layout.nodes.rate_hz;
-  KA_TRY(write_bvh(bvh_from_clip(std::move(clip), period_s),
-                   [&](std::string_view text) { return file.write(text); }));
-  KA_TRY(file.commit());
+  const auto headings = fuser.headings(given.input);
+  tell_headings(layout.nodes, headings, about);
+  KA_TRY(
+      write_answer(fuser.clip(given.input, headings, given.start), layout.rate_hz, o.model, call));
   return about;
 }
 
@@ -121,14 +114,11 @@ Result<Json> fuse_named(Fuser& fuser, Result<NamedPoints> kinect, Result<NamedNo
 Result<Json> fuse_take(Fuser& fuser, const FuseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& in = o.in.front();
-  const auto work = [&]() -> Result<std::string> {
-    return KA_TRY(fuse_named(fuser, points_of_take(files, in, o.kinect),
-                             nodes_of_take(files, in, o.nodes), o, call))
-        .dump();
+  const auto work = [&]() {
+    return fuse_named(fuser, points_of_take(files, in, o.kinect), nodes_of_take(files, in, o.nodes),
+                      o, call);
   };
-  Json about = Json::parse(KA_TRY(run_guarded(GuardLimits{}, blame(in), work)), nullptr, false);
-  if (about.is_object()) return about;
-  return Failure(Error{in, 0, "a take that can be read", "another answer"});
+  return in_child(in, work);
 }
 
 void print_fuse(const Json& about, const std::string& out, Call& call) {
@@ -145,11 +135,7 @@ void print_fuse(const Json& about, const std::string& out, Call& call) {
           about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>(),
           100.0 * about.at("missing").get<double>(), 100.0 * about.at("inferred").get<double>()) +
       node_lines(about) + fmt::format("turned   by the Kinect, deg: {}\n", found);
-  for (const Json& warning : about.at("warnings")) {
-    text += fmt::format("warning  {}\n", harmless(warning.get<std::string>()));
-  }
-  call.console.print(text);
-  call.console.print_json(about.dump(1, ' ', false, Json::error_handler_t::replace));
+  print_answer(std::move(text), about, call);
 }
 
 Result<int> run_fuse(FuseWords& o, Call& call) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
+#include "apps/kinalign/learn/answer_output.h"
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/learn/worn_nodes.h"
 #include "apps/kinalign/text/describe_file.h"
@@ -7,8 +8,6 @@
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
-#include "kinalign/formats/bvh/bvh.h"
-#include "kinalign/formats/take/guarded.h"
 #include "kinalign/models/pose/pose_model.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/view/report_words.h"
@@ -16,8 +15,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace kinalign {
@@ -47,13 +44,6 @@ Usage describe_pose(PoseWords& o) {
   return usage;
 }
 
-bool is_finite(const Clip& clip) {
-  const auto is_number = [](double value) { return std::isfinite(value); };
-  const ClipFrames& frames = clip.frames;
-  return std::all_of(frames.local_positions.begin(), frames.local_positions.end(), is_number) &&
-         std::all_of(frames.local_rotations.begin(), frames.local_rotations.end(), is_number);
-}
-
 Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o, Call& call) {
   const PoseModel& model = solver.model();
   NamedNodes names{nodes.stream, nodes.names, {}, {}};
@@ -66,15 +56,8 @@ Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o
              {"joints", model.body.skeleton.joints()},
              {"method", model.facts.method}};
   about.update(about_nodes(model.layout, posed, calibrated, names));
-  Clip clip = solver.clip(calibrated, posed.even.start);
-  if (!is_finite(clip)) {
-    return Failure(Error{o.model, 0, "a model that answers with numbers", "others"});
-  }
-  OutputFile file =
-      KA_TRY(OutputFile::create(call.surroundings.files, call.common.out, call.common.overwrite()));
-  KA_TRY(write_bvh(bvh_from_clip(std::move(clip), 1.0 / model.layout.rate_hz),
-                   [&](std::string_view text) { return file.write(text); }));
-  KA_TRY(file.commit());
+  KA_TRY(
+      write_answer(solver.clip(calibrated, posed.even.start), model.layout.rate_hz, o.model, call));
   return about;
 }
 
@@ -90,12 +73,8 @@ Result<Json> solve_named(PoseSolver& solver, Result<NamedNodes> nodes, const Pos
 Result<Json> solve_take(PoseSolver& solver, const PoseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& in = o.in.front();
-  const auto work = [&]() -> Result<std::string> {
-    return KA_TRY(solve_named(solver, nodes_of_take(files, in, o.stream), o, call)).dump();
-  };
-  Json about = Json::parse(KA_TRY(run_guarded(GuardLimits{}, blame(in), work)), nullptr, false);
-  if (about.is_object()) return about;
-  return Failure(Error{in, 0, "a take that can be read", "another answer"});
+  return in_child(in,
+                  [&] { return solve_named(solver, nodes_of_take(files, in, o.stream), o, call); });
 }
 
 void print_pose(const Json& about, const std::string& out, Call& call) {
@@ -104,11 +83,7 @@ void print_pose(const Json& about, const std::string& out, Call& call) {
                   grouped(about.at("frames").get<std::size_t>()), about.at("rate_hz").get<double>(),
                   about.at("joints").get<std::size_t>()) +
       node_lines(about);
-  for (const Json& warning : about.at("warnings")) {
-    text += fmt::format("warning  {}\n", harmless(warning.get<std::string>()));
-  }
-  call.console.print(text);
-  call.console.print_json(about.dump(1, ' ', false, Json::error_handler_t::replace));
+  print_answer(std::move(text), about, call);
 }
 
 Result<int> run_pose(PoseWords& o, Call& call) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/fuse/fuse_model.h"
 
-#include "kinalign/models/model_file.h"
 #include "kinalign/models/pose/pose_model.h"
 
 #include <algorithm>
@@ -33,13 +32,7 @@ FusedFrame fused_frame(const FuseSpace& space, std::span<const float> answers,
 }
 
 Result<Fuser> Fuser::make(FuseModel model) {
-  Network network = KA_TRY(Network::make(model.architecture, tensors_below(model.tensors, "net.")));
-  const std::size_t in = model.layout.channels(), out = model.layout.answers();
-  if (network.inputs() != in || network.outputs() != out) {
-    return Failure(
-        Error{"", 0, std::to_string(in) + " channels in and " + std::to_string(out) + " out",
-              std::to_string(network.inputs()) + " and " + std::to_string(network.outputs())});
-  }
+  Network network = KA_TRY(network_of_body(model, model.layout.channels(), model.layout.answers()));
   return Fuser(std::move(model), std::move(network));
 }
 
@@ -75,11 +68,10 @@ std::vector<HeadingState> Fuser::headings(const FuseInput& given) {
                        directions_of_pose(filter, input.kinect, seen.rotations, seen.root));
 }
 
-FusedPose Fuser::solve(const FuseInput& given) {
-  FuseInput input = given;
-  unexchange(model_.layout, input);
+FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& headings) {
   FuseInput own = input;
-  own.nodes = with_headings(std::move(own.nodes), headings(input));
+  unexchange(model_.layout, own);
+  own.nodes = with_headings(std::move(own.nodes), headings);
   FusedPose out = answer(own);
   if (!model_.smoothing) return out;
   smooth_turns(model_.layout.nodes.bones.size(), out.rotations);
@@ -98,8 +90,8 @@ FusedPose Fuser::solve(const FuseInput& given) {
   return out;
 }
 
-Clip Fuser::clip(const FuseInput& input, Time start) {
-  const FusedPose pose = solve(input);
+Clip Fuser::clip(const FuseInput& input, const std::vector<HeadingState>& headings, Time start) {
+  const FusedPose pose = solve(input, headings);
   Clip out{model_.body.skeleton,
            clip_frames(model_.body, pose.rotations, pose.root, model_.layout.nodes.rate_hz, start)};
   if (!is_placed(input)) return out;
@@ -131,22 +123,23 @@ OnlineFuser::OnlineFuser(const Fuser& fuser, OnlineNetwork network, OnlineNetwor
       input_(model_->layout.channels()),
       rotations_(model_->layout.nodes.bones.size()) {}
 
-void OnlineFuser::find_headings(const FuseInput& input) {
-  corrected_ = input;  // of the same size in each step: nothing is allocated
+void OnlineFuser::find_headings() {
+  corrected_ = given_;
   std::fill(corrected_.nodes.valid.begin(), corrected_.nodes.valid.end(), std::uint8_t{0});
   kinect_maker_.make(corrected_, 0, input_);
   standardise(model_->input_mean, model_->input_scale, input_);
   const FusedFrame seen = fused_frame(kinect_maker_.space(), of_kinect_.step(input_), rotations_);
-  headings_.step(input.nodes, 0,
-                 directions_of_pose(headings_, input.kinect, rotations_, std::span(&seen.root, 1)));
+  headings_.step(
+      given_.nodes, 0,
+      directions_of_pose(headings_, given_.kinect, rotations_, std::span(&seen.root, 1)));
   for (std::size_t n = 0; n < states_.size(); ++n) states_[n] = headings_.state(n);
 }
 
-std::span<const Turn> OnlineFuser::step(const FuseInput& given) {
-  FuseInput input = given;  // of the same size in each step: nothing is allocated
-  unexchange(model_->layout, input);
-  find_headings(input);
-  corrected_ = input;
+std::span<const Turn> OnlineFuser::step(const FuseInput& input) {
+  given_ = input;
+  unexchange(model_->layout, given_);
+  find_headings();
+  corrected_ = given_;
   correct_frame(corrected_.nodes, 0, states_);
   maker_.make(corrected_, 0, input_);
   standardise(model_->input_mean, model_->input_scale, input_);

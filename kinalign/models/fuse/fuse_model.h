@@ -3,15 +3,12 @@
 // and everything needed to use it. Layout of its file: docs/formats/model.md.
 #pragma once
 
-#include "kinalign/infer/network.h"
 #include "kinalign/infer/online.h"
 #include "kinalign/models/fuse/bone_filter.h"
 #include "kinalign/models/fuse/fuse_features.h"
 #include "kinalign/models/fuse/node_headings.h"
-#include "kinalign/models/model_facts.h"
-#include "kinalign/models/pose/pose_body.h"
+#include "kinalign/models/pose/body_model.h"
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -20,14 +17,8 @@ namespace kinalign {
 /// Metres of a network's 1, of the root's place against the Kinect's.
 inline constexpr float fuse_place_unit_m = 0.1F;
 
-struct FuseModel {
-  ModelFacts facts;  // task "fuse"
+struct FuseModel : BodyModel {  // task "fuse"
   FuseLayout layout;
-  PoseBody body;                               // the mean body of the training people
-  bool smoothing = true;                       // of whole sequences, as a PoseModel's
-  std::vector<float> input_mean, input_scale;  // [C]
-  Architecture architecture;
-  std::map<std::string, Tensor> tensors;  // "net." before the names
 };
 
 /// The bytes of a model's file. The same model gives the same bytes.
@@ -55,14 +46,17 @@ class Fuser {
   /// `input`: the layout's, at its rate. The network answers to the Kinect alone first; that pose
   /// shows the nodes' headings (node_headings.h), and with these it answers to both. The answer is
   /// smoothed.
-  FusedPose solve(const FuseInput& input);
+  FusedPose solve(const FuseInput& input) { return solve(input, headings(input)); }
+  /// With headings that were found before.
+  FusedPose solve(const FuseInput& input, const std::vector<HeadingState>& headings);
   /// The headings alone [T,N].
   std::vector<HeadingState> headings(const FuseInput& input);
   /// The network's answer alone. `input`: with corrected headings.
   FusedPose answer(const FuseInput& input);
-  /// A skeleton with constant bones, at its place in the Kinect's world. Where no Kinect has seen
-  /// anything, x and z of the root are 0 and the lowest joint is at y = 0.
-  Clip clip(const FuseInput& input, Time start);
+  /// Of solve(): a skeleton with constant bones, at its place in the Kinect's world. Where no
+  /// Kinect has seen anything, x and z of the root are 0 and the lowest joint is at y = 0.
+  Clip clip(const FuseInput& input, Time start) { return clip(input, headings(input), start); }
+  Clip clip(const FuseInput& input, const std::vector<HeadingState>& headings, Time start);
 
   /// As PoseSolver::use_body().
   Result<void> use_body(const Skeleton& body);
@@ -91,13 +85,13 @@ class OnlineFuser {
 
  private:
   OnlineFuser(const Fuser& fuser, OnlineNetwork network, OnlineNetwork of_kinect);
-  void find_headings(const FuseInput& input);
+  void find_headings();
 
   const FuseModel* model_;
   OnlineNetwork network_, of_kinect_;
   HeadingFilter headings_;
   FuseFeatureMaker maker_, kinect_maker_;
-  FuseInput corrected_;
+  FuseInput given_, corrected_;
   std::vector<HeadingState> states_;
   std::vector<float> input_;
   std::vector<Turn> rotations_;

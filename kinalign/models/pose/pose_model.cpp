@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/pose/pose_model.h"
 
-#include "kinalign/models/model_file.h"
-
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -27,13 +25,7 @@ void smooth_turns(std::size_t bones, std::vector<Turn>& rotations) {
 }
 
 Result<PoseSolver> PoseSolver::make(PoseModel model) {
-  Network network = KA_TRY(Network::make(model.architecture, tensors_below(model.tensors, "net.")));
-  const std::size_t in = model.layout.channels(), out = model.layout.answers();
-  if (network.inputs() != in || network.outputs() != out) {
-    return Failure(
-        Error{"", 0, std::to_string(in) + " channels in and " + std::to_string(out) + " out",
-              std::to_string(network.inputs()) + " and " + std::to_string(network.outputs())});
-  }
+  Network network = KA_TRY(network_of_body(model, model.layout.channels(), model.layout.answers()));
   return PoseSolver(std::move(model), std::move(network));
 }
 

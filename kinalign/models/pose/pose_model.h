@@ -3,26 +3,17 @@
 // to use it. Layout of its file: docs/formats/model.md.
 #pragma once
 
-#include "kinalign/infer/network.h"
 #include "kinalign/infer/online.h"
-#include "kinalign/models/model_facts.h"
-#include "kinalign/models/pose/pose_body.h"
+#include "kinalign/models/pose/body_model.h"
 #include "kinalign/models/pose/pose_features.h"
 
-#include <map>
 #include <string>
 #include <vector>
 
 namespace kinalign {
 
-struct PoseModel {
-  ModelFacts facts;  // task "pose"
+struct PoseModel : BodyModel {  // task "pose"
   PoseLayout layout;
-  PoseBody body;          // the mean body of the training people
-  bool smoothing = true;  // of whole sequences: weights 1, 4, 6, 4, 1 over five frames
-  std::vector<float> input_mean, input_scale;  // [C]
-  Architecture architecture;
-  std::map<std::string, Tensor> tensors;  // "net." before the names
 };
 
 /// The bytes of a model's file. The same model gives the same bytes.
