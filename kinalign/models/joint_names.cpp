@@ -70,8 +70,7 @@ std::string translated(const std::array<Word, N>& words, const std::string& name
 
 }  // namespace
 
-std::optional<std::size_t> index_of(const std::vector<std::string>& names,
-                                    const std::string& name) {
+std::optional<std::size_t> index_of(const std::vector<std::string>& names, std::string_view name) {
   const auto at = std::find(names.begin(), names.end(), name);
   if (at == names.end()) return std::nullopt;
   return static_cast<std::size_t>(at - names.begin());

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kinalign {
@@ -18,6 +19,6 @@ std::vector<std::string> kinect_names(const std::vector<std::string>& names);
 std::vector<int> kinect_parents_of(const std::vector<std::string>& names);
 
 /// Where `name` stands in `names`.
-std::optional<std::size_t> index_of(const std::vector<std::string>& names, const std::string& name);
+std::optional<std::size_t> index_of(const std::vector<std::string>& names, std::string_view name);
 
 }  // namespace kinalign

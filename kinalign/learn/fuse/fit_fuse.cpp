@@ -17,21 +17,14 @@ Result<FuseFit> fit_fuse(const FuseMethod& method, const FuseData& data, const F
   FuseTask task(layout, method.training, data, options.device);
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
-  if (from != nullptr) {
-    task.use_scales(from->input_mean, from->input_scale);
-    KA_TRY(take_tensors(from->tensors, "net.", network));
-  }
+  if (from != nullptr) KA_TRY(go_on_from(*from, task, network));
   network.to(options.device);
   FuseFit out;
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;
   out.model.facts.task = "fuse";
   out.model.facts.method = method.name;
   out.model.layout = layout;
-  out.model.body = data.pose.body;
-  out.model.input_mean = task.input_mean();
-  out.model.input_scale = task.input_scale();
-  out.model.architecture = network.architecture();
-  put_tensors(network, "net.", out.model.tensors);
+  put_learnt(task, network, data.pose.body, out.model);
   return out;
 }
 

@@ -4,6 +4,7 @@
 
 #include "kinalign/learn/fit_denoise.h"
 #include "kinalign/learn/fuse/fuse_methods.h"
+#include "kinalign/learn/pose/fit_pose.h"
 
 namespace kinalign {
 

@@ -2,6 +2,7 @@
 #include "kinalign/learn/fuse/fuse_task.h"
 
 #include "kinalign/learn/losses.h"
+#include "kinalign/learn/pose/channel_sums.h"
 #include "kinalign/learn/tensors.h"
 #include "kinalign/motion/mahony.h"
 
@@ -124,24 +125,13 @@ FuseTask::Batch FuseTask::draw(std::uint64_t seed, std::uint64_t step) const {
 
 void FuseTask::find_scales() {
   const std::size_t channels = layout_.channels();
-  std::vector<double> sum(channels, 0.0), squares(channels, 0.0);
-  double frames = 0.0;
-  for (std::size_t k = 0; k < scales_batches; ++k) {
-    const auto input = values_of(draw(scales_seed, k).input);
-    for (std::size_t i = 0; i < input.size(); ++i) {
-      const double value = static_cast<double>(input[i]);
-      sum[i % channels] += value;
-      squares[i % channels] += value * value;
-    }
-    frames += static_cast<double>(input.size() / channels);
-  }
+  ChannelSums sums(channels);
+  for (std::size_t k = 0; k < scales_batches; ++k) sums.add(values_of(draw(scales_seed, k).input));
   input_mean_.resize(channels);
   input_scale_.resize(channels);
   for (std::size_t c = 0; c < channels; ++c) {
-    const double mean = sum[c] / frames, variance = squares[c] / frames - mean * mean;
-    input_mean_[c] = static_cast<float>(mean);
-    input_scale_[c] =
-        std::max(static_cast<float>(std::sqrt(std::max(variance, 0.0))), least_scale_of_fusion);
+    input_mean_[c] = sums.mean(c);
+    input_scale_[c] = std::max(sums.deviation(c), least_scale_of_fusion);
   }
 }
 

@@ -11,10 +11,7 @@ Result<PoseFit> fit_pose(const PoseMethod& method, const PoseData& data, const F
   PoseTask task(layout, method.training, data, options.device);
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
-  if (from != nullptr) {
-    task.use_scales(from->input_mean, from->input_scale);
-    KA_TRY(take_tensors(from->tensors, "net.", network));
-  }
+  if (from != nullptr) KA_TRY(go_on_from(*from, task, network));
   network.to(options.device);
   PoseFit out;
   if (method.begin != nullptr) method.begin(task, options.training.seed, network);
@@ -23,11 +20,7 @@ Result<PoseFit> fit_pose(const PoseMethod& method, const PoseData& data, const F
   out.model.facts.task = "pose";
   out.model.facts.method = method.name;
   out.model.layout = layout;
-  out.model.body = data.body;
-  out.model.input_mean = task.input_mean();
-  out.model.input_scale = task.input_scale();
-  out.model.architecture = network.architecture();
-  put_tensors(network, "net.", out.model.tensors);
+  put_learnt(task, network, data.body, out.model);
   return out;
 }
 

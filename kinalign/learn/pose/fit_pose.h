@@ -17,4 +17,22 @@ Result<PoseFit> fit_pose(const PoseMethod& method, const PoseData& data, const F
                          TrainingState state, const TrainingHooks& hooks,
                          const PoseModel* from = nullptr);
 
+/// Begins with the network and the scales of `from`.
+template <class Task>
+Result<void> go_on_from(const BodyModel& from, Task& task, TorchNetwork& network) {
+  task.use_scales(from.input_mean, from.input_scale);
+  return take_tensors(from.tensors, "net.", network);
+}
+
+/// Puts what was learnt into a model.
+template <class Task>
+void put_learnt(const Task& task, const TorchNetwork& network, const PoseBody& body,
+                BodyModel& out) {
+  out.body = body;
+  out.input_mean = task.input_mean();
+  out.input_scale = task.input_scale();
+  out.architecture = network.architecture();
+  put_tensors(network, "net.", out.tensors);
+}
+
 }  // namespace kinalign

@@ -63,12 +63,6 @@ std::vector<std::string> pose_joint_names() {
 
 std::vector<int> pose_joint_parents() { return pose_body({}).skeleton.parents; }
 
-std::size_t joint_named(std::string_view name) {
-  const auto at = std::find_if(pose_joints.begin(), pose_joints.end(),
-                               [&](const PoseJoint& one) { return one.name == name; });
-  return static_cast<std::size_t>(at - pose_joints.begin());
-}
-
 Result<NodeJoints> node_joints(const std::string& node) {
   const auto place = std::find_if(node_places.begin(), node_places.end(),
                                   [&](const NodePlace& one) { return one.name == node; });
@@ -78,7 +72,7 @@ Result<NodeJoints> node_joints(const std::string& node) {
       known += (known.empty() ? "" : ", ") + std::string(one.name);
     return Failure(Error{"", 0, "nodes among " + known, shown(node)});
   }
-  return NodeJoints{joint_named(place->bone), joint_named(place->towards), place->share,
+  return NodeJoints{pose_joint_at(place->bone), pose_joint_at(place->towards), place->share,
                     Vec3(place->lever[0], place->lever[1], place->lever[2])};
 }
 
@@ -90,9 +84,9 @@ Result<FileSkeleton> file_skeleton(const Windows& windows, const std::string& st
   }
   FileSkeleton out;
   out.pose = KA_TRY(pose_skeleton(found->names, found->parents));
-  for (const std::string_view bone : pose_bones) out.bones.push_back(joint_named(bone));
+  for (const std::string_view bone : pose_bones) out.bones.push_back(pose_joint_at(bone));
   for (const std::string& node : nodes) out.nodes.push_back(KA_TRY(node_joints(node)));
-  out.head = joint_named("head");
+  out.head = pose_joint_at("head");
   return out;
 }
 

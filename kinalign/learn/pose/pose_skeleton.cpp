@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/pose/pose_skeleton.h"
 
+#include "kinalign/models/joint_names.h"
+
 #include <algorithm>
 #include <array>
 #include <initializer_list>
@@ -70,16 +72,10 @@ constexpr std::array<LimbZero, 8> limb_zeros{{{"lfemur", "ltibia", {0.342020, -0
                                               {"rhumerus", "rradius", {-1.0, 0.0, 0.0}},
                                               {"rwrist", "rwrist", {-1.0, 0.0, 0.0}}}};
 
-std::optional<std::size_t> find_name(const std::vector<std::string>& names, std::string_view name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - names.begin());
-}
-
 Result<std::size_t> any_of_names(const std::vector<std::string>& names, const OtherNames& wanted) {
   for (const std::string_view name : wanted) {
     if (name.empty()) continue;
-    if (const auto at = find_name(names, name)) return *at;
+    if (const auto at = index_of(names, name)) return *at;
   }
   return Failure(Error{"", 0, "a skeleton with the joints of a suit (LeftUpLeg) or of CMU (lfemur)",
                        "none named " + std::string(wanted[0])});
@@ -108,12 +104,6 @@ Result<void> add_cmu_joints(PoseSkeleton& out) {
   return {};
 }
 
-std::size_t pose_joint_at(std::string_view name) {
-  const auto at = std::find_if(pose_joints.begin(), pose_joints.end(),
-                               [&](const PoseJoint& one) { return one.name == name; });
-  return static_cast<std::size_t>(at - pose_joints.begin());
-}
-
 }  // namespace
 
 Result<PoseSkeleton> pose_skeleton(std::vector<std::string> names, std::vector<int> parents) {
@@ -123,7 +113,7 @@ Result<PoseSkeleton> pose_skeleton(std::vector<std::string> names, std::vector<i
     }
   }
   PoseSkeleton out{std::move(names), std::move(parents), {}, true};
-  if (find_name(out.file_names, "Hips")) {
+  if (index_of(out.file_names, "Hips")) {
     KA_TRY(add_suit_joints(out));
   } else {
     KA_TRY(add_cmu_joints(out));

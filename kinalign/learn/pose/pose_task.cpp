@@ -2,6 +2,7 @@
 #include "kinalign/learn/pose/pose_task.h"
 
 #include "kinalign/learn/losses.h"
+#include "kinalign/learn/pose/channel_sums.h"
 #include "kinalign/learn/tensors.h"
 #include "kinalign/models/pose/pose_model.h"
 
@@ -90,21 +91,11 @@ void PoseTask::find_scales() {
   input_mean_.assign(channels, 0.0F);
   input_scale_.assign(channels, 1.0F);
   if (!training_.standardised) return;
-  std::vector<double> sum(channels, 0.0), squares(channels, 0.0);
-  double frames = 0.0;
-  for (const PoseSequence& one : data_.learnt) {
-    const auto input = pose_features(layout_, one.nodes).input;
-    for (std::size_t i = 0; i < input.size(); ++i) {
-      const double value = static_cast<double>(input[i]);
-      sum[i % channels] += value;
-      squares[i % channels] += value * value;
-    }
-    frames += static_cast<double>(one.frames());
-  }
+  ChannelSums sums(channels);
+  for (const PoseSequence& one : data_.learnt) sums.add(pose_features(layout_, one.nodes).input);
   for (std::size_t c = 0; c < channels; ++c) {
-    const double mean = sum[c] / frames, variance = squares[c] / frames - mean * mean;
-    input_mean_[c] = static_cast<float>(mean);
-    input_scale_[c] = std::max(static_cast<float>(std::sqrt(std::max(variance, 0.0))), least_scale);
+    input_mean_[c] = sums.mean(c);
+    input_scale_[c] = std::max(sums.deviation(c), least_scale);
   }
 }
 

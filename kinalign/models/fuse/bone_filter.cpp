@@ -2,6 +2,7 @@
 #include "kinalign/models/fuse/bone_filter.h"
 
 #include "kinalign/models/body_frame.h"
+#include "kinalign/models/joint_names.h"
 
 #include <algorithm>
 #include <array>
@@ -46,20 +47,14 @@ struct Part {
   std::optional<std::size_t> node;
 };
 
-std::optional<std::size_t> index_in(const std::vector<std::string>& names, std::string_view name) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - names.begin());
-}
-
 std::vector<Part> parts_of(const FuseLayout& layout, const PoseBody& body) {
   std::vector<Part> out;
   for (const FilteredBone& one : filtered_bones) {
-    const auto bone = index_in(body.bones, one.bone);
+    const auto bone = index_of(body.bones, one.bone);
     if (!bone) continue;
-    out.push_back({*bone, index_in(body.bones, one.above).value_or(body.bones.size()),
+    out.push_back({*bone, index_of(body.bones, one.above).value_or(body.bones.size()),
                    seen_bone(body, layout.joints, one.from, one.to, one.bone),
-                   index_in(layout.nodes.nodes, one.node)});
+                   index_of(layout.nodes.nodes, one.node)});
   }
   return out;
 }
@@ -158,7 +153,7 @@ FusedPose filtered_pose(const FuseLayout& layout, const PoseBody& body, const Fu
                         const BoneFilterOptions& options) {
   JointFrames kinect = smoothed_kinect(input, options.smoothing);
   kinect.seen = input.kinect.seen;
-  const auto base = index_in(layout.joints, "SpineBase");
+  const auto base = index_of(layout.joints, "SpineBase");
   BoneFilter filter(layout, body, options);
   FusedPose out;
   for (std::size_t t = 0; t < input.frames(); ++t) {

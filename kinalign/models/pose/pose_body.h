@@ -55,6 +55,13 @@ inline constexpr std::array<PoseJoint, 27> pose_joints{{
     {"rfingers", "rhand", "rwrist"},
 }};
 
+/// Where a joint of that name stands in pose_joints; their number: nowhere.
+constexpr std::size_t pose_joint_at(std::string_view name) {
+  std::size_t out = 0;
+  while (out < pose_joints.size() && pose_joints[out].name != name) ++out;
+  return out;
+}
+
 /// Bones whose rotations a network answers.
 inline constexpr std::array<std::string_view, 15> pose_bones{
     "lfemur", "ltibia",    "rfemur",   "rtibia", "lowerback", "upperback", "thorax", "upperneck",
