@@ -276,7 +276,7 @@ Result<ComparedMotion> poses_of(std::vector<PoseSolver>& solvers, const Compared
     if (layout.rate_hz != rate_hz) {
       return Failure(Error{"", 0, "models of one rate", "several"});
     }
-    NodeFrames nodes = KA_TRY(nodes_for(solver.model(), named, {take.t_pose, "auto"}, span));
+    NodeFrames nodes = KA_TRY(nodes_for(solver.model(), named, {"", "auto"}, span));
     const auto head = std::find(layout.nodes.begin(), layout.nodes.end(), "head");
     WorldPlaces places = KA_TRY(places_of(solver.clip(nodes, span.start)));
     if (head != layout.nodes.end()) {
@@ -348,7 +348,7 @@ Result<ComparedMotion> devices_of(Fuser& fuser, const ComparedTake& take, FileSy
   BothDevices both;
   both.kinect = KA_TRY(points_of_take(files, take.path, ""));
   both.nodes = KA_TRY(nodes_of_take(files, take.path, ""));
-  FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), {take.t_pose, "auto"}));
+  FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), {"", "auto"}));
   hide_limbs(layout.joints, rate_hz, given.input.kinect);
   const EvenSpan span{given.start, given.input.frames()};
   ComparedMotion out{take.name, rate_hz, span.frames, {}, {}, {}, {}};
@@ -357,7 +357,9 @@ Result<ComparedMotion> devices_of(Fuser& fuser, const ComparedTake& take, FileSy
   FuseInput kinect_alone = given.input, nodes_alone = given.input;
   std::fill(kinect_alone.nodes.valid.begin(), kinect_alone.nodes.valid.end(), std::uint8_t{0});
   std::fill(nodes_alone.kinect.seen.begin(), nodes_alone.kinect.seen.end(), std::uint8_t{0});
+  const Skeleton mean = fuser.model().body.skeleton;
   for (const FuseInput* input : {&kinect_alone, &nodes_alone, &given.input}) {
+    fuser.use_body(input == &nodes_alone ? mean : given.body);
     out.answers.push_back(in_body(KA_TRY(places_of(fuser.clip(*input, given.start)))));
   }
   for (std::size_t t = 0; t < span.frames; ++t) {

@@ -45,7 +45,6 @@ struct ComparedMotion {
 /// A take with nodes.
 struct ComparedTake {
   std::string name, path;
-  std::string t_pose;  // its seconds, as --tpose has them; empty: the first still second
 };
 
 /// The answers of all models to the take's nodes. A model with a node on the head gets one that is

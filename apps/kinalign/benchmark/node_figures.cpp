@@ -26,8 +26,6 @@ namespace {
 constexpr std::size_t most_compared_takes = 12;
 constexpr std::size_t instants = 5;
 constexpr double turn_bend_deg = 180.0 / std::numbers::pi;
-/// A twin's takes begin in the T-pose, for less than a second.
-constexpr const char* twin_t_pose = "0,0.5";
 constexpr std::size_t head_place = 2, nose_place = 15;
 
 /// Joints whose distance to the truth is told together.
@@ -175,13 +173,12 @@ Result<FigureTakes> figure_takes(const NodeFigureOptions& o, Call& call) {
   for (const SplitPart& part : KA_TRY(read_split(files, o.split)).parts) {
     if (part.name == "test") tested.insert(part.takes.begin(), part.takes.end());
   }
-  const std::string t_pose = is_there(o.data + "/truth/twin.json") ? twin_t_pose : "";
   std::vector<std::pair<ComparedTake, bool>> nodes, both;
   for (const SplitTake& take : takes) {
     if (!take.summary.has(Modality::imu)) continue;
-    const std::pair one{ComparedTake{to_string(take.name),
-                                     o.data + "/" + path_of(take.name, TakeFile::take), t_pose},
-                        tested.contains(take.name)};
+    const std::pair one{
+        ComparedTake{to_string(take.name), o.data + "/" + path_of(take.name, TakeFile::take)},
+        tested.contains(take.name)};
     nodes.push_back(one);
     if (take.summary.has(Modality::kinect)) both.push_back(one);
   }

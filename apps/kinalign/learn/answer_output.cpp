@@ -7,11 +7,13 @@
 
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/take/guarded.h"
+#include "kinalign/models/pose/own_body.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -26,7 +28,56 @@ bool is_finite(const Clip& clip) {
          std::all_of(frames.local_rotations.begin(), frames.local_rotations.end(), is_number);
 }
 
+constexpr double least_stature_m = 0.5, most_stature_m = 2.6;
+constexpr std::uint64_t most_body_bytes = std::uint64_t{1} << 28U;
+
+/// m; none where the words are no number.
+std::optional<double> stature_in(const std::string& words) {
+  double out = 0.0;
+  const char* end = words.data() + words.size();
+  const auto [rest, fault] = std::from_chars(words.data(), end, out);
+  return fault == std::errc() && rest == end ? std::optional(out) : std::nullopt;
+}
+
 }  // namespace
+
+Field body_flag(std::string& words, const std::string& otherwise) {
+  return {"body",
+          "whose bones the answer has: a stature in m, or a BVH of the person's suit (default: " +
+              otherwise + ")",
+          &words,
+          0.0,
+          0.0,
+          {},
+          "METRES|FILE.bvh"};
+}
+
+Result<void> check_body(const std::string& words) {
+  if (words.empty() || words.ends_with(".bvh")) return {};
+  const auto stature = stature_in(words);
+  if (stature && *stature >= least_stature_m && *stature <= most_stature_m) return {};
+  return Failure(
+      Error{"--body", 0, "a stature from 0.5 to 2.6 m, or a BVH of the suit", shown(words)});
+}
+
+Result<std::optional<Skeleton>> body_of_words(const std::string& words, const Skeleton& body,
+                                              Call& call) {
+  if (words.empty()) return std::optional<Skeleton>{};
+  if (const auto stature = stature_in(words)) return scaled(body, *stature / stature_of(body));
+  const std::string text = KA_TRY(read_whole(call.surroundings.files, words, most_body_bytes));
+  auto own = with_lengths_of(body, KA_TRY(read_bvh(text, words, {})).clip.skeleton);
+  if (own) return std::optional(std::move(*own));
+  Error error = own.error();
+  error.file = words;
+  return Failure(std::move(error));
+}
+
+std::string body_line(const AboutAnswer& about) {
+  const AboutAnswer& body = about.at("body");
+  return fmt::format("body     as of a stature of {:.2f} m, by {}\n",
+                     body.at("stature_m").get<double>(),
+                     harmless(body.at("by").get<std::string>()));
+}
 
 Result<AboutAnswer> in_child(const std::string& in,
                              const std::function<Result<AboutAnswer>()>& work) {

@@ -9,6 +9,7 @@
 #include "apps/kinalign/verbs/inputs.h"
 
 #include "kinalign/models/fuse/fuse_model.h"
+#include "kinalign/models/pose/own_body.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/view/report_words.h"
 
@@ -27,7 +28,7 @@ constexpr double most_unsure_deg = 10.0;  // of a node's heading, 1 sigma
 
 struct FuseWords {
   std::vector<std::string> in;
-  std::string model, kinect, nodes;
+  std::string model, kinect, nodes, body;
   WornWords worn;
 };
 
@@ -51,8 +52,10 @@ Usage describe_fuse(FuseWords& o) {
        {},
        "NAME"}};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
+  usage.flags.push_back(body_flag(o.body, "as long as the Kinect sees them"));
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     KA_TRY(check(o.worn));
+    KA_TRY(check_body(o.body));
     if (common.out.ends_with(".bvh")) return {};
     return Failure(Error{"-o", 0, "-o FILE.bvh", common.out.empty() ? "none" : shown(common.out)});
   };
@@ -80,7 +83,13 @@ void tell_headings(const std::vector<std::string>& names, const std::vector<Head
 Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call& call) {
   const FusedInput given = KA_TRY(fused_input(fuser.model(), std::move(both), o.worn));
   const PoseLayout& layout = fuser.model().layout.nodes;
+  const auto own = KA_TRY(body_of_words(o.body, fuser.model().body.skeleton, call));
+  fuser.use_body(own ? *own : given.body);
   Json about = about_fused(fuser.model(), given);
+  about["body"] = {{"stature_m", stature_of(fuser.model().body.skeleton)},
+                   {"by", own              ? "--body"
+                          : given.is_sized ? "the Kinect"
+                                           : "the model"}};
   const auto headings = fuser.headings(given.input);
   tell_headings(layout.nodes, headings, about);
   KA_TRY(
@@ -134,7 +143,8 @@ void print_fuse(const Json& about, const std::string& out, Call& call) {
           harmless(out), grouped(about.at("frames").get<std::size_t>()),
           about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>(),
           100.0 * about.at("missing").get<double>(), 100.0 * about.at("inferred").get<double>()) +
-      node_lines(about) + fmt::format("turned   by the Kinect, deg: {}\n", found);
+      body_line(about) + node_lines(about) +
+      fmt::format("turned   by the Kinect, deg: {}\n", found);
   print_answer(std::move(text), about, call);
 }
 

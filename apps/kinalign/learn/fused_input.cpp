@@ -2,7 +2,9 @@
 #include "apps/kinalign/learn/fused_input.h"
 
 #include "kinalign/models/even_grid.h"
+#include "kinalign/models/fuse/kinect_size.h"
 #include "kinalign/models/joint_names.h"
+#include "kinalign/models/pose/own_body.h"
 
 #include <nlohmann/json.hpp>
 
@@ -59,6 +61,10 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
                          "none (denoise and pose take one device alone)"});
   }
   turn_world(out.input.nodes, *yaw);
+  const double mean = leg_length(model.body.skeleton);
+  const auto legs = legs_by_kinect(layout.joints, out.input.kinect);
+  out.is_sized = legs.has_value() && mean > 0.0;
+  out.body = scaled(model.body.skeleton, out.is_sized ? *legs / mean : 1.0);
   return out;
 }
 

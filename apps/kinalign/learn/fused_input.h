@@ -25,6 +25,8 @@ struct FusedInput {
   std::string kinect;  // its stream
   NamedNodes nodes;    // names alone
   PosedNodes posed;
+  Skeleton body;         // the model's, as long as the Kinect sees the person
+  bool is_sized = true;  // else the Kinect saw too little, and `body` is the model's
 };
 
 /// Fails where the Kinect has fewer than two frames, nodes do not fit, or both devices are never

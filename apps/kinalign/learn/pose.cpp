@@ -8,6 +8,7 @@
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
+#include "kinalign/models/pose/own_body.h"
 #include "kinalign/models/pose/pose_model.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/view/report_words.h"
@@ -25,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 struct PoseWords {
   std::vector<std::string> in;
-  std::string model, stream;
+  std::string model, stream, body;
   WornWords worn;
 };
 
@@ -36,8 +37,10 @@ Usage describe_pose(PoseWords& o) {
       {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
       {"stream", "which stream (default: the only one of nodes)", &o.stream, 0.0, 0.0, {}, "NAME"}};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
+  usage.flags.push_back(body_flag(o.body, "the mean of the training people"));
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     KA_TRY(check(o.worn));
+    KA_TRY(check_body(o.body));
     if (common.out.ends_with(".bvh")) return {};
     return Failure(Error{"-o", 0, "-o FILE.bvh", common.out.empty() ? "none" : shown(common.out)});
   };
@@ -54,7 +57,10 @@ Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o
              {"frames", calibrated.frames()},
              {"rate_hz", model.layout.rate_hz},
              {"joints", model.body.skeleton.joints()},
-             {"method", model.facts.method}};
+             {"method", model.facts.method},
+             {"body",
+              {{"stature_m", stature_of(model.body.skeleton)},
+               {"by", o.body.empty() ? "the model" : "--body"}}}};
   about.update(about_nodes(model.layout, posed, calibrated, names));
   KA_TRY(
       write_answer(solver.clip(calibrated, posed.even.start), model.layout.rate_hz, o.model, call));
@@ -82,7 +88,7 @@ void print_pose(const Json& about, const std::string& out, Call& call) {
       fmt::format("{}: {} frames at {:g} Hz, {} joints\n", harmless(out),
                   grouped(about.at("frames").get<std::size_t>()), about.at("rate_hz").get<double>(),
                   about.at("joints").get<std::size_t>()) +
-      node_lines(about);
+      body_line(about) + node_lines(about);
   print_answer(std::move(text), about, call);
 }
 
@@ -93,6 +99,8 @@ Result<int> run_pose(PoseWords& o, Call& call) {
   const std::string path = o.model.empty() ? KA_TRY(shipped_model("pose")) : o.model;
   const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
   PoseSolver solver = KA_TRY(PoseSolver::make(KA_TRY(read_pose_model(bytes, path))));
+  const auto body = KA_TRY(body_of_words(o.body, solver.model().body.skeleton, call));
+  if (body) solver.use_body(*body);
   const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
   const Json about =
       KA_TRY(is_take ? solve_take(solver, o, call)

@@ -12,7 +12,7 @@ namespace kinalign {
 
 namespace {
 
-constexpr double t_pose_s = 2.0;
+constexpr double t_pose_s = 3.5;  // still for two of them: the arms come down in the last 1.3
 constexpr double least_piece_s = 5.0;
 
 /// s; a walk comes back to where it began.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/learn/pose/pose_data.h"
 
-#include "kinalign/learn/pose/pose_skeleton.h"
 #include "kinalign/learn/pose/upright_zero.h"
+#include "kinalign/models/pose/pose_skeleton.h"
 
 #include <algorithm>
 #include <array>

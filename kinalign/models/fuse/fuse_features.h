@@ -47,8 +47,8 @@ struct FuseJoint {
 inline constexpr std::array<FuseJoint, 21> fuse_joints{{
     {"SpineBase", "root"},     {"SpineMid", "upperback"},    {"Neck", "lowerneck"},
     {"Head", "head"},          {"ShoulderLeft", "lhumerus"}, {"ElbowLeft", "lradius"},
-    {"WristLeft", "lwrist"},   {"HandLeft", "lhand"},        {"ShoulderRight", "rhumerus"},
-    {"ElbowRight", "rradius"}, {"WristRight", "rwrist"},     {"HandRight", "rhand"},
+    {"WristLeft", "lhand"},    {"HandLeft", "lfingers"},     {"ShoulderRight", "rhumerus"},
+    {"ElbowRight", "rradius"}, {"WristRight", "rhand"},      {"HandRight", "rfingers"},
     {"HipLeft", "lfemur"},     {"KneeLeft", "ltibia"},       {"AnkleLeft", "lfoot"},
     {"FootLeft", "ltoes"},     {"HipRight", "rfemur"},       {"KneeRight", "rtibia"},
     {"AnkleRight", "rfoot"},   {"FootRight", "rtoes"},       {"SpineShoulder", "thorax"},

@@ -102,11 +102,6 @@ Clip Fuser::clip(const FuseInput& input, const std::vector<HeadingState>& headin
   return out;
 }
 
-Result<void> Fuser::use_body(const Skeleton& body) {
-  model_.body = KA_TRY(with_own_bones(model_.body, body));
-  return {};
-}
-
 Result<OnlineFuser> OnlineFuser::make(const Fuser& fuser) {
   OnlineNetwork network = KA_TRY(OnlineNetwork::make(fuser.network_));
   return OnlineFuser(fuser, std::move(network), KA_TRY(OnlineNetwork::make(fuser.network_)));

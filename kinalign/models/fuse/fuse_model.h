@@ -59,7 +59,7 @@ class Fuser {
   Clip clip(const FuseInput& input, const std::vector<HeadingState>& headings, Time start);
 
   /// As PoseSolver::use_body().
-  Result<void> use_body(const Skeleton& body);
+  void use_body(Skeleton body) { model_.body.skeleton = std::move(body); }
 
  private:
   friend class OnlineFuser;

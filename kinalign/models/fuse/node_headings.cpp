@@ -19,8 +19,8 @@ constexpr double degree = std::numbers::pi / 180.0;
 struct CarriedNode {
   std::string_view node, from, to, bone;
 };
-constexpr std::array<CarriedNode, 5> carried_nodes{{{"wrist_left", "lradius", "lwrist", "lwrist"},
-                                                    {"wrist_right", "rradius", "rwrist", "rwrist"},
+constexpr std::array<CarriedNode, 5> carried_nodes{{{"wrist_left", "lradius", "lhand", "lwrist"},
+                                                    {"wrist_right", "rradius", "rhand", "rwrist"},
                                                     {"ankle_left", "ltibia", "lfoot", "ltibia"},
                                                     {"ankle_right", "rtibia", "rfoot", "rtibia"},
                                                     {"waist", "rfemur", "lfemur", ""}}};

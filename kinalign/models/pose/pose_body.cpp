@@ -65,18 +65,6 @@ Result<void> validate(const PoseBody& body) {
   return {};
 }
 
-Result<PoseBody> with_own_bones(PoseBody body, const Skeleton& own) {
-  Skeleton& skeleton = body.skeleton;
-  for (std::size_t j = 0; j < skeleton.joints(); ++j) {
-    const int at = place_of(own.joint_names, skeleton.joint_names[j]);
-    if (at < 0) {
-      return Failure(Error{"", 0, "a body with a joint " + skeleton.joint_names[j], "none"});
-    }
-    skeleton.rest_offsets[j] = own.rest_offsets[static_cast<std::size_t>(at)];
-  }
-  return body;
-}
-
 Turn turn_of_six(const float* six) {
   constexpr float least = 1e-6F;
   Eigen::Vector3f a(six[0], six[1], six[2]), b(six[3], six[4], six[5]);

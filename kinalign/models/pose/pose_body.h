@@ -79,9 +79,6 @@ PoseBody pose_body(std::vector<Vec3> rest_offsets);
 /// Fails where the parts do not fit together or joint 0 is not the only root.
 Result<void> validate(const PoseBody& body);
 
-/// `body` with another person's bones. Fails where a joint of it is not among `own`'s, by name.
-Result<PoseBody> with_own_bones(PoseBody body, const Skeleton& own);
-
 /// A rotation from any six numbers: the first column along a, the second one in the plane of a and
 /// b (Zhou et al., CVPR 2019). The loss on tensors computes the same (pose_task.cpp).
 Turn turn_of_six(const float* six);

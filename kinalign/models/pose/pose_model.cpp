@@ -57,11 +57,6 @@ Clip PoseSolver::clip(const NodeFrames& nodes, Time start) {
           clip_frames(model_.body, pose.rotations, pose.root, model_.layout.rate_hz, start)};
 }
 
-Result<void> PoseSolver::use_body(const Skeleton& body) {
-  model_.body = KA_TRY(with_own_bones(model_.body, body));
-  return {};
-}
-
 Result<OnlinePoseSolver> OnlinePoseSolver::make(const PoseSolver& solver) {
   return OnlinePoseSolver(solver, KA_TRY(OnlineNetwork::make(solver.network_)));
 }

@@ -41,9 +41,8 @@ class PoseSolver {
   /// A skeleton with constant bones (clip_frames()). The first frame has the stamp `start`.
   Clip clip(const NodeFrames& nodes, Time start);
 
-  /// Answers on a person's own body from now on. Fails where a joint of the model's body is not
-  /// among `body`'s, by name.
-  Result<void> use_body(const Skeleton& body);
+  /// Answers on a person's own body from now on: the model's with other lengths (own_body.h).
+  void use_body(Skeleton body) { model_.body.skeleton = std::move(body); }
 
  private:
   friend class OnlinePoseSolver;

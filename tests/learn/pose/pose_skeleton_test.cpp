@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/learn/pose/pose_skeleton.h"
+#include "kinalign/models/pose/pose_skeleton.h"
 
 #include "kinalign/learn/pose/pose_data.h"
 #include "kinalign/simulate/person/built_in_motion.h"
@@ -86,7 +86,7 @@ TEST_CASE("the joints of a pose from a suit lie where the suit has them") {
                                                                  {"rfoot", "RightFoot"},
                                                                  {"lhumerus", "LeftArm"},
                                                                  {"lradius", "LeftForeArm"},
-                                                                 {"lwrist", "LeftHand"},
+                                                                 {"lhand", "LeftHand"},
                                                                  {"head", "Head"}}};
   for (std::size_t t = 0; t < one.frames(); ++t) {
     const float* q = &one.nodes.orientation[4 * (t * 5 + 4)];

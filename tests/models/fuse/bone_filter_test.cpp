@@ -39,7 +39,7 @@ double error_cm(const FusePerson& person, const FusedPose& answer, std::string_v
 TEST_CASE("of clean devices the filter finds hands and feet within 5 cm") {
   const FusePerson person = fuse_person(120);
   const FusedPose pose = filtered_pose(fuse_test_layout(), pose_body(test_offsets()), person.input);
-  for (const char* joint : {"lwrist", "rwrist", "lfoot", "rfoot", "ltibia", "lradius"}) {
+  for (const char* joint : {"lhand", "rhand", "lfoot", "rfoot", "ltibia", "lradius"}) {
     CAPTURE(joint);
     CHECK(error_cm(person, pose, joint, 10, 110) < 5.0);
   }
@@ -58,10 +58,9 @@ TEST_CASE("a forearm that the Kinect loses goes on with its node") {
   lose("HandLeft");
   const PoseBody body = pose_body(test_offsets());
   const double with_nodes =
-      error_cm(person, filtered_pose(layout, body, person.input), "lwrist", 45, 95);
+      error_cm(person, filtered_pose(layout, body, person.input), "lhand", 45, 95);
   lose_all(person.input.nodes.valid);
-  const double alone =
-      error_cm(person, filtered_pose(layout, body, person.input), "lwrist", 45, 95);
+  const double alone = error_cm(person, filtered_pose(layout, body, person.input), "lhand", 45, 95);
   CHECK(with_nodes < 5.0);
   CHECK(alone > 1.5 * with_nodes);
 }
@@ -74,7 +73,7 @@ TEST_CASE("a limb that the Kinect puts elsewhere is left to its node") {
     wrist[1] += 0.4F;
   }
   const FusedPose pose = filtered_pose(layout, pose_body(test_offsets()), person.input);
-  CHECK(error_cm(person, pose, "lwrist", 50, 70) < 6.0);
+  CHECK(error_cm(person, pose, "lhand", 50, 70) < 6.0);
 }
 
 TEST_CASE("rotations stay rotations over a long time") {

@@ -4,6 +4,7 @@
 #include "tests/models/pose/pose_people.h"
 
 #include "kinalign/formats/bvh/bvh.h"
+#include "kinalign/models/pose/own_body.h"
 
 #include <doctest/doctest.h>
 
@@ -136,18 +137,14 @@ TEST_CASE("a clip has the body that was asked for, with constant bones") {
   std::mt19937_64 random(4);
   auto solver = PoseSolver::make(random_model(random));
   REQUIRE(solver);
-  Skeleton longer = pose_body(test_offsets()).skeleton;
-  for (Vec3& offset : longer.rest_offsets) offset *= 1.1;
-  REQUIRE(solver->use_body(longer));
+  const Skeleton longer = scaled(pose_body(test_offsets()).skeleton, 1.1);
+  solver->use_body(longer);
   const Clip clip = solver->clip(random_nodes(5, 4, random), Time{});
   CHECK(validate(clip.skeleton));
   for (std::size_t j = 1; j < clip.skeleton.joints(); ++j) {
     CHECK(vec3(clip.frames.local_positions, 3 * clip.skeleton.joints() + j) ==
           longer.rest_offsets[j]);
   }
-  longer.joint_names[5] = "other";
-  CHECK(to_string(solver->use_body(longer).error()) ==
-        "expected a body with a joint rfemur, found none");
 }
 
 TEST_CASE("a pose is written as BVH, and its skeleton is read again") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/learn/pose/pose_skeleton.h"
+#include "kinalign/models/pose/pose_skeleton.h"
 
 #include "kinalign/models/joint_names.h"
 
@@ -25,7 +25,8 @@ struct SuitJoint {
   std::array<double, 3> along = {};  // m
 };
 
-/// Hands and fingers lie on the line of the forearm: suits without gloves have none. No suit has
+/// CMU's "lwrist" turns the forearm about itself, two thirds along it; "lhand" begins at the wrist.
+/// Fingers lie on the line of the forearm: suits without gloves have none. No suit has
 /// toes; they lie 13 cm before the ankle and 6 cm below it. Where a skeleton has one joint of the
 /// neck, the upper one lies between it and the head.
 constexpr std::array<SuitJoint, pose_joints.size()> suit_joints{{
@@ -47,15 +48,15 @@ constexpr std::array<SuitJoint, pose_joints.size()> suit_joints{{
     {"lclavicle", {"LeftShoulder"}, {"LeftShoulder"}},
     {"lhumerus", {"LeftArm"}, {"LeftArm"}},
     {"lradius", {"LeftForeArm"}, {"LeftForeArm"}},
-    {"lwrist", {"LeftForeArm"}, {"LeftHand"}},
-    {"lhand", {"LeftForeArm"}, {"LeftForeArm"}, {"LeftHand"}, 1.35},
-    {"lfingers", {"LeftForeArm"}, {"LeftForeArm"}, {"LeftHand"}, 1.5},
+    {"lwrist", {"LeftForeArm"}, {"LeftForeArm"}, {"LeftHand"}, 0.67},
+    {"lhand", {"LeftForeArm"}, {"LeftHand"}},
+    {"lfingers", {"LeftForeArm"}, {"LeftForeArm"}, {"LeftHand"}, 1.15},
     {"rclavicle", {"RightShoulder"}, {"RightShoulder"}},
     {"rhumerus", {"RightArm"}, {"RightArm"}},
     {"rradius", {"RightForeArm"}, {"RightForeArm"}},
-    {"rwrist", {"RightForeArm"}, {"RightHand"}},
-    {"rhand", {"RightForeArm"}, {"RightForeArm"}, {"RightHand"}, 1.35},
-    {"rfingers", {"RightForeArm"}, {"RightForeArm"}, {"RightHand"}, 1.5},
+    {"rwrist", {"RightForeArm"}, {"RightForeArm"}, {"RightHand"}, 0.67},
+    {"rhand", {"RightForeArm"}, {"RightHand"}},
+    {"rfingers", {"RightForeArm"}, {"RightForeArm"}, {"RightHand"}, 1.15},
 }};
 
 /// The bones of limbs, the joint at which each ends, and its direction in CMU's rest pose.
