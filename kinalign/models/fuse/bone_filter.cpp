@@ -15,29 +15,28 @@ namespace {
 
 constexpr float degrees = static_cast<float>(std::numbers::pi / 180.0);
 
-/// A bone, the bone above it ("" is the root), the way on it that a Kinect sees, and its node.
+/// A bone, the bone above it ("" is the root), and its node.
 struct FilteredBone {
-  std::string_view bone, above, from, to, node;
+  std::string_view bone, above, node;
 };
 
-/// Those above come first. The trunk's bones turn as one: by the long way from the root to the
-/// neck, and about it by the shoulders. The Kinect's error is 10 degrees and more of a shorter way.
+/// Those above come first. Bones of the trunk that no Kinect shows turn with the one below.
 constexpr std::array<FilteredBone, 15> filtered_bones{{
-    {"lowerback", "", "root", "lowerneck", ""},
-    {"upperback", "lowerback", "", "", ""},
-    {"thorax", "upperback", "rhumerus", "lhumerus", ""},
-    {"upperneck", "thorax", "lowerneck", "head", ""},
-    {"head", "upperneck", "", "", "head"},
-    {"lclavicle", "thorax", "", "", ""},
-    {"rclavicle", "thorax", "", "", ""},
-    {"lhumerus", "lclavicle", "lhumerus", "lradius", ""},
-    {"lwrist", "lhumerus", "lradius", "lhand", "wrist_left"},
-    {"rhumerus", "rclavicle", "rhumerus", "rradius", ""},
-    {"rwrist", "rhumerus", "rradius", "rhand", "wrist_right"},
-    {"lfemur", "", "lfemur", "ltibia", ""},
-    {"ltibia", "lfemur", "ltibia", "lfoot", "ankle_left"},
-    {"rfemur", "", "rfemur", "rtibia", ""},
-    {"rtibia", "rfemur", "rtibia", "rfoot", "ankle_right"},
+    {"lowerback", "", ""},
+    {"upperback", "lowerback", ""},
+    {"thorax", "upperback", ""},
+    {"upperneck", "thorax", ""},
+    {"head", "upperneck", "head"},
+    {"lclavicle", "thorax", ""},
+    {"rclavicle", "thorax", ""},
+    {"lhumerus", "lclavicle", ""},
+    {"lwrist", "lhumerus", "wrist_left"},
+    {"rhumerus", "rclavicle", ""},
+    {"rwrist", "rhumerus", "wrist_right"},
+    {"lfemur", "", ""},
+    {"ltibia", "lfemur", "ankle_left"},
+    {"rfemur", "", ""},
+    {"rtibia", "rfemur", "ankle_right"},
 }};
 
 /// A FilteredBone with its indices; `above` B: the root.
@@ -49,11 +48,14 @@ struct Part {
 
 std::vector<Part> parts_of(const FuseLayout& layout, const PoseBody& body) {
   std::vector<Part> out;
+  const auto shown = seen_bones(body, layout.joints);
   for (const FilteredBone& one : filtered_bones) {
     const auto bone = index_of(body.bones, one.bone);
     if (!bone) continue;
+    const auto seen = std::find_if(shown.begin(), shown.end(),
+                                   [&](const SeenBone& other) { return other.bone == *bone; });
     out.push_back({*bone, index_of(body.bones, one.above).value_or(body.bones.size()),
-                   seen_bone(body, layout.joints, one.from, one.to, one.bone),
+                   seen == shown.end() ? std::nullopt : std::optional(*seen),
                    index_of(layout.nodes.nodes, one.node)});
   }
   return out;

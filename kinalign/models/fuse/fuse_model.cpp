@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/fuse/fuse_model.h"
 
+#include "kinalign/models/body_frame.h"
 #include "kinalign/models/pose/pose_model.h"
 
 #include <algorithm>
@@ -9,6 +10,8 @@
 namespace kinalign {
 
 namespace {
+
+constexpr std::size_t smoothed_kinect_frames = 11;
 
 /// Whether any frame shows the root's place.
 bool is_placed(const FuseInput& input) {
@@ -73,6 +76,7 @@ FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& 
   unexchange(model_.layout, own);
   own.nodes = with_headings(std::move(own.nodes), headings);
   FusedPose out = answer(own);
+  turn_to_seen(own.kinect, out);
   if (!model_.smoothing) return out;
   smooth_turns(model_.layout.nodes.bones.size(), out.rotations);
   std::vector<Turn> roots;
@@ -88,6 +92,19 @@ FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& 
     out.place[t] = Eigen::Map<const Eigen::Vector3f>(&places[3 * t]);
   }
   return out;
+}
+
+void Fuser::turn_to_seen(const JointFrames& kinect, FusedPose& pose) const {
+  JointFrames smoothed = kinect;
+  fill_missing(smoothed, false);
+  smooth(Smoothing{.window = smoothed_kinect_frames}, 3 * smoothed.joints, smoothed.positions);
+  smoothed.seen = kinect.seen;
+  const auto seen = seen_bones(model_.body, model_.layout.joints);
+  const std::size_t bones = model_.layout.nodes.bones.size();
+  for (std::size_t t = 0; t < pose.root.size(); ++t) {
+    kinalign::turn_to_seen(seen, smoothed, t, pose.root[t],
+                           std::span(pose.rotations).subspan(t * bones, bones));
+  }
 }
 
 Clip Fuser::clip(const FuseInput& input, const std::vector<HeadingState>& headings, Time start) {
@@ -114,6 +131,7 @@ OnlineFuser::OnlineFuser(const Fuser& fuser, OnlineNetwork network, OnlineNetwor
       headings_(model_->layout, model_->body),
       maker_(model_->layout),
       kinect_maker_(model_->layout),
+      seen_bones_(seen_bones(model_->body, model_->layout.joints)),
       states_(model_->layout.nodes.nodes.size()),
       input_(model_->layout.channels()),
       rotations_(model_->layout.nodes.bones.size()) {}
@@ -139,6 +157,7 @@ std::span<const Turn> OnlineFuser::step(const FuseInput& input) {
   maker_.make(corrected_, 0, input_);
   standardise(model_->input_mean, model_->input_scale, input_);
   frame_ = fused_frame(maker_.space(), network_.step(input_), rotations_);
+  turn_to_seen(seen_bones_, given_.kinect, 0, frame_.root, rotations_);
   return rotations_;
 }
 

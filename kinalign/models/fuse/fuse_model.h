@@ -7,6 +7,7 @@
 #include "kinalign/models/fuse/bone_filter.h"
 #include "kinalign/models/fuse/fuse_features.h"
 #include "kinalign/models/fuse/node_headings.h"
+#include "kinalign/models/fuse/seen_bones.h"
 #include "kinalign/models/pose/body_model.h"
 
 #include <string>
@@ -45,7 +46,7 @@ class Fuser {
 
   /// `input`: the layout's, at its rate. The network answers to the Kinect alone first; that pose
   /// shows the nodes' headings (node_headings.h), and with these it answers to both. The answer is
-  /// smoothed.
+  /// turned towards what the Kinect sees (turn_to_seen()) and smoothed.
   FusedPose solve(const FuseInput& input) { return solve(input, headings(input)); }
   /// With headings that were found before.
   FusedPose solve(const FuseInput& input, const std::vector<HeadingState>& headings);
@@ -64,6 +65,8 @@ class Fuser {
  private:
   friend class OnlineFuser;
   Fuser(FuseModel model, Network network);
+
+  void turn_to_seen(const JointFrames& kinect, FusedPose& pose) const;
 
   FuseModel model_;
   Network network_;
@@ -92,6 +95,7 @@ class OnlineFuser {
   HeadingFilter headings_;
   FuseFeatureMaker maker_, kinect_maker_;
   FuseInput given_, corrected_;
+  std::vector<SeenBone> seen_bones_;
   std::vector<HeadingState> states_;
   std::vector<float> input_;
   std::vector<Turn> rotations_;

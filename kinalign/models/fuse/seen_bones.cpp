@@ -2,10 +2,33 @@
 #include "kinalign/models/fuse/seen_bones.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 
 namespace kinalign {
 
 namespace {
+
+/// The way on a bone of the body that a Kinect sees.
+struct SeenWay {
+  std::string_view bone, from, to;
+};
+/// The trunk's lower bone goes the long way from the root to the neck, and its upper one across the
+/// shoulders: the Kinect's error is 10 degrees and more of a shorter way.
+constexpr std::array<SeenWay, 11> seen_ways{{{"lowerback", "root", "lowerneck"},
+                                             {"thorax", "rhumerus", "lhumerus"},
+                                             {"upperneck", "lowerneck", "head"},
+                                             {"lhumerus", "lhumerus", "lradius"},
+                                             {"lwrist", "lradius", "lhand"},
+                                             {"rhumerus", "rhumerus", "rradius"},
+                                             {"rwrist", "rradius", "rhand"},
+                                             {"lfemur", "lfemur", "ltibia"},
+                                             {"ltibia", "ltibia", "lfoot"},
+                                             {"rfemur", "rfemur", "rtibia"},
+                                             {"rtibia", "rtibia", "rfoot"}}};
+constexpr float seen_share = 0.5F;
+constexpr float far_turn = 0.25F * std::numbers::pi_v<float>;
 
 constexpr float least_length_m = 0.03F;
 constexpr float against = -0.5F;  // the cosine of 120 degrees
@@ -50,6 +73,14 @@ std::optional<SeenBone> seen_bone(const PoseBody& body, const std::vector<std::s
                   static_cast<std::size_t>(turner - body.bones.begin())};
 }
 
+std::vector<SeenBone> seen_bones(const PoseBody& body, const std::vector<std::string>& kinect) {
+  std::vector<SeenBone> out;
+  for (const SeenWay& way : seen_ways) {
+    if (auto bone = seen_bone(body, kinect, way.from, way.to, way.bone)) out.push_back(*bone);
+  }
+  return out;
+}
+
 std::optional<SeenDirection> direction_at(const JointFrames& kinect, std::size_t t,
                                           const SeenBone& bone) {
   const std::size_t from = t * kinect.joints + bone.from, to = t * kinect.joints + bone.to;
@@ -59,6 +90,20 @@ std::optional<SeenDirection> direction_at(const JointFrames& kinect, std::size_t
   const float length = way.norm();
   if (!std::isfinite(length) || length < least_length_m) return std::nullopt;
   return SeenDirection{way / length, kinect.seen[from] == 2 && kinect.seen[to] == 2};
+}
+
+void turn_to_seen(std::span<const SeenBone> bones, const JointFrames& kinect, std::size_t t,
+                  const Eigen::Quaternionf& root, std::span<Turn> rotations) {
+  for (const SeenBone& bone : bones) {
+    const auto seen = direction_at(kinect, t, bone);
+    if (!seen || !seen->tracked) continue;
+    Turn& own = rotations[bone.bone];
+    const Eigen::AngleAxisf way(
+        Eigen::Quaternionf::FromTwoVectors(own * bone.axis, root.conjugate() * seen->direction));
+    const float far = std::pow(way.angle() / far_turn, 4.0F);
+    const float angle = seen_share / (1.0F + far) * way.angle();
+    own = turned_back_to_rotation(Eigen::AngleAxisf(angle, way.axis()) * own);
+  }
 }
 
 void unexchange(const FuseLayout& layout, FuseInput& input) {

@@ -6,6 +6,7 @@
 #include "kinalign/models/pose/pose_body.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ std::optional<SeenBone> seen_bone(const PoseBody& body, const std::vector<std::s
                                   std::string_view from, std::string_view to,
                                   std::string_view bone);
 
+/// The bones of the body that a Kinect shows. Those above come first.
+std::vector<SeenBone> seen_bones(const PoseBody& body, const std::vector<std::string>& kinect);
+
 /// The direction of the bone in frame `t`, unit, in the world; none where a joint is missing.
 struct SeenDirection {
   Eigen::Vector3f direction{0.0F, 1.0F, 0.0F};
@@ -32,6 +36,13 @@ struct SeenDirection {
 };
 std::optional<SeenDirection> direction_at(const JointFrames& kinect, std::size_t t,
                                           const SeenBone& bone);
+
+/// Turns each bone of which both joints are tracked in frame `t` towards the Kinect's direction,
+/// along the shortest way: half the way, less where it is far (a quarter at 45 degrees). A network
+/// that has not learnt a movement answers with one that it knows; the joints that are seen tell
+/// the rest. `root`: in the world. `rotations` [B] against it.
+void turn_to_seen(std::span<const SeenBone> bones, const JointFrames& kinect, std::size_t t,
+                  const Eigen::Quaternionf& root, std::span<Turn> rotations);
 
 /// Gives joints back to their side where the Kinect takes a person's back for the front: where its
 /// hips look against the way that the root's node looks.

@@ -103,7 +103,12 @@ TEST_CASE("frame by frame the fused answers are those with the headings of the f
     for (std::size_t n = 0; n < 5; ++n) states.push_back(filter.state(n));
     correct_frame(corrected_input.nodes, t, states);
   }
-  const FusedPose whole = fuser->answer(corrected_input);
+  FusedPose whole = fuser->answer(corrected_input);
+  const auto bones = seen_bones(model.body, model.layout.joints);
+  for (std::size_t t = 0; t < 40; ++t) {
+    turn_to_seen(bones, person.input.kinect, t, whole.root[t],
+                 std::span(whole.rotations).subspan(t * pose_bones.size(), pose_bones.size()));
+  }
   for (int round = 0; round < 2; ++round) {
     for (std::size_t t = 0; t < 40; ++t) {
       const auto turns = online->step(frame_of(person.input, t));
