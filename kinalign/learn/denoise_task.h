@@ -53,6 +53,10 @@ class DenoiseTask : public TrainingTask {
   torch::Tensor answers(const TorchNetwork& network, const torch::Tensor& input,
                         const torch::Tensor& base, bool training) const;
 
+  /// What a network says that answers with the base: zeros, and the logarithm of each joint's own
+  /// spread about it. With another spread the likelihood outweighs all other losses at first.
+  torch::Tensor first_answer() const;
+
   /// By what the stated spread must be multiplied so that 90 % of the pairs that were learnt lie
   /// within the 90 % radius; 1 where none is stated.
   double spread_factor(const TorchNetwork& network) const;

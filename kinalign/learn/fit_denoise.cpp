@@ -77,7 +77,7 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   }
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
-  if (method.zero_last) network.zero_last();
+  if (method.zero_last) network.zero_last(task.first_answer());
   if (from != nullptr) KA_TRY(take_tensors(from->tensors, "net.", network));
   network.to(options.device);
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;

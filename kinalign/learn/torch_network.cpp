@@ -262,12 +262,16 @@ torch::Tensor run_layers(const std::vector<Layer>& layers,
   return Runner(tensors, false).run(layers, "", input);
 }
 
-void TorchNetwork::zero_last() {
+void TorchNetwork::zero_last(const torch::Tensor& bias) {
   torch::NoGradGuard guard;
   const std::string path = last_weighted(architecture_.layers, "");
   if (path.empty()) return;
   tensors_.at(path + ".weight").zero_();
-  tensors_.at(path + ".bias").zero_();
+  if (bias.defined()) {
+    tensors_.at(path + ".bias").copy_(bias);
+  } else {
+    tensors_.at(path + ".bias").zero_();
+  }
 }
 
 void TorchNetwork::to(torch::Device device) {

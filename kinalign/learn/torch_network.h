@@ -22,8 +22,9 @@ class TorchNetwork {
   /// [B,T,inputs] to [B,T,outputs]. `training`: with dropout.
   torch::Tensor forward(const torch::Tensor& input, bool training) const;
 
-  /// Weights and biases of the last linear or conv layer become 0: an answer that begins at 0.
-  void zero_last();
+  /// Weights of the last linear or conv layer become 0, so that it answers with `bias` [outputs],
+  /// or 0.
+  void zero_last(const torch::Tensor& bias = {});
   void to(torch::Device device);
 
   const Architecture& architecture() const { return architecture_; }

@@ -63,7 +63,7 @@ double left_over(const DenoiseMethod& method, std::int64_t steps) {
   DenoiseTask task(layout, small_training(method), pairs, pairs, torch::kCPU);
   torch::manual_seed(1);
   TorchNetwork network(narrow_network(method, layout));
-  if (method.zero_last) network.zero_last();
+  if (method.zero_last) network.zero_last(task.first_answer());
   const double before = *task.judge(network);
   REQUIRE(train(network, task, {.steps = steps, .rate = 1e-2, .average = false}, {}, {}));
   const double after = *task.judge(network);

@@ -3,6 +3,7 @@
 
 #include "kinalign/models/body_frame.h"
 #include "kinalign/models/joint_names.h"
+#include "kinalign/motion/kinect_joints.h"
 
 #include <fmt/format.h>
 
@@ -13,12 +14,14 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace kinalign {
 
 namespace {
 
 constexpr float bin_s = 0.5F;
+constexpr double most_moving_s = 30.0;
 constexpr double half_turn_window_s = 0.25;
 
 /// The joints that say what a person does.
@@ -206,6 +209,50 @@ std::string where_of(const CleaningData& data, const ChosenFrame& at) {
                      static_cast<double>(at.frame) / data.layout.rate_hz);
 }
 
+/// Of data.tested.
+std::size_t longest_stretch(const CleaningData& data) {
+  std::size_t out = 0;
+  for (std::size_t p = 1; p < data.tested.size(); ++p) {
+    if (data.tested[p]->input.frames() > data.tested[out]->input.frames()) out = p;
+  }
+  return out;
+}
+
+/// Joints of a body that a Kinect has too, as they are drawn.
+struct DrawnJoints {
+  std::vector<std::size_t> joints;  // of the body
+  std::vector<int> parents;         // among `joints`
+};
+
+DrawnJoints drawn_joints(const std::vector<std::string>& names) {
+  DrawnJoints out;
+  std::vector<std::string> kept;
+  const auto called = kinect_names(names);
+  for (std::size_t j = 0; j < called.size(); ++j) {
+    if (std::find(kinect_joints.begin(), kinect_joints.end(), called[j]) == kinect_joints.end()) {
+      continue;
+    }
+    out.joints.push_back(j);
+    kept.push_back(called[j]);
+  }
+  out.parents = kinect_parents_of(kept);
+  return out;
+}
+
+/// Frames 0 ... frames of [T,J,3].
+MovingBody moving_body(std::string name, FigureColour colour, const DrawnJoints& drawn,
+                       const std::vector<float>& positions, std::size_t joints,
+                       std::size_t frames) {
+  MovingBody out{std::move(name), colour, drawn.parents, {}, {}, {}};
+  for (std::size_t t = 0; t < frames; ++t) {
+    for (const std::size_t j : drawn.joints) {
+      const float* place = &positions[3 * (t * joints + j)];
+      out.positions.insert(out.positions.end(), place, place + 3);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes>& all) {
@@ -256,10 +303,7 @@ PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes
 }
 
 ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& all) {
-  std::size_t longest = 0;
-  for (std::size_t p = 1; p < data.tested.size(); ++p) {
-    if (data.tested[p]->input.frames() > data.tested[longest]->input.frames()) longest = p;
-  }
+  const std::size_t longest = longest_stretch(data);
   const Pair& pair = *data.tested[longest];
   ErrorPlot out;
   out.step_s = bin_s;
@@ -277,6 +321,41 @@ ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& 
       curve.cm.push_back(sum / static_cast<float>(bin));
     }
     out.curves.push_back(std::move(curve));
+  }
+  return out;
+}
+
+SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes>& all) {
+  const std::size_t longest = longest_stretch(data);
+  const Pair& pair = *data.tested[longest];
+  const auto most = static_cast<std::size_t>(most_moving_s * data.layout.rate_hz);
+  const std::size_t frames = std::min(pair.input.frames(), most);
+  SideBySide out;
+  out.rate_hz = data.layout.rate_hz;
+  out.caption = fmt::format(
+      "{}, the longest test take. Pale red behind each: the truth. Beside a name: mean distance to "
+      "the truth at that instant, not steadied. Drag a picture to turn all of them.",
+      pair.take);
+  const DrawnJoints answered = drawn_joints(data.layout.outputs),
+                    seen = drawn_joints(data.layout.inputs);
+  const std::size_t joints = data.layout.outputs.size();
+  out.bodies.push_back(
+      moving_body("truth", FigureColour::truth, answered, pair.truth, joints, frames));
+  MovingBody kinect = moving_body("Kinect", FigureColour::kinect, seen, pair.input.positions,
+                                  pair.input.joints, frames);
+  for (std::size_t t = 0; t < frames; ++t) {
+    for (const std::size_t j : seen.joints) {
+      kinect.states.push_back(pair.input.seen[t * pair.input.joints + j]);
+    }
+  }
+  out.bodies.push_back(std::move(kinect));
+  for (const CleanedTakes& method : all) {
+    const std::vector<float>& answer = method.answers[longest];
+    MovingBody body =
+        moving_body(method.method, FigureColour::method, answered, answer, joints, frames);
+    body.cm = errors_over_time(data, pair, answer);
+    body.cm.resize(frames);
+    out.bodies.push_back(std::move(body));
   }
   return out;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table 8 and the errors over time: what the page shows of methods that clean a Kinect.
+// Table 8, the errors over time and the moving bodies: what the page shows of methods that clean a Kinect.
 #pragma once
 
 #include "apps/kinalign/benchmark/cleaning.h"
@@ -16,5 +16,9 @@ PosePictures pose_table(const CleaningData& data, const std::vector<CleanedTakes
 
 /// Of the longest tested stretch: means over half a second.
 ErrorPlot error_plot(const CleaningData& data, const std::vector<CleanedTakes>& all);
+
+/// The first half minute of the longest tested stretch: the truth, the Kinect, each method (not
+/// steadied). Fingers are left out.
+SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes>& all);
 
 }  // namespace kinalign

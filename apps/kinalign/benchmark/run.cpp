@@ -197,6 +197,7 @@ ModelsPage page_of(const CleaningOptions& o, const CleaningData& data,
       "mirror image, Savitzky-Golay over 11 frames, and bones of one length.";
   page.poses = pose_table(data, all);
   page.errors = error_plot(data, all);
+  page.motion = side_by_side(data, all);
   page.command = fmt::format(
       "kinalign benchmark run {} {}{} --seed {} -o {}", o.data, fmt::join(o.methods, " "),
       o.steps > 0 ? fmt::format(" --steps {}", o.steps) : "", o.seed, o.folder);

@@ -8,5 +8,6 @@ namespace kinalign {
 
 std::string_view models_style();     // assets/models.css, after the style of a take's page
 std::string_view models_template();  // assets/models.html
+std::string_view models_script();    // assets/side_by_side.js; empty without esbuild
 
 }  // namespace kinalign

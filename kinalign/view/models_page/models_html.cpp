@@ -5,6 +5,7 @@
 #include "kinalign/view/models_page/assets.h"
 #include "kinalign/view/models_page/error_plot.h"
 #include "kinalign/view/models_page/pose_pictures.h"
+#include "kinalign/view/models_page/side_by_side.h"
 #include "kinalign/view/page/assets.h"
 #include "kinalign/view/page/page_html.h"
 #include "kinalign/view/page/page_template.h"
@@ -56,7 +57,12 @@ std::string links_html(const ModelsPage& page) {
 std::string models_html(const ModelsPage& page) {
   const std::string style = std::string(page_style()) + std::string(models_style());
   PageParts parts;
-  parts["policy"] = page_policy("", style);
+  if (!models_script().empty() && !page.motion.bodies.empty()) {
+    parts["motion"] = side_by_side_json(page.motion);
+    parts["script"] = models_script();
+    parts["motion_caption"] = escaped(page.motion.caption);
+  }
+  parts["policy"] = page_policy(parts["script"], style);
   parts["software"] = escaped(page.software);
   parts["mark"] = models_page_mark;
   parts["style"] = style;

@@ -52,6 +52,23 @@ struct ErrorPlot {
   std::vector<ErrorCurve> curves;
 };
 
+/// A body that moves over T rows.
+struct MovingBody {
+  std::string name;
+  FigureColour colour = FigureColour::method;
+  std::vector<int> parents;          // [J] as of StickFigure
+  std::vector<float> positions;      // [T,J,3] m
+  std::vector<std::uint8_t> states;  // [T,J] as Tracking; empty: all are tracked
+  std::vector<float> cm;             // [T] mean distance to the truth; empty: not shown
+};
+
+/// A stretch of a take that all methods answer to, shown moving.
+struct SideBySide {
+  std::string caption;
+  double rate_hz = 30.0;
+  std::vector<MovingBody> bodies;  // the truth first; none: nothing is shown
+};
+
 struct ModelsPage {
   std::string name, software;
   std::string headline;                                      // the result in a sentence
@@ -61,6 +78,7 @@ struct ModelsPage {
   std::string marks_note;
   PosePictures poses;  // table 8
   ErrorPlot errors;
+  SideBySide motion;
   std::vector<PosePictures> figures;  // figures 8, 9 and 10
   std::string command;                // that made the page
 };

@@ -25,20 +25,6 @@ double rounded(double x, double step) {
   return std::isfinite(y) ? y / std::round(1.0 / step) : 0.0;
 }
 
-Json series(const std::vector<float>& values, std::size_t columns, double step) {
-  return {{"rows", columns == 0 ? 0 : values.size() / columns},
-          {"columns", columns},
-          {"step", step},
-          {"packed", packed_series(values, columns, step)}};
-}
-
-Json series(const std::vector<std::uint8_t>& values, std::size_t columns) {
-  return {{"rows", columns == 0 ? 0 : values.size() / columns},
-          {"columns", columns},
-          {"step", 1},
-          {"packed", packed_series(std::span(values), columns)}};
-}
-
 Json vector_json(const Vec3& v) {
   return {rounded(v.x(), 1e-6), rounded(v.y(), 1e-6), rounded(v.z(), 1e-6)};
 }
@@ -57,8 +43,8 @@ Json body_json(const PageBody& body) {
           {"joint_names", body.joint_names},
           {"parents", body.parents},
           {"in_take_space", body.in_take_space},
-          {"positions", series(body.positions, 3 * joints, metre_step)},
-          {"state", series(body.state, joints)}};
+          {"positions", series_json(body.positions, 3 * joints, metre_step)},
+          {"state", series_json(body.state, joints)}};
 }
 
 Json space_json(const PageSpace& space) {
@@ -121,25 +107,25 @@ Json node_json(const NodeFigures& node) {
   Json out{{"node", node.node},
            {"joint", node.joint},
            {"gravity", node.has_gravity},
-           {"valid", series(node.valid, 1)}};
+           {"valid", series_json(node.valid, 1)}};
   if (node.has_rate) {
-    out["rate"] = series(node.rate, 3, rate_step);
-    out["mocap_rate"] = series(node.mocap_rate, 3, rate_step);
+    out["rate"] = series_json(node.rate, 3, rate_step);
+    out["mocap_rate"] = series_json(node.mocap_rate, 3, rate_step);
   }
   if (node.has_acceleration) {
-    out["acceleration"] = series(node.acceleration, 3, acceleration_step);
-    out["mocap_acceleration"] = series(node.mocap_acceleration, 3, acceleration_step);
+    out["acceleration"] = series_json(node.acceleration, 3, acceleration_step);
+    out["mocap_acceleration"] = series_json(node.mocap_acceleration, 3, acceleration_step);
   }
   if (!node.raw_seconds.empty()) {
-    out["raw_seconds"] = series(node.raw_seconds, 1, second_step);
-    if (node.has_rate) out["raw_rate"] = series(node.raw_rate, 3, rate_step);
+    out["raw_seconds"] = series_json(node.raw_seconds, 1, second_step);
+    if (node.has_rate) out["raw_rate"] = series_json(node.raw_rate, 3, rate_step);
     if (node.has_acceleration) {
-      out["raw_acceleration"] = series(node.raw_acceleration, 3, acceleration_step);
+      out["raw_acceleration"] = series_json(node.raw_acceleration, 3, acceleration_step);
     }
   }
   if (node.has_orientation) {
-    out["orientation_error"] = series(node.orientation_error, 1, angle_step);
-    out["axes"] = series(node.axes, 4, rotation_step);
+    out["orientation_error"] = series_json(node.orientation_error, 1, angle_step);
+    out["axes"] = series_json(node.axes, 4, rotation_step);
   }
   return out;
 }
@@ -149,19 +135,19 @@ Json detail_json(const TakePage& page, const PageDetail& detail) {
   Json out{{"body", detail.body},
            {"begin_s", rounded(detail.begin_s, 1e-4)},
            {"end_s", rounded(detail.end_s, 1e-4)},
-           {"near_seconds", series(detail.near_seconds, 1, second_step)},
+           {"near_seconds", series_json(detail.near_seconds, 1, second_step)},
            {"has_raw", detail.has_raw}};
   if (!detail.seconds.empty()) {
     const std::size_t pairs = detail.onto_positions.size() / detail.seconds.size() / 3;
-    out["seconds"] = series(detail.seconds, 1, second_step);
-    out["positions"] = series(detail.positions, 3 * joints, metre_step);
-    out["state"] = series(detail.state, joints);
-    out["onto_positions"] = series(detail.onto_positions, 3 * pairs, metre_step);
+    out["seconds"] = series_json(detail.seconds, 1, second_step);
+    out["positions"] = series_json(detail.positions, 3 * joints, metre_step);
+    out["state"] = series_json(detail.state, joints);
+    out["onto_positions"] = series_json(detail.onto_positions, 3 * pairs, metre_step);
   }
   if (detail.has_raw) {
-    out["raw_seconds"] = series(detail.raw_seconds, 1, second_step);
-    out["raw_positions"] = series(detail.raw_positions, 3 * joints, metre_step);
-    out["raw_state"] = series(detail.raw_state, joints);
+    out["raw_seconds"] = series_json(detail.raw_seconds, 1, second_step);
+    out["raw_positions"] = series_json(detail.raw_positions, 3 * joints, metre_step);
+    out["raw_state"] = series_json(detail.raw_state, joints);
   }
   return out;
 }
@@ -174,6 +160,33 @@ Json list_json(const Items& items, ToJson to_json) {
 }
 
 }  // namespace
+
+Json series_json(const std::vector<float>& values, std::size_t columns, double step) {
+  return {{"rows", columns == 0 ? 0 : values.size() / columns},
+          {"columns", columns},
+          {"step", step},
+          {"packed", packed_series(values, columns, step)}};
+}
+
+Json series_json(const std::vector<std::uint8_t>& values, std::size_t columns) {
+  return {{"rows", columns == 0 ? 0 : values.size() / columns},
+          {"columns", columns},
+          {"step", 1},
+          {"packed", packed_series(std::span(values), columns)}};
+}
+
+std::string safe_in_script(const std::string& json) {
+  std::string out;
+  out.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      out += "\\u003c";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
 
 std::string_view to_string(PageColour colour) {
   if (colour == PageColour::mocap) return "mocap";
@@ -190,7 +203,7 @@ std::string page_json(const TakePage& page) {
                  {"stride", page.stride},
                  {"rate_hz", page.report.rate_hz},
                  {"length_s", rounded(seconds(page.report.end - page.report.begin), 1e-4)},
-                 {"seconds", series(page.seconds, 1, second_step)},
+                 {"seconds", series_json(page.seconds, 1, second_step)},
                  {"bodies", list_json(page.bodies, body_json)},
                  {"spaces", list_json(page.spaces, space_json)},
                  {"floors", list_json(page.floors, floor_json)},
@@ -203,17 +216,7 @@ std::string page_json(const TakePage& page) {
                  {"details", list_json(page.details,
                                        [&](const PageDetail& d) { return detail_json(page, d); })},
                  {"marks", std::move(marks)}};
-  std::string text = out.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
+  return safe_in_script(out.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace kinalign

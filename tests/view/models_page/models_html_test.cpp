@@ -29,7 +29,7 @@ ModelsPage small_models_page() {
 
 }  // namespace
 
-TEST_CASE("a page loads nothing and runs nothing") {
+TEST_CASE("a page without moving bodies loads nothing and runs nothing") {
   const std::string html = models_html(small_models_page());
   CHECK(holds(html, "default-src 'none'"));
   CHECK_FALSE(holds(html, "<script"));
