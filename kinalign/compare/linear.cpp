@@ -216,6 +216,7 @@ namespace {
 
 constexpr std::size_t most_groups = 5;
 constexpr double ratio_of_one_person = 1.5;
+constexpr double most_share = 0.95;
 
 /// Appends the distances of valid joints to the truth, m.
 void put_errors(const DenoiseLayout& layout, const Ridge& ridge, const Pair& pair,
@@ -229,11 +230,18 @@ void put_errors(const DenoiseLayout& layout, const Ridge& ridge, const Pair& pai
   }
 }
 
-double quantile_90(std::vector<double>& values) {
+double quantile(std::vector<double>& values, double share) {
   if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 9 / 10);
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+/// The quantile of n people's errors that holds 90 % of the errors of one more.
+double share_of_people(std::size_t people) {
+  const auto n = static_cast<double>(people);
+  return std::min(most_share, 0.9 * (n + 1.0) / n);
 }
 
 }  // namespace
@@ -256,8 +264,9 @@ double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs)
       put_errors(layout, ridge, pair, group_of.at(pair.subject) == g ? unseen : seen);
     }
   }
-  const double least = quantile_90(seen);
-  return least > 0.0 ? std::max(1.0, quantile_90(unseen) / least) : 1.0;
+  const double least = quantile(seen, 0.9);
+  if (least <= 0.0) return 1.0;
+  return std::max(1.0, quantile(unseen, share_of_people(next)) / least);
 }
 
 }  // namespace kinalign
