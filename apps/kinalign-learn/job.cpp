@@ -9,6 +9,7 @@
 #include "kinalign/learn/methods/methods.h"
 #include "kinalign/learn/pose/fit_pose.h"
 #include "kinalign/learn/pose/pose_marks.h"
+#include "kinalign/learn/projection.h"
 #include "kinalign/models/model_file.h"
 #include "kinalign/models/windows_file.h"
 
@@ -130,6 +131,7 @@ std::string training_json(const TrainingJob& job, const WindowsFacts& facts, con
            {"rate", job.options.rate},
            {"seed", job.options.seed},
            {"identity", job.identity}};
+  if (job.hand_weight > 0.0) out["hand_weight"] = job.hand_weight;
   if (!job.from.empty()) out["from"] = Json::parse(before, nullptr, false);
   return out.dump();
 }
@@ -191,9 +193,9 @@ Result<Pairs> pairs_to_learn(const TrainingJob& job, const Windows& windows,
   return pairs_for(windows, job.input, job.truth, joints, least_rows);
 }
 
-Result<Fitted> fit_denoise_job(const TrainingJob& job, const DenoiseMethod& method,
-                               const Windows& windows, TrainingState state,
-                               const TrainingHooks& hooks) {
+Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, const Windows& windows,
+                               TrainingState state, const TrainingHooks& hooks) {
+  if (job.hand_weight > 0.0) method.training.loss.hands = job.hand_weight;
   const auto from = KA_TRY(model_before<DenoiseModel>(job, read_denoise_model));
   if (from && method.perceptual) {
     return Failure(Error{job.from, 0, "a method of one network to go on with", job.method});
@@ -379,6 +381,59 @@ Result<void> evaluate(const TrainingJob& job, const Windows& windows) {
   return evaluate_pose(job, windows, KA_TRY(read_pose_model(bytes, job.evaluate)));
 }
 
+/// A body of the file.
+Result<JointFrames> body_of(const TensorFile& file, const std::string& number, std::size_t joints,
+                            const std::string& name) {
+  const auto positions = file.tensors.find(number + ".positions");
+  const auto seen = file.tensors.find(number + ".seen");
+  JointFrames out;
+  out.joints = joints;
+  if (positions != file.tensors.end() && seen != file.tensors.end()) {
+    out.positions = positions->second.values;
+    out.seen.assign(seen->second.values.begin(), seen->second.values.end());
+    if (out.positions.size() == 3 * out.seen.size() && out.seen.size() % joints == 0) return out;
+  }
+  return Failure(Error{name, 0, "positions and states of body " + number, "none, or others"});
+}
+
+/// The answers to all bodies of a file, projected; the last line says how far the constraints were
+/// and are from being met, on average.
+Result<void> project_bodies(const TrainingJob& job) {
+  const DenoiseModel model = KA_TRY(read_denoise_model(KA_TRY(bytes_of(job.project)), job.project));
+  const TensorFile bodies = KA_TRY(read_safetensors(KA_TRY(bytes_of(job.bodies)), job.bodies));
+  const std::size_t joints = model.layout.inputs.size(), count = bodies.tensors.size() / 2;
+  const Progress progress = progress_lines();
+  TensorFile out;
+  ConstraintErrors before, after;
+  const auto add = [&](ConstraintErrors& sum, const ConstraintErrors& one) {
+    const double share = 1.0 / static_cast<double>(count);
+    sum.feet_cm += share * one.feet_cm;
+    sum.path_cm += share * one.path_cm;
+    sum.bone_cm += share * one.bone_cm;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string number = std::to_string(i);
+    const JointFrames body = KA_TRY(body_of(bodies, number, joints, job.bodies));
+    auto projected = project(model, body);
+    if (!projected) {
+      projected.error().file = job.project;
+      return Failure(projected.error());
+    }
+    out.tensors[number + ".positions"] = {{body.frames(), model.layout.outputs.size(), 3},
+                                          std::move(projected->answer.positions)};
+    add(before, projected->before);
+    add(after, projected->after);
+    if (!progress("projecting", i + 1, count)) return Failure(interruption());
+  }
+  KA_TRY(write_file(job.out, write_safetensors(out)));
+  const auto as_json = [](const ConstraintErrors& errors) {
+    return Json{
+        {"feet_cm", errors.feet_cm}, {"path_cm", errors.path_cm}, {"bone_cm", errors.bone_cm}};
+  };
+  print_row({{"written", job.out}, {"before", as_json(before)}, {"after", as_json(after)}});
+  return {};
+}
+
 /// By the task of the method; read_job() has proven that there is one of that name.
 Result<Fitted> fit_job(const TrainingJob& job, const Windows& windows, TrainingState state,
                        const TrainingHooks& hooks) {
@@ -403,11 +458,17 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
   }
   TrainingJob out;
   try {
+    out.threads = json.value("threads", std::int64_t{1});
+    out.project = json.value("project", "");
+    if (!out.project.empty()) {
+      out.bodies = json.at("bodies").get<std::string>();
+      out.out = json.at("out").get<std::string>();
+      return out;
+    }
     out.windows = json.at("windows").get<std::string>();
     out.input = json.value("input", "");
     out.truth = json.value("truth", "mocap");
     out.nodes = json.value("nodes", usual_pose_nodes());
-    out.threads = json.value("threads", std::int64_t{1});
     out.evaluate = json.value("evaluate", "");
     if (!out.evaluate.empty()) return out;
     out.method = json.at("method").get<std::string>();
@@ -418,6 +479,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     out.resume = json.value("resume", false);
     out.device = json.value("device", "cpu");
     out.identity = json.value("identity", "");
+    out.hand_weight = json.value("hand_weight", out.hand_weight);
     if (json.contains("learn")) json.at("learn").get_to(out.learn);
     if (json.contains("judge")) json.at("judge").get_to(out.judge);
     out.from = json.value("from", "");
@@ -431,6 +493,7 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
 }
 
 Result<void> run_job(const TrainingJob& job) {
+  if (!job.project.empty()) return project_bodies(job);
   const std::string bytes = KA_TRY(bytes_of(job.windows));
   const Windows windows = KA_TRY(read_windows(bytes, job.windows));
   if (!job.evaluate.empty()) return evaluate(job, windows);

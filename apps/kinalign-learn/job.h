@@ -15,6 +15,9 @@ struct TrainingJob {
   std::string input, truth;        // streams
   std::vector<std::string> nodes;  // of a method for poses; the root's last
   std::string evaluate;            // a model for poses to judge instead of training; empty: none
+  std::string project;             // a model whose answers are projected instead; empty: none
+  std::string bodies;              // of `project`: SafeTensors "0.positions" [T,J,3] m, "0.seen"
+                                   // [T,J], "1.positions", ...; answers have the same names
   std::string out;                 // the model
   std::string from;                // a model to go on from; empty: from random weights
   std::string log;                 // CSV, and events beside it; empty: none
@@ -24,6 +27,7 @@ struct TrainingJob {
   std::string device = "cpu";      // cpu, cuda
   std::int64_t threads = 1;
   TrainingOptions options;
+  double hand_weight = 0.0;  // of the loss; 0: the method's own
   /// Names of takes that are trained on, and that judge; empty: by the parts of the file's split.
   std::vector<std::string> learn, judge;
   std::string identity;  // of the job: all that the result depends on

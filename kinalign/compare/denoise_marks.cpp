@@ -11,6 +11,22 @@ namespace kinalign {
 
 namespace {
 
+// Places in shared_joints.
+constexpr std::array<std::size_t, 2> wrists{6, 9};
+constexpr std::array<std::size_t, 4> shared_feet{12, 13, 16, 17};
+
+std::optional<double> hand_error_cm(const Sequence& sequence, Prediction prediction) {
+  Mean out;
+  for (std::size_t t = 0; t < sequence.frames(); ++t) {
+    for (const std::size_t j : wrists) {
+      const std::size_t i = t * sequence.joints + j;
+      if (!sequence.has(t, j)) continue;
+      out.add(100.0 * (vec3(prediction, i) - vec3(sequence.truth, i)).norm());
+    }
+  }
+  return out.value();
+}
+
 std::string person_and_action(const Pair& pair) { return pair.subject + "/" + pair.action; }
 
 constexpr std::size_t least_marked_joints = 12;
@@ -104,6 +120,8 @@ DenoiseMarks DenoiseMarker::marks_of(const Pair& pair, const std::vector<float>&
   out.protocol = protocol_marks(sequence, predicted, lengths_.at(person_and_action(pair)));
   out.table_nine = table_nine(in_centimetres(there_, joints_, pair.truth),
                               in_centimetres(there_, joints_, answer), there_.size(), bones_);
+  out.hand_cm = hand_error_cm(sequence, predicted);
+  out.feet = feet_marks(sequence, predicted, shared_feet).value_or(FeetMarks{});
   double radii = 0.0;
   std::size_t within = 0;
   for (std::size_t i = 0; i < valid.size() && !spread.empty(); ++i) {

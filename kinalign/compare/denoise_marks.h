@@ -3,6 +3,7 @@
 // a suit, whose skeleton has no tips of the feet.
 #pragma once
 
+#include "kinalign/evaluate/feet.h"
 #include "kinalign/evaluate/protocol.h"
 #include "kinalign/evaluate/table_nine.h"
 #include "kinalign/models/denoise_model.h"
@@ -20,9 +21,11 @@ namespace kinalign {
 /// Of one stretch of a take.
 struct DenoiseMarks {
   ProtocolMarks protocol;
-  TableNine table_nine;    // of positions in cm, in the answer's own space
-  double covered = 0.0;    // share of cells within the stated 90 % radius
-  double radius_cm = 0.0;  // that radius, mean; 0 where none is stated
+  TableNine table_nine;           // of positions in cm, in the answer's own space
+  std::optional<double> hand_cm;  // mean distance of both wrists
+  FeetMarks feet;                 // of ankles and toes; contacts are the truth's
+  double covered = 0.0;           // share of cells within the stated 90 % radius
+  double radius_cm = 0.0;         // that radius, mean; 0 where none is stated
   std::size_t cells = 0;
 };
 

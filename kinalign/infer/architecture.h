@@ -21,13 +21,15 @@ enum class LayerKind : std::uint8_t {
   gelu,        // the exact one, with erf
   tanh,
   sigmoid,
-  dropout,   // does something in training only
-  slice,     // channels begin ... begin + out - 1
-  max_pool,  // of each two frames the greater value; an odd last frame stays as it is
-  unpool,    // each frame twice, at half its value; as many frames as the max_pool had
-  sum,       // of all branches
-  product,   // of all branches
-  concat,    // channels of all branches, one behind the other
+  dropout,     // does something in training only
+  slice,       // channels begin ... begin + out - 1
+  max_pool,    // of each two frames the greater value; an odd last frame stays as it is
+  unpool,      // each frame twice, at half its value; as many frames as the max_pool had
+  sum,         // of all branches
+  product,     // of all branches
+  concat,      // channels of all branches, one behind the other
+  along_time,  // each channel alone: the branch gets `window` frames of it as channels and answers
+               // with as many; a frame's result is the mean over all windows that it lies in
 };
 
 /// One layer. Members that its kind does not name are as they stand here.
@@ -50,8 +52,9 @@ struct Layer {
   double slope = 0.01;         // leaky_relu
   double rate = 0.0;           // dropout: share of values set to 0
   std::size_t begin = 0;       // slice
+  std::size_t window = 1;      // along_time: frames; fewer are filled up with the last one
   std::vector<std::vector<Layer>> branches =
-      {};  // sum, product, concat; an empty one is the identity
+      {};  // sum, product, concat; an empty one is the identity. along_time: one
 
   bool operator==(const Layer&) const = default;
 };

@@ -30,6 +30,7 @@ nlohmann::ordered_json layer_to_json(const Layer& layer) {
   if (uses(layer.kind, member_slope)) out["slope"] = layer.slope;
   if (uses(layer.kind, member_rate)) out["rate"] = layer.rate;
   if (uses(layer.kind, member_begin)) out["begin"] = layer.begin;
+  if (uses(layer.kind, member_window)) out["window"] = layer.window;
   if (uses(layer.kind, member_branches)) {
     out["branches"] = nlohmann::ordered_json::array();
     for (const auto& branch : layer.branches) out["branches"].push_back(layers_to_json(branch));
@@ -63,7 +64,8 @@ struct Named {
 constexpr Named<std::size_t> count_members[] = {{"out", member_out, &Layer::out},
                                                 {"kernel", member_kernel, &Layer::kernel},
                                                 {"dilation", member_dilation, &Layer::dilation},
-                                                {"begin", member_begin, &Layer::begin}};
+                                                {"begin", member_begin, &Layer::begin},
+                                                {"window", member_window, &Layer::window}};
 constexpr Named<bool> truth_members[] = {
     {"causal", member_causal, &Layer::causal},
     {"bidirectional", member_bidirectional, &Layer::bidirectional}};
@@ -116,6 +118,8 @@ class Reader {
       if (key != "kind") KA_TRY(member(out, key, value, path));
     }
     if (uses(out.kind, member_out) && !json.contains("out")) return wrong(at, "out", "none");
+    if (uses(out.kind, member_window) && !json.contains("window"))
+      return wrong(at, "window", "none");
     if (uses(out.kind, member_branches) && !json.contains("branches")) {
       return wrong(at, "branches", "none");
     }

@@ -20,6 +20,7 @@ enum LayerMember : unsigned {
   member_rate = 64U,
   member_begin = 128U,
   member_branches = 256U,
+  member_window = 512U,
 };
 
 struct KindRow {
@@ -28,7 +29,7 @@ struct KindRow {
   unsigned members;
 };
 
-inline constexpr std::array<KindRow, 17> kind_rows{{
+inline constexpr std::array<KindRow, 18> kind_rows{{
     {LayerKind::linear, "linear", member_out},
     {LayerKind::conv, "conv", member_out | member_kernel | member_dilation | member_causal},
     {LayerKind::lstm, "lstm", member_out | member_bidirectional},
@@ -46,6 +47,7 @@ inline constexpr std::array<KindRow, 17> kind_rows{{
     {LayerKind::sum, "sum", member_branches},
     {LayerKind::product, "product", member_branches},
     {LayerKind::concat, "concat", member_branches},
+    {LayerKind::along_time, "along_time", member_window | member_branches},
 }};
 
 constexpr bool rows_in_order() {

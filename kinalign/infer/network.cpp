@@ -21,6 +21,8 @@ struct Sequence {
   std::size_t size() const { return frames * channels; }
 };
 
+constexpr std::size_t window_block = 256;  // rows of along_time that are computed together
+
 /// One run. A function of a layer owns its input: it returns the block to the workspace or hands it
 /// on.
 class Run {
@@ -55,6 +57,8 @@ class Run {
       case LayerKind::product:
       case LayerKind::concat:
         return branches(layer, in);
+      case LayerKind::along_time:
+        return along_time(layer, in);
       default:
         return activation(layer.layer, in);
     }
@@ -228,6 +232,50 @@ class Run {
       drop(branch);
     }
     drop(in);
+    return out;
+  }
+
+  /// At least as many frames: the last one is repeated.
+  Sequence lengthened(Sequence in, std::size_t frames) {
+    if (in.frames >= frames) return in;
+    const Sequence out = fresh(frames, in.channels);
+    float* const values = writable(out);
+    std::copy_n(in.data, in.size(), values);
+    for (std::size_t i = in.size(); i < out.size(); ++i) values[i] = values[i - in.channels];
+    drop(in);
+    return out;
+  }
+
+  /// A window of a channel is a row of the branch, which gets a block of them at a time.
+  Sequence along_time(const PreparedLayer& layer, Sequence in) {
+    const std::size_t frames = in.frames, channels = in.channels, window = layer.layer.window;
+    if (frames == 0) return in;
+    in = lengthened(in, window);
+    Sequence out = fresh(in.frames, channels);
+    std::fill_n(writable(out), out.size(), 0.0F);
+    const std::size_t windows = in.frames - window + 1;
+    for (std::size_t c = 0; c < channels; ++c) {
+      for (std::size_t begin = 0; begin < windows; begin += window_block) {
+        const std::size_t at = begin * channels + c;
+        Sequence rows = fresh(std::min(windows - begin, window_block), window);
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          writable(rows)[i] = in.data[at + (i / window + i % window) * channels];
+        }
+        rows = list(layer.branches.front(), rows);
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          writable(out)[at + (i / window + i % window) * channels] += rows.data[i];
+        }
+        drop(rows);
+      }
+    }
+    for (std::size_t t = 0; t < out.frames; ++t) {
+      const std::size_t count = std::min({t + 1, out.frames - t, window, windows});
+      for (std::size_t c = 0; c < channels; ++c) {
+        writable(out)[t * channels + c] /= static_cast<float>(count);
+      }
+    }
+    drop(in);
+    out.frames = frames;
     return out;
   }
 

@@ -28,6 +28,7 @@ struct LayerState {
 std::string_view why_not_online(const Layer& layer) {
   if (layer.bidirectional) return "a bidirectional layer";
   if (layer.kind == LayerKind::max_pool) return "max_pool";
+  if (layer.kind == LayerKind::along_time) return "along_time";
   if (layer.kind == LayerKind::conv && !layer.causal && layer.kernel > 1) {
     return "a centred convolution";
   }

@@ -17,7 +17,7 @@ class OnlineNetwork {
   /// All memory is allocated here. The weights stay in `network`, which must live longer and may be
   /// moved.
   /// Fails where a layer needs later frames: a bidirectional layer, a centred convolution,
-  /// max_pool. The error names the layer. Centred convolutions of one tap are accepted.
+  /// max_pool, along_time. The error names the layer. Centred convolutions of one tap are accepted.
   static Result<OnlineNetwork> make(const Network& network);
 
   OnlineNetwork(OnlineNetwork&&) noexcept;

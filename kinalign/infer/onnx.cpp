@@ -142,6 +142,8 @@ class Graph {
       case LayerKind::product:
       case LayerKind::concat:
         return branches(layer, in, channels);
+      case LayerKind::along_time:
+        return along_time(layer, in);
       case LayerKind::dropout:
       case LayerKind::unpool:  // list() has its length
         break;
@@ -300,6 +302,30 @@ class Graph {
       out = node(layer.kind == LayerKind::sum ? "Add" : "Mul", {out, results[b]});
     }
     return out;
+  }
+
+  /// Convolutions cut the windows out and lay the results over each other: tap k is 1 in channel k
+  /// and 0 in the others. Channels are a batch, since each is alone.
+  std::string along_time(const Layer& layer, const std::string& in) {
+    const auto window = static_cast<std::int64_t>(layer.window);
+    std::vector<float> taps(layer.window * layer.window, 0.0F);
+    for (std::size_t k = 0; k < layer.window; ++k) taps[k * layer.window + k] = 1.0F;
+    const auto cut = constant("window", {window, 1, window}, taps);
+    const auto frames = slice(node("Shape", {in}), integer(1), integer(2), 0);
+    const auto lacking = node("Max", {node("Sub", {integer(window), frames}), integer(0)});
+    const auto pads = node("Concat", {integers({0, 0, 0, 0}), lacking, integer(0)},
+                           {attribute("axis", std::int64_t{0})});
+    const auto padded = node("Pad", {in, pads}, {text_attribute("mode", "edge")});
+    const auto windows = node("Conv", {transposed(padded, {2, 0, 1}), cut});  // [C,window,W]
+    const std::string path = path_;
+    const auto rows = list(layer.branches.front(), transposed(windows, {0, 2, 1}), layer.window,
+                           path_below(path, 0));
+    path_ = path;
+    const auto results = transposed(rows, {0, 2, 1});
+    const auto ones = node("Add", {node("Mul", {windows, number(0.0F)}), number(1.0F)});
+    const auto mean =
+        node("Div", {node("ConvTranspose", {results, cut}), node("ConvTranspose", {ones, cut})});
+    return slice(transposed(mean, {1, 2, 0}), integer(0), frames, 1);
   }
 
   const Tensors& tensors_;

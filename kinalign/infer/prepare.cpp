@@ -88,7 +88,8 @@ class Packer {
         break;
       default:
         for (std::size_t b = 0; b < layer.branches.size(); ++b) {
-          out.branches.push_back(list(layer.branches[b], inputs, path_below(path, b)));
+          out.branches.push_back(
+              list(layer.branches[b], branch_inputs(layer, inputs), path_below(path, b)));
         }
     }
     return out;

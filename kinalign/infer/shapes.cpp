@@ -38,6 +38,7 @@ Layer only_used_members(const Layer& layer) {
   if (uses(layer.kind, member_rate)) out.rate = layer.rate;
   if (uses(layer.kind, member_begin)) out.begin = layer.begin;
   if (uses(layer.kind, member_branches)) out.branches = layer.branches;
+  if (uses(layer.kind, member_window)) out.window = layer.window;
   return out;
 }
 
@@ -56,6 +57,23 @@ std::size_t own_parameters(const Layer& layer, std::size_t inputs) {
       return 2 * inputs;
     default:
       return 0;
+  }
+}
+
+/// Whether a layer takes each row by itself.
+bool is_row_by_row(const Layer& layer) {
+  switch (layer.kind) {
+    case LayerKind::conv:
+    case LayerKind::lstm:
+    case LayerKind::gru:
+    case LayerKind::max_pool:
+    case LayerKind::unpool:
+    case LayerKind::along_time:
+      return false;
+    default:
+      return std::all_of(layer.branches.begin(), layer.branches.end(), [](const auto& branch) {
+        return std::all_of(branch.begin(), branch.end(), is_row_by_row);
+      });
   }
 }
 
@@ -104,6 +122,7 @@ class Check {
       return wrong(path, "at most " + counted(most_kept, "values kept of other frames up to and"),
                    std::to_string(kept_));
     }
+    if (layer.kind == LayerKind::along_time) return along_time(layer, inputs, path, depth);
     if (uses(layer.kind, member_branches)) return branches(layer, inputs, path, depth);
     return outputs(layer, inputs);
   }
@@ -119,6 +138,7 @@ class Check {
       return wrong(path, "an odd number of taps, as the convolution is centred",
                    std::to_string(layer.kernel));
     }
+    KA_TRY(within(path, layer.window, most_kernel, "frames of a window"));
     if (!std::isfinite(layer.slope)) return wrong(path, "a finite slope", "none");
     if (!(layer.rate >= 0.0 && layer.rate < 1.0)) {
       return wrong(path, "a rate from 0 to below 1", std::to_string(layer.rate));
@@ -152,6 +172,18 @@ class Check {
       }
     }
     return channels;
+  }
+
+  Result<std::size_t> along_time(const Layer& layer, std::size_t inputs, const std::string& path,
+                                 std::size_t depth) {
+    const auto& all = layer.branches;
+    if (all.size() != 1) return wrong(path, "one branch", std::to_string(all.size()));
+    const std::size_t found = KA_TRY(branches(layer, layer.window, path, depth));
+    if (!std::all_of(all.front().begin(), all.front().end(), is_row_by_row)) {
+      return wrong(path, "a branch whose layers take each row by itself", "others");
+    }
+    if (found == layer.window) return inputs;
+    return wrong(path, counted(layer.window, "channels behind the branch"), std::to_string(found));
   }
 
   std::size_t layers_ = 0, parameters_ = 0, kept_ = 0;
@@ -198,7 +230,7 @@ void list_tensors(const Layer& layer, std::size_t inputs, const std::string& pat
       break;
     default:
       for (std::size_t b = 0; b < layer.branches.size(); ++b) {
-        list_tensors(layer.branches[b], inputs, path_below(path, b), out);
+        list_tensors(layer.branches[b], branch_inputs(layer, inputs), path_below(path, b), out);
       }
   }
 }
@@ -231,6 +263,8 @@ std::optional<std::size_t> reach(const Layer& layer, Side side) {
     case LayerKind::max_pool:
     case LayerKind::unpool:
       return std::nullopt;
+    case LayerKind::along_time:
+      return layer.window - 1;
     default:
       for (const auto& branch : layer.branches) {
         const auto found = reach(branch, side);
@@ -296,6 +330,10 @@ std::size_t outputs(const Layer& layer, std::size_t inputs) {
 std::size_t outputs(const std::vector<Layer>& layers, std::size_t inputs) {
   for (const Layer& layer : layers) inputs = outputs(layer, inputs);
   return inputs;
+}
+
+std::size_t branch_inputs(const Layer& layer, std::size_t inputs) {
+  return layer.kind == LayerKind::along_time ? layer.window : inputs;
 }
 
 std::optional<std::size_t> look_ahead(const Architecture& architecture) {

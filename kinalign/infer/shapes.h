@@ -33,7 +33,9 @@ struct Parameter {
 
 /// Fails where a layer does not fit the one before it, or where a limit above is exceeded. The
 /// error names the layer. Each unpool belongs to the last open max_pool of its own list of layers;
-/// within a branch every max_pool needs its unpool. The functions below need a valid architecture.
+/// within a branch every max_pool needs its unpool. Layers within an along_time take each row by
+/// itself: linear, layer_norm, slice, value by value. The functions below need a valid
+/// architecture.
 Result<void> validate(const Architecture& architecture);
 
 /// All tensors, in the order of the layers.
@@ -43,6 +45,8 @@ std::vector<Parameter> parameters(const Architecture& architecture);
 std::size_t outputs(const Architecture& architecture);
 std::size_t outputs(const Layer& layer, std::size_t inputs);
 std::size_t outputs(const std::vector<Layer>& layers, std::size_t inputs);
+/// Channels that each branch of a layer gets.
+std::size_t branch_inputs(const Layer& layer, std::size_t inputs);
 
 /// Frames after (before) frame t on which frame t of the result depends. Nothing where that is the
 /// whole sequence: bidirectional and pooled networks, and for look_back all recurrent ones.

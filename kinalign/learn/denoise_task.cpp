@@ -19,7 +19,8 @@ constexpr double least_position_scale = 0.01, least_step_scale = 0.001;  // m
 constexpr std::uint64_t lanes_per_example = 8;
 
 bool is_hand(const std::string& name) {
-  for (const std::string_view word : {"Wrist", "Hand", "Thumb", "wrist", "hand"}) {
+  for (const std::string_view word :
+       {"Wrist", "Hand", "Thumb", "Finger", "wrist", "hand", "thumb", "finger"}) {
     if (name.find(word) != std::string::npos) return true;
   }
   return false;
@@ -51,7 +52,7 @@ DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
   }
   for (const Pair& pair : judged) judged_.push_back(example_of(pair));
   set_scales();
-  std::vector<float> weights;
+  std::vector<float> weights, bone_weights;
   std::vector<std::int64_t> ends, begins;
   for (std::size_t j = 0; j < layout_.outputs.size(); ++j) {
     weights.push_back(is_hand(layout_.outputs[j]) ? static_cast<float>(training_.loss.hands)
@@ -59,9 +60,14 @@ DenoiseTask::DenoiseTask(DenoiseLayout layout, DenoiseTraining training,
     if (layout_.parents[j] < 0) continue;
     ends.push_back(whole(j));
     begins.push_back(layout_.parents[j]);
+    bone_weights.push_back(weights[j]);
   }
-  joint_weights_ = torch::tensor(weights);
-  joint_weights_ = (joint_weights_ / joint_weights_.mean()).to(device_);
+  const auto of_mean_one = [&](const std::vector<float>& values) {
+    const auto tensor = torch::tensor(values);
+    return (tensor / tensor.mean()).to(device_);
+  };
+  joint_weights_ = of_mean_one(weights);
+  bone_weights_ = of_mean_one(bone_weights);
   bone_ends_ = torch::tensor(ends, torch::kInt64).to(device_);
   bone_begins_ = torch::tensor(begins, torch::kInt64).to(device_);
 }
@@ -94,6 +100,10 @@ void DenoiseTask::use_scales(DenoiseScales scales) {
   input_mean_ = on_device(scales_.input_mean);
   input_scale_ = on_device(scales_.input_scale);
   answer_mean_ = on_device(scales_.answer_mean).reshape({-1, 3});
+  if (!training_.from_truth) return;
+  for (auto& variants : examples_) {
+    for (Example& one : variants) put_truth_in(one);
+  }
 }
 
 void DenoiseTask::set_scales() {
@@ -113,9 +123,25 @@ void DenoiseTask::set_scales() {
   const std::int64_t positions = 3 * whole(layout_.inputs.size());
   auto scale = all.std(0);
   scale.slice(0, 0, positions).clamp_min_(least_position_scale);
+  if (training_.one_scale) scale.slice(0, 0, positions).fill_(training_.answer_scale);
   scale.slice(0, positions, 2 * positions).clamp_min_(least_step_scale);
   scale.slice(0, 2 * positions).fill_(1.0);
   use_scales({values_of(all.mean(0)), values_of(scale), values_of(sum / count.clamp_min(1.0))});
+}
+
+/// The input's mean plus what the truth is off its own mean. A joint that several outputs could
+/// stand for has its own name's truth, which comes first among them.
+void DenoiseTask::put_truth_in(Example& one) const {
+  const auto inputs = inputs_of_outputs(layout_);
+  const auto mean = to_torch(scales_.input_mean, {whole(scales_.input_mean.size())});
+  const auto offsets = one.truth - (one.base + answer_mean_.cpu());
+  for (std::size_t j = inputs.size(); j-- > 0;) {
+    const std::int64_t begin = 3 * whole(inputs[j]);
+    auto channels = one.input.slice(1, begin, begin + 3);
+    const auto moved = mean.slice(0, begin, begin + 3) + offsets.select(1, whole(j));
+    channels.copy_(
+        torch::where(one.valid.slice(1, whole(j), whole(j) + 1).gt(0.5), moved, channels));
+  }
 }
 
 DenoiseTask::Batch DenoiseTask::draw(std::uint64_t seed, std::uint64_t step) const {
@@ -178,7 +204,8 @@ torch::Tensor DenoiseTask::weigh(const Batch& batch, const torch::Tensor& answer
     };
     const auto both =
         batch.valid.index_select(2, bone_ends_) * batch.valid.index_select(2, bone_begins_);
-    loss = loss + weights.bone * weighted_mean((bones(answer) - bones(batch.truth)).abs(), both);
+    loss = loss + weights.bone * weighted_mean((bones(answer) - bones(batch.truth)).abs(),
+                                               both * bone_weights_);
   }
   if (spread.defined()) {
     // Three axes of one spread (cm); the error is not moved by it.

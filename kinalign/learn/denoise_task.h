@@ -21,7 +21,7 @@ struct DenoiseLoss {
   double bone = 0.2;          // difference of bone lengths
   double smooth = 0.0;        // length of the answer's own second differences
   double spread = 0.1;        // negative log likelihood of the stated spread, if it is stated
-  double hands = 1.0;         // weight of wrists and hands beside the other joints
+  double hands = 1.0;         // weight of wrists, hands and their bones beside the others'
   double hidden = 0.0;        // BRA-P: difference of the features of a network that knows motion
 };
 
@@ -31,6 +31,8 @@ struct DenoiseTraining {
   bool mirror = true;
   bool states_spread = false;  // the last Jout channels are the logarithm of each joint's spread
   double answer_scale = 0.05;  // m of a network's 1
+  bool one_scale = false;      // of the input's positions too; else each channel has its own
+  bool from_truth = false;     // the truth is the input as well, where the Kinect sees its joints
 };
 
 /// Numbers of the training people's features, which the model keeps.
@@ -79,6 +81,7 @@ class DenoiseTask : public TrainingTask {
   Example example_of(const Pair& pair) const;
   Example mirrored(const Pair& pair) const;
   void set_scales();
+  void put_truth_in(Example& one) const;
   Batch draw(std::uint64_t seed, std::uint64_t step) const;
   torch::Tensor weigh(const Batch& batch, const torch::Tensor& answer,
                       const torch::Tensor& spread) const;
@@ -89,7 +92,8 @@ class DenoiseTask : public TrainingTask {
   std::vector<std::vector<Example>> examples_;  // one or two of each pair
   std::vector<Example> judged_;
   DenoiseScales scales_;
-  torch::Tensor input_mean_, input_scale_, answer_mean_, joint_weights_, bone_ends_, bone_begins_;
+  torch::Tensor input_mean_, input_scale_, answer_mean_, joint_weights_, bone_weights_, bone_ends_,
+      bone_begins_;
   torch::Device device_;
   std::function<torch::Tensor(const torch::Tensor&)> features_;
 };

@@ -3,6 +3,7 @@
 
 #include "kinalign/learn/tensors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -55,6 +56,9 @@ class Maker {
       case LayerKind::product:
       case LayerKind::concat:
         return make_branches(layer, path, in);
+      case LayerKind::along_time:
+        make_branches(layer, path, layer.window);
+        return in;
       default:
         return in;
     }
@@ -166,6 +170,8 @@ class Runner {
       case LayerKind::product:
       case LayerKind::concat:
         return branches(layer, path, x);
+      case LayerKind::along_time:
+        return along_time(layer, path, x);
     }
     return x;
   }
@@ -203,6 +209,24 @@ class Runner {
       out = layer.kind == LayerKind::sum ? out + all[b] : out * all[b];
     }
     return out;
+  }
+
+  /// Each channel of the batch is a sequence of its own.
+  torch::Tensor along_time(const Layer& layer, const std::string& path,
+                           const torch::Tensor& x) const {
+    const std::int64_t frames = x.size(1), window = whole(layer.window);
+    if (frames == 0) return x;
+    const std::int64_t lacking = std::max<std::int64_t>(window - frames, 0);
+    const auto last = x.slice(1, frames - 1).expand({x.size(0), lacking, x.size(2)});
+    const auto sequences = torch::cat({x, last}, 1).transpose(1, 2).flatten(0, 1);
+    const auto results =
+        run(layer.branches.front(), path_below(path, 0), sequences.unfold(1, window, 1));
+    const auto overlaid = [&](const torch::Tensor& windows) {
+      return torch::col2im(windows.transpose(1, 2), {frames + lacking, 1}, {window, 1}, {1, 1},
+                           {0, 0}, {1, 1});
+    };
+    const auto mean = overlaid(results) / overlaid(torch::ones_like(results));
+    return mean.reshape({x.size(0), x.size(2), -1}).slice(2, 0, frames).transpose(1, 2);
   }
 
   /// cuDNN's recurrent layers go backward only from their training form, which differs by the

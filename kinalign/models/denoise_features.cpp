@@ -42,6 +42,21 @@ Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
   return out;
 }
 
+std::vector<std::size_t> inputs_of_outputs(const DenoiseLayout& layout) {
+  const auto seen = kinect_names(layout.inputs), answered = kinect_names(layout.outputs);
+  const std::size_t root = body_joints(layout.inputs)->root.front();
+  std::vector<std::size_t> out;
+  for (std::size_t j = 0; j < answered.size(); ++j) {
+    auto found = index_of(seen, answered[j]);
+    for (int up = layout.parents[j]; !found && up >= 0;
+         up = layout.parents[static_cast<std::size_t>(up)]) {
+      found = index_of(seen, answered[static_cast<std::size_t>(up)]);
+    }
+    out.push_back(found.value_or(root));
+  }
+  return out;
+}
+
 DenoiseFeatures denoise_features(const DenoiseLayout& layout, JointFrames body) {
   const std::size_t joints = body.joints, frames = body.frames();
   DenoiseFeatures out;

@@ -32,6 +32,10 @@ struct DenoiseLayout {
 Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
                                      std::vector<std::string> outputs, double rate_hz);
 
+/// For each output the input joint that stands for it: the one of its name, else that of the next
+/// joint above it, else the root's.
+std::vector<std::size_t> inputs_of_outputs(const DenoiseLayout& layout);
+
 /// T frames as a network sees them.
 struct DenoiseFeatures {
   /// [T,7J]: positions in the body's frame (3J, m), their differences to the frame before (3J, m),

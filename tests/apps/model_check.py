@@ -27,9 +27,9 @@ def needs_learn():
         raise Skip("kinalign-learn was not built: it needs libtorch-dev")
 
 
-def trained(data, out, *words):
+def trained(data, out, *words, method="refine"):
     """A model after a few steps; what train said. LibTorch alone maps a gigabyte."""
-    words = ("train", "refine", "--data", data, "-o", out, "--steps", "3", "--jobs", "1", "--json", *words)
+    words = ("train", method, "--data", data, "-o", out, "--steps", "3", "--jobs", "1", "--json", *words)
     ran = kinalign(*words, memory=1 << 36, seconds=300)
     law_but_warnings(ran, words)
     assert ran.returncode == 0, ran.stderr
@@ -81,6 +81,52 @@ def a_network_is_trained_shown_used_and_exported(folder):
         assert seen["samples"] == cleaned["frames"], seen
     onnx = told("model", "export", model, "-o", folder / "m.onnx")
     assert onnx["inputs"] == 7 * 25 and onnx["outputs"] == 4 * cleaned["joints"], onnx
+
+
+@case
+def standing_feet_of_a_projected_answer_move_less(folder):
+    needs_learn()
+    data = data_sets.small_set(folder, takes=1)
+    data_sets.done("build", data)
+    model = folder / "cnn.safetensors"
+    trained(data, model, method="cnn")
+    take = next(iter(sorted(data.rglob("*.h5"))))
+
+    def words(model):
+        return ("denoise", take, "--stream", "kinect", "--model", model, "--project", "-o", folder / "clean.bvh")
+    ran = kinalign(*words(model), "--json", memory=1 << 36, seconds=300)
+    law(ran, words(model))
+    assert ran.returncode == 0, ran.stderr
+    said = json.loads(ran.stdout)
+    before, after = said["projected"]["feet_cm"]
+    assert after < before / 2, said
+    assert told("info", folder / "clean.bvh")["streams"][0]["samples"] == said["frames"], said
+    (folder / "clean.bvh").unlink()
+    other = ROOT / "models/denoise.safetensors"
+    ran = kinalign(*words(other), memory=1 << 36)
+    assert ran.returncode == 3 and b"expected a model whose network has a hidden space, such as one of cnn" in ran.stderr, ran
+    alone = folder / "alone/kinalign"
+    alone.parent.mkdir()
+    shutil.copy(BUILD / "apps/kinalign/kinalign", alone)
+    ran = subprocess.run([alone, *words(model)], capture_output=True, check=False)
+    assert ran.returncode == 3 and b"kinalign-learn" in ran.stderr and b"none beside kinalign" in ran.stderr, ran
+    assert not (folder / "clean.bvh").exists()
+
+
+@case
+def a_smoother_along_time_is_trained_used_and_exported(folder):
+    needs_learn()
+    data = data_sets.small_set(folder, takes=1)
+    data_sets.done("build", data)
+    model = folder / "s.safetensors"
+    trained(data, model, "--hand-weight", "3", method="smoothnet")
+    shown = told("info", model)
+    assert shown["method"] == "smoothnet" and shown["networks"]["net"]["look_ahead"] == 31, shown
+    assert shown["training"]["hand_weight"] == 3, shown["training"]
+    take = next(iter(sorted(data.rglob("*.h5"))))
+    cleaned = told("denoise", take, "--stream", "kinect", "--model", model, "-o", folder / "s.bvh")
+    onnx = told("model", "export", model, "-o", folder / "s.onnx")
+    assert onnx["inputs"] == 7 * 25 and onnx["outputs"] == 3 * cleaned["joints"], onnx
 
 
 @case

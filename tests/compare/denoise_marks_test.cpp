@@ -98,3 +98,25 @@ TEST_CASE("a truth of too few shared joints is refused with their number") {
   CHECK(to_string(marker.error()) ==
         "expected 12 of the 18 joints that a Kinect and a truth share, found 4 among 5");
 }
+
+TEST_CASE("wrists and standing feet have marks of their own") {
+  const std::size_t joints = suit_names.size(), left_foot = 6, left_hand = 18;
+  Drawn still = drawn(joints);
+  for (std::size_t i = 3 * joints; i < still.pair.truth.size(); ++i) {
+    still.pair.truth[i] = still.pair.truth[i - 3 * joints];
+  }
+  still.answer = still.pair.truth;
+  for (std::size_t t = 0; t < frames; ++t) {
+    still.answer[(t * joints + left_hand) * 3] += 0.06F;
+    still.answer[(t * joints + left_foot) * 3] += 0.01F * static_cast<float>(t);
+  }
+  const auto marker = DenoiseMarker::make(layout_of(suit_names), {still.pair});
+  REQUIRE(marker);
+  const DenoiseMarks marks = marker->marks_of(still.pair, still.answer, {});
+  REQUIRE(marks.hand_cm);
+  CHECK(*marks.hand_cm == doctest::Approx(3.0).epsilon(1e-4));  // of two wrists one is 6 cm off
+  // Both ankles stand; one of them slides by 1 cm a frame at 30 Hz.
+  CHECK(marks.feet.contacts == 2 * (frames - 1));
+  CHECK(marks.feet.skate_m_s == doctest::Approx(0.15).epsilon(1e-3));
+  CHECK(marks.feet.true_skate_m_s == 0.0);
+}

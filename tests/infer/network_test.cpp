@@ -50,6 +50,23 @@ TEST_CASE("max_pool leaves an odd last frame, unpool brings as many frames back"
   CHECK(run({pool, up}, {}, {}).empty());
 }
 
+TEST_CASE("along_time: each channel alone, the mean over all windows that a frame lies in") {
+  const Layer two{.kind = along_time, .window = 2, .branches = {{layer(linear, 2)}}};
+  const Tensors exchange{{"0.0.0.weight", {{2, 2}, {0.0F, 1.0F, 1.0F, 0.0F}}},
+                         {"0.0.0.bias", {{2}, {0.0F, 0.0F}}}};
+  // Windows 1 2 and 2 4 become 2 1 and 4 2.
+  CHECK(run({two}, exchange, {1, 2, 4}) == std::vector<float>{2, 2.5F, 2});
+  CHECK(run({two}, exchange, {1, 2}) == std::vector<float>{2, 1});
+  CHECK(run({two}, exchange, {5}) == std::vector<float>{5});  // filled up with its last frame
+  CHECK(run({two}, exchange, {}).empty());
+  const Network both = network_of({2, {two}}, exchange);
+  CHECK(result_of(both, {1, 10, 2, 20, 4, 40}) == std::vector<float>{2, 20, 2.5F, 25, 2, 20});
+  const Layer identity{.kind = along_time, .window = 7, .branches = {{}}};
+  const auto long_one = random_values(1000, 1);  // several blocks of windows
+  const auto same = run({identity}, {}, long_one);
+  for (std::size_t i = 0; i < same.size(); ++i) CHECK(same[i] == doctest::Approx(long_one[i]));
+}
+
 TEST_CASE("branches are added, multiplied or joined") {
   const Tensors tensors{{"0.1.0.weight", {{1, 1}, {10.0F}}}, {"0.1.0.bias", {{1}, {1.0F}}}};
   const std::vector<std::vector<Layer>> two{{}, {layer(linear, 1)}};

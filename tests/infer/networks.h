@@ -66,6 +66,14 @@ inline Architecture online_architecture() {
            causal_conv(3, 2, 7)}};
 }
 
+/// A smoother of each channel by itself.
+inline Layer smoother(std::size_t window) {
+  const Layer block = branches(sum, {{}, {layer(linear, 3), layer(tanh), layer(linear, 12)}});
+  return {.kind = along_time,
+          .window = window,
+          .branches = {{layer(linear, 12), block, layer(linear, window)}}};
+}
+
 /// Every kind.
 inline Architecture offline_architecture() {
   Architecture out = online_architecture();
@@ -75,7 +83,7 @@ inline Architecture offline_architecture() {
   gates.bidirectional = true;
   out.layers.insert(out.layers.begin(),
                     {centred_conv(8, 5, 2), layer(max_pool), both, layer(max_pool), gates,
-                     layer(unpool), centred_conv(6, 3, 1), layer(unpool)});
+                     layer(unpool), centred_conv(6, 3, 1), layer(unpool), smoother(9)});
   return out;
 }
 

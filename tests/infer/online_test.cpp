@@ -99,5 +99,6 @@ TEST_CASE("a layer that needs later frames is named") {
   CHECK(refusal({branches(sum, {{}, {layer(relu), centred_conv(4, 3, 1)}})}) ==
         expected + "found a centred convolution as layer 0.1.1");
   CHECK(refusal({layer(max_pool), layer(unpool)}) == expected + "found max_pool as layer 0");
+  CHECK(refusal({smoother(2)}) == expected + "found along_time as layer 0");
   CHECK(refusal({centred_conv(4, 1, 1)}) == "no error");
 }

@@ -53,6 +53,9 @@ TEST_CASE("frames that a frame of the result depends on") {
   CHECK_FALSE(look_back(forward));
   CHECK_FALSE(look_ahead({4, {{.kind = LayerKind::gru, .out = 4, .bidirectional = true}}}));
   CHECK_FALSE(look_ahead({4, {pool, unpool}}));
+  const Layer windows{.kind = LayerKind::along_time, .window = 8, .branches = {{}}};
+  CHECK(look_ahead({4, {windows, centred}}) == 13);
+  CHECK(look_back({4, {windows}}) == 7);
 }
 
 TEST_CASE("a layer that does not fit is named") {
@@ -74,6 +77,18 @@ TEST_CASE("a layer that does not fit is named") {
   CHECK(message({{.kind = LayerKind::sum,
                   .branches = {{}, {{.kind = LayerKind::linear, .out = 3}}}}}) ==
         "expected 4 channels, as in branch 0, in layer 0.1, found 3");
+  const auto along_time = [](std::vector<std::vector<Layer>> all) {
+    return message({{.kind = LayerKind::along_time, .window = 8, .branches = std::move(all)}});
+  };
+  CHECK(along_time({{}}) == "no error");
+  CHECK(along_time({}) == "expected one branch in layer 0, found 0");
+  CHECK(along_time({{{.kind = LayerKind::linear, .out = 3}}}) ==
+        "expected 8 channels behind the branch in layer 0, found 3");
+  CHECK(along_time({{{.kind = LayerKind::gru, .out = 8}}}) ==
+        "expected a branch whose layers take each row by itself in layer 0, found others");
+  CHECK(along_time(
+            {{{.kind = LayerKind::sum, .branches = {{{.kind = LayerKind::conv, .out = 8}}}}}}) ==
+        "expected a branch whose layers take each row by itself in layer 0, found others");
   CHECK(message({{.kind = LayerKind::concat}}) ==
         "expected 1 to 1000 branches in layer 0, found 0");
 }

@@ -13,7 +13,7 @@ ELEMENTWISE = {"relu": torch.nn.ReLU(), "gelu": torch.nn.GELU(), "tanh": torch.n
 TIMELESS = ["linear", "layer_norm", "relu", "leaky_relu", "gelu", "tanh", "sigmoid", "dropout", "slice"]
 RECURRENT = ["lstm", "gru"]
 BRANCHED = ["sum", "product", "concat"]
-KINDS = TIMELESS + ["conv"] + RECURRENT + BRANCHED + ["max_pool"]
+KINDS = TIMELESS + ["conv"] + RECURRENT + BRANCHED + ["max_pool", "along_time"]
 
 
 def write_safetensors(path, tensors, metadata):
@@ -54,6 +54,8 @@ class Model:
                 module = torch.nn.LayerNorm(channels)
                 torch.nn.init.normal_(module.weight)
                 torch.nn.init.normal_(module.bias)
+            elif kind == "along_time":
+                self._make(layer["branches"][0], layer["window"], f"{place}.0.")
             elif kind in BRANCHED:
                 behind = [self._make(b, channels, f"{place}.{j}.") for j, b in enumerate(layer["branches"])]
                 out = sum(behind) if kind == "concat" else behind[0]
@@ -103,10 +105,26 @@ class Model:
             return 0.5 * x.repeat_interleave(2, dim=1)[:, :pools.pop()]
         if kind == "dropout":
             return x
+        if kind == "along_time":
+            return self._along_time(layer, x, place)
         results = [self._run(b, x, f"{place}.{j}.", []) for j, b in enumerate(layer["branches"])]
         if kind == "concat":
             return torch.cat(results, dim=2)
         return sum(results) if kind == "sum" else torch.stack(results).prod(dim=0)
+
+
+    def _along_time(self, layer, x, place):
+        """The mean over all windows that a frame lies in, window by window."""
+        frames, window = x.shape[1], layer["window"]
+        if frames == 0:
+            return x
+        x = torch.cat([x, x[:, -1:].expand(-1, max(0, window - frames), -1)], dim=1)
+        total, count = torch.zeros_like(x), torch.zeros_like(x)
+        for begin in range(x.shape[1] - window + 1):
+            rows = x[:, begin:begin + window].transpose(1, 2)
+            total[:, begin:begin + window] += self._run(layer["branches"][0], rows, f"{place}.0.", []).transpose(1, 2)
+            count[:, begin:begin + window] += 1
+        return (total / count)[:, :frames]
 
 
 def layer_of(kind, channels, online, rng):
@@ -133,6 +151,15 @@ def layer_of(kind, channels, online, rng):
     return layer, out
 
 
+def along_time(rng):
+    window, branch = rng.randint(1, 20), []
+    channels = window
+    for kind in rng.choices(TIMELESS, k=rng.randint(0, 3)):
+        layer, channels = layer_of(kind, channels, True, rng)
+        branch.append(layer)
+    return {"kind": "along_time", "window": window, "branches": [branch + [{"kind": "linear", "out": window}]]}
+
+
 def branched(kind, channels, online, rng, depth):
     branches, behind = [], []
     for _ in range(rng.randint(1, 3)):
@@ -148,10 +175,12 @@ def layers_of(count, channels, online, rng, depth=0):
     layers = []
     for _ in range(count):
         kind = rng.choice(TIMELESS + ["conv", "conv"] + RECURRENT + (BRANCHED if depth < 2 else []) +
-                          ([] if online else ["pools"]))
+                          ([] if online else ["pools", "along_time"]))
         if kind == "pools":
             inner, channels = layers_of(rng.randint(0, 2), channels, online, rng, 2)
             layers += [{"kind": "max_pool"}, *inner, {"kind": "unpool"}]
+        elif kind == "along_time":
+            layers.append(along_time(rng))
         else:
             make = branched if kind in BRANCHED else layer_of
             layer, channels = make(kind, channels, online, rng, *([depth] if kind in BRANCHED else []))
@@ -165,7 +194,9 @@ def model_with(kind, seed, online):
     torch.manual_seed(seed)
     inputs = rng.randint(2, 40)
     layers = [{"kind": "max_pool"}, {"kind": "linear", "out": inputs}, {"kind": "unpool"}]
-    if kind != "max_pool":
+    if kind == "along_time":
+        layers = [along_time(rng)]
+    elif kind != "max_pool":
         make = branched if kind in BRANCHED else layer_of
         layers = [make(kind, inputs, online, rng, *([1] if kind in BRANCHED else []))[0]]
     ends = {"kind": "linear", "out": inputs}

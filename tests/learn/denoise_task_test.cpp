@@ -47,19 +47,26 @@ Architecture narrow_network(const DenoiseMethod& method, const DenoiseLayout& la
   return out;
 }
 
+/// The window that the method sees at once, at most 61 frames.
 DenoiseTraining small_training(const DenoiseMethod& method) {
   DenoiseTraining out = method.training;
   out.batch = 2;
-  out.crop = 61;
   out.mirror = false;
   out.loss.smooth = 0.0;  // holds the answer back, whatever the truth is
+  return out;
+}
+
+/// The pair, or of a method that learns from the truth alone one whose input is the truth.
+Pair pair_for(const DenoiseMethod& method) {
+  Pair out = one_pair(static_cast<std::size_t>(method.training.crop));
+  if (method.training.from_truth) out.truth = out.input.positions;
   return out;
 }
 
 /// The judgement after the fit as a share of the one before.
 double left_over(const DenoiseMethod& method, std::int64_t steps) {
   const DenoiseLayout layout = layout_of(method);
-  const std::vector<Pair> pairs{one_pair(61)};
+  const std::vector<Pair> pairs{pair_for(method)};
   DenoiseTask task(layout, small_training(method), pairs, pairs, torch::kCPU);
   torch::manual_seed(1);
   TorchNetwork network(narrow_network(method, layout));
@@ -89,6 +96,70 @@ TEST_CASE("denoise task: each network learns one window by heart") {
   CHECK(left_over(refine_method(), 300) < 0.05);
   CHECK(left_over(cnn_method(), 1000) < 0.05);
   CHECK(left_over(bra_method(), 400) < 0.05);
+  CHECK(left_over(cnn_manifold_method(), 1000) < 0.05);
+  CHECK(left_over(smoothnet_method(), 3000) < 0.05);
+}
+
+TEST_CASE("denoise task: manifold mode learns from the truth, whatever the Kinect saw") {
+  const auto loss = [](const DenoiseMethod& method, const Pair& pair) {
+    const DenoiseLayout layout = layout_of(method);
+    DenoiseTask task(layout, small_training(method), {pair}, {}, torch::kCPU);
+    torch::manual_seed(1);
+    torch::NoGradGuard guard;
+    return task.loss(TorchNetwork(narrow_network(method, layout)), 1, 0).item<double>();
+  };
+  const Pair pair = one_pair(61);
+  Pair rough = pair;
+  for (std::size_t t = 0; t < 61; ++t) {  // a wrist, which does not turn the body's frame
+    rough.input.positions[63 * t + 3 * 6] += 0.2F * std::sin(0.3F * static_cast<float>(t));
+  }
+  CHECK(loss(cnn_manifold_method(), rough) ==
+        doctest::Approx(loss(cnn_manifold_method(), pair)).epsilon(1e-5));
+  CHECK(loss(cnn_method(), rough) != doctest::Approx(loss(cnn_method(), pair)).epsilon(1e-5));
+}
+
+TEST_CASE("denoise task: SmoothNet smooths each channel alone") {
+  const DenoiseMethod method = smoothnet_method();
+  const DenoiseLayout layout = layout_of(method);
+  torch::manual_seed(1);
+  torch::NoGradGuard guard;
+  const TorchNetwork network(method.architecture(layout));
+  const std::int64_t channels = static_cast<std::int64_t>(layout.channels());
+  const auto input = torch::randn({1, 50, channels});
+  auto other = input.clone();
+  other.select(2, 7) += 1.0;  // y of joint 2
+  const auto moved = (network.forward(other, false) - network.forward(input, false)).abs().sum(1);
+  for (std::int64_t c = 0; c < moved.size(1); ++c) {
+    CHECK((moved[0][c].item<double>() > 1e-3) == (c == 7));
+  }
+}
+
+TEST_CASE("denoise task: a weight of the hands counts their errors so many times") {
+  const DenoiseMethod method = refine_method();
+  const DenoiseLayout layout = layout_of(method);
+  Pair still = one_pair(61);
+  for (std::size_t i = 0; i < still.truth.size(); ++i) {
+    still.input.positions[i] = still.truth[i] = standing_body[i / 3 % 21][i % 3];
+  }
+  // 10 cm to both sides in turn: what a joint is off by on average is none.
+  const auto loss = [&](std::size_t joint, double hands) {
+    Pair wrong = still;
+    for (std::size_t t = 0; t < 60; ++t) wrong.truth[63 * t + 3 * joint] += t < 30 ? 0.1F : -0.1F;
+    DenoiseTraining training = small_training(method);
+    training.loss = {.distance = 1.0, .acceleration = 0.0, .bone = 0.0, .spread = 0.0};
+    training.loss.hands = hands;
+    training.states_spread = false;
+    DenoiseTask task(layout, training, {wrong}, {}, torch::kCPU);
+    TorchNetwork network(narrow_network(method, layout));
+    network.zero_last();
+    torch::NoGradGuard guard;
+    return task.loss(network, 1, 0).item<double>();
+  };
+  constexpr std::size_t wrist = 6, knee = 13;
+  CHECK(loss(wrist, 1.0) == doctest::Approx(loss(knee, 1.0)).epsilon(0.01));
+  CHECK(loss(wrist, 3.0) == doctest::Approx(3.0 * loss(knee, 3.0)).epsilon(0.03));
+  // 4 of 21 joints are hands: weights keep a mean of 1.
+  CHECK(loss(knee, 3.0) == doctest::Approx(loss(knee, 1.0) * 21.0 / (17.0 + 12.0)).epsilon(0.01));
 }
 
 TEST_CASE("denoise task: every gradient is there and finite") {

@@ -21,9 +21,10 @@ from run_cases import Skip, case, in_time, run_cases
 LEARN, RUN_DENOISER = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 REFERENCE_BLAS = pathlib.Path("/usr/lib/x86_64-linux-gnu/blas")
 JOINTS = ["SpineBase", "SpineMid", "SpineShoulder", "Head", "ShoulderLeft", "ElbowLeft", "ShoulderRight", "ElbowRight",
-          "HipLeft", "KneeLeft", "HipRight", "KneeRight"]
+          "HipLeft", "KneeLeft", "AnkleLeft", "FootLeft", "HipRight", "KneeRight", "AnkleRight", "FootRight"]
 BODY = numpy.array([[0, .95, 0], [0, 1.2, 0], [0, 1.4, 0], [0, 1.65, .04], [.18, 1.4, 0], [.24, 1.12, .02], [-.18, 1.4, 0],
-                    [-.24, 1.12, .02], [.1, .92, 0], [.11, .5, .02], [-.1, .92, 0], [-.11, .5, .02]])
+                    [-.24, 1.12, .02], [.1, .92, 0], [.11, .5, .02],
+                    [.11, .09, 0], [.11, .04, .12], [-.1, .92, 0], [-.11, .5, .02], [-.11, .09, 0], [-.11, .04, .12]])
 
 
 def moving(frames, seed):
@@ -163,8 +164,8 @@ def TensorBoard_s_file_has_true_checksums_and_the_numbers_of_the_log(folder):
             assert abs(told[int(row[0]), name] - float(value)) <= 1e-5 * abs(float(value)), (row, name)
 
 
-def answered(model, tensors, network_of, body):
-    """What a model answers to [T,J,3], with NumPy, SciPy and PyTorch."""
+def seen(model, tensors, body):
+    """What a network sees of [T,J,3]: features and base [T,K,3] in the body's frame, its turn and root, the smoothed body."""
     joints, frames = model["input"]["joints"], len(body)
     how = model["input"]["smoothing"]
     smooth = savgol_filter(body, how["window"], how["order"], axis=0, mode="interp")
@@ -179,9 +180,15 @@ def answered(model, tensors, network_of, body):
     steps = numpy.diff(inside, axis=0, prepend=inside[:1])
     features = numpy.concatenate([inside.reshape(frames, -1), steps.reshape(frames, -1), numpy.ones((frames, len(joints)))], 1)
     features = (features - tensors["input.mean"]) / tensors["input.scale"]
-    out = network_of("net")(features.astype(numpy.float32))
-    count = len(model["output"]["joints"])
     base = numpy.stack([smooth_inside[:, b] if b >= 0 else numpy.zeros((frames, 3)) for b in model["output"]["bases"]], 1)
+    return features.astype(numpy.float32), base, turn, root, smooth
+
+
+def answered(model, tensors, network_of, body):
+    """What a model answers to [T,J,3], with NumPy, SciPy and PyTorch."""
+    features, base, turn, root, _ = seen(model, tensors, body)
+    out = network_of("net")(features)
+    count, frames = len(model["output"]["joints"]), len(body)
     answer = base.reshape(frames, -1) + tensors["answer.mean"] + model["output"]["scale_m"] * out[:, :3 * count]
     if "second" in model["networks"]:
         answer = network_of("second")(answer.astype(numpy.float32))
@@ -194,7 +201,7 @@ def a_model_answers_in_PyTorch_what_the_program_answers(folder):
         raise Skip("needs python3-torch")
     import torch
     import torch_networks
-    for method in ("refine", "cnn", "bra-p"):
+    for method in ("refine", "cnn", "cnn-manifold", "bra-p", "smoothnet"):
         trained(job(folder, method))
         model, tensors = read_model(folder / "m.safetensors")
 
@@ -209,6 +216,92 @@ def a_model_answers_in_PyTorch_what_the_program_answers(folder):
         found = numpy.fromfile(folder / "out", "<f4").reshape(50, -1, 3)
         error = numpy.abs(found - answered(model, tensors, network_of, body)).max()
         assert error < 1e-4, (method, error)
+
+
+def standing(foot):
+    """Frames [T] in which a smoothed foot [T,3] at 30 Hz is slow, near its lowest places, for four frames or more."""
+    steps = numpy.linalg.norm(numpy.diff(foot, axis=0), axis=1)
+    slow = 30 * numpy.concatenate([steps[:1], steps]) < .3
+    low = foot[:, 1] < numpy.quantile(foot[:, 1], .05) + .1
+    out, run = slow & low, 0
+    for t in range(len(out) + 1):
+        if t < len(out) and out[t]:
+            run += 1
+        else:
+            out[t - run:t] &= run >= 4
+            run = 0
+    return out
+
+
+def projected(model, tensors, network, body):
+    """The answer after 50 steps of PyTorch's Adam in the code of the network, in the world's space."""
+    import torch
+    features, base, turn, root, smooth = seen(model, tensors, body)
+    layers, names = network.architecture["layers"], model["output"]["joints"]
+    middle = [layer["kind"] for layer in layers].index("unpool")
+    frames, parents = len(body), model["output"]["parents"]
+    base, turn, root = (torch.tensor(x, dtype=torch.float32) for x in (base + tensors["answer.mean"].reshape(-1, 3), turn, root))
+
+    def motion(code):
+        x = .5 * code.repeat_interleave(2, dim=1)[:, :frames]
+        for i in range(middle + 1, len(layers)):
+            x = network._one(layers[i], x, str(i), [])
+        return base + model["output"]["scale_m"] * x.reshape(base.shape)
+    with torch.no_grad():
+        code, pools = torch.tensor(features)[None], []
+        for i in range(middle):
+            code = network._one(layers[i], code, str(i), pools)
+        answer = motion(code)
+    code = code.clone().requires_grad_(True)
+    bones = [j for j, p in enumerate(parents) if p >= 0]
+    above, roots = [parents[j] for j in bones], [j for j, p in enumerate(parents) if p < 0]
+    lengths = {j: float(numpy.sort((answer[:, j] - answer[:, parents[j]]).norm(dim=-1).numpy())[frames // 2]) for j in bones}
+    mirror = {name: name.replace("Left", "Right") if "Left" in name else name.replace("Right", "Left") for name in names}
+    usual = 100 * torch.tensor([(lengths[j] + lengths[names.index(mirror[names[j]])]) / 2 for j in bones])
+    feet = [name for name in ("AnkleLeft", "FootLeft", "AnkleRight", "FootRight") if name in names]
+    stands = torch.tensor(numpy.stack([standing(smooth[:, model["input"]["joints"].index(name)]) for name in feet], 1))
+    stands, places = (stands[1:] & stands[:-1]).float(), [names.index(name) for name in feet]
+    adam = torch.optim.Adam([code], lr=.01, eps=1e-5)
+    for _ in range(50):
+        adam.zero_grad()
+        now = motion(code)
+        world = 100 * (now @ turn + root)[:, places]
+        moves = (world[1:] - world[:-1]).pow(2).sum(-1)
+        path = (100 * (now - answer)[:, roots]).pow(2).sum(-1)
+        apart = (1e4 * (now[:, bones] - now[:, above]).pow(2).sum(-1) + 1e-4).sqrt() - usual
+        (10 * (moves * stands).sum() / stands.sum() + 10 * path.mean() + apart.pow(2).mean()).backward()
+        adam.step()
+    with torch.no_grad():
+        return (motion(code) @ turn + root).numpy(), int(stands.sum())
+
+
+@case
+def a_projected_answer_is_what_PyTorch_s_Adam_finds(folder):
+    if not importlib.util.find_spec("torch"):
+        raise Skip("needs python3-torch")
+    import torch
+    import torch_networks
+    trained(job(folder, "cnn"))
+    model, tensors = read_model(folder / "m.safetensors")
+    network = torch_networks.Model(model["networks"]["net"])
+    for path, module in network.modules.items():
+        module.load_state_dict({key: torch.tensor(tensors[f"net.{path}.{key}"]) for key in module.state_dict()})
+    body = moving(51, 33)
+    for foot in ("AnkleLeft", "FootLeft"):
+        body[:, JOINTS.index(foot)] = body[0, JOINTS.index(foot)]
+    torch_networks.write_safetensors(folder / "bodies", {"0.positions": body, "0.seen": numpy.full(body.shape[:2], 2.)}, {})
+    words = {"schema": "kinalign.training_job/1", "project": str(folder / "m.safetensors"), "bodies": str(folder / "bodies"),
+             "out": str(folder / "answers")}
+    (folder / "project.json").write_text(json.dumps(words))
+    last = trained(folder / "project.json")
+    assert last["after"]["feet_cm"] < .5 * last["before"]["feet_cm"], last
+    wanted, stands = projected(model, tensors, network, body)
+    assert stands >= 90, stands
+    bytes_of = (folder / "answers").read_bytes()
+    size = wanted.size * 4
+    found = numpy.frombuffer(bytes_of[-size:], "<f4").reshape(wanted.shape)
+    error = numpy.abs(found - wanted).max()
+    assert error < 1e-3, error
 
 
 @case

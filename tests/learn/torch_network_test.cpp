@@ -25,7 +25,7 @@ class Drawer {
   std::vector<Layer> layers(std::size_t count, std::size_t& channels, std::size_t depth) {
     std::vector<Layer> out;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto kind = static_cast<LayerKind>(below(depth < 2 ? 17 : 14));
+      const auto kind = static_cast<LayerKind>(below(depth < 2 ? 18 : 14));
       if (kind == max_pool || kind == unpool) {
         out.push_back(layer(max_pool));
         if (below(2) == 0) out.push_back(one(relu, channels, depth));
@@ -54,6 +54,7 @@ class Drawer {
     }
     if (kind == lstm || kind == gru) out.bidirectional = below(2) == 0;
     if (kind == sum || kind == product || kind == concat) add_branches(out, channels, depth);
+    if (kind == along_time) out = smoother(1 + below(12));
     channels = outputs(out, channels);
     return out;
   }

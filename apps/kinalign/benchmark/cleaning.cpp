@@ -83,8 +83,9 @@ Result<bool> has_identity(const std::string& bytes, const std::string& file,
   return training.is_object() && training.value("identity", "") == identity;
 }
 
-Result<Answer> trained_method(const CleaningOptions& o, const CleaningData& data,
-                              const std::string& method, Call& call) {
+/// The model's file.
+Result<std::string> trained_method(const CleaningOptions& o, const CleaningData& data,
+                                   const std::string& method, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string file = model_file(o, method);
   Json job = job_of_method(o, data, method);
@@ -92,7 +93,7 @@ Result<Answer> trained_method(const CleaningOptions& o, const CleaningData& data
   std::error_code fault;
   if (fs::exists(file, fault)) {
     const std::string bytes = KA_TRY(read_whole(files, file, most_bench_model));
-    if (KA_TRY(has_identity(bytes, file, identity))) return answer_of_model(bytes, file);
+    if (KA_TRY(has_identity(bytes, file, identity))) return file;
     if (!call.common.force) {
       return Failure(Error{file, 0, "a model trained on these takes with this seed and these steps",
                            "another one (--force trains it again)"});
@@ -110,12 +111,17 @@ Result<Answer> trained_method(const CleaningOptions& o, const CleaningData& data
   KA_TRY(write_whole(files, run + "/job.json", job.dump(1), Overwrite::yes));
   call.console.detail("training " + method);
   KA_TRY(run_worker(run + "/job.json", {.progress = call.console.progress()}));
-  return answer_of_model(KA_TRY(read_whole(files, file, most_bench_model)), file);
+  return file;
 }
 
 Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
                           const std::string& method, Call& call) {
-  if (is_trained(method)) return trained_method(o, data, method, call);
+  if (is_trained(method)) {
+    std::vector<JointFrames> tested;
+    for (const Pair* pair : data.tested) tested.push_back(pair->input);
+    const std::string model = KA_TRY(trained_method(o, data, trained_part(method), call));
+    return trained_answer(method, model, data.layout, tested, call);
+  }
   const EvalTask task{.layout = data.layout,
                       .pairs = data.pairs.all,
                       .learnt = data.learnt,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
-#include "apps/kinalign/learn/answer_output.h"
 #include "apps/kinalign/learn/point_source.h"
+#include "apps/kinalign/learn/projected.h"
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/verbs.h"
@@ -10,6 +10,8 @@
 
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/formats/points/trc.h"
+#include "kinalign/formats/take/guarded.h"
+#include "kinalign/infer/safetensors.h"
 #include "kinalign/models/denoise_model.h"
 #include "kinalign/models/even_grid.h"
 #include "kinalign/models/joint_names.h"
@@ -35,6 +37,7 @@ constexpr double longest_unseen_s = 2.0;  // a joint that is missing longer is t
 struct Denoise {
   std::vector<std::string> in;
   std::string model, stream;
+  bool project = false;
 };
 
 Usage describe_denoise(Denoise& o) {
@@ -42,13 +45,11 @@ Usage describe_denoise(Denoise& o) {
   usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in}};
   usage.flags = {
       {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
-      {"stream",
-       "which stream (default: the only one of joints)",
-       &o.stream,
-       0.0,
-       0.0,
-       {},
-       "NAME"}};
+      {"stream", "which stream (default: the only one of joints)", &o.stream, 0.0, 0.0, {}, "NAME"},
+      {"project",
+       "feet that stand do not slide, bones keep their lengths: steps in the hidden space of a "
+       "model of cnn or cnn-manifold",
+       &o.project}};
   usage.check = [](const Common& common, const Sources&) -> Result<void> {
     if (common.out.ends_with(".bvh") || common.out.ends_with(".trc")) return {};
     return Failure(
@@ -124,14 +125,59 @@ Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string&
   return out;
 }
 
-Result<Cleaned> clean(Denoiser& denoiser, const NamedPoints& points) {
-  const DenoiseLayout& layout = denoiser.model().layout;
-  Cleaned out;
-  out.input = KA_TRY(even_frames(layout.inputs, kinect_names(points.joints), points.frames,
-                                 {layout.rate_hz, longest_gap_s}));
-  out.answer = denoiser.clean(out.input.body);
-  out.about = about(denoiser.model(), out, points.stream);
+/// The joints that a model sees.
+struct SeenJoints {
+  std::string stream;
+  EvenFrames frames;
+};
+
+/// Errors name the file `in`.
+Result<SeenJoints> seen_joints(const DenoiseLayout& layout, Result<NamedPoints> points,
+                               const std::string& in) {
+  const NamedPoints named = KA_TRY(std::move(points));
+  auto frames = even_frames(layout.inputs, kinect_names(named.joints), named.frames,
+                            {layout.rate_hz, longest_gap_s});
+  if (frames) return SeenJoints{named.stream, *std::move(frames)};
+  Error error = frames.error();
+  if (error.file.empty()) error.file = in;
+  return Failure(error);
+}
+
+/// The same of a take, read in a child process.
+Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::string& in,
+                                       const std::string& stream, Call& call) {
+  const auto work = [&]() -> Result<std::string> {
+    const SeenJoints seen =
+        KA_TRY(seen_joints(layout, points_of_take(call.surroundings.files, in, stream), in));
+    const JointFrames& body = seen.frames.body;
+    TensorFile out;
+    out.metadata = {{"stream", seen.stream},
+                    {"start_ns", std::to_string(to_ns(seen.frames.start))}};
+    out.tensors["positions"] = {{body.frames(), body.joints, 3}, body.positions};
+    out.tensors["seen"] = {{body.frames(), body.joints}, {body.seen.begin(), body.seen.end()}};
+    return write_safetensors(out);
+  };
+  TensorFile told =
+      KA_TRY(read_safetensors(KA_TRY(run_guarded(GuardLimits{}, blame(in), work)), in));
+  SeenJoints out;
+  out.stream = told.metadata["stream"];
+  out.frames.start = utc_time(std::stoll(told.metadata["start_ns"]));
+  out.frames.rate_hz = layout.rate_hz;
+  out.frames.body.joints = layout.inputs.size();
+  out.frames.body.positions = std::move(told.tensors["positions"].values);
+  const auto& seen = told.tensors["seen"].values;
+  out.frames.body.seen.assign(seen.begin(), seen.end());
   return out;
+}
+
+/// The model's answer, brought to meet constraints, then steadied as all are. `path`: its file.
+Result<Denoised> clean_with_constraints(const DenoiseModel& model, const std::string& path,
+                                        const JointFrames& body, Json& about, Call& call) {
+  const auto projected = KA_TRY(projected_answers(path, model.layout, {body}, call));
+  about["projected"] = {{"feet_cm", {projected.before.feet_cm, projected.after.feet_cm}},
+                        {"bone_cm", {projected.before.bone_cm, projected.after.bone_cm}}};
+  const Steadier steadier(model.steadying, model.layout);
+  return steadier.steadied(projected.answer, body, projected.answer(body));
 }
 
 Result<void> write_trc(FileSystem& files, const DenoiseModel& model, const Cleaned& cleaned,
@@ -190,45 +236,47 @@ void print(const Json& about, const std::string& out, Call& call) {
     text += fmt::format("warning  {} is missing for {:.1f} s: there it is a guess\n",
                         harmless(joint), seconds.get<double>());
   }
+  if (about.contains("projected")) {
+    const auto said = [&](const char* what, std::size_t i) {
+      return about.at("projected").at(what).at(i).get<double>();
+    };
+    text += fmt::format(
+        "project  standing feet move {:.2f} cm a frame, before {:.2f}; bones vary by {:.1f} cm, "
+        "before {:.1f}\n",
+        said("feet_cm", 1), said("feet_cm", 0), said("bone_cm", 1), said("bone_cm", 0));
+  }
   call.console.print(text);
   call.console.print_json(about.dump(1, ' ', false, Json::error_handler_t::replace));
 }
 
-/// Cleans the points and writes them; errors name the file `in`.
-Result<Json> clean_into(Denoiser& denoiser, Result<NamedPoints> points, const std::string& in,
-                        Call& call) {
-  auto cleaned = clean(denoiser, KA_TRY(std::move(points)));
-  if (!cleaned) {
-    Error error = cleaned.error();
-    if (error.file.empty()) error.file = in;
-    return Failure(error);
+Result<SeenJoints> seen_joints_of_file(const DenoiseLayout& layout, const Denoise& o, Call& call) {
+  const std::string& in = o.in.front();
+  if (KA_TRY(kind_of_file(call.surroundings.files, in)) == FileKind::take) {
+    return seen_joints_of_take(layout, in, o.stream, call);
   }
-  KA_TRY(write_cleaned(call.surroundings.files, denoiser.model(), *cleaned, call.common));
-  return cleaned->about;
-}
-
-/// The same of a take, in a child process.
-Result<Json> clean_take(Denoiser& denoiser, const std::string& in, const std::string& stream,
-                        Call& call) {
-  FileSystem& files = call.surroundings.files;
-  return in_child(
-      in, [&] { return clean_into(denoiser, points_of_take(files, in, stream), in, call); });
+  return seen_joints(layout, points_of_file(in, o.stream, call), in);
 }
 
 Result<int> run_denoise(Denoise& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  const std::string& in = o.in.front();
   KA_TRY(keep_inputs(call.common.out, o.in));
   const std::string path = o.model.empty() ? KA_TRY(shipped_model("denoise")) : o.model;
   const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
   Denoiser denoiser = KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, path))));
-  const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
-  const Json about =
-      KA_TRY(is_take ? clean_take(denoiser, in, o.stream, call)
-                     : clean_into(denoiser, points_of_file(in, o.stream, call), in, call));
+  const DenoiseModel& model = denoiser.model();
+  SeenJoints seen = KA_TRY(seen_joints_of_file(model.layout, o, call));
+  Cleaned cleaned{std::move(seen.frames), {}, Json::object()};
+  Json of_projection = Json::object();
+  cleaned.answer =
+      o.project
+          ? KA_TRY(clean_with_constraints(model, path, cleaned.input.body, of_projection, call))
+          : denoiser.clean(cleaned.input.body);
+  cleaned.about = about(model, cleaned, seen.stream);
+  cleaned.about.update(of_projection);
+  KA_TRY(write_cleaned(files, model, cleaned, call.common));
   call.console.wrote(call.common.out);
-  print(about, call.common.out, call);
-  return about.at("long_missing_s").empty() ? 0 : 1;
+  print(cleaned.about, call.common.out, call);
+  return cleaned.about.at("long_missing_s").empty() ? 0 : 1;
 }
 
 }  // namespace
@@ -240,11 +288,13 @@ Verb denoise_verb() {
        .text =
            "A model brings rough joints to where a precise system would have seen them. The new "
            "file has the model's joints at its rate. A joint that is missing for 2 s or longer "
-           "is told, and the exit code is 1.",
+           "is told, and the exit code is 1. --project needs the program kinalign-learn.",
        .examples =
            {{"kinalign denoise kinect.csv -o clean.bvh", "a skeleton that Blender opens"},
             {"kinalign denoise take.h5 -o clean.trc --stream kinect --model own.safetensors",
-             "a take's stream, with a model of your own"}},
+             "a take's stream, with a model of your own"},
+            {"kinalign denoise kinect.csv -o clean.bvh --model cnn.safetensors --project",
+             "feet that stand stay where they are"}},
        .common = {"out", "force", "json"}},
       describe_denoise, run_denoise);
 }

@@ -30,13 +30,13 @@ constexpr std::size_t most_windows_bytes = std::size_t{4} << 30U;
 constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
 constexpr std::size_t least_rows = 8;
 /// The version of cached results: another number lets all be computed again.
-constexpr int cache_version = 2;
+constexpr int cache_version = 3;
 
 struct Eval {
   std::vector<std::string> methods;
   std::string data, windows, input = "kinect", truth = "mocap", folds = "people", format = "text";
   std::string device = "cpu";
-  double rate_hz = 30.0;
+  double rate_hz = 30.0, hand_weight = 0.0;
   std::int64_t seeds = 1, steps = 0;
 };
 
@@ -56,6 +56,8 @@ Usage describe_eval(Eval& o) {
       {"rate", "frames a second", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
       {"seeds", "trainings of each network", &o.seeds, 1.0, 100.0},
       {"steps", "batches of each training; 0: the method's own number", &o.steps, 0.0, 1e8},
+      {"hand-weight", "of wrists and hands in the loss of networks; 0: the method's own",
+       &o.hand_weight, 0.0, 100.0},
       {"device", "where networks are trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
       format_field(o.format)};
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
@@ -93,7 +95,11 @@ Json marks_json(const DenoiseMarks& marks) {
           t.true_smooth,
           marks.covered,
           marks.radius_cm,
-          marks.cells};
+          marks.cells,
+          number(marks.hand_cm),
+          marks.feet.contacts,
+          marks.feet.skate_m_s,
+          marks.feet.true_skate_m_s};
 }
 
 std::optional<double> number_of(const Json& json) {
@@ -118,6 +124,10 @@ DenoiseMarks marks_of(const Json& json) {
   out.covered = json.at(11).get<double>();
   out.radius_cm = json.at(12).get<double>();
   out.cells = json.at(13).get<std::size_t>();
+  out.hand_cm = number_of(json.at(14));
+  out.feet.contacts = json.at(15).get<std::size_t>();
+  out.feet.skate_m_s = json.at(16).get<double>();
+  out.feet.true_skate_m_s = json.at(17).get<double>();
   return out;
 }
 
@@ -197,10 +207,12 @@ struct Trial {
   std::string method;
   std::int64_t seed = 1;
 
-  std::string key() const {
+  /// Of the result; of the model, `trained` is the method.
+  std::string key() const { return key(method); }
+  std::string key(const std::string& trained) const {
     Sha256 hash;
-    hash.update(Json{cache_version, bench.windows_hash, method, seed, options.steps, options.input,
-                     options.truth, fold.learnt, fold.tested}
+    hash.update(Json{cache_version, bench.windows_hash, trained, seed, options.steps, options.input,
+                     options.truth, options.hand_weight, fold.learnt, fold.tested}
                     .dump());
     return hash.hex().substr(0, 32);
   }
@@ -208,16 +220,18 @@ struct Trial {
 
 Result<std::vector<Marked>> compute(const Trial& trial, const DenoiseMarker& marker, Call& call) {
   const Bench& bench = trial.bench;
-  const EvalTask task{.layout = bench.layout,
-                      .pairs = bench.pairs.all,
-                      .learnt = trial.fold.learnt,
-                      .windows = bench.windows,
-                      .input = trial.options.input,
-                      .truth = trial.options.truth,
-                      .folder = call.common.out + "/models/" + trial.key(),
-                      .device = trial.options.device,
-                      .seed = trial.seed,
-                      .steps = trial.options.steps};
+  const EvalTask task{
+      .layout = bench.layout,
+      .pairs = bench.pairs.all,
+      .learnt = trial.fold.learnt,
+      .windows = bench.windows,
+      .input = trial.options.input,
+      .truth = trial.options.truth,
+      .folder = call.common.out + "/models/" + trial.key(trained_part(trial.method)),
+      .device = trial.options.device,
+      .seed = trial.seed,
+      .steps = trial.options.steps,
+      .hand_weight = trial.options.hand_weight};
   const Answer answer = KA_TRY(make_answer(trial.method, task, call));
   const Steadier steadier({}, bench.layout);
   const auto& tested = trial.fold.tested;
@@ -279,10 +293,11 @@ void put_mean(std::vector<Cell>& row, const std::vector<double>& values) {
 
 std::vector<Cell> row_of(const std::string& method, const std::vector<std::vector<Marked>>& folds,
                          std::size_t which) {
-  std::array<std::vector<double>, 8> values;
+  std::array<std::vector<double>, 10> values;
   for (const auto& group : groups_of(folds)) {
     std::vector<ProtocolMarks> marks;
-    double covered = 0.0, radius = 0.0, cells = 0.0;
+    double covered = 0.0, radius = 0.0, cells = 0.0, skate = 0.0, contacts = 0.0;
+    Mean hands;
     for (const Marked* one : group) {
       const DenoiseMarks& m = one->marks[which];
       marks.push_back(m.protocol);
@@ -290,6 +305,10 @@ std::vector<Cell> row_of(const std::string& method, const std::vector<std::vecto
       covered += m.covered * n;
       radius += m.radius_cm * n;
       cells += n;
+      if (m.hand_cm) hands.add(*m.hand_cm);
+      const auto standing = static_cast<double>(m.feet.contacts);
+      skate += 100.0 * m.feet.skate_m_s * standing;
+      contacts += standing;
     }
     const ProtocolMeans row = protocol_row(marks);
     const auto put = [&](std::size_t i, const std::optional<double>& value) {
@@ -303,6 +322,8 @@ std::vector<Cell> row_of(const std::string& method, const std::vector<std::vecto
     put(5, row.jitter);
     if (cells > 0.0) put(6, 100.0 * covered / cells);
     if (cells > 0.0) put(7, radius / cells);
+    put(8, hands.value());
+    if (contacts > 0.0) put(9, skate / contacts);
   }
   std::vector<Cell> out{method + (which == 1 ? ", steadied" : "")};
   for (const auto& one : values) put_mean(out, one);
@@ -325,6 +346,8 @@ Table empty_table(const Eval& o) {
   add("jitter", "jitter, × truth", 2);
   add("covered_percent", "within 90 % radius, %", 1);
   add("radius_cm", "that radius, cm", 1);
+  add("hand_cm", "wrists, cm", 2);
+  add("skate_cm_s", "standing feet, cm/s", 2);
   return table;
 }
 

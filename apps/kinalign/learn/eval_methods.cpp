@@ -2,6 +2,7 @@
 #include "apps/kinalign/learn/eval_methods.h"
 
 #include "apps/cli/console.h"
+#include "apps/kinalign/learn/projected.h"
 #include "apps/kinalign/learn/worker.h"
 
 #include "kinalign/compare/linear.h"
@@ -20,6 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_trained_bytes = std::size_t{1} << 30U;
+constexpr std::string_view projects = "+project";
 
 /// The base joints after a filter of the input.
 Answer filtered(const DenoiseLayout& layout, const std::function<void(JointFrames&)>& filter) {
@@ -41,29 +43,41 @@ std::vector<const Pair*> learnt_of(const EvalTask& task) {
   return out;
 }
 
-Result<Answer> trained(const std::string& method, const EvalTask& task, Call& call) {
+/// The model's file.
+Result<std::string> trained(const std::string& method, const EvalTask& task, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string model = task.folder + "/model.safetensors", file = task.folder + "/job.json";
   KA_TRY(make_folders(task.folder));
   Json options{{"seed", task.seed}};
   if (task.steps > 0) options["steps"] = task.steps;
-  const Json job{{"schema", "kinalign.training_job/1"},
-                 {"method", method},
-                 {"windows", task.windows},
-                 {"input", task.input},
-                 {"truth", task.truth},
-                 {"learn", task.learnt},
-                 {"out", model},
-                 {"log", task.folder + "/log.csv"},
-                 {"device", task.device},
-                 {"threads", call.jobs},
-                 {"options", options}};
+  Json job{{"schema", "kinalign.training_job/1"},
+           {"method", method},
+           {"windows", task.windows},
+           {"input", task.input},
+           {"truth", task.truth},
+           {"learn", task.learnt},
+           {"out", model},
+           {"log", task.folder + "/log.csv"},
+           {"device", task.device},
+           {"threads", call.jobs},
+           {"options", options}};
+  if (task.hand_weight > 0.0) job["hand_weight"] = task.hand_weight;
   std::error_code fault;
   if (!std::filesystem::exists(model, fault)) {
     KA_TRY(write_whole(files, file, job.dump(1), Overwrite::yes));
     KA_TRY(run_worker(file, {.progress = call.console.progress()}));
   }
-  return answer_of_model(KA_TRY(read_whole(files, model, most_trained_bytes)), model);
+  return model;
+}
+
+std::vector<JointFrames> tested_of(const EvalTask& task) {
+  std::vector<JointFrames> out;
+  for (const Pair& pair : task.pairs) {
+    if (std::find(task.learnt.begin(), task.learnt.end(), pair.take) == task.learnt.end()) {
+      out.push_back(pair.input);
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -79,8 +93,12 @@ const std::vector<EvalMethod>& eval_methods() {
       {"offset+kalman", "Kalman smoother, then the mean offset"},
       {"ridge", "ridge regression over 9 frames"},
       {"cnn", "convolutional autoencoder (Holden 2016), paired", true},
+      {"cnn+project", "the same, brought to meet constraints", true},
+      {"cnn-manifold", "convolutional autoencoder of clean motion", true},
+      {"cnn-manifold+project", "the same, brought to meet constraints", true},
       {"bra", "bidirectional recurrent autoencoder (Li 2019)", true},
       {"bra-p", "the same, perceptual (Li 2020)", true},
+      {"smoothnet", "layers along time (Zeng 2022), then the mean offset", true},
       {"refine", "ours", true}};
   return all;
 }
@@ -91,6 +109,10 @@ bool is_trained(const std::string& method) {
                      [&](const EvalMethod& one) { return one.name == method && one.trained; });
 }
 
+std::string trained_part(const std::string& method) {
+  return method.ends_with(projects) ? method.substr(0, method.size() - projects.size()) : method;
+}
+
 Result<DenoiseLayout> eval_layout(const Pairs& pairs) {
   DenoiseLayout out = KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz));
   // Steadied bones lead from one joint that a Kinect has to the next: a suit's joints in between
@@ -99,6 +121,16 @@ Result<DenoiseLayout> eval_layout(const Pairs& pairs) {
       std::any_of(out.parents.begin(), out.parents.end(), [](int one) { return one >= 0; });
   if (!known && !pairs.parents.empty()) out.parents = pairs.parents;
   return out;
+}
+
+Result<Answer> trained_answer(const std::string& method, const std::string& file,
+                              const DenoiseLayout& layout, const std::vector<JointFrames>& bodies,
+                              Call& call) {
+  if (method.ends_with(projects)) {
+    return KA_TRY(projected_answers(file, layout, bodies, call)).answer;
+  }
+  return answer_of_model(KA_TRY(read_whole(call.surroundings.files, file, most_trained_bytes)),
+                         file);
 }
 
 Result<Answer> answer_of_model(const std::string& bytes, const std::string& name) {
@@ -138,7 +170,8 @@ Result<Answer> make_answer(const std::string& method, const EvalTask& task, Call
       return Denoised{fit->clean(layout, body), {}};
     });
   }
-  return trained(method, task, call);
+  const std::string model = KA_TRY(trained(trained_part(method), task, call));
+  return trained_answer(method, model, layout, tested_of(task), call);
 }
 
 }  // namespace kinalign

@@ -20,6 +20,8 @@ const std::vector<EvalMethod>& eval_methods();
 
 /// Whether it is trained by kinalign-learn.
 bool is_trained(const std::string& method);
+/// The method that is trained for it: "cnn" of "cnn+project", else itself.
+std::string trained_part(const std::string& method);
 
 /// What methods see and answer on these pairs. Fails as denoise_layout().
 Result<DenoiseLayout> eval_layout(const Pairs& pairs);
@@ -33,10 +35,17 @@ struct EvalTask {
   std::string folder;  // of the run: its job, its log and its model, which is used if it is there
   std::string device;  // cpu, cuda
   std::int64_t seed = 1, steps = 0;
+  double hand_weight = 0.0;  // 0: the method's own
 };
 
 /// Fits or trains it. `task.layout` and `task.pairs` must live longer.
 Result<Answer> make_answer(const std::string& method, const EvalTask& task, Call& call);
+
+/// The answer of a method whose trained part is the model in `file`. `bodies`: those that it will
+/// be asked for, which matter where it is brought to meet constraints.
+Result<Answer> trained_answer(const std::string& method, const std::string& file,
+                              const DenoiseLayout& layout, const std::vector<JointFrames>& bodies,
+                              Call& call);
 
 /// The answer of a model's file, without the steadying.
 Result<Answer> answer_of_model(const std::string& bytes, const std::string& name);

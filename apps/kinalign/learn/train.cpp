@@ -28,10 +28,12 @@ struct TrainWord {
 };
 
 /// Methods by the names that kinalign-learn knows them by.
-constexpr std::array<TrainWord, 15> train_words{{{"refine", Learns::denoise},
+constexpr std::array<TrainWord, 17> train_words{{{"refine", Learns::denoise},
                                                  {"cnn", Learns::denoise},
+                                                 {"cnn-manifold", Learns::denoise},
                                                  {"bra", Learns::denoise},
                                                  {"bra-p", Learns::denoise},
+                                                 {"smoothnet", Learns::denoise},
                                                  {"inertial", Learns::pose},
                                                  {"inertial-online", Learns::pose},
                                                  {"dip", Learns::pose},
@@ -50,7 +52,7 @@ struct Train {
   std::vector<std::string> method;
   std::string data, windows, split, where;
   std::string from, input, truth = "mocap", nodes, device = "cpu";
-  double rate_hz = 30.0;
+  double rate_hz = 30.0, hand_weight = 0.0;
   std::int64_t steps = 0, seed = 1, patience = 0;
   bool resume = false;
 };
@@ -72,6 +74,9 @@ Result<void> check_task(const Train& o, const Sources& given) {
   const Learns task = task_of(o);
   if (task == Learns::denoise && given.count("nodes") > 0) {
     return Failure(Error{"--nodes", 0, "a method for poses or for fusion", o.method.front()});
+  }
+  if (task != Learns::denoise && given.count("hand-weight") > 0) {
+    return Failure(Error{"--hand-weight", 0, "a method that cleans a Kinect", o.method.front()});
   }
   if (task == Learns::pose && given.count("input") > 0) {
     return Failure(Error{"--input", 0, "a method that sees a Kinect",
@@ -131,6 +136,9 @@ Usage describe_train(Train& o) {
        0.0,
        {},
        "MODEL"},
+      {"hand-weight",
+       "of wrists and hands in the loss, beside 1 for other joints; 0: the method's own",
+       &o.hand_weight, 0.0, 100.0},
       {"steps", "batches; 0: the method's own number", &o.steps, 0.0, 1e8},
       {"seed", "of everything that is random", &o.seed, 0.0, 1e9},
       {"patience", "judgements without a better one before it stops; 0: never", &o.patience, 0.0,
@@ -207,6 +215,7 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   if (!input_of(o).empty()) job["input"] = input_of(o);
   job["truth"] = o.truth;
   job["options"] = options;
+  if (o.hand_weight > 0.0) job["hand_weight"] = o.hand_weight;
   if (!o.nodes.empty()) job["nodes"] = split_at_commas(o.nodes);
   if (!from_hash.empty()) job["from_sha256"] = from_hash;
   Sha256 identity;
@@ -274,8 +283,9 @@ Verb train_verb() {
        .summary = "a model from a data set",
        .text =
            "Trains a network and writes one SafeTensors file, which denoise, pose or fuse reads "
-           "and PyTorch and NumPy open. refine, cnn, bra and bra-p clean a Kinect; inertial, "
-           "inertial-online, dip, dip-512, dip-robust and wouda answer nodes with a pose; "
+           "and PyTorch and NumPy open. refine, cnn, cnn-manifold, bra, bra-p and smoothnet "
+           "clean a Kinect; inertial, inertial-online, dip, dip-512, dip-robust and wouda answer "
+           "nodes with a pose; "
            "gated, gated-online and bilstm answer a Kinect and nodes together. The last two "
            "kinds learn from a skeleton alone. The same seed gives the same weights on the "
            "same machine. A run that was stopped goes on with --resume. The program "

@@ -6,13 +6,13 @@
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/align_job.h"
 #include "apps/kinalign/verbs/inputs.h"
+#include "apps/kinalign/verbs/scratch.h"
 #include "apps/kinalign/verbs/take_origin.h"
 
 #include "kinalign/sources/open_recording.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -45,36 +45,6 @@ Usage describe_rebuild(Rebuild& o) {
   };
   return usage;
 }
-
-/// A folder that goes with everything in it.
-class Scratch {
- public:
-  static Result<Scratch> make() {
-    std::error_code fault;
-    const auto temporary = std::filesystem::temp_directory_path(fault);
-    if (fault) {
-      return Failure(Error{"TMPDIR", 0, "a folder for temporary files", fault.message()});
-    }
-    std::string name = (temporary / "kinalign-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      return Failure(Error{name, 0, "room for a temporary folder", "none"});
-    }
-    return Scratch(std::move(name));
-  }
-  Scratch(Scratch&& other) noexcept : name_(std::exchange(other.name_, {})) {}
-  Scratch& operator=(Scratch&&) = delete;
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  ~Scratch() {
-    std::error_code ignored;
-    if (!name_.empty()) std::filesystem::remove_all(name_, ignored);
-  }
-  const std::string& name() const { return name_; }
-
- private:
-  explicit Scratch(std::string name) : name_(std::move(name)) {}
-  std::string name_;
-};
 
 /// What --verify found; all empty: the same bytes from the same inputs.
 struct Comparison {

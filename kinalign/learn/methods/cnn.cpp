@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // CNN: the convolutional autoencoder of Holden, Saito, Komura, «A deep learning framework for
-// character motion synthesis and editing», SIGGRAPH 2016, in paired mode: rough in, clean out.
+// character motion synthesis and editing», SIGGRAPH 2016. Paired mode: rough in, clean out.
+// Manifold mode, as published: it learns clean motion alone, from inputs a quarter of which are
+// dropped; a rough motion comes out as the clean one that its code stands for.
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -9,9 +11,10 @@ namespace {
 
 constexpr std::size_t cnn_hidden = 256, cnn_kernel = 25;
 
-Architecture cnn_architecture(const DenoiseLayout& layout) {
+/// What the network sees, its code, and the answer.
+Architecture autoencoder(const DenoiseLayout& layout, const Layer& seen) {
   return {layout.channels(),
-          {{.kind = LayerKind::slice, .out = 6 * layout.inputs.size()},
+          {seen,
            {.kind = LayerKind::dropout, .rate = 0.25},
            {.kind = LayerKind::conv, .out = cnn_hidden, .kernel = cnn_kernel},
            {.kind = LayerKind::relu},
@@ -19,6 +22,16 @@ Architecture cnn_architecture(const DenoiseLayout& layout) {
            {.kind = LayerKind::unpool},
            {.kind = LayerKind::dropout, .rate = 0.25},
            {.kind = LayerKind::conv, .out = layout.answers(), .kernel = cnn_kernel}}};
+}
+
+/// Positions and their differences.
+Architecture cnn_architecture(const DenoiseLayout& layout) {
+  return autoencoder(layout, {.kind = LayerKind::slice, .out = 6 * layout.inputs.size()});
+}
+
+/// Positions of the truth's joints, which a Kinect's stand for at use.
+Architecture manifold_architecture(const DenoiseLayout& layout) {
+  return autoencoder(layout, chosen_positions(layout));
 }
 
 }  // namespace
@@ -36,6 +49,16 @@ DenoiseMethod cnn_method() {
                        .answer_scale = 0.3},
           .options = {.steps = 1200, .rate = 1e-3},
           .from_base = false};
+}
+
+DenoiseMethod cnn_manifold_method() {
+  DenoiseMethod out = cnn_method();
+  out.name = "cnn-manifold";
+  out.summary = "the same, of clean motion alone";
+  out.architecture = manifold_architecture;
+  out.training.one_scale = true;
+  out.training.from_truth = true;
+  return out;
 }
 
 }  // namespace kinalign

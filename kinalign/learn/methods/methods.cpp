@@ -4,7 +4,16 @@
 namespace kinalign {
 
 std::vector<DenoiseMethod> denoise_methods() {
-  return {refine_method(), cnn_method(), bra_method(), bra_p_method()};
+  return {refine_method(), cnn_method(),   cnn_manifold_method(),
+          bra_method(),    bra_p_method(), smoothnet_method()};
+}
+
+Layer chosen_positions(const DenoiseLayout& layout) {
+  Layer out{.kind = LayerKind::concat};
+  for (const std::size_t joint : inputs_of_outputs(layout)) {
+    out.branches.push_back({{.kind = LayerKind::slice, .out = 3, .begin = 3 * joint}});
+  }
+  return out;
 }
 
 }  // namespace kinalign

@@ -10,9 +10,14 @@ namespace kinalign {
 
 DenoiseMethod refine_method();
 DenoiseMethod cnn_method();
+DenoiseMethod cnn_manifold_method();
 DenoiseMethod bra_method();
 DenoiseMethod bra_p_method();
+DenoiseMethod smoothnet_method();
 
 std::vector<DenoiseMethod> denoise_methods();
+
+/// Of the input the positions of those joints alone that stand for the outputs, one for each.
+Layer chosen_positions(const DenoiseLayout& layout);
 
 }  // namespace kinalign

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// A folder for files between two programs.
+#pragma once
+
+#include "kinalign/core/error.h"
+
+#include <stdlib.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+namespace kinalign {
+
+/// A folder that goes with everything in it.
+class Scratch {
+ public:
+  static Result<Scratch> make() {
+    std::error_code fault;
+    const auto temporary = std::filesystem::temp_directory_path(fault);
+    if (fault) {
+      return Failure(Error{"TMPDIR", 0, "a folder for temporary files", fault.message()});
+    }
+    std::string name = (temporary / "kinalign-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      return Failure(Error{name, 0, "room for a temporary folder", "none"});
+    }
+    return Scratch(std::move(name));
+  }
+  Scratch(Scratch&& other) noexcept : name_(std::exchange(other.name_, {})) {}
+  Scratch& operator=(Scratch&&) = delete;
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch() {
+    std::error_code ignored;
+    if (!name_.empty()) std::filesystem::remove_all(name_, ignored);
+  }
+  const std::string& name() const { return name_; }
+
+ private:
+  explicit Scratch(std::string name) : name_(std::move(name)) {}
+  std::string name_;
+};
+
+}  // namespace kinalign
