@@ -133,8 +133,9 @@ McapReader::Stand McapReader::look() {
     lose("a record", "a byte 0");
     return Stand::damaged;
   }
-  if (head && head->length > most_record) {
-    lose("a record of at most 256 MiB", std::to_string(head->length >> 20) + " MiB");
+  if (head && head->length > longest_) {
+    lose("a record of at most " + std::to_string(longest_ >> 20) + " MiB",
+         std::to_string(head->length >> 20) + " MiB");
     return Stand::damaged;
   }
   if (head && head->length <= bytes.size() - mcap_record_head) return Stand::whole;
@@ -196,7 +197,7 @@ bool McapReader::open_chunk(std::string_view content) {
   const auto chunk = decode_mcap_chunk(content);
   if (!chunk || content.size() != chunk->size()) return false;
   uncovered_ = chunk->head.uncompressed_crc == 0;
-  auto records = unpack(*chunk, most_record);
+  auto records = unpack(*chunk, longest_);
   if (records) {
     chunk_ = *std::move(records);
   } else {
@@ -236,14 +237,14 @@ void McapReader::end_in_record() {
   record_at_ = offset_;
   record_size_ = bytes.size();
   in_torn_chunk_ = true;
-  if (chunk) chunk_ = unpack_torn(*chunk, most_record);
+  if (chunk) chunk_ = unpack_torn(*chunk, longest_);
   consume(bytes.size());
 }
 
 /// A chunk tells itself by its sizes, and proves it by its checksum.
 bool McapReader::is_chunk(const McapChunkView& chunk) {
   constexpr std::uint64_t beginning = std::uint64_t{128} << 10;  // the room that zstd is given
-  const bool is = unpack(chunk, most_record).has_value();
+  const bool is = unpack(chunk, longest_).has_value();
   if (!is) tried_ += beginning + chunk.stored_size + chunk.head.uncompressed_size;
   return is;
 }
@@ -257,8 +258,8 @@ void McapReader::find_chunk() {
     if (bytes.size() < longest_chunk_head && !ended_) return;
     const auto head = decode_mcap_head(bytes);
     const auto chunk = head ? decode_mcap_chunk(bytes.substr(mcap_record_head)) : std::nullopt;
-    const bool likely = chunk && head->length <= most_record && tried_ < most_tried &&
-                        chunk->head.uncompressed_size <= most_record &&
+    const bool likely = chunk && head->length <= longest_ && tried_ < most_tried &&
+                        chunk->head.uncompressed_size <= longest_ &&
                         chunk->head.compression.size() <= 4 && head->length == chunk->size();
     if (likely && !chunk->whole() && !ended_) return;
     if (likely && chunk->whole() && is_chunk(*chunk)) {

@@ -19,6 +19,9 @@ class McapReader {
  public:
   static constexpr std::uint64_t most_record = std::uint64_t{256} << 20;
 
+  /// A longer record or chunk is damage. Memory goes by it.
+  explicit McapReader(std::uint64_t longest_record = most_record) : longest_(longest_record) {}
+
   /// The next bytes of the file.
   void feed(std::string_view piece);
   /// There are no more.
@@ -72,6 +75,7 @@ class McapReader {
   void say(Severity severity, std::string expected, std::string found, std::string meaning);
   std::string_view rest() const { return std::string_view(buffer_).substr(taken_); }
 
+  std::uint64_t longest_;
   State state_ = State::start;
   bool ended_ = false;
   std::string buffer_;

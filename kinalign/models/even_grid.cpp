@@ -122,6 +122,33 @@ EvenSpan span_of(Time first, Time last, double rate_hz) {
   return {first, static_cast<std::size_t>(std::clamp(steps, 0.0, most_frames)) + 1};
 }
 
+JointFrames joints_on_grid(const std::vector<std::optional<std::size_t>>& places,
+                           const PointFrames& points, const EvenGrid& grid) {
+  const auto at_s = [&](std::size_t i) {
+    return static_cast<double>(to_ns(points.stamps[i]) - to_ns(points.stamps.front())) * 1e-9;
+  };
+  const double last = at_s(points.size() - 1), edge = 0.5 / grid.rate_hz;
+  const double begin =
+      static_cast<double>(to_ns(grid.span->start) - to_ns(points.stamps.front())) * 1e-9;
+  const std::size_t frames = grid.span->frames, joints = places.size();
+  JointFrames out{joints, std::vector<float>(frames * joints * 3, 0.0F),
+                  std::vector<std::uint8_t>(frames * joints, 0)};
+  std::size_t before = 0;
+  for (std::size_t t = 0; t < frames; ++t) {
+    const double asked = begin + static_cast<double>(t) / grid.rate_hz;
+    if (asked < -edge || asked > last + edge) continue;
+    const double time = std::clamp(asked, 0.0, last);
+    while (before + 2 < points.size() && at_s(before + 1) <= time) ++before;
+    const double from = at_s(before), to = at_s(before + 1);
+    const double share = to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0.0;
+    if (std::min(time - from, to - time) > grid.gap_s) continue;
+    for (std::size_t j = 0; j < joints; ++j) {
+      if (places[j]) put_joint(points, {before, *places[j], share}, t * joints + j, out);
+    }
+  }
+  return out;
+}
+
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
                                const EvenGrid& grid) {
@@ -131,32 +158,14 @@ Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
   const auto at_s = [&](std::size_t i) {
     return static_cast<double>(to_ns(points.stamps[i]) - to_ns(points.stamps.front())) * 1e-9;
   };
-  const double last = at_s(points.size() - 1), edge = 0.5 / rate_hz;
+  const double last = at_s(points.size() - 1);
   const EvenSpan span =
       grid.span ? *grid.span : span_of(points.stamps.front(), points.stamps.back(), rate_hz);
   const std::size_t frames = span.frames;
   if (static_cast<double>(frames) >= most_frames) {
     return Failure(Error{"", 0, "at most 10,000,000 frames", text_of(last * rate_hz, "frames")});
   }
-  const double begin = static_cast<double>(to_ns(span.start) - to_ns(points.stamps.front())) * 1e-9;
-  EvenFrames out{{wanted.size(), std::vector<float>(frames * wanted.size() * 3, 0.0F),
-                  std::vector<std::uint8_t>(frames * wanted.size(), 0)},
-                 span.start,
-                 rate_hz};
-  std::size_t before = 0;
-  for (std::size_t t = 0; t < frames; ++t) {
-    const double asked = begin + static_cast<double>(t) / rate_hz;
-    if (asked < -edge || asked > last + edge) continue;
-    const double time = std::clamp(asked, 0.0, last);
-    while (before + 2 < points.size() && at_s(before + 1) <= time) ++before;
-    const double from = at_s(before), to = at_s(before + 1);
-    const double share = to > from ? std::clamp((time - from) / (to - from), 0.0, 1.0) : 0.0;
-    if (std::min(time - from, to - time) > grid.gap_s) continue;
-    for (std::size_t j = 0; j < wanted.size(); ++j) {
-      if (places[j])
-        put_joint(points, {before, *places[j], share}, t * wanted.size() + j, out.body);
-    }
-  }
+  EvenFrames out{joints_on_grid(places, points, {rate_hz, grid.gap_s, span}), span.start, rate_hz};
   const double size = body_size(out.body);
   if (size < least_size || size > most_size) {
     return Failure(Error{"", 0, "a body of 0.4 to 2.6 m, in metres, y up",

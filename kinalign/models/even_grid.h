@@ -33,6 +33,11 @@ struct EvenFrames {
   double rate_hz = 0.0;
 };
 
+/// The joints `places` [J] of points, absent: none, on the frames of the grid's span, as
+/// even_frames() puts them there. Two samples at least; nothing is checked.
+JointFrames joints_on_grid(const std::vector<std::optional<std::size_t>>& places,
+                           const PointFrames& points, const EvenGrid& grid);
+
 /// `wanted`: the model's input joints, by name among `names` (kinect_names()); one that is not
 /// there is missing in every frame. Between two samples a joint lies on the line between both, and
 /// is seen as well as the worse of them; farther than the gap from a sample it is missing. Fails

@@ -115,6 +115,20 @@ std::string to_bytes(const RecordedExchange& recorded);
 /// Absent where the bytes are no exchange, or a clock of it has run for more than 31 years.
 std::optional<RecordedExchange> to_exchange(std::string_view bytes);
 
+/// A device's message as it was recorded.
+struct RecordedMessage {
+  const RawChannel* channel = nullptr;
+  std::uint16_t channel_id = 0;
+  HostTime arrival{};
+  std::string_view payload;  // good until the next message
+  bool is_exchange() const { return channel->protocol == exchange_encoding; }
+};
+
+/// The arrival of a message that was logged at `log_time`, ns of UTC.
+inline HostTime arrival_of(std::uint64_t log_time, Duration utc_minus_host) {
+  return HostTime{Duration{static_cast<std::int64_t>(log_time)} - utc_minus_host};
+}
+
 /// The same 48 bytes of a node without a counter: of a request the times behind T2 are absent.
 struct RecordedClockless {
   std::uint32_t epoch = 0;

@@ -2,6 +2,7 @@
 #include "apps/kinalign/learn/answer_output.h"
 
 #include "apps/cli/console.h"
+#include "apps/cli/json_text.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/verbs/inputs.h"
 
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 namespace kinalign {
@@ -37,6 +39,13 @@ std::optional<double> stature_in(const std::string& words) {
   const char* end = words.data() + words.size();
   const auto [rest, fault] = std::from_chars(words.data(), end, out);
   return fault == std::errc() && rest == end ? std::optional(out) : std::nullopt;
+}
+
+std::string with_warnings(std::string text, const AboutAnswer& about) {
+  for (const AboutAnswer& warning : about.at("warnings")) {
+    text += fmt::format("warning  {}\n", harmless(warning.get<std::string>()));
+  }
+  return text;
 }
 
 }  // namespace
@@ -99,11 +108,22 @@ Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, C
   return file.commit();
 }
 
+Result<void> keep_free(const Call& call) {
+  const Common& common = call.common;
+  std::error_code none;
+  if (common.out.empty() || common.force || !std::filesystem::exists(common.out, none)) return {};
+  return Failure(Error{common.out, 0, "a new file (--force writes over it)", "one of that name"});
+}
+
+void print_live(std::string text, const AboutAnswer& about, Call& call) {
+  AboutAnswer event{{"event", "ended"}};
+  event.update(about);
+  call.console.print(with_warnings(std::move(text), about));
+  call.console.print_json(json_text(event));
+}
+
 void print_answer(std::string text, const AboutAnswer& about, Call& call) {
-  for (const AboutAnswer& warning : about.at("warnings")) {
-    text += fmt::format("warning  {}\n", harmless(warning.get<std::string>()));
-  }
-  call.console.print(text);
+  call.console.print(with_warnings(std::move(text), about));
   call.console.print_json(about.dump(1, ' ', false, AboutAnswer::error_handler_t::replace));
 }
 

@@ -36,7 +36,12 @@ std::string body_line(const AboutAnswer& about);
 /// Writes a BVH to --out. Fails where a number of the clip is not finite, and names the model.
 Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, Call& call);
 
+/// Fails where the file that a live run will end with is there already, before the run.
+Result<void> keep_free(const Call& call);
+
 /// Prints `text`, a line for each warning, and the JSON.
 void print_answer(std::string text, const AboutAnswer& about, Call& call);
+/// The same of a live run: the JSON is a line, the event `ended`.
+void print_live(std::string text, const AboutAnswer& about, Call& call);
 
 }  // namespace kinalign

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
+#include "apps/kinalign/learn/answer_output.h"
 #include "apps/kinalign/learn/point_source.h"
 #include "apps/kinalign/learn/projected.h"
 #include "apps/kinalign/learn/shipped_models.h"
+#include "apps/kinalign/live/live_runs.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
@@ -38,11 +40,12 @@ struct Denoise {
   std::vector<std::string> in;
   std::string model, stream;
   bool project = false;
+  LiveWords live;
 };
 
 Usage describe_denoise(Denoise& o) {
   Usage usage;
-  usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in}};
+  usage.positionals = {{"IN", "a take, a recording, a manifest or a Kinect's file", &o.in, 0}};
   usage.flags = {
       {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
       {"stream", "which stream (default: the only one of joints)", &o.stream, 0.0, 0.0, {}, "NAME"},
@@ -50,7 +53,17 @@ Usage describe_denoise(Denoise& o) {
        "feet that stand do not slide, bones keep their lengths: steps in the hidden space of a "
        "model of cnn or cnn-manifold",
        &o.project}};
-  usage.check = [](const Common& common, const Sources&) -> Result<void> {
+  for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
+  usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
+    KA_TRY(check(o.live, o.in));
+    if (!o.live.live.empty() && o.project) {
+      return Failure(
+          Error{"--project", 0, "a file or a take: it needs the whole motion", "--live"});
+    }
+    if (!o.live.live.empty() && (common.out.empty() || common.out.ends_with(".bvh"))) return {};
+    if (!o.live.live.empty()) {
+      return Failure(Error{"-o", 0, "-o FILE.bvh, with --live", shown(common.out)});
+    }
     if (common.out.ends_with(".bvh") || common.out.ends_with(".trc")) return {};
     return Failure(
         Error{"-o", 0, "-o FILE.bvh or FILE.trc", common.out.empty() ? "none" : shown(common.out)});
@@ -257,12 +270,36 @@ Result<SeenJoints> seen_joints_of_file(const DenoiseLayout& layout, const Denois
   return seen_joints(layout, points_of_file(in, o.stream, call), in);
 }
 
+/// The same of what record receives now. A file is written where one is wanted.
+Result<int> clean_live(Denoiser& denoiser, const Denoise& o, Call& call) {
+  const LiveJob job{o.live, "", o.stream, {}};
+  KA_TRY(keep_free(call));
+  Clip clip;
+  const Json about = KA_TRY(run_live_denoise(denoiser, job, clip, call));
+  const std::string& out = call.common.out;
+  if (!out.empty()) {
+    KA_TRY(write_answer(std::move(clip), denoiser.model().layout.rate_hz, o.model, call));
+    call.console.wrote(out);
+  }
+  print_live(
+      fmt::format("{}: {} frames at {:g} Hz, {} joints\nseen     {:.1f} % missing, {:.1f} % "
+                  "inferred\n",
+                  out.empty() ? "live" : harmless(out),
+                  grouped(about.at("frames").get<std::size_t>()), about.at("rate_hz").get<double>(),
+                  about.at("joints").get<std::size_t>(), 100.0 * about.at("missing").get<double>(),
+                  100.0 * about.at("inferred").get<double>()) +
+          live_lines(about),
+      about, call);
+  return about.at("warnings").empty() ? 0 : 1;
+}
+
 Result<int> run_denoise(Denoise& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  KA_TRY(keep_inputs(call.common.out, o.in));
   const std::string path = o.model.empty() ? KA_TRY(shipped_model("denoise")) : o.model;
   const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
   Denoiser denoiser = KA_TRY(Denoiser::make(KA_TRY(read_denoise_model(bytes, path))));
+  if (!o.live.live.empty()) return clean_live(denoiser, o, call);
+  KA_TRY(keep_inputs(call.common.out, o.in));
   const DenoiseModel& model = denoiser.model();
   SeenJoints seen = KA_TRY(seen_joints_of_file(model.layout, o, call));
   Cleaned cleaned{std::move(seen.frames), {}, Json::object()};
@@ -294,7 +331,9 @@ Verb denoise_verb() {
             {"kinalign denoise take.h5 -o clean.trc --stream kinect --model own.safetensors",
              "a take's stream, with a model of your own"},
             {"kinalign denoise kinect.csv -o clean.bvh --model cnn.safetensors --project",
-             "feet that stand stay where they are"}},
+             "feet that stand stay where they are"},
+            {"kinalign denoise --live 7040 -o clean.bvh",
+             "what record receives now, which was begun with --live-port 7040"}},
        .common = {"out", "force", "json"}},
       describe_denoise, run_denoise);
 }

@@ -3,6 +3,7 @@
 #include "apps/kinalign/learn/answer_output.h"
 #include "apps/kinalign/learn/fused_input.h"
 #include "apps/kinalign/learn/shipped_models.h"
+#include "apps/kinalign/live/live_runs.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
@@ -30,11 +31,13 @@ struct FuseWords {
   std::vector<std::string> in;
   std::string model, kinect, nodes, body;
   WornWords worn;
+  LiveWords live;
 };
 
 Usage describe_fuse(FuseWords& o) {
   Usage usage;
-  usage.positionals = {{"IN", "a take, a recording or a manifest with a Kinect and nodes", &o.in}};
+  usage.positionals = {
+      {"IN", "a take, a recording or a manifest with a Kinect and nodes", &o.in, 0}};
   usage.flags = {
       {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
       {"kinect",
@@ -53,9 +56,13 @@ Usage describe_fuse(FuseWords& o) {
        "NAME"}};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
   usage.flags.push_back(body_flag(o.body, "as long as the Kinect sees them"));
+  for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     KA_TRY(check(o.worn));
     KA_TRY(check_body(o.body));
+    KA_TRY(check(o.live, o.in));
+    if (!o.live.live.empty()) KA_TRY(live_options(o.worn));
+    if (!o.live.live.empty() && common.out.empty()) return {};
     if (common.out.ends_with(".bvh")) return {};
     return Failure(Error{"-o", 0, "-o FILE.bvh", common.out.empty() ? "none" : shown(common.out)});
   };
@@ -130,37 +137,57 @@ Result<Json> fuse_take(Fuser& fuser, const FuseWords& o, Call& call) {
   return in_child(in, work);
 }
 
-void print_fuse(const Json& about, const std::string& out, Call& call) {
+std::string fuse_text(const Json& about, const std::string& out) {
   std::string found;
   for (const auto& [name, one] : about.at("found_headings").items()) {
     found += fmt::format("{}{} {:+.0f} ± {:.0f}", found.empty() ? "" : ", ", harmless(name),
                          one.at("turned_deg").get<double>(), one.at("spread_deg").get<double>());
   }
-  std::string text =
-      fmt::format(
-          "{}: {} frames at {:g} Hz, {} joints\nkinect   {:.1f} % missing, {:.1f} % "
-          "inferred\n",
-          harmless(out), grouped(about.at("frames").get<std::size_t>()),
-          about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>(),
-          100.0 * about.at("missing").get<double>(), 100.0 * about.at("inferred").get<double>()) +
-      body_line(about) + node_lines(about) +
-      fmt::format("turned   by the Kinect, deg: {}\n", found);
-  print_answer(std::move(text), about, call);
+  return fmt::format(
+             "{}: {} frames at {:g} Hz, {} joints\nkinect   {:.1f} % missing, {:.1f} % "
+             "inferred\n",
+             out.empty() ? "live" : harmless(out), grouped(about.at("frames").get<std::size_t>()),
+             about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>(),
+             100.0 * about.at("missing").get<double>(),
+             100.0 * about.at("inferred").get<double>()) +
+         body_line(about) + node_lines(about) +
+         fmt::format("turned   by the Kinect, deg: {}\n", found);
+}
+
+/// The same of what record receives now. A file is written where one is wanted.
+Result<int> fuse_live(Fuser& fuser, const FuseWords& o, Call& call) {
+  LiveJob job{o.live, o.nodes, o.kinect, {}};
+  job.worn = KA_TRY(live_options(o.worn));
+  KA_TRY(keep_free(call));
+  Clip clip;
+  if (const auto own = KA_TRY(body_of_words(o.body, fuser.model().body.skeleton, call))) {
+    fuser.use_body(*own);
+  }
+  Json about = KA_TRY(run_live_fuse(fuser, job, clip, call));
+  about["body"] = {{"stature_m", stature_of(fuser.model().body.skeleton)},
+                   {"by", o.body.empty() ? "the model" : "--body"}};
+  if (!call.common.out.empty()) {
+    KA_TRY(write_answer(std::move(clip), fuser.model().layout.nodes.rate_hz, o.model, call));
+    call.console.wrote(call.common.out);
+  }
+  print_live(fuse_text(about, call.common.out) + live_lines(about), about, call);
+  return about.at("warnings").empty() ? 0 : 1;
 }
 
 Result<int> run_fuse(FuseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  const std::string& in = o.in.front();
-  KA_TRY(keep_inputs(call.common.out, o.in));
   const std::string path = o.model.empty() ? KA_TRY(shipped_model("fuse")) : o.model;
   const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
   Fuser fuser = KA_TRY(Fuser::make(KA_TRY(read_fuse_model(bytes, path))));
+  if (!o.live.live.empty()) return fuse_live(fuser, o, call);
+  const std::string& in = o.in.front();
+  KA_TRY(keep_inputs(call.common.out, o.in));
   const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
   const Json about = KA_TRY(is_take ? fuse_take(fuser, o, call)
                                     : fuse_named(fuser, points_of_file(in, o.kinect, call),
                                                  nodes_of_file(in, o.nodes, call), o, call));
   call.console.wrote(call.common.out);
-  print_fuse(about, call.common.out, call);
+  print_answer(fuse_text(about, call.common.out), about, call);
   return about.at("warnings").empty() ? 0 : 1;
 }
 
@@ -176,7 +203,9 @@ Verb fuse_verb() {
            "heading is off. The person holds a T-pose for a second or more, as for pose.",
        .examples = {{"kinalign fuse take.h5 -o fused.bvh", "a skeleton that Blender opens"},
                     {"kinalign fuse take.h5 -o fused.bvh --kinect kinect --nodes imu --tpose 2,5",
-                     "the streams by name, the T-pose from second 2 to 5"}},
+                     "the streams by name, the T-pose from second 2 to 5"},
+                    {"kinalign fuse --live 7040 -o fused.bvh",
+                     "what record receives now, which was begun with --live-port 7040"}},
        .common = {"out", "force", "json"}},
       describe_fuse, run_fuse);
 }

@@ -3,6 +3,7 @@
 #include "apps/kinalign/learn/answer_output.h"
 #include "apps/kinalign/learn/shipped_models.h"
 #include "apps/kinalign/learn/worn_nodes.h"
+#include "apps/kinalign/live/live_runs.h"
 #include "apps/kinalign/text/describe_file.h"
 #include "apps/kinalign/verbs.h"
 #include "apps/kinalign/verbs/describe_model.h"
@@ -28,23 +29,33 @@ struct PoseWords {
   std::vector<std::string> in;
   std::string model, stream, body;
   WornWords worn;
+  LiveWords live;
 };
 
 Usage describe_pose(PoseWords& o) {
   Usage usage;
-  usage.positionals = {{"IN", "a take, a recording, a manifest or a file of nodes", &o.in}};
+  usage.positionals = {{"IN", "a take, a recording, a manifest or a file of nodes", &o.in, 0}};
   usage.flags = {
       {"model", "the model's file (default: the shipped one)", &o.model, 0.0, 0.0, {}, "FILE"},
       {"stream", "which stream (default: the only one of nodes)", &o.stream, 0.0, 0.0, {}, "NAME"}};
   for (Field& field : worn_flags(o.worn)) usage.flags.push_back(std::move(field));
   usage.flags.push_back(body_flag(o.body, "the mean of the training people"));
+  for (Field& field : live_flags(o.live)) usage.flags.push_back(std::move(field));
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     KA_TRY(check(o.worn));
     KA_TRY(check_body(o.body));
+    KA_TRY(check(o.live, o.in));
+    if (!o.live.live.empty()) KA_TRY(live_options(o.worn));
+    if (!o.live.live.empty() && common.out.empty()) return {};
     if (common.out.ends_with(".bvh")) return {};
     return Failure(Error{"-o", 0, "-o FILE.bvh", common.out.empty() ? "none" : shown(common.out)});
   };
   return usage;
+}
+
+Json about_body(const PoseModel& model, const PoseWords& o) {
+  return {{"stature_m", stature_of(model.body.skeleton)},
+          {"by", o.body.empty() ? "the model" : "--body"}};
 }
 
 Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o, Call& call) {
@@ -53,14 +64,9 @@ Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o
   const PosedNodes posed =
       KA_TRY(calibrated_nodes(model.layout, model.body.skeleton, std::move(nodes), o.worn));
   const NodeFrames calibrated = on_bones(posed.calibration, posed.even.worn);
-  Json about{{"stream", names.stream},
-             {"frames", calibrated.frames()},
-             {"rate_hz", model.layout.rate_hz},
-             {"joints", model.body.skeleton.joints()},
-             {"method", model.facts.method},
-             {"body",
-              {{"stature_m", stature_of(model.body.skeleton)},
-               {"by", o.body.empty() ? "the model" : "--body"}}}};
+  Json about{{"stream", names.stream},          {"frames", calibrated.frames()},
+             {"rate_hz", model.layout.rate_hz}, {"joints", model.body.skeleton.joints()},
+             {"method", model.facts.method},    {"body", about_body(model, o)}};
   about.update(about_nodes(model.layout, posed, calibrated, names));
   KA_TRY(
       write_answer(solver.clip(calibrated, posed.even.start), model.layout.rate_hz, o.model, call));
@@ -83,30 +89,45 @@ Result<Json> solve_take(PoseSolver& solver, const PoseWords& o, Call& call) {
                   [&] { return solve_named(solver, nodes_of_take(files, in, o.stream), o, call); });
 }
 
-void print_pose(const Json& about, const std::string& out, Call& call) {
-  std::string text =
-      fmt::format("{}: {} frames at {:g} Hz, {} joints\n", harmless(out),
-                  grouped(about.at("frames").get<std::size_t>()), about.at("rate_hz").get<double>(),
-                  about.at("joints").get<std::size_t>()) +
-      body_line(about) + node_lines(about);
-  print_answer(std::move(text), about, call);
+std::string pose_text(const Json& about, const std::string& out) {
+  return fmt::format("{}: {} frames at {:g} Hz, {} joints\n", out.empty() ? "live" : harmless(out),
+                     grouped(about.at("frames").get<std::size_t>()),
+                     about.at("rate_hz").get<double>(), about.at("joints").get<std::size_t>()) +
+         body_line(about) + node_lines(about);
+}
+
+/// The same of what record receives now. A file is written where one is wanted.
+Result<int> solve_live(PoseSolver& solver, const PoseWords& o, Call& call) {
+  LiveJob job{o.live, o.stream, "", {}};
+  job.worn = KA_TRY(live_options(o.worn));
+  KA_TRY(keep_free(call));
+  Clip clip;
+  Json about = KA_TRY(run_live_pose(solver, job, clip, call));
+  about["body"] = about_body(solver.model(), o);
+  if (!call.common.out.empty()) {
+    KA_TRY(write_answer(std::move(clip), solver.model().layout.rate_hz, o.model, call));
+    call.console.wrote(call.common.out);
+  }
+  print_live(pose_text(about, call.common.out) + live_lines(about), about, call);
+  return about.at("warnings").empty() ? 0 : 1;
 }
 
 Result<int> run_pose(PoseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  const std::string& in = o.in.front();
-  KA_TRY(keep_inputs(call.common.out, o.in));
   const std::string path = o.model.empty() ? KA_TRY(shipped_model("pose")) : o.model;
   const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
   PoseSolver solver = KA_TRY(PoseSolver::make(KA_TRY(read_pose_model(bytes, path))));
   const auto body = KA_TRY(body_of_words(o.body, solver.model().body.skeleton, call));
   if (body) solver.use_body(*body);
+  if (!o.live.live.empty()) return solve_live(solver, o, call);
+  const std::string& in = o.in.front();
+  KA_TRY(keep_inputs(call.common.out, o.in));
   const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
   const Json about =
       KA_TRY(is_take ? solve_take(solver, o, call)
                      : solve_named(solver, nodes_of_file(in, o.stream, call), o, call));
   call.console.wrote(call.common.out);
-  print_pose(about, call.common.out, call);
+  print_answer(pose_text(about, call.common.out), about, call);
   return about.at("warnings").empty() ? 0 : 1;
 }
 
@@ -122,7 +143,9 @@ Verb pose_verb() {
            "lost, and arms that hung in place of a T-pose, are told, and the exit code is 1.",
        .examples = {{"kinalign pose take.h5 -o pose.bvh", "a skeleton that Blender opens"},
                     {"kinalign pose recording.toml -o pose.bvh --tpose 2,5 --heading shared",
-                     "nodes with magnetometers, the T-pose from second 2 to 5"}},
+                     "nodes with magnetometers, the T-pose from second 2 to 5"},
+                    {"kinalign pose --live 7040 -o pose.bvh",
+                     "what record receives now, which was begun with --live-port 7040"}},
        .common = {"out", "force", "json"}},
       describe_pose, run_pose);
 }

@@ -22,14 +22,10 @@ constexpr double longest_lost_s = 2.0;    // a node that is lost longer is told
 constexpr double most_turn_deg_s = 30.0;  // of a node in a T-pose that is held still
 
 /// "START,END" in seconds; absent where the text is empty.
-struct Seconds {
-  double from = 0.0, to = 0.0;
-};
-
-Result<std::optional<Seconds>> t_pose_seconds(const std::string& text) {
-  if (text.empty()) return std::optional<Seconds>();
+Result<std::optional<TPoseSeconds>> t_pose_seconds(const std::string& text) {
+  if (text.empty()) return std::optional<TPoseSeconds>();
   const std::size_t comma = text.find(',');
-  Seconds out;
+  TPoseSeconds out;
   if (comma != std::string::npos && parse_number(text.substr(0, comma), out.from) &&
       parse_number(text.substr(comma + 1), out.to) && out.from >= 0.0 && out.to > out.from) {
     return std::optional(out);
@@ -150,6 +146,17 @@ std::vector<Field> worn_flags(WornWords& o) {
 Result<void> check(const WornWords& o) {
   KA_TRY(t_pose_seconds(o.t_pose));
   return {};
+}
+
+Result<LiveWornOptions> live_options(const WornWords& o) {
+  LiveWornOptions out;
+  out.t_pose = KA_TRY(t_pose_seconds(o.t_pose));
+  if (out.t_pose && out.t_pose->to > LiveWorn::most_waiting_s) {
+    return Failure(Error{"--tpose", 0, "a T-pose within the first minute", shown(o.t_pose)});
+  }
+  if (o.headings == "shared") out.headings = Headings::shared;
+  if (o.headings == "mounting") out.headings = Headings::mounting;
+  return out;
 }
 
 Result<NodeChoice> choose(const PoseLayout& layout, const NamedNodes& nodes) {

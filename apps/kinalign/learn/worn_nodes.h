@@ -5,6 +5,8 @@
 
 #include "apps/kinalign/learn/node_source.h"
 
+#include "kinalign/models/pose/live_worn.h"
+
 #include <nlohmann/json_fwd.hpp>
 
 #include <optional>
@@ -21,6 +23,8 @@ struct WornWords {
 std::vector<Field> worn_flags(WornWords& o);
 /// Fails where the T-pose's seconds are none.
 Result<void> check(const WornWords& o);
+/// The same for a live run. Fails where the T-pose lies too late for it, too.
+Result<LiveWornOptions> live_options(const WornWords& o);
 
 /// The model's nodes in a stream: [N] which of the stream's, absent where it has none.
 using NodeChoice = std::vector<std::optional<std::size_t>>;

@@ -35,11 +35,14 @@ Usage describe_record(RecordJob& o) {
       {"seconds", "end by itself after so long", &o.seconds, 0.0, 1e6},
       {"wait", "wait for a mark that starts the take; one that stops ends it", &o.wait},
       {"repeat", "with --wait: then wait for the next take, until Ctrl-C", &o.repeat}};
-  usage.settings = {{"lab_key", "file of the key that the nodes' keys come from", &o.lab_key},
-                    {"marks_port", "UDP port for marks of other programs; 0: any free one",
-                     &o.marks_port, 0.0, 65535.0},
-                    {"trigger_port", "UDP port for Vicon's start and stop, usually 30",
-                     &o.trigger_port, 0.0, 65535.0}};
+  usage.settings = {
+      {"lab_key", "file of the key that the nodes' keys come from", &o.lab_key},
+      {"marks_port", "UDP port for marks of other programs; 0: any free one", &o.marks_port, 0.0,
+       65535.0},
+      {"trigger_port", "UDP port for Vicon's start and stop, usually 30", &o.trigger_port, 0.0,
+       65535.0},
+      {"live_port", "TCP port of this machine for pose --live and the like; 0: any free one",
+       &o.live_port, 0.0, 65535.0}};
   for (const Field& field : describe(o.options)) usage.settings.push_back(field);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {
     if (common.out.empty()) return Failure(Error{"--out", 0, "a folder for the files", "none"});
@@ -192,6 +195,7 @@ Result<int> run(RecordJob& o, Call& call) {
   RecordHerald herald(*session, console);
   Stage stage(*session, herald, o.seconds);
   const int code = record_takes(o, call, *session, stage);
+  session->end_live();
   take_signals();  // nothing has to be closed in order any more
   return code;
 }
@@ -221,7 +225,9 @@ Verb record_verb() {
             {"kinalign record -o takes --config lab.toml",
              "the devices of a lab: docs/recording.md"},
             {"kinalign record -o takes --config lab.toml --trigger-port 30 --wait --repeat",
-             "a take from each start of Vicon's to its stop, and the seconds before"}},
+             "a take from each start of Vicon's to its stop, and the seconds before"},
+            {"kinalign record -o takes --config lab.toml --live-port 7040",
+             "and pose --live 7040 in another terminal"}},
        .common = {"out", "json"},
        .out_is_folder = true},
       describe_record, run);

@@ -36,7 +36,30 @@ std::string ports_text(const RecordingSession& session) {
   for (const auto& [name, port] : session.ports()) {
     text += fmt::format("{}{} on port {}", text.empty() ? "" : ", ", name, port);
   }
+  if (session.live() != nullptr) text += fmt::format("; live on port {}", session.live()->port());
   return text;
+}
+
+/// The event's members that say where devices are heard, and where clients get them live.
+Json with_ports(Json event, const RecordingSession& session) {
+  event["ports"] = ports_of(session);
+  if (session.live() != nullptr) event["live_port"] = session.live()->port();
+  return event;
+}
+
+void add_live(const RecordingSession& session, Json& event) {
+  if (session.live() == nullptr) return;
+  const LivePortCounts& counts = session.live()->counts();
+  event["live"] = {{"clients", counts.clients},
+                   {"turned_away", counts.turned_away},
+                   {"lost", counts.lost}};
+}
+
+/// Empty: no client lost anything.
+std::string live_line(const RecordingSession& session) {
+  if (session.live() == nullptr || session.live()->counts().lost == 0) return "";
+  return fmt::format("  live: slow clients did not get {} messages\n",
+                     grouped(session.live()->counts().lost));
 }
 
 /// The first one ends recording, where it goes on.
@@ -74,15 +97,14 @@ void RecordHerald::follow(std::shared_ptr<SessionTake> take) { take_ = std::move
 void RecordHerald::tell_waiting() {
   ports_told_ = true;
   console_.print(harmless(fmt::format("waiting for a start\n  {}\n", ports_text(session_))));
-  console_.print_json(json_text(Json{{"event", "waiting"}, {"ports", ports_of(session_)}}));
+  console_.print_json(json_text(with_ports(Json{{"event", "waiting"}}, session_)));
   console_.flush();
 }
 
 void RecordHerald::tell_start(const std::string& path) {
   ports_told_ = true;
   console_.print(harmless(fmt::format("recording to {}\n  {}\n", path, ports_text(session_))));
-  console_.print_json(
-      json_text(Json{{"event", "started"}, {"file", path}, {"ports", ports_of(session_)}}));
+  console_.print_json(json_text(with_ports(Json{{"event", "started"}, {"file", path}}, session_)));
   console_.flush();
 }
 
@@ -283,6 +305,7 @@ void RecordHerald::tell_status(const LabStatus& status) {
   for (const auto& [name, counts] : status.ports) {
     event["ports"][name] = Json::parse(to_json(CountedPort{name, counts}));
   }
+  add_live(session_, event);
   console_.print_json(json_text(event));
 }
 
@@ -348,6 +371,8 @@ void RecordHerald::tell_end() {
                                             {"refused_for", port.counts().refused}});
   }
   if (const NodeReceiver* nodes = session_.nodes()) lines += refused_lines(*nodes, names_);
+  lines += live_line(session_);
+  add_live(session_, event);
   console_.print(harmless(lines));
   console_.print_json(json_text(event));
 }

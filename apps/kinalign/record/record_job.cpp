@@ -162,6 +162,7 @@ Result<RecordingSession::Options> session_options(const RecordJob& job, Call& ca
   options.lab_toml = std::move(file.text);
   options.marks_port = port_of(job.marks_port);
   options.trigger_port = port_of(job.trigger_port);
+  options.live_port = port_of(job.live_port);
   options.host = host_name();
   options.desk.secret = KA_TRY(new_secret());
   KA_TRY(read_files(job, call, options));

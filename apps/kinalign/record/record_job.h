@@ -19,7 +19,7 @@ struct RecordJob {
   std::vector<std::string> devices;
   std::string lab_key;
   std::optional<double> seconds;
-  std::optional<std::int64_t> marks_port, trigger_port;
+  std::optional<std::int64_t> marks_port, trigger_port, live_port;
   bool wait = false, repeat = false;
   RecordOptions options;
 };

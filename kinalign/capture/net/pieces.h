@@ -5,6 +5,7 @@
 #pragma once
 
 #include "kinalign/capture/net/datagram_batch.h"
+#include "kinalign/capture/net/handle.h"
 #include "kinalign/capture/net/host_clock.h"
 #include "kinalign/capture/net/udp_socket.h"
 #include "kinalign/recording/counts.h"
@@ -119,24 +120,6 @@ class TcpPieces {
   std::uint64_t heard() const { return counts_.pieces + counts_.refused; }
 
  private:
-  /// A descriptor of our own.
-  class Handle {
-   public:
-    Handle() = default;
-    explicit Handle(int fd) : fd_(fd) {}
-    Handle(Handle&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-    Handle& operator=(Handle&& other) noexcept {
-      std::swap(fd_, other.fd_);
-      return *this;
-    }
-    Handle(const Handle&) = delete;
-    Handle& operator=(const Handle&) = delete;
-    ~Handle();
-    int fd() const { return fd_; }
-
-   private:
-    int fd_ = -1;
-  };
   struct Link {
     Handle socket;
     HostTime heard{};  // or made

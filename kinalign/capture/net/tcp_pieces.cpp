@@ -96,10 +96,6 @@ Failure no_address(const std::string& address) {
 
 }  // namespace
 
-TcpPieces::Handle::~Handle() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
 TcpPieces::TcpPieces(std::string address, std::uint16_t port, Handle listener)
     : address_(std::move(address)),
       port_(port),

@@ -41,15 +41,18 @@ void Recorder::record(std::uint16_t number, HostTime arrival, std::string_view d
   newest_ = opened_ ? std::max(newest_, arrival) : arrival;
   if (!opened_) opened_ = arrival;
   Channel& channel = channels_[number];
+  const std::uint16_t schema_id = channel.channel.schema_id;
+  const McapSchema* const schema = schema_id != 0 ? &schemas_[schema_id - 1U] : nullptr;
   if (!channel.in_chunk) {
-    const std::uint16_t schema = channel.channel.schema_id;
-    if (schema != 0) chunk_.add(schemas_[schema - 1U]);
+    if (schema != nullptr) chunk_.add(*schema);
     chunk_.add(channel.channel);
     channel.in_chunk = true;
   }
   const std::uint64_t log = log_time(arrival);
-  chunk_.add(McapMessage{number, static_cast<std::uint32_t>(channel.messages++), log,
-                         device_ns.value_or(log), data});
+  const McapMessage message{number, static_cast<std::uint32_t>(channel.messages++), log,
+                            device_ns.value_or(log), data};
+  chunk_.add(message);
+  if (recorded_) recorded_(schema, channel.channel, message);
   if (chunk_.size() >= options_.chunk_bytes) close();
 }
 

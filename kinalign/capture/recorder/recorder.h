@@ -55,6 +55,11 @@ class Recorder {
   using Closed = std::function<void(std::uint64_t next, std::uint64_t first)>;
   void when_closed(Closed closed) { closed_ = std::move(closed); }
 
+  /// Whatever is recorded, in takes and before. `schema`: nullptr where the channel has none.
+  using Recorded = std::function<void(const McapSchema* schema, const McapChannel& channel,
+                                      const McapMessage& message)>;
+  void when_recorded(Recorded recorded) { recorded_ = std::move(recorded); }
+
   /// Recorded on a channel since it was added, in takes and before.
   std::uint64_t messages(std::uint16_t channel) const { return channels_[channel].messages; }
   std::uint64_t log_time(HostTime t) const;
@@ -85,6 +90,7 @@ class Recorder {
   std::size_t pre_roll_bytes_ = 0;
   std::uint64_t number_ = 0;  // of the open chunk
   Closed closed_;
+  Recorded recorded_;
   Take take_;
 };
 

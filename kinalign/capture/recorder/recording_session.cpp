@@ -116,7 +116,22 @@ Result<void> RecordingSession::open_ports() {
   if (options_.trigger_port) {
     mark_ports_.push_back(KA_TRY(MarkPort::open(MarkPort::Form::trigger, *options_.trigger_port)));
   }
+  if (options_.live_port) KA_TRY(open_live_port(*options_.live_port));
   return {};
+}
+
+Result<void> RecordingSession::open_live_port(std::uint16_t port) {
+  live_ = KA_TRY(LivePort::open(port, recording_header(),
+                                {to_metadata(facts_), to_metadata(expected_of(options_.lab))}));
+  recorder_->when_recorded([this](const McapSchema* schema, const McapChannel& channel,
+                                  const McapMessage& message) {
+    if (live_->has_clients()) live_->add(schema, channel, message);
+  });
+  return {};
+}
+
+void RecordingSession::end_live() {
+  if (live_) live_->end();
 }
 
 std::uint64_t RecordingSession::heard() const {
@@ -133,7 +148,8 @@ std::uint64_t RecordingSession::held() const {
 
 /// A waking costs more than the messages that it is for. At a lab's speed those of 20 ms are taken
 /// together; while so many come that buffers fill, in a flood, nobody rests. No clock sees it:
-/// arrivals are the kernel's, and of an answer it is known when it was asked for and given.
+/// arrivals are the kernel's, and of an answer it is known when it was asked for and given. Live
+/// clients want each message at once.
 void RecordingSession::rest(Duration patience) {
   constexpr Duration short_rest = std::chrono::milliseconds(20);
   constexpr std::uint64_t few = 32;  // in a turn; the kernel's buffers hold twice as many
@@ -141,7 +157,8 @@ void RecordingSession::rest(Duration patience) {
   const std::uint64_t came = all - std::exchange(heard_before_, all);
   const HostTime now = axis_.now();
   if (came > few) awake_until_ = now + std::chrono::seconds(1);
-  if (came > 0 && now >= awake_until_ && patience >= short_rest) {
+  const bool hurries = live_ && live_->has_clients();
+  if (came > 0 && now >= awake_until_ && patience >= short_rest && !hurries) {
     std::this_thread::sleep_for(short_rest);
   }
 }
@@ -166,6 +183,7 @@ bool RecordingSession::turn(Duration patience, std::optional<int> also) {
     if (look_after || (some && is_ready(i))) ports_[i].drain(axis_, *recorder_, until);
   }
   tick(now);
+  if (live_) live_->turn();
   takes_.run();
   return some;
 }
@@ -191,6 +209,7 @@ bool RecordingSession::wait(Duration patience, std::optional<int> also) {
     port.add_fds(fds_);
     fds_end_.push_back(fds_.size());
   }
+  if (live_) fds_.push_back(live_->fd());
   if (also) fds_.push_back(*also);
   waiting_.clear();
   for (const int fd : fds_) waiting_.push_back({fd, POLLIN, 0});

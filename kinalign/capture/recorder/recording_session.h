@@ -3,6 +3,7 @@
 // One thread receives; takes begin and end while devices go on.
 #pragma once
 
+#include "kinalign/capture/live/live_port.h"
 #include "kinalign/capture/recorder/mark_ports.h"
 #include "kinalign/capture/recorder/recorded_nodes.h"
 #include "kinalign/capture/recorder/recorded_port.h"
@@ -34,6 +35,7 @@ class RecordingSession {
                                                    // secret
     std::string host;                              // the machine's name
     std::optional<std::uint16_t> marks_port, trigger_port;  // absent: none
+    std::optional<std::uint16_t> live_port;                 // absent: none
   };
   /// Opens all ports. `files` and the clocks have to stay; each clock reader is read by one part
   /// alone.
@@ -87,6 +89,10 @@ class RecordingSession {
   /// As ports(); of the present or last take, before the first since they were opened.
   std::vector<std::pair<std::string, PortCounts>> port_counts() const;
   const std::vector<MarkPort>& mark_ports() const { return mark_ports_; }
+  /// Where what is recorded is served meanwhile; nullptr where nobody asked for it.
+  const LivePort* live() const { return live_ ? &*live_ : nullptr; }
+  /// Nothing more is recorded: live streams end in order.
+  void end_live();
   /// nullptr where the lab has no nodes.
   NodeReceiver* nodes() { return nodes_ ? &nodes_->receiver() : nullptr; }
   const Lab& lab() const { return options_.lab; }
@@ -95,6 +101,7 @@ class RecordingSession {
  private:
   RecordingSession(Options options, Machine machine);
   Result<void> open_ports();
+  Result<void> open_live_port(std::uint16_t port);
   void rest(Duration patience);
   std::uint64_t heard() const;
   std::uint64_t held() const;
@@ -130,6 +137,7 @@ class RecordingSession {
   std::unique_ptr<RecordedNodes> nodes_;
   std::vector<RecordedPort> ports_;
   std::vector<MarkPort> mark_ports_;
+  std::optional<LivePort> live_;
   std::vector<HeardMark> marks_;
   std::uint16_t pairs_ = 0, counts_ = 0, port_counts_ = 0, mark_channel_ = 0;
   RecordingFacts facts_;

@@ -30,7 +30,7 @@ struct TakeFiles {
     head.facts.first = std::string(file_name(path));
     const auto of_part = [head = head](int part) mutable -> RecordingHead {
       head.facts.part = part;
-      return {{std::string(recording_profile), "kinalign " KINALIGN_VERSION},
+      return {recording_header(),
               {to_metadata(head.facts), to_metadata(head.expected)},
               head.attachments};
     };
@@ -39,6 +39,10 @@ struct TakeFiles {
 };
 
 }  // namespace
+
+McapHeader recording_header() {
+  return {std::string(recording_profile), "kinalign " KINALIGN_VERSION};
+}
 
 std::shared_ptr<SessionTake> begin_take(FileSystem& files, const TakePlan& plan, TakeHead head,
                                         McapCompression compression) {

@@ -45,6 +45,9 @@ struct SessionTake {
   DiskThread disk;
 };
 
+/// Of each file of a take, and of each live stream.
+McapHeader recording_header();
+
 /// What stands in front of each file of a take.
 struct TakeHead {
   RecordingFacts facts;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double gravity_m_s2 = 9.80665;
 constexpr double longest_node_gap_s = 0.2;
-constexpr double acceleration_within_s = 4.0 / 60.0;
 constexpr double most_node_frames = 1e7;
 
 double seconds_between(Time from, Time to) {
@@ -113,6 +112,25 @@ Result<void> complete(NodeTrack& track) {
   return {};
 }
 
+WornFrames lost_nodes(std::size_t frames, std::size_t nodes) {
+  WornFrames out;
+  out.nodes = nodes;
+  out.orientation.resize(frames * nodes * 4);
+  out.acceleration.resize(frames * nodes * 3);
+  out.angular_velocity.resize(frames * nodes * 3);
+  out.valid.resize(frames * nodes);
+  return out;
+}
+
+void put_node(const NodeTrack& track, const EvenSpan& grid, double rate_hz, std::size_t node,
+              WornFrames& out) {
+  NodeCurve curve(track);
+  for (std::size_t t = 0; t < grid.frames; ++t) {
+    const Time time = grid.start + Duration(std::llround(static_cast<double>(t) * 1e9 / rate_hz));
+    curve.put(time, t * out.nodes + node, rate_hz, out);
+  }
+}
+
 Result<EvenNodes> even_nodes(const std::vector<NodeTrack>& tracks, double rate_hz,
                              std::optional<EvenSpan> span) {
   const std::vector<Time>& root = tracks.back().stamps;
@@ -125,20 +143,8 @@ Result<EvenNodes> even_nodes(const std::vector<NodeTrack>& tracks, double rate_h
     return Failure(Error{"", 0, "at most 10,000,000 frames", std::to_string(steps)});
   }
   const EvenSpan grid = span ? *span : EvenSpan{root.front(), static_cast<std::size_t>(steps) + 1};
-  const std::size_t frames = grid.frames, nodes = tracks.size();
-  EvenNodes out{{}, grid.start};
-  out.worn.nodes = nodes;
-  out.worn.orientation.resize(frames * nodes * 4);
-  out.worn.acceleration.resize(frames * nodes * 3);
-  out.worn.angular_velocity.resize(frames * nodes * 3);
-  out.worn.valid.resize(frames * nodes);
-  for (std::size_t n = 0; n < nodes; ++n) {
-    NodeCurve curve(tracks[n]);
-    for (std::size_t t = 0; t < frames; ++t) {
-      const Time time = out.start + Duration(std::llround(static_cast<double>(t) * 1e9 / rate_hz));
-      curve.put(time, t * nodes + n, rate_hz, out.worn);
-    }
-  }
+  EvenNodes out{lost_nodes(grid.frames, tracks.size()), grid.start};
+  for (std::size_t n = 0; n < tracks.size(); ++n) put_node(tracks[n], grid, rate_hz, n, out.worn);
   return out;
 }
 

@@ -28,6 +28,17 @@ struct NodeTrack {
 /// accelerations without gravity.
 Result<void> complete(NodeTrack& track);
 
+/// The acceleration at a time is the mean of samples so near to it.
+inline constexpr double acceleration_within_s = 4.0 / 60.0;
+
+/// Puts a complete node at place `node` of each frame of `out`, whose arrays have room for the grid.
+/// What is not known there stays as it is.
+void put_node(const NodeTrack& track, const EvenSpan& grid, double rate_hz, std::size_t node,
+              WornFrames& out);
+
+/// Room for frames in which every node is lost.
+WornFrames lost_nodes(std::size_t frames, std::size_t nodes);
+
 struct EvenNodes {
   WornFrames worn;  // frame t is at start + t / rate
   Time start{};

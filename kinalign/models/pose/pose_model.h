@@ -46,6 +46,7 @@ class PoseSolver {
 
  private:
   friend class OnlinePoseSolver;
+  friend class WindowSolver;
   PoseSolver(PoseModel model, Network network);
 
   PoseModel model_;

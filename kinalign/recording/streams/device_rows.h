@@ -23,20 +23,6 @@
 
 namespace kinalign {
 
-/// A device's message as it was recorded.
-struct RecordedMessage {
-  const RawChannel* channel = nullptr;
-  std::uint16_t channel_id = 0;
-  HostTime arrival{};
-  std::string_view payload;  // good until the next message
-  bool is_exchange() const { return channel->protocol == exchange_encoding; }
-};
-
-/// The arrival of a message that was logged at `log_time`, ns of UTC.
-inline HostTime arrival_of(std::uint64_t log_time, Duration utc_minus_host) {
-  return HostTime{Duration{static_cast<std::int64_t>(log_time)} - utc_minus_host};
-}
-
 /// Which device of a recording.
 struct DeviceChoice {
   std::string stream;

@@ -3,8 +3,7 @@
 // clock: the sender had the frame in its hands at `taken`, and pings put the sender's clock on the
 // host's. Stamps are late by the least time from the sensor to the sender.
 #include "kinalign/protocols/kinect/frames.h"
-#include "kinalign/protocols/kinect/stream.h"
-#include "kinalign/protocols/protocols.h"
+#include "kinalign/recording/frames/kinect_frames.h"
 #include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/recording/streams/kinect_person.h"
 #include "kinalign/recording/streams/rows_in_order.h"
@@ -18,41 +17,6 @@
 namespace kinalign {
 
 namespace {
-
-/// Frames with their bodies together, in the order of arrival.
-class KinectFrames {
- public:
-  /// Appends what the message completes. Parts as they came go to `heard`.
-  void take(const RecordedMessage& message, std::vector<JoinedKinectFrame>& out,
-            std::vector<KinectFrame>* heard) {
-    messages_.clear();
-    KinectStreamDecoder& decoder = decoders_[message.channel_id];
-    decoder.feed(octets(message.payload), messages_);
-    if (is_datagrams(message.channel->transport)) decoder.finish(messages_);  // it has one message
-    for (KinectMessage& one : messages_) {
-      auto* frame = std::get_if<KinectFrame>(&one);
-      if (frame == nullptr) continue;
-      if (!sensor_) sensor_ = frame->origin.sensor;
-      if (frame->origin.sensor != *sensor_) {
-        ++of_other_sensors;
-        continue;
-      }
-      if (heard != nullptr) heard->push_back(*frame);
-      joiner_.take(std::move(*frame), out, message.channel->sender);
-    }
-  }
-  void finish(std::vector<JoinedKinectFrame>& out) { joiner_.finish(out); }
-  KinectFrameCounts counts() const { return joiner_.counts(); }
-  const std::optional<KinectTwins>& twins() const { return joiner_.twins(); }
-
-  std::uint64_t of_other_sensors = 0;
-
- private:
-  std::map<std::uint16_t, KinectStreamDecoder> decoders_;  // by channel: a sender or a connection
-  std::vector<KinectMessage> messages_;
-  std::optional<std::uint32_t> sensor_;
-  KinectFrameJoiner joiner_;
-};
 
 /// When the sensor took a frame, when the sender had it, and when he sent it.
 struct Taken {

@@ -3,12 +3,10 @@
 // exchanges that the recorder made out of frames and replies. Of a node without a counter the
 // number of its request is the counter.
 #include "kinalign/formats/imu_converter.h"
+#include "kinalign/recording/frames/accepted_frames.h"
 #include "kinalign/recording/streams/device_rows.h"
 #include "kinalign/recording/streams/numbered_frames.h"
 #include "kinalign/recording/streams/rows_in_order.h"
-#include "kinalign/wire/clockless.h"
-#include "kinalign/wire/little_endian_reader.h"
-#include "kinalign/wire/node_frame.h"
 
 #include <fmt/format.h>
 
@@ -19,101 +17,6 @@
 namespace kinalign {
 
 namespace {
-
-constexpr std::uint64_t most_counter_us = 1'000'000'000'000'000;  // 31 years
-
-NodeTime counter_at(std::uint64_t us) {
-  return NodeTime{std::chrono::microseconds(static_cast<std::int64_t>(us))};
-}
-
-/// Of a request, since its node started.
-std::int64_t number_of(const ClocklessExchange& e) {
-  return static_cast<std::int64_t>(e.frame) - (std::int64_t{1} << 32);
-}
-
-/// What brought samples and was accepted when it came.
-struct AcceptedFrame {
-  BootKey life = 0;
-  std::optional<NodeTime> n_tx;  // absent: the node has no counter, its requests have numbers
-  std::int64_t number = 0;
-  std::array<NodeSample, max_node_samples> samples{};
-  std::size_t sample_count = 0;
-};
-
-/// A node's frame, or its request; absent: neither, or damaged.
-std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
-  Envelope envelope;
-  if (open_envelope(octets(message.payload), envelope) != NodeRefusal::none) return std::nullopt;
-  envelope.mac_was_checked = true;
-  AcceptedFrame out;
-  out.number = envelope.origin.sequence;
-  if (envelope.type == DatagramType::request) {
-    ClocklessRequest request;
-    if (decode(envelope, nullptr, request) != NodeRefusal::none) return std::nullopt;
-    out.samples.front() = request.sample;
-    out.sample_count = request.has_sample ? 1 : 0;
-    return out;
-  }
-  NodeFrame frame;
-  if (decode(envelope, nullptr, frame) != NodeRefusal::none) return std::nullopt;
-  if (frame.n_tx_us > most_counter_us) return std::nullopt;
-  out.n_tx = counter_at(frame.n_tx_us);
-  out.samples = frame.samples;
-  out.sample_count = frame.sample_count;
-  return out;
-}
-
-using AnyExchange = std::variant<std::monostate, Exchange, ClocklessExchange>;
-
-/// What was held, came twice or came late is in the recording, too; of an accepted datagram the
-/// exchange stands before it, with the same counter or number, and arrival.
-class AcceptedFrames {
- public:
-  /// The exchange, if it is one; its boot is the life's key.
-  AnyExchange take_exchange(const RecordedMessage& message) {
-    if (auto recorded = to_exchange(message.payload)) {
-      Exchange& e = recorded->exchange;
-      e.boot = life_of(e.boot, recorded->epoch);
-      accepted_ = {e.boot, e.n_tx, 0, false, message.arrival};
-      return e;
-    }
-    if (auto numbered = to_clockless(message.payload)) {
-      ClocklessExchange& e = numbered->exchange;
-      e.boot = life_of(e.boot, numbered->epoch);
-      accepted_ = {e.boot, std::nullopt, number_of(e), e.t6.has_value(), message.arrival};
-      return e;
-    }
-    return {};
-  }
-  std::optional<AcceptedFrame> take(const RecordedMessage& message) {
-    const auto accepted = std::exchange(accepted_, std::nullopt);
-    const bool in_time = accepted && accepted->at == message.arrival;
-    if (in_time && accepted->confirms) return std::nullopt;  // brings no sample
-    auto frame = frame_in(message);
-    const auto low = [](std::int64_t number) { return static_cast<std::uint32_t>(number); };
-    const bool same = in_time && frame && accepted->n_tx == frame->n_tx &&
-                      (accepted->n_tx || low(accepted->number) == low(frame->number));
-    if (!same) {
-      ++others;
-      return std::nullopt;
-    }
-    frame->life = accepted->life;
-    frame->number = accepted->number;
-    return frame;
-  }
-
-  std::uint64_t others = 0;
-
- private:
-  struct Accepted {
-    BootKey life = 0;
-    std::optional<NodeTime> n_tx;
-    std::int64_t number = 0;
-    bool confirms = false;
-    HostTime at;
-  };
-  std::optional<Accepted> accepted_;
-};
 
 /// Where requests leave on a steady timer their number plays the part of a counter: the earliest
 /// arrivals tell it, less the least half of a round trip (clock/offline/clockless.h).

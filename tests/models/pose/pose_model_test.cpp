@@ -5,6 +5,7 @@
 
 #include "kinalign/formats/bvh/bvh.h"
 #include "kinalign/models/pose/own_body.h"
+#include "kinalign/models/pose/window_solver.h"
 
 #include <doctest/doctest.h>
 
@@ -116,6 +117,35 @@ TEST_CASE("frame by frame the answers are those to the whole sequence") {
       CHECK(online->root().coeffs() == whole.root[t].coeffs());
     }
     online->reset();
+  }
+}
+
+TEST_CASE("a window that sees all that the network sees answers as the whole sequence does") {
+  std::mt19937_64 random(2);
+  for (const bool causal : {false, true}) {
+    CAPTURE(causal);
+    PoseModel model = random_model(random);
+    model.architecture.layers.front().causal = causal;
+    auto solver = PoseSolver::make(model);
+    REQUIRE(solver);
+    NodeFrames nodes = random_nodes(5, 40, random);
+    nodes.valid[7] = nodes.valid[5 * 20 + 4] = 0;
+    const SolvedPose whole = solver->solve(nodes);
+    WindowSolver window(*solver, 100);
+    CHECK(window.look_ahead() == (causal ? 2 : 3));  // smoothing sees two frames, the network one
+    std::vector<FramePose> answers;
+    for (std::size_t t = 0; t < nodes.frames(); ++t) {
+      if (auto pose = window.step(nodes, t)) answers.push_back(*std::move(pose));
+      CHECK(answers.size() == t + 1 - std::min(t + 1, window.look_ahead()));
+    }
+    while (auto pose = window.finish()) answers.push_back(*std::move(pose));
+    REQUIRE(answers.size() == nodes.frames());
+    for (std::size_t t = 0; t < answers.size(); ++t) {
+      for (std::size_t b = 0; b < answers[t].rotations.size(); ++b) {
+        CHECK(answers[t].rotations[b] == whole.rotations[t * answers[t].rotations.size() + b]);
+      }
+      CHECK(answers[t].root.coeffs() == whole.root[t].coeffs());
+    }
   }
 }
 

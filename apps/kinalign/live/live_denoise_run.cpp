@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/live/live_runs.h"
+#include "apps/kinalign/live/live_session.h"
+
+#include "kinalign/models/live/live_joints.h"
+#include "kinalign/models/skeleton_of_points.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double longest_unseen_s = 2.0;  // a joint that is missing longer is told
+
+class LiveDenoiseRun {
+ public:
+  LiveDenoiseRun(Denoiser& denoiser, const LiveJob& job, LiveSession& session)
+      : model_(denoiser.model()),
+        session_(session),
+        stream_(job.kinect),
+        is_chosen_(!job.kinect.empty()),
+        joints_(model_.layout.inputs, model_.layout.rate_hz),
+        cleaner_(denoiser, job.look_ahead()),
+        unseen_(model_.layout.inputs.size()) {}
+
+  void begin() {
+    session_.tell("waiting for the Kinect's frames", Json{{"event", "started"},
+                                                          {"method", model_.facts.method},
+                                                          {"rate_hz", model_.layout.rate_hz},
+                                                          {"look_ahead", cleaner_.look_ahead()}});
+  }
+
+  Result<void> take(const LiveNews& news) {
+    for (const LiveKinectRow& row : news.rows) {
+      KA_TRY(choose_live_kinect(row.kinect->stream, is_chosen_, stream_));
+      if (row.kinect->stream != stream_) continue;
+      joints_.add(row.row, row.arrival);
+      KA_TRY(advance(row.arrival));
+    }
+    if (session_.stream().now()) KA_TRY(advance(*session_.stream().now()));
+    return check_live_frames(answered_);
+  }
+
+  std::string status() const {
+    if (!joints_.begin()) return "waiting for the Kinect's frames";
+    return fmt::format("{} frames; {}", answered_, session_.latency_text());
+  }
+
+  Result<void> finish() {
+    while (joints_.begin() && time_of(made_) <= *joints_.newest()) {
+      KA_TRY(make_frame(std::nullopt));
+    }
+    while (const auto joints = cleaner_.finish()) KA_TRY(take_answer(*joints, std::nullopt));
+    return {};
+  }
+
+  Result<Json> answer(Clip& clip) const {
+    if (answered_ == 0) return no_live_frames(status());
+    const std::size_t frames = answered_ - std::min(answered_ - 1, behind_newest_);
+    std::vector<float> whole = cleaner_.whole();
+    whole.resize(whole.size() / answered_ * frames);
+    clip = KA_TRY(skeleton(whole, *joints_.begin()));
+    const double all =
+        static_cast<double>(std::max<std::size_t>(seen_[0] + seen_[1] + seen_[2], 1));
+    Json missing = Json::object();
+    for (std::size_t j = 0; j < unseen_.size(); ++j) {
+      const double longest_s = static_cast<double>(unseen_[j].longest) / model_.layout.rate_hz;
+      if (longest_s >= longest_unseen_s) missing[model_.layout.inputs[j]] = longest_s;
+    }
+    Json out{{"stream", stream_},
+             {"frames", frames},
+             {"rate_hz", model_.layout.rate_hz},
+             {"joints", model_.layout.outputs.size()},
+             {"method", model_.facts.method},
+             {"look_ahead", cleaner_.look_ahead()},
+             {"missing", static_cast<double>(seen_[0]) / all},
+             {"inferred", static_cast<double>(seen_[1]) / all},
+             {"long_missing_s", missing},
+             {"warnings", Json::array()}};
+    for (const auto& [joint, seconds] : missing.items()) {
+      out["warnings"].push_back(fmt::format("{} is missing for {:.1f} s: there it is a guess",
+                                            joint, seconds.get<double>()));
+    }
+    session_.describe(out);
+    return out;
+  }
+
+ private:
+  Time time_of(std::size_t frame) const {
+    const double ns = static_cast<double>(frame) * 1e9 / model_.layout.rate_hz;
+    return *joints_.begin() + Duration(std::llround(ns));
+  }
+
+  Result<Clip> skeleton(std::span<const float> positions, Time start) const {
+    return skeleton_of_points({model_.layout.outputs, model_.layout.parents}, positions, start,
+                              model_.layout.rate_hz);
+  }
+
+  Result<void> advance(Time now) {
+    while (joints_.begin() && time_of(made_) <= now && joints_.is_ready(time_of(made_), now)) {
+      KA_TRY(make_frame(now));
+    }
+    return {};
+  }
+
+  Result<void> make_frame(std::optional<Time> needed) {
+    const JointFrames frame = joints_.frame(time_of(made_++));
+    count(frame);
+    if (const auto joints = cleaner_.step(frame)) return take_answer(*joints, needed);
+    return {};
+  }
+
+  /// Frames behind the Kinect's last row count once a further row has come: a file would end there.
+  void count(const JointFrames& frame) {
+    ++behind_newest_;
+    if (time_of(made_ - 1) > *joints_.newest()) return;
+    const std::size_t lost = behind_newest_ - 1;
+    behind_newest_ = 0;
+    for (std::size_t j = 0; j < unseen_.size(); ++j) {
+      seen_[0] += lost;
+      ++seen_[frame.seen[j]];
+      unseen_[j].longest = std::max(unseen_[j].longest, unseen_[j].now + lost);
+      unseen_[j].now = frame.seen[j] == 0 ? unseen_[j].now + lost + 1 : 0;
+      unseen_[j].longest = std::max(unseen_[j].longest, unseen_[j].now);
+    }
+  }
+
+  Result<void> take_answer(const std::vector<float>& joints, std::optional<Time> needed) {
+    const Clip one = KA_TRY(skeleton(joints, time_of(answered_)));
+    if (answered_ == 0) {
+      session_.tell("", Json{{"event", "skeleton"},
+                             {"joint_names", one.skeleton.joint_names},
+                             {"parents", one.skeleton.parents}});
+    }
+    ++answered_;
+    session_.tell_frame(one.skeleton, one.frames, needed);
+    return {};
+  }
+
+  struct Unseen {
+    std::size_t now = 0, longest = 0;  // frames
+  };
+  const DenoiseModel& model_;
+  LiveSession& session_;
+  std::string stream_;
+  bool is_chosen_;
+  LiveJoints joints_;
+  LiveCleaner cleaner_;
+  std::size_t made_ = 0, answered_ = 0;  // frames
+  std::size_t behind_newest_ = 0;        // of these, behind the Kinect's newest row
+  std::array<std::size_t, 3> seen_{};    // joints of frames, by Tracking
+  std::vector<Unseen> unseen_;           // [Jin]
+};
+
+}  // namespace
+
+Result<Json> run_live_denoise(Denoiser& denoiser, const LiveJob& job, Clip& clip, Call& call) {
+  LiveSession session = KA_TRY(LiveSession::open(job.words, call));
+  LiveDenoiseRun run(denoiser, job, session);
+  run.begin();
+  KA_TRY(session.run(
+      {[&](const LiveNews& news) { return run.take(news); }, [&] { return run.status(); }}));
+  KA_TRY(run.finish());
+  return run.answer(clip);
+}
+
+}  // namespace kinalign

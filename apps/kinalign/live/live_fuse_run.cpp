@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/live/live_runs.h"
+#include "apps/kinalign/live/live_worn_report.h"
+
+#include "kinalign/models/live/live_joints.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <deque>
+#include <numbers>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class LiveFuseRun {
+ public:
+  LiveFuseRun(Fuser& fuser, const LiveJob& job, LiveSession& session)
+      : model_(fuser.model()),
+        nodes_(model_.layout.nodes),
+        session_(session),
+        stream_(job.kinect),
+        is_chosen_(!job.kinect.empty()),
+        worn_(nodes_, model_.body.skeleton, job.worn),
+        report_(nodes_, job.nodes, worn_, session),
+        joints_(model_.layout.joints, nodes_.rate_hz),
+        fuser_(fuser, job.look_ahead()) {}
+
+  void begin() {
+    session_.tell(LiveWornReport::wish() + ", before the Kinect",
+                  Json{{"event", "started"},
+                       {"method", model_.facts.method},
+                       {"rate_hz", nodes_.rate_hz},
+                       {"look_ahead", fuser_.look_ahead()},
+                       {"joint_names", model_.body.skeleton.joint_names},
+                       {"parents", model_.body.skeleton.parents}});
+  }
+
+  Result<void> take(const LiveNews& news) {
+    for (const LiveMark& mark : news.marks) report_.take(mark);
+    for (const LiveKinectRow& row : news.rows) {
+      KA_TRY(choose_live_kinect(row.kinect->stream, is_chosen_, stream_));
+      if (row.kinect->stream == stream_) joints_.add(row.row, row.arrival);
+    }
+    for (const LiveNodeSample& sample : news.samples) KA_TRY(report_.add(sample));
+    if (session_.stream().now()) advance(*session_.stream().now());
+    return check_live_frames(poses_.size());
+  }
+
+  std::string status() const {
+    const std::string waits = report_.waits_for();
+    if (!waits.empty()) return waits;
+    if (!joints_.begin()) return "waiting for the Kinect's frames";
+    if (poses_.empty()) return "waiting for a second in which the Kinect sees the person";
+    return fmt::format("{} frames; {}; {}", poses_.size(), session_.latency_text(),
+                       report_.names().text());
+  }
+
+  void finish() {
+    std::vector<LiveWornFrame> ready;
+    std::vector<FusedFramePose> answered;
+    worn_.finish(ready);
+    for (const LiveWornFrame& frame : ready) take_frame(frame);
+    fuser_.finish(answered);
+    for (FusedFramePose& pose : answered) take_answer(std::move(pose), std::nullopt);
+  }
+
+  Result<Json> answer(Clip& clip) {
+    if (poses_.empty()) return no_live_frames(status());
+    std::vector<Turn> rotations;
+    std::vector<Eigen::Quaternionf> root;
+    for (std::size_t t = 0; t < poses_.size(); ++t) {
+      if (answered_[t].stamp > *worn_.nodes().newest_of_root()) break;  // as a file's frames end
+      report_.count(answered_[t].valid);
+      rotations.insert(rotations.end(), poses_[t].rotations.begin(), poses_[t].rotations.end());
+      root.push_back(poses_[t].root);
+    }
+    clip = {model_.body.skeleton,
+            clip_frames(model_.body, rotations, root, nodes_.rate_hz, answered_.front().stamp)};
+    for (std::size_t t = 0; t < root.size(); ++t) put_place(poses_[t], t, clip.frames);
+    return about(root.size());
+  }
+
+ private:
+  void put_place(const FusedFramePose& pose, std::size_t t, ClipFrames& frames) const {
+    vec3(frames.local_positions, t * model_.body.skeleton.joints()) = pose.place.cast<double>();
+  }
+
+  /// Frames that waited for the T-pose or the Kinect have no latency.
+  void advance(Time now) {
+    std::vector<LiveWornFrame> ready;
+    std::vector<FusedFramePose> answered;
+    worn_.advance(
+        now, [&](Time time) { return joints_.is_ready(time, now); }, ready);
+    bool waited = report_.tell_t_pose();
+    if (waited) fuser_.begin_headings();
+    const bool was_turned = fuser_.is_turned();
+    for (const LiveWornFrame& frame : ready) take_frame(frame);
+    fuser_.answer(answered);
+    waited = waited || !was_turned;
+    for (FusedFramePose& pose : answered) {
+      take_answer(std::move(pose), waited ? std::nullopt : std::optional(now));
+    }
+  }
+
+  void take_frame(const LiveWornFrame& frame) {
+    FuseInput input{frame.nodes, joints_.frame(frame.stamp)};
+    for (const std::uint8_t seen : input.kinect.seen) ++seen_[seen];
+    pending_.push_back({frame.stamp, frame.nodes.valid});
+    const std::size_t forgotten = fuser_.forgotten();
+    fuser_.add(input);
+    if (fuser_.forgotten() == forgotten) return;
+    pending_.erase(pending_.begin() + static_cast<std::ptrdiff_t>(fuser_.unanswered()));
+  }
+
+  void take_answer(FusedFramePose pose, std::optional<Time> needed) {
+    Pending pending = std::move(pending_.front());
+    pending_.pop_front();
+    ClipFrames one = clip_frames(model_.body, pose.rotations, std::span(&pose.root, 1),
+                                 nodes_.rate_hz, pending.stamp);
+    put_place(pose, 0, one);
+    session_.tell_frame(model_.body.skeleton, one, needed);
+    answered_.push_back(std::move(pending));
+    poses_.push_back(std::move(pose));
+  }
+
+  Json about(std::size_t frames) const {
+    const double all =
+        static_cast<double>(std::max<std::size_t>(seen_[0] + seen_[1] + seen_[2], 1));
+    Json out{{"kinect", stream_},
+             {"imu", report_.names().stream()},
+             {"frames", frames},
+             {"rate_hz", nodes_.rate_hz},
+             {"joints", model_.body.skeleton.joints()},
+             {"method", model_.facts.method},
+             {"look_ahead", fuser_.look_ahead()},
+             {"missing", static_cast<double>(seen_[0]) / all},
+             {"inferred", static_cast<double>(seen_[1]) / all}};
+    out.update(report_.about());
+    Json found = Json::object();
+    const double degrees = 180.0 / std::numbers::pi;
+    for (std::size_t n = 0; n < nodes_.nodes.size(); ++n) {
+      const HeadingState& state = fuser_.headings()[n];
+      found[nodes_.nodes[n]] = {{"turned_deg", degrees * static_cast<double>(state.yaw)},
+                                {"spread_deg", degrees * static_cast<double>(state.spread)}};
+    }
+    out["found_headings"] = std::move(found);
+    session_.describe(out);
+    return out;
+  }
+
+  struct Pending {
+    Time stamp{};
+    std::vector<std::uint8_t> valid;
+  };
+  const FuseModel& model_;
+  const PoseLayout& nodes_;
+  LiveSession& session_;
+  std::string stream_;  // of the Kinect
+  bool is_chosen_;
+  LiveWorn worn_;
+  LiveWornReport report_;
+  LiveJoints joints_;
+  LiveFuser fuser_;
+  std::deque<Pending> pending_;  // frames that went to the fuser and have no answer yet
+  std::vector<Pending> answered_;
+  std::vector<FusedFramePose> poses_;
+  std::array<std::size_t, 3> seen_{};  // joints of frames, by Tracking
+};
+
+}  // namespace
+
+Result<Json> run_live_fuse(Fuser& fuser, const LiveJob& job, Clip& clip, Call& call) {
+  LiveSession session = KA_TRY(LiveSession::open(job.words, call));
+  LiveFuseRun run(fuser, job, session);
+  run.begin();
+  KA_TRY(session.run(
+      {[&](const LiveNews& news) { return run.take(news); }, [&] { return run.status(); }}));
+  run.finish();
+  return run.answer(clip);
+}
+
+}  // namespace kinalign

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/live/live_node_names.h"
+
+#include "kinalign/models/pose/node_places.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+LiveNodeNames::LiveNodeNames(const PoseLayout& layout, std::string stream)
+    : names_(layout.nodes),
+      stream_(std::move(stream)),
+      is_chosen_(!stream_.empty()),
+      called_(layout.nodes.size()) {}
+
+Result<std::optional<std::size_t>> LiveNodeNames::find(const RawChannel& node) {
+  const auto known = found_.find(&node);
+  if (known != found_.end()) return known->second;
+  if (stream_.empty()) stream_ = node.stream;
+  std::optional<std::size_t>& found = found_[&node];
+  if (node.stream != stream_ && !is_chosen_) {
+    return Failure(Error{"--live", 0, "one stream of inertial nodes (--stream NAME)",
+                         shown(stream_) + ", " + shown(node.stream)});
+  }
+  if (node.stream != stream_) return found;
+  const std::string& name = node.place.empty() ? node.node : node.place;
+  for (std::size_t n = 0; n < names_.size() && !found; ++n) {
+    const bool is = name == names_[n] || place_called(name) == names_[n];
+    if (is && called_[n].empty()) found = n;
+  }
+  if (found) {
+    called_[*found] = name;
+  } else {
+    others_.push_back(node.stream + " " + name);
+  }
+  return found;
+}
+
+std::string LiveNodeNames::text() const {
+  std::string lacks;
+  std::size_t there = 0;
+  for (std::size_t n = 0; n < names_.size(); ++n) {
+    if (called_[n].empty()) lacks += (lacks.empty() ? "" : ", ") + names_[n];
+    there += called_[n].empty() ? 0 : 1;
+  }
+  std::string out = fmt::format("{} of {} nodes", there, names_.size());
+  return lacks.empty() ? out : out + "; not yet: " + lacks;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/live/live_runs.h"
+#include "apps/kinalign/live/live_worn_report.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class LivePoseRun {
+ public:
+  LivePoseRun(const PoseSolver& solver, const LiveJob& job, LiveSession& session)
+      : model_(solver.model()),
+        session_(session),
+        pose_(solver, job.worn, job.look_ahead()),
+        report_(model_.layout, job.nodes, pose_.worn(), session) {}
+
+  void begin() {
+    session_.tell(LiveWornReport::wish(), Json{{"event", "started"},
+                                               {"method", model_.facts.method},
+                                               {"rate_hz", model_.layout.rate_hz},
+                                               {"look_ahead", pose_.look_ahead()},
+                                               {"joint_names", model_.body.skeleton.joint_names},
+                                               {"parents", model_.body.skeleton.parents}});
+  }
+
+  Result<void> take(const LiveNews& news) {
+    for (const LiveMark& mark : news.marks) report_.take(mark);
+    for (const LiveNodeSample& sample : news.samples) {
+      if (KA_TRY(report_.add(sample))) advance(sample.arrival);
+    }
+    if (session_.stream().now()) advance(*session_.stream().now());
+    return check_live_frames(frames_.size());
+  }
+
+  std::string status() const {
+    const std::string waits = report_.waits_for();
+    if (!waits.empty()) return waits;
+    return fmt::format("{} frames; {}; {}", frames_.size(), session_.latency_text(),
+                       report_.names().text());
+  }
+
+  void finish() {
+    std::vector<LivePoseFrame> answered;
+    pose_.finish(answered);
+    for (LivePoseFrame& frame : answered) take_answer(std::move(frame), std::nullopt);
+  }
+
+  Result<Json> answer(Clip& clip) {
+    if (frames_.empty()) return no_live_frames(report_.waits_for());
+    std::vector<Turn> rotations;
+    std::vector<Eigen::Quaternionf> root;
+    for (const LivePoseFrame& frame : frames_) {
+      if (frame.stamp > *pose_.worn().nodes().newest_of_root()) break;  // as a file's frames end
+      report_.count(frame.valid);
+      rotations.insert(rotations.end(), frame.pose.rotations.begin(), frame.pose.rotations.end());
+      root.push_back(frame.pose.root);
+    }
+    clip = {model_.body.skeleton, clip_frames(model_.body, rotations, root, model_.layout.rate_hz,
+                                              frames_.front().stamp)};
+    Json out{{"stream", report_.names().stream()}, {"frames", clip.frames.stamps.size()},
+             {"rate_hz", model_.layout.rate_hz},   {"joints", model_.body.skeleton.joints()},
+             {"method", model_.facts.method},      {"look_ahead", pose_.look_ahead()}};
+    out.update(report_.about());
+    session_.describe(out);
+    return out;
+  }
+
+ private:
+  /// Frames that waited for the T-pose have no latency.
+  void advance(Time now) {
+    std::vector<LivePoseFrame> answered;
+    pose_.advance(now, answered);
+    const bool waited = report_.tell_t_pose();
+    for (LivePoseFrame& frame : answered) {
+      take_answer(std::move(frame), waited ? std::nullopt : std::optional(now));
+    }
+  }
+
+  void take_answer(LivePoseFrame frame, std::optional<Time> needed) {
+    session_.tell_frame(
+        model_.body.skeleton,
+        clip_frames(model_.body, frame.pose.rotations, std::span(&frame.pose.root, 1),
+                    model_.layout.rate_hz, frame.stamp),
+        needed);
+    frames_.push_back(std::move(frame));
+  }
+
+  const PoseModel& model_;
+  LiveSession& session_;
+  LivePose pose_;
+  LiveWornReport report_;
+  std::vector<LivePoseFrame> frames_;
+};
+
+}  // namespace
+
+Result<Json> run_live_pose(const PoseSolver& solver, const LiveJob& job, Clip& clip, Call& call) {
+  LiveSession session = KA_TRY(LiveSession::open(job.words, call));
+  LivePoseRun run(solver, job, session);
+  run.begin();
+  KA_TRY(session.run(
+      {[&](const LiveNews& news) { return run.take(news); }, [&] { return run.status(); }}));
+  run.finish();
+  return run.answer(clip);
+}
+
+std::string live_lines(const Json& about) {
+  const Json& latency = about.at("latency_ms");
+  return fmt::format(
+      "live     {:.0f} ms after the samples (p99 {:.0f}), {:.0f} ms behind the motion (p99 "
+      "{:.0f})\n",
+      latency.at("after_arrival_p50").get<double>(), latency.at("after_arrival_p99").get<double>(),
+      latency.at("behind_motion_p50").get<double>(), latency.at("behind_motion_p99").get<double>());
+}
+
+}  // namespace kinalign

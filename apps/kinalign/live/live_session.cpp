@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/live/live_session.h"
+
+#include "apps/cli/json_text.h"
+#include "apps/kinalign/text/describe_file.h"
+
+#include "kinalign/motion/arrays.h"
+#include "kinalign/motion/kinematics.h"
+#include "kinalign/view/report_words.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::ordered_json;
+
+constexpr Duration one_turn = 100ms;
+constexpr Duration between_statuses = 500ms;
+
+std::string own_host() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+/// "[[0.10000,0.90000,0.00000],...]" of rows of so many numbers.
+void append_rows(std::string& out, std::span<const double> numbers, std::size_t width) {
+  out += '[';
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    out += i % width == 0 ? (i == 0 ? "[" : ",[") : ",";
+    if (std::isfinite(numbers[i])) {
+      fmt::format_to(std::back_inserter(out), "{:.5f}", numbers[i]);
+    } else {
+      out += "null";  // JSON has no other word for it
+    }
+    if (i % width == width - 1) out += ']';
+  }
+  out += ']';
+}
+
+std::string frame_json(const Skeleton& skeleton, const ClipFrames& one) {
+  std::vector<double> positions(3 * skeleton.joints());
+  forward_kinematics(skeleton, one, positions);
+  std::string out =
+      fmt::format(R"({{"event":"frame","time_ns":{},"positions":)", to_ns(one.stamps.front()));
+  append_rows(out, positions, 3);
+  out += R"(,"local_rotations":)";
+  append_rows(out, one.local_rotations, 4);
+  return out + "}";
+}
+
+}  // namespace
+
+Result<void> check_live_frames(std::size_t frames) {
+  if (frames < most_live_frames) return {};
+  return Failure(Error{"--live", 0, "at most 1,000,000 frames", "more"});
+}
+
+Failure no_live_frames(const std::string& waited_for) {
+  return Failure(Error{"--live", 0, "frames to answer", "none: it ended " + waited_for});
+}
+
+Result<void> choose_live_kinect(const std::string& sends, bool is_chosen, std::string& stream) {
+  if (stream.empty()) stream = sends;
+  if (is_chosen || sends == stream) return {};
+  return Failure(
+      Error{"--live", 0, "one Kinect (its stream by name)", shown(stream) + ", " + shown(sends)});
+}
+
+Result<LiveSession> LiveSession::open(const LiveWords& words, Call& call) {
+  call.console.never_wait();
+  (void)call.console.progress();  // Ctrl-C is only noted from here on
+  std::optional<LiveDatagrams> datagrams;
+  if (!words.send.empty()) {
+    datagrams = KA_TRY(LiveDatagrams::open(KA_TRY(parse_endpoint(words.send, "--send"))));
+  }
+  LiveConnection connection =
+      KA_TRY(LiveConnection::open(KA_TRY(parse_endpoint(words.live, "--live"))));
+  return LiveSession(std::move(connection), std::move(datagrams), call);
+}
+
+LiveSession::LiveSession(LiveConnection connection, std::optional<LiveDatagrams> datagrams,
+                         Call& call)
+    : connection_(std::move(connection)),
+      datagrams_(std::move(datagrams)),
+      call_(&call),
+      stream_(std::make_unique<LiveStream>()),
+      clocks_(std::make_unique<SystemClocks>()) {}
+
+Time LiveSession::now() {
+  const HostTime raw = clocks_->raw();
+  if (is_own_host_.value_or(false)) {
+    const ClockPair& anchor = stream_->facts()->anchor;
+    return anchor.utc + (raw - anchor.raw);
+  }
+  return stream_->now().value_or(Time{}) + (raw - piece_came_);
+}
+
+/// Whether the stream goes on.
+Result<bool> LiveSession::turn(const LiveWork& work) {
+  const auto came = connection_.wait(one_turn);
+  piece_came_ = came == LiveConnection::Came::bytes ? clocks_->raw() : piece_came_;
+  if (came == LiveConnection::Came::bytes) {
+    LiveNews news;
+    KA_TRY(stream_->take(connection_.bytes(), news));
+    if (!is_own_host_ && stream_->facts()) is_own_host_ = stream_->facts()->host == own_host();
+    KA_TRY(work.take(news));
+    call_->console.flush();
+  }
+  const HostTime now = clocks_->raw();
+  if (now >= next_status_ && call_->console.shows()) {
+    next_status_ = now + between_statuses;
+    call_->console.show({{harmless(work.status()), Colour::plain}, {"Ctrl-C ends", Colour::plain}});
+  }
+  if (came == LiveConnection::Came::end) stream_->end();
+  return came != LiveConnection::Came::end;
+}
+
+Result<void> LiveSession::run(const LiveWork& work) {
+  while (!interrupted() && KA_TRY(turn(work))) {
+  }
+  broke_ = !interrupted() && !stream_->closed();
+  if (broke_ && !stream_->now()) {
+    return Failure(Error{"--live", 0, "the stream of kinalign record --live-port",
+                         "a connection that ended before it began"});
+  }
+  return {};
+}
+
+void LiveSession::tell_frame(const Skeleton& skeleton, const ClipFrames& one,
+                             std::optional<Time> needed) {
+  if (call_->console.prints_json() || datagrams_) {
+    const std::string text = frame_json(skeleton, one);
+    call_->console.print_json(text);
+    if (datagrams_) datagrams_->send(text);
+  }
+  if (!needed) return;
+  const Time answered = now();
+  latency_.add(answered - *needed, answered - one.stamps.front());
+}
+
+void LiveSession::tell(const std::string& line, const Json& event) {
+  if (!line.empty()) call_->console.print(harmless(line) + "\n");
+  call_->console.print_json(json_text(event));
+  call_->console.flush();
+}
+
+std::string LiveSession::latency_text() const {
+  constexpr std::size_t newest = 300;  // frames
+  return fmt::format(
+      "{:.0f} ms after the samples (p99 {:.0f}), {:.0f} ms behind the motion (p99 {:.0f})",
+      latency_.after_arrival_ms(0.5, newest), latency_.after_arrival_ms(0.99, newest),
+      latency_.behind_motion_ms(0.5, newest), latency_.behind_motion_ms(0.99, newest));
+}
+
+void LiveSession::describe(Json& about) const {
+  about["latency_ms"] = {{"frames", latency_.frames()},
+                         {"after_arrival_p50", latency_.after_arrival_ms(0.5)},
+                         {"after_arrival_p99", latency_.after_arrival_ms(0.99)},
+                         {"behind_motion_p50", latency_.behind_motion_ms(0.5)},
+                         {"behind_motion_p99", latency_.behind_motion_ms(0.99)}};
+  about["messages"] = stream_->counts().messages;
+  about["lost"] = stream_->counts().lost;
+  about["refused"] = stream_->counts().refused;
+  if (!about.contains("warnings")) about["warnings"] = Json::array();
+  for (const std::string& warning : warnings()) about["warnings"].push_back(warning);
+  about["ended"] = broke_ ? "broke" : stream_->closed() ? "record" : "stopped";
+}
+
+std::vector<std::string> LiveSession::warnings() const {
+  std::vector<std::string> out;
+  if (broke_) out.emplace_back("the stream broke off: record ended without its end, or was killed");
+  if (const std::uint64_t lost = stream_->counts().lost; lost > 0) {
+    out.push_back(fmt::format("{} messages lost: this program read too slowly", grouped(lost)));
+  }
+  if (const std::uint64_t refused = stream_->counts().refused; refused > 0) {
+    out.push_back(fmt::format("{} samples left out: their clock or their numbers are wrong",
+                              grouped(refused)));
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sockets of a verb that works live: a connection to record, and datagrams of frames.
+#pragma once
+
+#include "apps/kinalign/live/live_words.h"
+
+#include "kinalign/capture/net/handle.h"
+#include "kinalign/core/error.h"
+#include "kinalign/wire/time.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+class LiveConnection {
+ public:
+  /// Waits five seconds at most. Fails where nobody serves there.
+  static Result<LiveConnection> open(const Endpoint& at);
+
+  enum class Came { bytes, nothing, end };
+  /// Waits so long at most. Of a connection that broke and of one that ended the end is told alike.
+  Came wait(Duration patience);
+  /// What came last; until the next wait().
+  std::string_view bytes() const { return {buffer_.data(), size_}; }
+
+ private:
+  explicit LiveConnection(Handle socket)
+      : socket_(std::move(socket)), buffer_(std::size_t{1} << 16) {}
+
+  Handle socket_;
+  std::vector<char> buffer_;
+  std::size_t size_ = 0;
+};
+
+/// Datagrams to one address. What nobody takes is lost.
+class LiveDatagrams {
+ public:
+  static Result<LiveDatagrams> open(const Endpoint& to);
+  void send(std::string_view text) const;
+
+ private:
+  explicit LiveDatagrams(Handle socket) : socket_(std::move(socket)) {}
+  Handle socket_;
+};
+
+}  // namespace kinalign

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/live/live_words.h"
+
+#include <charconv>
+
+namespace kinalign {
+
+namespace {
+
+constexpr const char* own_machine = "127.0.0.1";
+
+bool parse_port(std::string_view text, std::uint16_t& port) {
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), port);
+  return fault == std::errc{} && end == text.data() + text.size() && port != 0;
+}
+
+/// "::1" of "[::1]".
+std::string without_brackets(const std::string& host) {
+  const bool has = host.size() > 2 && host.front() == '[' && host.back() == ']';
+  return has ? host.substr(1, host.size() - 2) : host;
+}
+
+}  // namespace
+
+std::vector<Field> live_flags(LiveWords& o) {
+  return {{"live",
+           "what kinalign record receives now, by its --live-port, in place of IN",
+           &o.live,
+           0.0,
+           0.0,
+           {},
+           "[HOST:]PORT"},
+          {"look_ahead",
+           "with --live: frames that an answer waits for; more are more exact and later",
+           &o.look_ahead,
+           0.0,
+           1000.0,
+           {},
+           "FRAMES"},
+          {"send",
+           "with --live: each frame goes there as a UDP datagram of JSON, too",
+           &o.send,
+           0.0,
+           0.0,
+           {},
+           "HOST:PORT"}};
+}
+
+Result<Endpoint> parse_endpoint(const std::string& text, const std::string& flag) {
+  const std::size_t colon = text.rfind(':');
+  Endpoint out{own_machine, 0};
+  if (colon != std::string::npos) out.host = without_brackets(text.substr(0, colon));
+  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
+  if (!out.host.empty() && parse_port(port, out.port)) return out;
+  return Failure(
+      Error{flag, 0, "a port from 1 to 65535, as in 7040 or 127.0.0.1:7040", shown(text)});
+}
+
+Result<void> check(const LiveWords& o, const std::vector<std::string>& in) {
+  if (o.live.empty()) {
+    if (o.look_ahead) return Failure(Error{"--look-ahead", 0, "--live beside it", "none"});
+    if (!o.send.empty()) return Failure(Error{"--send", 0, "--live beside it", "none"});
+    if (in.empty()) return Failure(Error{"IN", 0, "a file, or --live PORT", "none"});
+    return {};
+  }
+  if (!in.empty()) return Failure(Error{"--live", 0, "no file beside it", shown(in.front())});
+  KA_TRY(parse_endpoint(o.live, "--live"));
+  if (!o.send.empty()) KA_TRY(parse_endpoint(o.send, "--send"));
+  return {};
+}
+
+}  // namespace kinalign

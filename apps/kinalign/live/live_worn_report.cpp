@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/kinalign/live/live_worn_report.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double longest_lost_s = 2.0;    // a node that is lost longer is told
+constexpr double most_turn_deg_s = 30.0;  // of a node in a T-pose that is held still
+
+NodeReadings readings_of(const LiveNodeSample& one) {
+  const NodeSample& sample = one.sample;
+  NodeReadings out{one.stamp, one.arrival, {}, {}, {}, true};
+  const auto vector = [](const std::array<float, 3>& v) {
+    return Vec3(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
+  };
+  if (sample.has_orientation) {
+    const auto& q = sample.orientation;
+    out.orientation = Quat(static_cast<double>(q[0]), static_cast<double>(q[1]),
+                           static_cast<double>(q[2]), static_cast<double>(q[3]))
+                          .normalized();
+  }
+  if (sample.has_acceleration) {
+    out.acceleration = vector(sample.acceleration);
+    out.gravity = sample.gravity_included;
+  }
+  if (sample.has_angular_velocity) out.angular_velocity = vector(sample.angular_velocity);
+  return out;
+}
+
+}  // namespace
+
+LiveWornReport::LiveWornReport(const PoseLayout& layout, const std::string& stream, LiveWorn& worn,
+                               LiveSession& session)
+    : layout_(&layout),
+      worn_(&worn),
+      session_(&session),
+      names_(layout, stream),
+      presence_(layout.nodes.size()) {}
+
+std::string LiveWornReport::wish() {
+  return "T-pose: stand upright, arms straight out to the sides, palms down, and hold still for "
+         "three seconds";
+}
+
+Result<bool> LiveWornReport::add(const LiveNodeSample& sample) {
+  const auto node = KA_TRY(names_.find(*sample.node));
+  if (node) worn_->add(*node, readings_of(sample));
+  return node.has_value();
+}
+
+void LiveWornReport::take(const LiveMark& mark) {
+  if (mark.mark.mark.kind != Mark::Kind::t_pose || !worn_->nodes().begin()) return;
+  worn_->mark_t_pose(mark.at);
+  session_->tell("T-pose marked: hold it for two seconds", Json{{"event", "t_pose_marked"}});
+}
+
+bool LiveWornReport::tell_t_pose() {
+  if (const auto why = worn_->take_refusal(); why && *why != refusal_) {
+    refusal_ = *why;
+    session_->tell("no T-pose yet: " + refusal_,
+                   Json{{"event", "t_pose_refused"}, {"found", refusal_}});
+  }
+  if (!worn_->calibration() || worn_->calibration()->first == told_) return false;
+  told_ = worn_->calibration()->first;
+  refusal_.clear();
+  Json event{{"event", "calibrated"}};
+  event.update(calibration());
+  const Json& t_pose = event.at("t_pose");
+  session_->tell(fmt::format("T-pose of {:.1f} to {:.1f} s taken: you may move",
+                             t_pose.at("from_s").get<double>(), t_pose.at("to_s").get<double>()),
+                 event);
+  return true;
+}
+
+void LiveWornReport::count(const std::vector<std::uint8_t>& valid) {
+  ++frames_;
+  for (std::size_t n = 0; n < presence_.size(); ++n) {
+    Presence& one = presence_[n];
+    one.valid += valid[n] != 0 ? 1 : 0;
+    one.lost = valid[n] != 0 ? 0 : one.lost + 1;
+    one.longest = std::max(one.longest, one.lost);
+  }
+}
+
+std::string LiveWornReport::waits_for() const {
+  if (!worn_->nodes().begin()) return "waiting for the nodes: " + names_.text();
+  if (worn_->calibration()) return "";
+  return fmt::format("waiting for a T-pose that is held still ({}){}", names_.text(),
+                     refusal_.empty() ? "" : "; " + refusal_);
+}
+
+Json LiveWornReport::calibration() const {
+  const LiveCalibration& found = *worn_->calibration();
+  return {{"t_pose",
+           {{"from_s", static_cast<double>(found.first) / layout_->rate_hz},
+            {"to_s", static_cast<double>(found.first + found.count) / layout_->rate_hz},
+            {"found", false},
+            {"fastest_deg_s", found.fastest_deg_s}}},
+          {"headings", found.nodes.headings == Headings::shared ? "shared" : "mounting"},
+          {"facing", found.nodes.facing == Facing::arms ? "arms" : "mounting"},
+          {"spread_deg", found.nodes.spread_deg},
+          {"worn_as_told", found.nodes.worn_as_told}};
+}
+
+Json LiveWornReport::about() const {
+  const double all = static_cast<double>(std::max<std::size_t>(frames_, 1));
+  Json nodes = Json::object(), warnings = Json::array();
+  double valid = 0.0;
+  for (std::size_t n = 0; n < presence_.size(); ++n) {
+    const auto& worn = worn_->calibration()->nodes.nodes[n];
+    const double share = static_cast<double>(presence_[n].valid) / all;
+    valid += share / static_cast<double>(presence_.size());
+    nodes[layout_->nodes[n]] = {{"called", names_.called()[n]},
+                                {"valid", share},
+                                {"tilt_deg", worn ? Json(worn->tilt_deg) : Json()}};
+    const std::string warning = warning_of(n);
+    if (!warning.empty()) warnings.push_back(warning);
+  }
+  Json out{{"valid", valid}, {"nodes", std::move(nodes)}};
+  out.update(calibration());
+  out["late_samples"] = worn_->nodes().late();
+  const double fastest = worn_->calibration()->fastest_deg_s;
+  if (fastest > most_turn_deg_s) {
+    warnings.push_back(
+        fmt::format("in the T-pose a node turned at {:.0f} deg/s: it was not held still", fastest));
+  }
+  for (const std::string& other : names_.others()) {
+    warnings.push_back(other + " is none of the model's nodes: say in lab.toml where it is worn");
+  }
+  out["warnings"] = std::move(warnings);
+  return out;
+}
+
+std::string LiveWornReport::warning_of(std::size_t node) const {
+  const std::string& name = layout_->nodes[node];
+  const Presence& one = presence_[node];
+  const double lost_s = static_cast<double>(one.longest) / layout_->rate_hz;
+  if (one.valid == 0 && !worn_->nodes().has_samples(node)) {
+    return name + " has no samples: its limb is a guess";
+  }
+  if (one.valid == 0) {
+    return name + " has no samples in the T-pose, and is left out: its limb is a guess";
+  }
+  if (lost_s < longest_lost_s) return "";
+  return fmt::format("{} is missing for {:.1f} s: there its limb is a guess", name, lost_s);
+}
+
+}  // namespace kinalign

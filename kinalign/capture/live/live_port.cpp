@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/capture/live/live_port.h"
+
+#include "kinalign/capture/net/socket_address.h"
+#include "kinalign/capture/net/udp_socket.h"
+#include "kinalign/recording/format.h"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <cerrno>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr const char* own_machine = "127.0.0.1";
+
+/// Messages are small and wanted at once: the kernel must not wait for more of them.
+void send_at_once(int fd) {
+  const int yes = 1;
+  ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+}
+
+}  // namespace
+
+Result<LivePort> LivePort::open(std::uint16_t port, const McapHeader& header,
+                                const std::vector<McapMetadata>& head) {
+  const FoundAddress found = find_address(own_machine, port, SOCK_STREAM);
+  Handle listener(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const int yes = 1;
+  ::setsockopt(listener.fd(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (found == nullptr || listener.fd() < 0 ||
+      ::bind(listener.fd(), found->ai_addr, found->ai_addrlen) != 0 ||
+      ::listen(listener.fd(), static_cast<int>(most_clients)) != 0) {
+    return Failure(
+        no_port(endpoint_text(own_machine, port), "a TCP port to serve on", errno, port));
+  }
+  const std::uint16_t bound = bound_port(listener.fd());
+  LivePort out(std::move(listener), bound);
+  out.head_ = mcap_magic;
+  append_mcap(out.head_, header);
+  for (const McapMetadata& one : head) append_mcap(out.head_, one);
+  return out;
+}
+
+void LivePort::accept() {
+  for (;;) {
+    Handle socket(::accept4(listener_.fd(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
+    if (socket.fd() < 0) return;
+    if (clients_.size() == most_clients) {
+      ++counts_.turned_away;
+      continue;  // which closes it
+    }
+    send_at_once(socket.fd());
+    ++counts_.clients;
+    clients_.push_back({std::move(socket), head_});
+  }
+}
+
+void LivePort::add(const McapSchema* schema, const McapChannel& channel,
+                   const McapMessage& message) {
+  for (Client& client : clients_) {
+    if (client.waiting.size() - client.sent + message.data.size() > most_waiting) {
+      ++counts_.lost;
+      ++client.lost;
+      continue;
+    }
+    if (!client.channels.contains(channel.id)) {
+      if (schema != nullptr && client.schemas.insert(schema->id).second) {
+        append_mcap(client.waiting, *schema);
+      }
+      append_mcap(client.waiting, channel);
+      client.channels.insert(channel.id);
+    }
+    append_mcap(client.waiting, message);
+  }
+}
+
+/// A client has nothing to say. One that does took this port for another one.
+bool LivePort::is_silent(const Client& client) {
+  char byte = 0;
+  const ssize_t got = ::recv(client.socket.fd(), &byte, 1, MSG_DONTWAIT);
+  if (got > 0) ++counts_.turned_away;
+  return got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR);
+}
+
+/// Whether the connection is still there.
+bool LivePort::send(Client& client) {
+  if (client.waiting.empty()) return true;
+  const std::string_view rest = std::string_view(client.waiting).substr(client.sent);
+  const ssize_t sent =
+      ::send(client.socket.fd(), rest.data(), rest.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (sent < 0) return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
+  client.sent += static_cast<std::size_t>(sent);
+  // Moving the rest costs as many bytes as were sent since, or there is no rest.
+  if (2 * client.sent < client.waiting.size()) return true;
+  client.waiting.erase(0, client.sent);
+  client.sent = 0;
+  return true;
+}
+
+void LivePort::turn() {
+  accept();
+  std::erase_if(clients_, [this](Client& client) { return !is_silent(client) || !send(client); });
+}
+
+void LivePort::end() {
+  for (Client& client : clients_) {
+    append_mcap(client.waiting, to_metadata(RecordingEnd{client.lost}));
+    append_mcap(client.waiting, McapDataEnd{});
+    append_mcap(client.waiting, McapFooter{});
+    client.waiting += mcap_magic;
+    (void)send(client);
+  }
+  clients_.clear();
+}
+
+}  // namespace kinalign

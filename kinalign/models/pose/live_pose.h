@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// A person's pose while the samples of the nodes come: on their bones (live_worn.h), answered by a
+// window of frames (window_solver.h).
+#pragma once
+
+#include "kinalign/models/pose/live_worn.h"
+#include "kinalign/models/pose/window_solver.h"
+
+#include <deque>
+#include <vector>
+
+namespace kinalign {
+
+struct LivePoseFrame {
+  Time stamp{};
+  FramePose pose;
+  std::vector<std::uint8_t> valid;  // [N] of the nodes
+};
+
+class LivePose {
+ public:
+  /// `solver` must live longer and must not be moved. `look_ahead`: as WindowSolver has it.
+  LivePose(const PoseSolver& solver, const LiveWornOptions& options, std::size_t look_ahead);
+
+  LiveWorn& worn() { return worn_; }
+  const LiveWorn& worn() const { return worn_; }
+  std::size_t look_ahead() const { return solver_.look_ahead(); }
+
+  /// Answers as far as it can. `now`: arrival of the newest message.
+  void advance(Time now, std::vector<LivePoseFrame>& out);
+  /// Nothing more comes: all that is left is answered.
+  void finish(std::vector<LivePoseFrame>& out);
+
+ private:
+  void answer(std::vector<LivePoseFrame>& out);
+  void emit(FramePose pose, std::vector<LivePoseFrame>& out);
+
+  LiveWorn worn_;
+  WindowSolver solver_;
+  std::vector<LiveWornFrame> ready_;
+  struct Pending {
+    Time stamp{};
+    std::vector<std::uint8_t> valid;
+  };
+  std::deque<Pending> pending_;  // frames in the solver that have no answer yet
+};
+
+}  // namespace kinalign

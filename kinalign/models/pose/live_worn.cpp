@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/pose/live_worn.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr double between_tries_s = 0.5;  // of a calibration that needs later frames
+
+void append_frames(const WornFrames& from, WornFrames& to) {
+  to.orientation.insert(to.orientation.end(), from.orientation.begin(), from.orientation.end());
+  to.acceleration.insert(to.acceleration.end(), from.acceleration.begin(), from.acceleration.end());
+  to.angular_velocity.insert(to.angular_velocity.end(), from.angular_velocity.begin(),
+                             from.angular_velocity.end());
+  to.valid.insert(to.valid.end(), from.valid.begin(), from.valid.end());
+}
+
+template <class T>
+void erase_front_of(std::vector<T>& values, std::size_t count) {
+  values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+/// Without the first frames.
+void forget_frames(std::size_t frames, WornFrames& all) {
+  const std::size_t samples = frames * all.nodes;
+  erase_front_of(all.orientation, 4 * samples);
+  erase_front_of(all.acceleration, 3 * samples);
+  erase_front_of(all.angular_velocity, 3 * samples);
+  erase_front_of(all.valid, samples);
+}
+
+WornFrames frames_from(const WornFrames& all, std::size_t first) {
+  WornFrames out = all;
+  forget_frames(first, out);
+  return out;
+}
+
+WornFrames frame_of(const WornFrames& all, std::size_t t) {
+  const auto part = [t](const auto& values, std::size_t width) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(t * width);
+    return std::vector(begin, begin + static_cast<std::ptrdiff_t>(width));
+  };
+  return {all.nodes, part(all.orientation, 4 * all.nodes), part(all.acceleration, 3 * all.nodes),
+          part(all.angular_velocity, 3 * all.nodes), part(all.valid, all.nodes)};
+}
+
+/// The first node on an arm that is not in a T-pose, as far as its tilt shows that.
+const std::string* hanging_arm(const PoseLayout& layout, const NodeCalibration& calibration) {
+  const bool is_checked = calibration.worn_as_told || calibration.headings == Headings::mounting;
+  for (std::size_t n = 0; n < layout.nodes.size() && is_checked; ++n) {
+    const WornPlace* place = worn_place(layout.nodes[n]);
+    const auto& node = calibration.nodes[n];
+    if (node && place != nullptr && place->on_arm && node->tilt_deg > most_tilt_deg) {
+      return &layout.nodes[n];
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+LiveWorn::LiveWorn(const PoseLayout& layout, const Skeleton& body, const LiveWornOptions& options)
+    : layout_(&layout),
+      body_(&body),
+      options_(options),
+      nodes_(layout.nodes.size(), layout.rate_hz) {
+  recent_.nodes = layout.nodes.size();
+}
+
+Time LiveWorn::time_of(std::size_t frame) const {
+  const double ns = static_cast<double>(frame) * 1e9 / layout_->rate_hz;
+  return *nodes_.begin() + Duration(std::llround(ns));
+}
+
+void LiveWorn::advance(Time now, const Also& also, std::vector<LiveWornFrame>& out) {
+  while (nodes_.begin() && nodes_.is_ready(time_of(made_), now) && also(time_of(made_))) {
+    make_frame(out);
+  }
+}
+
+void LiveWorn::finish(std::vector<LiveWornFrame>& out) {
+  while (nodes_.begin() && time_of(made_) <= *nodes_.newest_of_root()) make_frame(out);
+}
+
+void LiveWorn::make_frame(std::vector<LiveWornFrame>& out) {
+  append_frames(nodes_.frame(time_of(made_)), recent_);
+  ++made_;
+  look_for_t_pose();
+  if (calibration_) hand_on(out);
+  const auto most = static_cast<std::size_t>(most_waiting_s * layout_->rate_hz);
+  if (recent_.frames() <= most) return;
+  forget_frames(1, recent_);
+  ++forgotten_;
+  searched_ -= std::min<std::size_t>(searched_, 1);
+  handed_on_ -= std::min<std::size_t>(handed_on_, 1);
+}
+
+/// In frames of recent_; absent while it has not ended.
+std::optional<TPose> LiveWorn::wanted_t_pose() const {
+  const double rate = layout_->rate_hz;
+  if (marked_ || options_.t_pose) {
+    const double begin = marked_ ? seconds(*marked_ - *nodes_.begin()) : options_.t_pose->from;
+    const double end = marked_ ? begin + held_s : options_.t_pose->to;
+    const double first = std::max(std::ceil(begin * rate) - static_cast<double>(forgotten_), 0.0);
+    const double last = std::floor(end * rate) - static_cast<double>(forgotten_);
+    if (last >= static_cast<double>(recent_.frames()) || last < first) return std::nullopt;
+    return TPose{static_cast<std::size_t>(first), static_cast<std::size_t>(last - first) + 1};
+  }
+  const auto still = first_still(frames_from(recent_, searched_), rate);
+  if (!still) return std::nullopt;
+  const TPose found{still->first + searched_, still->count};
+  const bool goes_on = found.first + found.count == recent_.frames() &&
+                       static_cast<double>(found.count) < 3.0 * rate;  // node_calibration.h
+  return goes_on ? std::nullopt : std::optional(found);
+}
+
+/// Where the person faces may show itself only when the arms come down: so a T-pose that can't be
+/// used yet is tried again.
+void LiveWorn::look_for_t_pose() {
+  if (calibration_ && !marked_) return;
+  const auto between = static_cast<std::size_t>(between_tries_s * layout_->rate_hz);
+  if (tried_ != 0 && made_ < tried_ + between) return;
+  const auto t_pose = wanted_t_pose();
+  if (!t_pose) return;
+  tried_ = made_;
+  if (!take_t_pose(*t_pose, marked_ || options_.t_pose)) return;
+  tried_ = 0;
+  marked_.reset();
+}
+
+/// A stretch that nobody has named is left out where an arm hangs in it.
+bool LiveWorn::take_t_pose(const TPose& t_pose, bool is_named) {
+  CalibrationOptions options;
+  options.t_pose = t_pose;
+  options.headings = options_.headings;
+  const auto found = calibrate(*layout_, *body_, recent_, options);
+  if (!found) {
+    refusal_ = found.error().found;
+    return false;
+  }
+  const std::string* const arm = is_named ? nullptr : hanging_arm(*layout_, *found);
+  if (arm != nullptr) {
+    refusal_ = *arm + " is not in a T-pose";
+    searched_ = t_pose.first + t_pose.count;
+    return false;
+  }
+  calibration_ = LiveCalibration{*found, forgotten_ + t_pose.first, t_pose.count,
+                                 fastest_turn_deg(recent_, t_pose)};
+  return true;
+}
+
+void LiveWorn::hand_on(std::vector<LiveWornFrame>& out) {
+  for (; handed_on_ < recent_.frames(); ++handed_on_) {
+    out.push_back({time_of(forgotten_ + handed_on_),
+                   on_bones(calibration_->nodes, frame_of(recent_, handed_on_))});
+  }
+}
+
+}  // namespace kinalign

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/models/pose/window_solver.h"
+
+#include "kinalign/infer/shapes.h"
+
+#include <algorithm>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::size_t smoothed_beside = 2;  // frames on each side, smooth_turns()
+/// Of a network that remembers everything: two seconds at 30 Hz, six times what Huang et al.
+/// («Deep inertial poser», SIGGRAPH Asia 2018) give theirs.
+constexpr std::size_t remembered = 60;
+
+std::size_t beside(const PoseModel& model) { return model.smoothing ? smoothed_beside : 0; }
+
+}  // namespace
+
+std::optional<std::size_t> WindowSolver::most_ahead(const PoseModel& model) {
+  const auto network = kinalign::look_ahead(model.architecture);
+  return network ? std::optional(*network + beside(model)) : std::nullopt;
+}
+
+WindowSolver::WindowSolver(const PoseSolver& solver, std::size_t look_ahead)
+    : solver_(&solver),
+      ahead_(std::min(look_ahead, most_ahead(solver.model()).value_or(look_ahead))),
+      behind_(look_back(solver.model().architecture).value_or(remembered) + beside(solver.model())),
+      maker_(solver.model().layout) {}
+
+std::optional<FramePose> WindowSolver::step(const NodeFrames& nodes, std::size_t t) {
+  const PoseModel& model = solver_->model();
+  const std::size_t channels = model.layout.channels();
+  const std::size_t begin = rows_.size();
+  rows_.resize(begin + channels);
+  const std::span<float> row = std::span(rows_).subspan(begin, channels);
+  maker_.make(nodes, t, row);
+  standardise(model.input_mean, model.input_scale, row);
+  roots_.push_back(maker_.root());
+  if (roots_.size() - next_ <= ahead_) return std::nullopt;
+  return pose_at(next_);
+}
+
+std::optional<FramePose> WindowSolver::finish() {
+  if (next_ == roots_.size()) return std::nullopt;
+  return pose_at(next_);
+}
+
+std::optional<FramePose> WindowSolver::pose_at(std::size_t row) {
+  const std::size_t bones = solver_->model().layout.bones.size();
+  const std::size_t frames = roots_.size();
+  solver_->network_.run(rows_, frames, workspace_, answers_);
+  const std::size_t first = row - std::min(row, smoothed_beside);
+  const std::size_t end = std::min(row + smoothed_beside + 1, frames);
+  std::vector<Turn> turns;
+  for (std::size_t at = first * bones; at < end * bones; ++at) {
+    turns.push_back(turn_of_answer(&answers_[6 * at]));
+  }
+  if (solver_->model().smoothing) smooth_turns(bones, turns);
+  FramePose out;
+  const auto begin = turns.begin() + static_cast<std::ptrdiff_t>((row - first) * bones);
+  out.rotations.assign(begin, begin + static_cast<std::ptrdiff_t>(bones));
+  out.root = roots_[row];
+  ++next_;
+  while (next_ > behind_) {
+    const std::size_t channels = rows_.size() / roots_.size();
+    rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(channels));
+    roots_.pop_front();
+    --next_;
+  }
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/recording/frames/accepted_frames.h"
+
+#include "kinalign/wire/clockless.h"
+#include "kinalign/wire/little_endian_reader.h"
+
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+constexpr std::uint64_t most_counter_us = 1'000'000'000'000'000;  // 31 years
+
+NodeTime counter_at(std::uint64_t us) {
+  return NodeTime{std::chrono::microseconds(static_cast<std::int64_t>(us))};
+}
+
+/// A node's frame, or its request; absent: neither, or damaged.
+std::optional<AcceptedFrame> frame_in(const RecordedMessage& message) {
+  Envelope envelope;
+  if (open_envelope(octets(message.payload), envelope) != NodeRefusal::none) return std::nullopt;
+  envelope.mac_was_checked = true;
+  AcceptedFrame out;
+  out.number = envelope.origin.sequence;
+  if (envelope.type == DatagramType::request) {
+    ClocklessRequest request;
+    if (decode(envelope, nullptr, request) != NodeRefusal::none) return std::nullopt;
+    out.samples.front() = request.sample;
+    out.sample_count = request.has_sample ? 1 : 0;
+    return out;
+  }
+  NodeFrame frame;
+  if (decode(envelope, nullptr, frame) != NodeRefusal::none) return std::nullopt;
+  if (frame.n_tx_us > most_counter_us) return std::nullopt;
+  out.n_tx = counter_at(frame.n_tx_us);
+  out.samples = frame.samples;
+  out.sample_count = frame.sample_count;
+  return out;
+}
+
+}  // namespace
+
+AnyExchange AcceptedFrames::take_exchange(const RecordedMessage& message) {
+  if (auto recorded = to_exchange(message.payload)) {
+    Exchange& e = recorded->exchange;
+    e.boot = life_of(e.boot, recorded->epoch);
+    accepted_ = {e.boot, e.n_tx, 0, false, message.arrival};
+    return e;
+  }
+  if (auto numbered = to_clockless(message.payload)) {
+    ClocklessExchange& e = numbered->exchange;
+    e.boot = life_of(e.boot, numbered->epoch);
+    accepted_ = {e.boot, std::nullopt, number_of(e), e.t6.has_value(), message.arrival};
+    return e;
+  }
+  return {};
+}
+
+std::optional<AcceptedFrame> AcceptedFrames::take(const RecordedMessage& message) {
+  const auto accepted = std::exchange(accepted_, std::nullopt);
+  const bool in_time = accepted && accepted->at == message.arrival;
+  if (in_time && accepted->confirms) return std::nullopt;  // brings no sample
+  auto frame = frame_in(message);
+  const auto low = [](std::int64_t number) { return static_cast<std::uint32_t>(number); };
+  const bool same = in_time && frame && accepted->n_tx == frame->n_tx &&
+                    (accepted->n_tx || low(accepted->number) == low(frame->number));
+  if (!same) {
+    ++others;
+    return std::nullopt;
+  }
+  frame->life = accepted->life;
+  frame->number = accepted->number;
+  return frame;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "kinalign/recording/live/live_stream.h"
+
+#include "kinalign/protocols/protocols.h"
+#include "kinalign/recording/frames/accepted_frames.h"
+#include "kinalign/recording/frames/kinect_frames.h"
+#include "kinalign/recording/streams/kinect_person.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kinalign {
+
+namespace {
+
+// A stamp that is farther from its arrival is of a clock that is wrong.
+constexpr Duration most_ahead = std::chrono::seconds(1);
+constexpr Duration most_behind = std::chrono::seconds(10);
+
+/// Whether something was measured about when it arrived.
+bool is_credible(Time stamp, Time arrival) {
+  return stamp <= arrival + most_ahead && stamp >= arrival - most_behind;
+}
+
+/// Messages between two of a channel, by their numbers, which rise.
+std::uint32_t missing_between(std::uint32_t before, std::uint32_t behind) {
+  const std::uint32_t missing = behind - before - 1U;
+  return missing < 0x8000'0000U ? missing : 0U;
+}
+
+Failure no_stream(std::string found) {
+  return Failure(Error{"--live", 0, "the stream of kinalign record --live-port", std::move(found)});
+}
+
+}  // namespace
+
+struct LiveStream::Channel {
+  RawChannel raw;
+  bool is_marks = false;
+  NodeDevice* node = nullptr;  // absent, too: of another device
+  KinectDevice* kinect = nullptr;
+  std::optional<std::uint32_t> number;  // of its newest message
+};
+
+struct LiveStream::NodeDevice {
+  RawChannel raw;
+  AcceptedFrames frames;
+  LiveClock clock;
+};
+
+/// Two clocks, as kinect_rows.cpp has them: of the sender by its pings, of the sensor by when the
+/// sender had its frames.
+struct LiveStream::KinectDevice {
+  RawChannel raw;
+  KinectFrames frames;
+  std::vector<JoinedKinectFrame> joined;
+  KinectPerson person{std::nullopt};
+  LiveClock sender, sensor;
+  std::uint32_t epoch = 0;            // of the host's axis
+  HostTime newest = HostTime::min();  // by the sender's clock
+};
+
+LiveStream::LiveStream() = default;
+LiveStream::~LiveStream() = default;
+
+Duration LiveStream::utc_minus_host() const {
+  return facts_->anchor.utc.time_since_epoch() - facts_->anchor.raw.time_since_epoch();
+}
+
+Result<void> LiveStream::take(std::string_view bytes, LiveNews& news) {
+  reader_.feed(bytes);
+  while (const auto record = reader_.next()) KA_TRY(take_record(*record, news));
+  if (!reader_.is_mcap()) return no_stream("another beginning");
+  if (reader_.findings().empty()) return {};
+  return no_stream(reader_.findings().front().what.found);
+}
+
+void LiveStream::end() {
+  reader_.end();
+  while (reader_.next()) {
+  }
+}
+
+Result<void> LiveStream::take_record(const McapRecord& record, LiveNews& news) {
+  if (const auto* metadata = std::get_if<McapMetadata>(&record)) {
+    if (!facts_) facts_ = to_facts(*metadata);
+  } else if (const auto* channel = std::get_if<McapChannel>(&record)) {
+    return define(*channel);
+  } else if (const auto* message = std::get_if<McapMessage>(&record)) {
+    return take_message(*message, news);
+  }
+  return {};
+}
+
+Result<void> LiveStream::define(const McapChannel& channel) {
+  if (channels_.contains(channel.id)) return {};
+  if (channels_.size() == most_channels) {
+    return no_stream("more than " + std::to_string(most_channels) + " channels");
+  }
+  Channel& added = channels_[channel.id];
+  added.is_marks = channel.topic == marks_topic;
+  const auto raw = to_raw(channel);
+  if (!raw) return {};
+  added.raw = *raw;
+  const auto protocol = find_recorded_protocol(raw->protocol);
+  const bool is_exchange = raw->protocol == exchange_encoding;
+  if (!raw->node.empty() && (is_exchange || protocol == Protocol::nodes)) {
+    auto& device = nodes_[raw->stream + "/" + raw->node];
+    if (!device) device = std::make_unique<NodeDevice>(NodeDevice{*raw, {}, LiveClock()});
+    added.node = device.get();
+  } else if (is_exchange || protocol == Protocol::kinect) {
+    auto& device = kinects_[raw->stream];
+    if (!device) {
+      device = std::make_unique<KinectDevice>();
+      device->raw = *raw;
+    }
+    added.kinect = device.get();
+  }
+  return {};
+}
+
+Result<void> LiveStream::take_message(const McapMessage& message, LiveNews& news) {
+  if (!facts_) return no_stream("messages before what record says of itself");
+  if (message.log_time > static_cast<std::uint64_t>(latest_log_time))
+    return no_stream("a year behind 2096");
+  const Time arrival = utc_time(static_cast<std::int64_t>(message.log_time));
+  if (now_ && arrival > *now_ + longest_silence) return no_stream("a minute without any message");
+  now_ = now_ ? std::max(*now_, arrival) : arrival;
+  const auto found = channels_.find(message.channel);
+  if (found == channels_.end()) return {};
+  Channel& channel = found->second;
+  ++counts_.messages;
+  if (channel.number) counts_.lost += missing_between(*channel.number, message.sequence);
+  channel.number = message.sequence;
+  if (channel.is_marks) {
+    if (const auto mark = to_mark(message.data)) news.marks.push_back({*mark, arrival});
+    return {};
+  }
+  const RecordedMessage recorded{&channel.raw, message.channel,
+                                 arrival_of(message.log_time, utc_minus_host()), message.data};
+  if (channel.node != nullptr) take_node(*channel.node, recorded, news);
+  if (channel.kinect != nullptr) take_kinect(*channel.kinect, recorded, news);
+  return {};
+}
+
+void LiveStream::take_node(NodeDevice& device, const RecordedMessage& message, LiveNews& news) {
+  if (message.is_exchange()) {
+    const AnyExchange any = device.frames.take_exchange(message);
+    if (const auto* exchange = std::get_if<Exchange>(&any)) device.clock.push(*exchange);
+    return;
+  }
+  const auto frame = device.frames.take(message);
+  if (!frame) return;
+  const Time arrival = on_axis(message.arrival);
+  for (std::size_t i = 0; i < frame->sample_count; ++i) {
+    const NodeSample& sample = frame->samples[i];
+    const auto age = std::chrono::microseconds(sample.age_us);
+    const auto at =
+        frame->n_tx ? device.clock.host_from_node(frame->life, *frame->n_tx - age) : std::nullopt;
+    const Time stamp = at ? on_axis(at->time) : arrival - age;
+    const SampleFaults wrong = faults(sample);
+    if (!is_credible(stamp, arrival) || wrong.not_finite || wrong.zero_orientation) {
+      ++counts_.refused;
+      continue;
+    }
+    news.samples.push_back({&device.raw, stamp, arrival, sample});
+  }
+}
+
+void LiveStream::take_kinect(KinectDevice& device, const RecordedMessage& message, LiveNews& news) {
+  if (message.is_exchange()) {
+    if (auto recorded = to_exchange(message.payload)) {
+      device.epoch = recorded->epoch;
+      recorded->exchange.boot = life_of(recorded->exchange.boot, recorded->epoch);
+      device.sender.push(recorded->exchange);
+    }
+    return;
+  }
+  device.joined.clear();
+  device.frames.take(message, device.joined, nullptr);
+  for (const JoinedKinectFrame& one : device.joined) take_frame(device, one.frame, message, news);
+}
+
+void LiveStream::take_frame(KinectDevice& device, const KinectFrame& frame,
+                            const RecordedMessage& message, LiveNews& news) {
+  const BootKey life = life_of(frame.origin.session, device.epoch);
+  const auto sender_had = [&] {
+    const auto at = device.sender.host_from_node(life, kinect_sender_time(frame.taken_ticks));
+    if (at) return at->time;
+    return message.arrival -
+           (kinect_sender_time(frame.sent_ticks) - kinect_sender_time(frame.taken_ticks));
+  }();
+  device.newest = std::max(device.newest, sender_had);  // a clock takes arrivals that rise
+  const NodeTime ticks = kinect_sender_time(frame.device_ticks);
+  device.sensor.push_up(life, ticks, device.newest);
+  const auto at = device.sensor.host_from_node(life, ticks);
+  const Time arrival = on_axis(message.arrival);
+  LiveKinectRow row{&device.raw, arrival, {}};
+  append_kinect_row(frame, device.person(frame).value_or(0), row.row);
+  row.row.stamps.back() = on_axis(at ? at->time : sender_had);
+  if (is_credible(row.row.stamps.back(), arrival)) {
+    news.rows.push_back(std::move(row));
+  } else {
+    ++counts_.refused;
+  }
+}
+
+}  // namespace kinalign

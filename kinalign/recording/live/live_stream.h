@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `kinalign record --live-port` serves, decoded as it comes: samples of nodes, frames of a
+// Kinect and marks, each stamped on the axis of the recording's log times (UTC). Stamps need no
+// later message: they come from the live clock, and from the arrival until that knows enough.
+#pragma once
+
+#include "kinalign/clock/live/live_clock.h"
+#include "kinalign/mcap/reader.h"
+#include "kinalign/motion/streams.h"
+#include "kinalign/protocols/kinect/message.h"
+#include "kinalign/recording/format.h"
+#include "kinalign/wire/node_sample.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kinalign {
+
+struct LiveNodeSample {
+  const RawChannel* node = nullptr;  // as long as the stream
+  Time stamp{}, arrival{};
+  NodeSample sample;  // finite; an orientation is not zero
+};
+
+/// One row of joints (kinect_joints) of the person who is followed.
+struct LiveKinectRow {
+  const RawChannel* kinect = nullptr;
+  Time arrival{};
+  PointFrames row;  // with its stamp
+};
+
+struct LiveMark {
+  RecordedMark mark;
+  Time at{};
+};
+
+/// What a piece of the stream brought, each in the order of arrival.
+struct LiveNews {
+  std::vector<LiveNodeSample> samples;
+  std::vector<LiveKinectRow> rows;
+  std::vector<LiveMark> marks;
+};
+
+struct LiveStreamCounts {
+  std::uint64_t messages = 0;
+  std::uint64_t lost = 0;     // between others: this program read too slowly
+  std::uint64_t refused = 0;  // samples and frames whose stamp or numbers can't be
+};
+
+class LiveStream {
+ public:
+  static constexpr std::uint64_t most_record = std::uint64_t{1} << 20;
+  static constexpr std::size_t most_channels = 1024;
+  /// The recorder sends a message each second. Arrivals that are farther apart are no recorder's.
+  static constexpr Duration longest_silence = std::chrono::seconds(60);
+
+  LiveStream();
+  LiveStream(const LiveStream&) = delete;
+  LiveStream& operator=(const LiveStream&) = delete;
+  ~LiveStream();
+
+  /// The next bytes. Appends to `news`. Fails where they are no stream of kinalign record; it may
+  /// then not be used again.
+  Result<void> take(std::string_view bytes, LiveNews& news);
+
+  /// No more bytes come.
+  void end();
+  /// The stream has ended as record ends it.
+  bool closed() const { return reader_.closed(); }
+  /// Arrival of the newest message; absent before the first one.
+  std::optional<Time> now() const { return now_; }
+  /// Who recorded; absent before the beginning was read.
+  const std::optional<RecordingFacts>& facts() const { return facts_; }
+  const LiveStreamCounts& counts() const { return counts_; }
+
+ private:
+  struct Channel;
+  struct NodeDevice;
+  struct KinectDevice;
+
+  Result<void> take_record(const McapRecord& record, LiveNews& news);
+  Result<void> define(const McapChannel& channel);
+  Result<void> take_message(const McapMessage& message, LiveNews& news);
+  void take_node(NodeDevice& device, const RecordedMessage& message, LiveNews& news);
+  void take_kinect(KinectDevice& device, const RecordedMessage& message, LiveNews& news);
+  void take_frame(KinectDevice& device, const KinectFrame& frame, const RecordedMessage& message,
+                  LiveNews& news);
+  Duration utc_minus_host() const;
+  Time on_axis(HostTime host) const { return Time{host.time_since_epoch() + utc_minus_host()}; }
+
+  McapReader reader_{most_record};
+  std::optional<RecordingFacts> facts_;
+  std::optional<Time> now_;
+  std::map<std::uint16_t, Channel> channels_;
+  std::map<std::string, std::unique_ptr<NodeDevice>> nodes_;      // by stream and id
+  std::map<std::string, std::unique_ptr<KinectDevice>> kinects_;  // by stream
+  LiveStreamCounts counts_;
+};
+
+}  // namespace kinalign
