@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign-learn/job.h"
 
+#include "apps/kinalign-learn/marks.h"
+
 #include "kinalign/learn/checkpoint.h"
 #include "kinalign/learn/fit_denoise.h"
 #include "kinalign/learn/fuse/fit_fuse.h"
-#include "kinalign/learn/fuse/fuse_marks.h"
 #include "kinalign/learn/loss_curve.h"
 #include "kinalign/learn/methods/methods.h"
 #include "kinalign/learn/pose/fit_pose.h"
-#include "kinalign/learn/pose/pose_marks.h"
 #include "kinalign/learn/projection.h"
 #include "kinalign/models/model_file.h"
 #include "kinalign/models/windows_file.h"
@@ -16,7 +16,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -74,6 +73,14 @@ Result<TrainingOptions> options_of(const std::string& method, const std::string&
 void go_on_gently(TrainingOptions& options) {
   options.rate *= 0.2;
   options.steps = std::min<std::int64_t>(options.steps, 300);
+}
+
+ProcessPlace place_of(const Json& json) {
+  return {.rank = json.at("rank").get<std::int64_t>(),
+          .size = json.at("size").get<std::int64_t>(),
+          .address = json.at("address").get<std::string>(),
+          .port = json.at("port").get<std::uint16_t>(),
+          .interface = json.value("interface", "")};
 }
 
 void read_options(const Json& json, TrainingOptions& out) {
@@ -150,25 +157,28 @@ Failure cannot_go_on(const TrainingJob& job, const std::string& expected) {
   return Failure(Error{job.from, 0, expected, "another one"});
 }
 
-/// By the job's lists of takes where it has them, else by the parts of the file's split; all is
-/// trained on where neither is there.
-DividedPairs divide(const TrainingJob& job, std::vector<Pair> all) {
+/// By the parts of the file's split; all is trained on where it has none.
+DividedPairs divide(std::vector<Pair> all) {
+  DividedPairs out;
+  for (Pair& pair : all) {
+    if (pair.part == "validation") out.judged.push_back(std::move(pair));
+    if (pair.part == "train" || pair.part == "all") out.learnt.push_back(std::move(pair));
+  }
+  return out;
+}
+
+/// The parts that the job's lists of takes make: train, validation, and test for all others. As the
+/// file has them where the job has no list.
+void divide_by_lists(const TrainingJob& job, Windows& windows) {
+  if (job.learn.empty()) return;
   const auto holds = [](const std::vector<std::string>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
-  const bool by_list = !job.learn.empty();
-  DividedPairs out;
-  for (Pair& pair : all) {
-    const bool judged = by_list ? holds(job.judge, pair.take) : pair.part == "validation";
-    const bool learnt =
-        by_list ? holds(job.learn, pair.take) : pair.part == "train" || pair.part == "all";
-    if (judged) {
-      out.judged.push_back(std::move(pair));
-    } else if (learnt) {
-      out.learnt.push_back(std::move(pair));
-    }
+  windows.facts.parts = {"train", "validation", "test"};
+  for (Stretch& stretch : windows.stretches) {
+    const std::string& name = windows.facts.takes[stretch.take].name;
+    stretch.part = holds(job.judge, name) ? 1 : holds(job.learn, name) ? 0 : 2;
   }
-  return out;
 }
 
 /// A model's file, and how its training went.
@@ -201,7 +211,7 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
     return Failure(Error{job.from, 0, "a method of one network to go on with", job.method});
   }
   Pairs pairs = KA_TRY(pairs_to_learn(job, windows, from));
-  const DividedPairs divided = divide(job, std::move(pairs.all));
+  const DividedPairs divided = divide(std::move(pairs.all));
   DenoiseFit fit = KA_TRY(fit_denoise(method, pairs, divided, fit_options(job), std::move(state),
                                       hooks, from ? &*from : nullptr));
   LearntFrom learnt;
@@ -209,21 +219,6 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
   fit.model.facts.training =
       training_json(job, windows.facts, learnt, from ? from->facts.training : "");
   return Fitted{write_denoise_model(fit.model), std::move(fit.points)};
-}
-
-/// Marks on the people of the test part; empty where there are none.
-Result<std::string> pose_metrics_json(const PoseModel& model, const PoseData& data) {
-  if (data.tested.empty()) return std::string();
-  auto solver = KA_TRY(PoseSolver::make(model));
-  Json out;
-  for (const PoseMark& mark : KA_TRY(pose_marks(solver, data, 0))) {
-    std::string state = mark.nodes;  // "20 minutes later"
-    std::replace(state.begin(), state.end(), ' ', '_');
-    out[state + "_position_cm"] = mark.smoothed.position_cm;
-    out[state + "_sip_deg"] = mark.smoothed.sip_deg;
-    out[state + "_angle_deg"] = mark.smoothed.angle_deg;
-  }
-  return out.dump();
 }
 
 Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
@@ -240,39 +235,10 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
   for (const PoseSequence& one : data.learnt) learnt.add(one.subject, one.frames());
   fit.model.facts.training =
       training_json(job, windows.facts, learnt, from ? from->facts.training : "");
-  fit.model.facts.metrics = KA_TRY(pose_metrics_json(fit.model, data));
-  return Fitted{write_pose_model(fit.model), std::move(fit.points)};
-}
-
-constexpr std::array<Devices, 3> all_devices{Devices::both, Devices::kinect, Devices::nodes};
-
-std::string name_of(Devices devices) {
-  static constexpr std::array<std::string_view, 3> names{"both", "kinect", "nodes"};
-  return std::string(names[static_cast<std::size_t>(devices)]);
-}
-
-Fusion fusion_of(Fuser& fuser) {
-  return [&](const FuseInput& input) { return fuser.solve(input); };
-}
-
-/// Marks on the people of the test part; empty where there are none.
-Result<std::string> fuse_metrics_json(const FuseModel& model, const FuseData& data) {
-  if (data.pose.tested.empty()) return std::string();
-  auto fuser = KA_TRY(Fuser::make(model));
-  Json out;
-  for (const FuseMark& mark : KA_TRY(fuse_marks(fusion_of(fuser), model.layout, data,
-                                                {all_devices.begin(), all_devices.end()}))) {
-    out[name_of(mark.devices) + "_position_cm"] = mark.all_cm;
-    out[name_of(mark.devices) + "_hidden_cm"] = mark.hidden_cm;
+  if (hooks.share.is_first()) {
+    fit.model.facts.metrics = KA_TRY(pose_metrics_json(fit.model, data));
   }
-  return out.dump();
-}
-
-/// The file's own Kinect where it has one of the job's name, else simulated ones.
-FuseDataOptions fuse_options(const TrainingJob& job, const Windows& windows) {
-  FuseDataOptions out;
-  if (windows.facts.find(job.input) != nullptr) out.kinect = job.input;
-  return out;
+  return Fitted{write_pose_model(fit.model), std::move(fit.points)};
 }
 
 Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
@@ -280,7 +246,7 @@ Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
                             const TrainingHooks& hooks) {
   const auto from = KA_TRY(model_before<FuseModel>(job, read_fuse_model));
   const FuseData data =
-      KA_TRY(fuse_data(windows, job.truth, job.nodes, fuse_options(job, windows)));
+      KA_TRY(fuse_data(windows, job.truth, job.nodes, fuse_options(job.input, windows)));
   if (from && from->layout != fuse_layout(data)) {
     return cannot_go_on(job, "a network of the same nodes and joints");
   }
@@ -290,95 +256,10 @@ Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
   for (const PoseSequence& one : data.pose.learnt) learnt.add(one.subject, one.frames());
   fit.model.facts.training =
       training_json(job, windows.facts, learnt, from ? from->facts.training : "");
-  fit.model.facts.metrics = KA_TRY(fuse_metrics_json(fit.model, data));
+  if (hooks.share.is_first()) {
+    fit.model.facts.metrics = KA_TRY(fuse_metrics_json(fit.model, data));
+  }
   return Fitted{write_fuse_model(fit.model), std::move(fit.points)};
-}
-
-Json errors_json(const PoseErrors& errors) {
-  return {{"sip_deg", errors.sip_deg},
-          {"angle_deg", errors.angle_deg},
-          {"head_deg", errors.head_deg},
-          {"position_cm", errors.position_cm},
-          {"jitter_ratio", errors.jitter_ratio()},
-          {"frames", errors.frames}};
-}
-
-void print_row(const Json& row) { std::cout << row.dump() << std::endl; }
-
-/// A row for each state of the nodes.
-Result<void> evaluate_pose(const TrainingJob& job, const Windows& windows, PoseModel model) {
-  auto solver = KA_TRY(PoseSolver::make(std::move(model)));
-  const PoseData data = KA_TRY(pose_data(windows, job.truth, solver.model().layout.nodes));
-  for (const PoseMark& mark : KA_TRY(pose_marks(solver, data, 0))) {
-    print_row({{"nodes", mark.nodes},
-               {"answer", errors_json(mark.answer)},
-               {"smoothed", errors_json(mark.smoothed)}});
-  }
-  return {};
-}
-
-Json mark_json(const std::string& method, const FuseMark& mark) {
-  return {{"method", method},
-          {"devices", name_of(mark.devices)},
-          {"all_cm", mark.all_cm},
-          {"hidden_cm", mark.hidden_cm},
-          {"seen_trunk_cm", mark.seen_trunk_cm},
-          {"seen_arms_cm", mark.seen_arms_cm},
-          {"seen_legs_cm", mark.seen_legs_cm},
-          {"sip_deg", mark.sip_deg},
-          {"frames", mark.frames},
-          {"hidden", mark.hidden}};
-}
-
-void print_headings(const std::string& method, const std::vector<HeadingMark>& marks) {
-  for (const HeadingMark& mark : marks) {
-    print_row({{"method", method},
-               {"node", mark.node},
-               {"before_deg", mark.before_deg},
-               {"after_deg", mark.after_deg},
-               {"worst_deg", mark.worst_deg},
-               {"people", mark.people}});
-  }
-}
-
-/// Rows for each device and both, of the model and of the filter, and one for each node's heading.
-Result<void> evaluate_fuse(const TrainingJob& job, const Windows& windows, FuseModel model) {
-  auto fuser = KA_TRY(Fuser::make(std::move(model)));
-  const FuseLayout layout = fuser.model().layout;
-  const FuseData data =
-      KA_TRY(fuse_data(windows, job.truth, layout.nodes.nodes, fuse_options(job, windows)));
-  const std::vector<Devices> all{all_devices.begin(), all_devices.end()};
-  const HeadingsOf by_joints = [&](const FuseInput& input) {
-    FuseInput own = input;
-    unexchange(layout, own);
-    const HeadingFilter filter(layout, data.pose.body);
-    return node_headings(filter, own.nodes, directions_of_joints(filter, own.kinect));
-  };
-  const HeadingsOf by_model = [&](const FuseInput& input) { return fuser.headings(input); };
-  const Fusion filter = [&](const FuseInput& input) {
-    FuseInput own = input;
-    unexchange(layout, own);
-    own.nodes = with_headings(std::move(own.nodes), by_joints(own));
-    return filtered_pose(layout, data.pose.body, own);
-  };
-  for (const FuseMark& mark : KA_TRY(fuse_marks(fusion_of(fuser), layout, data, all))) {
-    print_row(mark_json(fuser.model().facts.method, mark));
-  }
-  for (const FuseMark& mark : KA_TRY(fuse_marks(filter, layout, data, all))) {
-    print_row(mark_json("filter", mark));
-  }
-  print_headings(fuser.model().facts.method, heading_marks(by_model, layout, data));
-  print_headings("filter", heading_marks(by_joints, layout, data));
-  return {};
-}
-
-/// Judges a model on the people of the file's test part.
-Result<void> evaluate(const TrainingJob& job, const Windows& windows) {
-  const std::string bytes = KA_TRY(bytes_of(job.evaluate));
-  if (KA_TRY(task_of_model(bytes, job.evaluate)) == "fuse") {
-    return evaluate_fuse(job, windows, KA_TRY(read_fuse_model(bytes, job.evaluate)));
-  }
-  return evaluate_pose(job, windows, KA_TRY(read_pose_model(bytes, job.evaluate)));
 }
 
 /// A body of the file.
@@ -430,7 +311,8 @@ Result<void> project_bodies(const TrainingJob& job) {
     return Json{
         {"feet_cm", errors.feet_cm}, {"path_cm", errors.path_cm}, {"bone_cm", errors.bone_cm}};
   };
-  print_row({{"written", job.out}, {"before", as_json(before)}, {"after", as_json(after)}});
+  const Json row{{"written", job.out}, {"before", as_json(before)}, {"after", as_json(after)}};
+  std::cout << row.dump() << std::endl;
   return {};
 }
 
@@ -469,6 +351,8 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     out.input = json.value("input", "");
     out.truth = json.value("truth", "mocap");
     out.nodes = json.value("nodes", usual_pose_nodes());
+    if (json.contains("learn")) json.at("learn").get_to(out.learn);
+    if (json.contains("judge")) json.at("judge").get_to(out.judge);
     out.evaluate = json.value("evaluate", "");
     if (!out.evaluate.empty()) return out;
     out.method = json.at("method").get<std::string>();
@@ -480,9 +364,8 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
     out.device = json.value("device", "cpu");
     out.identity = json.value("identity", "");
     out.hand_weight = json.value("hand_weight", out.hand_weight);
-    if (json.contains("learn")) json.at("learn").get_to(out.learn);
-    if (json.contains("judge")) json.at("judge").get_to(out.judge);
     out.from = json.value("from", "");
+    if (json.contains("place")) out.place = place_of(json.at("place"));
     out.options = KA_TRY(options_of(out.method, name));
     if (!out.from.empty()) go_on_gently(out.options);
     if (json.contains("options")) read_options(json.at("options"), out.options);
@@ -495,19 +378,33 @@ Result<TrainingJob> read_job(const std::string& text, const std::string& name) {
 Result<void> run_job(const TrainingJob& job) {
   if (!job.project.empty()) return project_bodies(job);
   const std::string bytes = KA_TRY(bytes_of(job.windows));
-  const Windows windows = KA_TRY(read_windows(bytes, job.windows));
-  if (!job.evaluate.empty()) return evaluate(job, windows);
+  Windows windows = KA_TRY(read_windows(bytes, job.windows));
+  divide_by_lists(job, windows);
+  if (!job.evaluate.empty()) {
+    return print_marks(job, windows, KA_TRY(bytes_of(job.evaluate)));
+  }
   TrainingState state;
   if (job.resume && std::filesystem::exists(job.checkpoint)) {
     state = KA_TRY(read_checkpoint(KA_TRY(bytes_of(job.checkpoint)), job.identity, job.checkpoint));
   }
-  TrainingHooks hooks{.progress = progress_lines(), .keep = {}, .every = job.keep_every};
-  if (!job.checkpoint.empty()) {
+  Processes processes = KA_TRY(Processes::join(job.place));
+  const bool is_first = processes.share().is_first();
+  // All processes read the checkpoint before the first one can write another.
+  KA_TRY(processes.agree(job.identity + " " + std::to_string(job.options.steps) + " " +
+                         std::to_string(state.step)));
+  TrainingHooks hooks{.keep = {}, .every = job.keep_every, .share = processes.share()};
+  if (is_first) hooks.progress = progress_lines();
+  if (is_first && !job.checkpoint.empty()) {
     hooks.keep = [&](const TrainingState& now) {
       return write_file(job.checkpoint, write_checkpoint(now, job.identity));
     };
   }
   const Fitted fit = KA_TRY(fit_job(job, windows, std::move(state), hooks));
+  processes.leave();
+  if (!is_first) {
+    std::cout << Json{{"trained_with", job.place.size}}.dump() << std::endl;
+    return {};
+  }
   KA_TRY(save_log(job, fit.points));
   KA_TRY(write_file(job.out, fit.model));
   std::error_code ignored;

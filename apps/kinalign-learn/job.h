@@ -2,6 +2,8 @@
 // A training job as `kinalign train` hands it over: JSON, schema kinalign.training_job/1.
 #pragma once
 
+#include "apps/kinalign-learn/processes.h"
+
 #include "kinalign/learn/trainer.h"
 
 #include <string>
@@ -26,9 +28,11 @@ struct TrainingJob {
   bool resume = false;             // from that file, where it is there
   std::string device = "cpu";      // cpu, cuda
   std::int64_t threads = 1;
+  ProcessPlace place;  // where several processes train: this one. The first writes all files
   TrainingOptions options;
   double hand_weight = 0.0;  // of the loss; 0: the method's own
-  /// Names of takes that are trained on, and that judge; empty: by the parts of the file's split.
+  /// Names of takes that are trained on, and that judge; all others are the test part. Empty: by
+  /// the parts of the file's split.
   std::vector<std::string> learn, judge;
   std::string identity;  // of the job: all that the result depends on
 };

@@ -46,6 +46,7 @@ void warn_of_slow_products() {
   std::cout << nlohmann::ordered_json{{"warning", text.str()}}.dump() << std::endl;
 }
 
+/// Exit code 4: another process of the training has ended, and its own error says why.
 int fail(const kinalign::Error& error) {
   std::cout << nlohmann::ordered_json{{"error",
                                        {{"file", error.file},
@@ -54,7 +55,7 @@ int fail(const kinalign::Error& error) {
                    .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
             << std::endl;
   std::cerr << "kinalign-learn: " << kinalign::to_string(error) << "\n";
-  return 3;
+  return error.kind == kinalign::ErrorKind::lost_process ? 4 : 3;
 }
 
 }  // namespace

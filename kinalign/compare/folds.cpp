@@ -59,8 +59,15 @@ Result<std::vector<Fold>> folds_of(const std::string& kind, const std::vector<Fo
             return static_cast<std::size_t>(at) % action_folds == k;
           }));
     }
+  } else if (kind == "split") {
+    Fold& fold = out.emplace_back(Fold{"split", {}, {}});
+    for (const FoldTake& take : takes) {
+      if (take.part == "train") fold.learnt.push_back(take.name);
+      if (take.part == "validation") fold.judged.push_back(take.name);
+      if (take.part == "test") fold.tested.push_back(take.name);
+    }
   } else {
-    return Failure(Error{"", 0, "folds of people, runs or actions", kind});
+    return Failure(Error{"", 0, "folds of people, runs or actions, or a split", kind});
   }
   for (const Fold& fold : out) {
     if (!fold.learnt.empty() && !fold.tested.empty()) continue;

@@ -12,11 +12,13 @@ namespace kinalign {
 struct FoldTake {
   std::string name, subject, action;
   int run = 0;
+  std::string part{};  // of a split: "train", "validation", "test"
 };
 
 struct Fold {
   std::string name;                         // "subject 03"
   std::vector<std::string> learnt, tested;  // names of takes
+  std::vector<std::string> judged{};        // of a split: its part validation
 };
 
 /// "people": each person is tested once. "runs": runs 5 and 10 of every action are tested

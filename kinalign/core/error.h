@@ -27,6 +27,7 @@ enum class ErrorKind : std::uint8_t {
   port_taken,            // another program has the port
   port_forbidden,        // this user may not open the port
   address_elsewhere,     // no interface of this machine has the address
+  lost_process,          // another process of the same training ended; that one says why
   no_such_joint,         // an option names a joint that the stream does not have
   no_such_node,          // an option names a node that the stream does not have
   too_few_joints,        // a fit needs more named joints

@@ -49,9 +49,13 @@ class CleanMotionTask : public TrainingTask {
     auto rough = clean + torch::randn_like(clean) * noise;
     const auto kept = torch::rand({batch, 1, clean.size(2) / 3, 1}, clean.options()).gt(dropped);
     rough = (rough.reshape({batch, crop, -1, 3}) * kept).flatten(2);
-    const auto answer = network.forward(rough, true);
-    const auto error = (answer - clean) * 100.0;
-    return error.pow(2).mean() + 0.5 * second_differences(error).abs().mean();
+    // The noise is drawn for the whole batch in every process, so that all draw the same.
+    const BatchPart part = share().part(batch);
+    const auto own = [&](const torch::Tensor& x) {
+      return x.slice(0, part.begin, part.begin + part.count);
+    };
+    const auto error = (network.forward(own(rough), part) - own(clean)) * 100.0;
+    return part.mean(error.pow(2)) + 0.5 * part.mean(second_differences(error).abs());
   }
 
   std::optional<double> judge(const TorchNetwork&) override { return std::nullopt; }
@@ -91,7 +95,8 @@ Result<TorchNetwork> fit_clean_motion(const DenoiseLayout& layout, const std::ve
   own.judge_every = 0;
   own.patience = 0;
   // A kill in this part begins it anew: what is kept belongs to the network that comes after it.
-  if (auto done = train(network, task, own, {}, {.progress = hooks.progress}); !done) {
+  if (auto done = train(network, task, own, {}, {.progress = hooks.progress, .share = hooks.share});
+      !done) {
     return Failure(done.error());
   }
   return network;

@@ -144,10 +144,11 @@ void DenoiseTask::put_truth_in(Example& one) const {
   }
 }
 
-DenoiseTask::Batch DenoiseTask::draw(std::uint64_t seed, std::uint64_t step) const {
+DenoiseTask::Batch DenoiseTask::draw(std::uint64_t seed, std::uint64_t step,
+                                     const BatchPart& part) const {
   const RandomStream random(seed, step);
   std::vector<torch::Tensor> input, base, truth, valid;
-  for (std::int64_t k = 0; k < training_.batch; ++k) {
+  for (std::int64_t k = part.begin; k < part.begin + part.count; ++k) {
     const auto at = static_cast<std::uint64_t>(k) * lanes_per_example;
     const auto below = [&](std::uint64_t lane, std::size_t n) {
       const double value = random.uniform(at, lane) * static_cast<double>(n);
@@ -178,24 +179,26 @@ torch::Tensor DenoiseTask::answers(const TorchNetwork& network, const torch::Ten
   return base + answer_mean_ + positions * training_.answer_scale;
 }
 
-torch::Tensor DenoiseTask::weigh(const Batch& batch, const torch::Tensor& answer,
-                                 const torch::Tensor& spread) const {
+torch::Tensor DenoiseTask::weigh(const Batch& batch, const BatchPart& part,
+                                 const torch::Tensor& answer, const torch::Tensor& spread) const {
   const DenoiseLoss& weights = training_.loss;
   const auto error = (answer - batch.truth) * centimetres;
   const auto valid = batch.valid * joint_weights_;
-  auto loss = weights.distance * weighted_mean(lengths_of(error), valid);
+  const auto mean_of = [&](const torch::Tensor& values, const torch::Tensor& by) {
+    return weighted_mean(values, by, share());
+  };
+  auto loss = weights.distance * mean_of(lengths_of(error), valid);
   if (weights.square > 0.0) {
-    loss = loss + weights.square * weighted_mean(error.pow(2).mean(-1), valid) / 100.0;
+    loss = loss + weights.square * mean_of(error.pow(2).mean(-1), valid) / 100.0;
   }
   const auto n = batch.valid.size(1);
   const auto valid3 =
       batch.valid.slice(1, 2, n) * batch.valid.slice(1, 1, n - 1) * batch.valid.slice(1, 0, n - 2);
   if (weights.acceleration > 0.0) {
-    loss =
-        loss + weights.acceleration * weighted_mean(lengths_of(second_differences(error)), valid3);
+    loss = loss + weights.acceleration * mean_of(lengths_of(second_differences(error)), valid3);
   }
   if (weights.smooth > 0.0) {
-    loss = loss + weights.smooth * lengths_of(second_differences(answer * centimetres)).mean();
+    loss = loss + weights.smooth * part.mean(lengths_of(second_differences(answer * centimetres)));
   }
   if (weights.bone > 0.0) {
     const auto bones = [&](const torch::Tensor& x) {
@@ -204,32 +207,33 @@ torch::Tensor DenoiseTask::weigh(const Batch& batch, const torch::Tensor& answer
     };
     const auto both =
         batch.valid.index_select(2, bone_ends_) * batch.valid.index_select(2, bone_begins_);
-    loss = loss + weights.bone * weighted_mean((bones(answer) - bones(batch.truth)).abs(),
-                                               both * bone_weights_);
+    loss = loss +
+           weights.bone * mean_of((bones(answer) - bones(batch.truth)).abs(), both * bone_weights_);
   }
   if (spread.defined()) {
     // Three axes of one spread (cm); the error is not moved by it.
     const auto square = error.detach().pow(2).sum(-1);
     const auto likelihood = 3.0 * spread + 0.5 * square * torch::exp(-2.0 * spread);
-    loss = loss + weights.spread * weighted_mean(likelihood, batch.valid);
+    loss = loss + weights.spread * mean_of(likelihood, batch.valid);
   }
   if (features_ && weights.hidden > 0.0) {
-    loss =
-        loss + weights.hidden *
-                   (features_(answer.flatten(2)) - features_(batch.truth.flatten(2))).pow(2).mean();
+    loss = loss +
+           weights.hidden *
+               part.mean((features_(answer.flatten(2)) - features_(batch.truth.flatten(2))).pow(2));
   }
   return loss;
 }
 
 torch::Tensor DenoiseTask::loss(const TorchNetwork& network, std::uint64_t seed,
                                 std::uint64_t step) {
-  const Batch batch = draw(seed, step);
-  const auto out = network.forward((batch.input - input_mean_) / input_scale_, true);
+  const BatchPart part = share().part(training_.batch);
+  const Batch batch = draw(seed, step, part);
+  const auto out = network.forward((batch.input - input_mean_) / input_scale_, part);
   const std::int64_t numbers = whole(layout_.answers());
   const auto answer = batch.base + answer_mean_ +
                       out.slice(2, 0, numbers).reshape(batch.base.sizes()) * training_.answer_scale;
   const auto spread = training_.states_spread ? out.slice(2, numbers) : torch::Tensor();
-  return weigh(batch, answer, spread);
+  return weigh(batch, part, answer, spread);
 }
 
 torch::Tensor DenoiseTask::first_answer() const {

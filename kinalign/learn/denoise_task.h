@@ -82,8 +82,9 @@ class DenoiseTask : public TrainingTask {
   Example mirrored(const Pair& pair) const;
   void set_scales();
   void put_truth_in(Example& one) const;
-  Batch draw(std::uint64_t seed, std::uint64_t step) const;
-  torch::Tensor weigh(const Batch& batch, const torch::Tensor& answer,
+  Batch draw(std::uint64_t seed, std::uint64_t step, const BatchPart& part) const;
+  /// `part`: of the batch, whose share of the loss it is.
+  torch::Tensor weigh(const Batch& batch, const BatchPart& part, const torch::Tensor& answer,
                       const torch::Tensor& spread) const;
 
   DenoiseLayout layout_;

@@ -2,6 +2,8 @@
 // Pieces of losses that several tasks use.
 #pragma once
 
+#include "kinalign/learn/batch_share.h"
+
 #include <torch/torch.h>
 
 namespace kinalign {
@@ -11,9 +13,11 @@ inline torch::Tensor lengths_of(const torch::Tensor& vectors) {
   return (vectors.pow(2).sum(-1) + 1e-4).sqrt();
 }
 
-/// The mean of `values` with these weights; 0 where all are 0.
-inline torch::Tensor weighted_mean(const torch::Tensor& values, const torch::Tensor& weights) {
-  return (values * weights).sum() / weights.sum().clamp_min(1e-6);
+/// The mean of `values` with these weights; 0 where all are 0. Of a part of a batch: its share of
+/// the mean over the batch.
+inline torch::Tensor weighted_mean(const torch::Tensor& values, const torch::Tensor& weights,
+                                   const BatchShare& share = {}) {
+  return (values * weights).sum() / share.total(weights.sum()).clamp_min(1e-6);
 }
 
 /// Second differences along T of [B,T,...].

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -113,7 +115,8 @@ class Maker {
 /// Runs layers on values [B,T,C].
 class Runner {
  public:
-  Runner(const Tensors& tensors, bool training) : tensors_(tensors), training_(training) {}
+  /// `part`: of the batch that is trained on; nothing outside training.
+  Runner(const Tensors& tensors, std::optional<BatchPart> part) : tensors_(tensors), part_(part) {}
 
   torch::Tensor run(const Layers& layers, const std::string& path, torch::Tensor x) const {
     // Pools are undone to the lengths they began with, the last one first.
@@ -159,7 +162,7 @@ class Runner {
       case LayerKind::sigmoid:
         return torch::sigmoid(x);
       case LayerKind::dropout:
-        return torch::dropout(x, layer.rate, training_);
+        return dropout(x, layer.rate);
       case LayerKind::slice:
         return x.slice(2, whole(layer.begin), whole(layer.begin + layer.out));
       case LayerKind::max_pool:
@@ -186,11 +189,28 @@ class Runner {
         .transpose(1, 2);
   }
 
+  /// Random numbers in the shape of `x`: the part's rows of those that `draw` fills the whole batch
+  /// with, in the order of its indices, however `x` lies in memory.
+  torch::Tensor drawn_like(const torch::Tensor& x,
+                           const std::function<void(torch::Tensor&)>& draw) const {
+    auto all = torch::empty({part_->whole, x.size(1), x.size(2)}, x.options());
+    draw(all);
+    return all.slice(0, part_->begin, part_->begin + part_->count);
+  }
+
+  torch::Tensor dropout(const torch::Tensor& x, double rate) const {
+    if (!part_) return x;
+    const auto kept =
+        drawn_like(x, [&](torch::Tensor& all) { all.bernoulli_(1.0 - rate).div_(1.0 - rate); });
+    return x * kept;
+  }
+
   /// In training each value goes to a random one of its two frames; at use half of it to both.
   torch::Tensor unpool(const torch::Tensor& x, std::int64_t length) const {
     const auto twice = x.repeat_interleave(2, 1).slice(1, 0, length);
-    if (!training_) return twice * 0.5;
-    const auto first = torch::rand_like(x).lt(0.5).to(x.dtype());
+    if (!part_) return twice * 0.5;
+    const auto first =
+        drawn_like(x, [](torch::Tensor& all) { all.uniform_(); }).lt(0.5).to(x.dtype());
     const auto chosen = torch::stack({first, 1.0 - first}, 2)
                             .reshape({x.size(0), 2 * x.size(1), x.size(2)})
                             .slice(1, 0, length);
@@ -251,7 +271,7 @@ class Runner {
   const torch::Tensor& at(const std::string& name) const { return tensors_.at(name); }
 
   const Tensors& tensors_;
-  bool training_;
+  std::optional<BatchPart> part_;
 };
 
 /// Path of the last layer with weights, found from the end.
@@ -277,13 +297,19 @@ TorchNetwork::TorchNetwork(Architecture architecture) : architecture_(std::move(
 }
 
 torch::Tensor TorchNetwork::forward(const torch::Tensor& input, bool training) const {
-  return Runner(tensors_, training).run(architecture_.layers, "", input);
+  const BatchPart all{0, input.size(0), input.size(0)};
+  return Runner(tensors_, training ? std::optional(all) : std::nullopt)
+      .run(architecture_.layers, "", input);
+}
+
+torch::Tensor TorchNetwork::forward(const torch::Tensor& input, const BatchPart& part) const {
+  return Runner(tensors_, part).run(architecture_.layers, "", input);
 }
 
 torch::Tensor run_layers(const std::vector<Layer>& layers,
                          const std::map<std::string, torch::Tensor>& tensors,
                          const torch::Tensor& input) {
-  return Runner(tensors, false).run(layers, "", input);
+  return Runner(tensors, std::nullopt).run(layers, "", input);
 }
 
 void TorchNetwork::zero_last(const torch::Tensor& bias) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "kinalign/infer/architecture.h"
+#include "kinalign/learn/batch_share.h"
 
 #include <torch/torch.h>
 
@@ -21,6 +22,8 @@ class TorchNetwork {
 
   /// [B,T,inputs] to [B,T,outputs]. `training`: with dropout.
   torch::Tensor forward(const torch::Tensor& input, bool training) const;
+  /// In training, of a part of a batch: what is dropped is that of the whole batch.
+  torch::Tensor forward(const torch::Tensor& input, const BatchPart& part) const;
 
   /// Weights of the last linear or conv layer become 0, so that it answers with `bias` [outputs],
   /// or 0.

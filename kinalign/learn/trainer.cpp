@@ -92,7 +92,8 @@ std::optional<double> judge(TorchNetwork& network, TrainingTask& task,
                             const TrainingOptions& options, TrainingState& state) {
   const WeightMap now = copy_of(network.tensors());
   if (options.average) put_weights(state.average, network);
-  const auto judgement = task.judge(network);
+  const BatchShare& share = task.share();
+  const auto judgement = share.of_first(share.is_first() ? task.judge(network) : std::nullopt);
   if (!judgement || !state.best_judgement || *judgement < *state.best_judgement) {
     state.best = copy_of(network.tensors());
     state.best_judgement = judgement;
@@ -119,6 +120,24 @@ void add_point(const TrainingOptions& options, std::optional<double> judgement, 
   sums = {};
 }
 
+/// Adds the loss and the gradients of all processes' parts. Returns the loss.
+double joined(double loss, WeightMap& tensors, const BatchShare& share) {
+  if (share.is_alone()) return loss;
+  std::vector<torch::Tensor> pieces{torch::tensor({loss}, torch::kFloat32)};
+  for (auto& [name, tensor] : tensors) {
+    if (tensor.grad().defined()) pieces.push_back(tensor.grad().flatten().to(torch::kCPU));
+  }
+  const torch::Tensor all = share.total(torch::cat(pieces));
+  std::int64_t at = 1;
+  for (auto& [name, tensor] : tensors) {
+    if (!tensor.grad().defined()) continue;
+    const std::int64_t count = tensor.numel();
+    tensor.mutable_grad().copy_(all.slice(0, at, at + count).reshape(tensor.sizes()));
+    at += count;
+  }
+  return all[0].item<double>();
+}
+
 /// Loss and gradients of the next batch; how long the gradient is, or nothing where a number is
 /// not finite.
 std::optional<double> gradients(TorchNetwork& network, TrainingTask& task,
@@ -131,12 +150,19 @@ std::optional<double> gradients(TorchNetwork& network, TrainingTask& task,
   torch::manual_seed(mix64(mix64(options.seed) ^ step));  // dropout
   const torch::Tensor loss = task.loss(network, options.seed, step);
   loss.backward();
-  const double value = loss.item<double>(), norm = gradient_norm(network.tensors());
+  const double value = joined(loss.item<double>(), network.tensors(), task.share());
+  const double norm = gradient_norm(network.tensors());
   if (!std::isfinite(value) || !std::isfinite(norm)) return std::nullopt;
   sums.loss += value;
   sums.gradient += norm;
   ++sums.count;
   return norm;
+}
+
+Failure lost_process() {
+  return Failure(Error{"", 0, "all processes of the training to go on to its end",
+                       "one that ended before (its own message says why)",
+                       ErrorKind::lost_process});
 }
 
 bool is_due(std::int64_t step, std::int64_t every) { return every > 0 && step % every == 0; }
@@ -154,12 +180,14 @@ double rate_at(const TrainingOptions& options, std::int64_t step) {
 Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
                             const TrainingOptions& options, TrainingState state,
                             const TrainingHooks& hooks) {
+  task.share_with(hooks.share);
   begin(network, state);
   put_weights(state.weights, network);
   Sums sums;
   int failures = 0;
   while (state.step < options.steps) {
     const auto norm = gradients(network, task, options, state, sums);
+    if (task.share().is_broken()) return lost_process();
     failures = norm ? 0 : failures + 1;
     if (failures == most_failures) {
       return Failure(Error{"", 0, "a loss that is a number",
@@ -171,6 +199,7 @@ Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
     std::optional<double> judgement;
     if (last || is_due(state.step, options.judge_every)) {
       judgement = judge(network, task, options, state);
+      if (task.share().is_broken()) return lost_process();
     }
     if (last || judgement || is_due(state.step, point_every)) {
       add_point(options, judgement, sums, state);

@@ -6,6 +6,7 @@
 
 #include "kinalign/core/error.h"
 #include "kinalign/core/progress.h"
+#include "kinalign/learn/batch_share.h"
 #include "kinalign/learn/torch_network.h"
 
 #include <cstdint>
@@ -23,11 +24,17 @@ class TrainingTask {
   TrainingTask(const TrainingTask&) = delete;
   TrainingTask& operator=(const TrainingTask&) = delete;
   virtual ~TrainingTask() = default;
-  /// The loss of batch `step`, drawn from `seed`.
+  /// The loss of batch `step`, drawn from `seed`; of several processes, this one's share of it.
   virtual torch::Tensor loss(const TorchNetwork& network, std::uint64_t seed,
                              std::uint64_t step) = 0;
   /// Less is better; empty where no validation part was given.
   virtual std::optional<double> judge(const TorchNetwork& network) = 0;
+
+  void share_with(const BatchShare& share) { share_ = share; }
+  const BatchShare& share() const { return share_; }
+
+ private:
+  BatchShare share_;
 };
 
 struct TrainingOptions {
@@ -64,10 +71,13 @@ struct TrainingHooks {
   /// Called every `every` steps with the state, to keep it; nothing where empty.
   std::function<Result<void>(const TrainingState&)> keep{};
   std::int64_t every = 500;
+  /// This process's part where several train together. All have the same options, data and state.
+  BatchShare share{};
 };
 
 /// Fits `network` from `state` on (a new one: from the network's own weights). At the end the
-/// network has the best weights. Fails where the loss is not finite five times in a row.
+/// network has the best weights. Fails where the loss is not finite five times in a row, and where
+/// another process ends.
 Result<TrainingState> train(TorchNetwork& network, TrainingTask& task,
                             const TrainingOptions& options, TrainingState state,
                             const TrainingHooks& hooks);

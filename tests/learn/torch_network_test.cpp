@@ -169,3 +169,35 @@ TEST_CASE("torch network: dropout and unpool are random in training alone") {
   CHECK(values_of(network.forward(x, false)) == std::vector<float>(36, 0.5F));
   CHECK(values_of(network.forward(x, true)) != values_of(network.forward(x, true)));
 }
+
+TEST_CASE("torch network: parts of a batch drop and unpool what the whole batch does") {
+  torch::manual_seed(1);
+  torch::NoGradGuard guard;
+  const Layer half{.kind = dropout, .rate = 0.5};
+  // Values lie in another order in memory behind convolutions and behind recurrent layers.
+  const TorchNetwork network({4,
+                              {half,
+                               {.kind = conv, .out = 6, .kernel = 3},
+                               half,
+                               {.kind = lstm, .out = 5, .bidirectional = true},
+                               half,
+                               layer(max_pool),
+                               layer(unpool)}});
+  const auto x = torch::randn({7, 9, 4});
+  const auto trained = [&](const torch::Tensor& input, const BatchPart& part) {
+    torch::manual_seed(2);
+    return network.forward(input, part);
+  };
+  torch::manual_seed(2);
+  const auto whole_batch = network.forward(x, true);
+  CHECK(torch::equal(trained(x, {0, 7, 7}), whole_batch));
+  for (const std::int64_t processes : {2, 3, 7}) {
+    std::vector<torch::Tensor> parts;
+    for (std::int64_t rank = 0; rank < processes; ++rank) {
+      const BatchPart part = BatchShare(rank, processes, {}).part(7);
+      parts.push_back(trained(x.slice(0, part.begin, part.begin + part.count), part));
+    }
+    CAPTURE(processes);
+    CHECK(torch::allclose(torch::cat(parts), whole_batch, 1e-5, 1e-6));
+  }
+}

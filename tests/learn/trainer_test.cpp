@@ -215,3 +215,27 @@ TEST_CASE("training log: a line a point") {
   CHECK(csv_of(points) ==
         "step,loss,rate,gradient,judgement\n50,1.25,0.001,0.5,\n100,0.0625,5e-08,2,3.5\n");
 }
+
+TEST_CASE("trainer: the parts of all processes are the batch, each example once") {
+  for (const std::int64_t size : {1, 2, 3, 5, 32}) {
+    std::int64_t at = 0;
+    for (std::int64_t rank = 0; rank < size; ++rank) {
+      const BatchPart part = BatchShare(rank, size, {}).part(32);
+      CHECK((part.begin == at && part.count >= 32 / size && part.whole == 32));
+      at += part.count;
+    }
+    CHECK(at == 32);
+  }
+}
+
+TEST_CASE("trainer: where another process has ended the training fails and says so") {
+  LineTask task;
+  TorchNetwork network = line_network(1);
+  TrainingHooks hooks;
+  int sums = 0;
+  hooks.share = BatchShare(1, 2, [&](torch::Tensor&) { return ++sums < 3; });
+  const auto out = train(network, task, {.steps = 10}, {}, hooks);
+  REQUIRE_FALSE(out);
+  CHECK(out.error().kind == ErrorKind::lost_process);
+  CHECK(sums == 3);
+}

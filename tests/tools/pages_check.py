@@ -74,7 +74,7 @@ def check_page(page, folder, environment, say):
     for block in BLOCK.finditer(page.read_text()):
         line = page.read_text()[: block.start()].count("\n") + 1
         needs_data = "../shared/" in block[1] or "docs/examples/" in block[1]
-        trains = "kinalign train" in block[1]
+        trains = "kinalign train" in block[1] or "kinalign eval" in block[1]
         for command, _, expected in commands_of(block[1]):
             name = f"{page.relative_to(ROOT)}:{line} shows what `{command}` prints"
             if (needs_data and not SHARED.exists()) or (trains and not LEARN.exists()):

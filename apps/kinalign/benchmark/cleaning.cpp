@@ -122,17 +122,18 @@ Result<Answer> answer_for(const CleaningOptions& o, const CleaningData& data,
     const std::string model = KA_TRY(trained_method(o, data, trained_part(method), call));
     return trained_answer(method, model, data.layout, tested, call);
   }
-  const EvalTask task{.layout = data.layout,
-                      .pairs = data.pairs.all,
-                      .learnt = data.learnt,
-                      .windows = data.windows,
-                      .input = rough_stream,
-                      .truth = true_stream,
-                      .folder = o.folder,
-                      .device = o.device,
-                      .seed = o.seed,
-                      .steps = o.steps};
-  return make_answer(method, task, call);
+  const EvalTask task{data.layout,
+                      data.pairs.all,
+                      {.method = method,
+                       .windows = data.windows,
+                       .input = rough_stream,
+                       .truth = true_stream,
+                       .learnt = data.learnt,
+                       .folder = o.folder,
+                       .device = o.device,
+                       .seed = o.seed,
+                       .steps = o.steps}};
+  return make_answer(task, call);
 }
 
 CleanedTakes run_answer(const std::string& method, const Answer& answer, const CleaningData& data,

@@ -52,16 +52,19 @@ Result<BuildShare> read(const Names& names, const Variable& variable, const std:
 
 }  // namespace
 
+Result<BuildShare> step_share_of(const Variable& variable) {
+  for (const Names& names : steps) {
+    if (is_there(names, variable)) return read(names, variable, "", 0);
+  }
+  return BuildShare{};
+}
+
 Result<BuildShare> share_of(const Variable& variable, std::int64_t index_offset) {
-  BuildShare outer, inner;
+  BuildShare outer;
   if (is_there(array, variable)) {
     outer = KA_TRY(read(array, variable, variable("KINALIGN_SHARES"), index_offset));
   }
-  for (const Names& names : steps) {
-    if (!is_there(names, variable)) continue;
-    inner = KA_TRY(read(names, variable, "", 0));
-    break;
-  }
+  const BuildShare inner = KA_TRY(step_share_of(variable));
   return BuildShare{outer.rank * inner.size + inner.rank, outer.size * inner.size};
 }
 

@@ -20,4 +20,7 @@ namespace kinalign {
 Result<BuildShare> share_of(const std::function<std::string(const std::string&)>& variable,
                             std::int64_t index_offset);
 
+/// The share of this task among those of its step alone, whatever array the job is in.
+Result<BuildShare> step_share_of(const std::function<std::string(const std::string&)>& variable);
+
 }  // namespace kinalign

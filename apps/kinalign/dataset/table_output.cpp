@@ -7,13 +7,27 @@ Field format_field(std::string& format) {
   return {"format", "how it is printed", &format, 0.0, 0.0, {"text", "markdown", "latex", "csv"}};
 }
 
-void print_table(const Table& table, const std::string& format, const std::string& name,
-                 Call& call) {
+void print_tables(const std::vector<NamedTable>& tables, const std::string& format, Call& call) {
   if (call.console.prints_json()) {
-    call.console.print_json("{\"" + name + "\": " + written(table, TableFormat::json) + "}");
+    std::string object;
+    for (const NamedTable& one : tables) {
+      object += (object.empty() ? "{\"" : ", \"") + one.name +
+                "\": " + written(one.table, TableFormat::json);
+    }
+    call.console.print_json(object + "}");
     return;
   }
-  call.console.put(harmless(written(table, table_format(format).value_or(TableFormat::text))));
+  std::string text;
+  for (const NamedTable& one : tables) {
+    text += (text.empty() ? "" : "\n") +
+            written(one.table, table_format(format).value_or(TableFormat::text));
+  }
+  call.console.put(harmless(text));
+}
+
+void print_table(const Table& table, const std::string& format, const std::string& name,
+                 Call& call) {
+  print_tables({{name, table}}, format, call);
 }
 
 }  // namespace kinalign

@@ -1,26 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/kinalign/learn/eval_methods.h"
 
-#include "apps/cli/console.h"
 #include "apps/kinalign/learn/projected.h"
-#include "apps/kinalign/learn/worker.h"
+#include "apps/kinalign/verbs/describe_model.h"
 
 #include "kinalign/compare/linear.h"
 #include "kinalign/models/filters.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
 namespace kinalign {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr std::size_t most_trained_bytes = std::size_t{1} << 30U;
 constexpr std::string_view projects = "+project";
 
 /// The base joints after a filter of the input.
@@ -36,44 +29,17 @@ Answer filtered(const DenoiseLayout& layout, const std::function<void(JointFrame
 std::vector<const Pair*> learnt_of(const EvalTask& task) {
   std::vector<const Pair*> out;
   for (const Pair& pair : task.pairs) {
-    if (std::find(task.learnt.begin(), task.learnt.end(), pair.take) != task.learnt.end()) {
-      out.push_back(&pair);
-    }
+    const auto& learnt = task.training.learnt;
+    if (std::find(learnt.begin(), learnt.end(), pair.take) != learnt.end()) out.push_back(&pair);
   }
   return out;
-}
-
-/// The model's file.
-Result<std::string> trained(const std::string& method, const EvalTask& task, Call& call) {
-  FileSystem& files = call.surroundings.files;
-  const std::string model = task.folder + "/model.safetensors", file = task.folder + "/job.json";
-  KA_TRY(make_folders(task.folder));
-  Json options{{"seed", task.seed}};
-  if (task.steps > 0) options["steps"] = task.steps;
-  Json job{{"schema", "kinalign.training_job/1"},
-           {"method", method},
-           {"windows", task.windows},
-           {"input", task.input},
-           {"truth", task.truth},
-           {"learn", task.learnt},
-           {"out", model},
-           {"log", task.folder + "/log.csv"},
-           {"device", task.device},
-           {"threads", call.jobs},
-           {"options", options}};
-  if (task.hand_weight > 0.0) job["hand_weight"] = task.hand_weight;
-  std::error_code fault;
-  if (!std::filesystem::exists(model, fault)) {
-    KA_TRY(write_whole(files, file, job.dump(1), Overwrite::yes));
-    KA_TRY(run_worker(file, {.progress = call.console.progress()}));
-  }
-  return model;
 }
 
 std::vector<JointFrames> tested_of(const EvalTask& task) {
   std::vector<JointFrames> out;
   for (const Pair& pair : task.pairs) {
-    if (std::find(task.learnt.begin(), task.learnt.end(), pair.take) == task.learnt.end()) {
+    if (std::find(task.training.learnt.begin(), task.training.learnt.end(), pair.take) ==
+        task.training.learnt.end()) {
       out.push_back(pair.input);
     }
   }
@@ -83,23 +49,24 @@ std::vector<JointFrames> tested_of(const EvalTask& task) {
 }  // namespace
 
 const std::vector<EvalMethod>& eval_methods() {
-  static const std::vector<EvalMethod> all{
-      {"raw", "the Kinect as it is"},
-      {"hold", "the last tracked place"},
-      {"savgol", "Savitzky-Golay, 9 frames, order 2"},
-      {"one-euro", "One-Euro filter"},
-      {"kalman", "Kalman smoother"},
-      {"offset", "mean offset of each joint"},
-      {"offset+kalman", "Kalman smoother, then the mean offset"},
-      {"ridge", "ridge regression over 9 frames"},
-      {"cnn", "convolutional autoencoder (Holden 2016), paired", true},
-      {"cnn+project", "the same, brought to meet constraints", true},
-      {"cnn-manifold", "convolutional autoencoder of clean motion", true},
-      {"cnn-manifold+project", "the same, brought to meet constraints", true},
-      {"bra", "bidirectional recurrent autoencoder (Li 2019)", true},
-      {"bra-p", "the same, perceptual (Li 2020)", true},
-      {"smoothnet", "layers along time (Zeng 2022), then the mean offset", true},
-      {"refine", "ours", true}};
+  static const std::vector<EvalMethod> all = [] {
+    std::vector<EvalMethod> out{{"raw", "the Kinect as it is"},
+                                {"hold", "the last tracked place"},
+                                {"savgol", "Savitzky-Golay, 9 frames, order 2"},
+                                {"one-euro", "One-Euro filter"},
+                                {"kalman", "Kalman smoother"},
+                                {"offset", "mean offset of each joint"},
+                                {"offset+kalman", "Kalman smoother, then the mean offset"},
+                                {"ridge", "ridge regression over 9 frames"}};
+    for (const TrainedMethod& one : trained_methods()) {
+      if (one.task != Learns::denoise) continue;
+      out.push_back({one.name, one.summary, true});
+      if (one.has_code) {
+        out.push_back({one.name + std::string(projects), "the same, brought to constraints", true});
+      }
+    }
+    return out;
+  }();
   return all;
 }
 
@@ -129,8 +96,7 @@ Result<Answer> trained_answer(const std::string& method, const std::string& file
   if (method.ends_with(projects)) {
     return KA_TRY(projected_answers(file, layout, bodies, call)).answer;
   }
-  return answer_of_model(KA_TRY(read_whole(call.surroundings.files, file, most_trained_bytes)),
-                         file);
+  return answer_of_model(KA_TRY(read_whole(call.surroundings.files, file, most_model_bytes)), file);
 }
 
 Result<Answer> answer_of_model(const std::string& bytes, const std::string& name) {
@@ -139,7 +105,8 @@ Result<Answer> answer_of_model(const std::string& bytes, const std::string& name
   return Answer([denoiser](const JointFrames& body) { return denoiser->answer(body); });
 }
 
-Result<Answer> make_answer(const std::string& method, const EvalTask& task, Call& call) {
+Result<Answer> make_answer(const EvalTask& task, Call& call) {
+  const std::string& method = task.training.method;
   const DenoiseLayout& layout = task.layout;
   const double rate = layout.rate_hz;
   if (method == "raw") return filtered(layout, [](JointFrames&) {});
@@ -170,7 +137,9 @@ Result<Answer> make_answer(const std::string& method, const EvalTask& task, Call
       return Denoised{fit->clean(layout, body), {}};
     });
   }
-  const std::string model = KA_TRY(trained(trained_part(method), task, call));
+  TrainingWanted wanted = task.training;
+  wanted.method = trained_part(method);
+  const std::string model = KA_TRY(trained_model(wanted, call));
   return trained_answer(method, model, layout, tested_of(task), call);
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods that eval compares: filters, those fitted in closed form, and trained networks.
+// The methods that clean a Kinect: filters, those fitted in closed form, and trained networks.
 #pragma once
 
 #include "apps/cli/verb.h"
+#include "apps/kinalign/learn/training_job.h"
 
 #include "kinalign/models/denoise_model.h"
 #include "kinalign/models/pairs.h"
@@ -30,16 +31,11 @@ Result<DenoiseLayout> eval_layout(const Pairs& pairs);
 struct EvalTask {
   const DenoiseLayout& layout;
   const std::vector<Pair>& pairs;
-  std::vector<std::string> learnt;  // names of takes
-  std::string windows, input, truth;
-  std::string folder;  // of the run: its job, its log and its model, which is used if it is there
-  std::string device;  // cpu, cuda
-  std::int64_t seed = 1, steps = 0;
-  double hand_weight = 0.0;  // 0: the method's own
+  TrainingWanted training;  // its takes are learnt from by every method, trained or not
 };
 
-/// Fits or trains it. `task.layout` and `task.pairs` must live longer.
-Result<Answer> make_answer(const std::string& method, const EvalTask& task, Call& call);
+/// Fits or trains the method of `task.training`. `task.layout` and `task.pairs` must live longer.
+Result<Answer> make_answer(const EvalTask& task, Call& call);
 
 /// The answer of a method whose trained part is the model in `file`. `bodies`: those that it will
 /// be asked for, which matter where it is brought to meet constraints.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/console.h"
-#include "apps/kinalign/dataset/own_process.h"
+#include "apps/kinalign/dataset/share.h"
+#include "apps/kinalign/learn/training_job.h"
 #include "apps/kinalign/learn/worker.h"
 #include "apps/kinalign/verbs.h"
 
@@ -10,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
+#include <charconv>
 #include <filesystem>
 
 namespace kinalign {
@@ -20,80 +21,28 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-enum class Learns : std::uint8_t { denoise, pose, fuse };
-
-struct TrainWord {
-  std::string_view method;
-  Learns task;
-};
-
-/// Methods by the names that kinalign-learn knows them by.
-constexpr std::array<TrainWord, 17> train_words{{{"refine", Learns::denoise},
-                                                 {"cnn", Learns::denoise},
-                                                 {"cnn-manifold", Learns::denoise},
-                                                 {"bra", Learns::denoise},
-                                                 {"bra-p", Learns::denoise},
-                                                 {"smoothnet", Learns::denoise},
-                                                 {"inertial", Learns::pose},
-                                                 {"inertial-online", Learns::pose},
-                                                 {"dip", Learns::pose},
-                                                 {"dip-512", Learns::pose},
-                                                 {"dip-robust", Learns::pose},
-                                                 {"wouda", Learns::pose},
-                                                 {"gated", Learns::fuse},
-                                                 {"gated-online", Learns::fuse},
-                                                 {"bilstm", Learns::fuse},
-                                                 {"bilstm-kinect", Learns::fuse},
-                                                 {"bilstm-nodes", Learns::fuse}}};
-
-constexpr double pose_windows_hz = 60.0;  // nodes are simulated from it
-
 struct Train {
   std::vector<std::string> method;
   std::string data, windows, split, where;
   std::string from, input, truth = "mocap", nodes, device = "cpu";
   double rate_hz = 30.0, hand_weight = 0.0;
-  std::int64_t steps = 0, seed = 1, patience = 0;
+  std::int64_t steps = 0, seed = 1, patience = 0, processes = 1;
   bool resume = false;
 };
 
-Learns task_of(const Train& o) {
-  const auto word = std::find_if(train_words.begin(), train_words.end(), [&](const TrainWord& one) {
-    return one.method == o.method.front();
-  });
-  return word == train_words.end() ? Learns::denoise : word->task;
-}
+/// The choices of the command line are those methods.
+const TrainedMethod& method_of(const Train& o) { return *find_trained(o.method.front()); }
 
 /// The rough stream: a Kinect's, unless the method sees none or a simulated one.
 std::string input_of(const Train& o) {
-  return o.input.empty() && task_of(o) == Learns::denoise ? "kinect" : o.input;
-}
-
-/// Fails for a flag that the method has no use for.
-Result<void> check_task(const Train& o, const Sources& given) {
-  const Learns task = task_of(o);
-  if (task == Learns::denoise && given.count("nodes") > 0) {
-    return Failure(Error{"--nodes", 0, "a method for poses or for fusion", o.method.front()});
-  }
-  if (task != Learns::denoise && given.count("hand-weight") > 0) {
-    return Failure(Error{"--hand-weight", 0, "a method that cleans a Kinect", o.method.front()});
-  }
-  if (task == Learns::pose && given.count("input") > 0) {
-    return Failure(Error{"--input", 0, "a method that sees a Kinect",
-                         o.method.front() + ", which sees simulated nodes"});
-  }
-  if (task != Learns::denoise && given.count("rate") > 0) {
-    return Failure(Error{"--rate", 0, "a method that cleans a stream",
-                         o.method.front() + ", which works at 30 Hz"});
-  }
-  return {};
+  return o.input.empty() && method_of(o).task == Learns::denoise ? "kinect" : o.input;
 }
 
 Usage describe_train(Train& o) {
   Usage usage;
   usage.positionals = {{"METHOD", "what is trained", &o.method}};
-  for (const TrainWord& one : train_words) {
-    usage.positionals.front().choices.emplace_back(one.method);
+  for (const TrainedMethod& one : trained_methods()) {
+    usage.positionals.front().choices.push_back(one.name);
   }
   usage.flags = {
       {"data", "the data set's folder", &o.data, 0.0, 0.0, {}, "FOLDER"},
@@ -120,14 +69,7 @@ Usage describe_train(Train& o) {
        {},
        "NAME"},
       {"truth", "the precise stream", &o.truth, 0.0, 0.0, {}, "NAME"},
-      {"nodes",
-       "of poses and fusion: 3 to 6 of waist, which is the last, wrist_left, wrist_right, "
-       "ankle_left, ankle_right, head (default: all but the head)",
-       &o.nodes,
-       0.0,
-       0.0,
-       {},
-       "NAME,NAME,..."},
+      nodes_field(o.nodes),
       {"rate", "frames a second that the model works at", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
       {"from",
        "a model of the same method to go on from, such as one that comes with the program",
@@ -144,9 +86,11 @@ Usage describe_train(Train& o) {
       {"patience", "judgements without a better one before it stops; 0: never", &o.patience, 0.0,
        1e6},
       {"device", "where it is trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+      {"processes", "of this machine that train together, with the result of one", &o.processes,
+       1.0, 32.0},
       {"resume", "go on with a run that was stopped", &o.resume}};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
-    KA_TRY(check_task(o, given));
+    KA_TRY(check_task_flags(method_of(o), given));
     if (!common.out.ends_with(".safetensors")) {
       return Failure(
           Error{"-o", 0, "-o FILE.safetensors", common.out.empty() ? "none" : shown(common.out)});
@@ -163,35 +107,6 @@ Usage describe_train(Train& o) {
 /// The folder of a run, beside its model: "m.training" of "m.safetensors".
 std::string run_folder(const std::string& model) {
   return model.substr(0, model.rfind('.')) + ".training";
-}
-
-Result<void> make_windows(const Train& o, const std::string& file) {
-  const bool is_denoise = task_of(o) == Learns::denoise;
-  const std::string length = is_denoise ? "32" : "64", input = input_of(o);
-  const double rate_hz = is_denoise ? o.rate_hz : pose_windows_hz;
-  std::vector<std::string> words{
-      "dataset",  "windows", o.data,     "-o",     file,
-      "--force",  "--quiet", "--length", length,   "--step",
-      length,     "--valid", "0.2",      "--rate", fmt::format("{:g}", rate_hz),
-      "--stream", o.truth};
-  if (!input.empty()) words.insert(words.end(), {"--stream", input});
-  if (!o.split.empty()) words.insert(words.end(), {"--split", o.split});
-  if (!o.where.empty()) words.insert(words.end(), {"--where", o.where});
-  const Ended ended = KA_TRY(run_own_process(words));
-  if (ended.code == 0) return {};
-  return Failure(Error{o.data, 0, "a data set that windows can be cut from", ended.complaint});
-}
-
-std::vector<std::string> split_at_commas(const std::string& text) {
-  std::vector<std::string> out{""};
-  for (const char c : text) {
-    if (c == ',') {
-      out.emplace_back();
-    } else {
-      out.back() += c;
-    }
-  }
-  return out;
 }
 
 Result<std::string> hash_of(FileSystem& files, const std::string& path) {
@@ -229,8 +144,73 @@ Json job_of(const Train& o, const std::string& windows, const std::string& hash,
   job["checkpoint"] = folder + "/checkpoint.safetensors";
   job["resume"] = o.resume;
   job["device"] = o.device;
-  job["threads"] = call.jobs;
   return job;
+}
+
+/// The processes of this training that run here.
+struct Places {
+  std::size_t first = 0, here = 1, all = 1;  // ranks first ... first + here of `all`
+  std::string address, interface {};         // of the process 0, empty where it is alone
+  std::int64_t port = 0;
+
+  bool is_first() const { return first == 0; }
+};
+
+constexpr std::int64_t usual_port = 29500;  // PyTorch's
+
+Result<std::int64_t> port_of(const std::string& text) {
+  if (text.empty()) return usual_port;
+  std::int64_t port = 0;
+  const char* end = text.data() + text.size();
+  const auto [behind, fault] = std::from_chars(text.data(), end, port);
+  if (fault == std::errc{} && behind == end && port > 0 && port < 65536) return port;
+  return Failure(Error{"MASTER_PORT", 0, "a TCP port", shown(text)});
+}
+
+/// By --processes, or by what srun, mpirun or torchrun say in the environment.
+Result<Places> places_of(const Train& o, Call& call) {
+  const auto& variable = call.surroundings.variable;
+  const BuildShare step = KA_TRY(step_share_of(variable));
+  const auto processes = static_cast<std::size_t>(o.processes);
+  if (step.size == 1 && processes == 1) return Places{};
+  if (step.size == 1) return Places{0, processes, processes, "127.0.0.1", "", KA_TRY(free_port())};
+  const std::string address = variable("MASTER_ADDR");
+  const std::string who = fmt::format("process {} of {}", step.rank, step.size);
+  if (address.empty()) {
+    return Failure(Error{"MASTER_ADDR", 0,
+                         "the address of the first process's machine in the environment",
+                         "none in " + who});
+  }
+  if (processes > 1) return Failure(Error{"--processes", 0, "1 in each process of a cluster", who});
+  if (o.windows.empty()) {
+    return Failure(
+        Error{"--data", 0, "a file of windows (--windows) that all processes read", who});
+  }
+  return Places{step.rank,
+                1,
+                step.size,
+                address,
+                variable("GLOO_SOCKET_IFNAME"),
+                KA_TRY(port_of(variable("MASTER_PORT")))};
+}
+
+/// A job file for each process.
+Result<std::vector<std::string>> write_jobs(Json job, const Places& places, Call& call) {
+  const std::string folder = run_folder(call.common.out);
+  job["threads"] = std::max<std::size_t>(call.jobs / places.here, 1);
+  std::vector<std::string> out;
+  for (std::size_t rank = places.first; rank < places.first + places.here; ++rank) {
+    if (places.all > 1) {
+      job["place"] = {{"rank", rank},
+                      {"size", places.all},
+                      {"address", places.address},
+                      {"port", places.port},
+                      {"interface", places.interface}};
+    }
+    out.push_back(rank == 0 ? folder + "/job.json" : fmt::format("{}/job.{}.json", folder, rank));
+    KA_TRY(write_whole(call.surroundings.files, out.back(), job.dump(1), Overwrite::yes));
+  }
+  return out;
 }
 
 /// `last`: what the program that trains said at its end.
@@ -253,22 +233,32 @@ Result<int> run_train(Train& o, Call& call) {
   if (fs::exists(out, fault) && !call.common.force) {
     return Failure(Error{out, 0, "no file of that name (--force overwrites)", "one"});
   }
+  const Places places = KA_TRY(places_of(o, call));
   const std::string folder = run_folder(out);
   KA_TRY(make_folders(folder));
   std::string windows = o.windows;
   if (windows.empty()) {
     windows = folder + "/windows.npz";
-    KA_TRY(make_windows(o, windows));
+    const WindowsWanted wanted{.data = o.data,
+                               .split = o.split,
+                               .where = o.where,
+                               .input = input_of(o),
+                               .truth = o.truth,
+                               .rate_hz = o.rate_hz};
+    KA_TRY(cut_windows(wanted, method_of(o).task, windows));
   }
   const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
-  const Json job = job_of(o, windows, KA_TRY(hash_of(files, windows)), from_hash, call);
-  const std::string job_file = folder + "/job.json";
-  KA_TRY(write_whole(files, job_file, job.dump(1), Overwrite::yes));
+  const auto jobs = KA_TRY(write_jobs(
+      job_of(o, windows, KA_TRY(hash_of(files, windows)), from_hash, call), places, call));
   const WorkerWatch watch{.progress = call.console.progress(),
                           .warn = [&](const std::string& text) {
                             call.console.note("kinalign train: warning: " + harmless(text));
                           }};
-  const Json last = Json::parse(KA_TRY(run_worker(job_file, watch)), nullptr, false);
+  const Json last = Json::parse(KA_TRY(run_workers(jobs, watch)), nullptr, false);
+  for (const std::string& file : jobs) {
+    if (!file.ends_with("/job.json")) fs::remove(file, fault);
+  }
+  if (!places.is_first()) return 0;
   if (o.windows.empty()) fs::remove(windows, fault);
   call.console.wrote(out);
   print_trained(o, last, call);

@@ -4,16 +4,22 @@
 #include "apps/kinalign/learn/shipped_models.h"
 
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <nlohmann/json.hpp>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 namespace kinalign {
 
@@ -32,9 +38,13 @@ Result<std::string> worker_program() {
                        "none beside kinalign"});
 }
 
+/// One process of kinalign-learn.
 struct Child {
   pid_t id = 0;
-  int out = -1;
+  int out = -1;            // its stdout; -1: it has ended
+  std::string held, last;  // output without a line's end; the last object but warnings
+  int code = 0;            // exit code; 128 and the signal's number where a signal ended it
+  bool was_ended = false;  // by this program
 };
 
 Result<Child> start(const std::string& program, const std::string& job) {
@@ -49,7 +59,8 @@ Result<Child> start(const std::string& program, const std::string& job) {
   ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   ::posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
   ::posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-  Child out{0, ends[0]};
+  Child out;
+  out.out = ends[0];
   const int fault =
       ::posix_spawn(&out.id, program.c_str(), &actions, nullptr, words.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
@@ -59,71 +70,190 @@ Result<Child> start(const std::string& program, const std::string& job) {
   return Failure(Error{program, 0, "a program that can be started", std::strerror(fault)});
 }
 
-/// Lines of the child's output until its end.
-class Lines {
- public:
-  explicit Lines(int pipe) : pipe_(pipe) {}
-  bool next(std::string& line) {
-    for (;;) {
-      if (const std::size_t end = held_.find('\n'); end != std::string::npos) {
-        line = held_.substr(0, end);
-        held_.erase(0, end + 1);
-        return true;
-      }
-      std::array<char, 4096> buffer{};
-      const ssize_t got = ::read(pipe_, buffer.data(), buffer.size());
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0 || held_.size() > longest_line) return false;
-      held_.append(buffer.data(), static_cast<std::size_t>(got));
-    }
-  }
-
- private:
-  int pipe_;
-  std::string held_;
-};
-
-int wait_for(const Child& child) {
+void wait_for(Child& child) {
   ::close(child.out);
+  child.out = -1;
   int status = 0;
   while (::waitpid(child.id, &status, 0) < 0 && errno == EINTR) {
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  child.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// Reads what is there; at its end the child is waited for. The whole lines.
+std::vector<std::string> read_lines(Child& child) {
+  std::array<char, 4096> buffer{};
+  const ssize_t got = ::read(child.out, buffer.data(), buffer.size());
+  if (got < 0 && errno == EINTR) return {};
+  std::vector<std::string> out;
+  if (got <= 0 || child.held.size() > longest_line) {
+    wait_for(child);
+    return out;
+  }
+  child.held.append(buffer.data(), static_cast<std::size_t>(got));
+  for (std::size_t end = child.held.find('\n'); end != std::string::npos;
+       end = child.held.find('\n')) {
+    out.push_back(child.held.substr(0, end));
+    child.held.erase(0, end + 1);
+  }
+  return out;
 }
 
 Error told_error(const nlohmann::json& error) {
   return {error.value("file", ""), 0, error.value("expected", ""), error.value("found", "")};
 }
 
+/// All processes of one job.
+class Workers {
+ public:
+  explicit Workers(const WorkerWatch& watch) : watch_(watch) {}
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+  /// Nothing that this program has started goes on without it.
+  ~Workers() {
+    end_all(SIGKILL);
+    for (Child& child : children_) {
+      if (child.out >= 0) wait_for(child);
+    }
+  }
+
+  Result<void> add(const std::string& program, const std::string& job) {
+    children_.push_back(KA_TRY(start(program, job)));
+    return {};
+  }
+
+  /// Until all have ended. After the first failure the others have some seconds.
+  void run() {
+    std::optional<Clock::time_point> failed;
+    while (poll_all()) {
+      const bool fails = std::any_of(children_.begin(), children_.end(),
+                                     [](const Child& one) { return one.code != 0; });
+      if (!fails && !stopped_) continue;
+      if (!failed) failed = Clock::now();
+      const auto since = Clock::now() - *failed;
+      if (since > grace) end_all(since > 2 * grace ? SIGKILL : SIGTERM);
+    }
+  }
+
+  Result<std::string> result() const {
+    if (stopped_) return Failure(interruption());
+    if (const Child* child = first_to_fail()) return Failure(error_of(*child));
+    const std::string& last = children_.front().last;
+    if (!last.empty()) return last;
+    return Failure(Error{"", 0, "kinalign-learn to end well", "no result"});
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds grace{3};
+  static constexpr int lost_another = 4;  // exit code of kinalign-learn where another one ended
+
+  /// Reads from all that have something to say. False: all have ended.
+  bool poll_all() {
+    std::vector<pollfd> waits;
+    std::vector<Child*> whose;
+    for (Child& child : children_) {
+      if (child.out < 0) continue;
+      waits.push_back({child.out, POLLIN, 0});
+      whose.push_back(&child);
+    }
+    if (waits.empty()) return false;
+    if (::poll(waits.data(), waits.size(), 200) <= 0) return true;
+    for (std::size_t i = 0; i < waits.size(); ++i) {
+      if (waits[i].revents == 0) continue;
+      for (const std::string& line : read_lines(*whose[i])) take(*whose[i], line);
+    }
+    return true;
+  }
+
+  void take(Child& child, const std::string& line) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (!json.is_object()) return;
+    const bool is_watched = &child == &children_.front();
+    if (json.contains("warning")) {
+      if (watch_.warn && is_watched) watch_.warn(json.value("warning", ""));
+      return;
+    }
+    child.last = line;
+    if (!is_watched) return;
+    if (!json.contains("done")) {
+      if (watch_.row && !json.contains("error")) watch_.row(line);
+      return;
+    }
+    if (stopped_) return;
+    stopped_ = !go_on(watch_.progress, json.value("what", ""), json.value("done", std::uint64_t{0}),
+                      json.value("total", std::uint64_t{0}));
+    if (stopped_) end_all(SIGTERM);
+  }
+
+  void end_all(int signal) {
+    for (Child& child : children_) {
+      if (child.out < 0) continue;
+      ::kill(child.id, signal);
+      child.was_ended = true;
+    }
+  }
+
+  /// By itself: not ended from here, and not since another one was gone.
+  const Child* first_to_fail() const {
+    const Child* out = nullptr;
+    for (const Child& child : children_) {
+      if (child.code == 0) continue;
+      const bool by_itself = !child.was_ended && child.code != lost_another;
+      if (out == nullptr || (by_itself && out->code == lost_another) ||
+          (by_itself && out->was_ended)) {
+        out = &child;
+      }
+    }
+    return out;
+  }
+
+  Error error_of(const Child& child) const {
+    const auto json = nlohmann::json::parse(child.last, nullptr, false);
+    if (json.is_object() && json.contains("error")) return told_error(json.at("error"));
+    std::string who = "kinalign-learn";
+    if (children_.size() > 1) {
+      who = "process " + std::to_string(&child - children_.data()) + " (of 0 to " +
+            std::to_string(children_.size() - 1) + ") of kinalign-learn";
+    }
+    return {"", 0, who + " to end well",
+            child.code > 128 ? "its end by signal " + std::to_string(child.code - 128)
+                             : "exit code " + std::to_string(child.code)};
+  }
+
+  const WorkerWatch& watch_;
+  std::vector<Child> children_;
+  bool stopped_ = false;
+};
+
 }  // namespace
 
+Result<std::string> run_workers(const std::vector<std::string>& job_files,
+                                const WorkerWatch& watch) {
+  const std::string program = KA_TRY(worker_program());
+  Workers workers(watch);
+  for (const std::string& file : job_files) KA_TRY(workers.add(program, file));
+  workers.run();
+  return workers.result();
+}
+
+Result<std::uint16_t> free_port() {
+  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t length = sizeof address;
+  const bool found =
+      socket >= 0 &&
+      ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+      ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &length) == 0;
+  const std::string fault = std::strerror(errno);
+  if (socket >= 0) ::close(socket);
+  if (found) return ntohs(address.sin_port);
+  return Failure(Error{"", 0, "a free port of this machine", fault});
+}
+
 Result<std::string> run_worker(const std::string& job_file, const WorkerWatch& watch) {
-  const Child child = KA_TRY(start(KA_TRY(worker_program()), job_file));
-  Lines lines(child.out);
-  std::string line, last;
-  bool stopped = false;
-  while (lines.next(line)) {
-    const auto json = nlohmann::json::parse(line, nullptr, false);
-    if (!json.is_object()) continue;
-    if (json.contains("warning")) {
-      if (watch.warn) watch.warn(json.value("warning", ""));
-      continue;
-    }
-    last = line;
-    if (!json.contains("done") || stopped) continue;
-    if (go_on(watch.progress, json.value("what", ""), json.value("done", std::uint64_t{0}),
-              json.value("total", std::uint64_t{0}))) {
-      continue;
-    }
-    stopped = true;
-    ::kill(child.id, SIGTERM);
-  }
-  const int code = wait_for(child);
-  if (stopped) return Failure(interruption());
-  const auto json = nlohmann::json::parse(last, nullptr, false);
-  if (json.is_object() && json.contains("error")) return Failure(told_error(json.at("error")));
-  if (code == 0 && json.is_object()) return last;
-  return Failure(Error{"", 0, "kinalign-learn to end well", "exit code " + std::to_string(code)});
+  return run_workers({job_file}, watch);
 }
 
 }  // namespace kinalign

@@ -76,6 +76,10 @@ struct MeanOf {
     sum += value;
     ++count;
   }
+  void add(const MeanOf& more) {
+    sum += more.sum;
+    count += more.count;
+  }
   double value() const { return count == 0 ? 0.0 : sum / static_cast<double>(count); }
 };
 
@@ -128,9 +132,16 @@ class FuseScore {
     frames_ += truth.frames();
   }
 
-  FuseMark mark() const {
-    return {.devices = devices_,
-            .all_cm = all_.value(),
+  void add(const FuseScore& more) {
+    all_.add(more.all_);
+    hidden_.add(more.hidden_);
+    for (std::size_t group = 0; group < seen_.size(); ++group) seen_[group].add(more.seen_[group]);
+    errors_.add(more.errors_);
+    frames_ += more.frames_;
+  }
+
+  FuseErrors errors() const {
+    return {.all_cm = all_.value(),
             .hidden_cm = hidden_.value(),
             .seen_trunk_cm = seen_[0].value(),
             .seen_arms_cm = seen_[1].value(),
@@ -230,11 +241,13 @@ Result<std::vector<FuseMark>> fuse_marks(const Fusion& fusion, const FuseLayout&
   for (auto& one : hidden.tested) hide_limbs(layout, one.front());
   std::vector<FuseMark> out;
   for (const Devices these : devices) {
-    FuseScore score(these, layout, data.pose.body);
+    FuseMark& mark = out.emplace_back(FuseMark{.devices = these});
+    FuseScore all(these, layout, data.pose.body);
     for (auto& [name, session] : sessions_of(hidden, session_errors(10.0))) {
       const FuseInput seen = session.input;
       session.input = without_others(std::move(session.input), these);
       const FusedPose pose = fusion(session.input);
+      FuseScore score(these, layout, data.pose.body);
       const std::size_t bones = layout.nodes.bones.size();
       std::size_t begin = 0;
       for (const std::size_t i : session.sequences) {
@@ -249,8 +262,10 @@ Result<std::vector<FuseMark>> fuse_marks(const Fusion& fusion, const FuseLayout&
         score.add(truth, hidden.tested[i].front(), part);
         begin += truth.frames();
       }
+      all.add(score);
+      mark.people.emplace(name, score.errors());
     }
-    out.push_back(score.mark());
+    mark.all = all.errors();
   }
   return out;
 }
@@ -279,11 +294,11 @@ std::vector<HeadingMark> heading_marks(const HeadingsOf& headings, const FuseLay
       out[n].before_deg += size_deg(heading_error(clean, shown.nodes, n));
       out[n].after_deg += left;
       out[n].worst_deg = std::max(out[n].worst_deg, left);
-      ++out[n].people;
+      out[n].people.emplace(name, left);
     }
   }
   for (HeadingMark& mark : out) {
-    const double people = static_cast<double>(std::max<std::size_t>(mark.people, 1));
+    const double people = static_cast<double>(std::max<std::size_t>(mark.people.size(), 1));
     mark.before_deg /= people;
     mark.after_deg /= people;
   }

@@ -8,6 +8,7 @@
 #include "kinalign/models/fuse/fuse_model.h"
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,19 @@ namespace kinalign {
 
 /// Distances are means over joints and frames, about the root and in the world. Of nodes alone the
 /// heading of a whole sequence is taken from the truth: they cannot know it.
-struct FuseMark {
-  Devices devices = Devices::both;
+struct FuseErrors {
   double all_cm = 0.0;
   /// Joints that the Kinect does not track, or that it puts more than 20 cm off.
   double hidden_cm = 0.0;
   double seen_trunk_cm = 0.0, seen_arms_cm = 0.0, seen_legs_cm = 0.0;  // all others
   double sip_deg = 0.0;                // global rotation of thighs and upper arms against the root
   std::size_t frames = 0, hidden = 0;  // frames; joints in frames
+};
+
+struct FuseMark {
+  Devices devices = Devices::both;
+  FuseErrors all{};
+  std::map<std::string, FuseErrors> people{};  // by person
 };
 
 /// A method as a function from both devices, as they came, to a pose.
@@ -38,7 +44,7 @@ struct HeadingMark {
   std::string node;
   double before_deg = 0.0, after_deg = 0.0;  // mean size, at first; after 60 s with a Kinect
   double worst_deg = 0.0;                    // of all people, after 60 s
-  std::size_t people = 0;                    // whose sessions are that long
+  std::map<std::string, double> people{};    // whose sessions are that long: after 60 s
 };
 
 /// Headings [T,N] of nodes before a Kinect.

@@ -104,11 +104,13 @@ FuseTask::Batch FuseTask::tensors_of(Rows rows, std::size_t batch, std::size_t f
       .placed = to_torch(rows.placed, {b, t}).to(device_)};
 }
 
-FuseTask::Batch FuseTask::draw(std::uint64_t seed, std::uint64_t step) const {
-  const std::size_t batch = training_.batch, crop = training_.crop;
+FuseTask::Batch FuseTask::draw(std::uint64_t seed, std::uint64_t step,
+                               const BatchPart& part) const {
+  const auto first = static_cast<std::size_t>(part.begin);
+  const auto batch = static_cast<std::size_t>(part.count), crop = training_.crop;
   Rows rows;
-  for (std::size_t k = 0; k < batch; ++k) {
-    const std::uint64_t number = step * batch + k;
+  for (std::size_t k = first; k < first + batch; ++k) {
+    const std::uint64_t number = step * training_.batch + k;
     const RandomStream places(seed, number);
     const auto [at, begin] = crops_.draw(places, crop);
     const auto& seen = data_.learnt[at];
@@ -136,18 +138,19 @@ void FuseTask::find_scales() {
 }
 
 torch::Tensor FuseTask::loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) {
-  const Batch batch = draw(seed, step);
-  const auto answers = network.forward(batch.input, true);
+  const BatchPart part = share().part(whole(training_.batch));
+  const Batch batch = draw(seed, step, part);
+  const auto answers = network.forward(batch.input, part);
   const auto sixes = answers.slice(2, 0, answers.size(2) - 3);
   const auto rotations = rotations_of(sixes);
   const PoseLoss& weights = training_.loss;
-  auto out = weights.matrices * (rotations - batch.rotations).pow(2).sum({-1, -2}).mean();
+  auto out = weights.matrices * part.mean((rotations - batch.rotations).pow(2).sum({-1, -2}));
   const auto miss = metres_of(answers.slice(2, answers.size(2) - 3) - batch.way);
-  out = out + training_.place * weighted_mean(miss, batch.placed);
+  out = out + training_.place * weighted_mean(miss, batch.placed, share());
   const auto error =
       body_.places_of(rotations, batch.offsets) - body_.places_of(batch.rotations, batch.offsets);
-  out = out + weights.position * metres_of(error).mean();
-  return out + weights.acceleration * metres_of(second_differences(error)).mean();
+  out = out + weights.position * part.mean(metres_of(error));
+  return out + weights.acceleration * part.mean(metres_of(second_differences(error)));
 }
 
 std::optional<double> FuseTask::judge(const TorchNetwork& network) {

@@ -36,7 +36,9 @@ class FuseTask : public TrainingTask {
     torch::Tensor way;        // [B,T,3] dm from the Kinect's SpineBase to the root, in that space
     torch::Tensor placed;     // [B,T] 1 where the Kinect sees it
   };
-  Batch draw(std::uint64_t seed, std::uint64_t step) const;
+  Batch draw(std::uint64_t seed, std::uint64_t step) const { return draw(seed, step, all()); }
+  /// These examples of it.
+  Batch draw(std::uint64_t seed, std::uint64_t step, const BatchPart& part) const;
 
   /// In place of those of the data: a model's, to go on from it.
   void use_scales(std::vector<float> mean, std::vector<float> scale);
@@ -53,6 +55,7 @@ class FuseTask : public TrainingTask {
     std::vector<float> input, offsets, way, placed;
     std::vector<Turn> rotations;
   };
+  BatchPart all() const { return BatchShare().part(static_cast<std::int64_t>(training_.batch)); }
   void add(const PoseSequence& sequence, const FuseInput& input, std::size_t begin,
            Rows& rows) const;
   Batch tensors_of(Rows rows, std::size_t batch, std::size_t frames) const;

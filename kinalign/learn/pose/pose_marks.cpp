@@ -40,7 +40,8 @@ Result<std::vector<PoseMark>> pose_marks(PoseSolver& solver, const PoseData& dat
   if (data.tested.empty()) return Failure(Error{"", 0, "people of a test part", "none"});
   std::vector<PoseMark> out;
   for (const MarkedState& state : marked_states(layout.nodes[lost])) {
-    PoseMark mark{state.name, {}, {}};
+    PoseMark mark;
+    mark.nodes = state.name;
     for (std::size_t i = 0; i < data.tested.size(); ++i) {
       const PoseSequence& one = data.tested[i];
       NodeFrames nodes = with_errors(one.nodes, state.errors, RandomStream(marks_seed, i));
@@ -49,7 +50,9 @@ Result<std::vector<PoseMark>> pose_marks(PoseSolver& solver, const PoseData& dat
       auto rotations = solver.answer(nodes).rotations;
       mark.answer.add(pose_errors(data.body, rotations, truth, layout.rate_hz));
       smooth_turns(layout.bones.size(), rotations);
-      mark.smoothed.add(pose_errors(data.body, rotations, truth, layout.rate_hz));
+      const PoseErrors smoothed = pose_errors(data.body, rotations, truth, layout.rate_hz);
+      mark.smoothed.add(smoothed);
+      mark.people[one.subject].add(smoothed);
     }
     out.push_back(std::move(mark));
   }

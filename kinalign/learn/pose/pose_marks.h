@@ -7,6 +7,7 @@
 #include "kinalign/models/pose/pose_metrics.h"
 #include "kinalign/models/pose/pose_model.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct PoseMark {
   std::string nodes;    // "clean", "calibrated", "20 minutes later", "wrist_left lost"
   PoseErrors answer;    // as the network says it
   PoseErrors smoothed;  // as PoseSolver::solve gives it
+  std::map<std::string, PoseErrors> people{};  // smoothed, by person
 };
 
 /// A row for each state of the nodes, over data.tested. `lost`: the leaf that is lost in the last

@@ -103,13 +103,16 @@ void PoseTask::standardise(std::vector<float>& input) const {
   if (training_.standardised) kinalign::standardise(input_mean_, input_scale_, input);
 }
 
-PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step) const {
-  const std::size_t batch = training_.batch, crop = training_.crop, bones = layout_.bones.size();
+PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step,
+                               const BatchPart& part) const {
+  const auto first = static_cast<std::size_t>(part.begin);
+  const auto batch = static_cast<std::size_t>(part.count), crop = training_.crop,
+             bones = layout_.bones.size();
   std::vector<float> input, offsets;
   std::vector<Turn> rotations;
-  for (std::size_t k = 0; k < batch; ++k) {
-    const RandomStream places(seed, 2 * (step * batch + k));
-    const RandomStream errors(seed, 2 * (step * batch + k) + 1);
+  for (std::size_t k = first; k < first + batch; ++k) {
+    const std::uint64_t number = step * training_.batch + k;
+    const RandomStream places(seed, 2 * number), errors(seed, 2 * number + 1);
     const auto [at, begin] = crops_.draw(places, crop);
     const PoseSequence& one = data_.learnt[at];
     const NodeFrames nodes = with_errors(crop_of(one.nodes, begin, crop), training_.errors, errors);
@@ -134,16 +137,17 @@ PoseTask::Batch PoseTask::draw(std::uint64_t seed, std::uint64_t step) const {
 }
 
 torch::Tensor PoseTask::loss(const TorchNetwork& network, std::uint64_t seed, std::uint64_t step) {
-  const Batch batch = draw(seed, step);
-  const auto rotations = rotations_of(network.forward(batch.input, true));
+  const BatchPart part = share().part(whole(training_.batch));
+  const Batch batch = draw(seed, step, part);
+  const auto rotations = rotations_of(network.forward(batch.input, part));
   const PoseLoss& weights = training_.loss;
-  auto out = weights.matrices * (rotations - batch.rotations).pow(2).sum({-1, -2}).mean();
+  auto out = weights.matrices * part.mean((rotations - batch.rotations).pow(2).sum({-1, -2}));
   if (weights.position <= 0.0 && weights.acceleration <= 0.0) return out;
   const auto error =
       body_.places_of(rotations, batch.offsets) - body_.places_of(batch.rotations, batch.offsets);
-  out = out + weights.position * metres_of(error).mean();
+  out = out + weights.position * part.mean(metres_of(error));
   if (weights.acceleration > 0.0) {
-    out = out + weights.acceleration * metres_of(second_differences(error)).mean();
+    out = out + weights.acceleration * part.mean(metres_of(second_differences(error)));
   }
   return out;
 }

@@ -61,13 +61,16 @@ class PoseTask : public TrainingTask {
     torch::Tensor rotations;  // [B,T,bones,3,3] (rotations_of())
     torch::Tensor offsets;    // [B,J,3] m
   };
-  Batch draw(std::uint64_t seed, std::uint64_t step) const;
+  Batch draw(std::uint64_t seed, std::uint64_t step) const { return draw(seed, step, all()); }
+  /// These examples of it.
+  Batch draw(std::uint64_t seed, std::uint64_t step, const BatchPart& part) const;
   /// In place of those of the data: a model's, to go on from it.
   void use_scales(std::vector<float> mean, std::vector<float> scale);
   const std::vector<float>& input_mean() const { return input_mean_; }
   const std::vector<float>& input_scale() const { return input_scale_; }
 
  private:
+  BatchPart all() const { return BatchShare().part(static_cast<std::int64_t>(training_.batch)); }
   void find_scales();
   void make_judged();
   void standardise(std::vector<float>& input) const;

@@ -161,9 +161,11 @@ TEST_CASE("a fusion that answers with the truth has no error") {
                                 {Devices::both, Devices::kinect, Devices::nodes});
   REQUIRE(marks);
   for (const FuseMark& mark : *marks) {
-    CHECK(mark.all_cm < 1e-3);
-    CHECK(mark.hidden_cm < 1e-3);
-    CHECK(mark.hidden > 0);
-    CHECK(mark.sip_deg < 0.1);
+    CHECK(mark.all.all_cm < 1e-3);
+    CHECK(mark.all.hidden_cm < 1e-3);
+    CHECK(mark.all.hidden > 0);
+    CHECK(mark.all.sip_deg < 0.1);
+    REQUIRE(mark.people.size() == 1);
+    CHECK(mark.people.begin()->second.hidden == mark.all.hidden);
   }
 }

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/kinalign/eval/comparison.h"
+
+#include "kinalign/models/windows_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The rows of kinalign-learn (apps/kinalign-learn/marks.h) as one array.
+Result<std::string> rows_of_trial(const Trial& trial, Call& call) {
+  std::string model = trial.model;
+  if (model.empty()) model = KA_TRY(trained_model(trial.training, call));
+  const auto rows = KA_TRY(rows_of_model(trial.training, model, call));
+  Json out = Json::array();
+  for (const std::string& row : rows) out.push_back(Json::parse(row));
+  return out.dump();
+}
+
+/// A mark's name in the rows, and in the table.
+struct RowMark {
+  std::string_view row, table;
+};
+
+/// Of poses by the state of their nodes, as the row says it.
+std::vector<RowMark> pose_marks_of(const std::string& nodes) {
+  if (nodes == "calibrated") {
+    return {{"sip_deg", "sip_deg"},
+            {"angle_deg", "angle_deg"},
+            {"head_deg", "head_deg"},
+            {"position_cm", "position_cm"},
+            {"jitter_ratio", "jitter"}};
+  }
+  if (nodes == "20 minutes later") {
+    return {{"sip_deg", "later_sip_deg"}, {"position_cm", "later_position_cm"}};
+  }
+  if (nodes.ends_with(" lost")) {
+    return {{"sip_deg", "lost_sip_deg"}, {"position_cm", "lost_position_cm"}};
+  }
+  return {};
+}
+
+/// Puts a row's values of each person under the names of the table.
+void add_people(const Json& row, const std::vector<RowMark>& names, MethodMarks& out) {
+  for (const auto& [person, values] : row.at("people").items()) {
+    for (const RowMark& name : names) {
+      if (name.row == "hidden_cm" && values.at("hidden") == 0) continue;
+      const double value = values.at(std::string(name.row)).get<double>();
+      out.marks[std::string(name.table)][person].add(value);
+    }
+  }
+}
+
+/// The row of the table for that method and variant, made where it is not there yet.
+MethodMarks& row_for(const std::string& method, const std::string& variant,
+                     std::vector<MethodMarks>& all) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const MethodMarks& one) {
+    return one.method == method && one.variant == variant;
+  });
+  return found != all.end() ? *found : all.emplace_back(MethodMarks{method, variant});
+}
+
+/// Mean headings of a person's nodes behind 60 s.
+void add_headings(const Json& rows, const std::string& method, MethodMarks& out) {
+  std::map<std::string, Mean> people;
+  for (const Json& row : rows) {
+    if (!row.contains("after_deg") || row.at("method") != method) continue;
+    for (const auto& [person, value] : row.at("people").items()) {
+      people[person].add(value.get<double>());
+    }
+  }
+  for (const auto& [person, mean] : people) out.marks["heading_deg"][person].add(*mean.value());
+}
+
+void add_rows(const std::string& name, const Json& rows, std::vector<MethodMarks>& out) {
+  static const std::vector<RowMark> fusion{
+      {"all_cm", "position_cm"},          {"hidden_cm", "hidden_cm"},
+      {"seen_trunk_cm", "seen_trunk_cm"}, {"seen_arms_cm", "seen_arms_cm"},
+      {"seen_legs_cm", "seen_legs_cm"},   {"sip_deg", "sip_deg"}};
+  for (const Json& row : rows) {
+    const auto method = row.at("method").get<std::string>();
+    const std::string& called = method == "filter" ? method : name;
+    if (row.contains("devices")) {
+      MethodMarks& marks = row_for(called, row.at("devices").get<std::string>(), out);
+      add_people(row, fusion, marks);
+      if (marks.variant == "both") add_headings(rows, method, marks);
+    } else if (row.contains("nodes")) {
+      add_people(row, pose_marks_of(row.at("nodes").get<std::string>()), row_for(called, "", out));
+    }
+  }
+}
+
+std::vector<MethodMarks> sum_up_rows(const std::string& name, const std::vector<FoldMarks>& folds) {
+  try {
+    std::vector<MethodMarks> out;
+    for (const FoldMarks& fold : folds) {
+      for (const std::string& text : fold.texts) add_rows(name, Json::parse(text), out);
+    }
+    return out;
+  } catch (const Json::exception&) {
+    return {};
+  }
+}
+
+std::vector<FoldTake> takes_of_windows(const Windows& windows) {
+  std::vector<FoldTake> out;
+  std::set<std::size_t> known;
+  for (const Stretch& stretch : windows.stretches) {
+    if (!known.insert(stretch.take).second) continue;
+    const WindowsFacts::Take& take = windows.facts.takes[stretch.take];
+    out.push_back({take.name, take.subject, take.action, run_of(take.name),
+                   windows.facts.parts[stretch.part]});
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<Comparison> body_comparison(const Eval& o, Learns task, const std::string& bytes,
+                                   const std::string& file) {
+  Comparison out;
+  out.takes = takes_of_windows(KA_TRY(read_windows(bytes, file)));
+  if (task == Learns::pose) {
+    out.columns = {{"sip_deg", "SIP, °"},
+                   {"angle_deg", "angle, °"},
+                   {"head_deg", "head, °"},
+                   {"position_cm", "position, cm"},
+                   {"jitter", "jitter, × truth", 2},
+                   {"later_sip_deg", "20 min: SIP, °"},
+                   {"later_position_cm", "20 min: position, cm"},
+                   {"lost_sip_deg", "lost: SIP, °"},
+                   {"lost_position_cm", "lost: position, cm"}};
+    out.note = "nodes as calibrated, after 20 minutes, with one lost";
+  } else {
+    out.columns = {{"position_cm", "all, cm"},
+                   {"hidden_cm", "hidden, cm"},
+                   {"seen_trunk_cm", "seen trunk, cm"},
+                   {"seen_arms_cm", "seen arms, cm"},
+                   {"seen_legs_cm", "seen legs, cm"},
+                   {"sip_deg", "SIP, °"},
+                   {"heading_deg", "headings after 60 s, °"}};
+    out.note = o.input.empty() ? "a simulated Kinect" : "the Kinect " + o.input;
+  }
+  out.over = "people";
+  out.mark = rows_of_trial;
+  out.sum_up = sum_up_rows;
+  return out;
+}
+
+}  // namespace kinalign

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/kinalign/eval/comparison.h"
+#include "apps/kinalign/learn/eval_methods.h"
+#include "apps/kinalign/verbs/describe_model.h"
+
+#include "kinalign/compare/denoise_marks.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t least_rows = 8;
+
+/// Marks of a method on a tested stretch: of its answer as it is, and steadied.
+struct Marked {
+  std::string take, subject;
+  std::array<DenoiseMarks, 2> marks;
+};
+
+Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json marks_json(const DenoiseMarks& marks) {
+  const ProtocolMarks& p = marks.protocol;
+  const TableNine& t = marks.table_nine;
+  return {number(p.position_cm),
+          number(p.fitted_cm),
+          number(p.bone_cm),
+          number(p.constancy_cm),
+          p.acceleration_mm,
+          p.jitter_mm,
+          p.true_jitter_mm,
+          t.position,
+          t.bone,
+          t.smooth,
+          t.true_smooth,
+          marks.covered,
+          marks.radius_cm,
+          marks.cells,
+          number(marks.hand_cm),
+          marks.feet.contacts,
+          marks.feet.skate_m_s,
+          marks.feet.true_skate_m_s};
+}
+
+std::optional<double> number_of(const Json& json) {
+  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
+}
+
+DenoiseMarks marks_of(const Json& json) {
+  DenoiseMarks out;
+  ProtocolMarks& p = out.protocol;
+  p.position_cm = number_of(json.at(0));
+  p.fitted_cm = number_of(json.at(1));
+  p.bone_cm = number_of(json.at(2));
+  p.constancy_cm = number_of(json.at(3));
+  p.acceleration_mm = json.at(4).get<double>();
+  p.jitter_mm = json.at(5).get<double>();
+  p.true_jitter_mm = json.at(6).get<double>();
+  TableNine& t = out.table_nine;
+  t.position = json.at(7).get<double>();
+  t.bone = json.at(8).get<double>();
+  t.smooth = json.at(9).get<double>();
+  t.true_smooth = json.at(10).get<double>();
+  out.covered = json.at(11).get<double>();
+  out.radius_cm = json.at(12).get<double>();
+  out.cells = json.at(13).get<std::size_t>();
+  out.hand_cm = number_of(json.at(14));
+  out.feet.contacts = json.at(15).get<std::size_t>();
+  out.feet.skate_m_s = json.at(16).get<double>();
+  out.feet.true_skate_m_s = json.at(17).get<double>();
+  return out;
+}
+
+std::string written_marks(const std::vector<Marked>& all) {
+  Json out = Json::array();
+  for (const Marked& one : all) {
+    out.push_back({one.take, one.subject, marks_json(one.marks[0]), marks_json(one.marks[1])});
+  }
+  return out.dump();
+}
+
+/// Nothing where the text is none of ours.
+std::vector<Marked> read_marks(const std::string& text) {
+  try {
+    std::vector<Marked> out;
+    for (const Json& one : Json::parse(text)) {
+      out.push_back({one.at(0).get<std::string>(),
+                     one.at(1).get<std::string>(),
+                     {marks_of(one.at(2)), marks_of(one.at(3))}});
+    }
+    return out;
+  } catch (const nlohmann::json::exception&) {
+    return {};
+  }
+}
+
+std::vector<FoldTake> takes_of(const Pairs& pairs) {
+  std::vector<FoldTake> out;
+  std::set<std::string> known;
+  for (const Pair& pair : pairs.all) {
+    if (known.insert(pair.take).second) {
+      out.push_back({pair.take, pair.subject, pair.action, run_of(pair.take), pair.part});
+    }
+  }
+  return out;
+}
+
+/// All that trials are marked with.
+struct Bench {
+  Pairs pairs;
+  DenoiseLayout layout;
+  DenoiseMarker marker;
+};
+
+Result<Answer> answer_of(const Trial& trial, const Bench& bench, Call& call) {
+  if (trial.model.empty()) {
+    return make_answer({bench.layout, bench.pairs.all, trial.training}, call);
+  }
+  const std::string bytes =
+      KA_TRY(read_whole(call.surroundings.files, trial.model, most_model_bytes));
+  const DenoiseLayout layout = KA_TRY(read_denoise_model(bytes, trial.model)).layout;
+  if (layout.inputs == bench.layout.inputs && layout.outputs == bench.layout.outputs) {
+    return answer_of_model(bytes, trial.model);
+  }
+  return Failure(Error{trial.model, 0, "a model of the joints of the data", "another one"});
+}
+
+Result<std::string> marks_of_trial(const Trial& trial, const Bench& bench, Call& call) {
+  const Answer answer = KA_TRY(answer_of(trial, bench, call));
+  const Steadier steadier({}, bench.layout);
+  std::vector<Marked> out;
+  for (const Pair& pair : bench.pairs.all) {
+    if (std::find(trial.tested.begin(), trial.tested.end(), pair.take) == trial.tested.end()) {
+      continue;
+    }
+    Denoised plain = answer(pair.input);
+    Marked one{pair.take, pair.subject, {}};
+    one.marks[0] = bench.marker.marks_of(pair, plain.positions, plain.spread);
+    const Denoised steadied = steadier.steadied(answer, pair.input, std::move(plain));
+    one.marks[1] = bench.marker.marks_of(pair, steadied.positions, steadied.spread);
+    out.push_back(std::move(one));
+  }
+  return written_marks(out);
+}
+
+using Group = std::vector<const Marked*>;
+
+/// By fold; of a single fold by person.
+std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
+                                       const std::vector<std::vector<Marked>>& marks) {
+  std::map<std::string, Group> out;
+  for (std::size_t f = 0; f < folds.size(); ++f) {
+    for (const Marked& one : marks[f]) {
+      out[folds.size() > 1 ? folds[f].fold : one.subject].push_back(&one);
+    }
+  }
+  return out;
+}
+
+/// Adds the means of a group; `which`: of Marked::marks.
+void add_group(const std::string& name, const Group& group, std::size_t which, MethodMarks& out) {
+  std::vector<ProtocolMarks> marks;
+  double covered = 0.0, radius = 0.0, cells = 0.0, skate = 0.0, contacts = 0.0;
+  Mean hands;
+  for (const Marked* one : group) {
+    const DenoiseMarks& m = one->marks[which];
+    marks.push_back(m.protocol);
+    const auto n = static_cast<double>(m.cells);
+    covered += m.covered * n;
+    radius += m.radius_cm * n;
+    cells += n;
+    if (m.hand_cm) hands.add(*m.hand_cm);
+    const auto standing = static_cast<double>(m.feet.contacts);
+    skate += 100.0 * m.feet.skate_m_s * standing;
+    contacts += standing;
+  }
+  const ProtocolMeans row = protocol_row(marks);
+  const auto put = [&](const std::string& key, const std::optional<double>& value) {
+    if (value) out.marks[key][name].add(*value);
+  };
+  put("mpjpe_cm", row.position_cm);
+  put("pa_mpjpe_cm", row.fitted_cm);
+  put("bone_cm", row.bone_cm);
+  put("constancy_cm", row.constancy_cm);
+  put("acceleration_mm", row.acceleration_mm);
+  put("jitter", row.jitter);
+  if (cells > 0.0) put("covered_percent", 100.0 * covered / cells);
+  if (cells > 0.0) put("radius_cm", radius / cells);
+  put("hand_cm", hands.value());
+  if (contacts > 0.0) put("skate_cm_s", skate / contacts);
+}
+
+std::vector<MethodMarks> sum_up(const std::string& name, const std::vector<FoldMarks>& folds) {
+  std::vector<std::vector<Marked>> marks;
+  for (const FoldMarks& fold : folds) {
+    marks.emplace_back();
+    for (const std::string& text : fold.texts) {
+      for (Marked& one : read_marks(text)) marks.back().push_back(std::move(one));
+    }
+  }
+  const auto groups = groups_of(folds, marks);
+  if (groups.empty()) return {};
+  std::vector<MethodMarks> out{{name, ""}, {name, "steadied"}};
+  for (const auto& [who, group] : groups) {
+    for (std::size_t which = 0; which < out.size(); ++which) {
+      add_group(who, group, which, out[which]);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
+                                      const std::string& file) {
+  Pairs pairs = KA_TRY(pairs_of(KA_TRY(read_windows(bytes, file)), input_of(o, Learns::denoise),
+                                o.truth, least_rows));
+  DenoiseLayout layout = KA_TRY(eval_layout(pairs));
+  DenoiseMarker marker = KA_TRY(DenoiseMarker::make(layout, pairs.all));
+  const auto bench =
+      std::make_shared<Bench>(Bench{std::move(pairs), std::move(layout), std::move(marker)});
+  Comparison out;
+  out.takes = takes_of(bench->pairs);
+  out.columns = {{"mpjpe_cm", "position, cm", 2},
+                 {"pa_mpjpe_cm", "fitted, cm", 2},
+                 {"bone_cm", "bones, cm", 2},
+                 {"constancy_cm", "constancy, cm", 2},
+                 {"acceleration_mm", "acceleration, mm/frame²", 2},
+                 {"jitter", "jitter, × truth", 2},
+                 {"covered_percent", "within 90 % radius, %", 1},
+                 {"radius_cm", "that radius, cm", 1},
+                 {"hand_cm", "wrists, cm", 2},
+                 {"skate_cm_s", "standing feet, cm/s", 2}};
+  out.over = "folds";
+  out.mark = [bench](const Trial& trial, Call& call) {
+    return marks_of_trial(trial, *bench, call);
+  };
+  out.sum_up = sum_up;
+  return out;
+}
+
+}  // namespace kinalign

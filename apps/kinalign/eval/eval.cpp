@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/console.h"
+#include "apps/kinalign/dataset/table_output.h"
+#include "apps/kinalign/eval/comparison.h"
+#include "apps/kinalign/learn/eval_methods.h"
+#include "apps/kinalign/text/counts_text.h"
+#include "apps/kinalign/verbs.h"
+#include "apps/kinalign/verbs/describe_model.h"
+
+#include "kinalign/core/hash.h"
+#include "kinalign/evaluate/statistics.h"
+#include "kinalign/models/model_file.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace kinalign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_windows_bytes = std::size_t{4} << 30U;
+constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
+/// The version of cached results: another number lets all be computed again.
+constexpr int cache_version = 4;
+/// An interval over fewer people would be too narrow.
+constexpr std::size_t least_for_interval = 8;
+/// More rows of tests are written to files only.
+constexpr std::size_t most_printed_tests = 12;
+
+Learns task_of(const std::string& method) {
+  const TrainedMethod* found = find_trained(trained_part(method));
+  return found == nullptr ? Learns::denoise : found->task;
+}
+
+/// Something that is compared, and its task.
+struct Compared {
+  std::string name;  // of the method, or of the model's file
+  Learns task = Learns::denoise;
+};
+
+Result<void> check_one_task(const Compared& first, const Compared& other) {
+  if (first.task == other.task) return {};
+  return Failure(Error{"METHOD", 0, "methods and models of one task, one table for each",
+                       shown(first.name) + ", which " + what_it_does(first.task) + ", and " +
+                           shown(other.name) + ", which " + what_it_does(other.task)});
+}
+
+Result<void> check_methods(const Eval& o, const Sources& given) {
+  for (const std::string& method : o.methods) {
+    KA_TRY(
+        check_one_task({o.methods.front(), task_of(o.methods.front())}, {method, task_of(method)}));
+    KA_TRY(check_task_flags({method, "", task_of(method)}, given));
+  }
+  return {};
+}
+
+Usage describe_eval(Eval& o) {
+  Usage usage;
+  usage.positionals = {{"METHOD",
+                        "which methods (default: those that clean a Kinect without training)",
+                        &o.methods, 0, 100}};
+  auto& choices = usage.positionals.front().choices;
+  for (const EvalMethod& method : eval_methods()) choices.push_back(method.name);
+  for (const TrainedMethod& method : trained_methods()) {
+    if (method.task != Learns::denoise) choices.push_back(method.name);
+  }
+  usage.flags = {
+      {"data", "the data set's folder", &o.data, 0.0, 0.0, {}, "FOLDER"},
+      {"windows", "a file of windows in its place", &o.windows, 0.0, 0.0, {}, "FILE"},
+      {"folds", "what is tested apart", &o.folds, 0.0, 0.0, {"people", "runs", "actions", "split"}},
+      {"split",
+       "of the data set, in place of folds: its part train is learnt from, its part test tested",
+       &o.split,
+       0.0,
+       0.0,
+       {},
+       "FILE"},
+      {"model",
+       "a finished model, a row of its own; may be repeated. Nobody who is tested should have been "
+       "in its training",
+       &o.models,
+       0.0,
+       0.0,
+       {},
+       "FILE"},
+      {"input",
+       "the rough stream (default: kinect; of methods that fuse: a simulated Kinect)",
+       &o.input,
+       0.0,
+       0.0,
+       {},
+       "NAME"},
+      {"truth", "the precise stream", &o.truth, 0.0, 0.0, {}, "NAME"},
+      nodes_field(o.nodes),
+      {"rate", "frames a second, of methods that clean", &o.rate_hz, 1.0, 1000.0, {}, "HZ"},
+      {"seeds", "trainings of each network", &o.seeds, 1.0, 100.0},
+      {"steps", "batches of each training; 0: the method's own number", &o.steps, 0.0, 1e8},
+      {"hand-weight", "of wrists and hands in the loss of networks; 0: the method's own",
+       &o.hand_weight, 0.0, 100.0},
+      {"device", "where networks are trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
+      format_field(o.format)};
+  usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
+    if (common.out.empty()) return Failure(Error{"-o", 0, "-o FOLDER for results", "none"});
+    if (o.data.empty() == o.windows.empty()) {
+      return Failure(Error{"--data", 0, "a data set (--data) or a file of windows (--windows)",
+                           o.data.empty() ? "neither" : "both"});
+    }
+    if (!o.split.empty() && (o.data.empty() || (given.count("folds") > 0 && o.folds != "split"))) {
+      return Failure(Error{"--split", 0, "a data set (--data) without other folds",
+                           o.data.empty() ? "--windows (--folds split uses the file's own parts)"
+                                          : "--folds " + o.folds});
+    }
+    return check_methods(o, given);
+  };
+  return usage;
+}
+
+std::vector<std::string> chosen_methods(const Eval& o) {
+  if (!o.methods.empty() || !o.models.empty()) return o.methods;
+  std::vector<std::string> out;
+  for (const EvalMethod& method : eval_methods()) {
+    if (!method.trained) out.push_back(method.name);
+  }
+  return out;
+}
+
+/// The models' files are there, and of one task with the methods: that task.
+Result<Learns> task_of_all(const Eval& o, Call& call) {
+  std::vector<Compared> all;
+  for (const std::string& method : chosen_methods(o)) all.push_back({method, task_of(method)});
+  for (const std::string& file : o.models) {
+    const std::string bytes = KA_TRY(read_whole(call.surroundings.files, file, most_model_bytes));
+    const std::string word = KA_TRY(task_of_model(bytes, file));
+    const auto task = learns_of(word);
+    if (!task) {
+      return Failure(Error{file, 0, "a model that cleans, poses or fuses", "task " + shown(word)});
+    }
+    all.push_back({file, *task});
+  }
+  for (const Compared& one : all) {
+    if (const auto same = check_one_task(all.front(), one); !same) {
+      return call.console.refuse(same.error());
+    }
+  }
+  return all.front().task;
+}
+
+/// The file's name and its bytes.
+struct WindowsFile {
+  std::string file, bytes, hash;
+};
+
+Result<WindowsFile> windows_of(const Eval& o, Learns task, Call& call) {
+  WindowsFile out{o.windows, "", ""};
+  if (out.file.empty()) {
+    out.file = call.common.out + "/windows.npz";
+    const WindowsWanted wanted{.data = o.data,
+                               .split = o.split,
+                               .where = "",
+                               .input = input_of(o, task),
+                               .truth = o.truth,
+                               .rate_hz = o.rate_hz,
+                               .valid = task == Learns::denoise ? "0" : "0.2"};
+    KA_TRY(cut_windows(wanted, task, out.file));
+  }
+  out.bytes = KA_TRY(read_whole(call.surroundings.files, out.file, most_windows_bytes));
+  Sha256 hash;
+  hash.update(out.bytes);
+  out.hash = hash.hex();
+  return out;
+}
+
+/// What is compared, and on what.
+struct EvalRun {
+  const Eval& options;
+  Learns task;
+  std::string windows, windows_hash;
+  Comparison comparison;
+  std::vector<Fold> folds;
+};
+
+Result<EvalRun> open_run(const Eval& o, Call& call) {
+  const Learns task = KA_TRY(task_of_all(o, call));
+  KA_TRY(make_folders(call.common.out + "/cache"));
+  const WindowsFile windows = KA_TRY(windows_of(o, task, call));
+  Comparison comparison =
+      KA_TRY(task == Learns::denoise ? denoise_comparison(o, windows.bytes, windows.file)
+                                     : body_comparison(o, task, windows.bytes, windows.file));
+  auto folds = KA_TRY(folds_of(o.split.empty() ? o.folds : "split", comparison.takes));
+  return EvalRun{o, task, windows.file, windows.hash, std::move(comparison), std::move(folds)};
+}
+
+/// All that the marks depend on. `model_hash`: of a finished model; empty: none.
+std::string key_of(const EvalRun& run, const TrainingWanted& training, const Fold& fold,
+                   const std::string& model_hash) {
+  Json all{cache_version,  run.windows_hash, training.method, training.seed, training.steps,
+           training.input, training.truth,   fold.learnt,     fold.tested};
+  if (!training.nodes.empty()) all.push_back(training.nodes);
+  if (training.hand_weight > 0.0) all.push_back({{"hand_weight", training.hand_weight}});
+  if (!fold.judged.empty()) all.push_back(fold.judged);
+  if (!model_hash.empty()) all.push_back(model_hash);
+  Sha256 hash;
+  hash.update(all.dump());
+  return hash.hex().substr(0, 32);
+}
+
+Result<std::string> hash_of_model(const std::string& file, Call& call) {
+  if (file.empty()) return std::string();
+  Sha256 hash;
+  hash.update(KA_TRY(read_whole(call.surroundings.files, file, most_model_bytes)));
+  return hash.hex();
+}
+
+/// From the cache, or computed and put there.
+Result<std::string> marks_for(const EvalRun& run, const Trial& trial, const std::string& key,
+                              Call& call) {
+  FileSystem& files = call.surroundings.files;
+  const std::string file = call.common.out + "/cache/" + key + ".json";
+  std::error_code fault;
+  if (fs::exists(file, fault)) {
+    std::string known = KA_TRY(read_whole(files, file, most_cached_bytes));
+    if (!run.comparison.sum_up("", {{"", {known}}}).empty()) return known;
+  }
+  std::string made = KA_TRY(run.comparison.mark(trial, call));
+  KA_TRY(write_whole(files, file, made, Overwrite::yes));
+  return made;
+}
+
+/// Rows of a method, or of a model where `model` names its file.
+Result<std::vector<MethodMarks>> rows_of(const EvalRun& run, const std::string& method,
+                                         const std::string& model, Call& call) {
+  const Eval& o = run.options;
+  const bool is_trained = model.empty() && find_trained(trained_part(method)) != nullptr;
+  const std::string model_hash = KA_TRY(hash_of_model(model, call));
+  std::vector<FoldMarks> folds;
+  for (const Fold& fold : run.folds) {
+    FoldMarks& marks = folds.emplace_back(FoldMarks{fold.name, {}});
+    for (std::int64_t seed = 1; seed <= (is_trained ? o.seeds : 1); ++seed) {
+      call.console.detail(fmt::format("{}: {}", method, fold.name));
+      if (!go_on(call.console.progress(), method, folds.size() - 1, run.folds.size())) {
+        return Failure(interruption());
+      }
+      Trial trial{{.method = method,
+                   .windows = run.windows,
+                   .input = input_of(o, run.task),
+                   .truth = o.truth,
+                   .learnt = fold.learnt,
+                   .judged = fold.judged,
+                   .device = o.device,
+                   .seed = seed,
+                   .steps = o.steps,
+                   .hand_weight = o.hand_weight},
+                  model,
+                  fold.tested};
+      if (!o.nodes.empty()) trial.training.nodes = split_at_commas(o.nodes);
+      const std::string key = key_of(run, trial.training, fold, model_hash);
+      TrainingWanted trained = trial.training;  // the same for cnn and cnn+project
+      trained.method = trained_part(method);
+      trial.training.folder = call.common.out + "/models/" + key_of(run, trained, fold, model_hash);
+      marks.texts.push_back(KA_TRY(marks_for(run, trial, key, call)));
+    }
+  }
+  return run.comparison.sum_up(model.empty() ? method : model, folds);
+}
+
+/// People, or folds, that some row has a value of.
+std::size_t count_of_values(const std::vector<MethodMarks>& rows) {
+  std::set<std::string> all;
+  for (const MethodMarks& row : rows) {
+    for (const auto& [mark, values] : row.marks) {
+      for (const auto& [name, value] : values) all.insert(name);
+    }
+  }
+  return all.size();
+}
+
+/// The mean, and the ends of its interval or, of several values, the standard deviation.
+void put_mean(const std::vector<double>& values, bool has_interval, std::vector<Cell>& row) {
+  if (values.empty()) {
+    row.resize(row.size() + (has_interval ? 3 : 2));
+    return;
+  }
+  Mean mean;
+  for (const double value : values) mean.add(value);
+  row.emplace_back(mean.value_or(0.0));
+  if (has_interval) {
+    const MeanInterval interval = bootstrap_mean(values);
+    row.insert(row.end(), {Cell(interval.low), Cell(interval.high)});
+  } else {
+    row.push_back(values.size() > 1 ? Cell(deviation(values)) : Cell());
+  }
+}
+
+Table table_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
+  const std::size_t count = count_of_values(rows);
+  const Comparison& comparison = run.comparison;
+  const bool has_interval = comparison.over == "people" && count >= least_for_interval;
+  Table out;
+  out.caption =
+      (run.folds.size() > 1 ? "folds of " + run.options.folds : std::string("one split")) +
+      ": mean and " + (has_interval ? "its 95 % interval" : "standard deviation") + " over " +
+      (comparison.over == "people" ? counted(count, "person", "people") : comparison.over);
+  if (!comparison.note.empty()) out.caption += "; " + comparison.note;
+  out.columns = {{"method", "method"}};
+  for (const auto& [key, title, decimals] : comparison.columns) {
+    out.columns.push_back({key, title, decimals});
+    if (has_interval) {
+      out.columns.push_back({key + "_low", "from", decimals});
+      out.columns.push_back({key + "_high", "to", decimals});
+    } else {
+      out.columns.push_back({key + "_sd", "±", decimals});
+    }
+  }
+  for (const MethodMarks& marks : rows) {
+    auto& row = out.rows.emplace_back(std::vector<Cell>{marks.label()});
+    for (const MarkColumn& column : comparison.columns) {
+      put_mean(marks.values(column.key), has_interval, row);
+    }
+  }
+  return out;
+}
+
+/// Every row's values, one person or fold a row.
+Table people_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
+  Table out;
+  out.columns = {{"method", "method"}, {"tested", "tested"}};
+  for (const auto& [key, title, decimals] : run.comparison.columns) {
+    out.columns.push_back({key, title, decimals});
+  }
+  for (const MethodMarks& marks : rows) {
+    std::map<std::string, std::vector<Cell>> people;
+    for (std::size_t c = 0; c < run.comparison.columns.size(); ++c) {
+      const auto found = marks.marks.find(run.comparison.columns[c].key);
+      if (found == marks.marks.end()) continue;
+      for (const auto& [name, mean] : found->second) {
+        auto& row = people[name];
+        row.resize(run.comparison.columns.size());
+        row[c] = mean.value_or(0.0);
+      }
+    }
+    for (auto& [name, values] : people) {
+      auto& row = out.rows.emplace_back(std::vector<Cell>{marks.label(), name});
+      row.insert(row.end(), values.begin(), values.end());
+    }
+  }
+  return out;
+}
+
+Table tests_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
+  Table out;
+  out.caption = "differences of two methods, with Wilcoxon's signed-rank test over " +
+                run.comparison.over + "; Holm's correction over the tests of a mark";
+  out.columns = {{"first", "first"},
+                 {"second", "second"},
+                 {"mark", "mark"},
+                 {"pairs", "pairs"},
+                 {"difference", "first − second", 2},
+                 {"p", "p", 4},
+                 {"p_corrected", "p, corrected", 4}};
+  for (const MarkColumn& column : run.comparison.columns) {
+    for (const PairedTest& test : paired_tests(rows, column.key)) {
+      out.rows.push_back({rows[test.first].label(), rows[test.second].label(), column.key,
+                          static_cast<std::int64_t>(test.people), test.difference, test.p,
+                          test.corrected});
+    }
+  }
+  return out;
+}
+
+Result<void> write_table(const Table& table, const std::string& name, Call& call) {
+  for (const auto& [end, format] :
+       {std::pair(".md", TableFormat::markdown), std::pair(".tex", TableFormat::latex),
+        std::pair(".csv", TableFormat::csv), std::pair(".json", TableFormat::json)}) {
+    KA_TRY(write_whole(call.surroundings.files, call.common.out + "/" + name + end,
+                       written(table, format), Overwrite::yes));
+  }
+  return {};
+}
+
+Result<void> write_tables(const EvalRun& run, const std::vector<MethodMarks>& rows, Call& call) {
+  KA_TRY(write_table(table_of(run, rows), "table", call));
+  KA_TRY(write_table(people_of(run, rows), "people", call));
+  return write_table(tests_of(run, rows), "tests", call);
+}
+
+void print_tables_of(const EvalRun& run, const std::vector<MethodMarks>& rows, Call& call) {
+  std::vector<NamedTable> all{{"rows", table_of(run, rows)}};
+  const Table tests = tests_of(run, rows);
+  const bool is_shown = !tests.rows.empty() && tests.rows.size() <= most_printed_tests;
+  if (is_shown || call.console.prints_json()) all.push_back({"tests", tests});
+  if (call.console.prints_json()) all.push_back({"people", people_of(run, rows)});
+  print_tables(all, run.options.format, call);
+  if (!is_shown && !tests.rows.empty() && run.options.format == "text") {
+    call.console.print(fmt::format("\npaired tests: {}/tests.md\n", harmless(call.common.out)));
+  }
+}
+
+/// Adds rows that are not there yet: all models that fuse have the filter's beside them.
+void add_new(const std::vector<MethodMarks>& more, std::vector<MethodMarks>& rows) {
+  for (const MethodMarks& one : more) {
+    const bool known = std::any_of(rows.begin(), rows.end(), [&](const MethodMarks& row) {
+      return row.label() == one.label();
+    });
+    if (!known) rows.push_back(one);
+  }
+}
+
+Result<int> run_eval(Eval& o, Call& call) {
+  const EvalRun run = KA_TRY(open_run(o, call));
+  std::vector<MethodMarks> rows;
+  for (const std::string& method : chosen_methods(o)) {
+    add_new(KA_TRY(rows_of(run, method, "", call)), rows);
+    KA_TRY(write_tables(run, rows, call));
+  }
+  for (const std::string& model : o.models) {
+    add_new(KA_TRY(rows_of(run, "model", model, call)), rows);
+    KA_TRY(write_tables(run, rows, call));
+  }
+  print_tables_of(run, rows, call);
+  return 0;
+}
+
+}  // namespace
+
+std::string input_of(const Eval& o, Learns task) {
+  return o.input.empty() && task == Learns::denoise ? "kinect" : o.input;
+}
+
+Verb eval_verb() {
+  return make_verb<Eval>(
+      {.name = "eval",
+       .summary = "methods and models held against each other on people they have not seen",
+       .text =
+           "Each method is fitted or trained on all takes but those of a fold, and tested on "
+           "these. Every result of a fold, a method and a seed is kept in the folder, so that a "
+           "table grows over several runs and a stopped run goes on. Methods of one task make one "
+           "table: they clean a Kinect, answer nodes with a pose, or answer both. \"steadied\" "
+           "rows have the same smoothing and constant bones for every method. \"both\", "
+           "\"kinect\" and \"nodes\" say what a method that fuses was given; \"filter\" is fusion "
+           "without learning. The folder gets table, people (each person's values) and tests "
+           "(paired ones), each as .md, .tex, .csv and .json.",
+       .examples = {{"kinalign eval raw offset ridge --data walks -o results",
+                     "without training: a table in seconds"},
+                    {"kinalign eval refine bra --data walks -o results --folds people --seeds 3",
+                     "two networks, three trainings each for every person left out"},
+                    {"kinalign eval inertial wouda --data cmu -o results --folds people",
+                     "poses from nodes"},
+                    {"kinalign eval --model models/fuse.safetensors --data cmu --split "
+                     "cmu/split.json -o results",
+                     "a finished model, and the filter, on the part test"}},
+       .common = {"out", "json", "jobs"},
+       .out_is_folder = true},
+      describe_eval, run_eval);
+}
+
+}  // namespace kinalign
