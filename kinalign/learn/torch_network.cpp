@@ -190,12 +190,14 @@ class Runner {
   }
 
   /// Random numbers in the shape of `x`: the part's rows of those that `draw` fills the whole batch
-  /// with, in the order of its indices, however `x` lies in memory.
+  /// with, in the order of its indices, however `x` lies in memory. An example has several rows
+  /// within along_time.
   torch::Tensor drawn_like(const torch::Tensor& x,
                            const std::function<void(torch::Tensor&)>& draw) const {
-    auto all = torch::empty({part_->whole, x.size(1), x.size(2)}, x.options());
+    const std::int64_t rows = x.size(0) / std::max<std::int64_t>(part_->count, 1);
+    auto all = torch::empty({part_->whole * rows, x.size(1), x.size(2)}, x.options());
     draw(all);
-    return all.slice(0, part_->begin, part_->begin + part_->count);
+    return all.slice(0, part_->begin * rows, (part_->begin + part_->count) * rows);
   }
 
   torch::Tensor dropout(const torch::Tensor& x, double rate) const {

@@ -193,14 +193,15 @@ def methods_run_on_a_twin_make_tables_and_a_page_that_loads_nothing(folder):
         assert "offset, steadied" in (results / file).read_text(), file
     page = Page((results / "benchmark.html").read_text())
     assert all(link.startswith("#") and link[1:] in page.ids for link in page.links), page.links
-    assert not {"script", "img", "iframe", "link", "object"} & set(page.tags), set(page.tags)
-    assert {"table-9", "table-8", "errors", "figure-8", "figure-9", "figure-10"} <= set(page.ids), page.ids
+    # Its script is its own: the policy names its hash, and nothing has an address.
+    assert not {"img", "iframe", "link", "object"} & set(page.tags), set(page.tags)
+    assert {"table-9", "table-8", "errors", "motion", "figure-8", "figure-9", "figure-10"} <= set(page.ids), page.ids
     for word in ("standing", "waving", "bending", "turning right", "turning left"):
         assert word in page.sections["table-8"], word
     assert f"{rows['raw']['position_cm']:.2f}" in page.sections["table-9"]
     # The Kinect, three methods and the truth, five instants each; the figures beside.
     assert page.tags.count("svg") >= 25, page.tags.count("svg")
-    assert "five nodes" in page.sections["figure-8"] and "--head-model" in page.sections["figure-9"]
+    assert "five nodes" in page.sections["figure-8"] and "one on the head" in page.sections["figure-9"]
 
 
 # Joints of a suit and of CMU at the same places: the middle of the hips, then those that are marked.

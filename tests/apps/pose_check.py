@@ -70,8 +70,32 @@ def a_take_and_the_files_it_was_made_of_give_a_pose(folder):
         seen = told("info", folder / f"{name}.bvh")["streams"][0]
         assert seen["samples"] == said["frames"], seen
     text, _ = done_with(0, "pose", take, "--model", SMALL / "two.safetensors", "-o", folder / "c.bvh")
-    assert "c.bvh: 330 frames at 30 Hz, 9 joints\nnodes    5 of 5, 100.0 % valid\nT-pose   0.0 to " in text, text
+    assert "c.bvh: 330 frames at 30 Hz, 9 joints\nbody     as of a stature of 1.84 m, by the model\nnodes    5 of 5, 100.0 % valid\nT-pose   0.0 to " in text, text
     assert (folder / "a.bvh").read_bytes() == (folder / "c.bvh").read_bytes()
+
+
+def leg_length(path, folder):
+    """Thigh and shank of a BVH at its first frame, m."""
+    done_with(0, "convert", path, folder / "legs.npz", "--force", "--quiet")
+    data = numpy.load(folder / "legs.npz")
+    names, places = list(data["joint_names"]), data["positions"][0].astype(float)
+    hip, knee, ankle = (places[names.index(one)] for one in
+                        (("LeftUpLeg", "LeftLeg", "LeftFoot") if "LeftUpLeg" in names else ("lfemur", "ltibia", "lfoot")))
+    return numpy.linalg.norm(knee - hip) + numpy.linalg.norm(ankle - knee)
+
+
+@case
+def the_answer_has_the_bones_of_a_stature_or_of_a_suit(folder):
+    take, manifest = simulated(folder / "sim", seconds=12)
+    suit = manifest.parent / "mocap.bvh"
+    for body, legs in (("1.60", 0.48 * 1.60), (suit, leg_length(suit, folder))):
+        out = folder / f"{legs:.3f}.bvh"
+        said = told("pose", take, "--model", SMALL / "two.safetensors", "-o", out, "--body", body)
+        assert said["body"]["by"] == "--body" and abs(said["body"]["stature_m"] - legs / 0.48) < 1e-3, said["body"]
+        assert abs(leg_length(out, folder) - legs) < 1e-3, (body, leg_length(out, folder), legs)
+    for wrong in ("3.1", "tall"):
+        _, complaint = done_with(2, "pose", take, "-o", folder / "x.bvh", "--body", wrong)
+        assert "expected a stature from 0.5 to 2.6 m, or a BVH of the suit" in complaint, complaint
 
 
 @case

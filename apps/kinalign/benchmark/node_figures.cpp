@@ -458,11 +458,12 @@ Result<std::vector<PosePictures>> make_pose_figures(const NodeFigureOptions& o,
   }
   std::vector<PoseSolver> solvers;
   solvers.push_back(KA_TRY(pose_solver(path, call)));
-  if (!o.head_model.empty()) {
-    solvers.push_back(KA_TRY(pose_solver(o.head_model, call)));
+  const std::string with_head = model_or_shipped(o.head_model, "pose_head");
+  if (!with_head.empty()) {
+    solvers.push_back(KA_TRY(pose_solver(with_head, call)));
     const auto& nodes = solvers.back().model().layout.nodes;
     if (std::find(nodes.begin(), nodes.end(), "head") == nodes.end()) {
-      return Failure(Error{o.head_model, 0, "a model with a node on the head", "one without"});
+      return Failure(Error{with_head, 0, "a model with a node on the head", "one without"});
     }
   }
   const AnsweredTakes all =

@@ -76,7 +76,7 @@ FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& 
   unexchange(model_.layout, own);
   own.nodes = with_headings(std::move(own.nodes), headings);
   FusedPose out = answer(own);
-  turn_to_seen(own.kinect, out);
+  turn_to_measured(own, out);
   if (!model_.smoothing) return out;
   smooth_turns(model_.layout.nodes.bones.size(), out.rotations);
   std::vector<Turn> roots;
@@ -94,16 +94,18 @@ FusedPose Fuser::solve(const FuseInput& input, const std::vector<HeadingState>& 
   return out;
 }
 
-void Fuser::turn_to_seen(const JointFrames& kinect, FusedPose& pose) const {
-  JointFrames smoothed = kinect;
+void Fuser::turn_to_measured(const FuseInput& input, FusedPose& pose) const {
+  JointFrames smoothed = input.kinect;
   fill_missing(smoothed, false);
   smooth(Smoothing{.window = smoothed_kinect_frames}, 3 * smoothed.joints, smoothed.positions);
-  smoothed.seen = kinect.seen;
+  smoothed.seen = input.kinect.seen;
+  const auto carried = carried_bones(model_.layout, model_.body);
   const auto seen = seen_bones(model_.body, model_.layout.joints);
   const std::size_t bones = model_.layout.nodes.bones.size();
   for (std::size_t t = 0; t < pose.root.size(); ++t) {
-    kinalign::turn_to_seen(seen, smoothed, t, pose.root[t],
-                           std::span(pose.rotations).subspan(t * bones, bones));
+    const std::span<Turn> rotations = std::span(pose.rotations).subspan(t * bones, bones);
+    turn_to_nodes(carried, input.nodes, t, pose.root[t], rotations);
+    turn_to_seen(seen, smoothed, t, pose.root[t], rotations);
   }
 }
 
@@ -131,6 +133,7 @@ OnlineFuser::OnlineFuser(const Fuser& fuser, OnlineNetwork network, OnlineNetwor
       headings_(model_->layout, model_->body),
       maker_(model_->layout),
       kinect_maker_(model_->layout),
+      carried_(carried_bones(model_->layout, model_->body)),
       seen_bones_(seen_bones(model_->body, model_->layout.joints)),
       states_(model_->layout.nodes.nodes.size()),
       input_(model_->layout.channels()),
@@ -157,6 +160,7 @@ std::span<const Turn> OnlineFuser::step(const FuseInput& input) {
   maker_.make(corrected_, 0, input_);
   standardise(model_->input_mean, model_->input_scale, input_);
   frame_ = fused_frame(maker_.space(), network_.step(input_), rotations_);
+  turn_to_nodes(carried_, corrected_.nodes, 0, frame_.root, rotations_);
   turn_to_seen(seen_bones_, given_.kinect, 0, frame_.root, rotations_);
   return rotations_;
 }

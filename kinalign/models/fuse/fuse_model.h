@@ -46,7 +46,8 @@ class Fuser {
 
   /// `input`: the layout's, at its rate. The network answers to the Kinect alone first; that pose
   /// shows the nodes' headings (node_headings.h), and with these it answers to both. The answer is
-  /// turned towards what the Kinect sees (turn_to_seen()) and smoothed.
+  /// turned towards what the nodes and the Kinect measure (turn_to_nodes(), turn_to_seen()), and
+  /// smoothed.
   FusedPose solve(const FuseInput& input) { return solve(input, headings(input)); }
   /// With headings that were found before.
   FusedPose solve(const FuseInput& input, const std::vector<HeadingState>& headings);
@@ -66,7 +67,7 @@ class Fuser {
   friend class OnlineFuser;
   Fuser(FuseModel model, Network network);
 
-  void turn_to_seen(const JointFrames& kinect, FusedPose& pose) const;
+  void turn_to_measured(const FuseInput& input, FusedPose& pose) const;
 
   FuseModel model_;
   Network network_;
@@ -95,6 +96,7 @@ class OnlineFuser {
   HeadingFilter headings_;
   FuseFeatureMaker maker_, kinect_maker_;
   FuseInput given_, corrected_;
+  std::vector<CarriedBone> carried_;
   std::vector<SeenBone> seen_bones_;
   std::vector<HeadingState> states_;
   std::vector<float> input_;

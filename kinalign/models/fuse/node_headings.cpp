@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/models/fuse/node_headings.h"
 
+#include "kinalign/models/joint_names.h"
 #include "kinalign/motion/mahony.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace kinalign {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
+constexpr float node_share = 0.75F;
 
 /// The bone that carries a node, and the way on it that a Kinect sees.
 struct CarriedNode {
@@ -49,6 +51,28 @@ HeadingState state_of(const Eigen::Matrix<double, 4, 1>& mean,
 }
 
 }  // namespace
+
+std::vector<CarriedBone> carried_bones(const FuseLayout& layout, const PoseBody& body) {
+  std::vector<CarriedBone> out;
+  for (const CarriedNode& carried : carried_nodes) {
+    const auto node = index_of(layout.nodes.nodes, carried.node);
+    const auto bone = index_of(body.bones, carried.bone);
+    if (node && bone) out.push_back({*node, *bone});
+  }
+  return out;
+}
+
+void turn_to_nodes(std::span<const CarriedBone> carried, const NodeFrames& nodes, std::size_t t,
+                   const Eigen::Quaternionf& root, std::span<Turn> rotations) {
+  for (const CarriedBone& one : carried) {
+    const auto orientation = orientation_at(nodes, t, one.node);
+    if (!orientation) continue;
+    Turn& turn = rotations[one.bone];
+    turn = Eigen::Quaternionf(turn)
+               .slerp(node_share, root.conjugate() * *orientation)
+               .toRotationMatrix();
+  }
+}
 
 Eigen::Quaternionf corrected(const HeadingState& state, const Eigen::Quaternionf& orientation) {
   return yaw_turn(state.yaw) * orientation * turn_by(state.mount);

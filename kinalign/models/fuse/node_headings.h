@@ -31,6 +31,17 @@ struct HeadingOptions {
   double gate = 3.0;  // sigma; a direction farther off is taken for an exchange or an occlusion
 };
 
+/// A node, and the bone of the body that carries it, which is not the root.
+struct CarriedBone {
+  std::size_t node = 0, bone = 0;
+};
+std::vector<CarriedBone> carried_bones(const FuseLayout& layout, const PoseBody& body);
+
+/// Turns each bone that carries a valid node in frame `t` three quarters of the way to the node's
+/// rotation. `nodes`: with corrected headings. `root`: in the world; `rotations` [B] against it.
+void turn_to_nodes(std::span<const CarriedBone> carried, const NodeFrames& nodes, std::size_t t,
+                   const Eigen::Quaternionf& root, std::span<Turn> rotations);
+
 /// What is known of one node in one frame.
 struct HeadingState {
   float yaw = 0.0F;                                 // rad: Y(yaw) q M is the bone in the world

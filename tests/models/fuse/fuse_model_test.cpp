@@ -105,9 +105,12 @@ TEST_CASE("frame by frame the fused answers are those with the headings of the f
   }
   FusedPose whole = fuser->answer(corrected_input);
   const auto bones = seen_bones(model.body, model.layout.joints);
+  const auto carried = carried_bones(model.layout, model.body);
   for (std::size_t t = 0; t < 40; ++t) {
-    turn_to_seen(bones, person.input.kinect, t, whole.root[t],
-                 std::span(whole.rotations).subspan(t * pose_bones.size(), pose_bones.size()));
+    const auto rotations =
+        std::span(whole.rotations).subspan(t * pose_bones.size(), pose_bones.size());
+    turn_to_nodes(carried, corrected_input.nodes, t, whole.root[t], rotations);
+    turn_to_seen(bones, person.input.kinect, t, whole.root[t], rotations);
   }
   for (int round = 0; round < 2; ++round) {
     for (std::size_t t = 0; t < 40; ++t) {

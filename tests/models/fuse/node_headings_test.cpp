@@ -95,3 +95,24 @@ TEST_CASE("a node whose bone the Kinect does not show keeps its heading") {
   turn_heading(person.input.nodes, 0, 20.0);
   CHECK(headings_of(layout, person.input).front().yaw == 0.0F);
 }
+
+TEST_CASE("a bone goes three quarters of the way to the rotation of the node that it carries") {
+  const FusePerson person = fuse_person(8);
+  const FuseLayout layout = fuse_test_layout();
+  const auto carried = carried_bones(layout, pose_body(test_offsets()));
+  CHECK(carried.size() == 4);  // the waist's node is the root's
+  const auto truth = std::span(person.truth.rotations).subspan(0, pose_bones.size());
+  std::vector<Turn> turns(truth.begin(), truth.end());
+  const float angle = 0.4F;
+  for (Turn& turn : turns) turn = turn * Turn(Eigen::AngleAxisf(angle, Eigen::Vector3f::UnitZ()));
+  const std::vector<Turn> before = turns;
+  turn_to_nodes(carried, person.input.nodes, 0, person.truth.root[0], turns);
+  std::size_t moved = 0;
+  for (std::size_t b = 0; b < turns.size(); ++b) {
+    if (turns[b] == before[b]) continue;
+    ++moved;
+    const float off = Eigen::Quaternionf(turns[b]).angularDistance(Eigen::Quaternionf(truth[b]));
+    CHECK(off == doctest::Approx(0.25F * angle).epsilon(0.001));
+  }
+  CHECK(moved == 4);
+}
