@@ -58,7 +58,7 @@ Field body_flag(std::string& words, const std::string& otherwise) {
           0.0,
           0.0,
           {},
-          "METRES|FILE.bvh"};
+          "BODY"};
 }
 
 Result<void> check_body(const std::string& words) {
