@@ -239,11 +239,11 @@ DrawnJoints drawn_joints(const std::vector<std::string>& names) {
   return out;
 }
 
-/// Frames 0 ... frames of [T,J,3].
-MovingBody moving_body(std::string name, FigureColour colour, const DrawnJoints& drawn,
-                       const std::vector<float>& positions, std::size_t joints,
-                       std::size_t frames) {
-  MovingBody out{std::move(name), colour, drawn.parents, {}, {}, {}};
+/// A body without a name, from frames 0 ... frames of [T,joints,3].
+MovingBody moving_body(const DrawnJoints& drawn, const std::vector<float>& positions,
+                       std::size_t joints, std::size_t frames) {
+  MovingBody out;
+  out.parents = drawn.parents;
   for (std::size_t t = 0; t < frames; ++t) {
     for (const std::size_t j : drawn.joints) {
       const float* place = &positions[3 * (t * joints + j)];
@@ -339,10 +339,13 @@ SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes
   const DrawnJoints answered = drawn_joints(data.layout.outputs),
                     seen = drawn_joints(data.layout.inputs);
   const std::size_t joints = data.layout.outputs.size();
-  out.bodies.push_back(
-      moving_body("truth", FigureColour::truth, answered, pair.truth, joints, frames));
-  MovingBody kinect = moving_body("Kinect", FigureColour::kinect, seen, pair.input.positions,
-                                  pair.input.joints, frames);
+  MovingBody truth = moving_body(answered, pair.truth, joints, frames);
+  truth.name = "truth";
+  truth.colour = FigureColour::truth;
+  out.bodies.push_back(std::move(truth));
+  MovingBody kinect = moving_body(seen, pair.input.positions, pair.input.joints, frames);
+  kinect.name = "Kinect";
+  kinect.colour = FigureColour::kinect;
   for (std::size_t t = 0; t < frames; ++t) {
     for (const std::size_t j : seen.joints) {
       kinect.states.push_back(pair.input.seen[t * pair.input.joints + j]);
@@ -351,8 +354,8 @@ SideBySide side_by_side(const CleaningData& data, const std::vector<CleanedTakes
   out.bodies.push_back(std::move(kinect));
   for (const CleanedTakes& method : all) {
     const std::vector<float>& answer = method.answers[longest];
-    MovingBody body =
-        moving_body(method.method, FigureColour::method, answered, answer, joints, frames);
+    MovingBody body = moving_body(answered, answer, joints, frames);
+    body.name = method.method;
     body.cm = errors_over_time(data, pair, answer);
     body.cm.resize(frames);
     out.bodies.push_back(std::move(body));

@@ -52,7 +52,7 @@ class LiveFuseRun {
   }
 
   std::string status() const {
-    const std::string waits = report_.waits_for();
+    std::string waits = report_.waits_for();
     if (!waits.empty()) return waits;
     if (!joints_.begin()) return "waiting for the Kinect's frames";
     if (poses_.empty()) return "waiting for a second in which the Kinect sees the person";

@@ -40,7 +40,7 @@ class LivePoseRun {
   }
 
   std::string status() const {
-    const std::string waits = report_.waits_for();
+    std::string waits = report_.waits_for();
     if (!waits.empty()) return waits;
     return fmt::format("{} frames; {}; {}", frames_.size(), session_.latency_text(),
                        report_.names().text());
