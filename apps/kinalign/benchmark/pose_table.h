@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table 8, the errors over time and the moving bodies: what the page shows of methods that clean a Kinect.
+// Table 8, the errors over time and the moving bodies: what the page shows of methods that clean a
+// Kinect.
 #pragma once
 
 #include "apps/kinalign/benchmark/cleaning.h"

@@ -84,7 +84,8 @@ Usage describe_benchmark_run(BenchmarkRun& o) {
     usage.flags.push_back({name, meaning, &file, 0.0, 0.0, {}, "FILE"});
   };
   model("pose-model", "of figure 8: for five nodes (default: the shipped one)", o.pose_model);
-  model("head-model", "of figure 9: for nodes with one on the head (default: the shipped one)", o.head_model);
+  model("head-model", "of figure 9: for nodes with one on the head (default: the shipped one)",
+        o.head_model);
   model("fuse-model", "of figure 10: for a Kinect and nodes (default: the shipped one)",
         o.fuse_model);
   usage.check = [&o](const Common& common, const Sources&) -> Result<void> {

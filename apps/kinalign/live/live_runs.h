@@ -9,7 +9,7 @@
 
 #include "kinalign/models/live/live_cleaner.h"
 #include "kinalign/models/live/live_fuser.h"
-#include "kinalign/models/pose/live_pose.h"
+#include "kinalign/models/live/live_pose.h"
 
 #include <nlohmann/json_fwd.hpp>
 

@@ -50,9 +50,8 @@ Json with_ports(Json event, const RecordingSession& session) {
 void add_live(const RecordingSession& session, Json& event) {
   if (session.live() == nullptr) return;
   const LivePortCounts& counts = session.live()->counts();
-  event["live"] = {{"clients", counts.clients},
-                   {"turned_away", counts.turned_away},
-                   {"lost", counts.lost}};
+  event["live"] = {
+      {"clients", counts.clients}, {"turned_away", counts.turned_away}, {"lost", counts.lost}};
 }
 
 /// Empty: no client lost anything.

@@ -123,10 +123,10 @@ Result<void> RecordingSession::open_ports() {
 Result<void> RecordingSession::open_live_port(std::uint16_t port) {
   live_ = KA_TRY(LivePort::open(port, recording_header(),
                                 {to_metadata(facts_), to_metadata(expected_of(options_.lab))}));
-  recorder_->when_recorded([this](const McapSchema* schema, const McapChannel& channel,
-                                  const McapMessage& message) {
-    if (live_->has_clients()) live_->add(schema, channel, message);
-  });
+  recorder_->when_recorded(
+      [this](const McapSchema* schema, const McapChannel& channel, const McapMessage& message) {
+        if (live_->has_clients()) live_->add(schema, channel, message);
+      });
   return {};
 }
 

@@ -31,8 +31,8 @@ Result<void> complete(NodeTrack& track);
 /// The acceleration at a time is the mean of samples so near to it.
 inline constexpr double acceleration_within_s = 4.0 / 60.0;
 
-/// Puts a complete node at place `node` of each frame of `out`, whose arrays have room for the grid.
-/// What is not known there stays as it is.
+/// Puts a complete node at place `node` of each frame of `out`, whose arrays have room for the
+/// grid. What is not known there stays as it is.
 void put_node(const NodeTrack& track, const EvenSpan& grid, double rate_hz, std::size_t node,
               WornFrames& out);
 

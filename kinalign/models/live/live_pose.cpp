@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kinalign/models/pose/live_pose.h"
+#include "kinalign/models/live/live_pose.h"
 
 #include <utility>
 
 namespace kinalign {
 
-LivePose::LivePose(const PoseSolver& solver, const LiveWornOptions& options,
-                   std::size_t look_ahead)
+LivePose::LivePose(const PoseSolver& solver, const LiveWornOptions& options, std::size_t look_ahead)
     : worn_(solver.model().layout, solver.model().body.skeleton, options),
       solver_(solver, look_ahead) {}
 
 void LivePose::advance(Time now, std::vector<LivePoseFrame>& out) {
-  worn_.advance(now, [](Time) { return true; }, ready_);
+  worn_.advance(
+      now, [](Time) { return true; }, ready_);
   answer(out);
 }
 
