@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/compare/linear.h"
 
+#include "kinalign/evaluate/statistics.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
@@ -230,14 +232,6 @@ void put_errors(const DenoiseLayout& layout, const Ridge& ridge, const Pair& pai
   }
 }
 
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 /// The quantile of n people's errors that holds 90 % of the errors of one more.
 double share_of_people(std::size_t people) {
   const auto n = static_cast<double>(people);
@@ -264,9 +258,10 @@ double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs)
       put_errors(layout, ridge, pair, group_of.at(pair.subject) == g ? unseen : seen);
     }
   }
-  const double least = quantile(seen, 0.9);
+  if (seen.empty() || unseen.empty()) return 1.0;
+  const double least = quantile(std::move(seen), 0.9);
   if (least <= 0.0) return 1.0;
-  return std::max(1.0, quantile(unseen, share_of_people(next)) / least);
+  return std::max(1.0, quantile(std::move(unseen), share_of_people(next)) / least);
 }
 
 }  // namespace kinalign

@@ -209,7 +209,7 @@ std::string where_of(const CleaningData& data, const ChosenFrame& at) {
                      static_cast<double>(at.frame) / data.layout.rate_hz);
 }
 
-/// Of data.tested.
+/// The index of the longest stretch in data.tested.
 std::size_t longest_stretch(const CleaningData& data) {
   std::size_t out = 0;
   for (std::size_t p = 1; p < data.tested.size(); ++p) {

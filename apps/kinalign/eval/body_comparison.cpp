@@ -31,7 +31,7 @@ struct RowMark {
   std::string_view row, table;
 };
 
-/// Of poses by the state of their nodes, as the row says it.
+/// The marks of a pose that the table has for that state of the nodes.
 std::vector<RowMark> pose_marks_of(const std::string& nodes) {
   if (nodes == "calibrated") {
     return {{"sip_deg", "sip_deg"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What eval compares: methods and models of one task, on folds of takes.
+// Eval compares methods and models of one task on folds of takes.
 #pragma once
 
 #include "apps/kinalign/learn/training_job.h"
@@ -51,16 +51,17 @@ struct Comparison {
   std::string note;  // for the caption
   /// The marks of a trial as a JSON array, which the cache keeps.
   std::function<Result<std::string>(const Trial&, Call&)> mark;
-  /// Of all trials of a method; `name` is what the table calls it. Empty where a text is not such
+  /// Sums up all trials of a method; the table calls it `name`. Empty where a text is not such
   /// marks.
   std::function<std::vector<MethodMarks>(const std::string& name, const std::vector<FoldMarks>&)>
       sum_up;
 };
 
-/// Of methods that clean a Kinect. `bytes`: of the file of windows. Fails where it lacks a stream.
+/// Compares methods that clean a Kinect. `bytes`: of the file of windows. Fails where it lacks a
+/// stream.
 Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
                                       const std::string& file);
-/// Of methods for poses or for fusion.
+/// Compares methods for poses or for fusion.
 Result<Comparison> body_comparison(const Eval& o, Learns task, const std::string& bytes,
                                    const std::string& file);
 

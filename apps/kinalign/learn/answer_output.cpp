@@ -81,6 +81,10 @@ Result<std::optional<Skeleton>> body_of_words(const std::string& words, const Sk
   return Failure(std::move(error));
 }
 
+AboutAnswer about_body(const Skeleton& body, const std::string& by) {
+  return {{"stature_m", stature_of(body)}, {"by", by}};
+}
+
 std::string body_line(const AboutAnswer& about) {
   const AboutAnswer& body = about.at("body");
   return fmt::format("body     as of a stature of {:.2f} m, by {}\n",

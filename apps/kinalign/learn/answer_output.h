@@ -30,6 +30,8 @@ Result<void> check_body(const std::string& words);
 /// suit. None where they are empty.
 Result<std::optional<Skeleton>> body_of_words(const std::string& words, const Skeleton& body,
                                               Call& call);
+/// The member "body" of what is told. `by`: who says it, such as "the model".
+AboutAnswer about_body(const Skeleton& body, const std::string& by);
 /// The line on it: "body     as of a stature of 1.75 m, by --body".
 std::string body_line(const AboutAnswer& about);
 

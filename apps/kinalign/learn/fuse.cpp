@@ -10,7 +10,6 @@
 #include "apps/kinalign/verbs/inputs.h"
 
 #include "kinalign/models/fuse/fuse_model.h"
-#include "kinalign/models/pose/own_body.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/view/report_words.h"
 
@@ -93,10 +92,8 @@ Result<Json> fuse_into(Fuser& fuser, BothDevices both, const FuseWords& o, Call&
   const auto own = KA_TRY(body_of_words(o.body, fuser.model().body.skeleton, call));
   fuser.use_body(own ? *own : given.body);
   Json about = about_fused(fuser.model(), given);
-  about["body"] = {{"stature_m", stature_of(fuser.model().body.skeleton)},
-                   {"by", own              ? "--body"
-                          : given.is_sized ? "the Kinect"
-                                           : "the model"}};
+  const std::string by = given.is_sized ? "the Kinect" : "the model";
+  about["body"] = about_body(fuser.model().body.skeleton, own ? "--body" : by);
   const auto headings = fuser.headings(given.input);
   tell_headings(layout.nodes, headings, about);
   KA_TRY(
@@ -164,8 +161,7 @@ Result<int> fuse_live(Fuser& fuser, const FuseWords& o, Call& call) {
     fuser.use_body(*own);
   }
   Json about = KA_TRY(run_live_fuse(fuser, job, clip, call));
-  about["body"] = {{"stature_m", stature_of(fuser.model().body.skeleton)},
-                   {"by", o.body.empty() ? "the model" : "--body"}};
+  about["body"] = about_body(fuser.model().body.skeleton, o.body.empty() ? "the model" : "--body");
   if (!call.common.out.empty()) {
     KA_TRY(write_answer(std::move(clip), fuser.model().layout.nodes.rate_hz, o.model, call));
     call.console.wrote(call.common.out);

@@ -9,7 +9,6 @@
 #include "apps/kinalign/verbs/describe_model.h"
 #include "apps/kinalign/verbs/inputs.h"
 
-#include "kinalign/models/pose/own_body.h"
 #include "kinalign/models/pose/pose_model.h"
 #include "kinalign/sources/formats.h"
 #include "kinalign/view/report_words.h"
@@ -53,9 +52,9 @@ Usage describe_pose(PoseWords& o) {
   return usage;
 }
 
-Json about_body(const PoseModel& model, const PoseWords& o) {
-  return {{"stature_m", stature_of(model.body.skeleton)},
-          {"by", o.body.empty() ? "the model" : "--body"}};
+/// Whose bones the answer has.
+Json body_of_answer(const PoseModel& model, const PoseWords& o) {
+  return about_body(model.body.skeleton, o.body.empty() ? "the model" : "--body");
 }
 
 Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o, Call& call) {
@@ -66,7 +65,7 @@ Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o
   const NodeFrames calibrated = on_bones(posed.calibration, posed.even.worn);
   Json about{{"stream", names.stream},          {"frames", calibrated.frames()},
              {"rate_hz", model.layout.rate_hz}, {"joints", model.body.skeleton.joints()},
-             {"method", model.facts.method},    {"body", about_body(model, o)}};
+             {"method", model.facts.method},    {"body", body_of_answer(model, o)}};
   about.update(about_nodes(model.layout, posed, calibrated, names));
   KA_TRY(
       write_answer(solver.clip(calibrated, posed.even.start), model.layout.rate_hz, o.model, call));
@@ -103,7 +102,7 @@ Result<int> solve_live(PoseSolver& solver, const PoseWords& o, Call& call) {
   KA_TRY(keep_free(call));
   Clip clip;
   Json about = KA_TRY(run_live_pose(solver, job, clip, call));
-  about["body"] = about_body(solver.model(), o);
+  about["body"] = body_of_answer(solver.model(), o);
   if (!call.common.out.empty()) {
     KA_TRY(write_answer(std::move(clip), solver.model().layout.rate_hz, o.model, call));
     call.console.wrote(call.common.out);

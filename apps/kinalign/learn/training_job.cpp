@@ -87,6 +87,17 @@ const TrainedMethod* find_trained(const std::string& name) {
   return found == all.end() ? nullptr : &*found;
 }
 
+Field input_field(std::string& input) {
+  return {"input", "the rough stream (default: kinect; of a method that fuses: a simulated Kinect)",
+          &input,  0.0,
+          0.0,     {},
+          "NAME"};
+}
+
+Field truth_field(std::string& truth) {
+  return {"truth", "the precise stream", &truth, 0.0, 0.0, {}, "NAME"};
+}
+
 Field nodes_field(std::string& nodes) {
   return {"nodes",
           "of poses and fusion: 3 to 6 of waist, which is the last, wrist_left, wrist_right, "

@@ -30,6 +30,8 @@ const std::vector<TrainedMethod>& trained_methods();
 const TrainedMethod* find_trained(const std::string& name);
 
 /// Flags that train and eval share.
+Field input_field(std::string& input);
+Field truth_field(std::string& truth);
 Field nodes_field(std::string& nodes);
 /// Fails for --nodes, --input or --rate where a method of that task has no use for it.
 Result<void> check_task_flags(const TrainedMethod& method, const Sources& given);

@@ -17,15 +17,25 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr float node_share = 0.75F;
 
-/// The bone that carries a node, and the way on it that a Kinect sees.
+/// The bone that carries a node; "" is the root.
 struct CarriedNode {
-  std::string_view node, from, to, bone;
+  std::string_view node, bone;
 };
-constexpr std::array<CarriedNode, 5> carried_nodes{{{"wrist_left", "lradius", "lhand", "lwrist"},
-                                                    {"wrist_right", "rradius", "rhand", "rwrist"},
-                                                    {"ankle_left", "ltibia", "lfoot", "ltibia"},
-                                                    {"ankle_right", "rtibia", "rfoot", "rtibia"},
-                                                    {"waist", "rfemur", "lfemur", ""}}};
+constexpr std::array<CarriedNode, 5> carried_nodes{{{"wrist_left", "lwrist"},
+                                                    {"wrist_right", "rwrist"},
+                                                    {"ankle_left", "ltibia"},
+                                                    {"ankle_right", "rtibia"},
+                                                    {"waist", ""}}};
+
+/// The way on a bone that a Kinect sees; of the root across the hips.
+std::optional<SeenBone> seen_way(const FuseLayout& layout, const PoseBody& body,
+                                 std::string_view bone) {
+  if (bone.empty()) return seen_bone(body, layout.joints, "rfemur", "lfemur", "");
+  for (const SeenBone& seen : seen_bones(body, layout.joints)) {
+    if (body.bones[seen.bone] == bone) return seen;
+  }
+  return std::nullopt;
+}
 
 Eigen::Matrix3d crossing(const Eigen::Vector3d& v) {
   Eigen::Matrix3d out;
@@ -85,7 +95,7 @@ HeadingFilter::HeadingFilter(const FuseLayout& layout, const PoseBody& body, Hea
         std::find_if(carried_nodes.begin(), carried_nodes.end(),
                      [&](const CarriedNode& one) { return one.node == layout.nodes.nodes[n]; });
     if (carried == carried_nodes.end()) continue;
-    filters_[n].bone = seen_bone(body, layout.joints, carried->from, carried->to, carried->bone);
+    filters_[n].bone = seen_way(layout, body, carried->bone);
   }
   reset();
 }
