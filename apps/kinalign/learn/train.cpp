@@ -220,6 +220,34 @@ void print_trained(const Train& o, const Json& last, Call& call) {
   call.console.print_json(last.dump(1));
 }
 
+/// The file of windows: the given one, or one that is cut of the data set into the run's folder.
+Result<std::string> windows_of(const Train& o, const std::string& folder) {
+  if (!o.windows.empty()) return o.windows;
+  std::string file = folder + "/windows.npz";
+  const WindowsWanted wanted{.data = o.data,
+                             .split = o.split,
+                             .where = o.where,
+                             .input = input_of(o),
+                             .truth = o.truth,
+                             .rate_hz = o.rate_hz};
+  KA_TRY(cut_windows(wanted, method_of(o).task, file));
+  return file;
+}
+
+/// Trains, and returns the last line of the program that does. The first process's job stays.
+Result<Json> run_jobs(const std::vector<std::string>& jobs, Call& call) {
+  const WorkerWatch watch{.progress = call.console.progress(),
+                          .warn = [&](const std::string& text) {
+                            call.console.note("kinalign train: warning: " + harmless(text));
+                          }};
+  Json last = Json::parse(KA_TRY(run_workers(jobs, watch)), nullptr, false);
+  std::error_code fault;
+  for (const std::string& file : jobs) {
+    if (!file.ends_with("/job.json")) fs::remove(file, fault);
+  }
+  return last;
+}
+
 Result<int> run_train(Train& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& out = call.common.out;
@@ -230,28 +258,11 @@ Result<int> run_train(Train& o, Call& call) {
   const Places places = KA_TRY(places_of(o, call));
   const std::string folder = run_folder(out);
   KA_TRY(make_folders(folder));
-  std::string windows = o.windows;
-  if (windows.empty()) {
-    windows = folder + "/windows.npz";
-    const WindowsWanted wanted{.data = o.data,
-                               .split = o.split,
-                               .where = o.where,
-                               .input = input_of(o),
-                               .truth = o.truth,
-                               .rate_hz = o.rate_hz};
-    KA_TRY(cut_windows(wanted, method_of(o).task, windows));
-  }
+  const std::string windows = KA_TRY(windows_of(o, folder));
   const std::string from_hash = o.from.empty() ? "" : KA_TRY(hash_of(files, o.from));
   const auto jobs = KA_TRY(write_jobs(
       job_of(o, windows, KA_TRY(hash_of(files, windows)), from_hash, call), places, call));
-  const WorkerWatch watch{.progress = call.console.progress(),
-                          .warn = [&](const std::string& text) {
-                            call.console.note("kinalign train: warning: " + harmless(text));
-                          }};
-  const Json last = Json::parse(KA_TRY(run_workers(jobs, watch)), nullptr, false);
-  for (const std::string& file : jobs) {
-    if (!file.ends_with("/job.json")) fs::remove(file, fault);
-  }
+  const Json last = KA_TRY(run_jobs(jobs, call));
   if (!places.is_first()) return 0;
   if (o.windows.empty()) fs::remove(windows, fault);
   call.console.wrote(out);
