@@ -15,6 +15,10 @@ namespace {
 constexpr std::array<std::size_t, 2> wrists{6, 9};
 constexpr std::array<std::size_t, 4> shared_feet{12, 13, 16, 17};
 
+/// The group of each shared joint, by its place in radius_groups.
+constexpr std::array<std::size_t, shared_joint_count> group_of{0, 0, 0, 0, 0, 1, 1, 0, 1,
+                                                               1, 0, 2, 2, 2, 0, 2, 2, 2};
+
 std::optional<double> hand_error_cm(const Sequence& sequence, Prediction prediction) {
   Mean out;
   for (std::size_t t = 0; t < sequence.frames(); ++t) {
@@ -122,22 +126,11 @@ DenoiseMarks DenoiseMarker::marks_of(const Pair& pair, const std::vector<float>&
                               in_centimetres(there_, joints_, answer), there_.size(), bones_);
   out.hand_cm = hand_error_cm(sequence, predicted);
   out.feet = feet_marks(sequence, predicted, shared_feet).value_or(FeetMarks{});
-  double radii = 0.0;
-  std::size_t within = 0;
   for (std::size_t i = 0; i < valid.size() && !spread.empty(); ++i) {
     if (valid[i] == 0) continue;
-    const std::size_t frame = i / shared_joint_count, joint = *places_[i % shared_joint_count];
-    const double radius = radius_90 * spread[frame * joints_ + joint];
-    const double distance =
-        std::hypot(predicted[3 * i] - truth[3 * i], predicted[3 * i + 1] - truth[3 * i + 1],
-                   predicted[3 * i + 2] - truth[3 * i + 2]);
-    ++out.cells;
-    radii += radius;
-    if (distance <= radius) ++within;
-  }
-  if (out.cells > 0) {
-    out.covered = static_cast<double>(within) / static_cast<double>(out.cells);
-    out.radius_cm = 100.0 * radii / static_cast<double>(out.cells);
+    const std::size_t frame = i / shared_joint_count, shared = i % shared_joint_count;
+    out.radii[group_of[shared]].add((vec3(predicted, i) - vec3(truth, i)).norm(),
+                                    radius_90 * spread[frame * joints_ + *places_[shared]]);
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include "kinalign/evaluate/feet.h"
 #include "kinalign/evaluate/protocol.h"
 #include "kinalign/evaluate/table_nine.h"
+#include "kinalign/evaluate/uncertainty.h"
 #include "kinalign/models/denoise_model.h"
 #include "kinalign/models/pairs.h"
 #include "kinalign/motion/shared_joints.h"
@@ -14,9 +15,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kinalign {
+
+/// Parts of the body whose stated radii are judged apart. Shoulders and hips belong to the trunk.
+inline constexpr std::array<std::string_view, 3> radius_groups{"trunk", "arms", "legs"};
 
 /// Of one stretch of a take.
 struct DenoiseMarks {
@@ -24,9 +29,8 @@ struct DenoiseMarks {
   TableNine table_nine;           // of positions in cm, in the answer's own space
   std::optional<double> hand_cm;  // mean distance of both wrists
   FeetMarks feet;                 // of ankles and toes; contacts are the truth's
-  double covered = 0.0;           // share of cells within the stated 90 % radius
-  double radius_cm = 0.0;         // that radius, mean; 0 where none is stated
-  std::size_t cells = 0;
+  /// The stated 90 % radius, by radius_groups; without cells where none is stated.
+  std::array<RadiusMarks, radius_groups.size()> radii{};
 };
 
 /// Marks many answers of one layout.

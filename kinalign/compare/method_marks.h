@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kinalign/evaluate/sequence.h"
+#include "kinalign/evaluate/uncertainty.h"
 
 #include <cstddef>
 #include <map>
@@ -17,6 +18,8 @@ struct MethodMarks {
   /// By mark ("position_cm") and person. What is added for the same person is averaged: several
   /// seeds, or several folds.
   std::map<std::string, std::map<std::string, Mean>> marks{};
+  /// The radii that the method states, by part of the body ("arms"); empty where it states none.
+  std::map<std::string, RadiusMarks> radii{};
 
   /// The values of a mark, in the order of the people's names; empty where there is none.
   std::vector<double> values(const std::string& mark) const;

@@ -2,33 +2,28 @@
 // Tests of a stated uncertainty (models.md 8.10).
 #pragma once
 
-#include "kinalign/evaluate/sequence.h"
-
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace kinalign {
 
-/// Standard deviations that a method states, [T,J] m per axis, above 0.
-using Sigmas = std::span<const double>;
+/// A radius is stated for each cell and should hold a certain share of all errors. The stated radii
+/// know something if they are smaller, on average, than one radius for all cells that holds as
+/// many.
+struct RadiusMarks {
+  std::size_t cells = 0, within = 0;  // within: the error is at most the stated radius
+  double sum_m = 0.0;                 // of the stated radii
+  /// [E] cells by their error, one millimetre each; the last of 2,000 has all larger ones, too.
+  std::vector<std::uint32_t> errors{};
 
-struct Coverage {
-  std::size_t cells = 0;
-  double within_50 = 0.0, within_90 = 0.0, within_95 = 0.0;  // shares of errors in that ellipsoid
-  double mean_sigma_m = 0.0;    // at the same coverage the smaller is the sharper
-  double log_likelihood = 0.0;  // mean over cells, of metres; the larger the better
-  double best_factor = 0.0;     // times which all sigmas would be likeliest: 1 is right
-};
-/// Absent where no cell is valid.
-std::optional<Coverage> coverage(const Sequence& sequence, Prediction prediction, Sigmas sigmas);
+  void add(double error_m, double radius_m);
+  void add(const RadiusMarks& other);
 
-/// Errors of the cells between two deciles of sigma.
-struct SigmaDecile {
-  std::size_t cells = 0;
-  double mean_sigma_m = 0.0;
-  double rms_m = 0.0;  // per axis: of the size of sigma where the statement holds
+  double covered() const;        // share within the stated radius; 0 without cells
+  double mean_radius_m() const;  // 0 without cells
+  /// The smallest radius, in whole millimetres, that holds as large a share. 0 without cells.
+  double one_radius_m() const;
 };
-/// From the smallest sigmas to the largest; fewer than ten where there are fewer cells.
-std::vector<SigmaDecile> sigma_deciles(const Sequence& sequence, Prediction prediction,
-                                       Sigmas sigmas);
 
 }  // namespace kinalign

@@ -29,6 +29,14 @@ DenoiseModel begun_model(const DenoiseMethod& method, const DenoiseLayout& layou
 
 }  // namespace
 
+void begin_linear(const DenoiseTask& task, TorchNetwork& network) {
+  const LinearAnswer linear = task.linear_answer();
+  network.zero_last();
+  torch::NoGradGuard guard;
+  network.tensors().at("0.0.1.weight").copy_(linear.weight);
+  network.tensors().at("0.0.1.bias").copy_(linear.bias);
+}
+
 void put_tensors(const TorchNetwork& network, const std::string& prefix,
                  std::map<std::string, Tensor>& out) {
   for (const auto& [name, tensor] : network.tensors()) {
@@ -58,8 +66,8 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   if (divided.learnt.empty()) {
     return Failure(Error{"", 0, "pairs to train on", "none"});
   }
-  DenoiseLayout layout = KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz));
-  if (!pairs.parents.empty()) layout.parents = pairs.parents;
+  DenoiseLayout layout =
+      KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz, pairs.parents));
   if (!method.from_base) layout.bases.assign(layout.outputs.size(), -1);
   if (from != nullptr) layout = from->layout;
   DenoiseTask task(layout, method.training, divided.learnt, divided.judged, options.device);
@@ -77,7 +85,7 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   }
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
-  if (method.zero_last) network.zero_last(task.first_answer());
+  if (method.begins_linear && from == nullptr) begin_linear(task, network);
   if (from != nullptr) KA_TRY(take_tensors(from->tensors, "net.", network));
   network.to(options.device);
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;

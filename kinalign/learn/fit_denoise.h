@@ -30,6 +30,9 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
                                TrainingState state, const TrainingHooks& hooks,
                                const DenoiseModel* from = nullptr);
 
+/// Lets a network that `begins_linear` answer as the task's linear answer.
+void begin_linear(const DenoiseTask& task, TorchNetwork& network);
+
 /// The network's weights as a model's file holds them, `prefix` before each name.
 void put_tensors(const TorchNetwork& network, const std::string& prefix,
                  std::map<std::string, Tensor>& out);

@@ -16,8 +16,10 @@ struct DenoiseMethod {
   Architecture (*architecture)(const DenoiseLayout& layout);
   DenoiseTraining training;
   TrainingOptions options;
-  bool from_base = true;   // answers what the smoothed input joint is off by; else where a joint is
-  bool zero_last = false;  // begins as its base
+  bool from_base = true;  // answers what the smoothed input joint is off by; else where a joint is
+  /// Begins as a linear answer: the network is a sum of a slice with a conv, and of a correction
+  /// that ends with a linear layer.
+  bool begins_linear = false;
   bool perceptual = false;  // BRA-P: trains a network of clean motion first
 };
 

@@ -19,10 +19,26 @@ void move(const std::vector<BodyFrame>& frames, std::span<float> positions, cons
   for (std::size_t i = 0; i < row * frames.size(); i += 3) turn(frames[i / row], &positions[i]);
 }
 
+/// For each output the input joint of its name, else that of the next joint above it; -1: none.
+std::vector<int> inputs_standing_for(const DenoiseLayout& layout) {
+  const auto seen = kinect_names(layout.inputs), answered = kinect_names(layout.outputs);
+  std::vector<int> out;
+  for (std::size_t j = 0; j < answered.size(); ++j) {
+    auto found = index_of(seen, answered[j]);
+    for (int up = layout.parents[j]; !found && up >= 0;
+         up = layout.parents[static_cast<std::size_t>(up)]) {
+      found = index_of(seen, answered[static_cast<std::size_t>(up)]);
+    }
+    out.push_back(found ? static_cast<int>(*found) : -1);
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
-                                     std::vector<std::string> outputs, double rate_hz) {
+                                     std::vector<std::string> outputs, double rate_hz,
+                                     std::vector<int> parents) {
   if (!body_joints(inputs)) {
     return Failure(Error{"", 0, "an input with a root (SpineBase, Hips, ...) and both hips",
                          std::to_string(inputs.size()) + " joints without them"});
@@ -31,28 +47,18 @@ Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
   out.inputs = std::move(inputs);
   out.outputs = std::move(outputs);
   out.rate_hz = rate_hz;
-  const auto seen = kinect_names(out.inputs), answered = kinect_names(out.outputs);
-  for (const std::string& name : answered) {
-    const auto base = index_of(seen, name);
-    out.bases.push_back(base ? static_cast<int>(*base) : -1);
-  }
-  out.parents = kinect_parents_of(answered);
+  out.parents = parents.empty() ? kinect_parents_of(kinect_names(out.outputs)) : std::move(parents);
+  out.bases = inputs_standing_for(out);
   const auto window = static_cast<std::size_t>(std::lround(rate_hz * 0.3));
   out.smoothing.window = window + (window % 2 == 0 ? 1 : 0);
   return out;
 }
 
 std::vector<std::size_t> inputs_of_outputs(const DenoiseLayout& layout) {
-  const auto seen = kinect_names(layout.inputs), answered = kinect_names(layout.outputs);
   const std::size_t root = body_joints(layout.inputs)->root.front();
   std::vector<std::size_t> out;
-  for (std::size_t j = 0; j < answered.size(); ++j) {
-    auto found = index_of(seen, answered[j]);
-    for (int up = layout.parents[j]; !found && up >= 0;
-         up = layout.parents[static_cast<std::size_t>(up)]) {
-      found = index_of(seen, answered[static_cast<std::size_t>(up)]);
-    }
-    out.push_back(found.value_or(root));
+  for (const int joint : inputs_standing_for(layout)) {
+    out.push_back(joint < 0 ? root : static_cast<std::size_t>(joint));
   }
   return out;
 }

@@ -27,13 +27,15 @@ struct DenoiseLayout {
   std::size_t answers() const { return 3 * outputs.size(); }
 };
 
-/// The layout for joints by these names: bases and parents by name. Fails where the input has no
-/// root or no pair of sides.
+/// The layout for joints by these names. `parents`: of the outputs' skeleton; empty: a Kinect's, by
+/// name. The base of an output is the input joint of its name, else that of the next joint above
+/// it. Fails where the input has no root or no pair of sides.
 Result<DenoiseLayout> denoise_layout(std::vector<std::string> inputs,
-                                     std::vector<std::string> outputs, double rate_hz);
+                                     std::vector<std::string> outputs, double rate_hz,
+                                     std::vector<int> parents = {});
 
-/// For each output the input joint that stands for it: the one of its name, else that of the next
-/// joint above it, else the root's.
+/// For each output the input joint that stands for it, as the base does; where there is none, the
+/// root's.
 std::vector<std::size_t> inputs_of_outputs(const DenoiseLayout& layout);
 
 /// T frames as a network sees them.

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <random>
 
 using namespace kinalign;
 
@@ -195,20 +196,24 @@ TEST_CASE("a turn of every joint by one angle is the error of rotation") {
   CHECK_FALSE(rotation_error({3, truth, valid}, turned, some));
 }
 
-TEST_CASE("right sigmas cover what they say, and wrong ones are told by their factor") {
-  const MovingBody body = moving_body(11, 2000, 0.03);
-  const std::vector<double> sigmas(body.valid.size(), 0.03), half(body.valid.size(), 0.015);
-  const auto right = coverage(body.sequence(), body.prediction, sigmas);
-  CHECK(right->within_50 == doctest::Approx(0.5).epsilon(0.02));  // 34,000 cells: 0.003 is one sd
-  CHECK(right->within_90 == doctest::Approx(0.9).epsilon(0.01));
-  CHECK(right->within_95 == doctest::Approx(0.95).epsilon(0.01));
-  CHECK(right->best_factor == doctest::Approx(1.0).epsilon(0.01));
-  const auto wrong = coverage(body.sequence(), body.prediction, half);
-  CHECK(wrong->best_factor == doctest::Approx(2.0).epsilon(0.01));
-  CHECK(wrong->log_likelihood < right->log_likelihood);
-  for (const SigmaDecile& decile : sigma_deciles(body.sequence(), body.prediction, sigmas)) {
-    CHECK(decile.rms_m == doctest::Approx(decile.mean_sigma_m).epsilon(0.05));
+TEST_CASE("stated radii that know the error are smaller than one radius of the same coverage") {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  RadiusMarks knowing, constant;
+  for (int i = 0; i < 30000; ++i) {
+    const double sigma = i % 2 == 0 ? 0.01 : 0.04;
+    const double error = sigma * Vec3(normal(random), normal(random), normal(random)).norm();
+    (i < 15000 ? knowing : constant).add(error, 2.5003 * (i < 15000 ? sigma : 0.03));
   }
+  // 2.5003: the square root of chi-squared's 90 % point with three degrees of freedom.
+  CHECK(knowing.covered() == doctest::Approx(0.9).epsilon(0.01));
+  CHECK(knowing.mean_radius_m() == doctest::Approx(2.5003 * 0.025));
+  CHECK(knowing.one_radius_m() > 1.2 * knowing.mean_radius_m());
+  CHECK(constant.one_radius_m() == doctest::Approx(constant.mean_radius_m()).epsilon(0.02));
+  RadiusMarks both = knowing;
+  both.add(constant);
+  CHECK(both.cells == 30000);
+  CHECK(both.within == knowing.within + constant.within);
 }
 
 TEST_CASE("own-root data of a body that walks and turns stand still") {
@@ -241,5 +246,4 @@ TEST_CASE("without a valid cell every mark is absent") {
   CHECK_FALSE(amplitude_ratio(s, body.prediction, 0));
   CHECK_FALSE(feet_marks(s, body.prediction, two_feet));
   CHECK_FALSE(swing_error(s, body.prediction, some_bones));
-  CHECK_FALSE(coverage(s, body.prediction, std::vector<double>(body.valid.size(), 1.0)));
 }

@@ -122,9 +122,12 @@ TEST_CASE("metrics agree with NumPy and SciPy") {
     std::iota(all.begin(), all.end(), std::size_t{0});
     check_same({rotation_error({18, true_turned, body.valid}, turned, all).value()},
                found["rotation"]);
-    const auto covered = coverage(body.sequence(), body.prediction, sigmas).value();
-    check_same({covered.within_50, covered.within_90, covered.within_95, covered.mean_sigma_m,
-                covered.log_likelihood},
-               found["coverage"]);
+    RadiusMarks radii;
+    for (std::size_t i = 0; i < body.valid.size(); ++i) {
+      const double error = (vec3(body.prediction, i) - vec3(body.truth, i)).norm();
+      if (body.valid[i] != 0) radii.add(error, 2.5 * sigmas[i]);
+    }
+    check_same({radii.covered(), radii.mean_radius_m()}, found["radii"]);
+    CHECK(radii.one_radius_m() == doctest::Approx(found["one_radius"].at(0)).epsilon(0.001));
   }
 }

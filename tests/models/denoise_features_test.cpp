@@ -31,6 +31,18 @@ TEST_CASE("layout: bases and parents by name, whatever style the names have") {
         "without them");
 }
 
+TEST_CASE("layout: an output that the Kinect lacks begins at the joint above it") {
+  const auto out = denoise_layout(body_joint_names(),
+                                  {"Hips", "LeftHand", "LeftHandIndex1", "LeftHandIndex2", "Tail"},
+                                  30.0, {-1, 0, 1, 2, -1});
+  REQUIRE(out);
+  CHECK(out->bases[2] == out->bases[1]);
+  CHECK(out->bases[3] == out->bases[1]);
+  CHECK(out->inputs[static_cast<std::size_t>(out->bases[1])] == "WristLeft");
+  CHECK(out->bases[4] == -1);
+  CHECK(inputs_of_outputs(*out)[4] == inputs_of_outputs(*out)[0]);
+}
+
 TEST_CASE("features: positions, their differences, and how well joints are seen") {
   JointFrames body = moving_body(20, 1);
   body.seen[5] = 1;

@@ -3,7 +3,6 @@
 from arrays import answer, given
 import numpy as np
 from scipy.spatial.transform import Rotation
-from scipy.stats import chi2, norm
 
 J, RATE = 18, 30.0
 y, p = given("truth", -1, J, 3), given("prediction", -1, J, 3)
@@ -90,10 +89,11 @@ answer("swing", [np.arccos((a * b).sum(-1) / np.linalg.norm(a, axis=-1) / np.lin
 q, r = given("rotations", -1, 4)[:, [1, 2, 3, 0]], given("true_rotations", -1, 4)[:, [1, 2, 3, 0]]
 answer("rotation", [(Rotation.from_quat(q) * Rotation.from_quat(r).inv()).magnitude()[ok.ravel()].mean()])
 
-s = given("sigmas", -1, J)[ok]
-d = (p - y)[ok]
-answer("coverage", [*[((d / s[:, None]) ** 2).sum(-1).__le__(chi2.ppf(x, 3)).mean() for x in (0.5, 0.9, 0.95)], s.mean(),
-                    norm.logpdf(d, 0, s[:, None]).sum(-1).mean()])
+radius = 2.5 * given("sigmas", -1, J)[ok]
+error = np.linalg.norm((p - y)[ok], axis=-1)
+held = (error <= radius).mean()
+answer("radii", [held, radius.mean()])
+answer("one_radius", [np.quantile(error, held)])
 
 
 def nine(truth, out):

@@ -29,6 +29,15 @@ struct Marked {
 
 Json number(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
+Json radii_json(const RadiusMarks& radii) {
+  return {radii.cells, radii.within, radii.sum_m, radii.errors};
+}
+
+RadiusMarks radii_of(const Json& json) {
+  return {json.at(0).get<std::size_t>(), json.at(1).get<std::size_t>(), json.at(2).get<double>(),
+          json.at(3).get<std::vector<std::uint32_t>>()};
+}
+
 Json marks_json(const DenoiseMarks& marks) {
   const ProtocolMarks& p = marks.protocol;
   const TableNine& t = marks.table_nine;
@@ -43,13 +52,13 @@ Json marks_json(const DenoiseMarks& marks) {
           t.bone,
           t.smooth,
           t.true_smooth,
-          marks.covered,
-          marks.radius_cm,
-          marks.cells,
           number(marks.hand_cm),
           marks.feet.contacts,
           marks.feet.skate_m_s,
-          marks.feet.true_skate_m_s};
+          marks.feet.true_skate_m_s,
+          radii_json(marks.radii[0]),
+          radii_json(marks.radii[1]),
+          radii_json(marks.radii[2])};
 }
 
 std::optional<double> number_of(const Json& json) {
@@ -71,13 +80,11 @@ DenoiseMarks marks_of(const Json& json) {
   t.bone = json.at(8).get<double>();
   t.smooth = json.at(9).get<double>();
   t.true_smooth = json.at(10).get<double>();
-  out.covered = json.at(11).get<double>();
-  out.radius_cm = json.at(12).get<double>();
-  out.cells = json.at(13).get<std::size_t>();
-  out.hand_cm = number_of(json.at(14));
-  out.feet.contacts = json.at(15).get<std::size_t>();
-  out.feet.skate_m_s = json.at(16).get<double>();
-  out.feet.true_skate_m_s = json.at(17).get<double>();
+  out.hand_cm = number_of(json.at(11));
+  out.feet.contacts = json.at(12).get<std::size_t>();
+  out.feet.skate_m_s = json.at(13).get<double>();
+  out.feet.true_skate_m_s = json.at(14).get<double>();
+  for (std::size_t g = 0; g < out.radii.size(); ++g) out.radii[g] = radii_of(json.at(15 + g));
   return out;
 }
 
@@ -170,15 +177,17 @@ std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
 /// Adds the means of a group; `which`: of Marked::marks.
 void add_group(const std::string& name, const Group& group, std::size_t which, MethodMarks& out) {
   std::vector<ProtocolMarks> marks;
-  double covered = 0.0, radius = 0.0, cells = 0.0, skate = 0.0, contacts = 0.0;
+  double skate = 0.0, contacts = 0.0;
+  RadiusMarks radii;
   Mean hands;
   for (const Marked* one : group) {
     const DenoiseMarks& m = one->marks[which];
     marks.push_back(m.protocol);
-    const auto n = static_cast<double>(m.cells);
-    covered += m.covered * n;
-    radius += m.radius_cm * n;
-    cells += n;
+    for (std::size_t g = 0; g < m.radii.size(); ++g) {
+      if (m.radii[g].cells == 0) continue;
+      radii.add(m.radii[g]);
+      out.radii[std::string(radius_groups[g])].add(m.radii[g]);
+    }
     if (m.hand_cm) hands.add(*m.hand_cm);
     const auto standing = static_cast<double>(m.feet.contacts);
     skate += 100.0 * m.feet.skate_m_s * standing;
@@ -194,8 +203,10 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
   put("constancy_cm", row.constancy_cm);
   put("acceleration_mm", row.acceleration_mm);
   put("jitter", row.jitter);
-  if (cells > 0.0) put("covered_percent", 100.0 * covered / cells);
-  if (cells > 0.0) put("radius_cm", radius / cells);
+  if (radii.cells > 0) {
+    put("covered_percent", 100.0 * radii.covered());
+    put("radius_cm", 100.0 * radii.mean_radius_m());
+  }
   put("hand_cm", hands.value());
   if (contacts > 0.0) put("skate_cm_s", skate / contacts);
 }

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t most_windows_bytes = std::size_t{4} << 30U;
 constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
 /// The version of cached results: another number lets all be computed again.
-constexpr int cache_version = 4;
+constexpr int cache_version = 5;
 /// An interval over fewer people would be too narrow.
 constexpr std::size_t least_for_interval = 8;
 /// More rows of tests are written to files only.
@@ -368,6 +368,27 @@ Table tests_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
   return out;
 }
 
+/// How well stated radii hold; without rows where no method states any.
+Table radii_of(const std::vector<MethodMarks>& rows) {
+  Table out;
+  out.caption =
+      "stated 90 % radii over all people, and the one radius for all joints that holds as many";
+  out.columns = {{"method", "method"},           {"part", "part"},
+                 {"cells", "positions"},         {"covered_percent", "within, %", 1},
+                 {"radius_cm", "stated, cm", 2}, {"one_radius_cm", "one for all, cm", 2}};
+  for (const MethodMarks& marks : rows) {
+    if (marks.radii.empty()) continue;
+    auto parts = marks.radii;
+    for (const auto& [part, radii] : marks.radii) parts["all"].add(radii);
+    for (const auto& [part, radii] : parts) {
+      out.rows.push_back({marks.label(), part, static_cast<std::int64_t>(radii.cells),
+                          100.0 * radii.covered(), 100.0 * radii.mean_radius_m(),
+                          100.0 * radii.one_radius_m()});
+    }
+  }
+  return out;
+}
+
 Result<void> write_table(const Table& table, const std::string& name, Call& call) {
   for (const auto& [end, format] :
        {std::pair(".md", TableFormat::markdown), std::pair(".tex", TableFormat::latex),
@@ -381,6 +402,9 @@ Result<void> write_table(const Table& table, const std::string& name, Call& call
 Result<void> write_tables(const EvalRun& run, const std::vector<MethodMarks>& rows, Call& call) {
   KA_TRY(write_table(table_of(run, rows), "table", call));
   KA_TRY(write_table(people_of(run, rows), "people", call));
+  if (const Table radii = radii_of(rows); !radii.rows.empty()) {
+    KA_TRY(write_table(radii, "radii", call));
+  }
   return write_table(tests_of(run, rows), "tests", call);
 }
 
@@ -388,6 +412,7 @@ void print_tables_of(const EvalRun& run, const std::vector<MethodMarks>& rows, C
   std::vector<NamedTable> all{{"rows", table_of(run, rows)}};
   const Table tests = tests_of(run, rows);
   const bool is_shown = !tests.rows.empty() && tests.rows.size() <= most_printed_tests;
+  if (const Table radii = radii_of(rows); !radii.rows.empty()) all.push_back({"radii", radii});
   if (is_shown || call.console.prints_json()) all.push_back({"tests", tests});
   if (call.console.prints_json()) all.push_back({"people", people_of(run, rows)});
   print_tables(all, run.options.format, call);
@@ -439,7 +464,9 @@ Verb eval_verb() {
            "rows have the same smoothing and constant bones for every method. \"both\", "
            "\"kinect\" and \"nodes\" say what a method that fuses was given; \"filter\" is fusion "
            "without learning. The folder gets table, people (each person's values) and tests "
-           "(paired ones), each as .md, .tex, .csv and .json.",
+           "(paired ones), each as .md, .tex, .csv and .json; of methods that state how sure they "
+           "are, "
+           "also radii.",
        .examples = {{"kinalign eval raw offset ridge --data walks -o results",
                      "without training: a table in seconds"},
                     {"kinalign eval refine bra --data walks -o results --folds people --seeds 3",

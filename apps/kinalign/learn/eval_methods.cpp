@@ -6,6 +6,7 @@
 
 #include "kinalign/compare/linear.h"
 #include "kinalign/models/filters.h"
+#include "kinalign/models/joint_names.h"
 
 #include <algorithm>
 #include <memory>
@@ -81,12 +82,13 @@ std::string trained_part(const std::string& method) {
 }
 
 Result<DenoiseLayout> eval_layout(const Pairs& pairs) {
-  DenoiseLayout out = KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz));
+  DenoiseLayout out =
+      KA_TRY(denoise_layout(pairs.inputs, pairs.outputs, pairs.rate_hz, pairs.parents));
   // Steadied bones lead from one joint that a Kinect has to the next: a suit's joints in between
   // are answered by no filter. Where the Kinect has none of the joints, the suit's own bones count.
-  const bool known =
-      std::any_of(out.parents.begin(), out.parents.end(), [](int one) { return one >= 0; });
-  if (!known && !pairs.parents.empty()) out.parents = pairs.parents;
+  auto bones = kinect_parents_of(kinect_names(out.outputs));
+  const bool known = std::any_of(bones.begin(), bones.end(), [](int one) { return one >= 0; });
+  if (known) out.parents = std::move(bones);
   return out;
 }
 
