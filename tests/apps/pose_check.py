@@ -148,6 +148,19 @@ def a_node_that_is_lost_is_told_and_too_few_are_refused(folder):
 
 
 @case
+def a_node_on_the_head_takes_the_model_that_knows_of_one(folder):
+    if not SHIPPED.exists():
+        raise Skip("no models/pose.safetensors")
+    _, manifest = simulated(folder / "sim", seconds=12)
+    whole = manifest.read_text()
+    said = told("pose", manifest, "-o", folder / "five.bvh")
+    assert said["model"].endswith("/models/pose.safetensors") and len(said["nodes"]) == 5, said
+    manifest.write_text(whole.replace('wrist_right = "', 'head = "imu_waist.csv", wrist_right = "'))
+    said = told("pose", manifest, "-o", folder / "six.bvh")
+    assert said["model"].endswith("/models/pose_head.safetensors") and "head" in said["nodes"], said
+
+
+@case
 def what_has_no_nodes_or_is_no_model_is_refused(folder):
     walk = folder / "walk.bvh"
     walk.write_text(samples.bvh())

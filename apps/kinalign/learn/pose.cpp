@@ -57,7 +57,28 @@ Json body_of_answer(const PoseModel& model, const PoseWords& o) {
   return about_body(model.body.skeleton, o.body.empty() ? "the model" : "--body");
 }
 
-Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o, Call& call) {
+Result<PoseSolver> solver_of(const std::string& path, const PoseWords& o, Call& call) {
+  const std::string bytes = KA_TRY(read_whole(call.surroundings.files, path, most_model_bytes));
+  PoseSolver out = KA_TRY(PoseSolver::make(KA_TRY(read_pose_model(bytes, path))));
+  const auto body = KA_TRY(body_of_words(o.body, out.model().body.skeleton, call));
+  if (body) out.use_body(*body);
+  return out;
+}
+
+bool has_head(const NamedNodes& nodes) {
+  const auto head = node_at(nodes.names, "head");
+  return head && nodes.tracks[*head].stamps.size() > 1;
+}
+
+/// Of the shipped ones, the model that has a node on the head where the stream has one.
+Result<std::string> model_for(const NamedNodes& nodes, const PoseWords& o) {
+  if (!o.model.empty()) return o.model;
+  return shipped_model(has_head(nodes) ? "pose_head" : "pose");
+}
+
+Result<Json> solve_into(NamedNodes nodes, const PoseWords& o, Call& call) {
+  const std::string path = KA_TRY(model_for(nodes, o));
+  PoseSolver solver = KA_TRY(solver_of(path, o, call));
   const PoseModel& model = solver.model();
   NamedNodes names{nodes.stream, nodes.names, {}, {}};
   const PosedNodes posed =
@@ -65,7 +86,8 @@ Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o
   const NodeFrames calibrated = on_bones(posed.calibration, posed.even.worn);
   Json about{{"stream", names.stream},          {"frames", calibrated.frames()},
              {"rate_hz", model.layout.rate_hz}, {"joints", model.body.skeleton.joints()},
-             {"method", model.facts.method},    {"body", body_of_answer(model, o)}};
+             {"method", model.facts.method},    {"model", path},
+             {"body", body_of_answer(model, o)}};
   about.update(about_nodes(model.layout, posed, calibrated, names));
   KA_TRY(
       write_answer(solver.clip(calibrated, posed.even.start), model.layout.rate_hz, o.model, call));
@@ -73,19 +95,17 @@ Result<Json> solve_into(PoseSolver& solver, NamedNodes nodes, const PoseWords& o
 }
 
 /// Solves and writes; errors without a file name `in`.
-Result<Json> solve_named(PoseSolver& solver, Result<NamedNodes> nodes, const PoseWords& o,
-                         Call& call) {
-  auto about = solve_into(solver, KA_TRY(std::move(nodes)), o, call);
+Result<Json> solve_named(Result<NamedNodes> nodes, const PoseWords& o, Call& call) {
+  auto about = solve_into(KA_TRY(std::move(nodes)), o, call);
   if (!about && about.error().file.empty()) about.error().file = o.in.front();
   return about;
 }
 
 /// The same of a take, in a child process.
-Result<Json> solve_take(PoseSolver& solver, const PoseWords& o, Call& call) {
+Result<Json> solve_take(const PoseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
   const std::string& in = o.in.front();
-  return in_child(in,
-                  [&] { return solve_named(solver, nodes_of_take(files, in, o.stream), o, call); });
+  return in_child(in, [&] { return solve_named(nodes_of_take(files, in, o.stream), o, call); });
 }
 
 std::string pose_text(const Json& about, const std::string& out) {
@@ -96,7 +116,9 @@ std::string pose_text(const Json& about, const std::string& out) {
 }
 
 /// The same of what record receives now. A file is written where one is wanted.
-Result<int> solve_live(PoseSolver& solver, const PoseWords& o, Call& call) {
+Result<int> solve_live(const PoseWords& o, Call& call) {
+  const std::string path = o.model.empty() ? KA_TRY(shipped_model("pose")) : o.model;
+  PoseSolver solver = KA_TRY(solver_of(path, o, call));
   LiveJob job{o.live, o.stream, "", {}};
   job.worn = KA_TRY(live_options(o.worn));
   KA_TRY(keep_free(call));
@@ -113,18 +135,12 @@ Result<int> solve_live(PoseSolver& solver, const PoseWords& o, Call& call) {
 
 Result<int> run_pose(PoseWords& o, Call& call) {
   FileSystem& files = call.surroundings.files;
-  const std::string path = o.model.empty() ? KA_TRY(shipped_model("pose")) : o.model;
-  const std::string bytes = KA_TRY(read_whole(files, path, most_model_bytes));
-  PoseSolver solver = KA_TRY(PoseSolver::make(KA_TRY(read_pose_model(bytes, path))));
-  const auto body = KA_TRY(body_of_words(o.body, solver.model().body.skeleton, call));
-  if (body) solver.use_body(*body);
-  if (!o.live.live.empty()) return solve_live(solver, o, call);
+  if (!o.live.live.empty()) return solve_live(o, call);
   const std::string& in = o.in.front();
   KA_TRY(keep_inputs(call.common.out, o.in));
   const bool is_take = KA_TRY(kind_of_file(files, in)) == FileKind::take;
-  const Json about =
-      KA_TRY(is_take ? solve_take(solver, o, call)
-                     : solve_named(solver, nodes_of_file(in, o.stream, call), o, call));
+  const Json about = KA_TRY(is_take ? solve_take(o, call)
+                                    : solve_named(nodes_of_file(in, o.stream, call), o, call));
   call.console.wrote(call.common.out);
   print_answer(pose_text(about, call.common.out), about, call);
   return about.at("warnings").empty() ? 0 : 1;
@@ -139,7 +155,9 @@ Verb pose_verb() {
        .text =
            "A model answers with the whole body to nodes on waist, forearms and shanks. The person "
            "holds a T-pose for a second or more: it says how the nodes are worn. A node that is "
-           "lost, and arms that hung in place of a T-pose, are told, and the exit code is 1.",
+           "lost, and arms that hung in place of a T-pose, are told, and the exit code is 1. Where "
+           "a "
+           "sixth node is on the head, a model that knows of it is taken.",
        .examples = {{"kinalign pose take.h5 -o pose.bvh", "a skeleton that Blender opens"},
                     {"kinalign pose recording.toml -o pose.bvh --tpose 2,5 --heading shared",
                      "nodes with magnetometers, the T-pose from second 2 to 5"},
