@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 namespace kinalign {
@@ -114,9 +113,9 @@ Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, C
 
 Result<void> keep_free(const Call& call) {
   const Common& common = call.common;
-  std::error_code none;
-  if (common.out.empty() || common.force || !std::filesystem::exists(common.out, none)) return {};
-  return Failure(Error{common.out, 0, "a new file (--force writes over it)", "one of that name"});
+  if (common.out.empty()) return {};
+  (void)KA_TRY(OutputFile::create(call.surroundings.files, common.out, common.overwrite()));
+  return {};
 }
 
 void print_live(std::string text, const AboutAnswer& about, Call& call) {

@@ -38,7 +38,7 @@ std::string body_line(const AboutAnswer& about);
 /// Writes a BVH to --out. Fails where a number of the clip is not finite, and names the model.
 Result<void> write_answer(Clip clip, double rate_hz, const std::string& model, Call& call);
 
-/// Fails where the file that a live run will end with is there already, before the run.
+/// Fails before a live run where the file that it will end with can't be written. Leaves none.
 Result<void> keep_free(const Call& call);
 
 /// Prints `text`, a line for each warning, and the JSON.

@@ -18,8 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_lost_s = 2.0;    // a node that is lost longer is told
-constexpr double most_turn_deg_s = 30.0;  // of a node in a T-pose that is held still
+constexpr double longest_lost_s = 2.0;  // a node that is lost longer is told
 
 /// "START,END" in seconds; absent where the text is empty.
 Result<std::optional<TPoseSeconds>> t_pose_seconds(const std::string& text) {

@@ -124,6 +124,7 @@ class LiveFuseRun {
                                  nodes_.rate_hz, pending.stamp);
     put_place(pose, 0, one);
     session_.tell_frame(model_.body.skeleton, one, needed);
+    report_.watch(pending.valid);
     answered_.push_back(std::move(pending));
     poses_.push_back(std::move(pose));
   }

@@ -89,6 +89,7 @@ class LivePoseRun {
         clip_frames(model_.body, frame.pose.rotations, std::span(&frame.pose.root, 1),
                     model_.layout.rate_hz, frame.stamp),
         needed);
+    report_.watch(frame.valid);
     frames_.push_back(std::move(frame));
   }
 

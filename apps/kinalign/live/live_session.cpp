@@ -26,6 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr Duration one_turn = 100ms;
 constexpr Duration between_statuses = 500ms;
+constexpr Duration most_quiet = 5s;  // record sends something each second
 
 std::string own_host() {
   std::array<char, 256> name{};
@@ -94,7 +95,8 @@ LiveSession::LiveSession(LiveConnection connection, std::optional<LiveDatagrams>
       datagrams_(std::move(datagrams)),
       call_(&call),
       stream_(std::make_unique<LiveStream>()),
-      clocks_(std::make_unique<SystemClocks>()) {}
+      clocks_(std::make_unique<SystemClocks>()),
+      piece_came_(clocks_->raw()) {}
 
 Time LiveSession::now() {
   const HostTime raw = clocks_->raw();
@@ -110,6 +112,7 @@ Result<bool> LiveSession::turn(const LiveWork& work) {
   const auto came = connection_.wait(one_turn);
   piece_came_ = came == LiveConnection::Came::bytes ? clocks_->raw() : piece_came_;
   if (came == LiveConnection::Came::bytes) {
+    is_quiet_ = false;
     LiveNews news;
     KA_TRY(stream_->take(connection_.bytes(), news));
     if (!is_own_host_ && stream_->facts()) is_own_host_ = stream_->facts()->host == own_host();
@@ -117,12 +120,25 @@ Result<bool> LiveSession::turn(const LiveWork& work) {
     call_->console.flush();
   }
   const HostTime now = clocks_->raw();
+  if (came == LiveConnection::Came::nothing) KA_TRY(tell_quiet(now - piece_came_));
   if (now >= next_status_ && call_->console.shows()) {
     next_status_ = now + between_statuses;
     call_->console.show({{harmless(work.status()), Colour::plain}, {"Ctrl-C ends", Colour::plain}});
   }
   if (came == LiveConnection::Came::end) stream_->end();
   return came != LiveConnection::Came::end;
+}
+
+/// Once, of a connection from which nothing has come for so long.
+Result<void> LiveSession::tell_quiet(Duration silence) {
+  if (is_quiet_ || silence <= most_quiet) return {};
+  is_quiet_ = true;
+  if (!stream_->now()) {
+    return Failure(Error{"--live", 0, "the stream of kinalign record --live-port",
+                         "a connection from which nothing came for 5 s"});
+  }
+  tell("record has sent nothing for 5 s: it stands still, or the way to it", {{"event", "quiet"}});
+  return {};
 }
 
 Result<void> LiveSession::run(const LiveWork& work) {

@@ -65,6 +65,7 @@ class LiveSession {
  private:
   LiveSession(LiveConnection connection, std::optional<LiveDatagrams> datagrams, Call& call);
   Result<bool> turn(const LiveWork& work);
+  Result<void> tell_quiet(Duration silence);
   std::vector<std::string> warnings() const;
 
   LiveConnection connection_;
@@ -73,9 +74,10 @@ class LiveSession {
   std::unique_ptr<LiveStream> stream_;
   std::unique_ptr<SystemClocks> clocks_;
   std::optional<bool> is_own_host_;
-  HostTime piece_came_{};  // by our clock
+  HostTime piece_came_;  // by our clock
   HostTime next_status_ = HostTime::min();
   LiveLatency latency_;
+  bool is_quiet_ = false;
   bool broke_ = false;
 };
 

@@ -13,8 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double longest_lost_s = 2.0;    // a node that is lost longer is told
-constexpr double most_turn_deg_s = 30.0;  // of a node in a T-pose that is held still
+constexpr double longest_lost_s = 2.0;  // a node that is lost longer is told
 
 NodeReadings readings_of(const LiveNodeSample& one) {
   const NodeSample& sample = one.sample;
@@ -44,7 +43,8 @@ LiveWornReport::LiveWornReport(const PoseLayout& layout, const std::string& stre
       worn_(&worn),
       session_(&session),
       names_(layout, stream),
-      presence_(layout.nodes.size()) {}
+      presence_(layout.nodes.size()),
+      missing_(layout.nodes.size()) {}
 
 std::string LiveWornReport::wish() {
   return "T-pose: stand upright, arms straight out to the sides, palms down, and hold still for "
@@ -58,17 +58,24 @@ Result<bool> LiveWornReport::add(const LiveNodeSample& sample) {
 }
 
 void LiveWornReport::take(const LiveMark& mark) {
-  if (mark.mark.mark.kind != Mark::Kind::t_pose || !worn_->nodes().begin()) return;
+  if (mark.mark.mark.kind != Mark::Kind::t_pose) return;
+  refusal_.clear();
+  if (!worn_->nodes().begin())
+    return tell_refusal("it was marked before " + layout_->nodes.back() + " had sent");
   worn_->mark_t_pose(mark.at);
   session_->tell("T-pose marked: hold it for two seconds", Json{{"event", "t_pose_marked"}});
 }
 
+void LiveWornReport::tell_refusal(const std::string& why) {
+  if (why == refusal_) return;
+  refusal_ = why;
+  session_->tell(
+      (worn_->calibration() ? "T-pose not taken, the one before holds: " : "no T-pose yet: ") + why,
+      Json{{"event", "t_pose_refused"}, {"found", why}});
+}
+
 bool LiveWornReport::tell_t_pose() {
-  if (const auto why = worn_->take_refusal(); why && *why != refusal_) {
-    refusal_ = *why;
-    session_->tell("no T-pose yet: " + refusal_,
-                   Json{{"event", "t_pose_refused"}, {"found", refusal_}});
-  }
+  if (const auto why = worn_->take_refusal()) tell_refusal(*why);
   if (!worn_->calibration() || worn_->calibration()->first == told_) return false;
   told_ = worn_->calibration()->first;
   refusal_.clear();
@@ -79,6 +86,22 @@ bool LiveWornReport::tell_t_pose() {
                              t_pose.at("from_s").get<double>(), t_pose.at("to_s").get<double>()),
                  event);
   return true;
+}
+
+void LiveWornReport::watch(const std::vector<std::uint8_t>& valid) {
+  const auto longest = static_cast<std::size_t>(longest_lost_s * layout_->rate_hz);
+  for (std::size_t n = 0; n < missing_.size(); ++n) {
+    const std::string& name = layout_->nodes[n];
+    const std::size_t before = missing_[n];
+    missing_[n] = valid[n] != 0 ? 0 : before + 1;
+    if (missing_[n] == longest) {
+      session_->tell(name + " has been missing for 2 s: its limb is a guess",
+                     Json{{"event", "node_missing"}, {"node", name}});
+    } else if (missing_[n] == 0 && before >= longest) {
+      session_->tell(name + " is back; if it was switched off, mark a new T-pose",
+                     Json{{"event", "node_back"}, {"node", name}});
+    }
+  }
 }
 
 void LiveWornReport::count(const std::vector<std::uint8_t>& valid) {

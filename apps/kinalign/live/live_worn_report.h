@@ -30,7 +30,10 @@ class LiveWornReport {
   void take(const LiveMark& mark);
   /// Tells of a T-pose that was taken or refused since this was asked last. Whether one was taken.
   bool tell_t_pose();
-  /// A frame was answered: which nodes were valid in it [N].
+  /// A frame was answered: which nodes were valid in it [N]. Tells of a node that is missing for
+  /// long, and of its return.
+  void watch(const std::vector<std::uint8_t>& valid);
+  /// A frame of the result.
   void count(const std::vector<std::uint8_t>& valid);
 
   /// What is waited for; empty: the nodes are calibrated.
@@ -44,6 +47,7 @@ class LiveWornReport {
   struct Presence {
     std::size_t valid = 0, lost = 0, longest = 0;  // frames; lost: up to now
   };
+  void tell_refusal(const std::string& why);
   nlohmann::ordered_json calibration() const;
   std::string warning_of(std::size_t node) const;
 
@@ -51,7 +55,8 @@ class LiveWornReport {
   LiveWorn* worn_;
   LiveSession* session_;
   LiveNodeNames names_;
-  std::vector<Presence> presence_;  // [N]
+  std::vector<Presence> presence_;    // [N]
+  std::vector<std::size_t> missing_;  // [N] frames that were answered without the node up to now
   std::size_t frames_ = 0;
   std::string refusal_;              // told last
   std::optional<std::size_t> told_;  // the first frame of the T-pose that was

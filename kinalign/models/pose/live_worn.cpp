@@ -119,38 +119,70 @@ std::optional<TPose> LiveWorn::wanted_t_pose() const {
 }
 
 /// Where the person faces may show itself only when the arms come down: so a T-pose that can't be
-/// used yet is tried again.
+/// used yet is tried again, until its frames are forgotten.
 void LiveWorn::look_for_t_pose() {
+  if (marked_ && *marked_ < time_of(forgotten_)) marked_.reset();
   if (calibration_ && !marked_) return;
   const auto between = static_cast<std::size_t>(between_tries_s * layout_->rate_hz);
   if (tried_ != 0 && made_ < tried_ + between) return;
   const auto t_pose = wanted_t_pose();
   if (!t_pose) return;
   tried_ = made_;
-  if (!take_t_pose(*t_pose, marked_ || options_.t_pose)) return;
+  if (!take_t_pose(*t_pose)) return;
   tried_ = 0;
   marked_.reset();
 }
 
-/// A stretch that nobody has named is left out where an arm hangs in it.
-bool LiveWorn::take_t_pose(const TPose& t_pose, bool is_named) {
+/// Absent: none. A node that was calibrated before must not be lost by a later T-pose. A T-pose
+/// that options name is taken as it is, if enough nodes sent.
+std::optional<std::string> LiveWorn::fault_of(const NodeCalibration& found) const {
+  const auto sent = std::count_if(found.nodes.begin(), found.nodes.end(),
+                                  [](const auto& node) { return node.has_value(); });
+  if (sent < static_cast<std::ptrdiff_t>(least_nodes)) {
+    return "fewer than three nodes sent in it";
+  }
+  if (!marked_ && options_.t_pose) return std::nullopt;
+  const std::string* const arm = hanging_arm(*layout_, found);
+  if (arm != nullptr) return *arm + " is not in a T-pose";
+  for (std::size_t n = 0; n < layout_->nodes.size() && calibration_; ++n) {
+    const bool was_there = calibration_->nodes.nodes[n].has_value();
+    if (was_there && !found.nodes[n]) return layout_->nodes[n] + " sent nothing in it";
+  }
+  return std::nullopt;
+}
+
+/// A stretch that options name is taken as it is. Another one is left out if it has a fault or, if
+/// a mark names it, the person moves in it.
+bool LiveWorn::take_t_pose(const TPose& t_pose) {
+  const double fastest = fastest_turn_deg(recent_, t_pose);
+  if (marked_ && fastest > most_turn_deg_s) {
+    refusal_ = "a node turned at " + std::to_string(std::lround(fastest)) +
+               " deg/s: it was not held still";
+    forget_t_pose(t_pose);
+    return false;
+  }
   CalibrationOptions options;
   options.t_pose = t_pose;
   options.headings = options_.headings;
   const auto found = calibrate(*layout_, *body_, recent_, options);
   if (!found) {
-    refusal_ = found.error().found;
+    refusal_ = "expected " + found.error().expected + ", found " + found.error().found;
     return false;
   }
-  const std::string* const arm = is_named ? nullptr : hanging_arm(*layout_, *found);
-  if (arm != nullptr) {
-    refusal_ = *arm + " is not in a T-pose";
-    searched_ = t_pose.first + t_pose.count;
+  refusal_ = fault_of(*found);
+  if (refusal_) {
+    forget_t_pose(t_pose);
     return false;
   }
-  calibration_ = LiveCalibration{*found, forgotten_ + t_pose.first, t_pose.count,
-                                 fastest_turn_deg(recent_, t_pose)};
+  calibration_ = LiveCalibration{*found, forgotten_ + t_pose.first, t_pose.count, fastest};
   return true;
+}
+
+/// It is not tried again.
+void LiveWorn::forget_t_pose(const TPose& t_pose) {
+  if (!marked_) searched_ = t_pose.first + t_pose.count;
+  marked_.reset();
+  tried_ = 0;
 }
 
 void LiveWorn::hand_on(std::vector<LiveWornFrame>& out) {

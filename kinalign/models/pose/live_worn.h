@@ -49,8 +49,8 @@ class LiveWorn {
 
   /// `node`: of the layout. Frames are made by advance().
   void add(std::size_t node, const NodeReadings& sample) { nodes_.add(node, sample); }
-  /// A T-pose is held from `at` on: the nodes are calibrated by it, also anew. Not before begin()
-  /// of nodes() is there.
+  /// A T-pose is held from `at` on: the nodes are calibrated by it, also anew, unless the person
+  /// moves or an arm hangs in it. Not before begin() of nodes() is there.
   void mark_t_pose(Time at) { marked_ = std::max(at, time_of(forgotten_)); }
 
   /// Whether another device, too, has what a frame at that time needs.
@@ -72,7 +72,9 @@ class LiveWorn {
   void make_frame(std::vector<LiveWornFrame>& out);
   void look_for_t_pose();
   std::optional<TPose> wanted_t_pose() const;
-  bool take_t_pose(const TPose& t_pose, bool is_named);
+  std::optional<std::string> fault_of(const NodeCalibration& found) const;
+  bool take_t_pose(const TPose& t_pose);
+  void forget_t_pose(const TPose& t_pose);
   void hand_on(std::vector<LiveWornFrame>& out);
 
   const PoseLayout* layout_;

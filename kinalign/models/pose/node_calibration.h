@@ -40,6 +40,8 @@ struct TPose {
 /// The first second or more, at most three, in which the root's node is valid and no valid node
 /// turns faster than 20 deg/s. Nothing where there is none.
 std::optional<TPose> first_still(const WornFrames& worn, double rate_hz);
+/// A T-pose in which a node turns faster was not held still, deg/s.
+inline constexpr double most_turn_deg_s = 30.0;
 /// The fastest turn of a valid node in it, deg/s.
 double fastest_turn_deg(const WornFrames& worn, const TPose& t_pose);
 
