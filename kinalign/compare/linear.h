@@ -44,7 +44,7 @@ class Ridge {
 /// How much larger ridge's errors are on people it has not seen than on those it was fitted to,
 /// people left out one by one, or in at most five groups: a quantile of the first over the 90 %
 /// quantile of the second. Few people do not show how much people differ: for n of them the first
-/// is the one of 0.9 (n + 1) / n, at most 0.95 (Lee, Barber, Willett, «Distribution-free inference
+/// is the one of 0.9 (n + 1) / n, at most 0.93 (Lee, Barber, Willett, «Distribution-free inference
 /// with hierarchical data», 2023). 1.5 where there is one person alone.
 double unseen_ratio(const DenoiseLayout& layout, const std::vector<Pair>& pairs);
 

@@ -258,6 +258,22 @@ torch::Tensor DenoiseTask::loss(const TorchNetwork& network, std::uint64_t seed,
   return weigh(batch, part, answer, spread);
 }
 
+torch::Tensor DenoiseTask::first_answer() const {
+  const auto zeros = torch::zeros({whole(layout_.answers())});
+  if (!training_.states_spread) return zeros;
+  const auto mean = answer_mean_.cpu();
+  auto squares = torch::zeros({whole(layout_.outputs.size())}), count = torch::zeros_like(squares);
+  for (const auto& variants : examples_) {
+    for (const Example& one : variants) {
+      const auto error = (one.truth - one.base - mean) * centimetres;
+      squares += (error.pow(2).sum(-1) * one.valid).sum(0);
+      count += one.valid.sum(0);
+    }
+  }
+  const auto of_an_axis = squares / (3.0 * count.clamp_min(1.0));
+  return torch::cat({zeros, 0.5 * torch::log(of_an_axis.clamp_min(1e-4))});
+}
+
 LinearAnswer DenoiseTask::linear_answer() const {
   const std::int64_t positions = 3 * whole(layout_.inputs.size()),
                      joints = whole(layout_.outputs.size());

@@ -56,9 +56,12 @@ class DenoiseTask : public TrainingTask {
   torch::Tensor answers(const TorchNetwork& network, const torch::Tensor& input,
                         const torch::Tensor& base, bool training) const;
 
+  /// What a network says that answers with the base: zeros, and the logarithm of each joint's own
+  /// spread about it. With another spread the likelihood outweighs all other losses at first.
+  torch::Tensor first_answer() const;
+
   /// The answers by ridge regression on the positions of nine frames, over all that is learnt; with
-  /// the logarithm of each joint's spread about them, where a spread is stated. Likelihood would
-  /// outweigh all other losses at first with another spread.
+  /// the logarithm of each joint's spread about them, where a spread is stated.
   LinearAnswer linear_answer() const;
 
   /// By what the stated spread must be multiplied so that 90 % of the pairs that were learnt lie

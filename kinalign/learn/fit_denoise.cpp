@@ -29,9 +29,11 @@ DenoiseModel begun_model(const DenoiseMethod& method, const DenoiseLayout& layou
 
 }  // namespace
 
-void begin_linear(const DenoiseTask& task, TorchNetwork& network) {
-  const LinearAnswer linear = task.linear_answer();
+void begin_network(const DenoiseMethod& method, const DenoiseTask& task, TorchNetwork& network) {
+  if (method.begins == Begins::as_base) network.zero_last(task.first_answer());
+  if (method.begins != Begins::linear) return;
   network.zero_last();
+  const LinearAnswer linear = task.linear_answer();
   torch::NoGradGuard guard;
   network.tensors().at("0.0.1.weight").copy_(linear.weight);
   network.tensors().at("0.0.1.bias").copy_(linear.bias);
@@ -85,7 +87,7 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
   }
   torch::manual_seed(options.training.seed);
   TorchNetwork network(method.architecture(layout));
-  if (method.begins_linear && from == nullptr) begin_linear(task, network);
+  if (from == nullptr) begin_network(method, task, network);
   if (from != nullptr) KA_TRY(take_tensors(from->tensors, "net.", network));
   network.to(options.device);
   out.points = KA_TRY(train(network, task, options.training, std::move(state), hooks)).points;

@@ -30,8 +30,8 @@ Result<DenoiseFit> fit_denoise(const DenoiseMethod& method, const Pairs& pairs,
                                TrainingState state, const TrainingHooks& hooks,
                                const DenoiseModel* from = nullptr);
 
-/// Lets a network that `begins_linear` answer as the task's linear answer.
-void begin_linear(const DenoiseTask& task, TorchNetwork& network);
+/// Lets the method's network begin as the method says.
+void begin_network(const DenoiseMethod& method, const DenoiseTask& task, TorchNetwork& network);
 
 /// The network's weights as a model's file holds them, `prefix` before each name.
 void put_tensors(const TorchNetwork& network, const std::string& prefix,

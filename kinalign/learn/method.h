@@ -5,9 +5,17 @@
 #include "kinalign/learn/denoise_task.h"
 #include "kinalign/learn/trainer.h"
 
+#include <cstdint>
 #include <string_view>
 
 namespace kinalign {
+
+/// What a network answers before its training.
+enum class Begins : std::uint8_t {
+  as_drawn,  // anything
+  as_base,   // the base and the mean offset
+  linear,    // DenoiseTask::linear_answer(): a sum of a slice with a conv, and of a correction
+};
 
 /// A network that cleans skeletons.
 struct DenoiseMethod {
@@ -17,9 +25,7 @@ struct DenoiseMethod {
   DenoiseTraining training;
   TrainingOptions options;
   bool from_base = true;  // answers what the smoothed input joint is off by; else where a joint is
-  /// Begins as a linear answer: the network is a sum of a slice with a conv, and of a correction
-  /// that ends with a linear layer.
-  bool begins_linear = false;
+  Begins begins = Begins::as_drawn;
   bool perceptual = false;  // BRA-P: trains a network of clean motion first
 };
 

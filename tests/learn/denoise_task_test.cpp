@@ -77,7 +77,7 @@ double left_over(const DenoiseMethod& method, std::int64_t steps) {
   torch::manual_seed(1);
   TorchNetwork network(narrow_network(method, layout));
   const double before = *task.judge(network);
-  if (method.begins_linear) begin_linear(task, network);
+  begin_network(method, task, network);
   REQUIRE(train(network, task, {.steps = steps, .rate = 1e-2, .average = false}, {}, {}));
   const double after = *task.judge(network);
   MESSAGE(std::string(method.name), ": ", before, " to ", after);
@@ -100,6 +100,7 @@ Result<DenoiseFit> fitted(DenoiseMethod method, std::uint64_t seed) {
 
 TEST_CASE("denoise task: each network learns one window by heart") {
   CHECK(left_over(refine_method(), 300) < 0.05);
+  CHECK(left_over(refine_linear_method(), 300) < 0.05);
   CHECK(left_over(cnn_method(), 1000) < 0.06);  // its pools hold two frames together
   CHECK(left_over(bra_method(), 400) < 0.05);
   CHECK(left_over(cnn_manifold_method(), 1000) < 0.05);

@@ -42,8 +42,11 @@ struct TrainingSpeed {
   std::int64_t own_steps = 1200;
   double step_s = 0.0;
 };
-constexpr std::array<TrainingSpeed, 4> training_speeds{
-    {{"cnn", 1200, 0.73}, {"bra", 1200, 2.7}, {"bra-p", 1200, 5.9}, {"refine", 1200, 0.24}}};
+constexpr std::array<TrainingSpeed, 5> training_speeds{{{"cnn", 1200, 0.73},
+                                                        {"bra", 1200, 2.7},
+                                                        {"bra-p", 1200, 5.9},
+                                                        {"refine", 1200, 0.24},
+                                                        {"refine-linear", 1200, 0.28}}};
 
 std::string model_file(const CleaningOptions& o, const std::string& method) {
   return o.folder + "/models/" + method + ".safetensors";

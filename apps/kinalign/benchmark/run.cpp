@@ -41,7 +41,8 @@ struct BenchmarkRun {
     out.folder = folder_of({call.common.out});
     out.methods = methods;
     if (methods.empty()) {
-      out.methods = {"raw", "savgol", "offset", "ridge", "cnn", "bra", "bra-p", "refine"};
+      out.methods = {"raw", "savgol", "offset", "ridge",        "cnn",
+                     "bra", "bra-p",  "refine", "refine-linear"};
     }
     out.programs = programs;
     out.device = device;

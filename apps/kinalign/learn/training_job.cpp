@@ -61,6 +61,9 @@ std::string what_it_does(Learns task) {
 const std::vector<TrainedMethod>& trained_methods() {
   static const std::vector<TrainedMethod> all{
       {"refine", "ours", Learns::denoise},
+      {"refine-linear",
+       "ours beside a linear answer, for people and rooms like those of the training",
+       Learns::denoise},
       {"cnn", "convolutional autoencoder (Holden 2016), paired", Learns::denoise, true},
       {"cnn-manifold", "convolutional autoencoder of clean motion", Learns::denoise, true},
       {"bra", "bidirectional recurrent autoencoder (Li 2019)", Learns::denoise},

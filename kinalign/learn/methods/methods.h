@@ -9,6 +9,7 @@
 namespace kinalign {
 
 DenoiseMethod refine_method();
+DenoiseMethod refine_linear_method();
 DenoiseMethod cnn_method();
 DenoiseMethod cnn_manifold_method();
 DenoiseMethod bra_method();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ours: a linear answer over nine frames, and what it leaves over by a small convolutional network
-// over 35 frames. The spread of each joint is stated.
+// Ours: what the smoothed input joint and the mean offset leave over, corrected by a small
+// convolutional network over 35 frames. The spread of each joint is stated. The second form adds a
+// linear answer over nine frames: better where people, room and camera are those of the training,
+// worse where they are others (docs/models.md).
 #include "kinalign/learn/methods/methods.h"
 
 namespace kinalign {
@@ -19,31 +21,51 @@ Layer refine_block(std::size_t dilation) {
                {.kind = LayerKind::relu}}}};
 }
 
+std::size_t refine_outputs(const DenoiseLayout& layout) {
+  return layout.answers() + layout.outputs.size();
+}
+
+std::vector<Layer> correction(const DenoiseLayout& layout) {
+  return {{.kind = LayerKind::conv, .out = refine_width, .kernel = 5},
+          {.kind = LayerKind::relu},
+          refine_block(1),
+          refine_block(2),
+          refine_block(4),
+          refine_block(8),
+          {.kind = LayerKind::dropout, .rate = 0.2},
+          {.kind = LayerKind::linear, .out = refine_outputs(layout)}};
+}
+
 Architecture refine_architecture(const DenoiseLayout& layout) {
-  const std::size_t out = layout.answers() + layout.outputs.size();
-  const std::vector<Layer> straight{{.kind = LayerKind::slice, .out = 3 * layout.inputs.size()},
-                                    {.kind = LayerKind::conv, .out = out, .kernel = 9}};
-  const std::vector<Layer> correction{{.kind = LayerKind::conv, .out = refine_width, .kernel = 5},
-                                      {.kind = LayerKind::relu},
-                                      refine_block(1),
-                                      refine_block(2),
-                                      refine_block(4),
-                                      refine_block(8),
-                                      {.kind = LayerKind::dropout, .rate = 0.2},
-                                      {.kind = LayerKind::linear, .out = out}};
-  return {layout.channels(), {{.kind = LayerKind::sum, .branches = {straight, correction}}}};
+  return {layout.channels(), correction(layout)};
+}
+
+Architecture refine_linear_architecture(const DenoiseLayout& layout) {
+  const std::vector<Layer> linear{
+      {.kind = LayerKind::slice, .out = 3 * layout.inputs.size()},
+      {.kind = LayerKind::conv, .out = refine_outputs(layout), .kernel = 9}};
+  return {layout.channels(), {{.kind = LayerKind::sum, .branches = {linear, correction(layout)}}}};
 }
 
 }  // namespace
 
 DenoiseMethod refine_method() {
   return {.name = "refine",
-          .summary = "ours: a linear answer with a temporal convolutional correction",
+          .summary = "ours: a temporal convolutional correction of the smoothed input",
           .source = "kinalign",
           .architecture = refine_architecture,
           .training = {.states_spread = true},
           .options = {.steps = 1200, .rate = 3e-3, .average = false},
-          .begins_linear = true};
+          .begins = Begins::as_base};
+}
+
+DenoiseMethod refine_linear_method() {
+  DenoiseMethod out = refine_method();
+  out.name = "refine-linear";
+  out.summary = "the same beside a linear answer, for people and rooms like those of the training";
+  out.architecture = refine_linear_architecture;
+  out.begins = Begins::linear;
+  return out;
 }
 
 }  // namespace kinalign
