@@ -57,6 +57,21 @@ def tensors_of(path):
 
 
 @case
+def other_corpora_are_pairs_too(folder):
+    needs_learn()
+    shared = ROOT.parent / "shared/data"
+    for name, streams, joints in (("kinect_multitrack", ("--input", "kinect0", "--truth", "kinect1"), 25), ("kinect_keraal", (), 17)):
+        if not (shared / name).exists():
+            raise Skip("no shared/data")
+        data = folder / name
+        done_with(0, "dataset", "import", data, shared / name)
+        done_with(0, "dataset", "build", data)
+        model = folder / f"{name}.safetensors"
+        trained(data, model, *streams)
+        assert len(told("info", model)["output"]["joints"]) == joints
+
+
+@case
 def a_network_is_trained_shown_used_and_exported(folder):
     needs_learn()
     data = data_sets.small_set(folder)
