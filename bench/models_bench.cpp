@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The models that come with the program, on 30 s of any motion: whole sequences, and frame by frame
 // with the same networks made causal. Arguments of Google Benchmark.
+#include "kinalign/infer/online.h"
 #include "kinalign/models/denoise_model.h"
 #include "kinalign/models/fuse/fuse_model.h"
 #include "kinalign/models/pose/pose_model.h"
@@ -12,6 +13,7 @@
 #include <iterator>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace kinalign {
 
@@ -88,6 +90,18 @@ void fuse_whole(benchmark::State& state) {
   count_frames(state, frames);
 }
 BENCHMARK(fuse_whole)->Unit(benchmark::kMillisecond);
+
+/// The network alone: live, whole windows are cleaned.
+void denoise_network_online(benchmark::State& state) {
+  DenoiseModel model = *read_denoise_model(bytes_of("denoise"), "denoise");
+  make_causal(model.architecture.layers);
+  const auto network = Network::make(model.architecture, model.tensors, "net.");
+  auto online = OnlineNetwork::make(*network);
+  std::vector<float> frame(model.layout.channels());
+  for (std::size_t i = 0; i < frame.size(); ++i) frame[i] = wave(i);
+  for (auto _ : state) benchmark::DoNotOptimize(online->step(frame).data());
+}
+BENCHMARK(denoise_network_online)->Unit(benchmark::kMicrosecond);
 
 void pose_online(benchmark::State& state) {
   PoseModel model = *read_pose_model(bytes_of("pose"), "pose");
