@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kinalign/compare/denoise_marks.h"
 
+#include "kinalign/evaluate/smoothness.h"
 #include "kinalign/models/joint_names.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <span>
@@ -14,6 +16,8 @@ namespace {
 // Places in shared_joints.
 constexpr std::array<std::size_t, 2> wrists{6, 9};
 constexpr std::array<std::size_t, 4> shared_feet{12, 13, 16, 17};
+constexpr OwnRootJoints shared_root{
+    .root = 0, .hip_left = 10, .hip_right = 14, .shoulder_left = 4, .shoulder_right = 7};
 
 /// The group of each shared joint, by its place in radius_groups.
 constexpr std::array<std::size_t, shared_joint_count> group_of{0, 0, 0, 0, 0, 1, 1, 0, 1,
@@ -60,29 +64,45 @@ std::vector<std::uint8_t> shared_valid(const Places& places, std::size_t joints,
   return out;
 }
 
-/// These joints of [T,J,3] m, in cm.
-std::vector<double> in_centimetres(const std::vector<std::size_t>& places, std::size_t joints,
-                                   const std::vector<float>& positions) {
+/// These of the shared joints [T,18,3] m, in cm.
+std::vector<double> in_centimetres(const std::vector<std::size_t>& places,
+                                   const std::vector<double>& positions) {
   std::vector<double> out;
-  for (std::size_t row = 0; row + 3 * joints <= positions.size(); row += 3 * joints) {
+  constexpr std::size_t row = 3 * shared_joint_count;
+  for (std::size_t begin = 0; begin + row <= positions.size(); begin += row) {
     for (const std::size_t j : places) {
-      for (std::size_t k = 0; k < 3; ++k) out.push_back(100.0 * positions[row + 3 * j + k]);
+      for (std::size_t k = 0; k < 3; ++k) out.push_back(100.0 * positions[begin + 3 * j + k]);
     }
   }
+  return out;
+}
+
+std::array<std::optional<double>, shared_joint_count> joint_errors_cm(const Sequence& sequence,
+                                                                      Prediction prediction) {
+  std::array<Mean, shared_joint_count> sums{};
+  for (std::size_t i = 0; i < sequence.valid.size(); ++i) {
+    if (sequence.valid[i] == 0) continue;
+    sums[i % shared_joint_count].add(100.0 *
+                                     (vec3(prediction, i) - vec3(sequence.truth, i)).norm());
+  }
+  std::array<std::optional<double>, shared_joint_count> out;
+  std::transform(sums.begin(), sums.end(), out.begin(),
+                 [](const Mean& sum) { return sum.value(); });
   return out;
 }
 
 }  // namespace
 
 Result<DenoiseMarker> DenoiseMarker::make(const DenoiseLayout& layout,
-                                          const std::vector<Pair>& pairs) {
+                                          const std::vector<Pair>& pairs, MarkedIn marked_in) {
   DenoiseMarker out;
+  out.marked_in_ = marked_in;
   const auto names = kinect_names(layout.outputs);
   out.places_ = shared_joints_there(names);
   std::array<std::size_t, shared_joint_count> own{};
   for (std::size_t j = 0; j < shared_joint_count; ++j) {
     own[j] = out.there_.size();
-    if (out.places_[j]) out.there_.push_back(*out.places_[j]);
+    if (out.places_[j]) out.there_.push_back(j);
   }
   if (out.there_.size() < least_marked_joints) {
     return Failure(
@@ -116,15 +136,22 @@ Result<DenoiseMarker> DenoiseMarker::make(const DenoiseLayout& layout,
 
 DenoiseMarks DenoiseMarker::marks_of(const Pair& pair, const std::vector<float>& answer,
                                      const std::vector<float>& spread) const {
-  const auto truth = shared_of(places_, joints_, pair.truth);
-  const auto predicted = shared_of(places_, joints_, answer);
+  auto truth = shared_of(places_, joints_, pair.truth);
+  auto predicted = shared_of(places_, joints_, answer);
+  if (marked_in_ == MarkedIn::own_root) {
+    truth = own_root(truth, shared_joint_count, shared_root);
+    predicted = own_root(predicted, shared_joint_count, shared_root);
+  }
   const auto valid = shared_valid(places_, joints_, pair.valid);
   const Sequence sequence{shared_joint_count, rate_hz_, truth, valid};
   DenoiseMarks out;
   out.protocol = protocol_marks(sequence, predicted, lengths_.at(person_and_action(pair)));
-  out.table_nine = table_nine(in_centimetres(there_, joints_, pair.truth),
-                              in_centimetres(there_, joints_, answer), there_.size(), bones_);
+  out.table_nine = table_nine(in_centimetres(there_, truth), in_centimetres(there_, predicted),
+                              there_.size(), bones_);
   out.hand_cm = hand_error_cm(sequence, predicted);
+  out.joint_cm = joint_errors_cm(sequence, predicted);
+  if (const auto lag = lag_s(sequence, predicted)) out.lag_ms = 1000.0 * *lag;
+  out.amplitude = amplitude_ratio(sequence, predicted, shared_root.root);
   out.feet = feet_marks(sequence, predicted, shared_feet).value_or(FeetMarks{});
   for (std::size_t i = 0; i < valid.size() && !spread.empty(); ++i) {
     if (valid[i] == 0) continue;

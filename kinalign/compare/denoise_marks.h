@@ -12,6 +12,7 @@
 #include "kinalign/motion/shared_joints.h"
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -28,9 +29,18 @@ struct DenoiseMarks {
   ProtocolMarks protocol;
   TableNine table_nine;           // of positions in cm, in the answer's own space
   std::optional<double> hand_cm;  // mean distance of both wrists
-  FeetMarks feet;                 // of ankles and toes; contacts are the truth's
+  std::array<std::optional<double>, shared_joint_count> joint_cm{};  // of each joint
+  std::optional<double> lag_ms;     // by which the answer's speeds come later than the truth's
+  std::optional<double> amplitude;  // of its motion about the root, over the truth's
+  FeetMarks feet;                   // of ankles and toes; contacts are the truth's
   /// The stated 90 % radius, by radius_groups; without cells where none is stated.
   std::array<RadiusMarks, radius_groups.size()> radii{};
+};
+
+/// Where positions are told from.
+enum class MarkedIn : std::uint8_t {
+  space,     // the truth's space
+  own_root,  // each skeleton's own root and heading, as BRA's published marks are (own_root())
 };
 
 /// Marks many answers of one layout.
@@ -38,7 +48,8 @@ class DenoiseMarker {
  public:
   /// Fails where the outputs have fewer than 12 of the 18 shared joints: a pose can't be fitted
   /// then.
-  static Result<DenoiseMarker> make(const DenoiseLayout& layout, const std::vector<Pair>& pairs);
+  static Result<DenoiseMarker> make(const DenoiseLayout& layout, const std::vector<Pair>& pairs,
+                                    MarkedIn marked_in = MarkedIn::space);
 
   /// `answer`: [T,Jout,3] m; `spread`: [T,Jout] m per axis, or empty.
   DenoiseMarks marks_of(const Pair& pair, const std::vector<float>& answer,
@@ -46,8 +57,9 @@ class DenoiseMarker {
 
  private:
   std::array<std::optional<std::size_t>, shared_joint_count> places_;  // absent: not marked
-  std::vector<std::size_t> there_;  // the outputs that are marked, in the order of places_
+  std::vector<std::size_t> there_;  // the shared joints that are marked
   std::vector<Bone> bones_;         // limbs between them, by their place in there_
+  MarkedIn marked_in_ = MarkedIn::space;
   std::size_t joints_ = 0;
   double rate_hz_ = 0.0;
   /// Median true lengths of the limb bones, m, by person and action.

@@ -19,6 +19,7 @@ struct Eval {
   std::string format = "text", device = "cpu";
   double rate_hz = 30.0, hand_weight = 0.0;
   std::int64_t seeds = 1, steps = 0;
+  bool own_root = false;
 };
 
 /// The rough stream: a Kinect's, unless the methods see none or a simulated one.
@@ -46,6 +47,7 @@ struct FoldMarks {
 struct Comparison {
   std::vector<FoldTake> takes;
   std::vector<MarkColumn> columns;
+  std::vector<MarkColumn> joints{};  // a table of their own; empty: none
   /// "people": a value of a row is a person's; "folds": a fold's (of a single fold a person's).
   std::string over;
   std::string note;  // for the caption

@@ -41,6 +41,8 @@ RadiusMarks radii_of(const Json& json) {
 Json marks_json(const DenoiseMarks& marks) {
   const ProtocolMarks& p = marks.protocol;
   const TableNine& t = marks.table_nine;
+  Json joints = Json::array();
+  for (const auto& one : marks.joint_cm) joints.push_back(number(one));
   return {number(p.position_cm),
           number(p.fitted_cm),
           number(p.bone_cm),
@@ -58,7 +60,10 @@ Json marks_json(const DenoiseMarks& marks) {
           marks.feet.true_skate_m_s,
           radii_json(marks.radii[0]),
           radii_json(marks.radii[1]),
-          radii_json(marks.radii[2])};
+          radii_json(marks.radii[2]),
+          joints,
+          number(marks.lag_ms),
+          number(marks.amplitude)};
 }
 
 std::optional<double> number_of(const Json& json) {
@@ -85,6 +90,10 @@ DenoiseMarks marks_of(const Json& json) {
   out.feet.skate_m_s = json.at(13).get<double>();
   out.feet.true_skate_m_s = json.at(14).get<double>();
   for (std::size_t g = 0; g < out.radii.size(); ++g) out.radii[g] = radii_of(json.at(15 + g));
+  for (std::size_t j = 0; j < out.joint_cm.size(); ++j)
+    out.joint_cm[j] = number_of(json.at(18).at(j));
+  out.lag_ms = number_of(json.at(19));
+  out.amplitude = number_of(json.at(20));
   return out;
 }
 
@@ -174,12 +183,15 @@ std::map<std::string, Group> groups_of(const std::vector<FoldMarks>& folds,
   return out;
 }
 
+std::string joint_key(std::size_t joint) { return std::string(shared_joints[joint]) + "_cm"; }
+
 /// Adds the means of a group; `which`: of Marked::marks.
 void add_group(const std::string& name, const Group& group, std::size_t which, MethodMarks& out) {
   std::vector<ProtocolMarks> marks;
   double skate = 0.0, contacts = 0.0;
   RadiusMarks radii;
-  Mean hands;
+  Mean hands, lag, amplitude;
+  std::array<Mean, shared_joint_count> joints{};
   for (const Marked* one : group) {
     const DenoiseMarks& m = one->marks[which];
     marks.push_back(m.protocol);
@@ -188,7 +200,13 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
       radii.add(m.radii[g]);
       out.radii[std::string(radius_groups[g])].add(m.radii[g]);
     }
-    if (m.hand_cm) hands.add(*m.hand_cm);
+    const auto add = [](const std::optional<double>& value, Mean& to) {
+      if (value) to.add(*value);
+    };
+    add(m.hand_cm, hands);
+    add(m.lag_ms, lag);
+    add(m.amplitude, amplitude);
+    for (std::size_t j = 0; j < joints.size(); ++j) add(m.joint_cm[j], joints[j]);
     const auto standing = static_cast<double>(m.feet.contacts);
     skate += 100.0 * m.feet.skate_m_s * standing;
     contacts += standing;
@@ -208,6 +226,9 @@ void add_group(const std::string& name, const Group& group, std::size_t which, M
     put("radius_cm", 100.0 * radii.mean_radius_m());
   }
   put("hand_cm", hands.value());
+  put("lag_ms", lag.value());
+  put("amplitude", amplitude.value());
+  for (std::size_t j = 0; j < joints.size(); ++j) put(joint_key(j), joints[j].value());
   if (contacts > 0.0) put("skate_cm_s", skate / contacts);
 }
 
@@ -237,7 +258,8 @@ Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
   Pairs pairs = KA_TRY(pairs_of(KA_TRY(read_windows(bytes, file)), input_of(o, Learns::denoise),
                                 o.truth, least_rows));
   DenoiseLayout layout = KA_TRY(eval_layout(pairs));
-  DenoiseMarker marker = KA_TRY(DenoiseMarker::make(layout, pairs.all));
+  DenoiseMarker marker = KA_TRY(
+      DenoiseMarker::make(layout, pairs.all, o.own_root ? MarkedIn::own_root : MarkedIn::space));
   const auto bench =
       std::make_shared<Bench>(Bench{std::move(pairs), std::move(layout), std::move(marker)});
   Comparison out;
@@ -251,7 +273,12 @@ Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
                  {"covered_percent", "within 90 % radius, %", 1},
                  {"radius_cm", "that radius, cm", 1},
                  {"hand_cm", "wrists, cm", 2},
-                 {"skate_cm_s", "standing feet, cm/s", 2}};
+                 {"skate_cm_s", "standing feet, cm/s", 2},
+                 {"lag_ms", "lag, ms", 1},
+                 {"amplitude", "amplitude, × truth", 3}};
+  for (std::size_t j = 0; j < shared_joint_count; ++j) {
+    out.joints.push_back({joint_key(j), std::string(shared_joints[j]), 1});
+  }
   out.over = "folds";
   out.mark = [bench](const Trial& trial, Call& call) {
     return marks_of_trial(trial, *bench, call);

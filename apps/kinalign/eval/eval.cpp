@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t most_windows_bytes = std::size_t{4} << 30U;
 constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
 /// The version of cached results: another number lets all be computed again.
-constexpr int cache_version = 5;
+constexpr int cache_version = 6;
 /// An interval over fewer people would be too narrow.
 constexpr std::size_t least_for_interval = 8;
 /// More rows of tests are written to files only.
@@ -98,6 +98,10 @@ Usage describe_eval(Eval& o) {
       {"steps", "batches of each training; 0: the method's own number", &o.steps, 0.0, 1e8},
       {"hand-weight", "of wrists and hands in the loss of networks; 0: the method's own",
        &o.hand_weight, 0.0, 100.0},
+      {"own-root",
+       "positions from each skeleton's own root and heading, as BRA's published marks are; of "
+       "methods that clean",
+       &o.own_root},
       {"device", "where networks are trained", &o.device, 0.0, 0.0, {"cpu", "cuda"}},
       format_field(o.format)};
   usage.check = [&o](const Common& common, const Sources& given) -> Result<void> {
@@ -199,6 +203,7 @@ std::string key_of(const EvalRun& run, const TrainingWanted& training, const Fol
   if (!training.nodes.empty()) all.push_back(training.nodes);
   if (training.hand_weight > 0.0) all.push_back({{"hand_weight", training.hand_weight}});
   if (!fold.judged.empty()) all.push_back(fold.judged);
+  if (run.options.own_root) all.push_back("own_root");
   if (!model_hash.empty()) all.push_back(model_hash);
   Sha256 hash;
   hash.update(all.dump());
@@ -368,6 +373,26 @@ Table tests_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
   return out;
 }
 
+/// The mean error of each joint; without rows where joints are not marked apart.
+Table joints_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
+  Table out;
+  out.caption = "position of each joint, cm";
+  out.columns = {{"method", "method"}};
+  for (const auto& [key, title, decimals] : run.comparison.joints) {
+    out.columns.push_back({key, title, decimals});
+  }
+  for (const MethodMarks& marks : rows) {
+    if (run.comparison.joints.empty()) break;
+    auto& row = out.rows.emplace_back(std::vector<Cell>{marks.label()});
+    for (const MarkColumn& joint : run.comparison.joints) {
+      Mean mean;
+      for (const double value : marks.values(joint.key)) mean.add(value);
+      row.push_back(mean.value() ? Cell(*mean.value()) : Cell());
+    }
+  }
+  return out;
+}
+
 /// How well stated radii hold; without rows where no method states any.
 Table radii_of(const std::vector<MethodMarks>& rows) {
   Table out;
@@ -402,8 +427,9 @@ Result<void> write_table(const Table& table, const std::string& name, Call& call
 Result<void> write_tables(const EvalRun& run, const std::vector<MethodMarks>& rows, Call& call) {
   KA_TRY(write_table(table_of(run, rows), "table", call));
   KA_TRY(write_table(people_of(run, rows), "people", call));
-  if (const Table radii = radii_of(rows); !radii.rows.empty()) {
-    KA_TRY(write_table(radii, "radii", call));
+  for (const NamedTable& table :
+       {NamedTable{"joints", joints_of(run, rows)}, NamedTable{"radii", radii_of(rows)}}) {
+    if (!table.table.rows.empty()) KA_TRY(write_table(table.table, table.name, call));
   }
   return write_table(tests_of(run, rows), "tests", call);
 }
@@ -414,7 +440,12 @@ void print_tables_of(const EvalRun& run, const std::vector<MethodMarks>& rows, C
   const bool is_shown = !tests.rows.empty() && tests.rows.size() <= most_printed_tests;
   if (const Table radii = radii_of(rows); !radii.rows.empty()) all.push_back({"radii", radii});
   if (is_shown || call.console.prints_json()) all.push_back({"tests", tests});
-  if (call.console.prints_json()) all.push_back({"people", people_of(run, rows)});
+  if (call.console.prints_json()) {
+    all.push_back({"people", people_of(run, rows)});
+    if (const Table joints = joints_of(run, rows); !joints.rows.empty()) {
+      all.push_back({"joints", joints});
+    }
+  }
   print_tables(all, run.options.format, call);
   if (!is_shown && !tests.rows.empty() && run.options.format == "text") {
     call.console.print(fmt::format("\npaired tests: {}/tests.md\n", harmless(call.common.out)));

@@ -119,6 +119,9 @@ Result<void> check_task_flags(const TrainedMethod& method, const Sources& given)
   if (method.task != Learns::denoise && given.count("hand-weight") > 0) {
     return Failure(Error{"--hand-weight", 0, "a method that cleans a Kinect", method.name});
   }
+  if (method.task != Learns::denoise && given.count("own-root") > 0) {
+    return Failure(Error{"--own-root", 0, "a method that cleans a Kinect", method.name});
+  }
   if (method.task == Learns::pose && given.count("input") > 0) {
     return Failure(Error{"--input", 0, "a method that sees a Kinect",
                          method.name + ", which sees simulated nodes"});
