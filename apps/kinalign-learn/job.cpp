@@ -3,6 +3,7 @@
 
 #include "apps/kinalign-learn/marks.h"
 
+#include "kinalign/core/hash.h"
 #include "kinalign/learn/checkpoint.h"
 #include "kinalign/learn/fit_denoise.h"
 #include "kinalign/learn/fuse/fit_fuse.h"
@@ -131,6 +132,7 @@ std::string training_json(const TrainingJob& job, const WindowsFacts& facts, con
             {{{"name", facts.dataset},
               {"licence", facts.licence},
               {"citation", facts.citation},
+              {"windows_sha256", job.windows_sha256},
               {"stretches", from.stretches},
               {"frames", from.frames},
               {"subjects", from.subjects}}}},
@@ -216,6 +218,7 @@ Result<Fitted> fit_denoise_job(const TrainingJob& job, DenoiseMethod method, con
                                       hooks, from ? &*from : nullptr));
   LearntFrom learnt;
   for (const Pair& pair : divided.learnt) learnt.add(pair.subject, pair.input.frames());
+  fit.model.facts.software = "kinalign " KINALIGN_VERSION;
   fit.model.facts.training =
       training_json(job, windows.facts, learnt, from ? from->facts.training : "");
   return Fitted{write_denoise_model(fit.model), std::move(fit.points)};
@@ -233,6 +236,7 @@ Result<Fitted> fit_pose_job(const TrainingJob& job, const PoseMethod& method,
       fit_pose(method, data, fit_options(job), std::move(state), hooks, from ? &*from : nullptr));
   LearntFrom learnt;
   for (const PoseSequence& one : data.learnt) learnt.add(one.subject, one.frames());
+  fit.model.facts.software = "kinalign " KINALIGN_VERSION;
   fit.model.facts.training =
       training_json(job, windows.facts, learnt, from ? from->facts.training : "");
   if (hooks.share.is_first()) {
@@ -254,6 +258,7 @@ Result<Fitted> fit_fuse_job(const TrainingJob& job, const FuseMethod& method,
       fit_fuse(method, data, fit_options(job), std::move(state), hooks, from ? &*from : nullptr));
   LearntFrom learnt;
   for (const PoseSequence& one : data.pose.learnt) learnt.add(one.subject, one.frames());
+  fit.model.facts.software = "kinalign " KINALIGN_VERSION;
   fit.model.facts.training =
       training_json(job, windows.facts, learnt, from ? from->facts.training : "");
   if (hooks.share.is_first()) {
@@ -399,7 +404,11 @@ Result<void> run_job(const TrainingJob& job) {
       return write_file(job.checkpoint, write_checkpoint(now, job.identity));
     };
   }
-  const Fitted fit = KA_TRY(fit_job(job, windows, std::move(state), hooks));
+  TrainingJob hashed = job;
+  Sha256 hash;
+  hash.update(bytes);
+  hashed.windows_sha256 = hash.hex();
+  const Fitted fit = KA_TRY(fit_job(hashed, windows, std::move(state), hooks));
   processes.leave();
   if (!is_first) {
     std::cout << Json{{"trained_with", job.place.size}}.dump() << std::endl;

@@ -14,6 +14,7 @@ namespace kinalign {
 struct TrainingJob {
   std::string method;
   std::string windows;             // the file of windows
+  std::string windows_sha256{};    // of its bytes, once it is read
   std::string input, truth;        // streams
   std::vector<std::string> nodes;  // of a method for poses; the root's last
   std::string evaluate;            // a model for poses to judge instead of training; empty: none

@@ -100,6 +100,20 @@ def what_a_user_wrote_into_dataset_toml_stays_as_it_is(folder):
 
 
 @case
+def a_new_data_set_gets_the_terms_of_the_corpus_and_one_with_people_keeps_its_own(folder):
+    packed = SHARED / "cmu"
+    if not packed.exists():
+        raise Skip("no shared/data")
+    said("dataset", "init", folder / "new")
+    said("dataset", "import", folder / "new", packed)
+    terms = (folder / "new/dataset.toml").read_text()
+    assert 'licence = "free for all uses' in terms and "NSF EIA-0196217" in terms, terms[:600]
+    said("dataset", "init", folder / "own", "--template", "hfut-mmd")
+    said("dataset", "import", folder / "own", packed)
+    assert 'licence = ""' in (folder / "own/dataset.toml").read_text()
+
+
+@case
 def a_folder_of_motion_in_another_unit_or_with_z_up_says_so_once(folder):
     source = small_bvh(folder, "anna/walk.bvh")
     said("import", folder / "cm", source)

@@ -6,6 +6,7 @@
 #include "kinalign/dataset/import/ids.h"
 #include "kinalign/dataset/import/new_folder.h"
 #include "kinalign/dataset/scan.h"
+#include "kinalign/documents/toml_entries.h"
 
 #include <algorithm>
 #include <optional>
@@ -116,13 +117,28 @@ Result<Corpus> list_corpus(FileSystem& files, const std::string& folder,
                        "takes of " + kind_name + " (" + std::string(kind.known_by) + ")", why});
 }
 
-/// The data set's catalogue with all that the takes need, written where it grew.
+/// dataset.toml with the corpus' terms where it states none.
+std::string with_terms(std::string text, const Corpus& corpus) {
+  for (const auto& [key, value] :
+       {std::pair("licence", &corpus.licence), {"citation", &corpus.citation}}) {
+    const std::string empty = std::string("\n") + key + " = \"\"";
+    if (const auto at = text.find(empty); at != std::string::npos) {
+      text.replace(at, empty.size(), std::string("\n") + key + " = " + toml_string(*value));
+    }
+  }
+  return text;
+}
+
+/// The data set's catalogue with all that the takes need, written where it grew. One without people
+/// gets the corpus' terms.
 Result<Catalogue> grow_catalogue(FileSystem& files, const std::string& folder,
                                  const std::optional<std::string>& text, const Corpus& corpus,
                                  const CatalogueNeeds& needs) {
   const std::string path = catalogue_path(folder);
-  const std::string before =
-      text ? *text : catalogue_head(corpus.name, corpus.licence, corpus.citation);
+  std::string before = text.value_or(catalogue_head(corpus.name, corpus.licence, corpus.citation));
+  if (KA_TRY(read_catalogue(before, path)).subjects.empty()) {
+    before = with_terms(std::move(before), corpus);
+  }
   const std::string grown = KA_TRY(grown_catalogue(before, path, needs));
   if (!text || grown != *text) KA_TRY(write_catalogue(files, folder, grown));
   return read_catalogue(grown, path);
