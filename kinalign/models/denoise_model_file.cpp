@@ -146,6 +146,10 @@ std::string write_denoise_model(const DenoiseModel& model) {
 Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::string& name) {
   TensorFile file = KA_TRY(read_safetensors(bytes, name));
   const Json header = KA_TRY(read_model_header(file, name));
+  if (const Json task = header.value("task", Json()); task.is_string() && task != "denoise") {
+    return Failure(
+        Error{name, 0, "a model that cleans skeletons", "task " + shown(task.get<std::string>())});
+  }
   DenoiseModel out;
   try {
     read_header(header, out);
@@ -155,10 +159,6 @@ Result<DenoiseModel> read_denoise_model(std::string_view bytes, const std::strin
     }
   } catch (const nlohmann::json::exception& fault) {
     return broken_header(name, fault);
-  }
-  if (out.facts.task != "denoise") {
-    return Failure(
-        Error{name, 0, "a model that cleans skeletons", "task " + shown(out.facts.task)});
   }
   out.input_mean = KA_TRY(take_row(file.tensors, "input.mean", name));
   out.input_scale = KA_TRY(take_row(file.tensors, "input.scale", name));

@@ -14,6 +14,9 @@ namespace kinalign {
 namespace {
 
 constexpr double most_frames = 1e7;
+constexpr float least_below = 0.2F;                  // m; a person who lies has both at one height
+constexpr float most_reach = 1.6F;                   // m, of a joint from the root
+constexpr double most_speed = 8.0;                   // m/s, of a root
 constexpr double least_size = 0.4, most_size = 2.6;  // m, from the lowest to the highest joint
 
 std::string text_of(double value, const char* unit) {
@@ -92,6 +95,62 @@ double body_size(const JointFrames& body) {
   return *middle;
 }
 
+/// The head and the root of a body, where the model has both.
+struct Upright {
+  std::size_t head = 0, root = 0;
+};
+std::optional<Upright> upright_of(const std::vector<std::string>& joints) {
+  const auto names = kinect_names(joints);
+  const auto head = index_of(names, "Head"), root = index_of(names, "SpineBase");
+  if (!head || !root) return std::nullopt;
+  return Upright{*head, *root};
+}
+
+/// Fails where the head lies well below the root in nine frames of ten.
+Result<void> check_upright(const Upright& joints, const JointFrames& body) {
+  std::size_t frames = 0, below = 0;
+  for (std::size_t t = 0; t < body.frames(); ++t) {
+    const std::size_t head = t * body.joints + joints.head, root = t * body.joints + joints.root;
+    if (body.seen[head] == 0 || body.seen[root] == 0) continue;
+    ++frames;
+    if (body.positions[3 * head + 1] < body.positions[3 * root + 1] - least_below) ++below;
+  }
+  if (frames == 0 || 10 * below <= 9 * frames) return {};
+  return Failure(Error{
+      "", 0, "y up: a head above the hips",
+      "one below them in " + std::to_string(below) + " of " + std::to_string(frames) + " frames"});
+}
+
+float gap_between(const float* a, const float* b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/// Joints too far from the root become missing; how many.
+std::size_t leave_out_far(std::size_t root_joint, JointFrames& body) {
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < body.seen.size(); ++i) {
+    const std::size_t root = i / body.joints * body.joints + root_joint;
+    if (body.seen[i] == 0 || body.seen[root] == 0) continue;
+    if (gap_between(&body.positions[3 * i], &body.positions[3 * root]) <= most_reach) continue;
+    body.seen[i] = 0;
+    std::fill_n(&body.positions[3 * i], 3, 0.0F);
+    ++out;
+  }
+  return out;
+}
+
+/// The first frame to which the root comes faster than a person moves.
+std::optional<std::size_t> first_jump(std::size_t root_joint, const JointFrames& body,
+                                      double rate_hz) {
+  const auto most = static_cast<float>(most_speed / rate_hz);
+  for (std::size_t t = 1; t < body.frames(); ++t) {
+    const std::size_t now = t * body.joints + root_joint, before = now - body.joints;
+    if (body.seen[now] == 0 || body.seen[before] == 0) continue;
+    if (gap_between(&body.positions[3 * now], &body.positions[3 * before]) > most) return t;
+  }
+  return std::nullopt;
+}
+
 /// A joint between sample `before` and the next one.
 struct Between {
   std::size_t before, joint;
@@ -165,11 +224,20 @@ Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
   if (static_cast<double>(frames) >= most_frames) {
     return Failure(Error{"", 0, "at most 10,000,000 frames", text_of(last * rate_hz, "frames")});
   }
-  EvenFrames out{joints_on_grid(places, points, {rate_hz, grid.gap_s, span}), span.start, rate_hz};
+  EvenFrames out{.body = joints_on_grid(places, points, {rate_hz, grid.gap_s, span}),
+                 .start = span.start,
+                 .rate_hz = rate_hz};
   const double size = body_size(out.body);
   if (size < least_size || size > most_size) {
     return Failure(Error{"", 0, "a body of 0.4 to 2.6 m, in metres, y up",
                          text_of(size, "m from the lowest joint to the highest")});
+  }
+  if (const auto joints = upright_of(wanted)) {
+    KA_TRY(check_upright(*joints, out.body));
+    out.far = leave_out_far(joints->root, out.body);
+    if (const auto frame = first_jump(joints->root, out.body, rate_hz)) {
+      out.jump_s = static_cast<double>(*frame) / rate_hz;
+    }
   }
   return out;
 }

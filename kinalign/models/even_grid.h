@@ -31,6 +31,9 @@ struct EvenFrames {
   JointFrames body;
   Time start{};  // stamp of the first frame
   double rate_hz = 0.0;
+  std::size_t far = 0;  // joints that are missing, since they lie too far from the root
+  std::optional<double>
+      jump_s{};  // from the start: where the root first moves faster than a person
 };
 
 /// The joints `places` [J] of points, absent: none, on the frames of the grid's span, as
@@ -42,8 +45,8 @@ JointFrames joints_on_grid(const std::vector<std::optional<std::size_t>>& places
 /// there is missing in every frame. Between two samples a joint lies on the line between both, and
 /// is seen as well as the worse of them; farther than the gap from a sample it is missing. Fails
 /// where there are no samples, where stamps fall, where root or hips are not there, where the usual
-/// step is more than twice or less than a quarter of the grid's, and where the body is no person's
-/// size.
+/// step is more than twice or less than a quarter of the grid's, where the body is no person's
+/// size, and where its head is below its root. A joint more than 1.6 m from the root is missing.
 Result<EvenFrames> even_frames(const std::vector<std::string>& wanted,
                                const std::vector<std::string>& names, const PointFrames& points,
                                const EvenGrid& grid);

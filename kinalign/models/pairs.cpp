@@ -5,6 +5,7 @@
 #include "kinalign/motion/kinect_joints.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace kinalign {
@@ -87,6 +88,21 @@ std::vector<Value> chosen_of(const std::vector<Value>& all, const Chosen& chosen
   return out;
 }
 
+/// Numbers of joints that are not there become 0. Fails where a joint that is there has one that is
+/// not finite.
+Result<void> check_numbers(const std::vector<std::uint8_t>& there, const std::string& stream,
+                           std::vector<float>& positions) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (std::isfinite(positions[i])) continue;
+    if (there[i / 3] != 0) {
+      return Failure(Error{"", 0, "finite positions of " + stream + " where they are valid",
+                           "a NaN or an infinity"});
+    }
+    positions[i] = 0.0F;
+  }
+  return {};
+}
+
 /// Whose it is, and of which part of the split.
 void name_pair(const Windows& windows, const Stretch& stretch, Pair& pair) {
   if (stretch.take < windows.facts.takes.size()) {
@@ -126,6 +142,8 @@ Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const s
     pair.truth = *precise;
     pair.valid = seen_of(stretch.streams.at(truth), stretch.rows, out.outputs.size());
     for (std::uint8_t& one : pair.valid) one = one == 0 ? 0 : 1;
+    KA_TRY(check_numbers(pair.input.seen, input, pair.input.positions));
+    KA_TRY(check_numbers(pair.valid, truth, pair.truth));
     name_pair(windows, stretch, pair);
     out.all.push_back(std::move(pair));
   }
@@ -168,6 +186,7 @@ Result<JointFrames> kinect_frames(const Windows& windows, const Stretch& stretch
       if (seen[from] != 0) std::copy_n(&(*positions)[3 * from], 3, &out.positions[3 * to]);
     }
   }
+  KA_TRY(check_numbers(out.seen, stream, out.positions));
   return out;
 }
 

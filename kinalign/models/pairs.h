@@ -29,8 +29,8 @@ struct Pairs {
 };
 
 /// Of the input the joints that a Kinect has too, by its names (joint_names.h); all joints where
-/// the stream is no Kinect's. Fails where the file lacks a stream or its positions. Stretches
-/// shorter than `least` rows are left out.
+/// the stream is no Kinect's. Fails where the file lacks a stream or its positions, and where
+/// a valid position is not finite. Stretches shorter than `least` rows are left out.
 Result<Pairs> pairs_of(const Windows& windows, const std::string& input, const std::string& truth,
                        std::size_t least);
 

@@ -14,7 +14,7 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import data_sets
 import samples
-from cases import BUILD, Skip, case, done_with, kinalign, law, main, refused, wrong
+from cases import BUILD, Skip, case, demo, done_with, kinalign, law, main, refused, wrong
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SMALL = ROOT / "tests/data/fuzz/denoise_model_fuzz"  # two models of three joints
@@ -54,6 +54,37 @@ def tensors_of(path):
     model = json.loads(header.pop("__metadata__")["kinalign"])
     return model, {name: numpy.frombuffer(data[end:][slice(*one["data_offsets"])], "<f4").reshape(one["shape"])
                    for name, one in header.items()}
+
+
+def of_kinect(source, out, change):
+    """The demo's Kinect file with each row [stamp, x, y, z, state, x, ...] changed; None: left out."""
+    head, *rows = source.read_text().splitlines()
+    kept = [change(i, row.split(",")) for i, row in enumerate(rows)]
+    out.write_text("\n".join([head, *(",".join(row) for row in kept if row)]) + "\n")
+    return out
+
+
+@case
+def a_kinect_that_is_upside_down_jumps_or_sends_nonsense_is_told(folder):
+    kinect = demo(folder / "demo", seconds=6) / "kinect.csv"
+    shipped = ROOT / "models/denoise.safetensors"
+    assert kinect.read_text().split("\n")[0].split(",")[1:5:3] == ["SpineBase_x", "SpineBase_state"]
+
+    def moved(place, change):
+        return lambda i, row: [repr(change(i, float(one))) if n % 4 == place and one else one for n, one in enumerate(row)]
+
+    down = of_kinect(kinect, folder / "down.csv", moved(2, lambda i, y: -y))
+    first = refused("denoise", down, "--model", shipped, "-o", folder / "o.bvh", naming=down)
+    assert "expected y up: a head above the hips, found one below them in" in first, first
+    jump = of_kinect(kinect, folder / "jump.csv", moved(1, lambda i, x: x + 1.8 * (i > 60)))
+    said = told("denoise", jump, "--model", shipped, "-o", folder / "jump.bvh", code=1)
+    assert len(said["warnings"]) == 1 and said["warnings"][0].startswith("the body jumps at 2.0 s"), said["warnings"]
+    far = of_kinect(kinect, folder / "far.csv", lambda i, row: row[:15] + ["4500"] + row[16:] if i == 60 else row)
+    said = told("denoise", far, "--model", shipped, "-o", folder / "far.bvh", code=1)
+    assert "1.6 m from the root and count as missing" in said["warnings"][0], said["warnings"]
+    hole = of_kinect(kinect, folder / "hole.csv", lambda i, row: None if 60 < i < 140 else row)
+    said = told("denoise", hole, "--model", shipped, "-o", folder / "hole.bvh", code=1)
+    assert said["warnings"] == ["19 joints are missing for 2.6 s: there they are a guess"], said["warnings"]
 
 
 @case

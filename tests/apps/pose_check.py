@@ -131,6 +131,41 @@ def arms_that_hang_and_a_T_pose_that_is_not_held_still_are_told(folder):
     assert said["t_pose"]["from_s"] == 6 and not said["t_pose"]["found"], said
 
 
+def node_rows(path):
+    return [line.split(",") for line in path.read_text().splitlines()]
+
+
+def put_rows(path, rows):
+    path.write_text("\n".join(",".join(row) for row in rows) + "\n")
+
+
+@case
+def nodes_in_each_others_place_in_another_unit_or_frozen_are_told(folder):
+    words = ("--model", SMALL / "two.safetensors", "--force")
+    _, manifest = simulated(folder / "sim", seconds=12)
+    sim, out = manifest.parent, folder / "a.bvh"
+    assert told("pose", manifest, "-o", out, *words)["warnings"] == []
+    waist, wrist = sim / "imu_waist.csv", sim / "imu_wrist_left.csv"
+    was = waist.read_text(), wrist.read_text()
+    waist.write_text(was[1])
+    wrist.write_text(was[0])
+    said = told("pose", manifest, "-o", out, *words, code=1)["warnings"]
+    assert any("are they in each other's place?" in one and "waist" in one for one in said), said
+    waist.write_text(was[0])
+    wrist.write_text(was[1])
+    rows = node_rows(wrist)
+    put_rows(wrist, rows[:600] + [[row[0], *rows[600][1:]] for row in rows[600:800]] + rows[800:])
+    said = told("pose", manifest, "-o", out, *words, code=1)["warnings"]
+    assert len(said) == 1 and said[0].startswith("wrist_left repeats one sample for "), said
+    put_rows(wrist, [rows[0]] + [row[:5] + [repr(float(a) / 9.80665) for a in row[5:8]] + row[8:] for row in rows[1:]])
+    said = told("pose", manifest, "-o", out, *words, code=1)["warnings"]
+    assert len(said) == 1 and said[0].startswith("wrist_left: 8.8 m/s2 are left in the T-pose"), said
+    wrist.write_text(was[1])
+    put_rows(waist, node_rows(waist)[:800])
+    said = told("pose", manifest, "-o", out, *words, code=1)["warnings"]
+    assert len(said) == 1 and "less than other nodes" in said[0], said
+
+
 @case
 def a_node_that_is_lost_is_told_and_too_few_are_refused(folder):
     _, manifest = simulated(folder / "sim", seconds=12)

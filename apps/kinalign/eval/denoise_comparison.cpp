@@ -6,10 +6,12 @@
 
 #include "kinalign/compare/denoise_marks.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <set>
 
@@ -138,27 +140,36 @@ struct Bench {
   DenoiseMarker marker;
 };
 
-Result<Answer> answer_of(const Trial& trial, const Bench& bench, Call& call) {
-  if (trial.model.empty()) {
-    return make_answer({bench.layout, bench.pairs.all, trial.training}, call);
-  }
-  const std::string bytes =
-      KA_TRY(read_whole(call.surroundings.files, trial.model, most_model_bytes));
-  const DenoiseLayout layout = KA_TRY(read_denoise_model(bytes, trial.model)).layout;
-  if (layout.inputs == bench.layout.inputs && layout.outputs == bench.layout.outputs) {
-    return answer_of_model(bytes, trial.model);
-  }
-  return Failure(Error{trial.model, 0, "a model of the joints of the data", "another one"});
+Result<Bench> bench_of(Pairs pairs, DenoiseLayout layout, MarkedIn marked_in) {
+  DenoiseMarker marker = KA_TRY(DenoiseMarker::make(layout, pairs.all, marked_in));
+  return Bench{std::move(pairs), std::move(layout), std::move(marker)};
 }
 
-Result<std::string> marks_of_trial(const Trial& trial, const Bench& bench, Call& call) {
-  const Answer answer = KA_TRY(answer_of(trial, bench, call));
+/// The data, once read, and how it is marked.
+struct BenchData {
+  Windows windows;
+  std::string input, truth;
+  MarkedIn marked_in = MarkedIn::space;
+  Bench own;  // with the data's joints
+};
+
+/// The data with the joints of a finished model, found by name.
+Result<Bench> bench_of_model(const DenoiseLayout& layout, const BenchData& data) {
+  if (std::abs(data.own.layout.rate_hz - layout.rate_hz) > 0.01 * layout.rate_hz) {
+    return Failure(Error{"--rate", 0, fmt::format("{:g} Hz, the model's", layout.rate_hz),
+                         fmt::format("{:g}", data.own.layout.rate_hz)});
+  }
+  const Pairs joints{layout.inputs, layout.outputs, layout.rate_hz, layout.parents};
+  return bench_of(KA_TRY(pairs_for(data.windows, data.input, data.truth, joints, least_rows)),
+                  layout, data.marked_in);
+}
+
+Result<std::string> marks_on(const Bench& bench, const Answer& answer,
+                             const std::vector<std::string>& tested) {
   const Steadier steadier({}, bench.layout);
   std::vector<Marked> out;
   for (const Pair& pair : bench.pairs.all) {
-    if (std::find(trial.tested.begin(), trial.tested.end(), pair.take) == trial.tested.end()) {
-      continue;
-    }
+    if (std::find(tested.begin(), tested.end(), pair.take) == tested.end()) continue;
     Denoised plain = answer(pair.input);
     Marked one{pair.take, pair.subject, {}};
     one.marks[0] = bench.marker.marks_of(pair, plain.positions, plain.spread);
@@ -167,6 +178,22 @@ Result<std::string> marks_of_trial(const Trial& trial, const Bench& bench, Call&
     out.push_back(std::move(one));
   }
   return written_marks(out);
+}
+
+Result<std::string> marks_of_trial(const Trial& trial, const BenchData& data, Call& call) {
+  if (trial.model.empty()) {
+    const Answer answer =
+        KA_TRY(make_answer({data.own.layout, data.own.pairs.all, trial.training}, call));
+    return marks_on(data.own, answer, trial.tested);
+  }
+  const std::string bytes =
+      KA_TRY(read_whole(call.surroundings.files, trial.model, most_model_bytes));
+  const DenoiseLayout layout = KA_TRY(read_denoise_model(bytes, trial.model)).layout;
+  const Answer answer = KA_TRY(answer_of_model(bytes, trial.model));
+  if (layout.inputs == data.own.layout.inputs && layout.outputs == data.own.layout.outputs) {
+    return marks_on(data.own, answer, trial.tested);
+  }
+  return marks_on(KA_TRY(bench_of_model(layout, data)), answer, trial.tested);
 }
 
 using Group = std::vector<const Marked*>;
@@ -255,15 +282,16 @@ std::vector<MethodMarks> sum_up(const std::string& name, const std::vector<FoldM
 
 Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
                                       const std::string& file) {
-  Pairs pairs = KA_TRY(pairs_of(KA_TRY(read_windows(bytes, file)), input_of(o, Learns::denoise),
-                                o.truth, least_rows));
+  Windows windows = KA_TRY(read_windows(bytes, file));
+  const std::string input = input_of(o, Learns::denoise);
+  Pairs pairs = KA_TRY(pairs_of(windows, input, o.truth, least_rows));
   DenoiseLayout layout = KA_TRY(eval_layout(pairs));
-  DenoiseMarker marker = KA_TRY(
-      DenoiseMarker::make(layout, pairs.all, o.own_root ? MarkedIn::own_root : MarkedIn::space));
-  const auto bench =
-      std::make_shared<Bench>(Bench{std::move(pairs), std::move(layout), std::move(marker)});
+  const MarkedIn marked_in = o.own_root ? MarkedIn::own_root : MarkedIn::space;
+  Bench own = KA_TRY(bench_of(std::move(pairs), std::move(layout), marked_in));
+  const auto data = std::make_shared<BenchData>(
+      BenchData{std::move(windows), input, o.truth, marked_in, std::move(own)});
   Comparison out;
-  out.takes = takes_of(bench->pairs);
+  out.takes = takes_of(data->own.pairs);
   out.columns = {{"mpjpe_cm", "position, cm", 2},
                  {"pa_mpjpe_cm", "fitted, cm", 2},
                  {"bone_cm", "bones, cm", 2},
@@ -279,10 +307,9 @@ Result<Comparison> denoise_comparison(const Eval& o, const std::string& bytes,
   for (std::size_t j = 0; j < shared_joint_count; ++j) {
     out.joints.push_back({joint_key(j), std::string(shared_joints[j]), 1});
   }
-  out.over = "folds";
-  out.mark = [bench](const Trial& trial, Call& call) {
-    return marks_of_trial(trial, *bench, call);
-  };
+  const bool by_people = !o.split.empty() || o.folds == "people" || o.folds == "split";
+  out.over = by_people ? "people" : "folds";
+  out.mark = [data](const Trial& trial, Call& call) { return marks_of_trial(trial, *data, call); };
   out.sum_up = sum_up;
   return out;
 }

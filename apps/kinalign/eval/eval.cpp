@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <span>
 
 namespace kinalign {
 
@@ -31,6 +32,8 @@ constexpr std::size_t most_cached_bytes = std::size_t{64} << 20U;
 constexpr int cache_version = 6;
 /// An interval over fewer people would be too narrow.
 constexpr std::size_t least_for_interval = 8;
+/// Marks beside each other in a terminal; further ones stand below.
+constexpr std::size_t most_columns = 6;
 /// More rows of tests are written to files only.
 constexpr std::size_t most_printed_tests = 12;
 
@@ -228,6 +231,10 @@ Result<std::string> marks_for(const EvalRun& run, const Trial& trial, const std:
     if (!run.comparison.sum_up("", {{"", {known}}}).empty()) return known;
   }
   std::string made = KA_TRY(run.comparison.mark(trial, call));
+  if (run.comparison.sum_up("", {{"", {made}}}).empty()) {
+    return Failure(Error{trial.model.empty() ? trial.training.method : trial.model, 0,
+                         "marks that are numbers", "none"});
+  }
   KA_TRY(write_whole(files, file, made, Overwrite::yes));
   return made;
 }
@@ -297,7 +304,9 @@ void put_mean(const std::vector<double>& values, bool has_interval, std::vector<
   }
 }
 
-Table table_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
+/// Of these columns.
+Table table_of(const EvalRun& run, const std::vector<MethodMarks>& rows,
+               std::span<const MarkColumn> columns) {
   const std::size_t count = count_of_values(rows);
   const Comparison& comparison = run.comparison;
   const bool has_interval = comparison.over == "people" && count >= least_for_interval;
@@ -308,7 +317,7 @@ Table table_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
       (comparison.over == "people" ? counted(count, "person", "people") : comparison.over);
   if (!comparison.note.empty()) out.caption += "; " + comparison.note;
   out.columns = {{"method", "method"}};
-  for (const auto& [key, title, decimals] : comparison.columns) {
+  for (const auto& [key, title, decimals] : columns) {
     out.columns.push_back({key, title, decimals});
     if (has_interval) {
       out.columns.push_back({key + "_low", "from", decimals});
@@ -319,7 +328,7 @@ Table table_of(const EvalRun& run, const std::vector<MethodMarks>& rows) {
   }
   for (const MethodMarks& marks : rows) {
     auto& row = out.rows.emplace_back(std::vector<Cell>{marks.label()});
-    for (const MarkColumn& column : comparison.columns) {
+    for (const MarkColumn& column : columns) {
       put_mean(marks.values(column.key), has_interval, row);
     }
   }
@@ -425,7 +434,7 @@ Result<void> write_table(const Table& table, const std::string& name, Call& call
 }
 
 Result<void> write_tables(const EvalRun& run, const std::vector<MethodMarks>& rows, Call& call) {
-  KA_TRY(write_table(table_of(run, rows), "table", call));
+  KA_TRY(write_table(table_of(run, rows, run.comparison.columns), "table", call));
   KA_TRY(write_table(people_of(run, rows), "people", call));
   for (const NamedTable& table :
        {NamedTable{"joints", joints_of(run, rows)}, NamedTable{"radii", radii_of(rows)}}) {
@@ -435,7 +444,15 @@ Result<void> write_tables(const EvalRun& run, const std::vector<MethodMarks>& ro
 }
 
 void print_tables_of(const EvalRun& run, const std::vector<MethodMarks>& rows, Call& call) {
-  std::vector<NamedTable> all{{"rows", table_of(run, rows)}};
+  const std::span<const MarkColumn> columns = run.comparison.columns;
+  const bool is_text = run.options.format == "text" && !call.console.prints_json();
+  const std::size_t width = is_text ? most_columns : columns.size();
+  std::vector<NamedTable> all;
+  for (std::size_t begin = 0; begin < columns.size(); begin += width) {
+    const auto some = columns.subspan(begin, std::min(width, columns.size() - begin));
+    all.push_back({"rows", table_of(run, rows, some)});
+    if (begin > 0) all.back().table.caption.clear();
+  }
   const Table tests = tests_of(run, rows);
   const bool is_shown = !tests.rows.empty() && tests.rows.size() <= most_printed_tests;
   if (const Table radii = radii_of(rows); !radii.rows.empty()) all.push_back({"radii", radii});

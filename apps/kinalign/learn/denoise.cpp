@@ -26,6 +26,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace kinalign {
 
@@ -101,6 +102,21 @@ std::vector<double> moves(const DenoiseModel& model, const Cleaned& cleaned) {
   return out;
 }
 
+/// The stated spread, m, where the input joint that stands for the output was seen: a network does
+/// not know how far off a guess is.
+std::vector<double> spread_of_seen(const DenoiseModel& model, const Cleaned& cleaned) {
+  std::vector<double> out;
+  const std::size_t in = model.layout.inputs.size(), joints = model.layout.outputs.size();
+  const auto stands = inputs_of_outputs(model.layout);
+  for (std::size_t i = 0; i < cleaned.answer.spread.size(); ++i) {
+    const std::size_t seen = i / joints * in + stands[i % joints];
+    if (cleaned.input.body.seen[seen] != 0) {
+      out.push_back(static_cast<double>(cleaned.answer.spread[i]));
+    }
+  }
+  return out;
+}
+
 /// Joints of the input that were missing for long, each with its longest time, s.
 Json long_missing(const DenoiseModel& model, const EvenFrames& input) {
   Json out = Json::object();
@@ -117,7 +133,28 @@ Json long_missing(const DenoiseModel& model, const EvenFrames& input) {
   return out;
 }
 
-Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string& stream) {
+constexpr std::size_t most_named = 4;
+
+/// A warning for each time: joints that go together stand in one.
+std::vector<std::string> missing_warnings(const Json& long_missing) {
+  std::map<std::string, std::vector<std::string>> joints;
+  for (const auto& [joint, seconds] : long_missing.items()) {
+    joints[fmt::format("{:.1f}", seconds.get<double>())].push_back(harmless(joint));
+  }
+  std::vector<std::string> out;
+  for (const auto& [seconds, names] : joints) {
+    const std::string who = names.size() > most_named ? fmt::format("{} joints", names.size())
+                                                      : fmt::format("{}", fmt::join(names, ", "));
+    const bool is_one = names.size() == 1;
+    out.push_back(fmt::format("{} {} missing for {} s: there {} a guess", who,
+                              is_one ? "is" : "are", seconds, is_one ? "it is" : "they are"));
+  }
+  return out;
+}
+
+/// `warnings`: of what went in.
+Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string& stream,
+           std::vector<std::string> warnings) {
   const auto& seen = cleaned.input.body.seen;
   const auto missing = std::count(seen.begin(), seen.end(), 0);
   const auto inferred = std::count(seen.begin(), seen.end(), 1);
@@ -131,10 +168,12 @@ Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string&
            {"inferred", static_cast<double>(inferred) / all},
            {"moved_cm", 100.0 * mean_of(moves(model, cleaned))},
            {"long_missing_s", long_missing(model, cleaned.input)}};
-  if (!cleaned.answer.spread.empty()) {
-    const std::vector<double> spread(cleaned.answer.spread.begin(), cleaned.answer.spread.end());
-    out["radius_90_cm"] = 100.0 * radius_90 * mean_of(spread);
+  for (std::string& one : missing_warnings(out.at("long_missing_s"))) {
+    warnings.push_back(std::move(one));
   }
+  out["warnings"] = std::move(warnings);
+  const std::vector<double> spread = spread_of_seen(model, cleaned);
+  if (!spread.empty()) out["radius_90_cm"] = 100.0 * radius_90 * mean_of(spread);
   return out;
 }
 
@@ -142,6 +181,7 @@ Json about(const DenoiseModel& model, const Cleaned& cleaned, const std::string&
 struct SeenJoints {
   std::string stream;
   EvenFrames frames;
+  std::vector<std::string> warnings{};
 };
 
 /// Errors name the file `in`.
@@ -150,7 +190,10 @@ Result<SeenJoints> seen_joints(const DenoiseLayout& layout, Result<NamedPoints> 
   const NamedPoints named = KA_TRY(std::move(points));
   auto frames = even_frames(layout.inputs, kinect_names(named.joints), named.frames,
                             {layout.rate_hz, longest_gap_s});
-  if (frames) return SeenJoints{named.stream, *std::move(frames)};
+  if (frames) {
+    std::vector<std::string> warnings = warnings_of(*frames, named.left_out);
+    return SeenJoints{named.stream, *std::move(frames), std::move(warnings)};
+  }
   Error error = frames.error();
   if (error.file.empty()) error.file = in;
   return Failure(error);
@@ -165,7 +208,8 @@ Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::s
     const JointFrames& body = seen.frames.body;
     TensorFile out;
     out.metadata = {{"stream", seen.stream},
-                    {"start_ns", std::to_string(to_ns(seen.frames.start))}};
+                    {"start_ns", std::to_string(to_ns(seen.frames.start))},
+                    {"warnings", Json(seen.warnings).dump()}};
     out.tensors["positions"] = {{body.frames(), body.joints, 3}, body.positions};
     out.tensors["seen"] = {{body.frames(), body.joints}, {body.seen.begin(), body.seen.end()}};
     return write_safetensors(out);
@@ -175,6 +219,7 @@ Result<SeenJoints> seen_joints_of_take(const DenoiseLayout& layout, const std::s
   SeenJoints out;
   out.stream = told.metadata["stream"];
   out.frames.start = utc_time(std::stoll(told.metadata["start_ns"]));
+  Json::parse(told.metadata["warnings"]).get_to(out.warnings);
   out.frames.rate_hz = layout.rate_hz;
   out.frames.body.joints = layout.inputs.size();
   out.frames.body.positions = std::move(told.tensors["positions"].values);
@@ -242,12 +287,13 @@ void print(const Json& about, const std::string& out, Call& call) {
                       100.0 * about.at("missing").get<double>(),
                       100.0 * about.at("inferred").get<double>());
   if (about.contains("radius_90_cm")) {
-    text += fmt::format("sure     9 of 10 joints lie within {:.1f} cm, the model says\n",
-                        about.at("radius_90_cm").get<double>());
+    text += fmt::format(
+        "sure     9 of 10 joints that were seen lie within {:.1f} cm, if the data is like the "
+        "model's\n",
+        about.at("radius_90_cm").get<double>());
   }
-  for (const auto& [joint, seconds] : about.at("long_missing_s").items()) {
-    text += fmt::format("warning  {} is missing for {:.1f} s: there it is a guess\n",
-                        harmless(joint), seconds.get<double>());
+  for (const auto& warning : about.at("warnings")) {
+    text += "warning  " + harmless(warning.get<std::string>()) + "\n";
   }
   if (about.contains("projected")) {
     const auto said = [&](const char* what, std::size_t i) {
@@ -308,12 +354,12 @@ Result<int> run_denoise(Denoise& o, Call& call) {
       o.project
           ? KA_TRY(clean_with_constraints(model, path, cleaned.input.body, of_projection, call))
           : denoiser.clean(cleaned.input.body);
-  cleaned.about = about(model, cleaned, seen.stream);
+  cleaned.about = about(model, cleaned, seen.stream, std::move(seen.warnings));
   cleaned.about.update(of_projection);
   KA_TRY(write_cleaned(files, model, cleaned, call.common));
   call.console.wrote(call.common.out);
   print(cleaned.about, call.common.out, call);
-  return cleaned.about.at("long_missing_s").empty() ? 0 : 1;
+  return cleaned.about.at("warnings").empty() ? 0 : 1;
 }
 
 }  // namespace

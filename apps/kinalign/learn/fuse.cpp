@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <numbers>
 
 namespace kinalign {
@@ -25,6 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double most_unsure_deg = 10.0;  // of a node's heading, 1 sigma
+constexpr double most_turned_deg = 40.0;  // by the Kinect, of a node that is worn where it is named
 
 struct FuseWords {
   std::vector<std::string> in;
@@ -79,6 +81,13 @@ void tell_headings(const std::vector<std::string>& names, const std::vector<Head
     found[names[n]] = {{"turned_deg", degrees * static_cast<double>(last.yaw)},
                        {"spread_deg", spread}};
     const bool is_there = about.at("nodes").at(names[n]).at("valid").get<double>() > 0.0;
+    const double turned = degrees * static_cast<double>(last.yaw);
+    if (is_there && std::abs(turned) > most_turned_deg && spread <= most_unsure_deg) {
+      about["warnings"].push_back(fmt::format(
+          "{}: the Kinect turned it by {:.0f} deg: is it in another's place, or worn in "
+          "another way?",
+          names[n], turned));
+    }
     if (!is_there || spread <= most_unsure_deg) continue;
     about["warnings"].push_back(
         fmt::format("{}: the Kinect hardly shows its heading (± {:.0f} deg)", names[n], spread));

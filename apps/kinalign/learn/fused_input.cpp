@@ -53,6 +53,7 @@ Result<FusedInput> fused_input(const FuseModel& model, BothDevices both, const W
   EvenFrames seen =
       KA_TRY(even_frames(layout.joints, kinect_names(both.kinect.joints), both.kinect.frames,
                          {layout.nodes.rate_hz, longest_kinect_gap_s, span}));
+  out.warnings = warnings_of(seen, both.kinect.left_out);
   out.input.kinect = std::move(seen.body);
   const auto yaw = shared_heading(layout, out.input);
   if (!yaw) {
@@ -80,6 +81,7 @@ nlohmann::ordered_json about_fused(const FuseModel& model, const FusedInput& giv
                              {"missing", share_of(seen, 0)},
                              {"inferred", share_of(seen, 1)}};
   out.update(about_nodes(layout, given.posed, given.input.nodes, given.nodes));
+  for (const std::string& warning : given.warnings) out["warnings"].push_back(warning);
   return out;
 }
 

@@ -10,6 +10,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <string>
+#include <vector>
+
 namespace kinalign {
 
 /// Both devices as they came.
@@ -25,8 +28,9 @@ struct FusedInput {
   std::string kinect;  // its stream
   NamedNodes nodes;    // names alone
   PosedNodes posed;
-  Skeleton body;         // the model's, as long as the Kinect sees the person
-  bool is_sized = true;  // else the Kinect saw too little, and `body` is the model's
+  Skeleton body;                        // the model's, as long as the Kinect sees the person
+  bool is_sized = true;                 // else the Kinect saw too little, and `body` is the model's
+  std::vector<std::string> warnings{};  // of the Kinect
 };
 
 /// Fails where the Kinect has fewer than two frames, nodes do not fit, or both devices are never

@@ -5,6 +5,9 @@
 
 #include "kinalign/align/own_rows.h"
 #include "kinalign/formats/take/take_hdf5.h"
+#include "kinalign/view/report_words.h"
+
+#include <fmt/format.h>
 
 #include <optional>
 #include <utility>
@@ -34,7 +37,10 @@ Result<void> append(NamedPoints& out, const std::vector<Time>& stamps,
     return Failure(Error{"", 0, "a stream that fits into memory", "a longer one"});
   }
   for (std::size_t t = 0; t < stamps.size(); ++t) {
-    if (!out.frames.stamps.empty() && stamps[t] <= out.frames.stamps.back()) continue;
+    if (!out.frames.stamps.empty() && stamps[t] <= out.frames.stamps.back()) {
+      ++out.left_out;
+      continue;
+    }
     out.frames.stamps.push_back(stamps[t]);
     const auto row = static_cast<std::ptrdiff_t>(t * joints),
                count = static_cast<std::ptrdiff_t>(joints);
@@ -150,6 +156,24 @@ Result<NamedPoints> points_of_file(const std::string& path, const std::string& s
     KA_TRY(read_points(found->clock, *points, out));
   } else {
     KA_TRY(read_clip(found->clock, std::get<ClipInput>(found->data), out));
+  }
+  return out;
+}
+
+std::vector<std::string> warnings_of(const EvenFrames& frames, std::size_t left_out) {
+  std::vector<std::string> out;
+  if (left_out > 0) {
+    out.push_back(
+        fmt::format("{} frames are left out: their stamps repeat or step back", grouped(left_out)));
+  }
+  if (frames.far > 0) {
+    out.push_back(fmt::format("{} joints lie more than 1.6 m from the root and count as missing",
+                              grouped(frames.far)));
+  }
+  if (frames.jump_s) {
+    out.push_back(fmt::format(
+        "the body jumps at {:.1f} s: is it another person? From there on the answer may be wrong",
+        *frames.jump_s));
   }
   return out;
 }

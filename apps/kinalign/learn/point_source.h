@@ -4,6 +4,7 @@
 
 #include "apps/cli/verb.h"
 
+#include "kinalign/models/even_grid.h"
 #include "kinalign/motion/streams.h"
 
 #include <string>
@@ -14,7 +15,8 @@ namespace kinalign {
 struct NamedPoints {
   std::string stream;
   std::vector<std::string> joints;
-  PointFrames frames;  // stamps rise
+  PointFrames frames;        // stamps rise
+  std::size_t left_out = 0;  // frames whose stamps repeat or step back
 };
 
 /// `stream`: its name; empty: the only stream of points. A skeleton's joints are taken as tracked
@@ -23,5 +25,8 @@ struct NamedPoints {
 Result<NamedPoints> points_of_take(FileSystem& files, const std::string& path,
                                    const std::string& stream);
 Result<NamedPoints> points_of_file(const std::string& path, const std::string& stream, Call& call);
+
+/// What is to be said of a Kinect's frames before a model sees them. `left_out`: NamedPoints'.
+std::vector<std::string> warnings_of(const EvenFrames& frames, std::size_t left_out);
 
 }  // namespace kinalign

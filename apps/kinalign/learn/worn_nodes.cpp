@@ -19,6 +19,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double longest_lost_s = 2.0;  // a node that is lost longer is told
+constexpr double most_left_m_s2 = 2.0;  // of a node that rests
+constexpr double longest_frozen_s = 1.0;
+/// Beyond it a node is surely not worn as docs/pose.md says.
+constexpr double sure_tilt_deg = 60.0;
 
 /// "START,END" in seconds; absent where the text is empty.
 Result<std::optional<TPoseSeconds>> t_pose_seconds(const std::string& text) {
@@ -98,6 +102,98 @@ std::string warning_of(const PosedNodes& posed, const PoseLayout& layout, std::s
                        name, worn->tilt_deg);
   }
   return fmt::format("{} is worn {:.0f} deg off what docs/pose.md says", name, worn->tilt_deg);
+}
+
+/// The longest time for which a node repeats one sample, s.
+double frozen_s(const NodeTrack& track) {
+  std::int64_t longest = 0;
+  std::size_t first = 0;
+  const auto is_same = [&](const std::vector<double>& values, std::size_t width, std::size_t i) {
+    const auto now = values.begin() + static_cast<std::ptrdiff_t>(i * width);
+    return std::equal(now, now + static_cast<std::ptrdiff_t>(width),
+                      now - static_cast<std::ptrdiff_t>(width));
+  };
+  for (std::size_t i = 1; i < track.stamps.size(); ++i) {
+    if (!is_same(track.orientation, 4, i) || !is_same(track.acceleration, 3, i)) first = i;
+    longest = std::max(longest, to_ns(track.stamps[i]) - to_ns(track.stamps[first]));
+  }
+  return 1e-9 * static_cast<double>(longest);
+}
+
+/// By how much the root's node sends less long than others, s.
+double lost_with_root_s(const std::vector<NodeTrack>& tracks) {
+  std::int64_t out = 0;
+  const auto& root = tracks.back().stamps;
+  for (const NodeTrack& track : tracks) {
+    if (track.stamps.empty() || root.empty()) continue;
+    out = std::max({out, to_ns(track.stamps.back()) - to_ns(root.back()),
+                    to_ns(root.front()) - to_ns(track.stamps.front())});
+  }
+  return 1e-9 * static_cast<double>(out);
+}
+
+/// Of samples that repeat, and of times without the root's node where it bounds the frames.
+std::vector<std::string> sample_warnings(const PoseLayout& layout,
+                                         const std::vector<NodeTrack>& tracks, bool root_bounds) {
+  std::vector<std::string> out;
+  for (std::size_t n = 0; n < tracks.size(); ++n) {
+    if (const double frozen = frozen_s(tracks[n]); frozen > longest_frozen_s) {
+      out.push_back(fmt::format("{} repeats one sample for {:.1f} s: there its limb is a guess",
+                                layout.nodes[n], frozen));
+    }
+  }
+  if (const double lost = lost_with_root_s(tracks); root_bounds && lost > longest_lost_s) {
+    out.push_back(
+        fmt::format("{} sends {:.1f} s less than other nodes: without it there is no answer",
+                    layout.nodes.back(), lost));
+  }
+  return out;
+}
+
+/// Nodes whose accelerations at rest are not those of gravity: "waist: 8.8, wrist_left: 8.9".
+std::string restless_nodes(const PoseLayout& layout, const NodeCalibration& calibration) {
+  std::string out;
+  for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
+    const auto& worn = calibration.nodes[n];
+    if (!worn || worn->zero.norm() <= most_left_m_s2) continue;
+    out += fmt::format("{}{}: {:.1f}", out.empty() ? "" : ", ", layout.nodes[n], worn->zero.norm());
+  }
+  return out;
+}
+
+/// Nodes that have changed places, and headings that are not shared. `headings`: as they were asked
+/// for.
+std::vector<std::string> warnings_of(const PoseLayout& layout, const NodeCalibration& calibration,
+                                     const std::string& headings) {
+  std::string names, tilts;
+  std::size_t as_told = 0, off = 0;
+  for (std::size_t n = 0; n < layout.nodes.size(); ++n) {
+    const auto& worn = calibration.nodes[n];
+    if (worn && worn->tilt_deg <= most_tilt_deg) ++as_told;
+    if (!worn || worn->tilt_deg <= sure_tilt_deg) continue;
+    names += (off == 0 ? "" : " and ") + layout.nodes[n];
+    tilts += fmt::format("{}{:.0f}", off == 0 ? "" : " and ", worn->tilt_deg);
+    ++off;
+  }
+  std::vector<std::string> out;
+  if (const std::string restless = restless_nodes(layout, calibration); !restless.empty()) {
+    out.push_back(restless +
+                  " m/s2 are left in the T-pose beside gravity: accelerations in another unit, "
+                  "gravity in them or not, or another order of the quaternion's numbers");
+  }
+  if (headings == "auto" && as_told >= 2 && off >= 2) {
+    out.push_back(names + " are worn " + tilts +
+                  " deg off what docs/pose.md says, the others as it says: are they in each "
+                  "other's place?");
+  }
+  if (headings == "shared" && calibration.worn_as_told &&
+      calibration.spread_deg > most_shared_deg) {
+    out.push_back(fmt::format(
+        "the nodes' headings by how they are worn lie {:.0f} deg apart, and one for all "
+        "was asked for: --heading mounting?",
+        calibration.spread_deg));
+  }
+  return out;
 }
 
 std::string heading_line(const Json& about) {
@@ -194,12 +290,16 @@ Result<PosedNodes> calibrated_nodes(const PoseLayout& layout, const Skeleton& bo
     options.worn.back() = nodes.worn[*choice[n]];
     KA_TRY(complete(tracks[n]));
   }
+  out.warnings = sample_warnings(layout, tracks, !span);
   out.even = KA_TRY(even_nodes(tracks, layout.rate_hz, span));
   out.t_pose = KA_TRY(choose_t_pose(o.t_pose, out.even.worn, layout.rate_hz));
   options.t_pose = out.t_pose.frames;
   if (o.headings == "shared") options.headings = Headings::shared;
   if (o.headings == "mounting") options.headings = Headings::mounting;
   out.calibration = KA_TRY(calibrate(layout, body, out.even.worn, options));
+  for (std::string& one : warnings_of(layout, out.calibration, o.headings)) {
+    out.warnings.push_back(std::move(one));
+  }
   return out;
 }
 
@@ -223,6 +323,7 @@ Json about_nodes(const PoseLayout& layout, const PosedNodes& posed, const NodeFr
     const std::string warning = warning_of(posed, layout, n, presence);
     if (!warning.empty()) warnings.push_back(warning);
   }
+  for (const std::string& warning : posed.warnings) warnings.push_back(warning);
   const NodeCalibration& calibration = posed.calibration;
   return {{"valid", valid},
           {"nodes", std::move(each)},

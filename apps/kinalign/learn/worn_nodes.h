@@ -45,6 +45,7 @@ struct PosedNodes {
   EvenNodes even;
   ChosenTPose t_pose;
   NodeCalibration calibration;
+  std::vector<std::string> warnings{};  // of how all of them are worn
 };
 
 /// `span`: the grid, in place of the root's. Fails as choose() does, too.

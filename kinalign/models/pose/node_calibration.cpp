@@ -14,9 +14,11 @@ namespace kinalign {
 
 namespace {
 
+/// Beyond what limbs do. A network's answer to a sensor at its limit would have none.
+constexpr double most_m_s2 = 100.0;
+
 constexpr double still_deg_s = 20.0, least_still_s = 1.0, most_still_s = 3.0;
-constexpr double most_spread_deg = 35.0;  // of headings that are taken for one
-constexpr double least_swing = 0.3;       // rad, of an arm in the mean, to see where it came down
+constexpr double least_swing = 0.3;  // rad, of an arm in the mean, to see where it came down
 
 double in_degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
 
@@ -207,7 +209,7 @@ Result<NodeCalibration> calibrate(const PoseLayout& layout, const Skeleton& body
   out.worn_as_told = are_worn_as_told(layout, rest);
   const MeanAngle by_mounting = mean_angle(credible_headings(rest));
   out.spread_deg = in_degrees(by_mounting.worst);
-  const bool own = out.worn_as_told && out.spread_deg > most_spread_deg;
+  const bool own = out.worn_as_told && out.spread_deg > most_shared_deg;
   out.headings = options.headings.value_or(own ? Headings::mounting : Headings::shared);
   double shared = own ? rest.heading.back() : by_mounting.angle;
   if (out.headings == Headings::shared && !out.worn_as_told) {
@@ -233,7 +235,8 @@ NodeFrames on_bones(const NodeCalibration& calibration, WornFrames worn) {
     if (worn.valid[at] == 0) continue;
     const Quat q = orientation_at(worn, at);
     const Vec3 acceleration = vector_at(worn.acceleration, at) - q * node->zero;
-    put_vector(node->heading * acceleration, at, worn.acceleration);
+    put_vector(node->heading * acceleration.cwiseMin(most_m_s2).cwiseMax(-most_m_s2), at,
+               worn.acceleration);
     put_vector(node->node_from_bone.conjugate() * vector_at(worn.angular_velocity, at), at,
                worn.angular_velocity);
     put_orientation(node->heading * q * node->node_from_bone, at, worn);

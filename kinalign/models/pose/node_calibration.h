@@ -68,6 +68,9 @@ struct NodeCalibration {
 /// Beyond this tilt a node is not worn as docs/pose.md says, or its limb is not in a T-pose.
 inline constexpr double most_tilt_deg = 40.0;
 
+/// Headings that lie farther apart are not one for all nodes.
+inline constexpr double most_shared_deg = 35.0;
+
 struct CalibrationOptions {
   TPose t_pose;
   /// Absent: by the data. If all nodes but those on arms are worn as told, and their headings by
@@ -84,7 +87,8 @@ struct CalibrationOptions {
 Result<NodeCalibration> calibrate(const PoseLayout& layout, const Skeleton& body,
                                   const WornFrames& worn, const CalibrationOptions& options);
 
-/// The nodes as a model sees them. A node without constants is not valid.
+/// The nodes as a model sees them. A node without constants is not valid. Accelerations beyond 100
+/// m/s2 along an axis are cut there.
 NodeFrames on_bones(const NodeCalibration& calibration, WornFrames worn);
 
 }  // namespace kinalign
